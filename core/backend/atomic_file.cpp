@@ -1,0 +1,36 @@
+#include "core/backend/atomic_file.h"
+
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "core/backend/error.h"
+
+namespace toile {
+
+void write_atomically(const std::filesystem::path& file, std::string_view content)
+{
+    std::error_code error;
+    if (file.has_parent_path())
+        std::filesystem::create_directories(file.parent_path(), error);
+    if (error)
+        throw InvalidInput(file.string() + ": its folder can't be created (" + error.message() +
+                           "); choose a writable folder");
+
+    const std::filesystem::path partial = file.string() + ".partial-" + std::to_string(::getpid());
+    std::ofstream stream(partial, std::ios::binary);
+    if (!stream)
+        throw InvalidInput(file.string() + ": can't be written; choose a writable folder");
+    stream.write(content.data(), std::streamsize(content.size()));
+    stream.close();
+    if (stream.good())
+        std::filesystem::rename(partial, file, error);
+    if (!stream.good() || error) {
+        std::filesystem::remove(partial);
+        throw DeviceError(file.string() + ": writing broke off; is the disk full?");
+    }
+}
+
+} // namespace toile

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace toile {
+
+/// Writes a whole file beside its name and renames it into place: readers see the old content or the new,
+/// never half of it. Creates missing parent folders.
+/// @throws InvalidInput when the folder can't be created or written to, DeviceError when the write breaks
+/// off.
+void write_atomically(const std::filesystem::path& file, std::string_view content);
+
+} // namespace toile

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "core/backend/stages.h"
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Where a kernel runs. The CUDA counterpart has the same signatures (see docs/core/backend.md).
+struct CpuSpace {};
+inline constexpr CpuSpace kCpu{};
+
+/// Items per task. Small enough to balance, large enough to hide the scheduler (about 1 us a task).
+inline constexpr int kGrain = 256;
+
+/// Runs kernel(i) for i in [0, count), in any order, on all threads of the caller's TBB arena.
+/// Item i may write slot i only, so the result has the same bits for every thread count.
+/// Counted as one call of stage `name`.
+template <typename Kernel>
+void parallel_for(CpuSpace, std::string_view name, int count, const Kernel& kernel)
+{
+    const StageScope stage(name);
+    if (count <= kGrain) {
+        for (int i = 0; i < count; ++i)
+            kernel(i);
+        return;
+    }
+    tbb::parallel_for(tbb::blocked_range<int>(0, count, kGrain), [&](const tbb::blocked_range<int>& range) {
+        for (int i = range.begin(); i < range.end(); ++i)
+            kernel(i);
+    });
+}
+
+/// Sum of term(i) over [0, count): fixed blocks of kReductionBlock items, each summed in order, then the
+/// block sums in order. Same bits for every thread count. T needs T{}-as-zero and +=.
+template <typename T, typename Term>
+T parallel_sum(CpuSpace, int count, const T& zero, const Term& term)
+{
+    constexpr int kReductionBlock = 2048;
+    const int blocks = (count + kReductionBlock - 1) / kReductionBlock;
+    const auto block_sum = [&](int block) {
+        T sum = zero;
+        const int end = std::min(count, (block + 1) * kReductionBlock);
+        for (int i = block * kReductionBlock; i < end; ++i)
+            sum += term(i);
+        return sum;
+    };
+    if (blocks <= 1)
+        return count > 0 ? block_sum(0) : zero;
+
+    std::vector<T> sums(blocks, zero);
+    tbb::parallel_for(0, blocks, [&](int block) { sums[block] = block_sum(block); });
+    T total = zero;
+    for (const T& sum : sums)
+        total += sum;
+    return total;
+}
+
+} // namespace toile

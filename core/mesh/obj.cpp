@@ -1,0 +1,165 @@
+#include "core/mesh/obj.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+
+#include "core/backend/atomic_file.h"
+#include "core/backend/error.h"
+
+namespace toile {
+
+namespace {
+
+/// Reads one OBJ file line by line, keeping the place for error messages.
+class ObjReader {
+public:
+    explicit ObjReader(const std::filesystem::path& file) : file_(file), stream_(file)
+    {
+        if (!stream_)
+            throw InvalidInput(file.string() + ": can't be opened; check the path and its permissions");
+    }
+
+    ObjMesh read()
+    {
+        std::string text;
+        while (std::getline(stream_, text)) {
+            ++line_;
+            rest_ = text;
+            const std::string_view keyword = next_word();
+            if (keyword == "v")
+                mesh_.positions.push_back(Vec3{number(), number(), number()});
+            else if (keyword == "vt")
+                mesh_.texture_coordinates.push_back(Vec2{number(), number()});
+            else if (keyword == "f")
+                read_face();
+        }
+        require_texture_on_all_or_none();
+        return std::move(mesh_);
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& why) const
+    {
+        throw InvalidInput(file_.string() + ":" + std::to_string(line_) + ": " + why);
+    }
+
+    std::string_view next_word()
+    {
+        const size_t begin = rest_.find_first_not_of(" \t\r");
+        if (begin == std::string_view::npos)
+            return rest_ = {};
+        const size_t end = std::min(rest_.find_first_of(" \t\r", begin), rest_.size());
+        const std::string_view word = rest_.substr(begin, end - begin);
+        rest_.remove_prefix(end);
+        return word;
+    }
+
+    double number()
+    {
+        const std::string_view word = next_word();
+        double value = 0.0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value))
+            refuse("'" + std::string(word) + "' is not a finite number; write a decimal number");
+        return value;
+    }
+
+    /// A 1-based or negative (counted from the end) OBJ index, as 0-based.
+    int index(std::string_view word, size_t count, const char* what)
+    {
+        int value = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        const int resolved = value < 0 ? int(count) + value : value - 1;
+        if (error != std::errc{} || end != word.data() + word.size() || resolved < 0 ||
+            resolved >= int(count))
+            refuse(std::string(what) + " index '" + std::string(word) + "' is out of range; " +
+                   std::to_string(count) + " are defined above this line");
+        return resolved;
+    }
+
+    void read_face()
+    {
+        std::vector<int> polygon;
+        std::vector<int> uvs;
+        for (std::string_view corner = next_word(); !corner.empty(); corner = next_word()) {
+            const size_t slash = corner.find('/');
+            polygon.push_back(index(corner.substr(0, slash), mesh_.positions.size(), "vertex"));
+            if (slash == std::string_view::npos)
+                continue;
+            const std::string_view tail = corner.substr(slash + 1);
+            if (const std::string_view uv = tail.substr(0, tail.find('/')); !uv.empty())
+                uvs.push_back(index(uv, mesh_.texture_coordinates.size(), "texture"));
+        }
+        if (polygon.size() < 3)
+            refuse("the face has " + std::to_string(polygon.size()) + " corners; it needs at least 3");
+        if (!uvs.empty() && uvs.size() != polygon.size())
+            refuse("some corners of the face have a texture index and some have none; give all or none");
+        mesh_.polygons.push_back(std::move(polygon));
+        mesh_.polygon_uvs.push_back(std::move(uvs));
+    }
+
+    /// Texture indices are kept only when every face has them.
+    void require_texture_on_all_or_none()
+    {
+        for (const std::vector<int>& uvs : mesh_.polygon_uvs)
+            if (uvs.empty()) {
+                mesh_.polygon_uvs.clear();
+                return;
+            }
+    }
+
+    std::filesystem::path file_;
+    std::ifstream stream_;
+    std::string_view rest_;
+    int line_ = 0;
+    ObjMesh mesh_;
+};
+
+} // namespace
+
+TriangleMesh ObjMesh::triangulated() const
+{
+    TriangleMesh mesh;
+    mesh.positions = positions;
+    for (const std::vector<int>& polygon : polygons)
+        for (size_t k = 1; k + 1 < polygon.size(); ++k)
+            mesh.triangles.push_back(Triangle(polygon[0], polygon[k], polygon[k + 1]));
+    return mesh;
+}
+
+ObjMesh read_obj(const std::filesystem::path& file) { return ObjReader(file).read(); }
+
+void write_obj(const std::filesystem::path& file, const ObjMesh& mesh)
+{
+    std::string text;
+    char line[128];
+    for (const Vec3& p : mesh.positions)
+        text.append(line, std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", p.x(), p.y(), p.z()));
+    for (const Vec2& t : mesh.texture_coordinates)
+        text.append(line, std::snprintf(line, sizeof line, "vt %.9g %.9g\n", t.x(), t.y()));
+    for (size_t f = 0; f < mesh.polygons.size(); ++f) {
+        text += 'f';
+        for (size_t k = 0; k < mesh.polygons[f].size(); ++k) {
+            text += ' ' + std::to_string(mesh.polygons[f][k] + 1);
+            if (!mesh.polygon_uvs.empty())
+                text += '/' + std::to_string(mesh.polygon_uvs[f][k] + 1);
+        }
+        text += '\n';
+    }
+    write_atomically(file, text);
+}
+
+void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh)
+{
+    ObjMesh obj;
+    obj.positions = mesh.positions;
+    for (const Triangle& t : mesh.triangles)
+        obj.polygons.push_back({t[0], t[1], t[2]});
+    write_obj(file, obj);
+}
+
+} // namespace toile

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// An edge with its one or two triangles.
+//
+//        x2
+//       /  \          triangle[0] holds (v0, v1) in this order, triangle[1] holds (v1, v0);
+//      v0---v1        opposite[0] = x2, opposite[1] = x3.
+//       \  /          A border edge has triangle[1] = opposite[1] = -1.
+//        x3
+struct Edge {
+    std::array<int, 2> vertex{};
+    std::array<int, 2> triangle{-1, -1};
+    std::array<int, 2> opposite{-1, -1};
+
+    bool is_border() const { return triangle[1] < 0; }
+};
+
+/// Lists of items per owner in one array: items of owner i are items[first[i] .. first[i + 1]).
+struct Incidence {
+    std::vector<int> first; ///< [owners + 1]
+    std::vector<int> items;
+
+    View<const int> of(int owner) const
+    {
+        return View<const int>(items.data() + first[owner], first[owner + 1] - first[owner]);
+    }
+};
+
+/// How a triangle surface hangs together.
+struct Topology {
+    std::vector<Edge> edges;                       ///< sorted by (smaller, larger) vertex index
+    std::vector<std::array<int, 3>> triangle_edge; ///< [triangles] edge from corner k to corner k + 1
+    Incidence corners_of_vertex;                   ///< per vertex: 3 * triangle + corner, ascending
+
+    /// Closed: no border edge.
+    bool is_closed() const;
+};
+
+/// Builds the topology. O(n log n).
+/// @param source  named in errors, e.g. the file
+/// @throws InvalidInput naming the first edge with more than two triangles, or two that run it in the same
+///         direction (flipped winding).
+Topology build_topology(View<const Triangle> triangles, int vertex_count, const std::string& source);
+
+/// Corners (3 * triangle + corner) per vertex, ascending: where per-corner values are gathered from.
+Incidence corners_of_vertices(View<const Triangle> triangles, int vertex_count);
+
+} // namespace toile

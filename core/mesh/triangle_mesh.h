@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// A triangle surface: positions and the triangles between them.
+struct TriangleMesh {
+    std::vector<Vec3> positions;     ///< [vertices] [m]
+    std::vector<Triangle> triangles; ///< [triangles] counter-clockwise seen from outside
+
+    int vertex_count() const { return int(positions.size()); }
+    int triangle_count() const { return int(triangles.size()); }
+};
+
+/// A surface that moves during a time step: an avatar or a moving obstacle. Points move linearly in time.
+struct MovingMesh {
+    std::vector<Triangle> triangles; ///< [triangles]
+    std::vector<Vec3> x_t0;          ///< [vertices] at the start of the step [m]
+    std::vector<Vec3> x_t1;          ///< [vertices] at its end [m]
+};
+
+/// Longest diagonal and centre of a point set's bounding box.
+struct Bounds {
+    Vec3 lower = Vec3::Constant(1e300);
+    Vec3 upper = Vec3::Constant(-1e300);
+
+    void extend(const Vec3& point)
+    {
+        lower = lower.cwiseMin(point);
+        upper = upper.cwiseMax(point);
+    }
+    bool empty() const { return lower.x() > upper.x(); }
+    Vec3 center() const { return 0.5 * (lower + upper); }
+    double diagonal() const { return empty() ? 0.0 : (upper - lower).norm(); }
+};
+Bounds bounds(View<const Vec3> points);
+
+/// Throws InvalidInput for what no solver can use, naming `source` and the first offending element:
+/// no triangle, an index out of range, a repeated corner, a position that is not finite, a triangle whose
+/// height is below kMinHeightRatio of its longest edge.
+void require_usable(const TriangleMesh& mesh, const std::string& source);
+
+/// Least height of a triangle over its longest edge [-]. Thinner ones count as zero-area: their rest shape
+/// has no direction left in double precision once squared twice by the bending energy.
+inline constexpr double kMinHeightRatio = 1e-6;
+
+/// Area-weighted vertex normals, unit length (zero for an isolated vertex). [vertices]
+std::vector<Vec3> vertex_normals(View<const Vec3> positions, View<const Triangle> triangles);
+
+/// Splits every triangle into four at its edge midpoints, `levels` times. Old vertices keep their index.
+/// Midpoints of shared edges are shared.
+TriangleMesh subdivide(const TriangleMesh& mesh, int levels);
+
+} // namespace toile
