@@ -25,12 +25,17 @@ void write_atomically(const std::filesystem::path& file, std::string_view conten
         throw InvalidInput(file.string() + ": can't be written; choose a writable folder");
     stream.write(content.data(), std::streamsize(content.size()));
     stream.close();
-    if (stream.good())
+    const bool written = stream.good();
+    if (written)
         std::filesystem::rename(partial, file, error);
-    if (!stream.good() || error) {
-        std::filesystem::remove(partial);
+    if (written && !error)
+        return;
+
+    std::error_code ignored; // the first failure is the one to report
+    std::filesystem::remove(partial, ignored);
+    if (!written)
         throw DeviceError(file.string() + ": writing broke off; is the disk full?");
-    }
+    throw InvalidInput(file.string() + ": can't be replaced (" + error.message() + "); choose another name");
 }
 
 } // namespace toile

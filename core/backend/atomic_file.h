@@ -7,8 +7,8 @@ namespace toile {
 
 /// Writes a whole file beside its name and renames it into place: readers see the old content or the new,
 /// never half of it. Creates missing parent folders.
-/// @throws InvalidInput when the folder can't be created or written to, DeviceError when the write breaks
-/// off.
+/// @throws InvalidInput when the folder can't be created or written to or the name is taken by a folder,
+///         DeviceError when the write breaks off. The old file and no half-written one is left.
 void write_atomically(const std::filesystem::path& file, std::string_view content);
 
 } // namespace toile

@@ -1,11 +1,13 @@
 #include "core/mesh/obj.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <sstream>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/backend/atomic_file.h"
 #include "core/backend/error.h"
@@ -37,7 +39,10 @@ public:
             else if (keyword == "f")
                 read_face();
         }
-        require_texture_on_all_or_none();
+        // A folder opens like a file and fails at the first read only.
+        if (stream_.bad())
+            throw InvalidInput(file_.string() + ": can't be read; give a file, not a folder");
+        drop_incomplete_texture();
         return std::move(mesh_);
     }
 
@@ -103,7 +108,7 @@ private:
     }
 
     /// Texture indices are kept only when every face has them.
-    void require_texture_on_all_or_none()
+    void drop_incomplete_texture()
     {
         for (const std::vector<int>& uvs : mesh_.polygon_uvs)
             if (uvs.empty()) {

@@ -20,14 +20,15 @@ struct ObjMesh {
     TriangleMesh triangulated() const;
 };
 
-/// Reads v, vt and f lines (negative indices too); ignores what else the format allows.
+/// Reads v, vt and f lines (negative indices too); ignores what else the format allows. Texture indices are
+/// kept only when every face has them.
 /// @throws InvalidInput naming file and line: missing file, a number that does not parse or is not finite,
 ///         an index out of range, a face of fewer than three corners.
 ObjMesh read_obj(const std::filesystem::path& file);
 
 /// Writes positions with 9 significant digits and the polygons (with texture coordinates where present).
 /// The file appears complete or not at all.
-/// @throws DeviceError when it can't be written.
+/// @throws InvalidInput or DeviceError as write_atomically does.
 void write_obj(const std::filesystem::path& file, const ObjMesh& mesh);
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
 

@@ -1,6 +1,6 @@
 #include "core/mesh/triangle_mesh.h"
 
-#include <cmath>
+#include <algorithm>
 #include <map>
 #include <utility>
 

@@ -1,5 +1,6 @@
 #include "core/mesh/weld.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -13,8 +13,9 @@ struct Welded {
     std::vector<int> source_of; ///< [new vertices] the first old vertex merged into it
 };
 
-/// Merges vertices closer than `distance` [m] (grid hashing; the lowest index survives) and drops triangles
-/// that lose a corner. Merging that would make an edge non-manifold is not undone here.
+/// Merges vertices at most `distance` [m] apart (grid hashing; the lowest index survives; 0 merges equal
+/// positions only) and drops triangles that lose a corner. Merging that would make an edge non-manifold is
+/// not undone here. Positions must be finite.
 Welded weld(const TriangleMesh& mesh, double distance);
 
 } // namespace toile

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+/// Linear algebra on fields of 3-vectors [vertices], deterministic for every thread count.
+
+/// a . b
+inline double dot(View<const Vec3> a, View<const Vec3> b)
+{
+    return parallel_sum(kCpu, a.size(), 0.0, [&](int i) { return a[i].dot(b[i]); });
+}
+
+/// y += factor x
+inline void axpy(double factor, View<const Vec3> x, View<Vec3> y)
+{
+    parallel_for(kCpu, "field/axpy", y.size(), [&](int i) { y[i] += factor * x[i]; });
+}
+
+/// y = x + factor y
+inline void xpay(View<const Vec3> x, double factor, View<Vec3> y)
+{
+    parallel_for(kCpu, "field/xpay", y.size(), [&](int i) { y[i] = x[i] + factor * y[i]; });
+}
+
+/// Largest vector length; NaN when any entry is.
+inline double max_norm(View<const Vec3> x)
+{
+    double largest = 0.0;
+    for (const Vec3& value : x) {
+        const double squared = value.squaredNorm();
+        if (!(squared <= largest))
+            largest = squared;
+    }
+    return std::sqrt(largest);
+}
+
+} // namespace toile

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "core/linear/field.h"
+
+namespace toile {
+
+/// Preconditioned conjugate gradients for A x = b on 3-vector fields, started at x = 0. [Saad 2003, alg. 9.1]
+class Pcg {
+public:
+    struct Settings {
+        double tolerance = 1e-3; ///< [-] of |r| / |b|
+        int max_iterations = 12;
+    };
+    struct Outcome {
+        int iterations = 0;
+        double residual = 0.0; ///< [-] |r| / |b| reached
+    };
+
+    /// @param multiply      multiply(p, out): out = A p, A symmetric positive definite
+    /// @param precondition  precondition(r, z): z = P r, P symmetric positive definite
+    template <typename Multiply, typename Precondition>
+    Outcome solve(const Multiply& multiply, const Precondition& precondition, View<const Vec3> b,
+                  View<Vec3> x, const Settings& settings)
+    {
+        const int n = b.size();
+        r_.assign(b.begin(), b.end());
+        z_.resize(n);
+        p_.assign(n, Vec3::Zero());
+        product_.resize(n);
+        std::fill(x.begin(), x.end(), Vec3::Zero());
+
+        Outcome outcome;
+        const double b_norm = std::sqrt(dot(b, b));
+        if (!(b_norm > 0.0))
+            return outcome;
+        double rz_previous = 0.0;
+        outcome.residual = 1.0;
+        while (outcome.iterations < settings.max_iterations && outcome.residual > settings.tolerance) {
+            precondition(View<const Vec3>(r_), View<Vec3>(z_));
+            const double rz = dot(r_, z_);
+            xpay(z_, outcome.iterations > 0 ? rz / rz_previous : 0.0, p_);
+            multiply(View<const Vec3>(p_), View<Vec3>(product_));
+            const double curvature = dot(p_, product_);
+            if (!(curvature > 0.0)) // rounding has eaten the direction: the iterate so far is the answer
+                break;
+            axpy(rz / curvature, p_, x);
+            axpy(-rz / curvature, product_, r_);
+            rz_previous = rz;
+            outcome.residual = std::sqrt(dot(r_, r_)) / b_norm;
+            ++outcome.iterations;
+        }
+        return outcome;
+    }
+
+private:
+    std::vector<Vec3> r_, z_, p_, product_;
+};
+
+} // namespace toile

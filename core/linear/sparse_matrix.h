@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Symmetric matrix shared by x, y and z: both triangles stored, rows contiguous.
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// Entries (row, column, value) that are summed into a SparseMatrix in the order they were added.
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// One row of A times a field of 3-vectors.
+inline Vec3 row_times(const SparseMatrix& A, int row, View<const Vec3> x)
+{
+    Vec3 sum = Vec3::Zero();
+    for (int k = A.outerIndexPtr()[row]; k < A.outerIndexPtr()[row + 1]; ++k)
+        sum += A.valuePtr()[k] * x[A.innerIndexPtr()[k]];
+    return sum;
+}
+
+} // namespace toile

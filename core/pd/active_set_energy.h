@@ -1,0 +1,49 @@
+#pragma once
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// State of a body at the start of a step, as an energy with an active set needs it.
+struct StepStart {
+    View<const Vec3> x;              ///< [vertices] positions at t0 [m]
+    View<const Vec3> prediction;     ///< [vertices] q* = x + dt v + dt^2 f/m [m]
+    View<const double> diagonal;     ///< [vertices] of H [N/m]: the scale that penalty stiffnesses refer to
+    View<const unsigned char> fixed; ///< [vertices] 1 where the position is prescribed
+    double dt = 0.0;                 ///< [s]
+};
+
+/// A convex energy that acts on changing places, contact above all. It stays out of H; while it is active the
+/// solver inverts H + dH by preconditioned CG instead of H directly.
+class ActiveSetEnergy {
+public:
+    virtual ~ActiveSetEnergy() = default;
+
+    /// Finds the candidates of this step.
+    virtual void begin_step(const StepStart& start) = 0;
+
+    /// Moves a start guess out of the candidates' forbidden half-spaces where that is a local matter.
+    virtual void make_feasible(View<Vec3> x) const = 0;
+
+    /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.
+    virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) const = 0;
+
+    /// Freezes the terms active at x into dH. False when none is: the solver then skips PCG.
+    virtual bool activate(View<const Vec3> x) = 0;
+
+    /// out += dH p for the frozen terms.
+    virtual void add_hessian_product(View<const Vec3> p, View<Vec3> out) const = 0;
+
+    /// Per vertex a 3x3 bound on dH: dH <= blockdiag(blocks), zero where nothing is active. [vertices]
+    virtual View<const Mat3> diagonal_blocks() const = 0;
+
+    /// After the minimisation: looks again where x left the neighbourhood that the candidates were made for
+    /// and refreshes lagged quantities (friction limits). True when the energy changed and must be minimised
+    /// again.
+    virtual bool revise(View<const Vec3> x) = 0;
+
+    /// Remembers what the next step builds on. x [vertices] are the final positions.
+    virtual void end_step(View<const Vec3> x) = 0;
+};
+
+} // namespace toile

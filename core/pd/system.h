@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/linear/cholesky.h"
+#include "core/linear/pcg.h"
+#include "core/pd/active_set_energy.h"
+#include "core/pd/energy.h"
+#include "core/pd/lbfgs.h"
+
+namespace toile {
+
+/// The constant part of a body's implicit Euler step:
+///
+///   E(x) = 1/(2 dt^2) |x - q*|^2_M + sum_j W_j(x),     H = M/dt^2 + sum_j w_j S_j^T A_j^T A_j S_j
+///
+/// [Bouaziz et al. 2014, eq. 2, 3 and 10]. H is [vertices x vertices] and serves x, y and z. Fixed vertices
+/// are eliminated: their rows and columns of H are the identity's and their gradient is zero.
+class System {
+public:
+    /// @param masses    [vertices] [kg], positive
+    /// @param energies  the terms W_j; shared because caller and system both evaluate them
+    System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> energies);
+
+    int vertex_count() const { return int(masses_.size()); }
+    View<const double> masses() const { return masses_; }
+    View<const unsigned char> fixed() const { return fixed_; }
+
+    /// Factors H for a time step [s] and a set of fixed vertices; does nothing when neither changed.
+    void prepare(double dt, const std::vector<unsigned char>& fixed);
+
+    /// Diagonal of H with nothing fixed [N/m].
+    View<const double> diagonal() const { return diagonal_; }
+    const SparseMatrix& matrix() const { return H_; }
+    const Cholesky& cholesky() const { return *cholesky_; }
+
+    /// Energies at x [J]; adds their gradients [N].
+    double add_gradient(View<const Vec3> x, View<Vec3> gradient) const;
+
+private:
+    std::vector<double> masses_;
+    std::vector<std::shared_ptr<Energy>> energies_;
+    std::vector<unsigned char> fixed_;
+    SparseMatrix elastic_; ///< sum of the energies' parts, without mass
+    SparseMatrix H_;
+    std::vector<double> diagonal_;
+    std::unique_ptr<Cholesky> cholesky_;
+    double dt_ = 0.0;
+};
+
+/// Objective of one step: inertia, the system's energies, and an energy with an active set.
+class StepObjective : public Objective {
+public:
+    /// @param active  may be null: then the inverse is one direct solve and PCG never runs
+    StepObjective(const System& system, double dt, View<const Vec3> prediction, ActiveSetEnergy* active,
+                  const Pcg::Settings& linear);
+
+    double evaluate(View<const Vec3> x, View<Vec3> gradient) override;
+    void precondition(View<const Vec3> g, View<Vec3> z) override;
+    void accept(View<const Vec3> x) override;
+
+    int linear_iterations() const { return linear_iterations_; }
+
+private:
+    void solve_with_active_set(View<const Vec3> g, View<Vec3> z);
+
+    const System& system_;
+    double dt_;
+    View<const Vec3> prediction_;
+    ActiveSetEnergy* active_;
+    Pcg::Settings linear_;
+    Pcg pcg_;
+    bool has_active_set_ = false;
+    int linear_iterations_ = 0;
+    std::vector<Mat3> E_; ///< [vertices] (D + dH)^-1, blocks
+    std::vector<Vec3> scratch_;
+};
+
+} // namespace toile
