@@ -1,0 +1,90 @@
+#include "garment/energy/bending.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/backend/error.h"
+#include "core/backend/parallel.h"
+#include "garment/energy/curvature_stencil.h"
+
+namespace toile {
+
+namespace {
+
+/// Stiffest bending term of a triangle relative to one of an equilateral triangle of the mean area [-].
+/// Slivers would exceed it by the fourth power of their aspect ratio and ruin the conditioning of H.
+constexpr double kMaxRelativeStiffness = 1e3;
+
+void require_valid(const Bending::Settings& s, const std::string& source)
+{
+    const auto check = [&](const char* name, double value) {
+        if (!(value >= 0.0) || !std::isfinite(value))
+            throw InvalidInput(source + ": bending rigidity " + name + " = " + std::to_string(value) +
+                               " N m; it must be 0 or more");
+    };
+    check("warp", s.warp);
+    check("weft", s.weft);
+}
+
+/// Adds rows^T weight rows, limited to `largest` on the diagonal.
+void add_block(const CurvatureStencil& stencil, const Vec3& weight, double largest, Triplets& entries)
+{
+    Eigen::MatrixXd block = stencil.weights.transpose() * weight.asDiagonal() * stencil.weights;
+    const double peak = block.diagonal().maxCoeff();
+    if (peak > largest)
+        block *= largest / peak;
+    const int size = int(stencil.vertex.size());
+    for (int i = 0; i < size; ++i)
+        for (int j = 0; j < size; ++j)
+            entries.emplace_back(stencil.vertex[i], stencil.vertex[j], block(i, j));
+}
+
+} // namespace
+
+Bending::Bending(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source)
+{
+    require_valid(settings, source);
+    const int n = rest->vertex_count();
+    const Vec3 rigidity(settings.warp, 2.0 * std::sqrt(settings.warp * settings.weft), settings.weft);
+
+    double mean_area = 0.0;
+    for (const double area : rest->areas)
+        mean_area += area / double(rest->areas.size());
+    const double largest = kMaxRelativeStiffness * std::max(settings.warp, settings.weft) / mean_area;
+
+    Triplets entries;
+    const std::vector<CurvatureStencil> stencils = curvature_stencils(*rest);
+    for (size_t t = 0; t < stencils.size(); ++t)
+        if (!stencils[t].vertex.empty())
+            add_block(stencils[t], rest->areas[t] * rigidity, largest, entries);
+    K_.resize(n, n);
+    K_.setFromTriplets(entries.begin(), entries.end());
+    vertex_energy_.resize(n);
+}
+
+void Bending::add_hessian(Triplets& H) const
+{
+    for (int row = 0; row < K_.outerSize(); ++row)
+        for (SparseMatrix::InnerIterator entry(K_, row); entry; ++entry)
+            H.emplace_back(int(entry.row()), int(entry.col()), entry.value());
+}
+
+double Bending::add_gradient(View<const Vec3> x, View<Vec3> gradient)
+{
+    // Rows of K sum to zero, so differences to the own vertex replace positions: no rounding far from the
+    // origin.
+    parallel_for(kCpu, "bending/multiply", x.size(), [&](int i) {
+        Vec3 force = Vec3::Zero();
+        double energy = 0.0;
+        for (SparseMatrix::InnerIterator entry(K_, i); entry; ++entry) {
+            const Vec3 difference = x[int(entry.col())] - x[i];
+            force += entry.value() * difference;
+            energy -= 0.25 * entry.value() * difference.squaredNorm();
+        }
+        gradient[i] += force;
+        vertex_energy_[i] = energy;
+    });
+    return parallel_sum(kCpu, x.size(), 0.0, [&](int i) { return vertex_energy_[i]; });
+}
+
+} // namespace toile

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+
+#include "core/pd/energy.h"
+#include "garment/energy/rest_shape.h"
+
+namespace toile {
+
+/// Resistance of cloth to bending, quadratic in the positions and therefore constant in H.
+///
+///   W = sum_t A_t/2 ( D_u |x_uu|^2 + D_v |x_vv|^2 + 2 sqrt(D_u D_v) |x_uv|^2 )
+///
+/// x_uu, x_uv, x_vv are second derivatives of the position in material axes on triangle t
+/// (curvature_stencil.h). Cloth barely stretches, so they are the curvatures times the unit normal and W is
+/// the plate energy with rigidities D_u, D_v [N m] and zero Poisson ratio. [Bergou et al. 2006] use the same
+/// isometry argument on hinges; a hinge's prefactor depends on the mesh (up to a factor 3), this operator
+/// converges on any triangulation.
+///
+/// The rest shape is flat: cloth is cut from a plane.
+class Bending : public Energy {
+public:
+    struct Settings {
+        double warp = 5e-6; ///< [N m] D_u: rigidity when the warp bends. Not negative.
+        double weft = 5e-6; ///< [N m] D_v
+    };
+
+    /// @throws InvalidInput naming `source` and a rigidity that is negative or not finite.
+    Bending(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source);
+
+    std::string_view name() const override { return "garment/bending"; }
+    void add_hessian(Triplets& H) const override;
+    double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
+
+private:
+    SparseMatrix K_; ///< W = 1/2 x^T K x; rows sum to zero
+    std::vector<double> vertex_energy_;
+};
+
+} // namespace toile

@@ -1,0 +1,198 @@
+#include "garment/energy/curvature_stencil.h"
+
+#include <algorithm>
+#include <array>
+
+#include <Eigen/Dense>
+
+namespace toile {
+
+namespace {
+
+/// Weight of the edge-averaged operator beside the exact fit [-]. The six points of a fit may lie nearly on a
+/// conic, and a border triangle has fewer than six; larger is smoother there and less exact on irregular
+/// meshes.
+constexpr double kAveragedWeight = 0.05;
+
+/// Weights below this share of the stencil's largest are dropped [-]: on regular meshes the outer ring
+/// cancels exactly, and dropping it halves the entries of H.
+constexpr double kNegligibleWeight = 1e-10;
+
+/// Corners of triangle t in its own material axes.
+std::array<Vec2, 3> flat_corners(const RestShape& rest, int t)
+{
+    return {Vec2(0.0, 0.0), Vec2(rest.edges[t].col(0)), Vec2(rest.edges[t].col(1))};
+}
+
+/// The other triangle at edge k of t, or -1 at the border.
+int neighbour(const RestShape& rest, int t, int k)
+{
+    const Edge& edge = rest.topology.edges[rest.topology.triangle_edge[t][k]];
+    return edge.triangle[0] == t ? edge.triangle[1] : edge.triangle[0];
+}
+
+/// Which edge of triangle s is edge k of its neighbour t.
+int shared_edge(const RestShape& rest, int t, int k, int s)
+{
+    const std::array<int, 3>& edges = rest.topology.triangle_edge[s];
+    return int(std::find(edges.begin(), edges.end(), rest.topology.triangle_edge[t][k]) - edges.begin());
+}
+
+/// Position of the vertex across edge k, unfolded into the plane of triangle t: same place along the shared
+/// edge and same height above it. Every triangle's handedness is its own, so mirrored pattern pieces unfold
+/// alike.
+Vec2 unfold(const RestShape& rest, int t, int k, int s, int m)
+{
+    const std::array<Vec2, 3> ours = flat_corners(rest, t);
+    const std::array<Vec2, 3> theirs = flat_corners(rest, s);
+    const Vec2 their_edge = theirs[(m + 1) % 3] - theirs[m];
+    const Vec2 to_flap = theirs[(m + 2) % 3] - theirs[m];
+    const double along = their_edge.dot(to_flap) / their_edge.squaredNorm();
+    const double height =
+        std::abs(their_edge.x() * to_flap.y() - their_edge.y() * to_flap.x()) / their_edge.norm();
+
+    // The edge runs backwards in the neighbour: its corner m is our corner k + 1.
+    const Vec2 our_edge = ours[k] - ours[(k + 1) % 3];
+    Vec2 away = Vec2(-our_edge.y(), our_edge.x()).normalized();
+    if (away.dot(ours[(k + 2) % 3] - ours[k]) > 0.0)
+        away = -away;
+    return ours[(k + 1) % 3] + along * our_edge + height * away;
+}
+
+/// Deviation of the vertex across an edge from the plane of the triangle, as weights on four vertices.
+struct Deviation {
+    std::array<int, 4> vertex{-1, -1, -1, -1}; ///< corners, then the vertex across; all -1 at the border
+    Eigen::Vector4d weight = Eigen::Vector4d::Zero();
+    double height = 0.0; ///< of the vertex above the edge [m]
+};
+
+/// The quadratic through a triangle and its neighbours' far vertices.
+struct Fit {
+    std::array<Deviation, 3> deviation;
+    Mat3 slopes;  ///< fit's slopes across the edges, by deviations [1/m]
+    Mat3 hessian; ///< (f_uu, f_uv, f_vv), by slopes [1/m]
+};
+
+Vec3 monomials(const Vec2& q) { return {0.5 * q.x() * q.x(), q.x() * q.y(), 0.5 * q.y() * q.y()}; }
+
+Fit fit_triangle(const RestShape& rest, int t)
+{
+    const std::array<Vec2, 3> corner = flat_corners(rest, t);
+    const Mat2 to_barycentric = rest.edges[t].inverse();
+    Fit result;
+    Mat3 deviations = Mat3::Zero(); // of the far vertices, by second derivatives
+    Mat3 averaged = Mat3::Zero();   // second derivatives of the edge-averaged operator, by deviations
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 edge = corner[(k + 1) % 3] - corner[k];
+        Vec2 m = Vec2(edge.y(), -edge.x()).normalized();
+        if (m.dot(corner[(k + 2) % 3] - corner[k]) > 0.0)
+            m = -m;
+        result.hessian.col(k) =
+            edge.norm() / rest.areas[t] * Vec3(m.x() * m.x(), m.x() * m.y(), m.y() * m.y());
+
+        const int s = neighbour(rest, t, k);
+        if (s < 0)
+            continue;
+        const int e = shared_edge(rest, t, k, s);
+        const Vec2 p = unfold(rest, t, k, s, e);
+        const Vec2 b = to_barycentric * p;
+        const Vec3 barycentric(1.0 - b.sum(), b.x(), b.y());
+
+        Deviation& far = result.deviation[k];
+        far.vertex = {rest.triangles[t][0], rest.triangles[t][1], rest.triangles[t][2],
+                      rest.triangles[s][(e + 2) % 3]};
+        far.weight << -barycentric, 1.0;
+        far.height = m.dot(p - corner[k]);
+        averaged.col(k) = result.hessian.col(k) / (2.0 * far.height);
+        deviations.row(k) = monomials(p);
+        for (int i = 0; i < 3; ++i)
+            deviations.row(k) -= barycentric[i] * monomials(corner[i]);
+    }
+
+    // min_S |deviations S - d|^2 + scale^2 |S - averaged d|^2; the triangle's area makes both terms lengths.
+    const double scale = kAveragedWeight * rest.areas[t];
+    const Mat3 normal = deviations.transpose() * deviations + scale * scale * Mat3::Identity();
+    const Mat3 fitted = normal.ldlt().solve(deviations.transpose() + scale * scale * averaged);
+    result.slopes = result.hessian.inverse() * fitted;
+    return result;
+}
+
+/// Sums weights per vertex while a stencil is put together.
+class StencilSum {
+public:
+    void add(const Vec3& factor, const Deviation& deviation)
+    {
+        if (deviation.vertex[0] < 0)
+            return;
+        for (int i = 0; i < 4; ++i)
+            column(deviation.vertex[i]) += deviation.weight[i] * factor;
+    }
+
+    CurvatureStencil stencil() const
+    {
+        double largest = 0.0;
+        for (const Vec3& column : columns_)
+            largest = std::max(largest, column.lpNorm<Eigen::Infinity>());
+        CurvatureStencil result;
+        result.weights.resize(3, 0);
+        for (size_t i = 0; i < vertex_.size(); ++i) {
+            if (columns_[i].lpNorm<Eigen::Infinity>() <= kNegligibleWeight * largest)
+                continue;
+            result.vertex.push_back(vertex_[i]);
+            result.weights.conservativeResize(3, result.weights.cols() + 1);
+            result.weights.rightCols<1>() = columns_[i];
+        }
+        return result;
+    }
+
+private:
+    Vec3& column(int v)
+    {
+        const auto place = std::find(vertex_.begin(), vertex_.end(), v);
+        if (place != vertex_.end())
+            return columns_[place - vertex_.begin()];
+        vertex_.push_back(v);
+        columns_.push_back(Vec3::Zero());
+        return columns_.back();
+    }
+
+    std::vector<int> vertex_;
+    std::vector<Vec3> columns_;
+};
+
+CurvatureStencil assemble(const RestShape& rest, const std::vector<Fit>& fits, int t)
+{
+    const Fit& own = fits[t];
+    StencilSum sum;
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 hessian = own.hessian.col(k);
+        const int s = neighbour(rest, t, k);
+        const double share = s < 0 ? 1.0 : 0.5;
+        for (int j = 0; j < 3; ++j)
+            sum.add(share * own.slopes(k, j) * hessian, own.deviation[j]);
+        if (s < 0)
+            continue;
+
+        sum.add(0.5 / own.deviation[k].height * hessian, own.deviation[k]);
+        const int e = shared_edge(rest, t, k, s);
+        for (int j = 0; j < 3; ++j)
+            sum.add(-0.5 * fits[s].slopes(e, j) * hessian, fits[s].deviation[j]);
+    }
+    return sum.stencil();
+}
+
+} // namespace
+
+std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest)
+{
+    const int triangles = int(rest.triangles.size());
+    std::vector<Fit> fits;
+    std::vector<CurvatureStencil> stencils;
+    for (int t = 0; t < triangles; ++t)
+        fits.push_back(fit_triangle(rest, t));
+    for (int t = 0; t < triangles; ++t)
+        stencils.push_back(assemble(rest, fits, t));
+    return stencils;
+}
+
+} // namespace toile

@@ -1,0 +1,71 @@
+#include "garment/energy/membrane.h"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include "core/backend/error.h"
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+void require_valid(const Membrane::Settings& s, const std::string& source)
+{
+    const auto refuse = [&](const char* name, double value, const std::string& range) {
+        throw InvalidInput(source + ": stretch stiffness " + name + " = " + std::to_string(value) +
+                           " N/m; it must be " + range);
+    };
+    if (!(s.warp > 0.0))
+        refuse("warp", s.warp, "positive");
+    if (!(s.weft > 0.0))
+        refuse("weft", s.weft, "positive");
+    if (!(s.shear > 0.0) || s.shear > 0.5 * std::min(s.warp, s.weft) * (1.0 + 1e-9))
+        refuse("shear", s.shear, "positive and at most half of the smaller of warp and weft");
+}
+
+} // namespace
+
+Membrane::Membrane(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source)
+    : rest_(std::move(rest))
+{
+    require_valid(settings, source);
+    weights_.shear = 2.0 * settings.shear;
+    weights_.warp = std::max(settings.warp - weights_.shear, 0.0);
+    weights_.weft = std::max(settings.weft - weights_.shear, 0.0);
+    for (const Mat2& edges : rest_->edges)
+        rest_inv_.push_back(edges.inverse());
+    corner_gradient_.resize(rest_inv_.size());
+    triangle_energy_.resize(rest_inv_.size());
+}
+
+void Membrane::add_hessian(Triplets& H) const
+{
+    const Eigen::DiagonalMatrix<double, 2> weight(weights_.warp + weights_.shear,
+                                                  weights_.weft + weights_.shear);
+    for (size_t t = 0; t < rest_inv_.size(); ++t) {
+        // Rows of G: gradients of the hat functions of corners 0, 1, 2 in material axes.
+        Mat32 G;
+        G.bottomRows<2>() = rest_inv_[t];
+        G.row(0) = -G.row(1) - G.row(2);
+        const Mat3 block = rest_->areas[t] * G * weight * G.transpose();
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                H.emplace_back(rest_->triangles[t][i], rest_->triangles[t][j], block(i, j));
+    }
+}
+
+double Membrane::add_gradient(View<const Vec3> x, View<Vec3> gradient)
+{
+    const int triangles = int(rest_inv_.size());
+    parallel_for(kCpu, "membrane/project", triangles,
+                 ProjectMembrane{x, rest_->triangles, rest_inv_, rest_->areas, weights_, corner_gradient_,
+                                 triangle_energy_});
+    const Incidence& corners = rest_->topology.corners_of_vertex;
+    parallel_for(kCpu, "membrane/gather", gradient.size(),
+                 GatherCorners{corners.first, corners.items, corner_gradient_, gradient});
+    return parallel_sum(kCpu, triangles, 0.0, [&](int t) { return triangle_energy_[t]; });
+}
+
+} // namespace toile

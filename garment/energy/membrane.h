@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/pd/energy.h"
+#include "garment/energy/membrane_kernels.h"
+#include "garment/energy/rest_shape.h"
+
+namespace toile {
+
+/// Resistance of woven cloth to in-plane stretch and shear, as a Projective Dynamics energy.
+///
+///   W = sum_t A_t/2 [ (k_u - 2G) (|F u| - 1)^2 + (k_v - 2G) (|F v| - 1)^2 + 2G |F - R|^2 ]
+///
+/// F maps rest edges of triangle t to current edges, u and v are warp and weft, R is the isometry closest to
+/// F [Bouaziz et al. 2014, eq. 7]. Pulling along the warp meets Young's modulus k_u, along the weft k_v, and
+/// a simple shear gamma costs G/2 gamma^2 per area. Poisson's ratio is zero: woven yarns slide past each
+/// other. Rigid motion costs nothing; bending is a separate energy (bending.h).
+class Membrane : public Energy {
+public:
+    struct Settings {
+        double warp = 250.0; ///< [N/m] k_u, Young's modulus x thickness along the warp. Must be positive.
+        double weft = 250.0; ///< [N/m] k_v along the weft. Must be positive.
+        double shear = 50.0; ///< [N/m] G. Positive and at most half of the smaller of warp and weft.
+    };
+
+    /// @throws InvalidInput naming `source` and the setting outside its range.
+    Membrane(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source);
+
+    std::string_view name() const override { return "garment/membrane"; }
+    void add_hessian(Triplets& H) const override;
+    double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
+
+private:
+    std::shared_ptr<const RestShape> rest_;
+    MembraneWeights weights_;
+    std::vector<Mat2> rest_inv_;
+    std::vector<Mat32> corner_gradient_;
+    std::vector<double> triangle_energy_;
+};
+
+} // namespace toile

@@ -1,0 +1,83 @@
+#include "garment/energy/rest_shape.h"
+
+#include <Eigen/Geometry>
+
+namespace toile {
+
+namespace {
+
+/// Sine of the angle below which the grain counts as perpendicular to a triangle [-].
+constexpr double kMinGrainProjection = 0.05;
+
+/// Unit warp direction in the plane of a triangle.
+Vec3 warp_direction(const Vec3& normal, const Vec3& grain)
+{
+    const Vec3 along = grain.normalized();
+    for (const Vec3& candidate :
+         {along, Vec3(along.y(), along.z(), along.x()), Vec3(along.z(), along.x(), along.y())}) {
+        const Vec3 projected = candidate - normal.dot(candidate) * normal;
+        if (projected.norm() > kMinGrainProjection)
+            return projected.normalized();
+    }
+    return normal.unitOrthogonal();
+}
+
+/// Derives areas and topology once triangles and edges are known.
+RestShape complete(RestShape shape, int vertex_count, const std::string& source)
+{
+    shape.topology = build_topology(shape.triangles, vertex_count, source);
+    shape.areas.reserve(shape.edges.size());
+    for (const Mat2& edges : shape.edges)
+        shape.areas.push_back(0.5 * std::abs(edges.determinant()));
+    return shape;
+}
+
+} // namespace
+
+std::vector<double> RestShape::vertex_areas() const
+{
+    std::vector<double> result(vertex_count(), 0.0);
+    for (size_t t = 0; t < triangles.size(); ++t)
+        for (const int v : triangles[t])
+            result[v] += areas[t] / 3.0;
+    return result;
+}
+
+RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<Triangle>& triangles,
+                                const std::string& source)
+{
+    TriangleMesh flat;
+    flat.triangles = triangles;
+    for (const Vec2& p : uv)
+        flat.positions.emplace_back(p.x(), p.y(), 0.0);
+    require_usable(flat, source);
+
+    RestShape shape;
+    shape.triangles = triangles;
+    for (const Triangle& t : triangles) {
+        Mat2 edges;
+        edges << uv[t[1]] - uv[t[0]], uv[t[2]] - uv[t[0]];
+        shape.edges.push_back(edges);
+    }
+    return complete(std::move(shape), int(uv.size()), source);
+}
+
+RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, const std::string& source)
+{
+    require_usable(mesh, source);
+    RestShape shape;
+    shape.triangles = mesh.triangles;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 e1 = mesh.positions[t[1]] - mesh.positions[t[0]];
+        const Vec3 e2 = mesh.positions[t[2]] - mesh.positions[t[0]];
+        const Vec3 normal = e1.cross(e2).normalized();
+        const Vec3 u = warp_direction(normal, grain);
+        const Vec3 v = normal.cross(u);
+        Mat2 edges;
+        edges << u.dot(e1), u.dot(e2), v.dot(e1), v.dot(e2);
+        shape.edges.push_back(edges);
+    }
+    return complete(std::move(shape), mesh.vertex_count(), source);
+}
+
+} // namespace toile

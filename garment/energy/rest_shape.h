@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mesh/topology.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace toile {
+
+/// Undeformed cloth, triangle by triangle, in material axes: u along the warp, v along the weft.
+///
+/// Only edge lengths and the grain direction of each triangle matter, so that a flat pattern, a set of sewn
+/// panels and a garment modelled in 3-D are all the same to the energies.
+struct RestShape {
+    std::vector<Triangle> triangles; ///< [triangles]
+    std::vector<Mat2> edges;         ///< [triangles] columns x1 - x0, x2 - x0 in (u, v) [m]
+    std::vector<double> areas;       ///< [triangles] [m^2]
+    Topology topology;
+
+    int vertex_count() const
+    {
+        return topology.corners_of_vertex.first.empty() ? 0
+                                                        : int(topology.corners_of_vertex.first.size()) - 1;
+    }
+
+    /// Lumped vertex areas: a third of every adjacent triangle [m^2].
+    std::vector<double> vertex_areas() const;
+};
+
+/// Rest shape of a flat pattern.
+/// @param uv  [vertices] pattern coordinates in material axes [m]
+/// @throws InvalidInput naming `source` and the first unusable triangle or edge (require_usable,
+/// build_topology).
+RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<Triangle>& triangles,
+                                const std::string& source);
+
+/// Rest shape of a surface in space; every triangle is laid flat on its own.
+/// @param grain  direction that the warp follows, projected onto each triangle; triangles perpendicular to it
+///               use the next coordinate axis
+RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, const std::string& source);
+
+} // namespace toile

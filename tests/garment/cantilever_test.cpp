@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "garment/energy/bending.h"
+#include "garment/energy/membrane.h"
+#include "tests/garment/sheets.h"
+
+namespace toile::test {
+namespace {
+
+constexpr double kGravity = 9.81;
+constexpr double kArealDensity = 0.1; // [kg/m^2]
+constexpr double kLength = 0.09;      // [m]
+
+struct Reference {
+    double G;                 // rho g L^3 / D
+    double height_over_width; // exact heavy elastica
+};
+constexpr Reference kElastica[] = {{1, 0.12456}, {5, 0.58572}, {10, 1.06680}, {50, 3.70556}, {100, 5.88811}};
+
+/// Drop over reach of the tip of a strip clamped at one end. The clamp line runs through the middle of the
+/// first cell, whose two columns are held: the angle is zero there to second order.
+double height_over_width(Pattern pattern, double G, int columns)
+{
+    const double cell = kLength / (columns - 0.5);
+    const Sheet sheet = make_sheet(Vec2(columns * cell, 4 * cell), columns, 4, pattern);
+    const auto rest = sheet.rest();
+    const double D = kArealDensity * kGravity * std::pow(kLength, 3) / G;
+
+    Membrane::Settings stiff;
+    stiff.warp = stiff.weft = 500.0;
+    stiff.shear = 250.0;
+    std::vector<std::shared_ptr<Energy>> energies{
+        std::make_shared<Membrane>(rest, stiff, "strip"),
+        std::make_shared<Bending>(rest, Bending::Settings{D, D}, "strip")};
+    Body::Settings settings;
+    settings.tolerance = 1e-8;
+    settings.max_iterations = 200;
+    Body body(sheet.flat(), std::make_unique<System>(masses_of(*rest, kArealDensity), energies), settings);
+
+    std::vector<unsigned char> fixed(sheet.uv.size(), 0);
+    for (int row = 0; row <= 4; ++row)
+        fixed[sheet.at(0, row)] = fixed[sheet.at(1, row)] = 1;
+    EXPECT_TRUE(settle(body, 0.1, fixed, 1e-6, 3000));
+
+    Vec3 tip = Vec3::Zero();
+    for (int row = 0; row <= 4; ++row)
+        tip += body.positions()[sheet.at(columns, row)] / 5.0;
+    return -tip.y() / (tip.x() - 0.5 * cell);
+}
+
+class Cantilever : public testing::TestWithParam<Pattern> {};
+
+TEST_P(Cantilever, HangsLikeTheHeavyElastica)
+{
+    for (const Reference& exact : kElastica) {
+        const double measured = height_over_width(GetParam(), exact.G, 40);
+        EXPECT_NEAR(measured / exact.height_over_width, 1.0, 0.02) << "G = " << exact.G;
+        std::printf("G %g: %.5f exact %.5f (%.2f %%)\n", exact.G, measured, exact.height_over_width,
+                    100 * (measured / exact.height_over_width - 1));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, Cantilever,
+                         testing::Values(Pattern::Regular, Pattern::FlippedDiagonal, Pattern::Irregular));
+
+} // namespace
+} // namespace toile::test
