@@ -1,5 +1,7 @@
 #include "garment/energy/rest_shape.h"
 
+#include <cmath>
+
 #include <Eigen/Geometry>
 
 namespace toile {
@@ -62,7 +64,8 @@ RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<T
     return complete(std::move(shape), int(uv.size()), source);
 }
 
-RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, const std::string& source)
+RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, double turn,
+                                const std::string& source)
 {
     require_usable(mesh, source);
     RestShape shape;
@@ -71,7 +74,8 @@ RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, con
         const Vec3 e1 = mesh.positions[t[1]] - mesh.positions[t[0]];
         const Vec3 e2 = mesh.positions[t[2]] - mesh.positions[t[0]];
         const Vec3 normal = e1.cross(e2).normalized();
-        const Vec3 u = warp_direction(normal, grain);
+        const Vec3 straight = warp_direction(normal, grain);
+        const Vec3 u = std::cos(turn) * straight + std::sin(turn) * normal.cross(straight);
         const Vec3 v = normal.cross(u);
         Mat2 edges;
         edges << u.dot(e1), u.dot(e2), v.dot(e1), v.dot(e2);

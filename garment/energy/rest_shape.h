@@ -38,6 +38,9 @@ RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<T
 /// Rest shape of a surface in space; every triangle is laid flat on its own.
 /// @param grain  direction that the warp follows, projected onto each triangle; triangles perpendicular to it
 ///               use the next coordinate axis
-RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, const std::string& source);
+/// @param turn   angle [rad] by which the warp is then turned in the cloth, counter-clockwise seen from
+/// outside
+RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, double turn,
+                                const std::string& source);
 
 } // namespace toile

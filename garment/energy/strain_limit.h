@@ -12,16 +12,16 @@ namespace toile {
 ///
 ///   sigma_max(F_t) <= 1 + limit   for all t
 ///
-/// Enforced after the step's minimisation by nonlinear Gauss-Seidel over the violating triangles and their
-/// neighbours: each is moved, mass-weighted, to the closest edges with clamped singular values
-/// [Wang et al. 2010; Goldenthal et al. 2007 for projecting after the step]. In H the limit would need
-/// weights that stall every method built on a fixed H (docs/garment/strain_limit.md).
+/// Enforced after the step's minimisation by nonlinear Gauss-Seidel over the violating triangles: each is
+/// moved, mass-weighted, to the closest edges with clamped singular values [Wang et al. 2010; projecting
+/// after the step: Goldenthal et al. 2007]. Inside H the limit would need weights that stall every method
+/// built on a fixed H (docs/garment/strain_limit.md).
 class StrainLimit : public StepProjection {
 public:
     struct Settings {
         double limit = 0.06;     ///< [-] largest principal stretch minus one. Must be positive.
         double tolerance = 1e-3; ///< [-] excess over the limit that is left alone
-        int max_sweeps = 60;
+        int max_sweeps = 100;    ///< an unreachable limit (pins too far apart) stops here
     };
 
     /// @throws InvalidInput naming `source` when the limit is not positive.
@@ -33,12 +33,15 @@ public:
     double max_strain(View<const Vec3> x) const;
 
 private:
-    bool clamp_triangle(int t, View<Vec3> x, View<const double> inverse_masses) const;
-    std::vector<int> violating(View<const Vec3> x) const;
+    Mat32 deformation_gradient(int t, View<const Vec3> x) const;
+    void clamp_triangle(int t, View<Vec3> x, View<const double> inverse_masses) const;
+    void find_violating(View<const Vec3> x);
 
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
     std::vector<Mat2> rest_inv_;
+    std::vector<unsigned char> violates_; ///< [triangles]
+    std::vector<int> violating_;          ///< ascending triangle indices
 };
 
 } // namespace toile

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "core/pd/energy.h"
+
+namespace toile {
+
+/// Springs of zero rest length from vertices to moving points: attachments that give.
+///
+///   W = sum_j k_j/2 |x_i(j) - target_j|^2                       [Bouaziz et al. 2014, sec. 4, positional
+///   constraint]
+class Springs : public Energy {
+public:
+    struct Spring {
+        int vertex = 0;
+        double stiffness = 0.0; ///< [N/m] k; positive
+    };
+
+    explicit Springs(std::vector<Spring> springs);
+
+    std::string_view name() const override { return "garment/springs"; }
+    void add_hessian(Triplets& H) const override;
+    double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
+
+    /// Moves the far ends [springs] [m].
+    void set_targets(std::vector<Vec3> targets) { targets_ = std::move(targets); }
+
+private:
+    std::vector<Spring> springs_;
+    std::vector<Vec3> targets_;
+};
+
+} // namespace toile

@@ -1,0 +1,117 @@
+#include "garment/energy/strain_limit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "core/backend/error.h"
+#include "core/backend/parallel.h"
+#include "garment/energy/principal_stretch.h"
+
+namespace toile {
+
+namespace {
+
+/// Mass of a fixed vertex relative to the heaviest free one while a triangle is fitted [-].
+constexpr double kFixedMassRatio = 1e6;
+
+/// Masses of a triangle's corners up to a common factor.
+Vec3 relative_masses(const Triangle& corner, View<const double> inverse_masses)
+{
+    Vec3 masses;
+    double heaviest = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        masses[k] = inverse_masses[corner[k]] > 0.0 ? 1.0 / inverse_masses[corner[k]] : 0.0;
+        heaviest = std::max(heaviest, masses[k]);
+    }
+    for (double& mass : masses)
+        if (mass == 0.0)
+            mass = kFixedMassRatio * heaviest;
+    return masses;
+}
+
+} // namespace
+
+StrainLimit::StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings,
+                         const std::string& source)
+    : rest_(std::move(rest)), settings_(settings), violates_(rest_->triangles.size())
+{
+    if (!(settings.limit > 0.0) || !std::isfinite(settings.limit))
+        throw InvalidInput(source + ": strain limit " + std::to_string(settings.limit) + " must be positive");
+    for (const Mat2& edges : rest_->edges)
+        rest_inv_.push_back(edges.inverse());
+}
+
+Mat32 StrainLimit::deformation_gradient(int t, View<const Vec3> x) const
+{
+    const Triangle& corner = rest_->triangles[t];
+    Mat32 edges;
+    edges.col(0) = x[corner[1]] - x[corner[0]];
+    edges.col(1) = x[corner[2]] - x[corner[0]];
+    return edges * rest_inv_[t];
+}
+
+double StrainLimit::max_strain(View<const Vec3> x) const
+{
+    double largest = 0.0;
+    for (int t = 0; t < int(rest_inv_.size()); ++t)
+        largest = std::max(largest, largest_stretch(deformation_gradient(t, x)));
+    return largest - 1.0;
+}
+
+void StrainLimit::find_violating(View<const Vec3> x)
+{
+    const double allowed = 1.0 + settings_.limit + settings_.tolerance;
+    parallel_for(kCpu, "strain_limit/find", int(rest_inv_.size()),
+                 [&](int t) { violates_[t] = largest_stretch(deformation_gradient(t, x)) > allowed; });
+    violating_.clear();
+    for (int t = 0; t < int(violates_.size()); ++t)
+        if (violates_[t])
+            violating_.push_back(t);
+}
+
+void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active)
+{
+    for (int sweep = 0; sweep < settings_.max_sweeps; ++sweep) {
+        find_violating(x);
+        if (violating_.empty())
+            return;
+        const StageScope stage("garment/strain_limit");
+
+        // Alternate the direction so that corrections travel both ways through the mesh.
+        if (sweep % 2 == 1)
+            std::reverse(violating_.begin(), violating_.end());
+        for (const int t : violating_)
+            clamp_triangle(t, x, inverse_masses);
+        if (active)
+            active->make_feasible(x);
+    }
+}
+
+void StrainLimit::clamp_triangle(int t, View<Vec3> x, View<const double> inverse_masses) const
+{
+    const Triangle& corner = rest_->triangles[t];
+    const Mat32 F = deformation_gradient(t, x);
+    const PrincipalStretch stretch = principal_stretch(F);
+    const double allowed = 1.0 + settings_.limit;
+    if (stretch.sigma[0] <= allowed)
+        return;
+
+    // Clamped edges: F V diag(min(sigma, allowed) / sigma) V^T times the rest edges.
+    const Vec2 scale(allowed / stretch.sigma[0], std::min(1.0, allowed / std::max(stretch.sigma[1], 1e-300)));
+    const Mat32 edges = F * stretch.V * scale.asDiagonal() * stretch.V.transpose() * rest_->edges[t];
+
+    // Keep the centre of mass; fixed corners are heavy while fitting and do not move at all.
+    const Vec3 masses = relative_masses(corner, inverse_masses);
+    const Vec3 center =
+        (masses[0] * x[corner[0]] + masses[1] * x[corner[1]] + masses[2] * x[corner[2]]) / masses.sum();
+    const Vec3 first = center - (masses[1] * edges.col(0) + masses[2] * edges.col(1)) / masses.sum();
+    const std::array<Vec3, 3> moved{first, first + edges.col(0), first + edges.col(1)};
+    for (int k = 0; k < 3; ++k)
+        if (inverse_masses[corner[k]] > 0.0)
+            x[corner[k]] = moved[k];
+}
+
+} // namespace toile
