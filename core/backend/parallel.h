@@ -38,8 +38,8 @@ void parallel_for(CpuSpace, std::string_view name, int count, const Kernel& kern
 }
 
 /// Sum of term(i) over [0, count): fixed blocks of kReductionBlock items, each summed in order, then the
-/// block sums in order. Same bits for every thread count. T needs only +=, so vectors and
-/// matrices can be summed too; an empty range gives `zero`.
+/// block sums in order. Same bits for every thread count. T needs only +=, so vectors and matrices can be
+/// summed too; an empty range gives `zero`.
 template <typename T, typename Term>
 T parallel_sum(CpuSpace, int count, const T& zero, const Term& term)
 {

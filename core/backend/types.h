@@ -39,7 +39,7 @@ public:
     {
     }
     template <typename U = T, typename = std::enable_if_t<std::is_const_v<U>>>
-    TOILE_HD View(View<std::remove_const_t<T>> other) : data_(other.data()), size_(other.size())
+    TOILE_HD View(const View<std::remove_const_t<T>>& other) : data_(other.data()), size_(other.size())
     {
     }
 

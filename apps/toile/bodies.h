@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "avatars/moving_avatar.h"
+#include "collision/shapes.h"
+#include "scenes/format/scene.h"
+#include "scenes/rigid_motion.h"
+
+namespace toile {
+
+/// An avatar of a scene at a time that can be chosen: what checks and pictures need, without the cloth.
+class SceneBody {
+public:
+    /// Loads the avatar and shows it at t = 0.
+    /// @throws InvalidInput for files and clips that do not work.
+    explicit SceneBody(const scene::Avatar& settings);
+
+    const scene::Avatar& settings() const { return settings_; }
+
+    /// Shows time t [s].
+    void advance_to(double t);
+
+    /// The solid at the time shown, for avatars given as plane, sphere, capsule or box.
+    const Shape* shape() const { return shape_ ? &*shape_ : nullptr; }
+    const Eigen::Isometry3d& pose() const { return pose_; } ///< world_from_shape
+
+    /// The surface at the time shown: of a shape a tessellation for pictures.
+    const TriangleMesh& surface() const { return surface_; }
+
+private:
+    void place();
+
+    scene::Avatar settings_;
+    std::optional<Shape> shape_;
+    std::unique_ptr<MovingAvatar> figure_; ///< null for a shape
+    RigidMotion motion_;
+    Eigen::Isometry3d start_pose_ = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
+    std::vector<Vec3> start_surface_; ///< [vertices] in the shape's own frame, or as the figure stands [m]
+    TriangleMesh surface_;
+    double time_ = 0.0;
+};
+
+std::vector<SceneBody> make_bodies(const Scene& scene);
+
+} // namespace toile

@@ -1,0 +1,62 @@
+#include "apps/toile/cache_cloth.h"
+
+#include <algorithm>
+
+#include "core/backend/error.h"
+
+namespace toile {
+
+namespace {
+
+/// skirt for skirt.pc2, for its unfinished skirt.partial.pc2, and for the sequence skirt_####.obj.
+std::string name_of(const std::filesystem::path& cache)
+{
+    const std::string file = cache.filename().string();
+    return file.substr(0, file.find_first_of(".#"));
+}
+
+} // namespace
+
+int cloth_of_cache(const Scene& scene, const std::filesystem::path& cache, const std::string& named)
+{
+    std::vector<std::string> names;
+    std::string list;
+    for (const scene::Cloth& cloth : scene.cloths) {
+        names.push_back(cloth.name);
+        list += (list.empty() ? "" : ", ") + cloth.name;
+    }
+    const auto index_of = [&](const std::string& name) {
+        for (size_t i = 0; i < names.size(); ++i)
+            if (names[i] == name)
+                return int(i);
+        return -1;
+    };
+
+    if (!named.empty()) {
+        if (const int index = index_of(named); index >= 0)
+            return index;
+        const std::string near = nearest_word(named, names);
+        throw InvalidInput("--cloth: " + scene.source.string() + " has no cloth \"" + named + "\"; " +
+                           (near.empty() ? "it has " + list : "did you mean \"" + near + "\"?"));
+    }
+    for (const scene::Export& entry : scene.exports)
+        if (name_of(entry.file) == name_of(cache))
+            return std::max(0, index_of(entry.cloth));
+    if (const int index = index_of(name_of(cache)); index >= 0)
+        return index;
+    if (names.size() == 1)
+        return 0;
+    throw InvalidInput(cache.string() + ": it is open which cloth of " + scene.source.string() +
+                       " this is; say --cloth with one of " + list);
+}
+
+void require_same_points(const PointCache& cache, const std::filesystem::path& file, const std::string& cloth,
+                         int vertex_count)
+{
+    if (cache.vertex_count() != vertex_count)
+        throw InvalidInput(file.string() + ": has " + std::to_string(cache.vertex_count()) +
+                           " points, but the cloth \"" + cloth + "\" has " + std::to_string(vertex_count) +
+                           "; give the scene that the cache was made from");
+}
+
+} // namespace toile

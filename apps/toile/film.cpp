@@ -1,0 +1,203 @@
+#include "apps/toile/film.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/toile/cache_cloth.h"
+#include "apps/toile/pattern.h"
+#include "core/backend/error.h"
+
+namespace toile {
+
+namespace {
+
+/// Time over which the camera's way is smoothed, to either side [s]. Steps take about half a second; a
+/// shorter window would make the camera nod with them.
+constexpr double kFollowWindow = 0.5;
+
+Material body_material(const Vec3& srgb)
+{
+    Material material;
+    material.front = material.back = linear_color(srgb);
+    return material;
+}
+
+/// Means over windows of `reach` entries to either side; shorter ones at the ends.
+std::vector<Vec3> smoothed(const std::vector<Vec3>& points, int reach)
+{
+    std::vector<Vec3> means;
+    const int count = int(points.size());
+    for (int i = 0; i < count; ++i) {
+        const int half = std::min({reach, i, count - 1 - i});
+        Vec3 sum = Vec3::Zero();
+        for (int k = i - half; k <= i + half; ++k)
+            sum += points[size_t(k)];
+        means.push_back(sum / (2 * half + 1));
+    }
+    return means;
+}
+
+} // namespace
+
+Film Film::of_scene(const Scene& scene)
+{
+    Film film;
+    film.settings_ = scene;
+    film.bodies_ = make_bodies(scene);
+    film.frame_count_ = 1;
+    const World world(scene);
+    for (size_t i = 0; i < scene.cloths.size(); ++i) {
+        const ClothState& cloth = world.cloths()[i];
+        film.add_cloth(scene.cloths[i], cloth.rest, cloth.triangles, cloth.positions, std::nullopt);
+    }
+    return film;
+}
+
+Film Film::of_caches(const Scene& scene, const std::vector<std::filesystem::path>& caches,
+                     const std::string& cloth)
+{
+    Film film;
+    film.settings_ = scene;
+    film.bodies_ = make_bodies(scene);
+    const World world(scene);
+    for (const std::filesystem::path& file : caches) {
+        const PointCache cache = read_cache(file);
+        const int index = cloth_of_cache(scene, file, cloth);
+        const ClothState& state = world.cloths()[index];
+        require_same_points(cache, file, state.name, int(state.positions.size()));
+        film.add_cloth(scene.cloths[index], state.rest, state.triangles, state.positions, cache);
+    }
+    return film;
+}
+
+Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches)
+{
+    Film film;
+    film.settings_.render.ground.reset();
+    for (const std::filesystem::path& file : caches) {
+        const PointCache cache = read_cache(file);
+        if (cache.mesh() == nullptr)
+            throw InvalidInput(file.string() +
+                               ": holds points without faces; say --scene with the scene that it " +
+                               "was made from");
+        film.settings_.fps = cache.fps().value_or(film.settings_.fps);
+        film.add_cloth({}, *cache.mesh(), cache.mesh()->triangulated().triangles, cache.mesh()->positions,
+                       cache);
+    }
+    return film;
+}
+
+void Film::add_cloth(const scene::Cloth& settings, const ObjMesh& rest,
+                     const std::vector<Triangle>& triangles, const std::vector<Vec3>& start,
+                     std::optional<PointCache> cache)
+{
+    Track track;
+    if (cache)
+        frame_count_ = std::max(frame_count_, cache->frame_count());
+    track.cache = std::move(cache);
+    track.start = start;
+    track.mesh.triangles = triangles;
+    track.mesh.material = cloth_material(linear_color(settings.color));
+    apply_pattern(settings, rest, triangles, track.mesh);
+    tracks_.push_back(std::move(track));
+}
+
+std::vector<Vec3> Film::positions(const Track& track, int frame) const
+{
+    return track.cache ? track.cache->frame(std::min(frame, track.cache->frame_count() - 1)) : track.start;
+}
+
+bool Film::is_shown(const SceneBody& body) const
+{
+    // The picture's own floor stands for a plane.
+    return !(settings_.render.ground && std::holds_alternative<scene::Plane>(body.settings().shape));
+}
+
+void Film::show_bodies(int frame)
+{
+    for (SceneBody& body : bodies_)
+        body.advance_to(frame * settings_.frame_duration());
+}
+
+Bounds Film::bounds_of(int frame)
+{
+    Bounds box;
+    for (const Track& track : tracks_)
+        for (const Vec3& p : positions(track, frame))
+            if (p.allFinite())
+                box.extend(p);
+    show_bodies(frame);
+    for (const SceneBody& body : bodies_)
+        if (!std::holds_alternative<scene::Plane>(body.settings().shape))
+            for (const Vec3& p : body.surface().positions)
+                box.extend(p);
+    return box;
+}
+
+void Film::choose(const std::vector<int>& frames)
+{
+    frames_ = frames;
+    std::vector<Bounds> boxes;
+    centers_.clear();
+    for (const int frame : frames) {
+        boxes.push_back(bounds_of(frame));
+        const Vec3 center = boxes.back().center();
+        centers_.push_back(Vec3(center.x(), 0.0, center.z()));
+    }
+    const int spacing = frames.size() > 1 ? frames[1] - frames[0] : 1;
+    centers_ = smoothed(centers_, int(kFollowWindow * settings_.fps / spacing));
+
+    view_ = Bounds();
+    for (size_t i = 0; i < boxes.size(); ++i) {
+        view_.extend(boxes[i].lower - centers_[i]);
+        view_.extend(boxes[i].upper - centers_[i]);
+    }
+    renderer_.reset();
+}
+
+RenderScene Film::render_scene(int frame) const
+{
+    RenderScene scene;
+    scene.ground_height = settings_.render.ground;
+    for (const Track& track : tracks_) {
+        scene.meshes.push_back(track.mesh);
+        scene.meshes.back().positions = positions(track, frame);
+    }
+    for (const SceneBody& body : bodies_) {
+        if (!is_shown(body))
+            continue;
+        RenderMesh mesh;
+        mesh.positions = body.surface().positions;
+        mesh.triangles = body.surface().triangles;
+        mesh.material = body_material(body.settings().color);
+        scene.meshes.push_back(std::move(mesh));
+    }
+    return scene;
+}
+
+Image Film::picture(int frame)
+{
+    const scene::Render& render = settings_.render;
+    show_bodies(frame);
+    if (!renderer_) {
+        renderer_.emplace(render_scene(frame), RenderSettings{render.width, render.height, render.samples});
+    } else {
+        int mesh = 0;
+        for (const Track& track : tracks_)
+            renderer_->update(mesh++, positions(track, frame));
+        for (const SceneBody& body : bodies_)
+            if (is_shown(body))
+                renderer_->update(mesh++, body.surface().positions);
+    }
+
+    CameraSettings view;
+    view.azimuth_deg = render.azimuth_deg;
+    view.elevation_deg = render.elevation_deg;
+    view.zoom = render.zoom;
+    Camera camera = fit_camera(corners(view_), view, double(render.width) / render.height);
+    const auto at = std::find(frames_.begin(), frames_.end(), frame) - frames_.begin();
+    camera.origin += centers_[size_t(at)];
+    return renderer_->render(camera);
+}
+
+} // namespace toile

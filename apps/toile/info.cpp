@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "apps/toile/command_line.h"
+#include "apps/toile/commands.h"
+#include "avatars/load_avatar.h"
+#include "core/backend/error.h"
+#include "core/mesh/obj.h"
+#include "core/mesh/topology.h"
+#include "export/point_cache.h"
+#include "scenes/format/read_scene.h"
+
+namespace toile {
+
+namespace {
+
+void print(const std::string& key, const auto& value) { std::cout << key << ": " << value << "\n"; }
+
+void print_extent(const std::string& key, View<const Vec3> points)
+{
+    const Bounds box = bounds(points);
+    for (int axis = 0; axis < 3; ++axis)
+        std::cout << (axis == 0 ? key + ": " : ", ") << "xyz"[axis] << " " << box.lower[axis] << " to "
+                  << box.upper[axis];
+    std::cout << "\n";
+}
+
+/// Number of pieces that are connected through edges; vertices without a triangle count for none.
+int count_pieces(const TriangleMesh& mesh)
+{
+    std::vector<int> root(size_t(mesh.vertex_count()));
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+        root[size_t(v)] = v;
+    const auto find = [&](int v) {
+        while (root[size_t(v)] != v)
+            v = root[size_t(v)] = root[size_t(root[size_t(v)])];
+        return v;
+    };
+    for (const Triangle& t : mesh.triangles)
+        for (int k = 1; k < 3; ++k)
+            root[size_t(find(t[k]))] = find(t[0]);
+    std::vector<bool> counted(root.size(), false);
+    int pieces = 0;
+    for (const Triangle& t : mesh.triangles)
+        if (const size_t r = size_t(find(t[0])); !counted[r]) {
+            counted[r] = true;
+            ++pieces;
+        }
+    return pieces;
+}
+
+void print_obj(const std::filesystem::path& file)
+{
+    const ObjMesh obj = read_obj(file);
+    const TriangleMesh mesh = obj.triangulated();
+    print("vertices", mesh.vertex_count());
+    print("polygons", obj.polygons.size());
+    print("triangles", mesh.triangle_count());
+    print("texture coordinates", obj.polygon_uvs.empty() ? "no" : "yes");
+    print("pieces", count_pieces(mesh));
+    try {
+        const Topology topology = build_topology(mesh.triangles, mesh.vertex_count(), file.string());
+        const auto borders = std::count_if(topology.edges.begin(), topology.edges.end(),
+                                           [](const Edge& edge) { return edge.is_border(); });
+        print("border edges", std::to_string(borders) + (borders == 0 ? " (closed)" : " (open)"));
+    } catch (const InvalidInput& error) {
+        print("not usable as cloth", error.what());
+    }
+    print_extent("extent", mesh.positions);
+}
+
+void print_avatar(const std::filesystem::path& file)
+{
+    AvatarSettings settings;
+    settings.file = file;
+    const std::unique_ptr<Avatar> avatar = load_avatar(settings);
+    std::vector<Vec3> positions(size_t(avatar->vertex_count()));
+    avatar->pose({}, identity_affine(), positions);
+    print("vertices", avatar->vertex_count());
+    print("triangles", avatar->triangles().size());
+    print_extent("extent in the bind pose [m]", positions);
+    for (const Avatar::ClipName& clip : avatar->clips())
+        print("clip", "\"" + clip.name + "\", " + std::to_string(clip.duration) + " s");
+}
+
+void print_cache(const std::filesystem::path& file)
+{
+    const PointCache cache = read_cache(file);
+    print("frames", cache.frame_count());
+    print("points", cache.vertex_count());
+    if (cache.fps())
+        print("frames per second", *cache.fps());
+    print("start frame", cache.start_frame());
+    if (cache.frame_count() == 0)
+        return;
+    print_extent("extent of the first frame", cache.frame(0));
+    print_extent("extent of the last frame", cache.frame(cache.frame_count() - 1));
+}
+
+void print_scene(const std::filesystem::path& file)
+{
+    const Scene scene = read_scene(file);
+    print("name", scene.name);
+    if (!scene.description.empty())
+        print("description", scene.description);
+    print("frames", std::to_string(scene.frames) + " at " + std::to_string(int(scene.fps)) + " per second");
+    for (const scene::Avatar& avatar : scene.avatars)
+        print("avatar", avatar.name + (avatar.clip.empty() ? "" : ", clip " + avatar.clip));
+    for (const scene::Cloth& cloth : scene.cloths)
+        print("cloth", cloth.name + ", " + cloth.fabric);
+    print("attachments", scene.attachments.size());
+}
+
+int info(const std::filesystem::path& file)
+{
+    static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
+        {".obj", print_obj},   {".glb", print_avatar}, {".gltf", print_avatar}, {".fbx", print_avatar},
+        {".pc2", print_cache}, {".mdd", print_cache},  {".json", print_scene}};
+    if (!std::filesystem::is_regular_file(file))
+        throw InvalidInput(file.string() + ": can't be found; name a file");
+    const auto printer = kPrinters.find(file.extension().string());
+    if (printer == kPrinters.end())
+        throw InvalidInput(file.string() +
+                           ": is of an unknown format; known are .obj, .glb, .gltf, .fbx, .pc2, .mdd " +
+                           "and .json (scene)");
+    printer->second(file);
+    return kExitOk;
+}
+
+} // namespace
+
+Command add_info(CLI::App& program)
+{
+    Command command;
+    command.options = program.add_subcommand("info", "Say what is in a mesh, avatar, cache or scene");
+    auto file = std::make_shared<std::filesystem::path>();
+    command.options->add_option("file", *file, "File")->required();
+    command.run = [file] { return info(*file); };
+    return command;
+}
+
+} // namespace toile

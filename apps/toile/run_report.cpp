@@ -1,0 +1,93 @@
+#include "apps/toile/run_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+#include "core/backend/atomic_file.h"
+
+namespace toile {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json settings_of(const Scene& scene)
+{
+    const scene::Solver& solver = scene.solver;
+    return {{"frames", scene.frames},
+            {"fps", scene.fps},
+            {"settle_s", scene.settle},
+            {"substeps", solver.substeps},
+            {"tolerance_m", solver.tolerance},
+            {"max_iterations", solver.max_iterations},
+            {"method", solver.method == scene::SolverMethod::Direct ? "direct" : "auto"},
+            {"sleep", solver.sleep.enabled},
+            {"threads", solver.threads},
+            {"contact_gap_m", scene.contact.gap}};
+}
+
+Json json_of(int frame, const StepReport& report, double seconds)
+{
+    Json json = {{"frame", frame},
+                 {"status", to_word(report.status)},
+                 {"seconds", seconds},
+                 {"steps", report.steps},
+                 {"iterations", report.iterations},
+                 {"linear_iterations", report.linear_iterations},
+                 {"displacement_m", report.displacement},
+                 {"gradient_norm_n", report.gradient_norm},
+                 {"energy_j", report.energy},
+                 {"contacts", report.contacts},
+                 {"min_gap_m", report.min_gap},
+                 {"max_strain", report.max_strain}};
+    if (!report.message.empty())
+        json["message"] = report.message;
+    return json;
+}
+
+} // namespace
+
+const char* to_word(StepReport::Status status)
+{
+    switch (status) {
+    case StepReport::Status::IterationLimit:
+        return "iteration_limit";
+    case StepReport::Status::NonFinite:
+        return "non_finite";
+    case StepReport::Status::Converged:
+        break;
+    }
+    return "converged";
+}
+
+long peak_memory()
+{
+    struct rusage usage = {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss * 1024; // Linux counts kibibytes
+}
+
+void RunReport::write(const std::filesystem::path& file, const std::string& outcome,
+                      const Stages& stages) const
+{
+    Json json = {{"scene", scene_.source.string()},
+                 {"name", scene_.name},
+                 {"outcome", outcome},
+                 {"vertices", vertex_count_},
+                 {"settings", settings_of(scene_)},
+                 {"peak_memory_bytes", peak_memory()}};
+    double seconds = 0.0;
+    Json& frames = json["frames"] = Json::array();
+    for (const Frame& frame : frames_) {
+        frames.push_back(json_of(frame.index, frame.report, frame.seconds));
+        seconds += frame.seconds;
+    }
+    json["seconds"] = seconds;
+    Json& stage_table = json["stages"] = Json::object();
+    for (const auto& [name, entry] : stages.entries())
+        stage_table[name] = {{"calls", entry.calls}, {"seconds", entry.seconds}};
+    write_atomically(file, json.dump(2) + "\n");
+}
+
+} // namespace toile

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/backend/stages.h"
+#include "core/pd/step_report.h"
+#include "scenes/format/scene.h"
+
+namespace toile {
+
+/// What a simulation did, for `simulate --report`: settings, every frame, calls and seconds of every stage,
+/// peak memory. Stages that never ran are absent.
+class RunReport {
+public:
+    RunReport(const Scene& scene, int vertex_count) : scene_(scene), vertex_count_(vertex_count) {}
+
+    void add_frame(int frame, const StepReport& report, double seconds)
+    {
+        frames_.push_back({frame, report, seconds});
+    }
+
+    /// Writes JSON.
+    /// @param outcome  "complete", "interrupted" or "failed"
+    /// @throws InvalidInput or DeviceError as write_atomically().
+    void write(const std::filesystem::path& file, const std::string& outcome, const Stages& stages) const;
+
+private:
+    struct Frame {
+        int index;
+        StepReport report;
+        double seconds;
+    };
+
+    const Scene& scene_;
+    int vertex_count_;
+    std::vector<Frame> frames_;
+};
+
+/// "converged", "iteration_limit" or "non_finite".
+const char* to_word(StepReport::Status status);
+
+/// Largest resident memory of this process so far [bytes].
+long peak_memory();
+
+} // namespace toile

@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+#include "apps/toile/command_line.h"
+#include "apps/toile/commands.h"
+#include "apps/toile/interrupt.h"
+#include "apps/toile/progress.h"
+#include "apps/toile/run_report.h"
+#include "core/backend/error.h"
+#include "core/mesh/obj.h"
+#include "export/async_cache_writer.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/world.h"
+
+namespace toile {
+
+namespace {
+
+struct SimulateOptions {
+    std::filesystem::path scene;
+    std::filesystem::path output; ///< folder; empty: out/<name of the scene file>
+    std::optional<int> frames;
+    std::optional<int> threads;
+    std::string solver;
+    std::filesystem::path report;
+    bool quiet = false;
+};
+
+/// A cache on its way to disk and the cloth whose positions it takes.
+struct OpenCache {
+    std::filesystem::path file;
+    int cloth;
+    std::unique_ptr<CacheWriter> writer;
+};
+
+void require_range(const char* option, const std::optional<int>& value, int lower, int upper)
+{
+    if (value && (*value < lower || *value > upper))
+        throw InvalidInput(std::string(option) + ": " + std::to_string(*value) + " is out of range; give a " +
+                           "whole number from " + std::to_string(lower) + " to " + std::to_string(upper));
+}
+
+/// Refuses a report before the run that could not be written after it.
+void require_place(const std::filesystem::path& report)
+{
+    if (report.empty())
+        return;
+    if (std::filesystem::is_directory(report))
+        throw InvalidInput(report.string() + ": is a folder; name a file for the report");
+    std::filesystem::path folder = std::filesystem::absolute(report).parent_path();
+    while (!std::filesystem::exists(folder))
+        folder = folder.parent_path();
+    if (!std::filesystem::is_directory(folder))
+        throw InvalidInput(report.string() + ": " + folder.string() + " is no folder; choose another place");
+}
+
+/// The scene with what the command line says otherwise.
+Scene scene_with_options(const SimulateOptions& options)
+{
+    require_range("--frames", options.frames, 1, 1000000);
+    require_range("--threads", options.threads, 0, 1024);
+    require_place(options.report);
+    Scene scene = read_scene(options.scene);
+    scene.frames = options.frames.value_or(scene.frames);
+    scene.solver.threads = options.threads.value_or(scene.solver.threads);
+    if (options.solver == "direct")
+        scene.solver.method = scene::SolverMethod::Direct;
+    else if (options.solver == "auto")
+        scene.solver.method = scene::SolverMethod::Auto;
+    return scene;
+}
+
+/// What the scene exports: its list, or one PC2 per cloth.
+std::vector<scene::Export> exports_of(const Scene& scene)
+{
+    if (!scene.exports.empty())
+        return scene.exports;
+    std::vector<scene::Export> exports;
+    for (const scene::Cloth& cloth : scene.cloths)
+        exports.push_back({cloth.name + ".pc2", cloth.name});
+    return exports;
+}
+
+int cloth_index(const Scene& scene, const std::string& name)
+{
+    for (size_t i = 0; i < scene.cloths.size(); ++i)
+        if (scene.cloths[i].name == name)
+            return int(i);
+    return 0; // no name: the scene has one cloth, see checks of the scene file
+}
+
+std::vector<OpenCache> open_caches(const Scene& scene, const World& world,
+                                   const std::filesystem::path& folder)
+{
+    std::vector<OpenCache> caches;
+    for (const scene::Export& entry : exports_of(scene)) {
+        const int cloth = cloth_index(scene, entry.cloth);
+        CacheLayout layout = cache_layout(world.cloths()[cloth].rest, scene.frames);
+        layout.fps = scene.fps;
+        const std::filesystem::path file = folder / entry.file;
+        caches.push_back({file, cloth, std::make_unique<AsyncCacheWriter>(make_cache_writer(file, layout))});
+    }
+    return caches;
+}
+
+void write_frame(const World& world, std::vector<OpenCache>& caches)
+{
+    for (OpenCache& cache : caches)
+        cache.writer->write(world.frame(), world.cloths()[cache.cloth].positions);
+}
+
+/// PC2 and MDD hold positions only: the mesh they play on goes beside them, in its start state, unless an OBJ
+/// of that name is among the caches.
+void write_start_mesh(const World& world, const OpenCache& cache, const std::vector<OpenCache>& caches)
+{
+    const std::filesystem::path file = std::filesystem::path(cache.file).replace_extension(".obj");
+    if (std::any_of(caches.begin(), caches.end(), [&](const OpenCache& other) { return other.file == file; }))
+        return;
+    ObjMesh mesh = world.cloths()[cache.cloth].rest;
+    mesh.positions = world.cloths()[cache.cloth].positions;
+    write_obj(file, mesh);
+}
+
+std::string note_of(const StepReport& report)
+{
+    return std::to_string(report.iterations) + " iterations, " + std::to_string(report.contacts) +
+           " contacts";
+}
+
+/// How a run ended.
+struct Outcome {
+    std::string word = "complete"; ///< or "interrupted", "failed"
+    std::string message;           ///< why it failed
+};
+
+/// Runs to the last frame, to an interrupt, or to a failure.
+Outcome run(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
+            const InterruptGuard& interrupt, bool quiet)
+{
+    Progress progress("frame", scene.frames, quiet);
+    write_frame(world, caches);
+    progress.update(1);
+    while (world.frame() + 1 < scene.frames) {
+        if (interrupt.requested())
+            return {"interrupted", ""};
+        const auto start = std::chrono::steady_clock::now();
+        const StepReport step = world.advance_frame();
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        report.add_frame(world.frame(), step, seconds.count());
+        if (step.status == StepReport::Status::NonFinite)
+            return {"failed", step.message};
+        write_frame(world, caches);
+        progress.update(world.frame() + 1, note_of(step));
+    }
+    return {};
+}
+
+/// Says where a run ended that did not get to its end, and lists the partial caches.
+int explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>& caches)
+{
+    for (OpenCache& cache : caches) {
+        const std::filesystem::path partial = cache.writer->partial();
+        cache.writer.reset(); // delivers what is still queued
+        std::cout << partial.string() << std::endl;
+    }
+    std::cerr << "toile: error: " << outcome.word << " at frame " << last_frame
+              << (outcome.message.empty() ? "" : ": " + outcome.message)
+              << "; the frames before it are in the partial caches" << std::endl;
+    return kExitFailure;
+}
+
+int simulate(const SimulateOptions& options)
+{
+    const Scene scene = scene_with_options(options);
+    World world(scene);
+    const std::filesystem::path folder =
+        options.output.empty() ? std::filesystem::path("out") / scene.source.stem() : options.output;
+    const InterruptGuard interrupt; // from here on there are files that a reader must find complete
+    std::vector<OpenCache> caches = open_caches(scene, world, folder);
+
+    int vertex_count = 0;
+    for (const auto& cloth : world.cloths())
+        vertex_count += int(cloth.positions.size());
+    RunReport report(scene, vertex_count);
+    for (const OpenCache& cache : caches)
+        write_start_mesh(world, cache, caches);
+
+    const Outcome outcome = run(world, scene, caches, report, interrupt, options.quiet);
+    if (!options.report.empty())
+        report.write(options.report, outcome.word, world.stages());
+    if (outcome.word != "complete")
+        return explain_stop(world.frame(), outcome, caches);
+    for (OpenCache& cache : caches) {
+        cache.writer->finish();
+        std::cout << cache.file.string() << std::endl;
+    }
+    return kExitOk;
+}
+
+} // namespace
+
+Command add_simulate(CLI::App& program)
+{
+    Command command;
+    command.options = program.add_subcommand("simulate", "Run a scene and write its caches");
+    auto options = std::make_shared<SimulateOptions>();
+    CLI::App& add = *command.options;
+    add.add_option("scene", options->scene, "Scene file (.json)")->required();
+    add.add_option("-o,--output", options->output, "Folder for the caches [out/NAME]");
+    add.add_option("--frames", options->frames, "Samples to write, instead of the scene's");
+    add.add_option("--threads", options->threads, "Threads to use; 0: all");
+    add.add_option("--solver", options->solver, "Global solver, instead of the scene's")
+        ->check(CLI::IsMember({"auto", "direct"}));
+    add.add_option("--report", options->report, "Write stages, frames and settings to this JSON file");
+    add.add_flag("--quiet", options->quiet, "No progress on stderr");
+    command.run = [options] { return simulate(*options); };
+    return command;
+}
+
+} // namespace toile

@@ -1,0 +1,24 @@
+#include "avatars/avatar.h"
+
+#include "core/backend/error.h"
+
+namespace toile {
+
+int Avatar::clip_index(const std::string& name) const
+{
+    std::vector<std::string> names;
+    std::string list;
+    for (size_t i = 0; i < clips_.size(); ++i) {
+        if (clips_[i].name == name)
+            return int(i);
+        names.push_back(clips_[i].name);
+        list += (list.empty() ? "'" : ", '") + clips_[i].name + "'";
+    }
+    if (clips_.empty())
+        throw InvalidInput(source_ + ": no clip '" + name + "'; it has no clips, leave the clip name empty");
+    const std::string nearest = nearest_word(name, names);
+    throw InvalidInput(source_ + ": no clip '" + name + "'; " +
+                       (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "It has " + list);
+}
+
+} // namespace toile

@@ -1,0 +1,184 @@
+#include "avatars/import/assimp_import.h"
+
+#include <algorithm>
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include "core/backend/error.h"
+
+namespace toile {
+
+namespace {
+
+Vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+Eigen::Quaterniond to_quaternion(const aiQuaternion& q)
+{
+    return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+}
+
+Affine to_affine(const aiMatrix4x4& m)
+{
+    Affine result;
+    result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
+    return result;
+}
+
+/// Builds a RiggedModel from one assimp scene.
+class SceneReader {
+public:
+    SceneReader(const aiScene& scene, std::string source) : scene_(scene), source_(std::move(source)) {}
+
+    RiggedModel read()
+    {
+        add_node(*scene_.mRootNode, -1);
+        for (const auto& [mesh, joint] : instances_)
+            add_mesh(*scene_.mMeshes[mesh], joint);
+        require_surface();
+        normalise_weights(model_.mesh, source_);
+        weld_seams(model_.mesh, kSeamDistance * bounds(model_.mesh.rest.positions).diagonal());
+        for (unsigned i = 0; i < scene_.mNumAnimations; ++i)
+            add_clip(*scene_.mAnimations[i], i);
+        return std::move(model_);
+    }
+
+private:
+    void add_node(const aiNode& node, int parent)
+    {
+        aiVector3D scale, translation;
+        aiQuaternion rotation;
+        node.mTransformation.Decompose(scale, rotation, translation);
+        const int joint = model_.skeleton.add(
+            {node.mName.C_Str(), parent, {to_vec3(translation), to_quaternion(rotation), to_vec3(scale)}});
+        for (unsigned i = 0; i < node.mNumMeshes; ++i)
+            instances_.emplace_back(node.mMeshes[i], joint);
+        for (unsigned i = 0; i < node.mNumChildren; ++i)
+            add_node(*node.mChildren[i], joint);
+    }
+
+    /// Appends a mesh. Skinned meshes share space 0; a rigid one is a space of its own node.
+    void add_mesh(const aiMesh& mesh, int node_joint)
+    {
+        SkinnedMesh& out = model_.mesh;
+        const int first_vertex = out.rest.vertex_count();
+        for (unsigned v = 0; v < mesh.mNumVertices; ++v)
+            out.rest.positions.push_back(to_vec3(mesh.mVertices[v]));
+        out.space_of_vertex.resize(out.rest.positions.size(), mesh.HasBones() ? 0 : node_joint + 1);
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices == 3)
+                out.rest.triangles.emplace_back(first_vertex + int(face.mIndices[0]),
+                                                first_vertex + int(face.mIndices[1]),
+                                                first_vertex + int(face.mIndices[2]));
+        }
+
+        std::vector<std::vector<Influence>> influences(mesh.mNumVertices);
+        for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+            const aiBone& bone = *mesh.mBones[b];
+            const int index = add_bone(
+                {model_.skeleton.require(bone.mName.C_Str(), source_ + ": mesh '" + mesh.mName.C_Str() + "'"),
+                 to_affine(bone.mOffsetMatrix)});
+            for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+                const aiVertexWeight& part = bone.mWeights[w];
+                if (part.mVertexId >= mesh.mNumVertices)
+                    throw InvalidInput(source_ + ": bone '" + bone.mName.C_Str() + "' weighs vertex " +
+                                       std::to_string(part.mVertexId) + " of " +
+                                       std::to_string(mesh.mNumVertices));
+                influences[part.mVertexId].push_back({index, part.mWeight});
+            }
+        }
+        if (!mesh.HasBones()) {
+            const int index = add_bone({node_joint, identity_affine()});
+            std::fill(influences.begin(), influences.end(), std::vector<Influence>{{index, 1.0}});
+        }
+        for (const std::vector<Influence>& parts : influences) {
+            out.influences.insert(out.influences.end(), parts.begin(), parts.end());
+            out.first.push_back(int(out.influences.size()));
+        }
+    }
+
+    /// The bone's index; equal ones (a skin's several meshes) are stored once, so that their seams can join.
+    int add_bone(const Bone& bone)
+    {
+        std::vector<Bone>& bones = model_.mesh.bones;
+        const auto known = std::find_if(bones.begin(), bones.end(), [&](const Bone& other) {
+            return other.joint == bone.joint && other.joint_from_mesh == bone.joint_from_mesh;
+        });
+        if (known != bones.end())
+            return int(known - bones.begin());
+        bones.push_back(bone);
+        return int(bones.size()) - 1;
+    }
+
+    /// @throws InvalidInput for a file without surface, or with indices and positions that are none.
+    void require_surface() const
+    {
+        const TriangleMesh& surface = model_.mesh.rest;
+        if (surface.triangles.empty())
+            throw InvalidInput(source_ + ": no mesh with triangles; an avatar needs a surface");
+        for (int t = 0; t < surface.triangle_count(); ++t)
+            for (const int v : surface.triangles[t])
+                if (v < 0 || v >= surface.vertex_count())
+                    throw InvalidInput(source_ + ": triangle " + std::to_string(t) + " names vertex " +
+                                       std::to_string(v) + " of " + std::to_string(surface.vertex_count()));
+        for (int v = 0; v < surface.vertex_count(); ++v)
+            if (!surface.positions[v].allFinite())
+                throw InvalidInput(source_ + ": position of vertex " + std::to_string(v) + " is not finite");
+    }
+
+    void add_clip(const aiAnimation& animation, unsigned index)
+    {
+        const double ticks_per_second = animation.mTicksPerSecond > 0.0 ? animation.mTicksPerSecond : 1.0;
+        Clip clip;
+        clip.name = animation.mName.length > 0 ? animation.mName.C_Str() : "clip_" + std::to_string(index);
+        for (unsigned c = 0; c < animation.mNumChannels; ++c) {
+            const aiNodeAnim& channel = *animation.mChannels[c];
+            JointTrack track;
+            track.joint =
+                model_.skeleton.require(channel.mNodeName.C_Str(), source_ + ": clip '" + clip.name + "'");
+            for (unsigned k = 0; k < channel.mNumPositionKeys; ++k)
+                track.translation.push_back({channel.mPositionKeys[k].mTime / ticks_per_second,
+                                             to_vec3(channel.mPositionKeys[k].mValue)});
+            for (unsigned k = 0; k < channel.mNumRotationKeys; ++k)
+                track.rotation.push_back({channel.mRotationKeys[k].mTime / ticks_per_second,
+                                          to_quaternion(channel.mRotationKeys[k].mValue)});
+            for (unsigned k = 0; k < channel.mNumScalingKeys; ++k)
+                track.scale.push_back({channel.mScalingKeys[k].mTime / ticks_per_second,
+                                       to_vec3(channel.mScalingKeys[k].mValue)});
+            clip.tracks.push_back(std::move(track));
+        }
+        clip.duration = animation.mDuration / ticks_per_second;
+        model_.clips.push_back(std::move(clip));
+    }
+
+    const aiScene& scene_;
+    std::string source_;
+    RiggedModel model_;
+    std::vector<std::pair<unsigned, int>> instances_; ///< mesh index, joint of the node that shows it
+};
+
+} // namespace
+
+RiggedModel import_rigged_model(const std::filesystem::path& file)
+{
+    if (!std::filesystem::is_regular_file(file))
+        throw InvalidInput(file.string() + ": no such file; give the path of a .gltf, .glb or .obj body");
+
+    Assimp::Importer importer;
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    // Pivots kept as extra nodes would lay an FBX body on its side once a motion file without them drives it.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+    if (!scene || !scene->mRootNode) {
+        std::string reason = importer.GetErrorString();
+        std::replace(reason.begin(), reason.end(), '\n', ' ');
+        throw InvalidInput(file.string() + ": can't be read as a model (" + reason + ")");
+    }
+    return SceneReader(*scene, file.string()).read();
+}
+
+} // namespace toile

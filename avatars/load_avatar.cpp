@@ -1,0 +1,69 @@
+#include "avatars/load_avatar.h"
+
+#include <cctype>
+#include <map>
+
+#include "avatars/import/assimp_import.h"
+#include "avatars/skinned_avatar.h"
+#include "avatars/static_avatar.h"
+#include "core/backend/error.h"
+#include "core/mesh/obj.h"
+
+namespace toile {
+
+namespace {
+
+/// The file's extension in lower case, with its dot.
+std::string format_of(const std::filesystem::path& file)
+{
+    std::string extension = file.extension().string();
+    for (char& letter : extension)
+        letter = char(std::tolower(static_cast<unsigned char>(letter)));
+    return extension;
+}
+
+double metres_per_unit(const AvatarSettings& settings)
+{
+    static const std::map<std::string, double> kUnits{
+        {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
+    const std::string by_format = format_of(settings.file) == ".fbx" ? "cm" : "m";
+    const auto unit = kUnits.find(settings.unit.empty() ? by_format : settings.unit);
+    if (unit == kUnits.end())
+        throw InvalidInput(settings.file.string() + ": unknown unit '" + settings.unit +
+                           "'; use m, cm, mm or in");
+    return unit->second;
+}
+
+Affine metres_from_file(const AvatarSettings& settings)
+{
+    Affine result = Affine::Zero();
+    if (settings.up == "y")
+        result.leftCols<3>().setIdentity();
+    else if (settings.up == "z")
+        result.leftCols<3>() << 1, 0, 0, 0, 0, 1, 0, -1, 0; // z to y, y to -z
+    else
+        throw InvalidInput(settings.file.string() + ": unknown up axis '" + settings.up + "'; use y or z");
+    return metres_per_unit(settings) * result;
+}
+
+} // namespace
+
+std::unique_ptr<Avatar> load_avatar(const AvatarSettings& settings)
+{
+    if (settings.file.empty())
+        return make_mannequin(settings.mannequin);
+
+    const std::string source = settings.file.string();
+    const Affine to_metres = metres_from_file(settings);
+    if (format_of(settings.file) == ".obj") {
+        TriangleMesh mesh = read_obj(settings.file).triangulated();
+        if (mesh.triangles.empty())
+            throw InvalidInput(source + ": no triangles; an avatar needs a surface");
+        return std::make_unique<StaticAvatar>(source, std::move(mesh), to_metres);
+    }
+    RiggedModel model = import_rigged_model(settings.file);
+    model.metres_from_file = to_metres;
+    return std::make_unique<SkinnedAvatar>(source, std::move(model));
+}
+
+} // namespace toile

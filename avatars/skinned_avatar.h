@@ -1,0 +1,37 @@
+#pragma once
+
+#include "avatars/avatar.h"
+#include "avatars/clip.h"
+#include "avatars/skinned_mesh.h"
+
+namespace toile {
+
+/// A rigged body with its motions, in the units and axes of its file.
+struct RiggedModel {
+    Skeleton skeleton;
+    SkinnedMesh mesh;
+    std::vector<Clip> clips;
+    Affine metres_from_file = identity_affine();
+};
+
+/// A body moved by joints: clips drive the skeleton, linear blend skinning drives the surface.
+class SkinnedAvatar final : public Avatar {
+public:
+    /// @param model  weights normalised; bones and tracks refer to joints of its skeleton
+    SkinnedAvatar(std::string source, RiggedModel model);
+
+    void pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out) override;
+
+    const RiggedModel& model() const { return model_; }
+
+private:
+    Vec3 root_travel(const Clip& clip) const;
+
+    RiggedModel model_;
+    std::vector<Vec3> travel_of_clip_; ///< [clips] horizontal way of the root in one run [m]
+    std::vector<JointTransform> local_;
+    std::vector<Affine> frames_;
+    std::vector<Affine> bones_;
+};
+
+} // namespace toile

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "collision/shapes.h"
+#include "collision/surface_proximity.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace toile {
+
+/// A triangle surface that cloth may touch, at the end t1 of the current step; still or moving.
+///
+/// Built once. A mesh that never moves is never refitted: its stage "collision/refit" never runs.
+class MeshCollider {
+public:
+    /// Builds the tree. O(n log n). Any triangle list will do (see SurfaceProximity).
+    explicit MeshCollider(const MovingMesh& mesh);
+
+    /// The next step's positions: as many vertices as before, the same triangles. O(n); stage
+    /// "collision/refit" where x_t1 differs from what it was.
+    void move(const MovingMesh& mesh);
+
+    const SurfaceProximity& surface() const { return surface_; } ///< at t1
+    const Bounds& bounds() const { return bounds_; }             ///< at t1
+
+    /// Displacement of a vertex from t0 to t1 [m].
+    Vec3 motion(int vertex) const { return surface_.positions()[vertex] - x_t0_[vertex]; }
+
+    /// Displacement of a point of a triangle from t0 to t1 [m].
+    Vec3 motion(int triangle, const Vec3& barycentric) const;
+
+    /// An edge at t1, its ends side by side for the cache.
+    struct OwnedEdge {
+        Vec3 a, b; ///< [m]
+        int edge;
+        /// True when cloth can rest on it: a ridge of at least 1 degree between its faces, or a border. Flat
+        /// edges add nothing to their faces; in a valley cloth touches the faces first.
+        bool is_ridge;
+    };
+
+    /// Edges whose lowest triangle is this one: every edge belongs to exactly one triangle.
+    View<const OwnedEdge> owned_edges(int triangle) const
+    {
+        const int first = first_owned_[triangle];
+        return {owned_edges_.data() + first, first_owned_[triangle + 1] - first};
+    }
+
+private:
+    void update_owned_edges();
+    bool is_ridge(int edge) const;
+
+    SurfaceProximity surface_;
+    std::vector<Vec3> x_t0_;
+    std::vector<int> first_owned_;       ///< [triangles + 1] into owned_edges_
+    std::vector<OwnedEdge> owned_edges_; ///< [edges]
+    Bounds bounds_;
+};
+
+/// An analytic solid that moves rigidly during the step.
+class ShapeCollider {
+public:
+    /// @param source  named in errors, e.g. the scene's path of the shape
+    /// @throws InvalidInput for sizes that make no solid (see require_usable)
+    ShapeCollider(const Shape& shape, const Eigen::Isometry3d& pose, const std::string& source);
+
+    /// world_from_shape at both ends of the step.
+    void move(const Eigen::Isometry3d& pose_t0, const Eigen::Isometry3d& pose_t1);
+
+    /// The closest surface point at t1.
+    ShapePoint closest(const Vec3& x) const { return toile::closest(shape_, pose_t1_, x); }
+
+    /// Displacement from t0 to t1 [m] of the material point that is at `point` at t1.
+    Vec3 motion(const Vec3& point) const { return point - pose_t0_ * (pose_t1_.inverse() * point); }
+
+    const Shape& shape() const { return shape_; }
+
+private:
+    Shape shape_;
+    Eigen::Isometry3d pose_t0_;
+    Eigen::Isometry3d pose_t1_;
+};
+
+} // namespace toile

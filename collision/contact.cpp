@@ -1,0 +1,244 @@
+#include "collision/contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+/// Fastest surface that cloth is carried along with [m/s]. A body that jumps further in a step has been
+/// replaced, not moved: taking cloth along would shoot it away.
+constexpr double kMaxCarrySpeed = 20.0;
+
+/// Largest query radius [m]. Cloth that moves further relative to a collider in one step may pass it.
+constexpr double kMaxRadius = 0.06;
+
+/// Distance [m] that cloth may move from where its active pairs were found: beyond, a curved surface has left
+/// its tangent plane by more than about half a millimetre (radius of curvature 5 cm).
+constexpr double kTrust = 0.007;
+
+/// Margin [m] of a second look within a step, on top of the gap.
+constexpr double kRevisionMargin = 0.003;
+
+/// Relative change of the friction limits that calls for another minimisation [-].
+constexpr double kFrictionChange = 0.1;
+
+/// cos of the angle up to which a pair's normal may turn and still be the same contact [-].
+constexpr double kSameContact = 0.7;
+
+bool is_vertex_pair(const ContactPair& pair)
+{
+    return pair.kind == ContactKind::kVertexFace || pair.kind == ContactKind::kVertexShape;
+}
+
+} // namespace
+
+Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
+                 std::vector<ContactPartner> partners, const Settings& settings)
+    : partners_(std::move(partners)), settings_(settings), detector_(triangles, positions),
+      carried_(positions.size()), detected_at_(positions.size()), nearest_(positions.size())
+{
+}
+
+void Contact::begin_step(const StepStart& start)
+{
+    start_ = start;
+    carry_with_colliders();
+
+    // Everything that the prediction could reach from the carried start, relative to the moved surfaces.
+    double farthest = 0.0;
+    for (int v = 0; v < start.x.size(); ++v)
+        farthest = std::max(farthest, (start.prediction[v] - carried_[v]).norm());
+    detect(carried_, std::min(settings_.gap + farthest, kMaxRadius));
+}
+
+/// Moves every vertex that was near a surface along with it, so that it is still on the right side of the
+/// surface at t1.
+void Contact::carry_with_colliders()
+{
+    const double farthest = kMaxCarrySpeed * start_.dt;
+    parallel_for(kCpu, "contact/carry", start_.x.size(), [&](int v) {
+        const ContactPair& last = nearest_[v];
+        Vec3 motion = Vec3::Zero();
+        if (last.collider >= 0) {
+            const ContactPartner& partner = partners_[last.collider];
+            motion = partner.mesh ? partner.mesh->motion(last.feature, Vec3::Constant(1.0 / 3.0))
+                                  : partner.shape->motion(last.point);
+        }
+        carried_[v] = start_.x[v];
+        if (motion.norm() <= farthest)
+            carried_[v] += motion;
+    });
+}
+
+void Contact::detect(View<const Vec3> at, double radius)
+{
+    const StageScope stage("collision/detect");
+    detected_at_.assign(at.begin(), at.end());
+    DetectSettings settings;
+    settings.radius = radius;
+    settings.face_vertex = settings_.face_vertex;
+    settings.edge_edge = settings_.edge_edge;
+    detector_.move(detected_at_);
+    std::vector<ContactPair> pairs;
+    for (int c = 0; c < int(partners_.size()); ++c) {
+        if (partners_[c].mesh)
+            detector_.detect(*partners_[c].mesh, c, settings, pairs);
+        else
+            detector_.detect(*partners_[c].shape, c, settings, pairs);
+    }
+
+    std::fill(nearest_.begin(), nearest_.end(), ContactPair{});
+    std::vector<ContactTerm> terms;
+    for (const ContactPair& pair : pairs) {
+        if (is_vertex_pair(pair)) {
+            ContactPair& nearest = nearest_[pair.vertex[0]];
+            if (nearest.collider < 0 || pair.gap(at) < nearest.gap(at))
+                nearest = pair;
+        }
+        const bool held = std::all_of(pair.vertex.begin(), pair.vertex.end(),
+                                      [&](int v) { return v < 0 || start_.fixed[v]; });
+        if (!held)
+            terms.push_back(make_term(pair));
+    }
+    energy_.set_terms(std::move(terms), at.size());
+}
+
+/// The pair's cloth point at t0, moved along with the collider.
+Vec3 Contact::at_start(const ContactPair& pair) const
+{
+    Vec3 point = pair.motion;
+    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+        point += pair.weight[k] * start_.x[pair.vertex[k]];
+    return point;
+}
+
+ContactTerm Contact::make_term(const ContactPair& pair) const
+{
+    ContactTerm term;
+    term.pair = pair;
+    term.friction = partners_[pair.collider].friction;
+    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+        term.stiffness += settings_.stiffness * pair.weight[k] * start_.diagonal[pair.vertex[k]];
+
+    // Cloth that starts inside comes out at the recovery speed, not at once.
+    const Vec3 start = at_start(pair);
+    const double start_gap = pair.normal.dot(start - pair.point);
+    term.offset = std::min(settings_.gap, start_gap + settings_.recovery_speed * start_.dt);
+    term.anchor = start;
+
+    // The same contact of the step before says how hard it pressed and how far it had stuck.
+    const auto [first, last] =
+        memory_.equal_range(Key{pair.kind, pair.collider, pair.vertex[0], pair.vertex[1], pair.vertex[2]});
+    for (auto known = first; known != last; ++known) {
+        const Memory& memory = known->second;
+        if (memory.normal.dot(pair.normal) < kSameContact)
+            continue;
+        term.normal_force = memory.normal_force;
+        term.anchor -= memory.stick - pair.normal.dot(memory.stick) * pair.normal;
+        break;
+    }
+    return term;
+}
+
+void Contact::make_feasible(View<Vec3> x) const
+{
+    for (int i = 0; i < int(energy_.terms().size()); ++i) {
+        const double depth = -energy_.gap(i, x);
+        if (depth <= 0.0)
+            continue;
+        const ContactPair& pair = energy_.terms()[i].pair;
+        double squares = 0.0;
+        for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+            if (!start_.fixed[pair.vertex[k]])
+                squares += pair.weight[k] * pair.weight[k];
+        for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+            if (!start_.fixed[pair.vertex[k]])
+                x[pair.vertex[k]] += pair.weight[k] / squares * depth * pair.normal;
+    }
+}
+
+double Contact::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
+{
+    return energy_.terms().empty() ? 0.0 : energy_.add_gradient(x, gradient);
+}
+
+bool Contact::activate(View<const Vec3> x) { return !energy_.terms().empty() && energy_.activate(x); }
+
+void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
+{
+    energy_.add_hessian_product(p, out);
+}
+
+bool Contact::revise(View<const Vec3> x)
+{
+    if (energy_.terms().empty())
+        return false;
+    if (slid_away(x)) {
+        remember(x);
+        detect(x, settings_.gap + kRevisionMargin);
+        return true;
+    }
+    return update_normal_forces(x);
+}
+
+bool Contact::slid_away(View<const Vec3> x) const
+{
+    for (int i = 0; i < int(energy_.terms().size()); ++i) {
+        const ContactPair& pair = energy_.terms()[i].pair;
+        if (energy_.gap(i, x) > 0.5 * settings_.gap)
+            continue;
+        for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+            if ((x[pair.vertex[k]] - detected_at_[pair.vertex[k]]).squaredNorm() > kTrust * kTrust)
+                return true;
+    }
+    return false;
+}
+
+/// Refreshes the lagged normal forces; true when friction limits changed noticeably.
+bool Contact::update_normal_forces(View<const Vec3> x)
+{
+    double total = 0.0, change = 0.0;
+    for (int i = 0; i < int(energy_.terms().size()); ++i) {
+        const ContactTerm& term = energy_.terms()[i];
+        const double force = term.stiffness * std::max(-energy_.gap(i, x), 0.0);
+        total += term.friction * force;
+        change += term.friction * std::abs(force - term.normal_force);
+        energy_.set_normal_force(i, force);
+    }
+    return change > kFrictionChange * total;
+}
+
+/// Keeps forces and sticking of the pairs that press, for their successors.
+void Contact::remember(View<const Vec3> x)
+{
+    memory_.clear();
+    for (int i = 0; i < int(energy_.terms().size()); ++i) {
+        const ContactTerm& term = energy_.terms()[i];
+        const double force = term.stiffness * std::max(-energy_.gap(i, x), 0.0);
+        if (force == 0.0)
+            continue;
+        Vec3 stick = energy_.slip(i, x);
+        if (const double pull = term.stiffness * stick.norm(); pull > term.friction * force)
+            stick *= term.friction * force / pull;
+        const ContactPair& pair = term.pair;
+        memory_.emplace(Key{pair.kind, pair.collider, pair.vertex[0], pair.vertex[1], pair.vertex[2]},
+                        Memory{pair.normal, force, stick});
+    }
+}
+
+void Contact::end_step(View<const Vec3> x)
+{
+    remember(x);
+    active_count_ = int(memory_.size());
+    min_gap_ = 0.0;
+    for (int i = 0; i < int(energy_.terms().size()); ++i) {
+        const double gap = energy_.terms()[i].pair.gap(x);
+        min_gap_ = i == 0 ? gap : std::min(min_gap_, gap);
+    }
+}
+
+} // namespace toile

@@ -1,0 +1,136 @@
+#include "collision/contact_energy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+Vec3 cloth_point(const ContactPair& pair, View<const Vec3> x)
+{
+    Vec3 point = pair.weight[0] * x[pair.vertex[0]];
+    for (int k = 1; k < 3 && pair.vertex[k] >= 0; ++k)
+        point += pair.weight[k] * x[pair.vertex[k]];
+    return point;
+}
+
+/// Friction's stiffness at slip length |u|: w while sticking, L/|u| while sliding.
+double tangential_stiffness(const ContactTerm& term, double slip_length)
+{
+    const double limit = term.friction * term.normal_force;
+    return term.stiffness * slip_length <= limit ? term.stiffness : limit / slip_length;
+}
+
+} // namespace
+
+void ContactEnergy::set_terms(std::vector<ContactTerm> terms, int vertex_count)
+{
+    terms_ = std::move(terms);
+    std::vector<std::pair<int, int>> incidence; // (vertex, 3 * term + slot)
+    for (int i = 0; i < int(terms_.size()); ++i)
+        for (int k = 0; k < 3; ++k)
+            if (const int v = terms_[i].pair.vertex[k]; v >= 0)
+                incidence.emplace_back(v, 3 * i + k);
+    std::sort(incidence.begin(), incidence.end());
+
+    vertices_.clear();
+    first_.clear();
+    entries_.clear();
+    for (const auto& [v, entry] : incidence) {
+        if (vertices_.empty() || vertices_.back() != v) {
+            vertices_.push_back(v);
+            first_.push_back(int(entries_.size()));
+        }
+        entries_.push_back(entry);
+    }
+    first_.push_back(int(entries_.size()));
+    frozen_.assign(terms_.size(), Mat3::Zero());
+    term_force_.resize(terms_.size());
+    term_energy_.resize(terms_.size());
+    blocks_.assign(vertex_count, Mat3::Zero());
+}
+
+double ContactEnergy::gap(int i, View<const Vec3> x) const
+{
+    const ContactTerm& term = terms_[i];
+    return term.pair.normal.dot(cloth_point(term.pair, x) - term.pair.point) - term.offset;
+}
+
+Vec3 ContactEnergy::slip(int i, View<const Vec3> x) const
+{
+    const ContactTerm& term = terms_[i];
+    const Vec3 moved = cloth_point(term.pair, x) - term.anchor;
+    return moved - term.pair.normal.dot(moved) * term.pair.normal;
+}
+
+/// out[v] += sum of weight * value(term) over the terms that touch v, in ascending order.
+template <typename PerTerm>
+void ContactEnergy::gather(View<Vec3> out, const PerTerm& value) const
+{
+    parallel_for(kCpu, "contact/gather", int(vertices_.size()), [&](int i) {
+        Vec3 sum = Vec3::Zero();
+        for (int k = first_[i]; k < first_[i + 1]; ++k) {
+            const int term = entries_[k] / 3;
+            sum += terms_[term].pair.weight[entries_[k] % 3] * value(term);
+        }
+        out[vertices_[i]] += sum;
+    });
+}
+
+double ContactEnergy::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
+{
+    const int count = int(terms_.size());
+    parallel_for(kCpu, "contact/evaluate", count, [&](int i) {
+        const ContactTerm& term = terms_[i];
+        const double depth = std::min(gap(i, x), 0.0);
+        term_force_[i] = term.stiffness * depth * term.pair.normal;
+        term_energy_[i] = 0.5 * term.stiffness * depth * depth;
+
+        const double limit = term.friction * term.normal_force;
+        if (limit == 0.0)
+            return;
+        const Vec3 u = slip(i, x);
+        const double length = u.norm();
+        term_force_[i] += tangential_stiffness(term, length) * u;
+        term_energy_[i] += term.stiffness * length <= limit
+                               ? 0.5 * term.stiffness * length * length
+                               : limit * length - 0.5 * limit * limit / term.stiffness;
+    });
+    gather(gradient, [&](int i) -> const Vec3& { return term_force_[i]; });
+    return parallel_sum(kCpu, count, 0.0, [&](int i) { return term_energy_[i]; });
+}
+
+bool ContactEnergy::activate(View<const Vec3> x)
+{
+    parallel_for(kCpu, "contact/freeze", int(terms_.size()), [&](int i) {
+        const ContactTerm& term = terms_[i];
+        const Mat3 normal = term.pair.normal * term.pair.normal.transpose();
+        frozen_[i].setZero();
+        if (gap(i, x) < 0.0)
+            frozen_[i] = term.stiffness * normal;
+        if (term.friction * term.normal_force > 0.0)
+            frozen_[i] += tangential_stiffness(term, slip(i, x).norm()) * (Mat3::Identity() - normal);
+    });
+    bool active = false;
+    for (size_t i = 0; i < vertices_.size(); ++i) {
+        Mat3 block = Mat3::Zero();
+        for (int k = first_[i]; k < first_[i + 1]; ++k)
+            block += terms_[entries_[k] / 3].pair.weight[entries_[k] % 3] * frozen_[entries_[k] / 3];
+        blocks_[vertices_[i]] = block;
+        active = active || !block.isZero(0.0);
+    }
+    return active;
+}
+
+void ContactEnergy::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
+{
+    parallel_for(kCpu, "contact/multiply", int(terms_.size()),
+                 [&](int i) { term_force_[i] = frozen_[i] * cloth_point(terms_[i].pair, p); });
+    gather(out, [&](int i) -> const Vec3& { return term_force_[i]; });
+}
+
+} // namespace toile

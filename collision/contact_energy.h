@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/contact_pair.h"
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// A contact pair with everything its energy needs.
+struct ContactTerm {
+    ContactPair pair;
+    double offset = 0.0;        ///< [m] gap to keep between cloth and surface
+    double stiffness = 0.0;     ///< [N/m] w, of the normal spring and of sticking
+    double friction = 0.0;      ///< [-] Coulomb coefficient
+    Vec3 anchor = Vec3::Zero(); ///< [m] where the cloth point would stick, in space at t1
+    double normal_force = 0.0;  ///< [N] lagged, bounds friction
+};
+
+/// Contact and friction of one cloth as an energy of its positions.
+///
+/// Normal, with the gap g = n . (sum_k b_k x_k - p) - offset:
+///
+///   W_n = w/2 min(g, 0)^2
+///
+/// Friction is elastic up to Coulomb's limit L = mu |f_n| with the lagged normal force f_n, then slides: with
+/// u = (I - n n^T)(sum_k b_k x_k - anchor),
+///
+///   W_t = w/2 |u|^2            while w |u| <= L
+///         L |u| - L^2 / (2 w)  beyond (Huber), so that the force w u is projected onto the disc of radius L
+///
+/// Both are convex. The frozen Hessian replaces the sliding part by its reweighted majoriser L/|u|.
+class ContactEnergy {
+public:
+    /// @param vertex_count  of the cloth
+    void set_terms(std::vector<ContactTerm> terms, int vertex_count);
+
+    const std::vector<ContactTerm>& terms() const { return terms_; }
+    void set_normal_force(int term, double force) { terms_[term].normal_force = force; }
+
+    /// Adds the gradient [N] and returns the energy [J].
+    double add_gradient(View<const Vec3> x, View<Vec3> gradient) const;
+
+    /// Freezes the Hessian blocks at x. False when no term acts.
+    bool activate(View<const Vec3> x);
+    void add_hessian_product(View<const Vec3> p, View<Vec3> out) const;
+
+    /// Per vertex sum_p b_k A_p: bounds the frozen Hessian because the weights of a pair sum to one (Jensen).
+    View<const Mat3> diagonal_blocks() const { return blocks_; }
+
+    /// Gap g of a term at x [m]; negative where it pushes.
+    double gap(int term, View<const Vec3> x) const;
+    /// Part of anchor-to-cloth in the tangent plane, u above [m].
+    Vec3 slip(int term, View<const Vec3> x) const;
+
+private:
+    template <typename PerTerm>
+    void gather(View<Vec3> out, const PerTerm& value) const;
+
+    std::vector<ContactTerm> terms_;
+    std::vector<int> vertices_;            ///< touched vertices, ascending
+    std::vector<int> first_;               ///< [touched + 1] into entries_
+    std::vector<int> entries_;             ///< 3 * term + slot
+    std::vector<Mat3> frozen_;             ///< [terms] A_p
+    std::vector<Mat3> blocks_;             ///< [vertices]
+    mutable std::vector<Vec3> term_force_; ///< [terms] scratch
+    mutable std::vector<double> term_energy_;
+};
+
+} // namespace toile

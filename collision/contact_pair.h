@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// What touches what: cloth first, collider second.
+enum class ContactKind { kVertexFace, kFaceVertex, kEdgeEdge, kVertexShape };
+
+/// A place where cloth is near a collider: the half space that the cloth point should stay in,
+///
+///   n . (sum_k weight_k x_k - point) >= offset        offset [m]: the contact thickness
+//
+//    kVertexFace, kVertexShape     kFaceVertex              kEdgeEdge
+//
+//          o cloth vertex           ___o___ cloth face       --o-- cloth edge
+//          | n                         | n                     | n
+//       ___x___ collider face          x collider vertex       x  collider edge (end on)
+//                                     / \                      |
+struct ContactPair {
+    std::array<int, 3> vertex{-1, -1, -1};    ///< cloth vertices; -1 unused
+    std::array<double, 3> weight{0., 0., 0.}; ///< >= 0, sum 1; 0 where unused
+    Vec3 normal = Vec3::UnitY();              ///< unit, out of the collider, at t1
+    Vec3 point = Vec3::Zero();                ///< collider surface point at t1 [m]
+    Vec3 motion = Vec3::Zero();               ///< displacement of that material point from t0 to t1 [m]
+    int collider = -1;                        ///< as given to detect()
+    ContactKind kind = ContactKind::kVertexFace;
+    int feature = -1; ///< collider triangle, vertex or edge by kind; 0 for a shape
+
+    /// n . (sum_k weight_k x_k - point) at cloth positions x [m]: negative inside the collider.
+    double gap(View<const Vec3> x) const
+    {
+        Vec3 relative = -point;
+        for (int k = 0; k < 3; ++k)
+            if (vertex[k] >= 0)
+                relative += weight[k] * x[vertex[k]];
+        return normal.dot(relative);
+    }
+};
+
+} // namespace toile

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/colliders.h"
+#include "collision/contact_pair.h"
+
+namespace toile {
+
+struct DetectSettings {
+    /// [m] Places closer than this become pairs. Positive; larger than the contact thickness plus what cloth
+    /// moves between two detections, or contacts start late.
+    double radius = 0.01;
+
+    /// [m] Cloth vertices up to this far inside a mesh are still pushed out to the nearest surface. Deeper
+    /// ones are left alone: they more likely belong to the other side of a limb. Shapes have no such limit.
+    double max_depth = 0.1;
+
+    bool face_vertex = true; ///< cloth faces against collider vertices: sharp points under coarse cloth
+    bool edge_edge = true;   ///< edges against ridges: folds over sharp rims; the most numerous kind
+};
+
+/// Finds the places where one cloth is near colliders.
+///
+/// The pairs come in a fixed order, with the same bits for any number of threads. Nothing throws for
+/// self-intersecting or collapsed colliders, and every pair is finite with a unit normal.
+class ContactDetector {
+public:
+    /// @param triangles  [triangles x 3] the cloth's
+    /// @param positions  [vertices x 3] any pose of it, e.g. the first [m]; borrowed until the first move()
+    ContactDetector(View<const Triangle> triangles, View<const Vec3> positions);
+
+    /// Cloth positions to detect at: the guess for t1 [vertices x 3] [m]. Borrowed until the next move().
+    void move(View<const Vec3> x);
+
+    /// Appends the pairs against one collider, by kind, cloth vertices, collider feature:
+    ///   kVertexFace  up to three planes a vertex: the closest point, then the next local minima of the
+    ///                distance whose normals differ by more than 45 degrees and that face the vertex
+    ///                (armpits, between limbs: one plane is not enough there)
+    ///   kFaceVertex  collider vertices against the cloth sheets that they are about to touch or have pierced
+    ///   kEdgeEdge    cloth edges across ridges of the collider
+    /// @param collider  its number, copied into the pairs
+    void detect(const MeshCollider& mesh, int collider, const DetectSettings& settings,
+                std::vector<ContactPair>& out);
+
+    /// Appends one pair per cloth vertex nearer than the radius to the solid, or inside it at any depth.
+    void detect(const ShapeCollider& shape, int collider, const DetectSettings& settings,
+                std::vector<ContactPair>& out);
+
+private:
+    /// The cloth's tree at the current positions, refitted when first asked for after a move().
+    const SurfaceProximity& cloth_surface();
+
+    SurfaceProximity cloth_;
+    View<const Vec3> x_;
+    Bounds bounds_;
+    bool tree_is_stale_ = true;
+};
+
+} // namespace toile

@@ -1,0 +1,105 @@
+#include "collision/find_pairs.h"
+
+namespace toile {
+
+namespace {
+
+/// Least |cos| between the direction to the cloth and the ridge's pseudo-normal [-]: 60 degrees. Beyond it
+/// the closest points lie on the faces beside the ridge.
+constexpr double kConeCosine = 0.5;
+
+/// The closest points of segment a and a ridge when both lie strictly inside; nothing otherwise. Cheaper than
+/// closest_on_segments: most candidates leave without a division.
+std::optional<ClosestOnSegments> crossing(const Vec3& a0, const Vec3& a1,
+                                          const MeshCollider::OwnedEdge& ridge)
+{
+    if (!ridge.is_ridge)
+        return std::nullopt;
+    const Vec3 da = a1 - a0, db = ridge.b - ridge.a, gap = a0 - ridge.a;
+    const double aa = da.squaredNorm(), bb = db.squaredNorm(), ab = da.dot(db);
+    const double ga = da.dot(gap), gb = db.dot(gap);
+    const double determinant = aa * bb - ab * ab;
+    const double s = ab * gb - bb * ga;
+    const double t = aa * gb - ab * ga;
+    if (!(s > 0.0 && s < determinant && t > 0.0 && t < determinant))
+        return std::nullopt;
+    if (!(determinant > kParallelSine2 * aa * bb))
+        return std::nullopt;
+    return at_parameters(a0, a1, ridge.a, ridge.b, s / determinant, t / determinant);
+}
+
+/// Adds the pair of a cloth edge and a ridge whose closest points are given, when the ridge can push there.
+void add_pair(const PairSearch& search, const std::array<int, 2>& cloth_edge,
+              const MeshCollider::OwnedEdge& ridge, const ClosestOnSegments& closest,
+              std::vector<ContactPair>& out)
+{
+    const SurfaceProximity& surface = search.mesh.surface();
+    const Vec3 pseudo_normal = surface.edge_normal(ridge.edge);
+    if (pseudo_normal.isZero(0.0))
+        return;
+
+    // Outside: the direction between the edges, when the ridge can push that way. Touching or inside: the
+    // ridge's own normal.
+    const double s = closest.s, t = closest.t;
+    const Vec3 on_cloth = (1.0 - s) * search.x[cloth_edge[0]] + s * search.x[cloth_edge[1]];
+    const Vec3 on_ridge = (1.0 - t) * ridge.a + t * ridge.b;
+    const double distance = std::sqrt(closest.distance2);
+    Vec3 normal = pseudo_normal;
+    if (distance > kTouching) {
+        const Vec3 direction = (on_cloth - on_ridge) / distance;
+        const double ahead = direction.dot(pseudo_normal);
+        if (std::abs(ahead) < kConeCosine)
+            return;
+        if (ahead < 0.0 && !is_inside_below(search.mesh, on_cloth, distance, pseudo_normal))
+            return;
+        if (ahead > 0.0)
+            normal = direction;
+    }
+    const std::array<int, 2>& end = surface.edges().vertex[ridge.edge];
+    out.push_back({.vertex = {cloth_edge[0], cloth_edge[1], -1},
+                   .weight = {1.0 - s, s, 0.0},
+                   .normal = normal,
+                   .point = on_ridge,
+                   .motion = (1.0 - t) * search.mesh.motion(end[0]) + t * search.mesh.motion(end[1]),
+                   .collider = search.collider,
+                   .kind = ContactKind::kEdgeEdge,
+                   .feature = ridge.edge});
+}
+
+void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
+                 std::vector<ContactPair>& out)
+{
+    const Vec3 &a = search.x[cloth_edge[0]], &b = search.x[cloth_edge[1]];
+    const Vec3 middle = 0.5 * (a + b);
+    const double reach = 0.5 * (b - a).norm() + search.settings.radius;
+    const double radius2 = search.settings.radius * search.settings.radius;
+    if (!is_near(search.mesh.bounds(), middle, reach))
+        return;
+
+    // A ridge within the radius has all its triangles, so its owner too, within reach of the middle. The
+    // candidates' order does not matter: every pair is tested by itself and the pairs are sorted.
+    thread_local std::vector<int> triangles;
+    search.mesh.surface().triangles_maybe_within(middle, reach, triangles);
+    const size_t first = out.size();
+    for (const int t : triangles)
+        for (const MeshCollider::OwnedEdge& ridge : search.mesh.owned_edges(t))
+            if (const auto closest = crossing(a, b, ridge); closest && closest->distance2 < radius2)
+                add_pair(search, cloth_edge, ridge, *closest, out);
+    std::sort(out.begin() + long(first), out.end(),
+              [](const ContactPair& p, const ContactPair& q) { return p.feature < q.feature; });
+}
+
+} // namespace
+
+void find_edge_edge(const PairSearch& search, const SurfaceEdges& cloth, std::vector<ContactPair>& out)
+{
+    append_in_order(
+        "collision/edge_edge", cloth.edge_count(),
+        [&](int begin, int end, std::vector<ContactPair>& pairs) {
+            for (int e = begin; e < end; ++e)
+                find_ridges(search, cloth.vertex[e], pairs);
+        },
+        out);
+}
+
+} // namespace toile

@@ -1,0 +1,75 @@
+#include <tuple>
+
+#include "collision/find_pairs.h"
+
+namespace toile {
+
+namespace {
+
+/// How deep a collider vertex may have pierced the cloth, in radii [-].
+constexpr double kPiercedRadii = 1.0;
+
+/// Least |cos| between the vertex normal and the direction to the cloth [-]: 45 degrees. Cloth that passes
+/// sideways is the business of its own vertices and edges.
+constexpr double kAheadCosine = 0.7071;
+
+void find_sheets(const PairSearch& search, const SurfaceProximity& cloth, int v,
+                 std::vector<ContactPair>& out)
+{
+    const SurfaceProximity& surface = search.mesh.surface();
+    const Vec3& x = surface.positions()[v];
+    const double radius = search.settings.radius;
+    thread_local std::vector<SurfacePoint> sheets;
+    cloth.local_closest(x, kPiercedRadii * radius, sheets);
+    if (sheets.empty())
+        return;
+    const Vec3 n = surface.vertex_normal(v);
+    for (const SurfacePoint& sheet : sheets) {
+        // Above a cloth vertex the vertex itself makes the pair.
+        if (vertex_of(sheet.feature) >= 0)
+            continue;
+        const double gap = n.dot(sheet.point - x);
+        const bool is_ahead = sheet.distance() < kTouching || std::abs(gap) > kAheadCosine * sheet.distance();
+        if (n.isZero(0.0) || !is_ahead || gap >= radius)
+            continue;
+        if (gap < -kTouching && !is_inside_below(search.mesh, sheet.point, sheet.distance(), n))
+            continue;
+        const Triangle& corner = cloth.triangles()[sheet.triangle];
+        out.push_back({.vertex = {corner[0], corner[1], corner[2]},
+                       .weight = {sheet.barycentric[0], sheet.barycentric[1], sheet.barycentric[2]},
+                       .normal = n,
+                       .point = x,
+                       .motion = search.mesh.motion(v),
+                       .collider = search.collider,
+                       .kind = ContactKind::kFaceVertex,
+                       .feature = v});
+    }
+}
+
+} // namespace
+
+bool is_inside_below(const MeshCollider& mesh, const Vec3& c, double reach, const Vec3& n)
+{
+    constexpr double kReachSlack = 1.0 + 1e-6; // the feature itself must be found
+    const std::optional<SurfacePoint> nearest = mesh.surface().closest(c, reach * kReachSlack);
+    return nearest && nearest->signed_distance < 0.0 && nearest->normal.dot(n) > 0.0;
+}
+
+void find_face_vertex(const PairSearch& search, const SurfaceProximity& cloth, std::vector<ContactPair>& out)
+{
+    const size_t first = out.size();
+    append_in_order(
+        "collision/face_vertex", search.mesh.surface().positions().size(),
+        [&](int begin, int end, std::vector<ContactPair>& pairs) {
+            for (int v = begin; v < end; ++v)
+                if (is_near(search.cloth_bounds, search.mesh.surface().positions()[v],
+                            kPiercedRadii * search.settings.radius))
+                    find_sheets(search, cloth, v, pairs);
+        },
+        out);
+    std::sort(out.begin() + long(first), out.end(), [](const ContactPair& a, const ContactPair& b) {
+        return std::tie(a.vertex, a.feature) < std::tie(b.vertex, b.feature);
+    });
+}
+
+} // namespace toile

@@ -1,0 +1,65 @@
+#pragma once
+
+/// The stages of ContactDetector, one source each.
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+#include "collision/detect.h"
+#include "core/backend/stages.h"
+
+namespace toile {
+
+/// Distance [m] below which the direction between two closest points is rounding: the collider's own normal
+/// takes its place.
+inline constexpr double kTouching = 1e-6;
+
+/// What the stages share.
+struct PairSearch {
+    View<const Vec3> x;       // [vertices] cloth positions [m]
+    Bounds cloth_bounds;      // of x
+    const MeshCollider& mesh; // what the cloth is near to
+    int collider;             // its number
+    DetectSettings settings;
+};
+
+/// Appends to `out`, sorted by cloth vertex, then by distance.
+void find_vertex_face(const PairSearch& search, std::vector<ContactPair>& out);
+
+/// Appends to `out`, sorted by cloth vertices, then by collider vertex. `cloth` is the tree at search.x.
+void find_face_vertex(const PairSearch& search, const SurfaceProximity& cloth, std::vector<ContactPair>& out);
+
+/// Appends to `out`, sorted by cloth edge, then by collider edge.
+void find_edge_edge(const PairSearch& search, const SurfaceEdges& cloth, std::vector<ContactPair>& out);
+
+/// True when the cloth point c, which lies behind a collider feature with normal n at distance `reach` or
+/// less, is inside the collider there: not outside on the far side of a thin part, where pushing along n
+/// would pull the cloth through.
+bool is_inside_below(const MeshCollider& mesh, const Vec3& c, double reach, const Vec3& n);
+
+/// True when x is within `margin` of the box.
+inline bool is_near(const Bounds& box, const Vec3& x, double margin)
+{
+    return ((x - box.lower).array() >= -margin).all() && ((x - box.upper).array() <= margin).all();
+}
+
+/// Runs find(begin, end, pairs) over [0, count) in fixed chunks on all threads and appends what the chunks
+/// found in their order: the same list for every thread count. Counted as one call of stage `name`.
+template <typename Find>
+void append_in_order(std::string_view name, int count, const Find& find, std::vector<ContactPair>& out)
+{
+    constexpr int kChunk = 128; // about 0.2 ms of queries
+    const StageScope stage(name);
+    const int chunks = (count + kChunk - 1) / kChunk;
+    std::vector<std::vector<ContactPair>> found(chunks);
+    tbb::parallel_for(0, chunks, [&](int chunk) {
+        find(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), found[chunk]);
+    });
+    for (const std::vector<ContactPair>& pairs : found)
+        out.insert(out.end(), pairs.begin(), pairs.end());
+}
+
+} // namespace toile

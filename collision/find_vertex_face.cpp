@@ -1,0 +1,79 @@
+#include "collision/find_pairs.h"
+
+namespace toile {
+
+namespace {
+
+/// Planes per cloth vertex: a corner needs three, more would only repeat them.
+constexpr size_t kMaxPlanes = 3;
+
+/// cos of the least angle between two planes of a vertex [-]: 45 degrees.
+constexpr double kDistinctCosine = 0.7071;
+
+/// Gradient of the signed distance: the direction between vertex and surface, turned outwards.
+Vec3 outward(const SurfacePoint& surface, const Vec3& x)
+{
+    return surface.distance() > kTouching ? Vec3((x - surface.point) / surface.signed_distance)
+                                          : surface.normal;
+}
+
+/// The pairs of one cloth vertex. `hint` carries the last triangle found from vertex to vertex.
+void find_planes(const PairSearch& search, int v, int& hint, std::vector<ContactPair>& out)
+{
+    const MeshCollider& mesh = search.mesh;
+    const Vec3& x = search.x[v];
+    const auto add = [&](const SurfacePoint& at) {
+        out.push_back({.vertex = {v, -1, -1},
+                       .weight = {1.0, 0.0, 0.0},
+                       .normal = outward(at, x),
+                       .point = at.point,
+                       .motion = mesh.motion(at.triangle, at.barycentric),
+                       .collider = search.collider,
+                       .kind = ContactKind::kVertexFace,
+                       .feature = at.triangle});
+    };
+
+    // The closest point: in front within the radius, behind down to the depth.
+    const double radius = search.settings.radius;
+    const double reach = std::max(radius, search.settings.max_depth);
+    const std::optional<SurfacePoint> nearest = mesh.surface().closest(x, reach, hint);
+    if (!nearest)
+        return;
+    hint = nearest->triangle;
+    if (nearest->signed_distance >= radius || nearest->signed_distance <= -search.settings.max_depth)
+        return;
+    const size_t first = out.size();
+    add(*nearest);
+
+    // Other sheets that the vertex stands in front of, each turned away from those before.
+    thread_local std::vector<SurfacePoint> sheets;
+    mesh.surface().local_closest(x, radius, sheets, out[first].normal);
+    for (const SurfacePoint& sheet : sheets) {
+        if (out.size() - first == kMaxPlanes)
+            break;
+        const Vec3 n = outward(sheet, x);
+        const bool is_distinct =
+            std::all_of(out.begin() + long(first), out.end(),
+                        [&](const ContactPair& kept) { return kept.normal.dot(n) < kDistinctCosine; });
+        if (sheet.signed_distance >= 0.0 && sheet.distance() < radius && is_distinct)
+            add(sheet);
+    }
+}
+
+} // namespace
+
+void find_vertex_face(const PairSearch& search, std::vector<ContactPair>& out)
+{
+    const double reach = std::max(search.settings.radius, search.settings.max_depth);
+    append_in_order(
+        "collision/vertex_face", search.x.size(),
+        [&](int begin, int end, std::vector<ContactPair>& pairs) {
+            int hint = -1;
+            for (int v = begin; v < end; ++v)
+                if (is_near(search.mesh.bounds(), search.x[v], reach))
+                    find_planes(search, v, hint, pairs);
+        },
+        out);
+}
+
+} // namespace toile

@@ -1,0 +1,195 @@
+#include "collision/penetration.h"
+
+#include <algorithm>
+
+#include <tbb/parallel_for.h>
+
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+/// How far in front of a surface its outside is probed [m]: well above the rays' rounding (1e-6), well below
+/// any gap between body parts that matters.
+constexpr double kProbe = 2e-5;
+
+} // namespace
+
+ClothSamples::ClothSamples(View<const Triangle> triangles, int vertex_count)
+    : triangles_(triangles.begin(), triangles.end()), edges_(build_surface_edges(triangles, vertex_count)),
+      vertex_count_(vertex_count)
+{
+}
+
+std::vector<Vec3> ClothSamples::at(View<const Vec3> x) const
+{
+    std::vector<Vec3> samples(x.begin(), x.end());
+    samples.reserve(x.size() + triangles_.size() + edges_.vertex.size());
+    for (const Triangle& corner : triangles_)
+        samples.push_back((x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0);
+    for (const auto& [a, b] : edges_.vertex)
+        samples.push_back(0.5 * (x[a] + x[b]));
+    return samples;
+}
+
+std::string ClothSamples::name(int sample) const
+{
+    if (sample < vertex_count_)
+        return "vertex " + std::to_string(sample);
+    const int triangle = sample - vertex_count_;
+    if (triangle < int(triangles_.size()))
+        return "triangle " + std::to_string(triangle);
+    const std::array<int, 2>& edge = edges_.vertex[triangle - int(triangles_.size())];
+    return "edge " + std::to_string(edge[0]) + "-" + std::to_string(edge[1]);
+}
+
+/// A sample that is inside the mesh.
+struct PenetrationMeter::Inside {
+    int sample = -1; ///< -1: not inside after all
+    Vec3 point = Vec3::Zero();
+    SurfacePoint nearest;
+    bool is_excluded = false;
+};
+
+PenetrationMeter::PenetrationMeter(View<const Triangle> triangles, View<const Vec3> positions)
+    : surface_(triangles, positions), bounds_(bounds(positions)), is_closed_(surface_.edges().is_closed()),
+      is_border_vertex_(positions.size(), 0)
+{
+    rays_.add(positions, triangles);
+    rays_.commit();
+    for (int e = 0; e < surface_.edges().edge_count(); ++e)
+        if (surface_.edges().triangles.of(e).size() == 1)
+            for (const int v : surface_.edges().vertex[e])
+                is_border_vertex_[v] = 1;
+}
+
+void PenetrationMeter::move(View<const Vec3> positions)
+{
+    surface_.update(positions);
+    rays_.update(0, positions);
+    rays_.commit();
+    bounds_ = bounds(positions);
+}
+
+Penetration PenetrationMeter::measure(View<const Vec3> samples, const Settings& settings) const
+{
+    const StageScope stage("collision/penetration");
+    std::vector<Inside> inside = is_closed_ ? find_inside(samples) : find_behind(samples, settings);
+    std::erase_if(inside, [](const Inside& item) { return item.sample < 0; });
+    if (is_closed_)
+        exclude_self_intersections(inside, settings.self_intersection_margin);
+
+    Penetration result;
+    for (const Inside& item : inside) {
+        const double depth = item.nearest.distance();
+        if (item.is_excluded) {
+            ++result.excluded_count;
+            result.deepest_excluded = std::max(result.deepest_excluded, depth);
+        } else if (depth > result.max_depth) {
+            result.max_depth = depth;
+            result.sample = item.sample;
+            result.point = item.point;
+        }
+    }
+    return result;
+}
+
+/// Samples with a positive winding number; more than one excludes at once.
+std::vector<PenetrationMeter::Inside> PenetrationMeter::find_inside(View<const Vec3> samples) const
+{
+    std::vector<Inside> inside(samples.size());
+    parallel_for(kCpu, "collision/penetration_winding", samples.size(), [&](int i) {
+        const Vec3& p = samples[i];
+        if ((p.array() < bounds_.lower.array()).any() || (p.array() > bounds_.upper.array()).any())
+            return;
+        const int winding = rays_.winding_number(p);
+        if (winding > 0)
+            inside[i] = {i, p, *surface_.closest(p), winding > 1};
+    });
+    return inside;
+}
+
+/// Samples behind an open surface, its border left out: beside it there is no behind.
+std::vector<PenetrationMeter::Inside> PenetrationMeter::find_behind(View<const Vec3> samples,
+                                                                    const Settings& settings) const
+{
+    std::vector<Inside> inside(samples.size());
+    parallel_for(kCpu, "collision/penetration_sign", samples.size(), [&](int i) {
+        const std::optional<SurfacePoint> nearest = surface_.closest(samples[i], settings.open_depth);
+        if (nearest && nearest->signed_distance < 0.0 && !is_on_border(*nearest))
+            inside[i] = {i, samples[i], *nearest, false};
+    });
+    return inside;
+}
+
+bool PenetrationMeter::is_on_border(const SurfacePoint& at) const
+{
+    if (const int k = edge_of(at.feature); k >= 0) {
+        const int edge = surface_.edges().triangle_edge[at.triangle][k];
+        return surface_.edges().triangles.of(edge).size() == 1;
+    }
+    const int k = vertex_of(at.feature);
+    return k >= 0 && is_border_vertex_[surface_.triangles()[at.triangle][k]];
+}
+
+/// True when the outside of a triangle is inside another part of the body, at its centroid or near a corner.
+bool PenetrationMeter::is_buried(int triangle) const
+{
+    constexpr double kTowardsCorner = 0.9; // [-] of the way: off the crease that a corner may lie in
+    const Triangle& corner = surface_.triangles()[triangle];
+    Vec3 centroid = Vec3::Zero();
+    for (const int v : corner)
+        centroid += surface_.positions()[v] / 3.0;
+    const Vec3 outwards = kProbe * surface_.face_normals()[triangle];
+    if (rays_.winding_number(centroid + outwards) > 0)
+        return true;
+    return std::any_of(corner.begin(), corner.end(), [&](int v) {
+        const Vec3 near_corner = centroid + kTowardsCorner * (surface_.positions()[v] - centroid);
+        return rays_.winding_number(near_corner + outwards) > 0;
+    });
+}
+
+void PenetrationMeter::exclude_self_intersections(std::vector<Inside>& inside, double margin) const
+{
+    // Surface near each sample and near its way out.
+    std::vector<std::vector<int>> nearby(inside.size());
+    tbb::parallel_for(size_t{0}, inside.size(), [&](size_t i) {
+        if (inside[i].is_excluded)
+            return;
+        std::vector<int> more;
+        surface_.triangles_within(inside[i].point, margin, nearby[i]);
+        surface_.triangles_within(inside[i].nearest.point, margin, more);
+        nearby[i].insert(nearby[i].end(), more.begin(), more.end());
+    });
+
+    // Which of it is buried; each triangle is asked once.
+    std::vector<int> asked;
+    for (const std::vector<int>& triangles : nearby)
+        asked.insert(asked.end(), triangles.begin(), triangles.end());
+    std::sort(asked.begin(), asked.end());
+    asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+    std::vector<char> buried(surface_.triangles().size(), 0);
+    tbb::parallel_for(size_t{0}, asked.size(), [&](size_t i) { buried[asked[i]] = is_buried(asked[i]); });
+
+    tbb::parallel_for(size_t{0}, inside.size(), [&](size_t i) {
+        const SurfacePoint& exit = inside[i].nearest;
+        if (rays_.winding_number(exit.point + kProbe * exit.normal) > 0 ||
+            std::any_of(nearby[i].begin(), nearby[i].end(), [&](int t) { return buried[t] != 0; }))
+            inside[i].is_excluded = true;
+    });
+}
+
+Penetration measure_penetration(const ShapeCollider& shape, View<const Vec3> samples)
+{
+    Penetration result;
+    for (int i = 0; i < samples.size(); ++i)
+        if (const double depth = -shape.closest(samples[i]).signed_distance; depth > result.max_depth) {
+            result.max_depth = depth;
+            result.sample = i;
+            result.point = samples[i];
+        }
+    return result;
+}
+
+} // namespace toile

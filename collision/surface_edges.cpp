@@ -1,0 +1,50 @@
+#include "collision/surface_edges.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace toile {
+
+bool SurfaceEdges::is_closed() const
+{
+    for (int e = 0; e < edge_count(); ++e)
+        if (triangles.of(e).size() != 2)
+            return false;
+    return edge_count() > 0;
+}
+
+SurfaceEdges build_surface_edges(View<const Triangle> triangles, int vertex_count)
+{
+    // Sides of all triangles, equal edges next to each other.
+    struct Side {
+        int low, high, triangle, corner;
+    };
+    std::vector<Side> sides;
+    sides.reserve(3 * size_t(triangles.size()));
+    for (int t = 0; t < triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const auto [low, high] = std::minmax(triangles[t][k], triangles[t][(k + 1) % 3]);
+            sides.push_back({low, high, t, k});
+        }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return std::tie(a.low, a.high, a.triangle, a.corner) < std::tie(b.low, b.high, b.triangle, b.corner);
+    });
+
+    // A new edge wherever the vertex pair changes.
+    SurfaceEdges edges;
+    edges.triangle_edge.resize(triangles.size());
+    for (const Side& side : sides) {
+        const std::array<int, 2> pair{side.low, side.high};
+        if (edges.vertex.empty() || edges.vertex.back() != pair) {
+            edges.vertex.push_back(pair);
+            edges.triangles.first.push_back(int(edges.triangles.items.size()));
+        }
+        edges.triangles.items.push_back(side.triangle);
+        edges.triangle_edge[side.triangle][side.corner] = edges.edge_count() - 1;
+    }
+    edges.triangles.first.push_back(int(edges.triangles.items.size()));
+    edges.corners_of_vertex = corners_of_vertices(triangles, vertex_count);
+    return edges;
+}
+
+} // namespace toile

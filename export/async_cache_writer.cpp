@@ -1,0 +1,85 @@
+#include "export/async_cache_writer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace toile {
+
+AsyncCacheWriter::AsyncCacheWriter(std::unique_ptr<CacheWriter> target, int queue_limit)
+    : target_(std::move(target)), free_(size_t(std::max(queue_limit, 1))),
+      thread_([this] { deliver_until_closed(); })
+{
+}
+
+AsyncCacheWriter::~AsyncCacheWriter() { close(); }
+
+void AsyncCacheWriter::write(int frame, View<const Vec3> positions)
+{
+    TOILE_ASSERT(thread_.joinable());
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !free_.empty() || error_; });
+    rethrow_error();
+    Frame copy = std::move(free_.back());
+    free_.pop_back();
+    lock.unlock();
+
+    copy.index = frame;
+    copy.positions.assign(positions.begin(), positions.end());
+
+    lock.lock();
+    queue_.push_back(std::move(copy));
+    changed_.notify_all();
+}
+
+void AsyncCacheWriter::finish()
+{
+    close();
+    rethrow_error();
+    target_->finish();
+}
+
+void AsyncCacheWriter::deliver_until_closed()
+{
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [this] { return !queue_.empty() || closed_; });
+        if (queue_.empty())
+            return;
+        Frame frame = std::move(queue_.front());
+        queue_.pop_front();
+
+        // After an error the rest is dropped: a cache with a gap would be worse than a short one.
+        if (!error_) {
+            lock.unlock();
+            std::exception_ptr error;
+            try {
+                target_->write(frame.index, frame.positions);
+            } catch (...) {
+                error = std::current_exception();
+            }
+            lock.lock();
+            error_ = error;
+        }
+        free_.push_back(std::move(frame));
+        changed_.notify_all();
+    }
+}
+
+void AsyncCacheWriter::close()
+{
+    {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+        changed_.notify_all();
+    }
+    if (thread_.joinable())
+        thread_.join();
+}
+
+void AsyncCacheWriter::rethrow_error() const
+{
+    if (error_)
+        std::rethrow_exception(error_);
+}
+
+} // namespace toile

@@ -1,0 +1,22 @@
+#include "export/cache_format.h"
+
+#include <string>
+
+#include "core/backend/error.h"
+
+namespace toile {
+
+CacheFormat cache_format(const std::filesystem::path& file)
+{
+    const std::string extension = file.extension().string();
+    if (extension == ".pc2")
+        return CacheFormat::Pc2;
+    if (extension == ".mdd")
+        return CacheFormat::Mdd;
+    if (extension == ".obj")
+        return CacheFormat::Obj;
+    throw InvalidInput(file.string() + ": unknown cache extension '" + extension +
+                       "'; use .pc2, .mdd or .obj");
+}
+
+} // namespace toile

@@ -1,0 +1,95 @@
+#include "export/cache_writer.h"
+
+#include <cmath>
+#include <string>
+
+#include "core/backend/error.h"
+#include "export/cache_format.h"
+#include "export/mdd_writer.h"
+#include "export/obj_writer.h"
+#include "export/pc2_writer.h"
+
+namespace toile {
+
+namespace {
+
+using std::filesystem::path;
+
+void require_sane(const path& file, const CacheLayout& layout)
+{
+    const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": " + why); };
+    if (layout.vertex_count < 1)
+        refuse("the cache has no vertex; give it a mesh");
+    if (layout.frame_count < 1)
+        refuse("frame count is " + std::to_string(layout.frame_count) + "; it must be 1 or more");
+    if (!(layout.fps > 0.0) || !std::isfinite(layout.fps))
+        refuse("fps is " + std::to_string(layout.fps) + "; it must be positive");
+    if (layout.resume_at < 0 || layout.resume_at > layout.frame_count)
+        refuse("resuming at frame " + std::to_string(layout.resume_at) + " of " +
+               std::to_string(layout.frame_count) + "; frames to keep must be 0 up to that count");
+    if (std::filesystem::is_directory(file))
+        refuse("is a folder; choose another name for the cache");
+}
+
+void require_faces(const path& file, const CacheLayout& layout)
+{
+    if (layout.faces.polygons.empty())
+        throw InvalidInput(file.string() + ": an OBJ needs faces and the layout has none; use .pc2 or .mdd");
+    if (layout.start_frame < 0.0)
+        throw InvalidInput(file.string() + ": start frame " + std::to_string(layout.start_frame) +
+                           " can't number an OBJ; it must be 0 or more");
+    for (const std::vector<int>& polygon : layout.faces.polygons)
+        for (const int v : polygon)
+            if (v < 0 || v >= layout.vertex_count)
+                throw InvalidInput(file.string() + ": a face uses vertex " + std::to_string(v) +
+                                   "; the cache has vertices 0 to " +
+                                   std::to_string(layout.vertex_count - 1));
+}
+
+std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& layout)
+{
+    const path folder = file.parent_path();
+    switch (cache_format(file)) {
+    case CacheFormat::Pc2:
+        return std::make_unique<Pc2Writer>(file, folder / (file.stem().string() + ".partial.pc2"), layout);
+    case CacheFormat::Mdd:
+        return std::make_unique<MddWriter>(file, folder / (file.filename().string() + ".partial.pc2"),
+                                           layout);
+    case CacheFormat::Obj:
+        break;
+    }
+    require_faces(file, layout);
+    if (layout.frame_count > 1 || ObjSequence::has_digits_placeholder(file))
+        return std::make_unique<ObjSequenceWriter>(file, layout);
+    return std::make_unique<ObjWriter>(file, layout);
+}
+
+} // namespace
+
+CacheLayout cache_layout(const ObjMesh& mesh, int frame_count)
+{
+    CacheLayout layout;
+    layout.vertex_count = int(mesh.positions.size());
+    layout.frame_count = frame_count;
+    layout.faces = mesh;
+    layout.faces.positions.clear();
+    return layout;
+}
+
+CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count)
+{
+    CacheLayout layout;
+    layout.vertex_count = mesh.vertex_count();
+    layout.frame_count = frame_count;
+    for (const Triangle& t : mesh.triangles)
+        layout.faces.polygons.push_back({t[0], t[1], t[2]});
+    return layout;
+}
+
+std::unique_ptr<CacheWriter> make_cache_writer(const path& file, const CacheLayout& layout)
+{
+    require_sane(file, layout);
+    return open_writer(file, layout);
+}
+
+} // namespace toile

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "core/backend/types.h"
+#include "core/mesh/obj.h"
+
+namespace toile {
+
+/// What a cache knows before its first frame arrives.
+struct CacheLayout {
+    int vertex_count = 0;
+    int frame_count = 0;      ///< frames that the run will deliver
+    double fps = 24.0;        ///< [frames/s] stored as times by MDD; PC2 and OBJ have no field for it
+    double start_frame = 0.0; ///< scene frame that shows frame 0; PC2 stores it, MDD shifts its times by it,
+                              ///< OBJ sequences count from it
+    int resume_at = 0;        ///< frames to keep from an earlier run; writing continues with this one
+    ObjMesh faces; ///< polygons and texture coordinates, written by OBJ only; positions are ignored
+};
+
+/// The layout of a cache that plays on `mesh`.
+CacheLayout cache_layout(const ObjMesh& mesh, int frame_count);
+CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count);
+
+/// Takes a simulation's frames, one after the other, and leaves a point cache in vertex order.
+///
+/// Until finish() everything goes into a partial beside the cache (skirt.partial.pc2 for skirt.pc2): a cache
+/// of the same name from an earlier run stays as it was, and a run that is killed leaves a partial that
+/// reads up to its last completed frame. Destruction without finish() keeps the partial.
+class CacheWriter {
+public:
+    virtual ~CacheWriter() = default;
+
+    /// Appends a frame. Frames come in order, from CacheLayout::resume_at on.
+    /// @param positions  [vertices] [m]
+    /// @throws InvalidInput for a frame out of order or of another vertex count, DeviceError when the disk
+    ///         refuses.
+    virtual void write(int frame, View<const Vec3> positions) = 0;
+
+    /// Moves the cache into place.
+    /// @throws InvalidInput when frames are missing; the message names the partial, which is kept.
+    virtual void finish() = 0;
+
+    /// Where the frames are until finish(): a file, or a folder for an OBJ sequence.
+    virtual std::filesystem::path partial() const = 0;
+
+protected:
+    CacheWriter() = default;
+    CacheWriter(const CacheWriter&) = default;
+    CacheWriter& operator=(const CacheWriter&) = default;
+};
+
+/// The writer for the extension of `file`:
+///   .pc2   Point Cache 2
+///   .mdd   Lightwave MDD; its partial is a PC2 (skirt.mdd.partial.pc2), see docs/export
+///   .obj   one OBJ for one frame, else a sequence: skirt.obj stands for skirt_####.obj, the # being digits
+/// @throws InvalidInput before anything is simulated: an unknown extension, a place that can't be written, a
+///         layout without vertices, frames or (OBJ) faces, nothing to resume from.
+std::unique_ptr<CacheWriter> make_cache_writer(const std::filesystem::path& file, const CacheLayout& layout);
+
+} // namespace toile

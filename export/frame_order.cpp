@@ -1,0 +1,36 @@
+#include "export/frame_order.h"
+
+#include <string>
+#include <utility>
+
+#include "core/backend/error.h"
+
+namespace toile {
+
+FrameOrder::FrameOrder(std::filesystem::path file, const CacheLayout& layout)
+    : file_(std::move(file)), vertex_count_(layout.vertex_count), frame_count_(layout.frame_count),
+      next_(layout.resume_at)
+{
+}
+
+void FrameOrder::require_next(int frame, View<const Vec3> positions) const
+{
+    if (frame != next_ || frame >= frame_count_)
+        throw InvalidInput(file_.string() + ": frame " + std::to_string(frame) + " came where frame " +
+                           std::to_string(next_) + " of " + std::to_string(frame_count_) +
+                           " was due; write the frames in order");
+    if (positions.size() != vertex_count_)
+        throw InvalidInput(file_.string() + ": frame " + std::to_string(frame) + " has " +
+                           std::to_string(positions.size()) + " vertices and the cache " +
+                           std::to_string(vertex_count_) + "; a cache can't change its vertex count");
+}
+
+void FrameOrder::require_complete(const std::filesystem::path& partial) const
+{
+    if (next_ < frame_count_)
+        throw InvalidInput(file_.string() + ": only " + std::to_string(next_) + " of " +
+                           std::to_string(frame_count_) + " frames were written; they are kept in " +
+                           partial.string());
+}
+
+} // namespace toile

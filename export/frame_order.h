@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/backend/types.h"
+#include "export/cache_writer.h"
+
+namespace toile {
+
+/// Counts the frames of a cache and refuses what would leave a gap in it.
+class FrameOrder {
+public:
+    FrameOrder(std::filesystem::path file, const CacheLayout& layout);
+
+    int next() const { return next_; }
+
+    /// @throws InvalidInput unless this is the next frame, planned, and of the right size.
+    void require_next(int frame, View<const Vec3> positions) const;
+    void advance() { ++next_; }
+
+    /// @throws InvalidInput naming the partial when frames are missing.
+    void require_complete(const std::filesystem::path& partial) const;
+
+private:
+    std::filesystem::path file_;
+    int vertex_count_;
+    int frame_count_;
+    int next_;
+};
+
+} // namespace toile

@@ -1,0 +1,59 @@
+#include "export/mdd_writer.h"
+
+#include <string>
+#include <utility>
+
+#include "export/binary_file.h"
+#include "export/byte_order.h"
+
+namespace toile {
+
+namespace {
+
+constexpr std::endian kBig = std::endian::big;
+
+std::string mdd_header(const CacheLayout& layout)
+{
+    std::string header(8 + 4 * std::size_t(layout.frame_count), '\0');
+    put<kBig>(&header[0], std::int32_t{layout.frame_count});
+    put<kBig>(&header[4], std::int32_t{layout.vertex_count});
+    for (int frame = 0; frame < layout.frame_count; ++frame)
+        put<kBig>(&header[8 + 4 * std::size_t(frame)], float((layout.start_frame + frame) / layout.fps));
+    return header;
+}
+
+} // namespace
+
+MddWriter::MddWriter(std::filesystem::path file, const std::filesystem::path& partial,
+                     const CacheLayout& layout)
+    : file_(std::move(file)), layout_(layout), complete_(partial), frames_(complete_, partial, layout)
+{
+    layout_.faces = {};
+}
+
+void MddWriter::finish()
+{
+    frames_.finish();
+    std::filesystem::path converted = file_;
+    converted += ".partial";
+    {
+        const BinaryFile source(complete_, BinaryFile::Mode::Read);
+        BinaryFile target(converted, BinaryFile::Mode::Create);
+        const std::string header = mdd_header(layout_);
+        target.write_at(0, header);
+
+        std::string sample(12 * std::size_t(layout_.vertex_count), '\0');
+        for (int frame = 0; frame < layout_.frame_count; ++frame) {
+            const std::int64_t offset = std::int64_t(sample.size()) * frame;
+            source.read_at(kPc2HeaderSize + offset, sample.data(), sample.size());
+            for (std::size_t at = 0; at < sample.size(); at += 4)
+                put<kBig>(&sample[at], get<std::endian::little, std::uint32_t>(&sample[at]));
+            target.write_at(std::int64_t(header.size()) + offset, sample);
+        }
+        target.sync();
+    }
+    move_into_place(converted, file_);
+    std::filesystem::remove(complete_);
+}
+
+} // namespace toile

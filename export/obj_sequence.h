@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace toile {
+
+/// The file names of an OBJ sequence: skirt_####.obj names skirt_0000.obj, skirt_0001.obj, ...; the # are
+/// digits, and more are used where they do not suffice.
+class ObjSequence {
+public:
+    /// @param pattern  a path with one run of # in its file name; without one, "_####" is put before the
+    ///                 extension
+    explicit ObjSequence(const std::filesystem::path& pattern);
+
+    std::filesystem::path file(int number) const;
+    /// skirt_####.obj without the digits and what separates them: skirt.
+    std::string stem() const;
+    /// The same names in another folder.
+    ObjSequence in(const std::filesystem::path& folder) const;
+    /// The number in a file name of this sequence, or nothing for a foreign name.
+    std::optional<int> number_of(const std::string& file_name) const;
+    /// Numbers of the files that exist, ascending.
+    std::vector<int> existing() const;
+
+    static bool has_digits_placeholder(const std::filesystem::path& pattern);
+
+private:
+    std::filesystem::path folder_;
+    std::string prefix_;
+    std::string suffix_;
+    int digits_ = 4;
+};
+
+} // namespace toile

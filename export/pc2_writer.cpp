@@ -1,0 +1,78 @@
+#include "export/pc2_writer.h"
+
+#include <utility>
+
+#include "core/backend/error.h"
+#include "export/byte_order.h"
+#include "export/point_cache.h"
+
+namespace toile {
+
+namespace {
+constexpr std::endian kLittle = std::endian::little;
+}
+
+Pc2Writer::Pc2Writer(std::filesystem::path file, const std::filesystem::path& partial,
+                     const CacheLayout& layout)
+    : file_(std::move(file)), order_(file_, layout),
+      stream_(partial, layout.resume_at > 0 ? BinaryFile::Mode::Continue : BinaryFile::Mode::Create),
+      sample_(12 * std::size_t(layout.vertex_count), '\0')
+{
+    if (layout.resume_at > 0)
+        keep_earlier_frames(layout);
+    else
+        write_header(layout);
+}
+
+void Pc2Writer::write_header(const CacheLayout& layout)
+{
+    std::string header = "POINTCACHE2"; // closed by a zero byte, which comes from the padding
+    header.resize(kPc2HeaderSize, '\0');
+    put<kLittle>(&header[12], std::int32_t{1});
+    put<kLittle>(&header[16], std::int32_t{layout.vertex_count});
+    put<kLittle>(&header[20], float(layout.start_frame));
+    put<kLittle>(&header[24], 1.0f);
+    stream_.write_at(0, header);
+}
+
+void Pc2Writer::keep_earlier_frames(const CacheLayout& layout)
+{
+    const PointCache earlier = read_cache(stream_.path());
+    if (earlier.vertex_count() != layout.vertex_count || earlier.frame_count() < layout.resume_at)
+        throw InvalidInput(stream_.path().string() + ": holds " + std::to_string(earlier.frame_count()) +
+                           " frames of " + std::to_string(earlier.vertex_count()) +
+                           " vertices; resuming at " + std::to_string(layout.resume_at) +
+                           " needs that many frames of " + std::to_string(layout.vertex_count) +
+                           " vertices; start the run anew");
+    set_sample_count(layout.resume_at);
+    stream_.resize(kPc2HeaderSize + std::int64_t(sample_.size()) * layout.resume_at);
+}
+
+void Pc2Writer::set_sample_count(int samples)
+{
+    char count[4];
+    put<kLittle>(count, std::int32_t{samples});
+    stream_.write_at(kPc2SampleCountAt, std::string_view(count, sizeof count));
+}
+
+void Pc2Writer::write(int frame, View<const Vec3> positions)
+{
+    order_.require_next(frame, positions);
+    for (int v = 0; v < positions.size(); ++v)
+        for (int axis = 0; axis < 3; ++axis)
+            put<kLittle>(&sample_[12 * std::size_t(v) + 4 * std::size_t(axis)], float(positions[v][axis]));
+
+    // The count follows the data: killed in between, the header promises nothing that is not there.
+    stream_.write_at(kPc2HeaderSize + std::int64_t(sample_.size()) * frame, sample_);
+    set_sample_count(frame + 1);
+    order_.advance();
+}
+
+void Pc2Writer::finish()
+{
+    order_.require_complete(partial());
+    stream_.sync();
+    move_into_place(partial(), file_);
+}
+
+} // namespace toile

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "export/binary_file.h"
+#include "export/cache_writer.h"
+#include "export/frame_order.h"
+
+namespace toile {
+
+/// Size of a PC2 header [bytes], little endian:
+///   0 "POINTCACHE2\0"   12 int version = 1     16 int points
+///  20 float start frame 24 float sample rate   28 int samples
+/// Samples of points x 3 floats follow. The sample rate is the length of a sample in frames: always 1 here.
+inline constexpr int kPc2HeaderSize = 32;
+inline constexpr int kPc2SampleCountAt = 28;
+
+/// Appends frames to a PC2 whose header counts completed frames only, so that it is valid at any moment.
+class Pc2Writer final : public CacheWriter {
+public:
+    /// @param file     the cache, which finish() creates or replaces
+    /// @param partial  where the frames go until then
+    /// @throws InvalidInput as make_cache_writer().
+    Pc2Writer(std::filesystem::path file, const std::filesystem::path& partial, const CacheLayout& layout);
+
+    void write(int frame, View<const Vec3> positions) override;
+    void finish() override;
+    std::filesystem::path partial() const override { return stream_.path(); }
+
+private:
+    void write_header(const CacheLayout& layout);
+    void keep_earlier_frames(const CacheLayout& layout);
+    void set_sample_count(int samples);
+
+    std::filesystem::path file_;
+    FrameOrder order_;
+    BinaryFile stream_;
+    std::string sample_; ///< one frame in file byte order, kept to avoid allocation
+};
+
+} // namespace toile

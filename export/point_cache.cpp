@@ -1,0 +1,203 @@
+#include "export/point_cache.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "core/backend/error.h"
+#include "export/binary_file.h"
+#include "export/byte_order.h"
+#include "export/cache_format.h"
+#include "export/obj_sequence.h"
+#include "export/pc2_writer.h"
+
+namespace toile {
+
+namespace {
+
+using std::filesystem::path;
+
+[[noreturn]] void refuse(const path& file, const std::string& why)
+{
+    throw InvalidInput(file.string() + ": " + why);
+}
+
+/// The first `size` bytes of a file.
+std::string read_head(const BinaryFile& file, std::int64_t size, const char* format)
+{
+    if (file.size() < size)
+        refuse(file.path(), "ends at byte " + std::to_string(file.size()) + ", within the " +
+                                std::to_string(size) + "-byte " + format + " header; export the cache again");
+    std::string head(size_t(size), '\0');
+    file.read_at(0, head.data(), head.size());
+    return head;
+}
+
+template <std::endian kOrder>
+std::vector<Vec3> decode_positions(const std::string& bytes)
+{
+    std::vector<Vec3> positions(bytes.size() / 12);
+    for (size_t v = 0; v < positions.size(); ++v)
+        for (int axis = 0; axis < 3; ++axis)
+            positions[v][axis] = double(get<kOrder, float>(&bytes[12 * v + 4 * size_t(axis)]));
+    return positions;
+}
+
+/// Frames of equal size behind a header: what PC2 and MDD share.
+template <std::endian kOrder>
+class BinarySource : public PointCache::Source {
+public:
+    explicit BinarySource(const path& file) : file_(file, BinaryFile::Mode::Read) {}
+
+    std::vector<Vec3> frame(int index) const final
+    {
+        std::string bytes(size_t(frame_size()), '\0');
+        file_.read_at(first_frame_at_ + frame_size() * index, bytes.data(), bytes.size());
+        return decode_positions<kOrder>(bytes);
+    }
+
+protected:
+    std::int64_t frame_size() const { return 12 * std::int64_t(vertex_count); }
+
+    /// Compares the promised frames with the bytes behind the header.
+    void require_size(const char* format, bool may_have_more)
+    {
+        const std::int64_t bytes = file_.size() - first_frame_at_;
+        if (bytes / frame_size() < frame_count)
+            refuse(file_.path(), "truncated at byte " + std::to_string(file_.size()) + ": the " + format +
+                                     " header promises " + std::to_string(frame_count) + " frames of " +
+                                     std::to_string(vertex_count) + " points, " +
+                                     std::to_string(bytes / frame_size()) +
+                                     " are complete; export the cache again");
+        if (bytes > frame_size() * frame_count && !may_have_more)
+            refuse(file_.path(), std::to_string(bytes - frame_size() * frame_count) +
+                                     " bytes follow the last frame at byte " +
+                                     std::to_string(first_frame_at_ + frame_size() * frame_count) +
+                                     "; this is no " + format + " of " + std::to_string(frame_count) +
+                                     " frames, export the cache again");
+    }
+
+    BinaryFile file_;
+    std::int64_t first_frame_at_ = 0;
+};
+
+class Pc2Source final : public BinarySource<std::endian::little> {
+public:
+    explicit Pc2Source(const path& file) : BinarySource(file)
+    {
+        constexpr std::endian kLittle = std::endian::little;
+        const std::string header = read_head(file_, kPc2HeaderSize, "PC2");
+        if (header.compare(0, 12, std::string("POINTCACHE2\0", 12)) != 0)
+            refuse(file, "does not start with POINTCACHE2 (byte 0); this is no PC2 file");
+        const auto version = get<kLittle, std::int32_t>(&header[12]);
+        vertex_count = get<kLittle, std::int32_t>(&header[16]);
+        start_frame = double(get<kLittle, float>(&header[20]));
+        frame_count = get<kLittle, std::int32_t>(&header[kPc2SampleCountAt]);
+        if (version != 1)
+            refuse(file, "PC2 version " + std::to_string(version) + " (byte 12); only version 1 is known");
+        if (vertex_count < 1 || frame_count < 0)
+            refuse(file, "the header says " + std::to_string(vertex_count) + " points (byte 16) and " +
+                             std::to_string(frame_count) + " frames (byte 28); export the cache again");
+
+        // A run killed between data and count leaves a frame that does not count yet.
+        first_frame_at_ = kPc2HeaderSize;
+        require_size("PC2", file.stem().extension() == ".partial");
+    }
+};
+
+class MddSource final : public BinarySource<std::endian::big> {
+public:
+    explicit MddSource(const path& file) : BinarySource(file)
+    {
+        constexpr std::endian kBig = std::endian::big;
+        const std::string header = read_head(file_, 8, "MDD");
+        frame_count = get<kBig, std::int32_t>(&header[0]);
+        vertex_count = get<kBig, std::int32_t>(&header[4]);
+        if (frame_count < 1 || vertex_count < 1)
+            refuse(file, "the header says " + std::to_string(frame_count) + " frames (byte 0) and " +
+                             std::to_string(vertex_count) + " points (byte 4); this is no MDD file");
+        first_frame_at_ = 8 + 4 * std::int64_t(frame_count);
+        const std::string times = read_head(file_, first_frame_at_, "MDD");
+        require_size("MDD", false);
+
+        const double first = double(get<kBig, float>(&times[8]));
+        const double last = double(get<kBig, float>(&times[times.size() - 4]));
+        if (last > first) {
+            fps = (frame_count - 1) / (last - first);
+            start_frame = first * *fps;
+        }
+    }
+};
+
+class ObjSource final : public PointCache::Source {
+public:
+    explicit ObjSource(std::vector<path> files) : files_(std::move(files))
+    {
+        frame_count = int(files_.size());
+        mesh = read_obj(files_.front());
+        vertex_count = int(mesh.positions.size());
+        if (mesh.polygons.empty())
+            refuse(files_.front(), "has no faces; a cache as OBJ needs its surface");
+    }
+
+    std::vector<Vec3> frame(int index) const override
+    {
+        const path& file = files_[size_t(index)];
+        std::vector<Vec3> positions = read_obj(file).positions;
+        if (int(positions.size()) != vertex_count)
+            refuse(file, "has " + std::to_string(positions.size()) + " vertices and " +
+                             files_.front().string() + " " + std::to_string(vertex_count) +
+                             "; all frames of a sequence need the same mesh");
+        return positions;
+    }
+
+private:
+    std::vector<path> files_;
+};
+
+PointCache read_obj_cache(const path& file)
+{
+    if (!ObjSequence::has_digits_placeholder(file) && std::filesystem::exists(file))
+        return PointCache(std::make_unique<ObjSource>(std::vector<path>{file}));
+
+    const ObjSequence sequence(file);
+    const std::vector<int> numbers = sequence.existing();
+    if (numbers.empty())
+        refuse(file, "can't be found, nor a sequence beginning with " + sequence.file(0).filename().string() +
+                         "; check the path");
+    std::vector<path> files;
+    for (size_t k = 0; k < numbers.size(); ++k) {
+        if (numbers[k] != numbers[0] + int(k))
+            refuse(sequence.file(numbers[0] + int(k)), "missing, but later frames exist; restore the frame "
+                                                       "or remove the later ones");
+        files.push_back(sequence.file(numbers[k]));
+    }
+    auto source = std::make_unique<ObjSource>(std::move(files));
+    source->start_frame = numbers[0];
+    return PointCache(std::move(source));
+}
+
+} // namespace
+
+std::vector<Vec3> PointCache::frame(int index) const
+{
+    if (index < 0 || index >= frame_count())
+        throw InvalidInput("frame " + std::to_string(index) + " was asked of a cache of " +
+                           std::to_string(frame_count()) + " frames; they count from 0");
+    return source_->frame(index);
+}
+
+PointCache read_cache(const path& file)
+{
+    switch (cache_format(file)) {
+    case CacheFormat::Pc2:
+        return PointCache(std::make_unique<Pc2Source>(file));
+    case CacheFormat::Mdd:
+        return PointCache(std::make_unique<MddSource>(file));
+    case CacheFormat::Obj:
+        break;
+    }
+    return read_obj_cache(file);
+}
+
+} // namespace toile

@@ -1,0 +1,275 @@
+#include "scenes/format/checks.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "garment/fabric/fabric.h"
+#include "scenes/format/scene_fabric.h"
+
+namespace toile::scene_format {
+
+namespace {
+
+using namespace scene;
+
+/// Vertices of one generated cloth above which a typing error is more likely than patience.
+constexpr double kMostVertices = 5e6;
+
+template <typename Object>
+std::vector<std::string> names_of(const std::vector<Object>& objects)
+{
+    std::vector<std::string> names;
+    for (const Object& object : objects)
+        names.push_back(object.name);
+    return names;
+}
+
+bool holds(const std::vector<std::string>& names, const std::string& name)
+{
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// "no cloth is named "skrit"; did you mean "skirt"?"
+void require_known(const Document& document, const std::string& place, const std::string& kind,
+                   const std::string& name, const std::vector<std::string>& names)
+{
+    if (holds(names, name))
+        return;
+    const std::string near = did_you_mean(name, names);
+    const std::string known =
+        names.empty() ? "; the scene has none" : "; known are " + enumerate(names, "and");
+    document.refuse(place, "no " + kind + " is named " + as_written(name) + (near.empty() ? known : near));
+}
+
+/// Names go into messages and file names: letters, digits, _ and -; unique within their list.
+template <typename Object>
+void check_names(const Document& document, const std::string& list, const std::vector<Object>& objects)
+{
+    std::set<std::string> seen;
+    for (size_t i = 0; i < objects.size(); ++i) {
+        const std::string& name = objects[i].name;
+        const std::string place = below(below(list, i), "name");
+        const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+            return std::isalnum(c) != 0 || c == '_' || c == '-';
+        });
+        if (name.empty() || !plain)
+            document.refuse(place, as_written(name) + " can't name a file; use letters, digits, _ and -");
+        if (!seen.insert(name).second)
+            document.refuse(place, as_written(name) + " is taken by an earlier entry; choose another name");
+    }
+}
+
+void check_keyframes(const Document& document, const std::string& place, const std::vector<Keyframe>& frames)
+{
+    for (size_t i = 1; i < frames.size(); ++i)
+        if (frames[i].time <= frames[i - 1].time)
+            document.refuse(below(below(below(place, "keyframes"), i), "time"),
+                            as_written(frames[i].time) + " s does not follow " +
+                                as_written(frames[i - 1].time) +
+                                " s; put keyframes in ascending order of time");
+}
+
+void check_extension(const Document& document, const std::string& place, const std::filesystem::path& file,
+                     const std::vector<std::string>& known)
+{
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    if (!holds(known, extension))
+        document.refuse(place, as_written(file.string()) + " is of an unknown format; use " +
+                                   enumerate(known, "or"));
+}
+
+// --- avatars ---
+
+/// Keys that only an animated figure understands, with what shows that they were used.
+void check_avatar_motion(const Document& document, const std::string& place, const Avatar& avatar)
+{
+    const bool from_file = std::holds_alternative<std::filesystem::path>(avatar.shape);
+    const bool is_figure = from_file || std::holds_alternative<Mannequin>(avatar.shape);
+    const Preroll& preroll = avatar.preroll;
+    const std::pair<const char*, bool> used[] = {
+        {"clip", !avatar.clip.empty()},
+        {"loop", avatar.loop},
+        {"accumulate_root", avatar.accumulate_root},
+        {"speed", avatar.speed != 1.0},
+        {"start", avatar.start != 0.0},
+        {"preroll", preroll.hold != 0.0 || preroll.ease != 0.0 || preroll.from_bind}};
+    for (const auto& [key, is_used] : used) {
+        if (is_used && !is_figure)
+            document.refuse(below(place, key), "a shape has no clips; move it with keyframes");
+        if (is_used && avatar.clip.empty())
+            document.refuse(below(place, key), "has no effect without a clip; name the clip to play");
+    }
+    if (!avatar.keyframes.empty() && (!avatar.clip.empty() || (is_figure && !from_file)))
+        document.refuse(below(place, "keyframes"),
+                        "an animated figure is not moved by keyframes; remove them " +
+                            std::string("or the clip"));
+    if (avatar.unit && !from_file)
+        document.refuse(below(place, "unit"), "only a file has a unit; lengths here are in metres");
+}
+
+void check_avatars(const Document& document, const Scene& scene)
+{
+    check_names(document, "avatars", scene.avatars);
+    for (size_t i = 0; i < scene.avatars.size(); ++i) {
+        const Avatar& avatar = scene.avatars[i];
+        const std::string place = below("avatars", i);
+        if (avatar.name == kFixed)
+            document.refuse(below(place, "name"), "\"fixed\" stands for the world in attachments; choose " +
+                                                      std::string("another name"));
+        if (const auto* file = std::get_if<std::filesystem::path>(&avatar.shape))
+            check_extension(document, below(place, "file"), *file, {".glb", ".gltf", ".fbx", ".obj"});
+        check_avatar_motion(document, place, avatar);
+        check_keyframes(document, place, avatar.keyframes);
+    }
+}
+
+// --- cloths ---
+
+/// Vertices that a generated shape has, to a few per cent: area over that of two equilateral triangles.
+double vertices_of(const ClothShape& shape)
+{
+    const auto count = [](double area, double resolution) {
+        return area / (0.866 * resolution * resolution);
+    };
+    if (const auto* r = std::get_if<Rectangle>(&shape))
+        return count(r->size.prod(), r->resolution);
+    if (const auto* d = std::get_if<Disc>(&shape))
+        return count(std::numbers::pi * d->radius * d->radius, d->resolution);
+    if (const auto* s = std::get_if<Skirt>(&shape))
+        return count(std::numbers::pi * s->length * (s->waist_radius + s->hem_radius), s->resolution);
+    return 0.0;
+}
+
+void check_skirt(const Document& document, const std::string& place, const Skirt& skirt)
+{
+    const double widest = skirt.waist_radius + skirt.length;
+    if (skirt.hem_radius < skirt.waist_radius || skirt.hem_radius > widest)
+        document.refuse(below(place, "hem_radius"),
+                        as_written(skirt.hem_radius) + " m does not fit the cloth; give a radius from " +
+                            as_written(skirt.waist_radius) + " (waist_radius) to " + as_written(widest) +
+                            " (waist_radius + length)");
+}
+
+void check_cloths(const Document& document, const Scene& scene)
+{
+    if (scene.cloths.empty())
+        document.refuse("cloths", "the list is empty; add a cloth");
+    check_names(document, "cloths", scene.cloths);
+    for (size_t i = 0; i < scene.cloths.size(); ++i) {
+        const Cloth& cloth = scene.cloths[i];
+        const std::string place = below("cloths", i);
+        if (const auto* file = std::get_if<std::filesystem::path>(&cloth.shape))
+            check_extension(document, below(place, "file"), *file, {".obj"});
+        else if (cloth.unit != LengthUnit::Metre)
+            document.refuse(below(place, "unit"), "only a file has a unit; lengths here are in metres");
+        if (const auto* skirt = std::get_if<Skirt>(&cloth.shape))
+            check_skirt(document, below(place, "skirt"), *skirt);
+        if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMostVertices)
+            document.refuse(place, "resolution and subdivide make more than 5 million vertices; choose a " +
+                                       std::string("coarser resolution"));
+    }
+}
+
+// --- fabrics ---
+
+/// Every base is a preset, every cloth's fabric exists, and the numbers make a possible material.
+void check_fabrics(const Document& document, const Scene& scene)
+{
+    std::vector<std::string> presets;
+    for (const toile::Fabric& fabric : fabric_presets())
+        presets.push_back(fabric.name);
+    for (const auto& [name, fabric] : scene.fabrics)
+        require_known(document, below(below("fabrics", name), "base"), "preset", fabric.base, presets);
+
+    std::vector<std::string> known;
+    for (const auto& [name, fabric] : scene.fabrics)
+        known.push_back(name);
+    known.insert(known.end(), presets.begin(), presets.end());
+    for (size_t i = 0; i < scene.cloths.size(); ++i) {
+        require_known(document, below(below("cloths", i), "fabric"), "fabric", scene.cloths[i].fabric, known);
+        static_cast<void>(fabric_of(scene, scene.cloths[i]));
+    }
+}
+
+// --- attachments ---
+
+void check_selection(const Document& document, const std::string& place, const Selection& select,
+                     const std::vector<std::string>& avatars)
+{
+    if (const auto* box = std::get_if<SelectBox>(&select.by);
+        box != nullptr && (box->lower.array() > box->upper.array()).any())
+        document.refuse(below(place, "box"), "a coordinate of lower exceeds that of upper; exchange them");
+    if (const auto* near = std::get_if<SelectNearAvatar>(&select.by))
+        require_known(document, below(below(place, "all_within"), "avatar"), "avatar", near->avatar, avatars);
+    const auto* vertices = std::get_if<std::vector<int>>(&select.by);
+    const auto* points = std::get_if<std::vector<Vec3>>(&select.by);
+    if ((vertices != nullptr && vertices->empty()) || (points != nullptr && points->empty()))
+        document.refuse(below(place, vertices != nullptr ? "vertices" : "nearest"),
+                        "the list is empty; name at least one or remove the attachment");
+}
+
+void check_attachments(const Document& document, const Scene& scene)
+{
+    const std::vector<std::string> cloths = names_of(scene.cloths);
+    const std::vector<std::string> avatars = names_of(scene.avatars);
+    std::vector<std::string> targets = avatars;
+    targets.emplace_back(kFixed);
+    for (size_t i = 0; i < scene.attachments.size(); ++i) {
+        const Attachment& attachment = scene.attachments[i];
+        const std::string place = below("attachments", i);
+        require_known(document, below(place, "cloth"), "cloth", attachment.cloth, cloths);
+        check_selection(document, below(place, "select"), attachment.select, avatars);
+        require_known(document, below(place, "to"), "avatar", attachment.to, targets);
+        if (!attachment.keyframes.empty() && attachment.to != kFixed)
+            document.refuse(below(place, "keyframes"),
+                            "an avatar carries these vertices already; remove the " +
+                                std::string("keyframes or write \"to\": \"fixed\""));
+        check_keyframes(document, place, attachment.keyframes);
+    }
+}
+
+// --- export ---
+
+void check_exports(const Document& document, const Scene& scene)
+{
+    const std::vector<std::string> cloths = names_of(scene.cloths);
+    std::set<std::filesystem::path> seen;
+    for (size_t i = 0; i < scene.exports.size(); ++i) {
+        const Export& entry = scene.exports[i];
+        const std::string place = below("export", i);
+        const std::string at_file = below(place, "file");
+        check_extension(document, at_file, entry.file, {".pc2", ".mdd", ".obj"});
+        const std::filesystem::path file = entry.file.lexically_normal();
+        if (file.is_absolute() || *file.begin() == "..")
+            document.refuse(at_file, as_written(entry.file.string()) +
+                                         " leaves the output folder; give a path " + "inside it");
+        if (!seen.insert(file).second)
+            document.refuse(at_file, as_written(entry.file.string()) +
+                                         " is written by an earlier entry; choose " + "another file");
+        if (!entry.cloth.empty())
+            require_known(document, below(place, "cloth"), "cloth", entry.cloth, cloths);
+        else if (cloths.size() > 1)
+            document.refuse(place, "the scene has " + std::to_string(cloths.size()) +
+                                       " cloths; name the one to write with the key \"cloth\"");
+    }
+}
+
+} // namespace
+
+void require_consistent(const Document& document, const Scene& scene)
+{
+    check_avatars(document, scene);
+    check_cloths(document, scene);
+    check_fabrics(document, scene);
+    check_attachments(document, scene);
+    check_exports(document, scene);
+}
+
+} // namespace toile::scene_format

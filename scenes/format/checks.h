@@ -1,0 +1,13 @@
+#pragma once
+
+#include "scenes/format/document.h"
+#include "scenes/format/scene.h"
+
+namespace toile::scene_format {
+
+/// Checks what no key can tell alone: names that must be unique or exist, keys that exclude each other,
+/// keyframes in order, meshes of a size that a machine can hold.
+/// @throws InvalidInput for the first contradiction, in the order of the document.
+void require_consistent(const Document& document, const Scene& scene);
+
+} // namespace toile::scene_format

@@ -1,0 +1,284 @@
+#pragma once
+
+#include "scenes/format/field.h"
+
+/// The scene file, said once: every key with its member, its allowed values and a sentence for the user.
+///
+/// describe(visitor, object) calls, in the order of the documentation,
+///   visitor.field(key, member, [range,] sentence)      may be absent, keeps its default then
+///   visitor.required(key, member, [range,] sentence)
+///   visitor.number_or_off(key, member, range, sentence) a number or the word "off"
+///   visitor.pair(key, member, range, sentence)          {"warp": number, "weft": number}, each optional
+///   visitor.one_of(variant, Alternative...)             exactly one of the keys, which chooses the member
+///   visitor.version(key, number, sentence)              must be present and equal
+/// and never reads the object itself, so that a visitor may come without one. Visitors: keys.h, reader.h,
+/// schema.cpp.
+namespace toile::scene_format {
+
+template <typename V>
+void describe(V& v, Keyframe& k)
+{
+    v.required("time", k.time, kTime, "Seconds from sample 0.");
+    v.field("translate", k.translate, kPlace, "Added to the object's own translate.");
+    v.field("rotate_deg", k.rotate_deg, kAngle, "Added to the object's own rotate_deg.");
+}
+
+template <typename V>
+void describe(V& v, Wind& w)
+{
+    v.field("velocity", w.velocity, between(-100.0, 100.0, "m/s"), "Direction and speed of the wind.");
+    v.field("turbulence", w.turbulence, between(0.0, 2.0), "Strength of gusts relative to the velocity.");
+}
+
+template <typename V>
+void describe(V& v, Air& a)
+{
+    v.field("density", a.density, between(0.0, 100.0, "kg/m^3"),
+            "Density of the air; 0 turns drag and wind off.");
+    v.field("normal", a.normal, between(0.0, 10.0), "Drag coefficient for air that blows across the cloth.");
+    v.field("tangential", a.tangential, between(0.0, 10.0), "Drag coefficient for air that blows along it.");
+}
+
+template <typename V>
+void describe(V& v, Mannequin& m)
+{
+    v.field("height", m.height, between(1.0, 2.5, "m"), "Crown above soles.");
+}
+
+template <typename V>
+void describe(V& v, Plane& p)
+{
+    v.field("preview_size", p.preview_size, above_zero(1000.0, "m"),
+            "Side of the square that pictures show; contact knows no border.");
+}
+
+template <typename V>
+void describe(V& v, Sphere& s)
+{
+    v.field("radius", s.radius, above_zero(100.0, "m"), "Radius about the origin.");
+}
+
+template <typename V>
+void describe(V& v, Capsule& c)
+{
+    v.field("radius", c.radius, above_zero(100.0, "m"), "Radius of the tube and of its two caps.");
+    v.field("length", c.length, between(0.0, 100.0, "m"), "Along Y, between the centres of the caps.");
+}
+
+template <typename V>
+void describe(V& v, Box& b)
+{
+    v.field("size", b.size, above_zero(100.0, "m"), "Edge lengths along X, Y and Z, about the origin.");
+}
+
+template <typename V>
+void describe(V& v, Preroll& p)
+{
+    v.field("hold", p.hold, between(0.0, 60.0, "s"), "Time of standing still before the clip moves.");
+    v.field("ease", p.ease, between(0.0, 60.0, "s"),
+            "Time of the blend from the bind pose and of speeding up, each.");
+    v.field("from_bind", p.from_bind, "Stand in the bind pose first and blend into the clip's pose.");
+}
+
+template <typename V>
+void describe(V& v, Avatar& a)
+{
+    v.required("name", a.name, "Name, for attachments and messages.");
+    v.one_of(a.shape, Alternative<std::filesystem::path>{"file", "Body to load: .glb, .gltf, .fbx or .obj."},
+             Alternative<Mannequin>{"mannequin",
+                                    "The built-in figure; its clips are walk_in_place, walk and turn."},
+             Alternative<Plane>{"plane", "Endless floor: y = 0, solid below."},
+             Alternative<Sphere>{"sphere", "Sphere."}, Alternative<Capsule>{"capsule", "Capsule along Y."},
+             Alternative<Box>{"box", "Box with edges along the axes."});
+    v.field("unit", a.unit, "Length unit of the file; absent: what its format says (.fbx cm, others m).");
+    v.field("scale", a.scale, above_zero(1e6), "Factor on the file's lengths.");
+    v.field("translate", a.translate, kPlace, "Moves the avatar, after scale and rotate_deg.");
+    v.field("rotate_deg", a.rotate_deg, kAngle, "Turns about the fixed X axis, then Y, then Z.");
+    v.field("clip", a.clip, "Animation to play, by name; empty: the bind pose.");
+    v.field("loop", a.loop, "Repeat the clip; otherwise its last pose stays.");
+    v.field("accumulate_root", a.accumulate_root, "A repeated walk goes on instead of jumping back.");
+    v.field("speed", a.speed, between(0.0, 10.0),
+            "Seconds of the clip per second of the scene; 0 freezes it.");
+    v.field("start", a.start, kTime, "Time in the clip at which it begins.");
+    v.field("preroll", a.preroll, "How the figure comes from rest into its clip.");
+    v.field("keyframes", a.keyframes, "Moves a shape or a body without animation.");
+    v.field("friction", a.friction, between(0.0, 5.0), "Coulomb coefficient; absent: contact.friction.");
+    v.field("color", a.color, kColor, "Red, green, blue in pictures.");
+}
+
+template <typename V>
+void describe(V& v, Rectangle& r)
+{
+    v.field("size", r.size, above_zero(100.0, "m"), "Lengths along X (warp) and Z (weft).");
+    v.field("resolution", r.resolution, kResolution, "Edge length wanted in the mesh.");
+}
+
+template <typename V>
+void describe(V& v, Disc& d)
+{
+    v.field("radius", d.radius, above_zero(100.0, "m"), "Radius about the origin.");
+    v.field("resolution", d.resolution, kResolution, "Edge length wanted in the mesh.");
+}
+
+template <typename V>
+void describe(V& v, Skirt& s)
+{
+    v.field("waist_radius", s.waist_radius, above_zero(10.0, "m"), "Waist circumference over 2 pi.");
+    v.field("hem_radius", s.hem_radius, above_zero(10.0, "m"),
+            "Radius of the hem's cone, from waist_radius to waist_radius + length.");
+    v.field("length", s.length, above_zero(10.0, "m"), "Along the cloth, from waist to hem.");
+    v.field("resolution", s.resolution, kResolution, "Edge length wanted in the mesh.");
+}
+
+template <typename V>
+void describe(V& v, Cloth& c)
+{
+    v.required("name", c.name, "Name, for attachments, messages and the cache's file.");
+    v.one_of(
+        c.shape,
+        Alternative<std::filesystem::path>{"file", "Mesh to load: .obj; its vertex order is the cache's."},
+        Alternative<Rectangle>{"rectangle", "Flat rectangle, horizontal, about the origin."},
+        Alternative<Disc>{"disc", "Flat disc, horizontal, about the origin."},
+        Alternative<Skirt>{"skirt", "Conical skirt about the Y axis, waist at y = 0, hanging down."});
+    v.field("subdivide", c.subdivide, between(0, 4), "Times every triangle is split into four.");
+    v.field("unit", c.unit, "Length unit of the file.");
+    v.field("scale", c.scale, above_zero(1e6), "Factor on the cloth's lengths, at rest too.");
+    v.field("translate", c.translate, kPlace, "Moves the cloth, after scale and rotate_deg.");
+    v.field("rotate_deg", c.rotate_deg, kAngle, "Turns about the fixed X axis, then Y, then Z.");
+    v.field("fabric", c.fabric, "A key of fabrics or the name of a preset.");
+    v.field("grain_deg", c.grain_deg, kAngle, "Turns the warp direction in the cloth's plane.");
+    v.field("thickness", c.thickness, above_zero(0.05, "m"), "Replaces the fabric's thickness.");
+    v.field("color", c.color, kColor, "Red, green, blue in pictures.");
+    v.field("pattern", c.pattern, "What pictures show on the cloth.");
+}
+
+template <typename V>
+void describe(V& v, Fabric& f)
+{
+    // Threads pull and bend independently; both directions of a pair share one range and one sentence.
+    const Range bend = between(0.0, 1.0, "N m");
+    v.field("base", f.base, "Preset that gives every number left out here.");
+    v.field("areal_density", f.areal_density, above_zero(10.0, "kg/m^2"), "Mass per area.");
+    v.pair("stretch", f.stretch, kStiffness, "Resistance to stretch along the threads, per width.");
+    v.field("shear", f.shear, kStiffness, "Resistance to shear between warp and weft.");
+    v.pair("bend", f.bend, bend, "Bending rigidity across the threads; 0 turns bending off.");
+    v.field("strain_limit", f.strain_limit, between(1.001, 10.0),
+            "Largest length over rest length, e.g. 1.06.");
+    v.field("thickness", f.thickness, above_zero(0.05, "m"), "Thickness of the cloth.");
+    v.field("damping", f.damping, between(0.0, 1000.0, "1/s"),
+            "Rate at which velocities die away, air apart.");
+}
+
+template <typename V>
+void describe(V& v, SelectBox& b)
+{
+    v.required("lower", b.lower, kPlace, "Corner with the least coordinates.");
+    v.required("upper", b.upper, kPlace, "Corner with the greatest coordinates.");
+}
+
+template <typename V>
+void describe(V& v, SelectNearAvatar& n)
+{
+    v.required("avatar", n.avatar, "Name of the avatar.");
+    v.required("distance", n.distance, between(0.0, 10.0, "m"), "Largest distance from its surface.");
+}
+
+template <typename V>
+void describe(V& v, Selection& s)
+{
+    v.one_of(s.by,
+             Alternative<std::vector<int>>{"vertices", "Indices into the cloth's mesh, counted from 0.",
+                                           between(0, 1e8)},
+             Alternative<SelectBox>{"box", "Vertices that start inside a box of the world."},
+             Alternative<std::vector<Vec3>>{
+                 "nearest", "For each point of the world the vertex that starts nearest.", kPlace},
+             Alternative<SelectNearAvatar>{"all_within", "Vertices that start near an avatar."});
+}
+
+template <typename V>
+void describe(V& v, Attachment& a)
+{
+    v.required("cloth", a.cloth, "Name of the cloth.");
+    v.required("select", a.select, "Which of its vertices.");
+    v.field("to", a.to, "\"fixed\": held in the world; or the name of the avatar that carries them.");
+    v.field("keyframes", a.keyframes, "Moves the held vertices; needs \"to\": \"fixed\".");
+    v.field("release", a.release, kTime, "Time at which the vertices are let go; absent: never.");
+    v.field("stiffness", a.stiffness, kStiffness, "Hold by a spring per vertex; absent: hold exactly.");
+}
+
+template <typename V>
+void describe(V& v, Contact& c)
+{
+    v.field("gap", c.gap, between(0.0, 0.1, "m"),
+            "Kept between cloth and avatar, beyond half the cloth's thickness.");
+    v.field("stiffness", c.stiffness, between(0.001, 1000.0),
+            "Factor on the stiffness that the solver chooses.");
+    v.field("friction", c.friction, between(0.0, 5.0), "Coulomb coefficient of avatars that give none.");
+}
+
+template <typename V>
+void describe(V& v, Sleep& s)
+{
+    v.field("enabled", s.enabled, "Skip the work for cloth that has come to rest.");
+    v.field("speed", s.speed, above_zero(1.0, "m/s"),
+            "Cloth whose fastest vertex stays slower counts as resting.");
+}
+
+template <typename V>
+void describe(V& v, Solver& s)
+{
+    v.field("substeps", s.substeps, between(1, 1000), "Time steps from one sample to the next.");
+    v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
+            "A step ends when no vertex moves farther than this.");
+    v.field("max_iterations", s.max_iterations, between(1, 10000),
+            "Iterations after which a step ends anyway.");
+    v.field("method", s.method, "How the global linear system is solved.");
+    v.field("sleep", s.sleep, "When resting cloth is skipped.");
+    v.field("threads", s.threads, between(0, 1024),
+            "Threads to use; 0: all. The result does not depend on it.");
+}
+
+template <typename V>
+void describe(V& v, Export& e)
+{
+    v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd or .obj.");
+    v.field("cloth", e.cloth, "Name of the cloth; may be left out when there is only one.");
+}
+
+template <typename V>
+void describe(V& v, Render& r)
+{
+    v.field("width", r.width, between(16, 8192), "Pixels.");
+    v.field("height", r.height, between(16, 8192), "Pixels.");
+    v.field("azimuth_deg", r.azimuth_deg, kAngle, "Camera about the vertical, from +Z (0) towards +X (90).");
+    v.field("elevation_deg", r.elevation_deg, between(-89.0, 89.0, "degrees"), "Camera above the horizon.");
+    v.field("zoom", r.zoom, between(0.01, 100.0), "1 fits everything into the picture.");
+    v.number_or_off("ground", r.ground, kPlace, "Height of the floor in pictures, or \"off\".");
+    v.field("samples", r.samples, between(1, 1024), "Light paths per pixel; powers of two are spread best.");
+}
+
+template <typename V>
+void describe(V& v, Scene& s)
+{
+    v.version("toile", 1, "Version of the format.");
+    v.field("name", s.name, "Title; empty: the file's name.");
+    v.field("description", s.description, "What the scene shows.");
+    v.required("frames", s.frames, between(1, 1e6),
+               "Samples to write. Sample 0 is the start state, after settling.");
+    v.field("fps", s.fps, between(1.0, 10000.0, "1/s"), "Samples per second.");
+    v.field("gravity", s.gravity, between(-1000.0, 1000.0, "m/s^2"), "Acceleration of free fall.");
+    v.field("wind", s.wind, "Air that moves.");
+    v.field("air", s.air, "Drag of the air on cloth.");
+    v.field("settle", s.settle, between(0.0, 600.0, "s"),
+            "Simulated before sample 0 while avatars hold their first pose.");
+    v.field("avatars", s.avatars, "Bodies that cloth touches.");
+    v.required("cloths", s.cloths, "What is simulated; at least one.");
+    v.field("fabrics", s.fabrics, "Fabrics of the scene's own, by name.");
+    v.field("attachments", s.attachments, "Vertices that are held.");
+    v.field("contact", s.contact, "Contact between cloth and avatars.");
+    v.field("solver", s.solver, "Accuracy and effort.");
+    v.field("export", s.exports, "Caches to write; empty: one PC2 per cloth, named after it.");
+    v.field("render", s.render, "Preview pictures.");
+}
+
+} // namespace toile::scene_format

@@ -1,0 +1,132 @@
+#include "scenes/format/document.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/backend/error.h"
+
+namespace toile::scene_format {
+
+namespace {
+
+/// What nlohmann says after "line 3, column 5: ", shortened to the fact.
+std::string fact_of(const Json::exception& error)
+{
+    const std::string what = error.what();
+    const size_t column = what.find("column ");
+    const size_t colon = column == std::string::npos ? std::string::npos : what.find(": ", column);
+    const size_t after_id = what.find("] ");
+    if (colon != std::string::npos)
+        return what.substr(colon + 2);
+    return after_id == std::string::npos ? what : what.substr(after_id + 2);
+}
+
+/// "3:5" for a byte of the text, counted from 1 as editors do.
+std::string line_and_column(const std::string& text, size_t byte)
+{
+    const size_t end = std::min(byte > 0 ? byte - 1 : 0, text.size());
+    const auto line = 1 + std::count(text.begin(), text.begin() + long(end), '\n');
+    const size_t newline = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+    const size_t column = newline == std::string::npos ? end + 1 : end - newline;
+    return std::to_string(line) + ":" + std::to_string(column);
+}
+
+/// The data folder: environment first, else the one chosen when the program was built.
+std::string data_folder()
+{
+    const char* chosen = std::getenv("TOILE_DATA_DIR");
+    return chosen != nullptr && *chosen != '\0' ? chosen : TOILE_DATA_DIR;
+}
+
+} // namespace
+
+void Document::refuse(const std::string& place, const std::string& why) const
+{
+    throw InvalidInput(source_.string() + ": " + (place.empty() ? "" : place + ": ") + why);
+}
+
+Json Document::parse(const std::string& text) const
+{
+    // One set of keys per open object tells a key that is given twice.
+    std::vector<std::set<std::string>> open;
+    const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+        if (event == Json::parse_event_t::object_start)
+            open.emplace_back();
+        else if (event == Json::parse_event_t::object_end)
+            open.pop_back();
+        else if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
+            refuse("", "the key " + as_written(parsed) + " is given twice in one object; keep one of them");
+        return true;
+    };
+    try {
+        return Json::parse(text, watch);
+    } catch (const Json::parse_error& error) {
+        throw InvalidInput(source_.string() + ":" + line_and_column(text, error.byte) +
+                           ": not valid JSON: " + fact_of(error));
+    } catch (const Json::exception& error) {
+        refuse("", "not valid JSON: " + fact_of(error));
+    }
+}
+
+std::filesystem::path Document::existing_file(const std::string& text, const std::string& place) const
+{
+    static const std::string kVariable = "${TOILE_DATA_DIR}";
+    std::string expanded = text;
+    if (const size_t at = text.find(kVariable); at != std::string::npos) {
+        const std::string folder = data_folder();
+        if (!std::filesystem::is_directory(folder))
+            refuse(place, "the data folder " + as_written(folder) +
+                              " does not exist; set the environment variable TOILE_DATA_DIR");
+        expanded.replace(at, kVariable.size(), folder);
+    }
+    if (expanded.find("${") != std::string::npos)
+        refuse(place, as_written(text) + " names an unknown variable; only " + kVariable + " is known");
+
+    const std::filesystem::path file = source_.parent_path() / expanded;
+    if (!std::filesystem::is_regular_file(file))
+        refuse(place, "the file " + as_written(file.lexically_normal().string()) +
+                          " does not exist; paths are " + "relative to the scene's folder");
+    return file.lexically_normal();
+}
+
+std::string as_written(const Json& value)
+{
+    constexpr size_t kLongest = 120;
+    std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (text.size() > kLongest)
+        text = text.substr(0, kLongest) + "...";
+    return text;
+}
+
+std::string below(const std::string& place, const std::string& key)
+{
+    return place.empty() ? key : place + "." + key;
+}
+
+std::string below(const std::string& place, size_t index)
+{
+    return place + "[" + std::to_string(index) + "]";
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates)
+{
+    const std::string near = nearest_word(word, candidates);
+    return near.empty() ? "" : "; did you mean " + as_written(near) + "?";
+}
+
+std::string enumerate(const std::vector<std::string>& words, const std::string& conjunction)
+{
+    std::string text;
+    for (size_t i = 0; i < words.size(); ++i) {
+        if (i > 0)
+            text += i + 1 == words.size() ? " " + conjunction + " " : ", ";
+        text += words[i];
+    }
+    return text;
+}
+
+} // namespace toile::scene_format

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "scenes/format/scene.h"
+
+/// Vocabulary of describe.h: the values a number may take, the words of an enumeration, alternatives.
+namespace toile::scene_format {
+
+using namespace scene; // the described structs
+
+/// Allowed values of a number, or of every number in a vector.
+struct Range {
+    double lower;
+    double upper;
+    const char* unit = "";
+    bool above_lower = false; ///< lower itself is excluded
+
+    bool contains(double value) const
+    {
+        return value <= upper && (above_lower ? value > lower : value >= lower);
+    }
+};
+
+/// "above 0 and at most 100 m"
+std::string to_sentence(const Range& range);
+
+constexpr Range between(double lower, double upper, const char* unit = "") { return {lower, upper, unit}; }
+/// A positive number, up to a bound that only a mistake (another unit, a typing error) exceeds.
+constexpr Range above_zero(double upper, const char* unit = "") { return {0.0, upper, unit, true}; }
+
+/// Placements. A kilometre tells metres from a file in another unit that nobody declared.
+inline constexpr Range kPlace{-1000.0, 1000.0, "m"};
+inline constexpr Range kAngle{-3600.0, 3600.0, "degrees"};
+inline constexpr Range kTime{0.0, 86400.0, "s"};
+inline constexpr Range kColor{0.0, 1.0};
+inline constexpr Range kResolution{0.0005, 1.0, "m"};
+inline constexpr Range kStiffness{0.0, 1e8, "N/m", true};
+
+/// One member of a variant and the key that chooses it.
+template <typename T>
+struct Alternative {
+    using Type = T;
+    const char* key;
+    const char* help;
+    Range range{0.0, 0.0}; ///< used when T is a list of numbers
+};
+
+/// Words of an enumeration in a file.
+template <typename E>
+struct Words;
+
+template <>
+struct Words<LengthUnit> {
+    static constexpr std::array<std::pair<const char*, LengthUnit>, 4> kAll{{{"m", LengthUnit::Metre},
+                                                                             {"cm", LengthUnit::Centimetre},
+                                                                             {"mm", LengthUnit::Millimetre},
+                                                                             {"in", LengthUnit::Inch}}};
+};
+
+template <>
+struct Words<PreviewPattern> {
+    static constexpr std::array<std::pair<const char*, PreviewPattern>, 3> kAll{
+        {{"plain", PreviewPattern::Plain},
+         {"checker", PreviewPattern::Checker},
+         {"stripes", PreviewPattern::Stripes}}};
+};
+
+template <>
+struct Words<SolverMethod> {
+    static constexpr std::array<std::pair<const char*, SolverMethod>, 2> kAll{
+        {{"auto", SolverMethod::Auto}, {"direct", SolverMethod::Direct}}};
+};
+
+} // namespace toile::scene_format

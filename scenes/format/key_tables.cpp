@@ -1,0 +1,98 @@
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes/format/schema.h"
+
+namespace toile {
+
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+std::string place_below(const std::string& place, const std::string& key)
+{
+    return place.empty() ? key : place + "." + key;
+}
+
+std::string type_text(const OrderedJson& schema)
+{
+    if (schema.contains("const"))
+        return "`" + schema["const"].dump() + "`";
+    if (schema.contains("enum")) {
+        std::string words;
+        for (const OrderedJson& word : schema["enum"])
+            words += (words.empty() ? "" : " or ") + ("`" + word.dump() + "`");
+        return words;
+    }
+    if (schema.contains("anyOf"))
+        return type_text(schema["anyOf"][0]) + " or " + type_text(schema["anyOf"][1]);
+    const std::string type = schema["type"];
+    if (type == "array" && schema.contains("minItems"))
+        return schema["minItems"].dump() + " numbers";
+    if (type == "array")
+        return "list of " + (schema["items"]["type"] == "object" ? "objects" : type_text(schema["items"]));
+    return type == "integer" ? "whole number" : type == "string" ? "text" : type;
+}
+
+std::string range_text(const OrderedJson& schema)
+{
+    const OrderedJson& number = schema.contains("anyOf")   ? schema["anyOf"][0]
+                                : schema.contains("items") ? schema["items"]
+                                                           : schema;
+    if (!number.contains("maximum"))
+        return "";
+    const bool above = number.contains("exclusiveMinimum");
+    return (above ? "> " + number["exclusiveMinimum"].dump() + ", ≤ " : number["minimum"].dump() + " … ") +
+           number["maximum"].dump();
+}
+
+void append_table(const OrderedJson& schema, const std::string& place, std::string& text);
+
+/// Tables of the objects that the value of a key consists of.
+void append_children(const OrderedJson& schema, const std::string& place, std::string& text)
+{
+    if (schema.contains("properties"))
+        append_table(schema, place, text);
+    else if (schema.contains("items") && schema["items"].contains("properties"))
+        append_table(schema["items"], place + "[]", text);
+    else if (schema.contains("additionalProperties") && schema["additionalProperties"].is_object())
+        append_table(schema["additionalProperties"], place + ".*", text);
+}
+
+void append_table(const OrderedJson& schema, const std::string& place, std::string& text)
+{
+    text += "\n## " + (place.empty() ? "The file" : "`" + place + "`") + "\n\n";
+    if (schema.contains("oneOf")) {
+        text += "Exactly one of";
+        for (const OrderedJson& choice : schema["oneOf"])
+            text += " `" + choice["required"][0].get<std::string>() + "`";
+        text += " is given.\n\n";
+    }
+    text += "| key | value | range | default | meaning |\n|---|---|---|---|---|\n";
+    const OrderedJson required = schema.value("required", OrderedJson::array());
+    for (const auto& [key, member] : schema["properties"].items()) {
+        const bool must = std::find(required.begin(), required.end(), key) != required.end();
+        const std::string value = must                         ? "required"
+                                  : member.contains("default") ? "`" + member["default"].dump() + "`"
+                                                               : "";
+        text += "| `" + key + "` | " + type_text(member) + " | " + range_text(member) + " | " + value +
+                " | " + member["description"].get<std::string>() + " |\n";
+    }
+    for (const auto& [key, member] : schema["properties"].items())
+        append_children(member, place_below(place, key), text);
+}
+
+} // namespace
+
+std::string scene_key_tables()
+{
+    std::string text =
+        "# Keys of a scene file\n\nMade by `toile schema --tables` from the description that the "
+        "reader uses. Lengths are in metres, times in seconds\nunless a range says otherwise; "
+        "`[]` stands for the entries of a list, `*` for a name.\n";
+    append_table(OrderedJson::parse(scene_schema()), "", text);
+    return text;
+}
+
+} // namespace toile

@@ -1,0 +1,56 @@
+#include "scenes/format/read_scene.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "core/backend/error.h"
+#include "scenes/format/checks.h"
+#include "scenes/format/reader.h"
+
+namespace toile {
+
+namespace {
+
+/// Replaces the path of every file alternative by the file it names.
+template <typename Object>
+void resolve_files(const scene_format::Document& document, const std::string& list,
+                   std::vector<Object>& objects)
+{
+    for (size_t i = 0; i < objects.size(); ++i)
+        if (auto* file = std::get_if<std::filesystem::path>(&objects[i].shape))
+            *file = document.existing_file(file->string(),
+                                           scene_format::below(scene_format::below(list, i), "file"));
+}
+
+} // namespace
+
+Scene read_scene(const std::filesystem::path& file)
+{
+    if (std::filesystem::is_directory(file))
+        throw InvalidInput(file.string() + ": is a folder; name a scene file (.json)");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream)
+        throw InvalidInput(file.string() + ": can't be opened; check the path and its permissions");
+    return parse_scene({std::istreambuf_iterator<char>(stream), {}}, file);
+}
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& source)
+{
+    const scene_format::Document document(source);
+    const scene_format::Json json = document.parse(text);
+
+    Scene scene;
+    scene_format::require_object(document, json, "", scene_format::keys_of<Scene>());
+    scene_format::Reader reader(document, json, "");
+    describe(reader, scene);
+
+    scene.source = source;
+    if (scene.name.empty())
+        scene.name = source.stem().string();
+    scene_format::require_consistent(document, scene);
+    resolve_files(document, "avatars", scene.avatars);
+    resolve_files(document, "cloths", scene.cloths);
+    return scene;
+}
+
+} // namespace toile

@@ -1,0 +1,175 @@
+#include "scenes/format/reader.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace toile::scene_format {
+
+namespace {
+
+/// Shortest text that gives the number in messages: 0.01, 1000, 1e+08.
+std::string short_number(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.10g", value);
+    return text;
+}
+
+void require_in_range(const Document& document, const Json& json, const std::string& place,
+                      const Range& range)
+{
+    if (!range.contains(json.get<double>()))
+        document.refuse(place, as_written(json) + " is out of range; give a number " + to_sentence(range));
+}
+
+} // namespace
+
+std::string to_sentence(const Range& range)
+{
+    const std::string unit = *range.unit == '\0' ? "" : std::string(" ") + range.unit;
+    if (range.above_lower)
+        return "above " + short_number(range.lower) + " and at most " + short_number(range.upper) + unit;
+    return "from " + short_number(range.lower) + " to " + short_number(range.upper) + unit;
+}
+
+void read_value(const Document& document, const Json& json, const std::string& place, bool& value)
+{
+    if (!json.is_boolean())
+        document.refuse(place, as_written(json) + " is neither true nor false; write one of the two");
+    value = json.get<bool>();
+}
+
+void read_value(const Document& document, const Json& json, const std::string& place, std::string& value)
+{
+    if (!json.is_string())
+        document.refuse(place, as_written(json) + " is not text; write it in double quotes");
+    value = json.get<std::string>();
+}
+
+void read_value(const Document& document, const Json& json, const std::string& place,
+                std::filesystem::path& value)
+{
+    std::string text;
+    read_value(document, json, place, text);
+    if (text.empty())
+        document.refuse(place, "the path is empty; name a file");
+    value = text;
+}
+
+void read_value(const Document& document, const Json& json, const std::string& place, double& value,
+                const Range& range)
+{
+    if (!json.is_number())
+        document.refuse(place, as_written(json) + " is not a number; give a number " + to_sentence(range));
+    require_in_range(document, json, place, range);
+    value = json.get<double>();
+}
+
+void read_value(const Document& document, const Json& json, const std::string& place, int& value,
+                const Range& range)
+{
+    if (!json.is_number() || std::trunc(json.get<double>()) != json.get<double>())
+        document.refuse(place, as_written(json) + " is not a whole number; give one " + to_sentence(range));
+    require_in_range(document, json, place, range);
+    value = int(json.get<double>());
+}
+
+void read_numbers(const Document& document, const Json& json, const std::string& place, double* values,
+                  int count, const Range& range)
+{
+    if (!json.is_array() || int(json.size()) != count)
+        document.refuse(place, as_written(json) + " is not a list of " + std::to_string(count) +
+                                   " numbers; write " + (count == 2 ? "[x, y]" : "[x, y, z]"));
+    for (int i = 0; i < count; ++i)
+        read_value(document, json[size_t(i)], below(place, size_t(i)), values[i], range);
+}
+
+size_t read_word(const Document& document, const Json& json, const std::string& place,
+                 const std::vector<std::string>& words)
+{
+    for (size_t i = 0; i < words.size(); ++i)
+        if (json.is_string() && json.get<std::string>() == words[i])
+            return i;
+    std::vector<std::string> choices;
+    for (const std::string& word : words)
+        choices.push_back(as_written(word));
+    document.refuse(place, as_written(json) + " is unknown; write " + enumerate(choices, "or"));
+}
+
+void require_object(const Document& document, const Json& json, const std::string& place,
+                    const std::vector<std::string>& keys)
+{
+    if (!json.is_object())
+        document.refuse(place, as_written(json) + " is not an object; write {...} with keys among " +
+                                   enumerate(keys, "and"));
+    for (const auto& [key, member] : json.items()) {
+        if (std::find(keys.begin(), keys.end(), key) != keys.end())
+            continue;
+        const std::string near = did_you_mean(key, keys);
+        document.refuse(below(place, key),
+                        "unknown key" + (near.empty() ? "; known are " + enumerate(keys, "and") : near));
+    }
+}
+
+void require_array(const Document& document, const Json& json, const std::string& place)
+{
+    if (!json.is_array())
+        document.refuse(place, as_written(json) + " is not a list; write [...]");
+}
+
+void Reader::number_or_off(const char* key, std::optional<double>& value, const Range& range, const char*)
+{
+    if (!object_.contains(key))
+        return;
+    const Json& json = object_[key];
+    if (json == "off") {
+        value.reset();
+        return;
+    }
+    if (!json.is_number())
+        document_.refuse(below(place_, key), as_written(json) +
+                                                 " is neither a number nor \"off\"; give a number " +
+                                                 to_sentence(range));
+    read_value(document_, json, below(place_, key), value.emplace(), range);
+}
+
+void Reader::pair(const char* key, WarpWeft& value, const Range& range, const char*)
+{
+    if (!object_.contains(key))
+        return;
+    const std::string place = below(place_, key);
+    require_object(document_, object_[key], place, {"warp", "weft"});
+    Reader reader(document_, object_[key], place);
+    reader.field("warp", value.warp, range, "");
+    reader.field("weft", value.weft, range, "");
+}
+
+void Reader::version(const char* key, int expected, const char*)
+{
+    require_key(key);
+    if (object_[key] != expected)
+        document_.refuse(below(place_, key), as_written(object_[key]) +
+                                                 " is a version of the format that this program " +
+                                                 "does not know; write " + std::to_string(expected));
+}
+
+void Reader::require_key(const char* key) const
+{
+    if (!object_.contains(key))
+        document_.refuse(place_, std::string("the key ") + as_written(key) + " is missing; add it");
+}
+
+void Reader::require_one(const std::vector<std::string>& keys) const
+{
+    std::vector<std::string> given;
+    for (const std::string& key : keys)
+        if (object_.contains(key))
+            given.push_back(key);
+    if (given.size() == 1)
+        return;
+    document_.refuse(place_, (given.empty() ? "none of " + enumerate(keys, "and") + " is given"
+                                            : enumerate(given, "and") + " exclude each other") +
+                                 "; give exactly one of " + enumerate(keys, "or"));
+}
+
+} // namespace toile::scene_format

@@ -1,0 +1,44 @@
+#include "scenes/format/scene_fabric.h"
+
+namespace toile {
+
+namespace {
+
+void replace(double& value, const std::optional<double>& by)
+{
+    if (by)
+        value = *by;
+}
+
+/// The base preset with the numbers that the scene replaces.
+Fabric own_fabric(const std::string& name, const scene::Fabric& settings, const std::string& source)
+{
+    Fabric fabric = fabric_preset(settings.base, source);
+    fabric.name = name;
+    replace(fabric.areal_density, settings.areal_density);
+    replace(fabric.stretch_warp, settings.stretch.warp);
+    replace(fabric.stretch_weft, settings.stretch.weft);
+    replace(fabric.shear, settings.shear);
+    replace(fabric.bend_warp, settings.bend.warp);
+    replace(fabric.bend_weft, settings.bend.weft);
+    if (settings.strain_limit)
+        fabric.strain_limit = *settings.strain_limit - 1.0;
+    replace(fabric.thickness, settings.thickness);
+    replace(fabric.damping, settings.damping);
+    return fabric;
+}
+
+} // namespace
+
+Fabric fabric_of(const Scene& scene, const scene::Cloth& cloth)
+{
+    const std::string source = scene.source.string();
+    const auto own = scene.fabrics.find(cloth.fabric);
+    Fabric fabric = own != scene.fabrics.end() ? own_fabric(own->first, own->second, source)
+                                               : fabric_preset(cloth.fabric, source);
+    replace(fabric.thickness, cloth.thickness);
+    fabric.validate(source);
+    return fabric;
+}
+
+} // namespace toile

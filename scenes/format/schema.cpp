@@ -1,0 +1,49 @@
+#include "scenes/format/schema.h"
+
+#include "scenes/format/schema_writer.h"
+
+namespace toile {
+
+namespace scene_format {
+
+OrderedJson number_schema(const char* type, const Range& range)
+{
+    const bool whole = std::string_view(type) == "integer";
+    const auto bound = [&](double value) { return whole ? OrderedJson(long(value)) : OrderedJson(value); };
+    return {{"type", type},
+            {range.above_lower ? "exclusiveMinimum" : "minimum", bound(range.lower)},
+            {"maximum", bound(range.upper)}};
+}
+
+OrderedJson SchemaWriter::schema() const
+{
+    OrderedJson schema = {{"type", "object"}, {"properties", properties_}};
+    if (!required_.empty())
+        schema["required"] = required_;
+    if (!one_of_.empty())
+        schema["oneOf"] = one_of_;
+    schema["additionalProperties"] = false;
+    return schema;
+}
+
+void SchemaWriter::add(const char* key, OrderedJson schema, const std::string& help)
+{
+    // The sentence comes first: that is the order in which a person reads.
+    OrderedJson described = {{"description", help}};
+    described.update(schema);
+    properties_[key] = described;
+}
+
+} // namespace scene_format
+
+std::string scene_schema()
+{
+    scene_format::OrderedJson schema = {
+        {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+        {"title", "Toile scene"},
+        {"description", "What is simulated. SI units, Y up, paths relative to the file."}};
+    schema.update(scene_format::object_schema(Scene()));
+    return schema.dump(2) + "\n";
+}
+
+} // namespace toile

@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include "tests/apps/program.h"
+
+namespace toile {
+namespace {
+
+struct BadRun {
+    std::vector<std::string> arguments;
+    std::vector<std::string> says; ///< file, place and remedy
+};
+
+/// Files that the runs below find: a good scene with its cache, and broken ones.
+void fill(const TemporaryFolder& folder)
+{
+    folder.write("good.json", small_scene(3));
+    ASSERT_EQ(run_toile({"simulate", "good.json", "-o", ".", "--quiet"}, folder.path()).exit_code, 0);
+    folder.write("syntax.json", "{\n \"toile\": 1,\n");
+    folder.write("key.json", small_scene(3, R"("framse": 3)"));
+    folder.write("range.json", small_scene(0));
+    folder.write("mesh.obj", "v 0 0 0\nv 1 0 zero\n");
+    folder.write("mesh.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": "mesh.obj"}]})");
+    folder.write("missing.json",
+                 R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": "none.obj"}]})");
+    folder.write("cut.pc2", text_of(folder.path() / "sheet.pc2").substr(0, 200));
+    folder.write("coarse.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "sheet", "disc": {}}]})");
+    folder.write("body.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "disc": {}}],
+                                  "avatars": [{"name": "b", "mannequin": {}, "clip": "wolk"}]})");
+    folder.write("text.xyz", "?");
+    folder.write("file", "not a folder");
+}
+
+const std::vector<BadRun> kBadRuns{
+    {{}, {"subcommand is required", "toile --help"}},
+    {{"simulte"}, {"simulte", "did you mean \"simulate\"?"}},
+    {{"simulate"}, {"scene is required", "toile simulate --help"}},
+    {{"simulate", "good.json", "--frmes", "3"}, {"--frmes", "did you mean --frames?"}},
+    {{"simulate", "good.json", "--frames", "many"}, {"--frames", "many"}},
+    {{"simulate", "good.json", "--frames", "0"}, {"--frames", "0", "from 1 to 1000000"}},
+    {{"simulate", "good.json", "--solver", "magic"}, {"--solver", "magic", "direct"}},
+    {{"simulate", "good.json", "-o", "file/there"}, {"file/there"}},
+    {{"simulate", "good.json", "--report", "."}, {".", "is a folder", "name a file"}},
+    {{"simulate", "good.json", "--report", "file/run.json"}, {"file/run.json", "is no folder"}},
+    {{"simulate", "none.json"}, {"none.json", "check the path"}},
+    {{"simulate", "."}, {"is a folder", "name a scene file"}},
+    {{"simulate", "syntax.json"}, {"syntax.json:3:1", "not valid JSON"}},
+    {{"simulate", "key.json"}, {"key.json: framse", "did you mean \"frames\"?"}},
+    {{"simulate", "range.json"}, {"range.json: frames: 0", "from 1 to 1000000"}},
+    {{"simulate", "mesh.json"}, {"mesh.obj:2", "'zero'", "decimal number"}},
+    {{"simulate", "missing.json"}, {"missing.json: cloths[0].file", "none.obj", "relative to"}},
+    {{"simulate", "body.json"}, {"wolk", "walk"}},
+    {{"render", "sheet.pc2"}, {"sheet.pc2", "without faces", "--scene"}},
+    {{"render", "good.json", "-o", "a.gif"}, {"a.gif", ".png or .mp4"}},
+    {{"render", "sheet.pc2", "--scene", "good.json", "-o", "a.png", "--frames", "0:9"},
+     {"--frames", "0:9", "frames from 0 to 2"}},
+    {{"render", "sheet.pc2", "--scene", "good.json", "-o", "a.png", "--frames", "0:2"},
+     {"a.png", "--sheet COLUMNS"}},
+    {{"render", "sheet.pc2", "--scene", "good.json", "--cloth", "shet"},
+     {"--cloth", "did you mean \"sheet\"?"}},
+    {{"check", "sheet.pc2"}, {"--scene is required"}},
+    {{"check", "none.pc2", "--scene", "good.json"}, {"none.pc2"}},
+    {{"check", "cut.pc2", "--scene", "good.json"}, {"cut.pc2"}},
+    {{"check", "sheet.pc2", "--scene", "coarse.json"}, {"sheet.pc2", "points", "made from"}},
+    {{"info", "none.obj"}, {"none.obj", "can't be found"}},
+    {{"info", "text.xyz"}, {"text.xyz", "known are"}},
+    {{"info", "mesh.obj"}, {"mesh.obj:2", "decimal number"}},
+};
+
+/// Names of files that appeared, disappeared or changed.
+std::string changed_files(const std::map<std::string, std::string>& before,
+                          const std::map<std::string, std::string>& after)
+{
+    std::string names;
+    for (const auto& [name, content] : after)
+        if (!before.contains(name) || before.at(name) != content)
+            names += name + " ";
+    for (const auto& [name, content] : before)
+        if (!after.contains(name))
+            names += name + " ";
+    return names;
+}
+
+TEST(BadInput, GivesOneLineExitCodeTwoAndTouchesNothing)
+{
+    const TemporaryFolder folder;
+    fill(folder);
+    const auto before = folder.snapshot();
+    for (const BadRun& bad : kBadRuns) {
+        std::string command = "toile";
+        for (const std::string& argument : bad.arguments)
+            command += " " + argument;
+        SCOPED_TRACE(command);
+        const Finished run = run_toile(bad.arguments, folder.path());
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_EQ(run.output, "");
+        EXPECT_EQ(run.error_lines(), 1) << run.errors;
+        EXPECT_EQ(run.errors.find('\n'), run.errors.size() - 1) << run.errors;
+        for (const std::string& part : bad.says)
+            EXPECT_NE(run.errors.find(part), std::string::npos) << "no \"" << part << "\" in " << run.errors;
+        EXPECT_EQ(changed_files(before, folder.snapshot()), "");
+    }
+}
+
+} // namespace
+} // namespace toile

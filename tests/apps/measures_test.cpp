@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include "apps/toile/frame_range.h"
+#include "apps/toile/progress.h"
+#include "apps/toile/shape_mesh.h"
+#include "apps/toile/strain.h"
+#include "core/backend/error.h"
+
+namespace toile {
+namespace {
+
+TEST(StrainMeter, IsZeroAtRestAndAfterARigidMotion)
+{
+    const std::vector<Vec3> rest{{0, 0, 0}, {0.1, 0, 0}, {0.03, 0.02, 0.08}, {0.1, 0.1, 0.1}};
+    const StrainMeter meter(rest, {Triangle(0, 1, 2), Triangle(1, 3, 2)});
+    EXPECT_NEAR(meter.largest(rest), 0.0, 1e-14);
+    const Mat3 Q = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    std::vector<Vec3> moved;
+    for (const Vec3& p : rest)
+        moved.push_back(Q * p + Vec3(1, 2, 3));
+    EXPECT_NEAR(meter.largest(moved), 0.0, 1e-13);
+}
+
+TEST(StrainMeter, AgreesWithTheSingularValuesOfRandomDeformations)
+{
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> number(-1.0, 1.0);
+    for (int k = 0; k < 100; ++k) {
+        std::vector<Vec3> rest(3), x(3);
+        for (int i = 0; i < 3; ++i) {
+            rest[size_t(i)] = Vec3(number(random), number(random), 0.0);
+            x[size_t(i)] = Vec3(number(random), number(random), number(random));
+        }
+        Mat2 rest_edges;
+        rest_edges << (rest[1] - rest[0]).head<2>(), (rest[2] - rest[0]).head<2>();
+        Mat32 edges;
+        edges.col(0) = x[1] - x[0];
+        edges.col(1) = x[2] - x[0];
+        const Mat2 inverse = rest_edges.inverse();
+        Eigen::MatrixXd F(3, 2);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 2; ++j)
+                F(i, j) = edges(i, 0) * inverse(0, j) + edges(i, 1) * inverse(1, j);
+        const double sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(F).singularValues()[0];
+        const double measured = StrainMeter(rest, {Triangle(0, 1, 2)}).largest(x);
+        EXPECT_NEAR(measured, sigma - 1.0, 1e-10 * sigma);
+    }
+}
+
+/// Volume by the divergence theorem: positive only when the triangles face outwards.
+double volume(const TriangleMesh& mesh)
+{
+    double sum = 0.0;
+    for (const Triangle& t : mesh.triangles)
+        sum += mesh.positions[t[0]].dot(mesh.positions[t[1]].cross(mesh.positions[t[2]])) / 6.0;
+    return sum;
+}
+
+TEST(ShapeMesh, EnclosesTheVolumeOfItsSolid)
+{
+    EXPECT_NEAR(volume(shape_mesh(BoxShape{Vec3(0.1, 0.2, 0.3)}, 0.0)), 0.048, 1e-12);
+    const double ball = 4.0 / 3.0 * M_PI * 0.5 * 0.5 * 0.5;
+    EXPECT_NEAR(volume(shape_mesh(SphereShape{0.5}, 0.0)), ball, 0.01 * ball);
+    const double tube = M_PI * 0.5 * 0.5 * 2.0;
+    EXPECT_NEAR(volume(shape_mesh(CapsuleShape{1.0, 0.5}, 0.0)), ball + tube, 0.01 * (ball + tube));
+}
+
+TEST(ShapeMesh, ShowsAPlaneFromAbove)
+{
+    const TriangleMesh plane = shape_mesh(PlaneShape{}, 2.0);
+    const Triangle& t = plane.triangles.at(0);
+    const Vec3 a = plane.positions[t[1]] - plane.positions[t[0]],
+               b = plane.positions[t[2]] - plane.positions[t[0]];
+    EXPECT_GT(a.cross(b).y(), 0.0);
+    EXPECT_DOUBLE_EQ(bounds(plane.positions).upper.x(), 1.0);
+}
+
+TEST(FrameRange, ReadsFirstLastAndStep)
+{
+    EXPECT_EQ(parse_frame_range("", 3), (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(parse_frame_range("1", 3), (std::vector<int>{1}));
+    EXPECT_EQ(parse_frame_range("-1", 3), (std::vector<int>{2}));
+    EXPECT_EQ(parse_frame_range("1:", 4), (std::vector<int>{1, 2, 3}));
+    EXPECT_EQ(parse_frame_range(":2", 4), (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(parse_frame_range("0:-2:2", 8), (std::vector<int>{0, 2, 4, 6}));
+    for (const char* bad : {"3", "-4", "2:1", "0:3", "0:2:0", "a", "1:2:3:4", "1.5"})
+        EXPECT_THROW(parse_frame_range(bad, 3), InvalidInput) << bad;
+}
+
+TEST(ClockText, ShowsHoursOnlyWhenThereAreSome)
+{
+    EXPECT_EQ(clock_text(0.4), "0:00");
+    EXPECT_EQ(clock_text(75.0), "1:15");
+    EXPECT_EQ(clock_text(3675.0), "1:01:15");
+}
+
+} // namespace
+} // namespace toile

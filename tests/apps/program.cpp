@@ -1,0 +1,123 @@
+#include "tests/apps/program.h"
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <thread>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace toile {
+
+namespace {
+
+/// Forks and starts the program with both streams going to files.
+pid_t start(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+            const std::filesystem::path& streams)
+{
+    const pid_t process = ::fork();
+    if (process != 0)
+        return process;
+    const auto redirect = [&](const char* name, int descriptor) {
+        const int file = ::open((streams / name).c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
+        ::dup2(file, descriptor);
+    };
+    redirect("output", STDOUT_FILENO);
+    redirect("errors", STDERR_FILENO);
+    std::vector<char*> words{const_cast<char*>(TOILE_PROGRAM)};
+    for (const std::string& argument : arguments)
+        words.push_back(const_cast<char*>(argument.c_str()));
+    words.push_back(nullptr);
+    if (::chdir(folder.c_str()) == 0)
+        ::execv(TOILE_PROGRAM, words.data());
+    ::_exit(127);
+}
+
+Finished wait_for(pid_t process, const std::filesystem::path& streams)
+{
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    Finished finished;
+    finished.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    finished.output = text_of(streams / "output");
+    finished.errors = text_of(streams / "errors");
+    return finished;
+}
+
+} // namespace
+
+int Finished::error_lines() const
+{
+    int count = 0;
+    std::istringstream lines(errors);
+    for (std::string line; std::getline(lines, line);)
+        count += line.rfind("toile: error: ", 0) == 0 ? 1 : 0;
+    return count;
+}
+
+Finished run_toile(const std::vector<std::string>& arguments, const std::filesystem::path& folder)
+{
+    const TemporaryFolder streams;
+    return wait_for(start(arguments, folder, streams.path()), streams.path());
+}
+
+Finished run_and_interrupt(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                           const std::filesystem::path& file)
+{
+    const TemporaryFolder streams;
+    const pid_t process = start(arguments, folder, streams.path());
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!std::filesystem::exists(file) && std::chrono::steady_clock::now() < give_up)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::kill(process, SIGINT);
+    return wait_for(process, streams.path());
+}
+
+TemporaryFolder::TemporaryFolder()
+{
+    std::string name = (std::filesystem::temp_directory_path() / "toile-test-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+}
+
+TemporaryFolder::~TemporaryFolder()
+{
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+std::filesystem::path TemporaryFolder::write(const std::string& name, const std::string& content) const
+{
+    std::ofstream(path_ / name, std::ios::binary) << content;
+    return path_ / name;
+}
+
+std::map<std::string, std::string> TemporaryFolder::snapshot() const
+{
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
+        files[entry.path().string()] = entry.is_regular_file() ? text_of(entry.path()) : "";
+    return files;
+}
+
+std::string text_of(const std::filesystem::path& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string small_scene(int frames, const std::string& more_keys)
+{
+    return R"({"toile": 1, "frames": )" + std::to_string(frames) + R"(,
+        "avatars": [{"name": "ball", "sphere": {"radius": 0.2}}],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.4, 0.4], "resolution": 0.05},
+                    "translate": [0, 0.25, 0]}],
+        "render": {"width": 64, "height": 48, "samples": 1, "ground": -0.2})" +
+           (more_keys.empty() ? "" : ", " + more_keys) + "}";
+}
+
+} // namespace toile

@@ -1,0 +1,140 @@
+#include "tests/apps/program.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/mesh/obj.h"
+#include "export/point_cache.h"
+
+namespace toile {
+namespace {
+
+TEST(Simulate, WritesOneCachePerClothAndTheMeshItPlaysOn)
+{
+    const TemporaryFolder folder;
+    folder.write("drop.json", small_scene(4));
+    const Finished run = run_toile({"simulate", "drop.json", "--quiet"}, folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_EQ(run.output, "out/drop/sheet.pc2\n");
+    EXPECT_EQ(run.errors, "");
+
+    const PointCache cache = read_cache(folder.path() / "out/drop/sheet.pc2");
+    EXPECT_EQ(cache.frame_count(), 4);
+    const ObjMesh mesh = read_obj(folder.path() / "out/drop/sheet.obj");
+    ASSERT_EQ(int(mesh.positions.size()), cache.vertex_count());
+    // Sample 0 is the start: flat at 0.25 m. The cloth then falls.
+    for (const Vec3& p : cache.frame(0))
+        EXPECT_NEAR(p.y(), 0.25, 1e-6);
+    EXPECT_LT(cache.frame(3)[0].y(), 0.249);
+}
+
+TEST(Simulate, ObeysOptionsAndTheExportList)
+{
+    const TemporaryFolder folder;
+    folder.write("drop.json", small_scene(9, R"("export": [{"file": "a/b.mdd"}, {"file": "frames.obj"}])"));
+    const Finished run = run_toile({"simulate", "drop.json", "-o", "there", "--frames", "3", "--threads", "1",
+                                    "--solver", "direct", "--report", "run.json"},
+                                   folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_EQ(run.output, "there/a/b.mdd\nthere/frames.obj\n");
+    EXPECT_NE(run.errors.find("frame 3/3 (100 %)"), std::string::npos) << run.errors;
+    EXPECT_EQ(read_cache(folder.path() / "there/a/b.mdd").frame_count(), 3);
+    EXPECT_EQ(read_cache(folder.path() / "there/frames_####.obj").frame_count(), 3);
+
+    const auto report = nlohmann::json::parse(text_of(folder.path() / "run.json"));
+    EXPECT_EQ(report["outcome"], "complete");
+    EXPECT_EQ(report["settings"]["frames"], 3);
+    EXPECT_EQ(report["settings"]["threads"], 1);
+    EXPECT_EQ(report["settings"]["method"], "direct");
+    ASSERT_EQ(report["frames"].size(), 2u); // sample 0 costs no step
+    EXPECT_EQ(report["frames"][0]["frame"], 1);
+    EXPECT_GT(report["frames"][0]["iterations"], 0);
+    EXPECT_GT(report["peak_memory_bytes"], 1e6);
+    EXPECT_FALSE(report["stages"].empty());
+}
+
+TEST(Simulate, KeepsAReadableCacheWhenInterrupted)
+{
+    const TemporaryFolder folder;
+    folder.write("drop.json", small_scene(1000000));
+    folder.write("sheet.pc2", "an earlier cache");
+    const std::filesystem::path partial = folder.path() / "sheet.partial.pc2";
+    const Finished run = run_and_interrupt({"simulate", "drop.json", "-o", "."}, folder.path(), partial);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(run.error_lines(), 1) << run.errors;
+    EXPECT_NE(run.errors.find("interrupted at frame"), std::string::npos) << run.errors;
+    EXPECT_EQ(text_of(folder.path() / "sheet.pc2"), "an earlier cache");
+    EXPECT_GE(read_cache(partial).frame_count(), 1);
+}
+
+TEST(Render, TakesAPictureASheetAndAFolder)
+{
+    const TemporaryFolder folder;
+    folder.write("drop.json", small_scene(5));
+    ASSERT_EQ(run_toile({"simulate", "drop.json", "-o", ".", "--quiet"}, folder.path()).exit_code, 0);
+    const auto is_png = [&](const char* file) {
+        return text_of(folder.path() / file).rfind("\x89PNG", 0) == 0;
+    };
+
+    EXPECT_EQ(run_toile({"render", "drop.json", "--quiet"}, folder.path()).exit_code, 0);
+    EXPECT_TRUE(is_png("drop.png"));
+    EXPECT_EQ(
+        run_toile({"render", "sheet.pc2", "--scene", "drop.json", "-o", "last.png"}, folder.path()).exit_code,
+        0);
+    EXPECT_TRUE(is_png("last.png"));
+    EXPECT_NE(text_of(folder.path() / "last.png"), text_of(folder.path() / "drop.png"));
+    EXPECT_EQ(run_toile({"render", "sheet.pc2", "--scene", "drop.json", "-o", "all.png", "--sheet", "2",
+                         "--frames", "0:4:2"},
+                        folder.path())
+                  .exit_code,
+              0);
+    EXPECT_TRUE(is_png("all.png"));
+    EXPECT_EQ(run_toile({"render", "sheet.pc2", "--scene", "drop.json", "-o", "many", "--frames", "1:3"},
+                        folder.path())
+                  .exit_code,
+              0);
+    EXPECT_TRUE(is_png("many/frame_0001.png"));
+    EXPECT_TRUE(is_png("many/frame_0003.png"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "many/frame_0004.png"));
+}
+
+TEST(Info, DescribesEveryKindOfFile)
+{
+    const TemporaryFolder folder;
+    folder.write("drop.json", small_scene(2));
+    ASSERT_EQ(run_toile({"simulate", "drop.json", "-o", ".", "--quiet"}, folder.path()).exit_code, 0);
+    const auto says = [&](const char* file, const char* what) {
+        const Finished run = run_toile({"info", file}, folder.path());
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        EXPECT_NE(run.output.find(what), std::string::npos) << run.output;
+    };
+    says("drop.json", "cloth: sheet, cotton");
+    says("sheet.pc2", "frames: 2");
+    says("sheet.obj", "pieces: 1");
+    says("sheet.obj", "(open)");
+}
+
+TEST(Schema, PrintsJsonAndTables)
+{
+    const TemporaryFolder folder;
+    const Finished schema = run_toile({"schema"}, folder.path());
+    EXPECT_EQ(nlohmann::json::parse(schema.output)["title"], "Toile scene");
+    EXPECT_NE(run_toile({"schema", "--tables"}, folder.path()).output.find("| `fabric` |"),
+              std::string::npos);
+}
+
+TEST(Help, IsNoError)
+{
+    const TemporaryFolder folder;
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"--help"}, {"--version"}, {"simulate", "--help"}}) {
+        const Finished run = run_toile(arguments, folder.path());
+        EXPECT_EQ(run.exit_code, 0);
+        EXPECT_EQ(run.errors, "");
+        EXPECT_FALSE(run.output.empty());
+    }
+}
+
+} // namespace
+} // namespace toile

@@ -1,0 +1,80 @@
+#include "export/async_cache_writer.h"
+
+#include <chrono>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+#include "tests/export/export_fixtures.h"
+
+namespace toile {
+namespace {
+
+using AsyncCacheWriterTest = ExportTest;
+
+TEST_F(AsyncCacheWriterTest, LeavesTheSameBytesAsWritingAtOnce)
+{
+    const CacheLayout layout = cache_layout(quad_mesh(), 40);
+    const auto direct = make_cache_writer(file("direct.pc2"), layout);
+    write_frames(*direct, 0, 40, 7);
+    direct->finish();
+
+    AsyncCacheWriter queued(make_cache_writer(file("queued.pc2"), layout), 3);
+    std::vector<Vec3> positions;
+    for (int frame = 0; frame < 40; ++frame) {
+        positions = frame_positions(frame, 7);
+        queued.write(frame, positions);
+        positions.assign(positions.size(), Vec3::Zero()); // must not reach the file
+    }
+    queued.finish();
+    EXPECT_EQ(bytes_of(file("queued.pc2")), bytes_of(file("direct.pc2")));
+}
+
+TEST_F(AsyncCacheWriterTest, DeliversWhatWasQueuedWhenDestroyed)
+{
+    {
+        AsyncCacheWriter writer(make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 9)));
+        write_frames(writer, 0, 4, 7);
+    }
+    EXPECT_EQ(read_cache(file("a.partial.pc2")).frame_count(), 4);
+    EXPECT_FALSE(std::filesystem::exists(file("a.pc2")));
+}
+
+/// A disk that is slow and full from frame 3 on.
+class FullDisk final : public CacheWriter {
+public:
+    explicit FullDisk(std::vector<int>& written) : written_(written) {}
+    void write(int frame, View<const Vec3>) override
+    {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        if (frame == 3)
+            throw DeviceError("disk full");
+        written_.push_back(frame);
+    }
+    void finish() override { written_.push_back(-1); }
+    std::filesystem::path partial() const override { return {}; }
+
+private:
+    std::vector<int>& written_;
+};
+
+TEST_F(AsyncCacheWriterTest, SurfacesAnErrorAtALaterWriteAndWritesNothingBehindIt)
+{
+    std::vector<int> written;
+    AsyncCacheWriter writer(std::make_unique<FullDisk>(written), 2);
+    EXPECT_THROW(write_frames(writer, 0, 100, 7), DeviceError);
+    EXPECT_THROW(writer.finish(), DeviceError);
+    EXPECT_EQ(written, (std::vector<int>{0, 1, 2}));
+}
+
+TEST_F(AsyncCacheWriterTest, SurfacesTheErrorOfTheLastFrameAtFinish)
+{
+    std::vector<int> written;
+    AsyncCacheWriter writer(std::make_unique<FullDisk>(written), 8);
+    write_frames(writer, 0, 4, 7);
+    EXPECT_THROW(writer.finish(), DeviceError);
+    EXPECT_EQ(written, (std::vector<int>{0, 1, 2}));
+}
+
+} // namespace
+} // namespace toile

@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include "core/backend/error.h"
+#include "scenes/format/read_scene.h"
+
+namespace toile {
+namespace {
+
+/// What the reader says about a text; "accepted" when it says nothing.
+std::string complaint(const std::string& text)
+{
+    try {
+        static_cast<void>(parse_scene(text, "bad.json"));
+    } catch (const InvalidInput& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+/// A scene with one disc, the given keys on top and in the disc's entry.
+std::string scene_with(const std::string& top, const std::string& cloth = "")
+{
+    return R"({"toile": 1, "frames": 1, )" + (top.empty() ? "" : top + ", ") +
+           R"("cloths": [{"name": "sheet", "disc": {})" + (cloth.empty() ? "" : ", " + cloth) + "}]}";
+}
+
+std::string avatar_scene(const std::string& avatar) { return scene_with(R"("avatars": [{)" + avatar + "}]"); }
+
+struct Mistake {
+    std::string text;
+    std::string message;
+};
+
+void expect_complaints(const std::vector<Mistake>& mistakes)
+{
+    for (const Mistake& mistake : mistakes) {
+        const std::string said = complaint(mistake.text);
+        EXPECT_EQ(said, mistake.message) << mistake.text;
+        EXPECT_EQ(said.find('\n'), std::string::npos) << "more than one line";
+    }
+}
+
+TEST(SceneErrors, GiveLineAndColumnOfASyntaxError)
+{
+    expect_complaints({
+        {"{\n  \"toile\": 1,\n  \"frames\": }",
+         "bad.json:3:13: not valid JSON: syntax error while parsing value "
+         "- unexpected '}'; expected '[', '{', or a literal"},
+        {"", "bad.json:1:1: not valid JSON: syntax error while parsing value - unexpected end of input; "
+             "expected '[', '{', or a literal"},
+        {R"({"toile": 1, "toile": 1})",
+         R"(bad.json: the key "toile" is given twice in one object; keep one of them)"},
+    });
+}
+
+TEST(SceneErrors, NameTheNearestKnownKey)
+{
+    expect_complaints({
+        {scene_with("", R"("fabrc": "silk")"),
+         R"(bad.json: cloths[0].fabrc: unknown key; did you mean "fabric"?)"},
+        {scene_with(R"("solver": {"sleep": {"sped": 1}})"),
+         R"(bad.json: solver.sleep.sped: unknown key; did you mean "speed"?)"},
+        {scene_with(R"("solver": {"sleep": {"qqqqqqqqqq": 1}})"),
+         "bad.json: solver.sleep.qqqqqqqqqq: unknown key; known are enabled and speed"},
+        {scene_with(R"("fabrics": {"felt": {"stretch": {"wrap": 1}}})"),
+         R"(bad.json: fabrics.felt.stretch.wrap: unknown key; did you mean "warp"?)"},
+    });
+}
+
+TEST(SceneErrors, NameMissingAndExclusiveKeys)
+{
+    expect_complaints({
+        {R"({"frames": 1, "cloths": []})", R"(bad.json: the key "toile" is missing; add it)"},
+        {R"({"toile": 1, "frames": 1})", R"(bad.json: the key "cloths" is missing; add it)"},
+        {R"({"toile": 1, "frames": 1, "cloths": []})", "bad.json: cloths: the list is empty; add a cloth"},
+        {R"({"toile": 2, "frames": 1, "cloths": []})",
+         "bad.json: toile: 2 is a version of the format that this program does not know; write 1"},
+        {R"({"toile": 1, "frames": 1, "cloths": [{"name": "a"}]})",
+         "bad.json: cloths[0]: none of file, rectangle, disc and skirt is given; give exactly one of file, "
+         "rectangle, disc or skirt"},
+        {scene_with("", R"("rectangle": {})"), "bad.json: cloths[0]: rectangle and disc exclude each other; "
+                                               "give exactly one of file, rectangle, disc "
+                                               "or skirt"},
+    });
+}
+
+TEST(SceneErrors, GiveTheAllowedRangeOfANumber)
+{
+    expect_complaints({
+        {R"({"toile": 1, "frames": 0, "cloths": []})",
+         "bad.json: frames: 0 is out of range; give a number from 1 to 1000000"},
+        {R"({"toile": 1, "frames": 1.5, "cloths": []})",
+         "bad.json: frames: 1.5 is not a whole number; give one from 1 to 1000000"},
+        {R"({"toile": 1, "frames": 1e400, "cloths": []})",
+         "bad.json: not valid JSON: number overflow parsing '1e400'"},
+        {R"({"toile": 1, "frames": 99999999999999999999, "cloths": []})",
+         "bad.json: frames: 1e+20 is out of range; give a number from 1 to 1000000"},
+        {scene_with(R"("solver": {"tolerance": 0})"),
+         "bad.json: solver.tolerance: 0 is out of range; give a number above 0 and at most 0.01 m"},
+        {scene_with(R"("gravity": [0, "down", 0])"),
+         R"(bad.json: gravity[1]: "down" is not a number; give a number from -1000 to 1000 m/s^2)"},
+        {scene_with(R"("gravity": -9.81)"),
+         "bad.json: gravity: -9.81 is not a list of 3 numbers; write [x, y, z]"},
+        {scene_with("", R"("color": [1, 1, 255])"),
+         "bad.json: cloths[0].color[2]: 255 is out of range; give a number from 0 to 1"},
+        {scene_with(R"("fabrics": {"felt": {"bend": {"warp": -1}}})"),
+         "bad.json: fabrics.felt.bend.warp: -1 is out of range; give a number from 0 to 1 N m"},
+        {scene_with(R"("render": {"ground": "none"})"),
+         R"(bad.json: render.ground: "none" is neither a number nor "off"; give a number from -1000 to 1000 m)"},
+    });
+}
+
+TEST(SceneErrors, TellTheTypeThatAValueShouldHave)
+{
+    expect_complaints({
+        {"[]",
+         "bad.json: [] is not an object; write {...} with keys among toile, name, description, frames, fps, "
+         "gravity, wind, air, settle, avatars, cloths, fabrics, attachments, contact, solver, export and "
+         "render"},
+        {scene_with(R"("name": 3)"), "bad.json: name: 3 is not text; write it in double quotes"},
+        {scene_with(R"("avatars": {})"), "bad.json: avatars: {} is not a list; write [...]"},
+        {scene_with(R"("fabrics": [])"), R"(bad.json: fabrics: [] is not an object; write {"name": {...}})"},
+        {scene_with(R"("solver": {"sleep": {"enabled": 1}})"),
+         "bad.json: solver.sleep.enabled: 1 is neither true nor false; write one of the two"},
+        {scene_with("", R"("unit": "ft")"),
+         R"(bad.json: cloths[0].unit: "ft" is unknown; write "m", "cm", "mm" or "in")"},
+    });
+}
+
+TEST(SceneErrors, RefuseAvatarsThatContradictThemselves)
+{
+    expect_complaints({
+        {avatar_scene(R"("name": "fixed", "sphere": {})"),
+         R"(bad.json: avatars[0].name: "fixed" stands for the world in attachments; choose another name)"},
+        {avatar_scene(R"("name": "a", "sphere": {}, "clip": "walk")"),
+         "bad.json: avatars[0].clip: a shape has no clips; move it with keyframes"},
+        {avatar_scene(R"("name": "a", "mannequin": {}, "speed": 2)"),
+         "bad.json: avatars[0].speed: has no effect without a clip; name the clip to play"},
+        {avatar_scene(R"("name": "a", "mannequin": {}, "clip": "walk", "keyframes": [{"time": 0}])"),
+         "bad.json: avatars[0].keyframes: an animated figure is not moved by keyframes; remove them or the "
+         "clip"},
+        {avatar_scene(R"("name": "a", "box": {}, "unit": "cm")"),
+         "bad.json: avatars[0].unit: only a file has a unit; lengths here are in metres"},
+        {avatar_scene(R"("name": "a", "box": {}, "keyframes": [{"time": 1}, {"time": 1}])"),
+         "bad.json: avatars[0].keyframes[1].time: 1.0 s does not follow 1.0 s; put keyframes in ascending "
+         "order "
+         "of time"},
+        {avatar_scene(R"("name": "a", "file": "body.stl")"),
+         R"(bad.json: avatars[0].file: "body.stl" is of an unknown format; use .glb, .gltf, .fbx or .obj)"},
+        {scene_with(R"("avatars": [{"name": "a", "box": {}}, {"name": "a", "sphere": {}}])"),
+         R"(bad.json: avatars[1].name: "a" is taken by an earlier entry; choose another name)"},
+    });
+}
+
+TEST(SceneErrors, RefuseClothsThatNoMachineOrTailorCanMake)
+{
+    expect_complaints({
+        {R"({"toile": 1, "frames": 1, "cloths": [{"name": "../a", "disc": {}}]})",
+         R"(bad.json: cloths[0].name: "../a" can't name a file; use letters, digits, _ and -)"},
+        {R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "rectangle": {"size": [50, 50], "resolution": 0.001}}]})",
+         "bad.json: cloths[0]: resolution and subdivide make more than 5 million vertices; choose a coarser "
+         "resolution"},
+        {R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "skirt": {"waist_radius": 0.25, "hem_radius": 1, "length": 0.5}}]})",
+         "bad.json: cloths[0].skirt.hem_radius: 1.0 m does not fit the cloth; give a radius from 0.25 "
+         "(waist_radius) to 0.75 (waist_radius + length)"},
+        {scene_with("", R"("fabric": "coton")"),
+         R"(bad.json: cloths[0].fabric: no fabric is named "coton"; did you mean "cotton"?)"},
+        {scene_with(R"("fabrics": {"felt": {"base": "wol"}})"),
+         R"(bad.json: fabrics.felt.base: no preset is named "wol"; did you mean "wool"?)"},
+    });
+    EXPECT_NE(complaint(scene_with(R"("fabrics": {"felt": {"shear": 1e6}})", R"("fabric": "felt")"))
+                  .find("at most half of the smaller stretch modulus"),
+              std::string::npos);
+}
+
+TEST(SceneErrors, RefuseAttachmentsToWhatDoesNotExist)
+{
+    const auto attachment = [](const std::string& keys) {
+        return scene_with(R"("avatars": [{"name": "ball", "sphere": {}}], "attachments": [{)" + keys + "}]");
+    };
+    const std::string first = R"("select": {"vertices": [0]})";
+    expect_complaints({
+        {attachment(R"("cloth": "sheat", )" + first),
+         R"(bad.json: attachments[0].cloth: no cloth is named "sheat"; did you mean "sheet"?)"},
+        {attachment(R"("cloth": "sheet", "to": "bal", )" + first),
+         R"(bad.json: attachments[0].to: no avatar is named "bal"; did you mean "ball"?)"},
+        {attachment(R"("cloth": "sheet", "to": "qqqqqqqq", )" + first),
+         R"(bad.json: attachments[0].to: no avatar is named "qqqqqqqq"; known are ball and fixed)"},
+        {attachment(R"("cloth": "sheet", "to": "ball", "keyframes": [{"time": 0}], )" + first),
+         R"(bad.json: attachments[0].keyframes: an avatar carries these vertices already; remove the keyframes or write "to": "fixed")"},
+        {attachment(R"("cloth": "sheet", "select": {"vertices": []})"),
+         "bad.json: attachments[0].select.vertices: the list is empty; name at least one or remove the "
+         "attachment"},
+        {attachment(R"("cloth": "sheet", "select": {"box": {"lower": [0, 1, 0], "upper": [1, 0, 1]}})"),
+         "bad.json: attachments[0].select.box: a coordinate of lower exceeds that of upper; exchange them"},
+        {attachment(R"("cloth": "sheet", "select": {"all_within": {"avatar": "bll", "distance": 1}})"),
+         R"(bad.json: attachments[0].select.all_within.avatar: no avatar is named "bll"; did you mean "ball"?)"},
+        {attachment(R"("cloth": "sheet", "select": {})"),
+         "bad.json: attachments[0].select: none of vertices, box, nearest and all_within is given; give "
+         "exactly "
+         "one of vertices, box, nearest or all_within"},
+    });
+}
+
+TEST(SceneErrors, KeepExportsInsideTheOutputFolder)
+{
+    expect_complaints({
+        {scene_with(R"("export": [{"file": "../a.pc2"}])"),
+         R"(bad.json: export[0].file: "../a.pc2" leaves the output folder; give a path inside it)"},
+        {scene_with(R"("export": [{"file": "a.abc"}])"),
+         R"(bad.json: export[0].file: "a.abc" is of an unknown format; use .pc2, .mdd or .obj)"},
+        {scene_with(R"("export": [{"file": "a.pc2"}, {"file": "./a.pc2"}])"),
+         R"(bad.json: export[1].file: "./a.pc2" is written by an earlier entry; choose another file)"},
+        {scene_with(R"("export": [{"file": "a.pc2", "cloth": "shet"}])"),
+         R"(bad.json: export[0].cloth: no cloth is named "shet"; did you mean "sheet"?)"},
+        {R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "disc": {}}, {"name": "b", "disc": {}}],
+             "export": [{"file": "a.pc2"}]})",
+         R"(bad.json: export[0]: the scene has 2 cloths; name the one to write with the key "cloth")"},
+    });
+}
+
+} // namespace
+} // namespace toile

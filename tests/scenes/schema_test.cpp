@@ -1,0 +1,71 @@
+#include "scenes/format/schema.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "garment/fabric/fabric.h"
+
+namespace toile {
+namespace {
+
+std::string text_of(const std::string& file)
+{
+    std::ifstream stream(std::string(TOILE_SOURCE_DIR) + "/" + file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(SceneSchema, IsTheCommittedOne)
+{
+    EXPECT_EQ(scene_schema(), text_of("docs/scenes/toile.schema.json"))
+        << "write it anew with: toile schema > docs/scenes/toile.schema.json";
+}
+
+TEST(SceneSchema, IsTheSourceOfTheCommittedKeyTables)
+{
+    EXPECT_EQ(scene_key_tables(), text_of("docs/scenes/keys.md"))
+        << "write them anew with: toile schema --tables > docs/scenes/keys.md";
+}
+
+TEST(SceneSchema, SaysRangesDefaultsAndExclusiveKeys)
+{
+    const auto schema = nlohmann::json::parse(scene_schema());
+    const auto& frames = schema["properties"]["frames"];
+    EXPECT_EQ(frames["type"], "integer");
+    EXPECT_EQ(frames["minimum"], 1);
+    EXPECT_FALSE(frames.contains("default"));
+    const auto& solver = schema["properties"]["solver"];
+    EXPECT_EQ(solver["additionalProperties"], false);
+    EXPECT_EQ(solver["properties"]["tolerance"]["exclusiveMinimum"], 0.0);
+    EXPECT_EQ(solver["properties"]["tolerance"]["default"], 1e-5);
+    EXPECT_EQ(solver["properties"]["method"]["enum"], (nlohmann::json{"auto", "direct"}));
+    EXPECT_EQ(schema["properties"]["cloths"]["items"]["oneOf"].size(), 4u);
+    EXPECT_EQ(schema["required"], (nlohmann::json{"toile", "frames", "cloths"}));
+}
+
+TEST(SceneDocs, NameEveryFabricPreset)
+{
+    const std::string page = text_of("docs/scenes/README.md");
+    for (const Fabric& fabric : fabric_presets())
+        EXPECT_NE(page.find(fabric.name), std::string::npos) << fabric.name;
+}
+
+/// Every object and every key below `schema` has a sentence.
+void expect_described(const nlohmann::json& schema, const std::string& place)
+{
+    if (schema.contains("properties"))
+        for (const auto& [key, member] : schema["properties"].items()) {
+            EXPECT_FALSE(member.value("description", "").empty()) << place << key;
+            expect_described(member, place + key + ".");
+        }
+    if (schema.contains("items"))
+        expect_described(schema["items"], place);
+}
+
+TEST(SceneSchema, DescribesEveryKey) { expect_described(nlohmann::json::parse(scene_schema()), ""); }
+
+} // namespace
+} // namespace toile
