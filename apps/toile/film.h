@@ -7,7 +7,7 @@
 
 #include "apps/render/camera.h"
 #include "apps/render/renderer.h"
-#include "apps/toile/bodies.h"
+#include "scenes/scene_body.h"
 #include "export/point_cache.h"
 #include "scenes/format/scene.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "apps/toile/bodies.h"
+#include "scenes/scene_body.h"
 #include "collision/surface_proximity.h"
 
 namespace toile {

@@ -187,6 +187,7 @@ int simulate(const SimulateOptions& options)
     for (const OpenCache& cache : caches)
         write_start_mesh(world, cache, caches);
 
+    world.settle();
     const Outcome outcome = run(world, scene, caches, report, interrupt, options.quiet);
     if (!options.report.empty())
         report.write(options.report, outcome.word, world.stages());

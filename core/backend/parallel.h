@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include "core/backend/stages.h"
@@ -15,6 +17,19 @@ namespace toile {
 /// Where a kernel runs. The CUDA counterpart has the same signatures (see docs/core/backend.md).
 struct CpuSpace {};
 inline constexpr CpuSpace kCpu{};
+
+/// Limits the threads of everything in its lifetime; 0 leaves all of the machine's.
+class ThreadLimit {
+public:
+    explicit ThreadLimit(int threads)
+    {
+        if (threads > 0)
+            control_.emplace(tbb::global_control::max_allowed_parallelism, size_t(threads));
+    }
+
+private:
+    std::optional<tbb::global_control> control_;
+};
 
 /// Items per task. Small enough to balance, large enough to hide the scheduler (about 1 us a task).
 inline constexpr int kGrain = 256;

@@ -24,7 +24,10 @@ public:
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
 
     /// Moves the far ends [springs] [m].
-    void set_targets(std::vector<Vec3> targets) { targets_ = std::move(targets); }
+    void set_target(int spring, const Vec3& target) { targets_[spring] = target; }
+
+    /// Lets go of a vertex. H keeps the spring's share, which is still a valid bound.
+    void release(int spring) { springs_[spring].stiffness = 0.0; }
 
 private:
     std::vector<Spring> springs_;

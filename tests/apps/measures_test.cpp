@@ -7,7 +7,7 @@
 
 #include "apps/toile/frame_range.h"
 #include "apps/toile/progress.h"
-#include "apps/toile/shape_mesh.h"
+#include "scenes/shape_mesh.h"
 #include "apps/toile/strain.h"
 #include "core/backend/error.h"
 

@@ -1,7 +1,7 @@
-#include "apps/toile/bodies.h"
+#include "scenes/scene_body.h"
 
-#include "apps/toile/shape_mesh.h"
 #include "avatars/load_avatar.h"
+#include "scenes/shape_mesh.h"
 
 namespace toile {
 
@@ -77,12 +77,16 @@ SceneBody::SceneBody(const scene::Avatar& settings)
     place();
 }
 
-void SceneBody::advance_to(double t)
+bool SceneBody::advance_to(double t)
 {
+    const bool is_carried = !motion_.is_static() && t != time_;
     time_ = t;
     if (figure_)
         figure_->advance_to(t);
-    place();
+    const bool moved = is_carried || (figure_ && figure_->moved());
+    if (moved)
+        place();
+    return moved;
 }
 
 void SceneBody::place()

@@ -1,4 +1,4 @@
-#include "apps/toile/shape_mesh.h"
+#include "scenes/shape_mesh.h"
 
 #include <cmath>
 #include <numbers>

@@ -22,8 +22,11 @@ public:
 
     const scene::Avatar& settings() const { return settings_; }
 
-    /// Shows time t [s].
-    void advance_to(double t);
+    /// True when it never moves.
+    bool is_static() const { return motion_.is_static() && (!figure_ || figure_->is_static()); }
+
+    /// Shows time t [s]. False when nothing moved since the time shown before.
+    bool advance_to(double t);
 
     /// The solid at the time shown, for avatars given as plane, sphere, capsule or box.
     const Shape* shape() const { return shape_ ? &*shape_ : nullptr; }

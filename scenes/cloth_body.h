@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "collision/contact.h"
+#include "core/pd/body.h"
+#include "garment/energy/aerodynamics.h"
+#include "garment/energy/springs.h"
+#include "garment/energy/strain_limit.h"
+#include "scenes/hold.h"
+#include "scenes/world.h"
+
+namespace toile {
+
+/// One cloth of a running scene: fabric, energies, holds, contact, and the body that is stepped.
+class ClothBody {
+public:
+    /// @throws InvalidInput for a mesh, fabric or attachment that does not work.
+    ClothBody(const Scene& scene, const scene::Cloth& settings, const std::vector<Obstacle>& obstacles);
+
+    /// One time step of dt [s] that ends at time t_t1 [s], obstacles already advanced to it.
+    StepReport step(double dt, double t_t1, const std::vector<Obstacle>& obstacles);
+
+    const ClothState& state() const { return state_; }
+
+private:
+    void build(const Scene& scene, const std::vector<Obstacle>& obstacles, const std::string& source,
+               double grain);
+    void hold(double t_t1, const std::vector<Obstacle>& obstacles);
+    void accelerate(double dt);
+    bool sleeps(double t_t1, const std::vector<Obstacle>& obstacles);
+
+    ClothState state_;
+    Vec3 gravity_;
+    scene::Wind wind_;
+    scene::Sleep sleep_;
+    std::vector<Hold> holds_;
+    std::shared_ptr<Springs> springs_; ///< null without attachments that give
+    std::unique_ptr<Aerodynamics> air_;
+    std::unique_ptr<StrainLimit> strain_limit_;
+    std::unique_ptr<Contact> contact_; ///< null without obstacles
+    std::unique_ptr<Body> body_;
+    std::vector<unsigned char> fixed_;
+    std::vector<Vec3> targets_, acceleration_;
+    double rest_time_ = 0.0; ///< [s] since when every vertex has been slow
+};
+
+} // namespace toile

@@ -1,0 +1,82 @@
+#include "scenes/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/backend/parallel.h"
+#include "scenes/cloth_body.h"
+
+namespace toile {
+
+struct World::Parts {
+    Scene scene;
+    std::vector<Obstacle> obstacles;
+    std::vector<ClothBody> bodies;
+    std::vector<ClothState> states;
+    Stages stages;
+    int frame = 0;
+
+    /// Steps of dt [s] each, the last of them ending at `end` [s]; with still avatars when `end` is not after
+    /// 0.
+    StepReport advance(int steps, double dt, double end)
+    {
+        const ThreadLimit threads(scene.solver.threads);
+        const Stages::Activate recording(stages);
+        StepReport total;
+        for (int step = 1; step <= steps; ++step) {
+            const double t = end - (steps - step) * dt;
+            const StageScope stage("scenes/step");
+            for (Obstacle& obstacle : obstacles)
+                obstacle.advance_to(std::max(t, 0.0));
+            StepReport report;
+            for (ClothBody& body : bodies)
+                report.merge(body.step(dt, t, obstacles));
+            report.steps = 1;
+            total.energy = 0.0;
+            total.contacts = 0;
+            total.merge(report);
+            if (total.status == StepReport::Status::NonFinite)
+                break;
+        }
+        for (size_t i = 0; i < bodies.size(); ++i)
+            states[i].positions = bodies[i].state().positions;
+        return total;
+    }
+};
+
+World::World(const Scene& scene) : parts_(std::make_unique<Parts>())
+{
+    parts_->scene = scene;
+    for (const scene::Avatar& avatar : scene.avatars)
+        parts_->obstacles.emplace_back(avatar, scene.contact.friction);
+    for (const scene::Cloth& cloth : scene.cloths) {
+        parts_->bodies.emplace_back(scene, cloth, parts_->obstacles);
+        parts_->states.push_back(parts_->bodies.back().state());
+    }
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+StepReport World::settle()
+{
+    const Scene& scene = parts_->scene;
+    const double dt = scene.frame_duration() / scene.solver.substeps;
+    return parts_->advance(int(std::ceil(scene.settle / dt - 1e-9)), dt, 0.0);
+}
+
+StepReport World::advance_frame()
+{
+    const Scene& scene = parts_->scene;
+    ++parts_->frame;
+    return parts_->advance(scene.solver.substeps, scene.frame_duration() / scene.solver.substeps,
+                           parts_->frame * scene.frame_duration());
+}
+
+int World::frame() const { return parts_->frame; }
+int World::frame_count() const { return parts_->scene.frames; }
+const std::vector<ClothState>& World::cloths() const { return parts_->states; }
+const Stages& World::stages() const { return parts_->stages; }
+
+} // namespace toile

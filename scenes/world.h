@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/backend/stages.h"
+#include "core/mesh/obj.h"
+#include "core/pd/step_report.h"
+#include "garment/fabric/fabric.h"
+#include "scenes/format/scene.h"
+
+namespace toile {
+
+/// A cloth of a running scene as others see it.
+struct ClothState {
+    std::string name;
+    std::vector<Vec3> positions; ///< [vertices] now [m]
+    std::vector<Triangle> triangles;
+    ObjMesh rest; ///< start placement, rest lengths, faces and texture coordinates as stored
+    Fabric fabric;
+};
+
+/// A running scene: avatars, cloths, contact and the time-step loop. The only place that knows them all.
+///
+/// Sample k belongs to time k / fps. Each sample takes Solver::substeps implicit Euler steps; stages that the
+/// scene does not need are never entered (stages() shows it).
+class World {
+public:
+    /// Loads everything and places it; nothing is simulated or factored yet.
+    /// @throws InvalidInput for files, materials and selections that do not work.
+    explicit World(const Scene& scene);
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    /// Simulates Scene::settle seconds with every avatar in its first pose. Call before sample 0 is taken.
+    StepReport settle();
+
+    /// Simulates up to the next sample.
+    StepReport advance_frame();
+
+    int frame() const;       ///< sample that positions belong to; starts at 0
+    int frame_count() const; ///< samples of the scene
+    const std::vector<ClothState>& cloths() const;
+
+    /// Calls and seconds of every stage so far.
+    const Stages& stages() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+} // namespace toile
