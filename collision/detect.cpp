@@ -48,8 +48,8 @@ void ContactDetector::detect(const MeshCollider& mesh, int collider, const Detec
 void ContactDetector::detect(const ShapeCollider& shape, int collider, const DetectSettings& settings,
                              std::vector<ContactPair>& out)
 {
-    append_in_order(
-        "collision/shape", x_.size(),
+    parallel_append(
+        kCpu, "collision/shape", x_.size(),
         [&](int begin, int end, std::vector<ContactPair>& pairs) {
             for (int v = begin; v < end; ++v) {
                 const ShapePoint at = shape.closest(x_[v]);

@@ -93,8 +93,8 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
 
 void find_edge_edge(const PairSearch& search, const SurfaceEdges& cloth, std::vector<ContactPair>& out)
 {
-    append_in_order(
-        "collision/edge_edge", cloth.edge_count(),
+    parallel_append(
+        kCpu, "collision/edge_edge", cloth.edge_count(),
         [&](int begin, int end, std::vector<ContactPair>& pairs) {
             for (int e = begin; e < end; ++e)
                 find_ridges(search, cloth.vertex[e], pairs);

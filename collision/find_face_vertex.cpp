@@ -58,8 +58,8 @@ bool is_inside_below(const MeshCollider& mesh, const Vec3& c, double reach, cons
 void find_face_vertex(const PairSearch& search, const SurfaceProximity& cloth, std::vector<ContactPair>& out)
 {
     const size_t first = out.size();
-    append_in_order(
-        "collision/face_vertex", search.mesh.surface().positions().size(),
+    parallel_append(
+        kCpu, "collision/face_vertex", search.mesh.surface().positions().size(),
         [&](int begin, int end, std::vector<ContactPair>& pairs) {
             for (int v = begin; v < end; ++v)
                 if (is_near(search.cloth_bounds, search.mesh.surface().positions()[v],

@@ -2,14 +2,10 @@
 
 /// The stages of ContactDetector, one source each.
 
-#include <algorithm>
-#include <string_view>
 #include <vector>
 
-#include <tbb/parallel_for.h>
-
 #include "collision/detect.h"
-#include "core/backend/stages.h"
+#include "core/backend/parallel.h"
 
 namespace toile {
 
@@ -44,22 +40,6 @@ bool is_inside_below(const MeshCollider& mesh, const Vec3& c, double reach, cons
 inline bool is_near(const Bounds& box, const Vec3& x, double margin)
 {
     return ((x - box.lower).array() >= -margin).all() && ((x - box.upper).array() <= margin).all();
-}
-
-/// Runs find(begin, end, pairs) over [0, count) in fixed chunks on all threads and appends what the chunks
-/// found in their order: the same list for every thread count. Counted as one call of stage `name`.
-template <typename Find>
-void append_in_order(std::string_view name, int count, const Find& find, std::vector<ContactPair>& out)
-{
-    constexpr int kChunk = 128; // about 0.2 ms of queries
-    const StageScope stage(name);
-    const int chunks = (count + kChunk - 1) / kChunk;
-    std::vector<std::vector<ContactPair>> found(chunks);
-    tbb::parallel_for(0, chunks, [&](int chunk) {
-        find(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), found[chunk]);
-    });
-    for (const std::vector<ContactPair>& pairs : found)
-        out.insert(out.end(), pairs.begin(), pairs.end());
 }
 
 } // namespace toile

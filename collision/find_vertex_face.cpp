@@ -65,8 +65,8 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
 void find_vertex_face(const PairSearch& search, std::vector<ContactPair>& out)
 {
     const double reach = std::max(search.settings.radius, search.settings.max_depth);
-    append_in_order(
-        "collision/vertex_face", search.x.size(),
+    parallel_append(
+        kCpu, "collision/vertex_face", search.x.size(),
         [&](int begin, int end, std::vector<ContactPair>& pairs) {
             int hint = -1;
             for (int v = begin; v < end; ++v)

@@ -78,4 +78,20 @@ T parallel_sum(CpuSpace, int count, const T& zero, const Term& term)
     return total;
 }
 
+/// Runs find(begin, end, found) over [0, count) in fixed chunks and appends what the chunks found to `out` in
+/// their order: the same list for every thread count. Counted as one call of stage `name`.
+template <typename T, typename Find>
+void parallel_append(CpuSpace, std::string_view name, int count, const Find& find, std::vector<T>& out)
+{
+    constexpr int kChunk = 128;
+    const StageScope stage(name);
+    const int chunks = (count + kChunk - 1) / kChunk;
+    std::vector<std::vector<T>> found(chunks);
+    tbb::parallel_for(0, chunks, [&](int chunk) {
+        find(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), found[chunk]);
+    });
+    for (const std::vector<T>& items : found)
+        out.insert(out.end(), items.begin(), items.end());
+}
+
 } // namespace toile

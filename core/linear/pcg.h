@@ -9,9 +9,11 @@ namespace toile {
 /// Preconditioned conjugate gradients for A x = b on 3-vector fields, started at x = 0. [Saad 2003, alg. 9.1]
 class Pcg {
 public:
+    /// The defaults suit the inside of a quasi-Newton method, which needs a direction, not a solution: on the
+    /// tablecloth demo 3 to 5 loose iterations end after as many outer ones as 12 tight ones, in a third of the time.
     struct Settings {
-        double tolerance = 1e-3; ///< [-] of |r| / |b|
-        int max_iterations = 12;
+        double tolerance = 0.1; ///< [-] of |r| / |b|
+        int max_iterations = 4;
     };
     struct Outcome {
         int iterations = 0;

@@ -41,7 +41,8 @@ void add_block(const CurvatureStencil& stencil, const Vec3& weight, double large
 
 } // namespace
 
-Bending::Bending(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source)
+Bending::Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings,
+                 const std::string& source)
 {
     require_valid(settings, source);
     const int n = rest->vertex_count();

@@ -26,7 +26,8 @@ public:
     };
 
     /// @throws InvalidInput naming `source` and a rigidity that is negative or not finite.
-    Bending(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source);
+    Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings,
+            const std::string& source);
 
     std::string_view name() const override { return "garment/bending"; }
     void add_hessian(Triplets& H) const override;

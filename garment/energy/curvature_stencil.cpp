@@ -188,6 +188,8 @@ std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest)
     const int triangles = int(rest.triangles.size());
     std::vector<Fit> fits;
     std::vector<CurvatureStencil> stencils;
+    fits.reserve(triangles);
+    stencils.reserve(triangles);
     for (int t = 0; t < triangles; ++t)
         fits.push_back(fit_triangle(rest, t));
     for (int t = 0; t < triangles; ++t)

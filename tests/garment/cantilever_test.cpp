@@ -36,14 +36,14 @@ double height_over_width(Pattern pattern, double G, int columns)
         std::make_shared<Membrane>(rest, stiff, "strip"),
         std::make_shared<Bending>(rest, Bending::Settings{D, D}, "strip")};
     Body::Settings settings;
-    settings.tolerance = 1e-8;
+    settings.tolerance = 1e-7;
     settings.max_iterations = 200;
     Body body(sheet.flat(), std::make_unique<System>(masses_of(*rest, kArealDensity), energies), settings);
 
     std::vector<unsigned char> fixed(sheet.uv.size(), 0);
     for (int row = 0; row <= 4; ++row)
         fixed[sheet.at(0, row)] = fixed[sheet.at(1, row)] = 1;
-    EXPECT_TRUE(settle(body, 0.1, fixed, 1e-6, 3000));
+    EXPECT_TRUE(settle(body, 0.1, fixed, 1e-4, 300));
 
     Vec3 tip = Vec3::Zero();
     for (int row = 0; row <= 4; ++row)
@@ -55,12 +55,9 @@ class Cantilever : public testing::TestWithParam<Pattern> {};
 
 TEST_P(Cantilever, HangsLikeTheHeavyElastica)
 {
-    for (const Reference& exact : kElastica) {
-        const double measured = height_over_width(GetParam(), exact.G, 40);
-        EXPECT_NEAR(measured / exact.height_over_width, 1.0, 0.02) << "G = " << exact.G;
-        std::printf("G %g: %.5f exact %.5f (%.2f %%)\n", exact.G, measured, exact.height_over_width,
-                    100 * (measured / exact.height_over_width - 1));
-    }
+    for (const Reference& exact : kElastica)
+        EXPECT_NEAR(height_over_width(GetParam(), exact.G, 40) / exact.height_over_width, 1.0, 0.02)
+            << "G = " << exact.G;
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, Cantilever,
