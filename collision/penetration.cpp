@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <tbb/parallel_for.h>
-
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -154,7 +152,7 @@ void PenetrationMeter::exclude_self_intersections(std::vector<Inside>& inside, d
 {
     // Surface near each sample and near its way out.
     std::vector<std::vector<int>> nearby(inside.size());
-    tbb::parallel_for(size_t{0}, inside.size(), [&](size_t i) {
+    parallel_for(kCpu, "collision/penetration_exits", int(inside.size()), [&](int i) {
         if (inside[i].is_excluded)
             return;
         std::vector<int> more;
@@ -170,9 +168,10 @@ void PenetrationMeter::exclude_self_intersections(std::vector<Inside>& inside, d
     std::sort(asked.begin(), asked.end());
     asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
     std::vector<char> buried(surface_.triangles().size(), 0);
-    tbb::parallel_for(size_t{0}, asked.size(), [&](size_t i) { buried[asked[i]] = is_buried(asked[i]); });
+    parallel_for(kCpu, "collision/penetration_buried", int(asked.size()),
+                 [&](int i) { buried[asked[i]] = is_buried(asked[i]); });
 
-    tbb::parallel_for(size_t{0}, inside.size(), [&](size_t i) {
+    parallel_for(kCpu, "collision/penetration_exits", int(inside.size()), [&](int i) {
         const SurfacePoint& exit = inside[i].nearest;
         if (rays_.winding_number(exit.point + kProbe * exit.normal) > 0 ||
             std::any_of(nearby[i].begin(), nearby[i].end(), [&](int t) { return buried[t] != 0; }))
