@@ -25,7 +25,7 @@ for name in tablecloth skirt; do
         --frames "$(frames_for_sheet "$scene")"
     made+=("$folder/$name.png" "${caches[@]}")
     if command -v ffmpeg >/dev/null; then
-        "$toile" render "${caches[0]}" --scene "$scene" -o "$folder/$name.mp4"
+        "$toile" render "${caches[0]}" --scene "$scene" -o "$folder/$name.mp4" --width 640 --height 360 --samples 2
         made+=("$folder/$name.mp4")
     fi
 done
