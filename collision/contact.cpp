@@ -26,6 +26,11 @@ constexpr double kRevisionMargin = 0.003;
 /// Relative change of the friction limits that calls for another minimisation [-].
 constexpr double kFrictionChange = 0.1;
 
+/// Least sum of squared weights of a pair's free vertices for which the pair is cleared by moving them [-].
+/// Where fixed vertices carry nearly all of the pair, the free one would have to be thrown far; the energy
+/// deals with it.
+constexpr double kMinLeverage = 0.1;
+
 /// cos of the angle up to which a pair's normal may turn and still be the same contact [-].
 constexpr double kSameContact = 0.7;
 
@@ -155,6 +160,8 @@ void Contact::make_feasible(View<Vec3> x) const
         for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
             if (!start_.fixed[pair.vertex[k]])
                 squares += pair.weight[k] * pair.weight[k];
+        if (squares < kMinLeverage)
+            continue;
         for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
             if (!start_.fixed[pair.vertex[k]])
                 x[pair.vertex[k]] += pair.weight[k] / squares * depth * pair.normal;
