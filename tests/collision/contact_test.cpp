@@ -1,0 +1,117 @@
+#include "collision/contact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace toile {
+namespace {
+
+/// Three terms on five vertices: a pressing vertex that slides, a face that sticks, an edge that does not
+/// touch.
+ContactEnergy sample_energy()
+{
+    std::vector<ContactTerm> terms(3);
+    terms[0].pair.vertex = {0, -1, -1};
+    terms[0].pair.weight = {1.0, 0.0, 0.0};
+    terms[0].pair.normal = Vec3(1, 2, 2) / 3.0;
+    terms[0].pair.point = Vec3(0.01, 0.0, 0.02);
+    terms[0].friction = 0.4;
+    terms[0].normal_force = 2.0;
+    terms[1].pair.vertex = {1, 2, 3};
+    terms[1].pair.weight = {0.5, 0.3, 0.2};
+    terms[1].pair.point = Vec3(0.0, 0.03, 0.0);
+    terms[1].friction = 0.5;
+    terms[1].normal_force = 1e3;
+    terms[2].pair.vertex = {3, 4, -1};
+    terms[2].pair.weight = {0.25, 0.75, 0.0};
+    terms[2].pair.point = Vec3(0.0, -1.0, 0.0);
+    for (ContactTerm& term : terms) {
+        term.offset = 0.002;
+        term.stiffness = 500.0;
+    }
+    ContactEnergy energy;
+    energy.set_terms(terms, 5);
+    return energy;
+}
+
+std::vector<Vec3> sample_positions()
+{
+    return {Vec3(-0.02, 0.01, -0.01), Vec3(0.01, 0.02, 0.0), Vec3(0.0, 0.01, 0.02), Vec3(-0.01, 0.0, 0.01),
+            Vec3(0.02, 0.01, 0.01)};
+}
+
+TEST(ContactEnergy, HasTheGradientOfItsValue)
+{
+    const ContactEnergy energy = sample_energy();
+    std::vector<Vec3> x = sample_positions(), gradient(5, Vec3::Zero()), ignored(5, Vec3::Zero());
+    energy.add_gradient(x, gradient);
+    const double step = 1e-6;
+    for (int v = 0; v < 5; ++v)
+        for (int k = 0; k < 3; ++k) {
+            std::vector<Vec3> up = x, down = x;
+            up[v][k] += step;
+            down[v][k] -= step;
+            const double slope =
+                (energy.add_gradient(up, ignored) - energy.add_gradient(down, ignored)) / (2.0 * step);
+            EXPECT_NEAR(gradient[v][k], slope, 1e-5 * (1.0 + std::abs(slope)))
+                << "vertex " << v << " axis " << k;
+        }
+    EXPECT_GT(gradient[0].norm(), 1.0); // pressed
+    EXPECT_EQ(gradient[4].norm(), 0.0); // far away
+}
+
+TEST(ContactEnergy, LimitsFrictionToCoulombsDisc)
+{
+    const ContactEnergy energy = sample_energy();
+    std::vector<Vec3> x = sample_positions(), gradient(5, Vec3::Zero());
+    energy.add_gradient(x, gradient);
+    const Vec3 n = energy.terms()[0].pair.normal;
+    const Vec3 tangential = gradient[0] - n.dot(gradient[0]) * n;
+    EXPECT_NEAR(tangential.norm(), 0.4 * 2.0, 1e-12); // slides: 500 N/m times its slip is far above mu f
+}
+
+TEST(ContactEnergy, IsBoundedByItsDiagonalBlocks)
+{
+    ContactEnergy energy = sample_energy();
+    EXPECT_TRUE(energy.activate(sample_positions()));
+    for (int trial = 0; trial < 50; ++trial) {
+        std::vector<Vec3> p(5), product(5, Vec3::Zero());
+        for (int v = 0; v < 5; ++v)
+            p[v] =
+                Vec3(std::sin(3.1 * trial + v), std::cos(1.7 * trial * v + 1), std::sin(trial + 2.3 * v * v));
+        energy.add_hessian_product(p, product);
+        double exact = 0.0, bound = 0.0;
+        for (int v = 0; v < 5; ++v) {
+            exact += p[v].dot(product[v]);
+            bound += p[v].dot(energy.diagonal_blocks()[v] * p[v]);
+        }
+        EXPECT_GE(exact, -1e-12);
+        EXPECT_LE(exact, bound * (1.0 + 1e-12));
+    }
+}
+
+TEST(Contact, DoesNotThrowAVertexThatHardlyCarriesThePair)
+{
+    // A tip pierces the cloth right beside its held edge: only the far, free vertex could move.
+    MovingMesh tip;
+    tip.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+    tip.x_t0 = {Vec3(0.05, 0.001, 0.0002), Vec3(0.07, -0.03, 0.0), Vec3(0.04, -0.03, -0.02),
+                Vec3(0.04, -0.03, 0.02)};
+    tip.x_t1 = tip.x_t0;
+    const MeshCollider collider(tip);
+
+    const std::vector<Triangle> triangles{{0, 2, 1}};
+    const std::vector<Vec3> start{Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0.05, 0, 0.1)};
+    Contact contact(triangles, start, {{&collider, nullptr, 0.3}}, Contact::Settings{});
+    const std::vector<double> diagonal(3, 100.0);
+    const std::vector<unsigned char> fixed{1, 1, 0};
+    contact.begin_step({start, start, diagonal, fixed, 1.0 / 120.0});
+    ASSERT_FALSE(contact.energy().terms().empty());
+    std::vector<Vec3> x = start;
+    contact.make_feasible(x);
+    EXPECT_LT((x[2] - start[2]).norm(), 0.01);
+}
+
+} // namespace
+} // namespace toile
