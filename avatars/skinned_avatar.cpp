@@ -7,6 +7,7 @@ namespace {
 std::vector<Avatar::ClipName> clip_names(const std::vector<Clip>& clips)
 {
     std::vector<Avatar::ClipName> names;
+    names.reserve(clips.size());
     for (const Clip& clip : clips)
         names.push_back({clip.name, clip.duration});
     return names;

@@ -7,9 +7,9 @@
 
 #include "apps/render/camera.h"
 #include "apps/render/renderer.h"
-#include "scenes/scene_body.h"
 #include "export/point_cache.h"
 #include "scenes/format/scene.h"
+#include "scenes/scene_body.h"
 
 namespace toile {
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "scenes/scene_body.h"
 #include "collision/surface_proximity.h"
+#include "scenes/scene_body.h"
 
 namespace toile {
 

@@ -1,5 +1,6 @@
 #include "apps/toile/progress.h"
 
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -47,7 +48,7 @@ void Progress::update(int done, const std::string& note)
 
 std::string clock_text(double seconds)
 {
-    const long total = long(seconds + 0.5);
+    const long total = std::lround(seconds);
     char text[32];
     if (total >= 3600)
         std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", total / 3600, total / 60 % 60, total % 60);

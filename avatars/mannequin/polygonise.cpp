@@ -37,7 +37,8 @@ struct Grid {
     int stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? size[0] : size[0] * size[1]; }
     Vec3 point(int i) const
     {
-        return lower + h * Vec3(i % size[0], (i / size[0]) % size[1], i / (size[0] * size[1]));
+        const int layer = i / (size[0] * size[1]);
+        return lower + h * Vec3(i % size[0], (i / size[0]) % size[1], layer);
     }
 };
 

@@ -10,7 +10,8 @@ namespace toile {
 class Pcg {
 public:
     /// The defaults suit the inside of a quasi-Newton method, which needs a direction, not a solution: on the
-    /// tablecloth demo 3 to 5 loose iterations end after as many outer ones as 12 tight ones, in a third of the time.
+    /// tablecloth demo 3 to 5 loose iterations end after as many outer ones as 12 tight ones, in a third of
+    /// the time.
     struct Settings {
         double tolerance = 0.1; ///< [-] of |r| / |b|
         int max_iterations = 4;

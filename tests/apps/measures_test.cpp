@@ -7,9 +7,9 @@
 
 #include "apps/toile/frame_range.h"
 #include "apps/toile/progress.h"
-#include "scenes/shape_mesh.h"
 #include "apps/toile/strain.h"
 #include "core/backend/error.h"
+#include "scenes/shape_mesh.h"
 
 namespace toile {
 namespace {

@@ -81,7 +81,8 @@ TEST(World, LetsClothSlideOnePerCentAboveTheFrictionAngle) { EXPECT_GT(slide(0.5
 TEST(World, SlidesAtCoulombsAcceleration)
 {
     const double angle = std::atan(0.6);
-    const double exact = 0.5 * 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)); // 1/2 t^2 g (sin a - mu cos a)
+    const double exact =
+        0.5 * 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)); // 1/2 t^2 g (sin a - mu cos a)
     EXPECT_NEAR(slide(0.6), exact, 0.02 * exact);
 }
 
