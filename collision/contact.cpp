@@ -113,13 +113,7 @@ void Contact::detect(View<const Vec3> at, double radius)
 }
 
 /// The pair's cloth point at t0, moved along with the collider.
-Vec3 Contact::at_start(const ContactPair& pair) const
-{
-    Vec3 point = pair.motion;
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
-        point += pair.weight[k] * start_.x[pair.vertex[k]];
-    return point;
-}
+Vec3 Contact::at_start(const ContactPair& pair) const { return pair.cloth_point(start_.x) + pair.motion; }
 
 ContactTerm Contact::make_term(const ContactPair& pair) const
 {
@@ -211,7 +205,7 @@ bool Contact::update_normal_forces(View<const Vec3> x)
     double total = 0.0, change = 0.0;
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const ContactTerm& term = energy_.terms()[i];
-        const double force = term.stiffness * std::max(-energy_.gap(i, x), 0.0);
+        const double force = energy_.pressing_force(i, x);
         total += term.friction * force;
         change += term.friction * std::abs(force - term.normal_force);
         energy_.set_normal_force(i, force);
@@ -225,7 +219,7 @@ void Contact::remember(View<const Vec3> x)
     memory_.clear();
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const ContactTerm& term = energy_.terms()[i];
-        const double force = term.stiffness * std::max(-energy_.gap(i, x), 0.0);
+        const double force = energy_.pressing_force(i, x);
         if (force == 0.0)
             continue;
         Vec3 stick = energy_.slip(i, x);

@@ -10,14 +10,6 @@ namespace toile {
 
 namespace {
 
-Vec3 cloth_point(const ContactPair& pair, View<const Vec3> x)
-{
-    Vec3 point = pair.weight[0] * x[pair.vertex[0]];
-    for (int k = 1; k < 3 && pair.vertex[k] >= 0; ++k)
-        point += pair.weight[k] * x[pair.vertex[k]];
-    return point;
-}
-
 /// Friction's stiffness at slip length |u|: w while sticking, L/|u| while sliding.
 double tangential_stiffness(const ContactTerm& term, double slip_length)
 {
@@ -57,13 +49,18 @@ void ContactEnergy::set_terms(std::vector<ContactTerm> terms, int vertex_count)
 double ContactEnergy::gap(int i, View<const Vec3> x) const
 {
     const ContactTerm& term = terms_[i];
-    return term.pair.normal.dot(cloth_point(term.pair, x) - term.pair.point) - term.offset;
+    return term.pair.gap(x) - term.offset;
+}
+
+double ContactEnergy::pressing_force(int i, View<const Vec3> x) const
+{
+    return terms_[i].stiffness * std::max(-gap(i, x), 0.0);
 }
 
 Vec3 ContactEnergy::slip(int i, View<const Vec3> x) const
 {
     const ContactTerm& term = terms_[i];
-    const Vec3 moved = cloth_point(term.pair, x) - term.anchor;
+    const Vec3 moved = term.pair.cloth_point(x) - term.anchor;
     return moved - term.pair.normal.dot(moved) * term.pair.normal;
 }
 
@@ -129,7 +126,7 @@ bool ContactEnergy::activate(View<const Vec3> x)
 void ContactEnergy::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
 {
     parallel_for(kCpu, "contact/multiply", int(terms_.size()),
-                 [&](int i) { term_force_[i] = frozen_[i] * cloth_point(terms_[i].pair, p); });
+                 [&](int i) { term_force_[i] = frozen_[i] * terms_[i].pair.cloth_point(p); });
     gather(out, [&](int i) -> const Vec3& { return term_force_[i]; });
 }
 

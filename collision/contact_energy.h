@@ -50,6 +50,8 @@ public:
 
     /// Gap g of a term at x [m]; negative where it pushes.
     double gap(int term, View<const Vec3> x) const;
+    /// Force of the normal spring at x [N].
+    double pressing_force(int term, View<const Vec3> x) const;
     /// Part of anchor-to-cloth in the tangent plane, u above [m].
     Vec3 slip(int term, View<const Vec3> x) const;
 

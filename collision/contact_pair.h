@@ -29,15 +29,17 @@ struct ContactPair {
     ContactKind kind = ContactKind::kVertexFace;
     int feature = -1; ///< collider triangle, vertex or edge by kind; 0 for a shape
 
-    /// n . (sum_k weight_k x_k - point) at cloth positions x [m]: negative inside the collider.
-    double gap(View<const Vec3> x) const
+    /// sum_k weight_k x_k at cloth positions x [m].
+    Vec3 cloth_point(View<const Vec3> x) const
     {
-        Vec3 relative = -point;
-        for (int k = 0; k < 3; ++k)
-            if (vertex[k] >= 0)
-                relative += weight[k] * x[vertex[k]];
-        return normal.dot(relative);
+        Vec3 sum = weight[0] * x[vertex[0]];
+        for (int k = 1; k < 3 && vertex[k] >= 0; ++k)
+            sum += weight[k] * x[vertex[k]];
+        return sum;
     }
+
+    /// n . (sum_k weight_k x_k - point) at cloth positions x [m]: negative inside the collider.
+    double gap(View<const Vec3> x) const { return normal.dot(cloth_point(x) - point); }
 };
 
 } // namespace toile

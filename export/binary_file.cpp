@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/backend/atomic_file.h"
 #include "core/backend/error.h"
 
 namespace toile {
@@ -32,16 +33,6 @@ const char* remedy(BinaryFile::Mode mode)
         return "without it nothing can be resumed, start the run anew";
     }
     return "";
-}
-
-void create_parent_folder(const std::filesystem::path& file)
-{
-    std::error_code error;
-    if (file.has_parent_path())
-        std::filesystem::create_directories(file.parent_path(), error);
-    if (error)
-        throw InvalidInput(file.string() + ": its folder can't be created (" + error.message() +
-                           "); choose a writable folder");
 }
 
 } // namespace

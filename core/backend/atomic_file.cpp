@@ -10,7 +10,7 @@
 
 namespace toile {
 
-void write_atomically(const std::filesystem::path& file, std::string_view content)
+void create_parent_folder(const std::filesystem::path& file)
 {
     std::error_code error;
     if (file.has_parent_path())
@@ -18,7 +18,12 @@ void write_atomically(const std::filesystem::path& file, std::string_view conten
     if (error)
         throw InvalidInput(file.string() + ": its folder can't be created (" + error.message() +
                            "); choose a writable folder");
+}
 
+void write_atomically(const std::filesystem::path& file, std::string_view content)
+{
+    create_parent_folder(file);
+    std::error_code error;
     const std::filesystem::path partial = file.string() + ".partial-" + std::to_string(::getpid());
     std::ofstream stream(partial, std::ios::binary);
     if (!stream)

@@ -5,6 +5,10 @@
 
 namespace toile {
 
+/// Creates the folders above a file that is about to be written.
+/// @throws InvalidInput when they can't be created.
+void create_parent_folder(const std::filesystem::path& file);
+
 /// Writes a whole file beside its name and renames it into place: readers see the old content or the new,
 /// never half of it. Creates missing parent folders.
 /// @throws InvalidInput when the folder can't be created or written to or the name is taken by a folder,
