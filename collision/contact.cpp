@@ -143,8 +143,9 @@ ContactTerm Contact::make_term(const ContactPair& pair) const
     return term;
 }
 
-void Contact::make_feasible(View<Vec3> x) const
+bool Contact::make_feasible(View<Vec3> x) const
 {
+    bool moved = false;
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const double depth = -energy_.gap(i, x);
         if (depth <= 0.0)
@@ -156,10 +157,12 @@ void Contact::make_feasible(View<Vec3> x) const
                 squares += pair.weight[k] * pair.weight[k];
         if (squares < kMinLeverage)
             continue;
+        moved = true;
         for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
             if (!start_.fixed[pair.vertex[k]])
                 x[pair.vertex[k]] += pair.weight[k] / squares * depth * pair.normal;
     }
+    return moved;
 }
 
 double Contact::add_gradient(View<const Vec3> x, View<Vec3> gradient) const

@@ -43,7 +43,7 @@ public:
             const Settings& settings);
 
     void begin_step(const StepStart& start) override;
-    void make_feasible(View<Vec3> x) const override;
+    bool make_feasible(View<Vec3> x) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;

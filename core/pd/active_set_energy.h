@@ -22,8 +22,9 @@ public:
     /// Finds the candidates of this step.
     virtual void begin_step(const StepStart& start) = 0;
 
-    /// Moves a start guess out of the candidates' forbidden half-spaces where that is a local matter.
-    virtual void make_feasible(View<Vec3> x) const = 0;
+    /// Moves a start guess out of the candidates' forbidden half-spaces where that is a local matter. True
+    /// when anything moved.
+    virtual bool make_feasible(View<Vec3> x) const = 0;
 
     /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) const = 0;

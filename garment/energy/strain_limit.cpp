@@ -17,6 +17,9 @@ namespace {
 /// Mass of a fixed vertex relative to the heaviest free one while a triangle is fitted [-].
 constexpr double kFixedMassRatio = 1e6;
 
+/// Triangles that share a vertex with a given one, counted per vertex.
+constexpr size_t kNeighbourhood = 18;
+
 /// Masses of a triangle's corners up to a common factor.
 Vec3 relative_masses(const Triangle& corner, View<const double> inverse_masses)
 {
@@ -61,7 +64,7 @@ double StrainLimit::max_strain(View<const Vec3> x) const
     return largest - 1.0;
 }
 
-void StrainLimit::find_violating(View<const Vec3> x)
+void StrainLimit::look_at_everything(View<const Vec3> x)
 {
     const double allowed = 1.0 + settings_.limit + settings_.tolerance;
     parallel_for(kCpu, "strain_limit/find", int(rest_inv_.size()),
@@ -72,12 +75,29 @@ void StrainLimit::find_violating(View<const Vec3> x)
             violating_.push_back(t);
 }
 
+/// Looks again at the triangles that share a vertex with one that a sweep has just moved.
+void StrainLimit::look_around_violating(View<const Vec3> x)
+{
+    const Incidence& corners = rest_->topology.corners_of_vertex;
+    const double allowed = 1.0 + settings_.limit + settings_.tolerance;
+    std::vector<int> found;
+    for (const int moved : violating_)
+        for (const int v : rest_->triangles[moved])
+            for (const int corner : corners.of(v)) {
+                const int t = corner / 3;
+                violates_[t] = largest_stretch(deformation_gradient(t, x)) > allowed;
+                if (violates_[t])
+                    found.push_back(t);
+            }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    violating_.swap(found);
+}
+
 void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active)
 {
-    for (int sweep = 0; sweep < settings_.max_sweeps; ++sweep) {
-        find_violating(x);
-        if (violating_.empty())
-            return;
+    look_at_everything(x);
+    for (int sweep = 0; sweep < settings_.max_sweeps && !violating_.empty(); ++sweep) {
         const StageScope stage("garment/strain_limit");
 
         // Alternate the direction so that corrections travel both ways through the mesh.
@@ -85,8 +105,11 @@ void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const
             std::reverse(violating_.begin(), violating_.end());
         for (const int t : violating_)
             clamp_triangle(t, x, inverse_masses);
-        if (active)
-            active->make_feasible(x);
+        const bool cleared = active && active->make_feasible(x);
+        if (cleared || kNeighbourhood * violating_.size() > violates_.size())
+            look_at_everything(x);
+        else
+            look_around_violating(x);
     }
 }
 

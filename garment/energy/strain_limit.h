@@ -35,7 +35,8 @@ public:
 private:
     Mat32 deformation_gradient(int t, View<const Vec3> x) const;
     void clamp_triangle(int t, View<Vec3> x, View<const double> inverse_masses) const;
-    void find_violating(View<const Vec3> x);
+    void look_at_everything(View<const Vec3> x);
+    void look_around_violating(View<const Vec3> x);
 
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
