@@ -37,16 +37,17 @@ inline constexpr int kGrain = 256;
 /// Runs kernel(i) for i in [0, count), in any order, on all threads of the caller's TBB arena.
 /// Item i may write slot i only, so the result has the same bits for every thread count.
 /// Counted as one call of stage `name`.
+/// @param grain  items per task
 template <typename Kernel>
-void parallel_for(CpuSpace, std::string_view name, int count, const Kernel& kernel)
+void parallel_for(CpuSpace, std::string_view name, int count, const Kernel& kernel, int grain = kGrain)
 {
     const StageScope stage(name);
-    if (count <= kGrain) {
+    if (count <= grain) {
         for (int i = 0; i < count; ++i)
             kernel(i);
         return;
     }
-    tbb::parallel_for(tbb::blocked_range<int>(0, count, kGrain), [&](const tbb::blocked_range<int>& range) {
+    tbb::parallel_for(tbb::blocked_range<int>(0, count, grain), [&](const tbb::blocked_range<int>& range) {
         for (int i = range.begin(); i < range.end(); ++i)
             kernel(i);
     });

@@ -93,6 +93,7 @@ SupernodalFactor copy_factor(const cholmod_factor& L)
         copy_block(value + node.first_value, node.width, height, copy.values.data() + node.first_value);
         copy.supernodes.push_back(node);
     }
+    copy.plan();
     return copy;
 }
 

@@ -6,6 +6,9 @@ namespace toile {
 
 /// Linear algebra on fields of 3-vectors [vertices], deterministic for every thread count.
 
+/// Items per task: a vector update is so short that smaller tasks would cost more than they share.
+inline constexpr int kFieldGrain = 4096;
+
 /// a . b
 inline double dot(View<const Vec3> a, View<const Vec3> b)
 {
@@ -15,13 +18,24 @@ inline double dot(View<const Vec3> a, View<const Vec3> b)
 /// y += factor x
 inline void axpy(double factor, View<const Vec3> x, View<Vec3> y)
 {
-    parallel_for(kCpu, "field/axpy", y.size(), [&](int i) { y[i] += factor * x[i]; });
+    parallel_for(
+        kCpu, "field/axpy", y.size(), [&](int i) { y[i] += factor * x[i]; }, kFieldGrain);
+}
+
+/// y += factor x, returns y . z: one pass over memory instead of two.
+inline double axpy_dot(double factor, View<const Vec3> x, View<Vec3> y, View<const Vec3> z)
+{
+    return parallel_sum(kCpu, y.size(), 0.0, [&](int i) {
+        y[i] += factor * x[i];
+        return y[i].dot(z[i]);
+    });
 }
 
 /// y = x + factor y
 inline void xpay(View<const Vec3> x, double factor, View<Vec3> y)
 {
-    parallel_for(kCpu, "field/xpay", y.size(), [&](int i) { y[i] = x[i] + factor * y[i]; });
+    parallel_for(
+        kCpu, "field/xpay", y.size(), [&](int i) { y[i] = x[i] + factor * y[i]; }, kFieldGrain);
 }
 
 /// Largest vector length; NaN when any entry is.

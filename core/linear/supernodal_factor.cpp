@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 namespace toile {
 
 namespace {
@@ -11,6 +14,13 @@ using Vec4 = Eigen::Vector4d;
 /// Rows or columns treated together: eight accumulators fill the registers and hide the latency of the
 /// multiply-adds.
 constexpr int kBlock = 8;
+
+/// Largest share of L's entries that one subtree may hold. Smaller: more threads find work, more of it stays
+/// above the subtrees, where one thread works alone.
+constexpr double kLargestSubtree = 1.0 / 12.0;
+
+/// Entries of L below which a solve is not worth splitting.
+constexpr long kMinParallelEntries = 200'000;
 
 /// acc[k] = sum_j L(k, j) y[j] for `Count` rows of length `width`, `stride` apart.
 template <int Count>
@@ -109,17 +119,118 @@ Vec4* scratch(size_t count)
 
 } // namespace
 
+void SupernodalFactor::plan()
+{
+    most_rows_ = 0;
+    for (const Supernode& node : supernodes)
+        most_rows_ = std::max(most_rows_, node.row_count);
+    split_tree();
+    redirect_rows();
+}
+
+/// Cuts the heaviest subtree at its root until none is heavier than kLargestSubtree.
+void SupernodalFactor::split_tree()
+{
+    const int count = int(supernodes.size());
+    std::vector<int> node_of_column(permutation.size());
+    for (int s = 0; s < count; ++s)
+        std::fill_n(node_of_column.begin() + supernodes[s].first_column, supernodes[s].width, s);
+
+    // A subtree is a contiguous range that ends with its root, because the columns are in postorder.
+    std::vector<int> first(count);
+    std::vector<long> entries(count);
+    std::vector<std::vector<int>> children(count);
+    std::vector<int> open;
+    for (int s = 0; s < count; ++s) {
+        const Supernode& node = supernodes[s];
+        entries[s] += long(node.width) * (node.width + node.row_count);
+        first[s] = children[s].empty() ? s : first[children[s].front()];
+        if (node.row_count == 0) {
+            open.push_back(s);
+            continue;
+        }
+        const int parent = node_of_column[rows[node.first_row]];
+        children[parent].push_back(s);
+        entries[parent] += entries[s];
+    }
+
+    subtrees_.clear();
+    top_.clear();
+    const long total = long(values.size());
+    while (!open.empty()) {
+        const int root = open.back();
+        open.pop_back();
+        if (total < kMinParallelEntries || double(entries[root]) <= kLargestSubtree * double(total)) {
+            subtrees_.push_back({first[root], root + 1});
+            continue;
+        }
+        top_.push_back(root);
+        open.insert(open.end(), children[root].begin(), children[root].end());
+    }
+    std::sort(top_.begin(), top_.end());
+    std::sort(subtrees_.begin(), subtrees_.end(),
+              [](const Subtree& a, const Subtree& b) { return a.first < b.first; });
+}
+
+/// Gives every subtree its own slots, behind the n columns, for what it subtracts from the top's columns.
+void SupernodalFactor::redirect_rows()
+{
+    top_columns_.clear();
+    std::vector<int> slot(permutation.size(), -1);
+    for (const int s : top_)
+        for (int k = 0; k < supernodes[s].width; ++k) {
+            slot[supernodes[s].first_column + k] = int(top_columns_.size());
+            top_columns_.push_back(supernodes[s].first_column + k);
+        }
+
+    forward_rows_ = rows;
+    const int n = int(permutation.size()), slots = int(top_columns_.size());
+    for (int t = 0; t < int(subtrees_.size()); ++t)
+        for (int s = subtrees_[t].first; s < subtrees_[t].last; ++s)
+            for (int r = 0; r < supernodes[s].row_count; ++r)
+                if (int& row = forward_rows_[supernodes[s].first_row + r]; slot[row] >= 0)
+                    row = n + t * slots + slot[row];
+}
+
 void SupernodalFactor::solve(View<const Vec3> b, View<Vec3> x) const
 {
     const int n = int(permutation.size());
-    Vec4* y = scratch(2 * size_t(n));
-    Vec4* gathered = y + n;
+    const int trees = int(subtrees_.size()), slots = int(top_columns_.size());
+    Vec4* y = scratch(size_t(n) + size_t(trees) * slots + size_t(trees + 1) * most_rows_);
+    Vec4* updates = y + n;
+    Vec4* gathered = updates + size_t(trees) * slots;
     for (int k = 0; k < n; ++k)
         y[k] << b[permutation[k]], 0.0;
-    for (const Supernode& node : supernodes)
-        forward(node, rows.data() + node.first_row, values.data() + node.first_value, y);
-    for (auto node = supernodes.rbegin(); node != supernodes.rend(); ++node)
-        backward(*node, rows.data() + node->first_row, values.data() + node->first_value, y, gathered);
+    std::fill(updates, updates + size_t(trees) * slots, Vec4::Zero());
+
+    const auto forward_node = [&](int s) {
+        const Supernode& node = supernodes[s];
+        forward(node, forward_rows_.data() + node.first_row, values.data() + node.first_value, y);
+    };
+    const auto backward_node = [&](int s, Vec4* own_scratch) {
+        const Supernode& node = supernodes[s];
+        backward(node, rows.data() + node.first_row, values.data() + node.first_value, y, own_scratch);
+    };
+    // Isolated: a waiting thread must not pick up another solve, which would use the same scratch.
+    const auto for_each_subtree = [&](const auto& work) {
+        tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, trees, work); });
+    };
+
+    for_each_subtree([&](int t) {
+        for (int s = subtrees_[t].first; s < subtrees_[t].last; ++s)
+            forward_node(s);
+    });
+    for (int t = 0; t < trees; ++t)
+        for (int k = 0; k < slots; ++k)
+            y[top_columns_[k]] += updates[size_t(t) * slots + k];
+    for (const int s : top_)
+        forward_node(s);
+    for (auto s = top_.rbegin(); s != top_.rend(); ++s)
+        backward_node(*s, gathered + size_t(trees) * most_rows_);
+    for_each_subtree([&](int t) {
+        for (int s = subtrees_[t].last - 1; s >= subtrees_[t].first; --s)
+            backward_node(s, gathered + size_t(t) * most_rows_);
+    });
     for (int k = 0; k < n; ++k)
         x[permutation[k]] = y[k].head<3>();
 }

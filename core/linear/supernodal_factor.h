@@ -29,8 +29,28 @@ public:
     std::vector<double> values;
     std::vector<int> permutation; ///< [n] row k of L is row permutation[k] of the matrix
 
+    /// Splits the elimination tree into subtrees that are solved in parallel and the nodes above them. Call
+    /// once after filling the arrays. The split depends on L alone, so the bits of a solve do not depend on
+    /// the thread count.
+    void plan();
+
     /// x = P^T L^-T L^-1 P b
     void solve(View<const Vec3> b, View<Vec3> x) const;
+
+private:
+    /// Supernodes [first, last) that depend on nothing outside.
+    struct Subtree {
+        int first = 0, last = 0;
+    };
+
+    void split_tree();
+    void redirect_rows();
+
+    std::vector<Subtree> subtrees_;
+    std::vector<int> top_;          ///< supernodes above the subtrees, ascending
+    std::vector<int> top_columns_;  ///< their columns, ascending
+    int most_rows_ = 0;             ///< largest row_count
+    std::vector<int> forward_rows_; ///< rows, those of a subtree's updates to the top sent to its own slots
 };
 
 } // namespace toile

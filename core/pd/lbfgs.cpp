@@ -63,24 +63,32 @@ Lbfgs::Outcome Lbfgs::minimise(Objective& objective, View<Vec3> x, const Setting
     return outcome;
 }
 
-/// direction = -(two-loop recursion applied to the gradient)
+/// direction = two-loop recursion applied to -gradient; each pass updates and takes the next product at once.
 void Lbfgs::descend(Objective& objective)
 {
     const int count = int(pairs_.size());
     alpha_.resize(count);
     std::vector<Vec3>& q = trial_gradient_;
-    q = gradient_;
+    parallel_for(
+        kCpu, "lbfgs/negate", int(q.size()), [&](int i) { q[i] = -gradient_[i]; }, kFieldGrain);
+    double product = count > 0 ? dot(pairs_[count - 1].s, q) : 0.0;
     for (int i = count - 1; i >= 0; --i) {
-        alpha_[i] = pairs_[i].rho * dot(pairs_[i].s, q);
-        axpy(-alpha_[i], pairs_[i].y, q);
+        alpha_[i] = pairs_[i].rho * product;
+        if (i > 0)
+            product = axpy_dot(-alpha_[i], pairs_[i].y, q, pairs_[i - 1].s);
+        else
+            axpy(-alpha_[i], pairs_[i].y, q);
     }
+
     objective.precondition(q, direction_);
+    product = count > 0 ? dot(pairs_[0].y, direction_) : 0.0;
     for (int i = 0; i < count; ++i) {
-        const double beta = pairs_[i].rho * dot(pairs_[i].y, direction_);
-        axpy(alpha_[i] - beta, pairs_[i].s, direction_);
+        const double factor = alpha_[i] - pairs_[i].rho * product;
+        if (i + 1 < count)
+            product = axpy_dot(factor, pairs_[i].s, direction_, pairs_[i + 1].y);
+        else
+            axpy(factor, pairs_[i].s, direction_);
     }
-    parallel_for(kCpu, "lbfgs/negate", int(direction_.size()),
-                 [&](int i) { direction_[i] = -direction_[i]; });
 }
 
 /// Backtracks along the direction from x until the value decreases sufficiently; x and value move on success.
@@ -93,7 +101,9 @@ double Lbfgs::line_search(Objective& objective, View<Vec3> x, double& value)
 
     double step = 1.0;
     for (int attempt = 0; attempt < kMaxBacktracks; ++attempt) {
-        parallel_for(kCpu, "lbfgs/trial", x.size(), [&](int i) { trial_[i] = x[i] + step * direction_[i]; });
+        parallel_for(
+            kCpu, "lbfgs/trial", x.size(), [&](int i) { trial_[i] = x[i] + step * direction_[i]; },
+            kFieldGrain);
         const double trial_value = objective.evaluate(trial_, trial_gradient_);
         if (trial_value <= value + kSufficientDecrease * step * slope + kValueNoise * std::abs(value)) {
             std::copy(trial_.begin(), trial_.end(), x.begin());
@@ -119,14 +129,16 @@ void Lbfgs::remember(double step)
     const int n = int(gradient_.size());
     pair.s.resize(n);
     pair.y.resize(n);
-    parallel_for(kCpu, "lbfgs/pair", n, [&](int i) {
+    // s.y, s.s and y.y in one pass.
+    const Vec3 products = parallel_sum(kCpu, n, Vec3(Vec3::Zero()), [&](int i) {
         pair.s[i] = step * direction_[i];
         pair.y[i] = trial_gradient_[i] - gradient_[i];
+        return Vec3(pair.s[i].dot(pair.y[i]), pair.s[i].squaredNorm(), pair.y[i].squaredNorm());
     });
     gradient_.swap(trial_gradient_);
 
-    const double curvature = dot(pair.s, pair.y);
-    const double scale = std::sqrt(dot(pair.s, pair.s) * dot(pair.y, pair.y));
+    const double curvature = products[0];
+    const double scale = std::sqrt(products[1] * products[2]);
     if (curvature > kMinCurvature * scale) {
         pair.rho = 1.0 / curvature;
         pairs_.push_back(std::move(pair));

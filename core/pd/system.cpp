@@ -20,17 +20,6 @@ void eliminate(SparseMatrix& H, View<const unsigned char> fixed)
                 entry.valueRef() = entry.row() == entry.col() ? 1.0 : 0.0;
 }
 
-/// What one vertex contributes to the inertia: value [J] and gradient m/dt^2 (x - q*) [N].
-struct Inertia {
-    View<const Vec3> x;
-    View<const Vec3> prediction;
-    View<const double> masses;
-    double inverse_dt2;
-    View<Vec3> gradient;
-
-    void operator()(int i) const { gradient[i] = masses[i] * inverse_dt2 * (x[i] - prediction[i]); }
-};
-
 } // namespace
 
 System::System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> energies)
@@ -86,10 +75,11 @@ double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
 {
     const double inverse_dt2 = 1.0 / (dt_ * dt_);
     const View<const double> masses = system_.masses();
-    parallel_for(kCpu, "pd/inertia", x.size(), Inertia{x, prediction_, masses, inverse_dt2, gradient});
-    double value = 0.5 * inverse_dt2 * parallel_sum(kCpu, x.size(), 0.0, [&](int i) {
-                       return masses[i] * (x[i] - prediction_[i]).squaredNorm();
-                   });
+    double value = parallel_sum(kCpu, x.size(), 0.0, [&](int i) {
+        const Vec3 away = x[i] - prediction_[i];
+        gradient[i] = masses[i] * inverse_dt2 * away;
+        return 0.5 * gradient[i].dot(away);
+    });
     value += system_.add_gradient(x, gradient);
     if (active_)
         value += active_->add_gradient(x, gradient);

@@ -34,20 +34,26 @@ Membrane::Membrane(std::shared_ptr<const RestShape> rest, const Settings& settin
     weights_.shear = 2.0 * settings.shear;
     weights_.warp = std::max(settings.warp - weights_.shear, 0.0);
     weights_.weft = std::max(settings.weft - weights_.shear, 0.0);
-    for (const Mat2& edges : rest_->edges)
-        rest_inv_.push_back(edges.inverse());
-    corner_gradient_.resize(rest_inv_.size());
-    triangle_energy_.resize(rest_inv_.size());
+    const int triangles = int(rest_->triangles.size());
+    for (int first = 0; first < triangles; first += kLanes) {
+        Mat2Of<Lanes> inverse;
+        for (int k = 0; k < 4; ++k)
+            inverse(k) = gather(first, triangles, [&](int t) { return rest_->edges[t].inverse().eval()(k); });
+        rest_inv_.push_back(inverse);
+        area_.push_back(gather(first, triangles, [&](int t) { return rest_->areas[t]; }));
+    }
+    corner_gradient_.resize(triangles);
+    triangle_energy_.resize(triangles);
 }
 
 void Membrane::add_hessian(Triplets& H) const
 {
     const Eigen::DiagonalMatrix<double, 2> weight(weights_.warp + weights_.shear,
                                                   weights_.weft + weights_.shear);
-    for (size_t t = 0; t < rest_inv_.size(); ++t) {
+    for (size_t t = 0; t < rest_->triangles.size(); ++t) {
         // Rows of G: gradients of the hat functions of corners 0, 1, 2 in material axes.
         Mat32 G;
-        G.bottomRows<2>() = rest_inv_[t];
+        G.bottomRows<2>() = rest_->edges[t].inverse();
         G.row(0) = -G.row(1) - G.row(2);
         const Mat3 block = rest_->areas[t] * G * weight * G.transpose();
         for (int i = 0; i < 3; ++i)
@@ -58,10 +64,10 @@ void Membrane::add_hessian(Triplets& H) const
 
 double Membrane::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
-    const int triangles = int(rest_inv_.size());
-    parallel_for(kCpu, "membrane/project", triangles,
-                 ProjectMembrane{x, rest_->triangles, rest_inv_, rest_->areas, weights_, corner_gradient_,
-                                 triangle_energy_});
+    const int triangles = int(rest_->triangles.size());
+    parallel_for(
+        kCpu, "membrane/project", lane_blocks(triangles),
+        ProjectMembrane{x, rest_->triangles, rest_inv_, area_, weights_, corner_gradient_, triangle_energy_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "membrane/gather", gradient.size(),
                  GatherCorners{corners.first, corners.items, corner_gradient_, gradient});

@@ -35,7 +35,8 @@ public:
 private:
     std::shared_ptr<const RestShape> rest_;
     MembraneWeights weights_;
-    std::vector<Mat2> rest_inv_;
+    std::vector<Mat2Of<Lanes>> rest_inv_; ///< [blocks of triangles]
+    std::vector<Lanes> area_;             ///< [blocks of triangles]
     std::vector<Mat32> corner_gradient_;
     std::vector<double> triangle_energy_;
 };

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/backend/types.h"
+#include "core/backend/lanes.h"
 
 namespace toile {
 
@@ -16,20 +16,24 @@ constexpr double kCollapsed = 1e-24;
 ///
 /// R is the polar factor F (F^T F)^(-1/2). The 2x2 root is closed form, so no SVD and no iteration.
 /// A collapsed triangle has no closest isometry: it gets F itself, that is no force.
-TOILE_HD inline Mat32 closest_isometry(const Mat32& F)
+template <typename T>
+TOILE_HD Mat32Of<T> closest_isometry(const Mat32Of<T>& F)
 {
     // Square root of C = F^T F from its invariants: S = (C + d I) / r, with d = sqrt(det C).
-    const double a = F.col(0).squaredNorm(), b = F.col(0).dot(F.col(1)), c = F.col(1).squaredNorm();
-    const double d = std::sqrt(std::fmax(a * c - b * b, 0.0));
-    const double r = std::sqrt(a + c + 2.0 * d);
+    const T a = F.col(0).squaredNorm(), b = F.col(0).dot(F.col(1)), c = F.col(1).squaredNorm();
+    const T square = a * c - b * b;
+    const T d = square_root(select(square > T(0.0), square, T(0.0)));
+    const T r = square_root(a + c + T(2.0) * d);
 
     // S^(-1) = r adj(C + d I) / det(C + d I).
-    const double det = (a + d) * (c + d) - b * b;
-    if (!(det > kCollapsed))
-        return F;
-    Mat32 R;
-    R.col(0) = (r / det) * ((c + d) * F.col(0) - b * F.col(1));
-    R.col(1) = (r / det) * ((a + d) * F.col(1) - b * F.col(0));
+    const T det = (a + d) * (c + d) - b * b;
+    const auto is_valid = det > T(kCollapsed);
+    const T scale = r / select(is_valid, det, T(1.0));
+    Mat32Of<T> R;
+    R.col(0) = scale * ((c + d) * F.col(0) - b * F.col(1));
+    R.col(1) = scale * ((a + d) * F.col(1) - b * F.col(0));
+    for (int k = 0; k < 6; ++k)
+        R(k) = select(is_valid, R(k), F(k));
     return R;
 }
 
@@ -40,43 +44,75 @@ struct MembraneWeights {
     double shear = 0.0; ///< on |F - R|^2
 };
 
-/// Local step of the membrane on triangle t: projections of the deformation gradient, the energy that is
-/// left, and the forces on two of the corners (the third balances them).
+/// Energy of a triangle [J] and the forces on two of its corners (the third balances them).
+template <typename T>
+struct MembraneResponse {
+    Mat32Of<T> corner_gradient; ///< dW/dx1, dW/dx2 [N]; dW/dx0 is minus their sum
+    T energy;
+};
+
+/// Local step of the membrane on a triangle: the distance of its deformation gradient to the projections.
+/// @param F         deformation gradient; its columns are the stretched warp and weft
+/// @param rest_inv  inverse rest edge matrix [1/m]
+/// @param area      rest area [m^2]
+template <typename T>
+TOILE_HD MembraneResponse<T> project_membrane(const Mat32Of<T>& F, const Mat2Of<T>& rest_inv, const T& area,
+                                              const MembraneWeights& weights)
+{
+    Mat32Of<T> yarn;
+    for (int k = 0; k < 2; ++k) {
+        const T length = square_root(F.col(k).squaredNorm());
+        const T shortening = T(1.0) - T(1.0) / length;
+        yarn.col(k) = select(length > T(0.0), shortening, T(0.0)) * F.col(k);
+    }
+    const Mat32Of<T> shear = F - closest_isometry<T>(F);
+
+    MembraneResponse<T> response;
+    response.energy = T(0.5) * area *
+                      (T(weights.warp) * yarn.col(0).squaredNorm() +
+                       T(weights.weft) * yarn.col(1).squaredNorm() + T(weights.shear) * shear.squaredNorm());
+    Mat32Of<T> stress = T(weights.shear) * shear;
+    stress.col(0) += T(weights.warp) * yarn.col(0);
+    stress.col(1) += T(weights.weft) * yarn.col(1);
+    response.corner_gradient.noalias() = stress.lazyProduct(rest_inv.transpose());
+    response.corner_gradient *= area;
+    return response;
+}
+
+#ifndef __CUDACC__
+
+/// project_membrane() for eight triangles at a time.
 struct ProjectMembrane {
-    View<const Vec3> x;        ///< [vertices]  positions [m]
-    View<const Triangle> tri;  ///< [triangles] vertex indices
-    View<const Mat2> rest_inv; ///< [triangles] inverse rest edge matrix [1/m]
-    View<const double> area;   ///< [triangles] rest area [m^2]
+    View<const Vec3> x;                 ///< [vertices] positions [m]
+    View<const Triangle> tri;           ///< [triangles] vertex indices
+    View<const Mat2Of<Lanes>> rest_inv; ///< [blocks] inverse rest edge matrices [1/m]
+    View<const Lanes> area;             ///< [blocks] rest areas [m^2]
     MembraneWeights weights;
-    View<Mat32> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]; dW/dx0 is minus their sum
+    View<Mat32> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
     View<double> energy;         ///< [triangles] out: [J]
 
-    TOILE_HD void operator()(int t) const
+    void operator()(int block) const
     {
-        // Deformation gradient: rest edges to current edges. Its columns are the stretched warp and weft.
-        const Vec3 x0 = x[tri[t][0]];
-        Mat32 edges;
-        edges.col(0) = x[tri[t][1]] - x0;
-        edges.col(1) = x[tri[t][2]] - x0;
-        const Mat32 F = edges * rest_inv[t];
-
-        // Distance to the projections: unit yarns along the current ones, and the closest isometry.
-        Mat32 yarn;
-        for (int k = 0; k < 2; ++k) {
-            const double length = F.col(k).norm();
-            yarn.col(k) = length > 0.0 ? Vec3(F.col(k) * (1.0 - 1.0 / length)) : Vec3(Vec3::Zero());
+        const int first = block * kLanes, count = tri.size();
+        Mat32Of<Lanes> edges;
+        for (int i = 0; i < 3; ++i) {
+            const Lanes x0 = gather(first, count, [&](int t) { return x[tri[t][0]][i]; });
+            for (int k = 0; k < 2; ++k)
+                edges(i, k) = gather(first, count, [&](int t) { return x[tri[t][k + 1]][i]; }) - x0;
         }
-        const Mat32 shear = F - closest_isometry(F);
-
-        energy[t] = 0.5 * area[t] *
-                    (weights.warp * yarn.col(0).squaredNorm() + weights.weft * yarn.col(1).squaredNorm() +
-                     weights.shear * shear.squaredNorm());
-        Mat32 stress = weights.shear * shear;
-        stress.col(0) += weights.warp * yarn.col(0);
-        stress.col(1) += weights.weft * yarn.col(1);
-        corner_gradient[t] = area[t] * stress * rest_inv[t].transpose();
+        const Mat32Of<Lanes> F = edges.lazyProduct(rest_inv[block]);
+        const MembraneResponse<Lanes> response =
+            project_membrane<Lanes>(F, rest_inv[block], area[block], weights);
+        const int lanes = std::min(kLanes, count - first);
+        for (int k = 0; k < lanes; ++k) {
+            energy[first + k] = response.energy[k];
+            for (int i = 0; i < 6; ++i)
+                corner_gradient[first + k](i) = response.corner_gradient(i)[k];
+        }
     }
 };
+
+#endif
 
 /// Sums the corner gradients of vertex v.
 struct GatherCorners {

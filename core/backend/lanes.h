@@ -1,0 +1,64 @@
+#pragma once
+
+/// Eight numbers computed side by side, so that one templated kernel body serves a single item (T = double,
+/// as on a GPU) and eight items in vector registers (T = Lanes, on the CPU).
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/backend/types.h"
+
+#ifndef __CUDACC__
+#include <experimental/simd>
+#endif
+
+namespace toile {
+
+template <typename T>
+using Mat2Of = Eigen::Matrix<T, 2, 2>;
+template <typename T>
+using Mat32Of = Eigen::Matrix<T, 3, 2>;
+
+/// condition ? yes : no
+TOILE_HD inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+TOILE_HD inline double square_root(double x) { return std::sqrt(x); }
+
+#ifndef __CUDACC__
+
+inline constexpr int kLanes = 8;
+using Lanes = std::experimental::fixed_size_simd<double, kLanes>;
+
+/// Lane by lane: condition ? yes : no
+inline Lanes select(const Lanes::mask_type& condition, const Lanes& yes, const Lanes& no)
+{
+    Lanes result = no;
+    std::experimental::where(condition, result) = yes;
+    return result;
+}
+inline Lanes square_root(const Lanes& x) { return std::experimental::sqrt(x); }
+
+/// Lane k holds value(min(first + k, count - 1)): the last block repeats the last item.
+template <typename Value>
+Lanes gather(int first, int count, const Value& value)
+{
+    return Lanes([&](auto lane) { return double(value(std::min(first + int(lane), count - 1))); });
+}
+
+/// Blocks of kLanes items that hold `count` items.
+inline int lane_blocks(int count) { return (count + kLanes - 1) / kLanes; }
+
+#endif
+
+} // namespace toile
+
+#ifndef __CUDACC__
+
+template <>
+struct Eigen::NumTraits<toile::Lanes> : Eigen::NumTraits<double> {
+    using Real = toile::Lanes;
+    using NonInteger = toile::Lanes;
+    using Nested = toile::Lanes;
+    using Literal = toile::Lanes;
+};
+
+#endif
