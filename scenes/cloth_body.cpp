@@ -102,6 +102,12 @@ void ClothBody::build(const Scene& scene, const std::vector<Obstacle>& obstacles
         energies.push_back(springs_);
     }
 
+    StretchTension::Settings tension;
+    tension.limit = fabric.strain_limit;
+    tension.stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+    tension_ = std::make_shared<StretchTension>(rest, tension);
+    energies.push_back(tension_);
+
     std::vector<double> masses = rest->vertex_areas();
     for (double& mass : masses)
         mass *= fabric.areal_density;
@@ -115,7 +121,7 @@ void ClothBody::build(const Scene& scene, const std::vector<Obstacle>& obstacles
         rest, Aerodynamics::Settings{scene.air.density, scene.air.normal, scene.air.tangential});
     StrainLimit::Settings limit;
     limit.limit = fabric.strain_limit;
-    strain_limit_ = std::make_unique<StrainLimit>(rest, limit, source);
+    strain_limit_ = std::make_unique<StrainLimit>(rest, limit, source, tension_);
     if (!obstacles.empty()) {
         std::vector<ContactPartner> partners;
         for (const Obstacle& obstacle : obstacles)
@@ -140,6 +146,7 @@ StepReport ClothBody::step(double dt, double t_t1, const std::vector<Obstacle>& 
     }
     hold(t_t1, obstacles);
     accelerate(dt);
+    tension_->begin_step(body_->positions());
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, contact_.get(), strain_limit_.get());
     state_.positions.assign(body_->positions().begin(), body_->positions().end());
     if (contact_) {

@@ -38,6 +38,7 @@ private:
     std::vector<Hold> holds_;
     std::shared_ptr<Springs> springs_; ///< null without attachments that give
     std::unique_ptr<Aerodynamics> air_;
+    std::shared_ptr<StretchTension> tension_;
     std::unique_ptr<StrainLimit> strain_limit_;
     std::unique_ptr<Contact> contact_; ///< null without obstacles
     std::unique_ptr<Body> body_;

@@ -38,8 +38,8 @@ Vec3 relative_masses(const Triangle& corner, View<const double> inverse_masses)
 } // namespace
 
 StrainLimit::StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings,
-                         const std::string& source)
-    : rest_(std::move(rest)), settings_(settings), violates_(rest_->triangles.size())
+                         const std::string& source, std::shared_ptr<StretchTension> tension)
+    : rest_(std::move(rest)), settings_(settings), tension_(std::move(tension)), violates_(rest_->triangles.size())
 {
     if (!(settings.limit > 0.0) || !std::isfinite(settings.limit))
         throw InvalidInput(source + ": strain limit " + std::to_string(settings.limit) + " must be positive");
@@ -96,6 +96,8 @@ void StrainLimit::look_around_violating(View<const Vec3> x)
 
 void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active)
 {
+    if (tension_)
+        tension_->end_step(x);
     look_at_everything(x);
     for (int sweep = 0; sweep < settings_.max_sweeps && !violating_.empty(); ++sweep) {
         const StageScope stage("garment/strain_limit");

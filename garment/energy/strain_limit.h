@@ -5,6 +5,7 @@
 
 #include "core/pd/body.h"
 #include "garment/energy/rest_shape.h"
+#include "garment/energy/stretch_tension.h"
 
 namespace toile {
 
@@ -24,8 +25,10 @@ public:
         int max_sweeps = 100;    ///< an unreachable limit (pins too far apart) stops here
     };
 
+    /// @param tension  told of every minimiser before it is clamped; may be null
     /// @throws InvalidInput naming `source` when the limit is not positive.
-    StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source);
+    StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source,
+                std::shared_ptr<StretchTension> tension = nullptr);
 
     void project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active) override;
 
@@ -40,6 +43,7 @@ private:
 
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
+    std::shared_ptr<StretchTension> tension_;
     std::vector<Mat2> rest_inv_;
     std::vector<unsigned char> violates_; ///< [triangles]
     std::vector<int> violating_;          ///< ascending triangle indices

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/pd/energy.h"
+#include "garment/energy/rest_shape.h"
+
+namespace toile {
+
+/// Tension of the triangles that have reached their strain limit: the augmented Lagrangian of
+///
+///   sigma_max(F_t) <= 1 + limit     for all t
+///
+/// With P the projection of a matrix onto that convex set and T_t the tension remembered from the step
+/// before,
+///
+///   W = sum_t k A_t/2 |G - P(G)|^2,   G = F_t + T_t / k;      afterwards  T_t = k (G - P(G))
+///
+/// [Hestenes 1969, Powell 1969]. The global solve of the minimisation carries the tension through the whole
+/// cloth at once, and it is remembered, so that after a few steps what is left for the clamping of single
+/// triangles (StrainLimit) is next to nothing. T_t turns with its triangle. It stays out of H: only triangles
+/// near the limit are looked at, and their curvature at most doubles.
+class StretchTension : public Energy {
+public:
+    struct Settings {
+        double limit = 0.06;       ///< [-] as StrainLimit's
+        double stiffness = 250.0;  ///< [N/m] k, the membrane's
+        double max_tension = 1.0;  ///< [-] of k: bounds the pull where a limit cannot be met
+    };
+
+    StretchTension(std::shared_ptr<const RestShape> rest, const Settings& settings);
+
+    std::string_view name() const override { return "garment/stretch_tension"; }
+    void add_hessian(Triplets&) const override {}
+    double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
+
+    /// Picks the triangles that are near their limit at x [vertices] and turns their tension with them.
+    void begin_step(View<const Vec3> x);
+
+    /// Remembers the tension at the minimiser x.
+    void end_step(View<const Vec3> x);
+
+private:
+    /// A triangle near its limit.
+    struct Taut {
+        int triangle = 0;
+        Mat32 tension = Mat32::Zero(); ///< T_t / k at this step
+    };
+
+    Mat32 deformation_gradient(int t, View<const Vec3> x) const;
+    Mat32 excess(const Taut& taut, View<const Vec3> x) const;
+
+    std::shared_ptr<const RestShape> rest_;
+    Settings settings_;
+    std::vector<Mat2> rest_inv_;
+    std::vector<Mat2> tension_;       ///< [triangles] T_t / k in material axes
+    std::vector<unsigned char> near_; ///< [triangles] scratch
+    std::vector<Taut> taut_;
+    std::vector<Mat32> stress_; ///< [taut] scratch, dW/dF / (k A)
+};
+
+} // namespace toile
