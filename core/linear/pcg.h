@@ -9,12 +9,11 @@ namespace toile {
 /// Preconditioned conjugate gradients for A x = b on 3-vector fields, started at x = 0. [Saad 2003, alg. 9.1]
 class Pcg {
 public:
-    /// The defaults suit the inside of a quasi-Newton method, which needs a direction, not a solution: on the
-    /// tablecloth demo 3 to 5 loose iterations end after as many outer ones as 12 tight ones, in a third of
-    /// the time.
+    /// The defaults suit the inside of a quasi-Newton method, which needs a direction, not a solution: one
+    /// iteration is the preconditioner with the best step length. More only cost time (docs/core/pd.md).
     struct Settings {
         double tolerance = 0.1; ///< [-] of |r| / |b|
-        int max_iterations = 4;
+        int max_iterations = 1;
     };
     struct Outcome {
         int iterations = 0;
