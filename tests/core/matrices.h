@@ -20,9 +20,9 @@ inline Eigen::MatrixX3d as_matrix(const std::vector<Vec3>& field)
 
 inline std::vector<Vec3> as_field(const Eigen::MatrixX3d& matrix)
 {
-    std::vector<Vec3> field;
+    std::vector<Vec3> field(matrix.rows());
     for (int i = 0; i < matrix.rows(); ++i)
-        field.emplace_back(matrix.row(i));
+        field[i] = matrix.row(i);
     return field;
 }
 
