@@ -1,5 +1,6 @@
 #include "core/linear/cholesky.h"
 
+#include <cmath>
 #include <string>
 
 #include <cholmod.h>
@@ -43,6 +44,7 @@ namespace {
 /// lower triangle only.
 cholmod_sparse as_cholmod(const SparseMatrix& A)
 {
+    TOILE_ASSERT(A.isCompressed());
     cholmod_sparse view{};
     view.nrow = view.ncol = size_t(A.rows());
     view.nzmax = size_t(A.nonZeros());
@@ -97,6 +99,19 @@ SupernodalFactor copy_factor(const cholmod_factor& L)
     return copy;
 }
 
+/// The first column whose diagonal is not a positive number; n when all are. LAPACKs differ in whether they
+/// let NaN pass.
+int first_bad_pivot(const SupernodalFactor& L)
+{
+    for (const SupernodalFactor::Supernode& node : L.supernodes)
+        for (int k = 0; k < node.width; ++k) {
+            const double reciprocal = L.values[node.first_value + long(k) * node.width + k];
+            if (!(reciprocal > 0.0) || !std::isfinite(reciprocal))
+                return node.first_column + k;
+        }
+    return int(L.permutation.size());
+}
+
 } // namespace
 
 Cholesky::Cholesky(const SparseMatrix& A) : cholmod_(std::make_unique<Cholmod>())
@@ -116,11 +131,15 @@ void Cholesky::refactor(const SparseMatrix& A)
     const StageScope stage("linear/factor");
     cholmod_sparse view = as_cholmod(A);
     cholmod_factorize(&view, cholmod_->factor, &cholmod_->common);
-    if (cholmod_->common.status != CHOLMOD_OK)
-        throw InvalidInput("the system matrix is not positive definite (pivot " +
-                           std::to_string(cholmod_->factor->minor) +
+    const auto refuse = [](size_t pivot) {
+        throw InvalidInput("the system matrix is not positive definite (pivot " + std::to_string(pivot) +
                            "); masses and stiffnesses must be positive and finite");
+    };
+    if (cholmod_->common.status != CHOLMOD_OK)
+        refuse(cholmod_->factor->minor);
     factor_ = copy_factor(*cholmod_->factor);
+    if (const int pivot = first_bad_pivot(factor_); pivot < size())
+        refuse(size_t(pivot));
 }
 
 void Cholesky::solve(View<const Vec3> b, View<Vec3> x) const

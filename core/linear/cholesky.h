@@ -16,6 +16,7 @@ namespace toile {
 class Cholesky {
 public:
     /// Orders and factors A. O(n^1.5) time for surfaces, O(n log n) memory.
+    /// @param A  compressed
     /// @throws InvalidInput when A is not positive definite, naming the first bad pivot.
     explicit Cholesky(const SparseMatrix& A);
     ~Cholesky();

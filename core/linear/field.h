@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -44,8 +47,9 @@ inline double max_norm(View<const Vec3> x)
     double largest = 0.0;
     for (const Vec3& value : x) {
         const double squared = value.squaredNorm();
-        if (!(squared <= largest))
-            largest = squared;
+        if (std::isnan(squared)) // no later comparison may lose it
+            return squared;
+        largest = std::max(largest, squared);
     }
     return std::sqrt(largest);
 }

@@ -57,9 +57,9 @@ void Aerodynamics::add_acceleration(View<const Vec3> x, View<const Vec3> v, View
         Mat3 C = Mat3::Zero();
         for (const int corner : corners.of(i))
             C += drag_[corner / 3];
-        // (m + dt C) dv = dt C (wind - v)
+        // m a = m a_others + C (wind - v - dt a): weight and drag meet within the step, at any dt.
         const Mat3 lhs = masses[i] * Mat3::Identity() + dt * C;
-        acceleration[i] += lhs.inverse() * (C * (wind - v[i]));
+        acceleration[i] += lhs.inverse() * (C * (wind - v[i] - dt * acceleration[i]));
     });
 }
 

@@ -32,7 +32,8 @@ public:
         return settings_.density > 0.0 && (settings_.normal > 0.0 || settings_.tangential > 0.0);
     }
 
-    /// Adds the acceleration over a step of dt [s] to acceleration [vertices] [m/s^2].
+    /// Adds the acceleration over a step of dt [s] to acceleration [vertices] [m/s^2], which holds what else
+    /// acts: the drag is taken at the velocity that both lead to.
     void add_acceleration(View<const Vec3> x, View<const Vec3> v, View<const double> masses, const Vec3& wind,
                           double dt, View<Vec3> acceleration);
 

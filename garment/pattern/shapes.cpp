@@ -15,20 +15,29 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 int pieces(double length, double resolution) { return std::max(1, int(std::lround(length / resolution))); }
 
-/// Triangulates the band between two closed rings of vertices by advancing on the ring that is behind in
-/// angle.
-void bridge_rings(int inner_first, int inner_count, int outer_first, int outer_count,
-                  std::vector<Triangle>& out)
+/// A closed ring of evenly spaced vertices.
+struct Ring {
+    int first = 0;
+    int count = 1;
+    double shift = 0.0; ///< angle of the first vertex in spacings
+
+    int vertex(int k) const { return first + k % count; }
+    /// Middle between vertices k and k + 1 [turns].
+    double middle(int k) const { return (k + 0.5 + shift) / count; }
+};
+
+/// Triangulates the band between two rings by advancing on the one that is behind in angle.
+void bridge_rings(const Ring& inner, const Ring& outer, std::vector<Triangle>& out)
 {
     int i = 0, o = 0;
-    while (i < inner_count || o < outer_count) {
-        const int inner = inner_first + i % inner_count, outer = outer_first + o % outer_count;
-        const bool advance_outer = i == inner_count || (o < outer_count && double(o + 0.5) / outer_count <=
-                                                                               double(i + 0.5) / inner_count);
+    while (i < inner.count || o < outer.count) {
+        const int from_inner = inner.vertex(i), from_outer = outer.vertex(o);
+        const bool advance_outer =
+            i == inner.count || (o < outer.count && outer.middle(o) <= inner.middle(i));
         if (advance_outer)
-            out.emplace_back(inner, outer_first + (o++ + 1) % outer_count, outer);
+            out.emplace_back(from_inner, outer.vertex(++o), from_outer);
         else
-            out.emplace_back(inner, inner_first + (i++ + 1) % inner_count, outer);
+            out.emplace_back(from_inner, inner.vertex(++i), from_outer);
     }
 }
 
@@ -59,7 +68,7 @@ TriangleMesh cut_disc(double radius, double resolution)
     const int rings = pieces(radius, resolution);
     TriangleMesh mesh;
     mesh.positions.push_back(Vec3::Zero());
-    int inner_first = 0, inner_count = 1;
+    Ring inner;
     for (int ring = 1; ring <= rings; ++ring) {
         const int count = 6 * ring, first = mesh.vertex_count();
         for (int k = 0; k < count; ++k) {
@@ -71,9 +80,8 @@ TriangleMesh cut_disc(double radius, double resolution)
             for (int k = 0; k < count; ++k)
                 mesh.triangles.emplace_back(0, first + (k + 1) % count, first + k);
         else
-            bridge_rings(inner_first, inner_count, first, count, mesh.triangles);
-        inner_first = first;
-        inner_count = count;
+            bridge_rings(inner, {first, count}, mesh.triangles);
+        inner = {first, count};
     }
     return mesh;
 }
@@ -88,19 +96,19 @@ TriangleMesh cut_skirt(const SkirtCut& cut)
     const double drop = std::sqrt(cut.length * cut.length - flare * flare);
     const int rows = pieces(cut.length, cut.resolution);
     TriangleMesh mesh;
-    int above_first = 0, above_count = 0;
+    Ring above;
     for (int r = 0; r <= rows; ++r) {
         const double along = double(r) / rows;
         const double radius = cut.waist_radius + along * flare;
-        const int count = std::max(6, pieces(kTwoPi * radius, cut.resolution)), first = mesh.vertex_count();
-        for (int k = 0; k < count; ++k) {
-            const double angle = kTwoPi * (k + 0.5 * (r % 2)) / count;
+        const Ring ring{mesh.vertex_count(), std::max(6, pieces(kTwoPi * radius, cut.resolution)),
+                        0.5 * (r % 2)};
+        for (int k = 0; k < ring.count; ++k) {
+            const double angle = kTwoPi * (k + ring.shift) / ring.count;
             mesh.positions.emplace_back(radius * std::cos(angle), -along * drop, radius * std::sin(angle));
         }
         if (r > 0)
-            bridge_rings(above_first, above_count, first, count, mesh.triangles);
-        above_first = first;
-        above_count = count;
+            bridge_rings(above, ring, mesh.triangles);
+        above = ring;
     }
     return mesh;
 }

@@ -20,12 +20,21 @@ struct Reference {
 };
 constexpr Reference kElastica[] = {{1, 0.12456}, {5, 0.58572}, {10, 1.06680}, {50, 3.70556}, {100, 5.88811}};
 
+/// A mesh of the strip and how well its rest is computed.
+struct Resolution {
+    int columns = 40, rows = 4;
+    double tolerance = 1e-7; ///< [m] of a step
+    int max_iterations = 200;
+    double speed = 1e-4; ///< [m/s] that counts as rest
+};
+
 /// Drop over reach of the tip of a strip clamped at one end. The clamp line runs through the middle of the
 /// first cell, whose two columns are held: the angle is zero there to second order.
-double height_over_width(Pattern pattern, double G, int columns)
+double height_over_width(Pattern pattern, double G, const Resolution& resolution)
 {
+    const int columns = resolution.columns, rows = resolution.rows;
     const double cell = kLength / (columns - 0.5);
-    const Sheet sheet = make_sheet(Vec2(columns * cell, 4 * cell), columns, 4, pattern);
+    const Sheet sheet = make_sheet(Vec2(columns * cell, rows * cell), columns, rows, pattern);
     const auto rest = sheet.rest();
     const double D = kArealDensity * kGravity * std::pow(kLength, 3) / G;
 
@@ -36,18 +45,18 @@ double height_over_width(Pattern pattern, double G, int columns)
         std::make_shared<Membrane>(rest, stiff, "strip"),
         std::make_shared<Bending>(rest, Bending::Settings{D, D}, "strip")};
     Body::Settings settings;
-    settings.tolerance = 1e-7;
-    settings.max_iterations = 200;
+    settings.tolerance = resolution.tolerance;
+    settings.max_iterations = resolution.max_iterations;
     Body body(sheet.flat(), std::make_unique<System>(masses_of(*rest, kArealDensity), energies), settings);
 
     std::vector<unsigned char> fixed(sheet.uv.size(), 0);
-    for (int row = 0; row <= 4; ++row)
+    for (int row = 0; row <= rows; ++row)
         fixed[sheet.at(0, row)] = fixed[sheet.at(1, row)] = 1;
-    EXPECT_TRUE(settle(body, 0.1, fixed, 1e-4, 300));
+    EXPECT_TRUE(settle(body, 0.1, fixed, resolution.speed, 300));
 
     Vec3 tip = Vec3::Zero();
-    for (int row = 0; row <= 4; ++row)
-        tip += body.positions()[sheet.at(columns, row)] / 5.0;
+    for (int row = 0; row <= rows; ++row)
+        tip += body.positions()[sheet.at(columns, row)] / (rows + 1.0);
     return -tip.y() / (tip.x() - 0.5 * cell);
 }
 
@@ -56,8 +65,21 @@ class Cantilever : public testing::TestWithParam<Pattern> {};
 TEST_P(Cantilever, HangsLikeTheHeavyElastica)
 {
     for (const Reference& exact : kElastica)
-        EXPECT_NEAR(height_over_width(GetParam(), exact.G, 40) / exact.height_over_width, 1.0, 0.02)
+        EXPECT_NEAR(height_over_width(GetParam(), exact.G, {}) / exact.height_over_width, 1.0, 0.02)
             << "G = " << exact.G;
+}
+
+TEST_P(Cantilever, HalvesItsErrorWithTheCells)
+{
+    // The same strip each time, so the width keeps its share of the length.
+    const Reference exact = kElastica[0];
+    double previous = 0.05;
+    for (const int rows : {2, 4, 8}) {
+        const double found = height_over_width(GetParam(), exact.G, {5 * rows, rows, 1e-9, 3000, 2e-6});
+        const double error = std::abs(found / exact.height_over_width - 1.0);
+        EXPECT_LT(error, 0.5 * previous) << 5 * rows << " cells along the strip";
+        previous = error;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, Cantilever,

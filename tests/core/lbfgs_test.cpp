@@ -1,0 +1,274 @@
+#include "core/pd/lbfgs.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/linear/cholesky.h"
+#include "core/linear/field.h"
+#include "tests/core/matrices.h"
+
+namespace toile::test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+void copy(View<const Vec3> from, View<Vec3> to) { std::copy(from.begin(), from.end(), to.begin()); }
+
+/// An objective without an inverse Hessian; counts what the solver does with it.
+class Counting : public Objective {
+public:
+    void precondition(View<const Vec3> g, View<Vec3> z) override { copy(g, z); }
+    void accept(View<const Vec3>) override { ++accepted; }
+
+    int accepted = 0, evaluated = 0;
+};
+
+/// 1/2 (x - c)^T A (x - c) with the exact inverse.
+class Quadratic : public Counting {
+public:
+    double evaluate(View<const Vec3> x, View<Vec3> gradient) override
+    {
+        ++evaluated;
+        std::vector<Vec3> from_center(center.size());
+        for (int i = 0; i < x.size(); ++i)
+            from_center[i] = x[i] - center[i];
+        for (int i = 0; i < x.size(); ++i)
+            gradient[i] = row_times(A, i, from_center);
+        return 0.5 * dot(from_center, gradient);
+    }
+    void precondition(View<const Vec3> g, View<Vec3> z) override { direct.solve(g, z); }
+
+    SparseMatrix A = grid_laplacian(10, 10, 0.1);
+    Cholesky direct{A};
+    std::vector<Vec3> center = random_field(100, 1);
+};
+
+double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < a.size(); ++i)
+        largest = std::max(largest, (a[i] - b[i]).norm());
+    return largest;
+}
+
+TEST(Lbfgs, SolvesAQuadraticInOneIterationWithTheExactInverse)
+{
+    Quadratic objective;
+    std::vector<Vec3> x = random_field(100, 2);
+    Lbfgs lbfgs;
+    const Lbfgs::Outcome outcome = lbfgs.minimise(objective, x, {1e-10, 50, 5});
+    EXPECT_TRUE(outcome.converged);
+    EXPECT_EQ(outcome.iterations, 1);
+    EXPECT_EQ(objective.evaluated, 2) << "the start and one trial";
+    EXPECT_EQ(objective.accepted, 2) << "the start and one point";
+    EXPECT_LT(farthest(x, objective.center), 1e-12);
+    EXPECT_LT(outcome.gradient_norm, 1e-11);
+    EXPECT_NEAR(outcome.value, 0.0, 1e-20);
+}
+
+TEST(Lbfgs, StopsWhereTheNextMoveIsWithinTheTolerance)
+{
+    // With the exact inverse the next move is the whole way to the minimum, so the tolerance is the error.
+    Quadratic objective;
+    std::vector<Vec3> start = objective.center;
+    start[37] += Vec3(0.003, 0.0, 0.004);
+    Lbfgs lbfgs;
+
+    std::vector<Vec3> x = start;
+    const Lbfgs::Outcome there = lbfgs.minimise(objective, x, {0.005001, 50, 5});
+    EXPECT_TRUE(there.converged);
+    EXPECT_EQ(there.iterations, 0);
+    EXPECT_NEAR(there.displacement, 0.005, 1e-12);
+    EXPECT_EQ(x, start) << "bit for bit";
+
+    const Lbfgs::Outcome moved = lbfgs.minimise(objective, x, {0.004999, 50, 5});
+    EXPECT_TRUE(moved.converged);
+    EXPECT_EQ(moved.iterations, 1);
+    EXPECT_LT(farthest(x, objective.center), 1e-12);
+}
+
+TEST(Lbfgs, StopsAtTheIterationLimit)
+{
+    /// The quadratic without its inverse: many iterations.
+    class Slow : public Quadratic {
+    public:
+        void precondition(View<const Vec3> g, View<Vec3> z) override { copy(g, z); }
+    };
+    Slow objective;
+    Lbfgs lbfgs;
+    std::vector<Vec3> x = random_field(100, 3);
+    const Lbfgs::Outcome cut = lbfgs.minimise(objective, x, {1e-9, 7, 5});
+    EXPECT_FALSE(cut.converged);
+    EXPECT_EQ(cut.iterations, 7);
+    EXPECT_GT(cut.displacement, 1e-9);
+
+    EXPECT_TRUE(lbfgs.minimise(objective, x, {1e-9, 500, 5}).converged);
+    EXPECT_LT(farthest(x, objective.center),
+              1e-7); // smallest eigenvalue 0.1, gradients of about the tolerance
+
+    const std::vector<Vec3> before = random_field(100, 4);
+    x = before;
+    EXPECT_EQ(lbfgs.minimise(objective, x, {1e-9, 0, 5}).iterations, 0);
+    EXPECT_EQ(x, before);
+}
+
+/// Rosenbrock's valley in each of the pairs (x, y), (y, z) of one vertex: not convex, minimum 0 at (1, 1, 1).
+class Valley : public Counting {
+public:
+    double evaluate(View<const Vec3> x, View<Vec3> gradient) override
+    {
+        ++evaluated;
+        double value = 0.0;
+        for (int i = 0; i < x.size(); ++i) {
+            gradient[i].setZero();
+            for (int k = 0; k < 2; ++k) {
+                const double off = x[i][k + 1] - x[i][k] * x[i][k], left = 1.0 - x[i][k];
+                value += 100.0 * off * off + left * left;
+                gradient[i][k] += -400.0 * off * x[i][k] - 2.0 * left;
+                gradient[i][k + 1] += 200.0 * off;
+            }
+        }
+        return value;
+    }
+};
+
+TEST(Lbfgs, FollowsACurvedValleyToItsEnd)
+{
+    Valley objective;
+    std::vector<Vec3> x{Vec3(-1.2, 1.0, 1.0), Vec3(0.0, 0.0, 0.0), Vec3(1.3, 1.5, 2.0)};
+    Lbfgs lbfgs;
+    const Lbfgs::Outcome outcome = lbfgs.minimise(objective, x, {1e-10, 1000, 5});
+    EXPECT_TRUE(outcome.converged);
+    EXPECT_LT(outcome.iterations, 300);
+    EXPECT_LT(outcome.value, 1e-16);
+    EXPECT_LT(farthest(x, std::vector<Vec3>(3, Vec3::Ones())), 1e-7);
+    EXPECT_EQ(objective.accepted, outcome.iterations + 1);
+}
+
+TEST(Lbfgs, NeverRaisesTheValue)
+{
+    Valley objective;
+    std::vector<Vec3> x{Vec3(-1.2, 1.0, 1.0)}, ignored(1);
+    Lbfgs lbfgs;
+    double previous = objective.evaluate(x, ignored);
+    for (int iteration = 0; iteration < 60; ++iteration) {
+        const Lbfgs::Outcome outcome = lbfgs.minimise(objective, x, {1e-14, 3, 5});
+        EXPECT_LE(outcome.value, previous * (1.0 + 1e-13));
+        EXPECT_EQ(outcome.value, objective.evaluate(x, ignored)) << "the value belongs to x";
+        previous = outcome.value;
+    }
+}
+
+TEST(Lbfgs, LeavesAStartAloneThatIsNotFinite)
+{
+    Quadratic objective;
+    std::vector<Vec3> x = random_field(100, 2);
+    x[50].z() = kNaN;
+    Lbfgs lbfgs;
+    const Lbfgs::Outcome outcome = lbfgs.minimise(objective, x, {1e-10, 50, 5});
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_EQ(outcome.iterations, 0);
+    EXPECT_FALSE(std::isfinite(outcome.value));
+    EXPECT_EQ(objective.evaluated, 1);
+    EXPECT_TRUE(std::isnan(outcome.gradient_norm));
+}
+
+TEST(Lbfgs, BacksOffFromWhereTheValueIsNotFinite)
+{
+    /// x - log x in every coordinate: not a number from zero on, which full steps from large x run into.
+    class Barrier : public Counting {
+    public:
+        double evaluate(View<const Vec3> x, View<Vec3> gradient) override
+        {
+            gradient[0] = Vec3::Ones() - x[0].cwiseInverse();
+            return x[0].sum() - x[0].array().log().sum();
+        }
+        void precondition(View<const Vec3> g, View<Vec3> z) override { z[0] = 4.0 * g[0]; }
+    };
+    Barrier objective;
+    std::vector<Vec3> x{Vec3(3.0, 2.0, 0.5)};
+    Lbfgs lbfgs;
+    EXPECT_TRUE(lbfgs.minimise(objective, x, {1e-9, 100, 5}).converged);
+    EXPECT_LT((x[0] - Vec3::Ones()).norm(), 1e-8);
+}
+
+/// 1/2 |x|^2 for the first evaluations, then a wall wherever one looks; gradients ten times too small.
+class Wall : public Counting {
+public:
+    explicit Wall(int open) : open_(open) {}
+    double evaluate(View<const Vec3> x, View<Vec3> gradient) override
+    {
+        gradient[0] = 0.1 * x[0];
+        return evaluated++ < open_ ? 0.5 * x[0].squaredNorm() : 1e3;
+    }
+
+private:
+    int open_;
+};
+
+TEST(Lbfgs, GivesUpWhereNoStepAlongTheDirectionLowersTheValue)
+{
+    Wall objective(1);
+    std::vector<Vec3> x{Vec3(1, 2, 2)};
+    Lbfgs lbfgs;
+    const Lbfgs::Outcome outcome = lbfgs.minimise(objective, x, {1e-9, 50, 5});
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_EQ(outcome.iterations, 0);
+    EXPECT_EQ(x[0], Vec3(1, 2, 2));
+    EXPECT_EQ(outcome.value, 4.5);
+    EXPECT_LT(objective.evaluated, 20);
+}
+
+TEST(Lbfgs, TriesThePlainDirectionBeforeItGivesUp)
+{
+    // The second iteration fails with the pair of the first, forgets it, fails again, and ends.
+    Wall objective(2);
+    std::vector<Vec3> x{Vec3(1, 2, 2)};
+    Lbfgs lbfgs;
+    const Lbfgs::Outcome outcome = lbfgs.minimise(objective, x, {1e-9, 50, 5});
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_EQ(outcome.iterations, 1);
+    EXPECT_EQ(x[0], Vec3(0.9, 1.8, 1.8)) << "where the first iteration ended";
+    EXPECT_EQ(outcome.value, 0.5 * x[0].squaredNorm());
+    EXPECT_GT(objective.evaluated, 20) << "two searches";
+    EXPECT_LT(objective.evaluated, 40);
+}
+
+TEST(Lbfgs, GivesUpAtAGradientThatIsNotFinite)
+{
+    /// A finite value with a broken gradient: no direction leads down.
+    class Broken : public Counting {
+    public:
+        double evaluate(View<const Vec3>, View<Vec3> gradient) override
+        {
+            gradient[0] = Vec3(kNaN, 0.0, 0.0);
+            return 1.0;
+        }
+    };
+    Broken objective;
+    std::vector<Vec3> x{Vec3(1, 2, 2)};
+    Lbfgs lbfgs;
+    const Lbfgs::Outcome outcome = lbfgs.minimise(objective, x, {1e-9, 50, 5});
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_EQ(outcome.iterations, 0);
+    EXPECT_EQ(x[0], Vec3(1, 2, 2));
+}
+
+TEST(Lbfgs, StartsAfreshInEveryCall)
+{
+    // Memory of one problem must not steer the next, of another size or not.
+    Valley valley;
+    std::vector<Vec3> x{Vec3(-1.2, 1.0, 1.0)};
+    Lbfgs used, fresh;
+    (void)used.minimise(valley, x, {1e-10, 20, 5});
+    Quadratic quadratic;
+    std::vector<Vec3> a = random_field(100, 2), b = a;
+    (void)used.minimise(quadratic, a, {1e-10, 50, 5});
+    (void)fresh.minimise(quadratic, b, {1e-10, 50, 5});
+    EXPECT_EQ(a, b);
+}
+
+} // namespace
+} // namespace toile::test

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/contact_energy.h"
+#include "core/pd/active_set_energy.h"
+
+namespace toile::test {
+
+/// Contact of every vertex with a plane, with given normal forces: an objective that stays the same during
+/// the whole minimisation, so that another solver can minimise it too.
+class TouchingPlane : public ActiveSetEnergy {
+public:
+    struct Settings {
+        Vec3 normal = Vec3::UnitY(); ///< unit
+        double height = 0.0;         ///< [m] of the plane along its normal
+        double stiffness = 100.0;    ///< [N/m]
+        double friction = 0.0;       ///< [-]
+        double normal_force = 0.0;   ///< [N] that limits friction
+    };
+
+    TouchingPlane(const std::vector<Vec3>& start, const Settings& settings)
+    {
+        std::vector<ContactTerm> terms(start.size());
+        for (size_t v = 0; v < start.size(); ++v) {
+            terms[v].pair.vertex[0] = int(v);
+            terms[v].pair.weight[0] = 1.0;
+            terms[v].pair.normal = settings.normal;
+            terms[v].pair.point = settings.height * settings.normal;
+            terms[v].stiffness = settings.stiffness;
+            terms[v].friction = settings.friction;
+            terms[v].normal_force = settings.normal_force;
+            terms[v].anchor = start[v];
+        }
+        energy_.set_terms(std::move(terms), int(start.size()));
+    }
+
+    void begin_step(const StepStart&) override {}
+    void make_feasible(View<Vec3>) const override {}
+    double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
+    {
+        return energy_.add_gradient(x, gradient);
+    }
+    bool activate(View<const Vec3> x) override { return energy_.activate(x); }
+    void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override
+    {
+        energy_.add_hessian_product(p, out);
+    }
+    View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
+    bool revise(View<const Vec3>) override { return false; }
+    void end_step(View<const Vec3>) override {}
+
+    /// Vertices that press on the plane at x.
+    int pressing(const std::vector<Vec3>& x) const
+    {
+        int count = 0;
+        for (int v = 0; v < int(x.size()); ++v)
+            count += energy_.gap(v, x) < 0.0 ? 1 : 0;
+        return count;
+    }
+
+    /// Those of them that slide.
+    int sliding(const std::vector<Vec3>& x) const
+    {
+        int count = 0;
+        for (int v = 0; v < int(x.size()); ++v) {
+            const ContactTerm& term = energy_.terms()[v];
+            const bool slides =
+                term.stiffness * energy_.slip(v, x).norm() > term.friction * term.normal_force;
+            count += energy_.gap(v, x) < 0.0 && slides ? 1 : 0;
+        }
+        return count;
+    }
+
+private:
+    ContactEnergy energy_;
+};
+
+} // namespace toile::test
