@@ -81,7 +81,7 @@ double Body::tolerance() const
 /// prediction. What comes out is then no worse than standing still, W(x_t1) <= W(x_t0) + 1/2 |v + dt a|^2_M,
 /// however early the minimisation stopped: stiff cloth gains no energy from a bad start guess, and cloth at
 /// rest stays.
-Lbfgs::Outcome Body::no_worse_than_standing(StepObjective& objective, Lbfgs::Settings settings,
+Lbfgs::Outcome Body::no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
                                             const Lbfgs::Outcome& found)
 {
     const View<const unsigned char> fixed = system_->fixed();
@@ -89,6 +89,14 @@ Lbfgs::Outcome Body::no_worse_than_standing(StepObjective& objective, Lbfgs::Set
     for (size_t i = 0; i < x_.size(); ++i)
         if (fixed[int(i)])
             standing_[i] = prediction_[i];
+
+    // The inertia of standing still alone is often more than all that was found.
+    const View<const double> masses = system_->masses();
+    const double inertia = 0.5 / (dt * dt) * parallel_sum(kCpu, int(x_.size()), 0.0, [&](int i) {
+                               return masses[i] * (standing_[i] - prediction_[i]).squaredNorm();
+                           });
+    if (found.value <= inertia)
+        return found;
     const double value = objective.evaluate(standing_, gradient_);
     if (found.value <= value || !std::isfinite(value))
         return found;
@@ -108,7 +116,7 @@ void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
         const StageScope stage("pd/minimise");
         Lbfgs::Outcome outcome = lbfgs_.minimise(objective, x_t1_, settings);
         if (round == 0)
-            outcome = no_worse_than_standing(objective, settings, outcome);
+            outcome = no_worse_than_standing(dt, objective, settings, outcome);
         report.iterations += outcome.iterations;
         report.displacement = outcome.displacement;
         report.gradient_norm = outcome.gradient_norm;

@@ -49,7 +49,7 @@ public:
 private:
     void predict(double dt, View<const Vec3> acceleration, View<const Vec3> targets);
     double tolerance() const;
-    Lbfgs::Outcome no_worse_than_standing(StepObjective& objective, Lbfgs::Settings settings,
+    Lbfgs::Outcome no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
                                           const Lbfgs::Outcome& found);
     void minimise(double dt, ActiveSetEnergy* active, StepReport& report);
 
