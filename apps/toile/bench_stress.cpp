@@ -47,7 +47,7 @@ std::vector<stress::Case> chosen_cases(const BenchOptions& options, const std::f
         cases, [&](const stress::Case& trial) { return trial.name.find(options.only) == std::string::npos; });
     if (cases.empty())
         throw InvalidInput("--only: no case of stress has \"" + options.only + "\" in its name; see " +
-                           "docs/benchmarks/stress.md for the names");
+                           "docs/benchmarks/README.md for the names");
     return cases;
 }
 
