@@ -93,7 +93,7 @@ const std::vector<BadRun> kBadRuns{
     {{"check", "cut.pc2", "--scene", "good.json"}, {"cut.pc2"}},
     {{"check", "sheet.pc2", "--scene", "coarse.json"}, {"sheet.pc2", "points", "made from"}},
     {{"bench", "strss"}, {"strss", "did you mean \"stress\"?"}},
-    {{"bench", "stress", "--only", "nothing"}, {"--only", "nothing", "docs/benchmarks/stress.md"}},
+    {{"bench", "stress", "--only", "nothing"}, {"--only", "nothing", "docs/benchmarks/README.md"}},
     {{"bench", "stress", "-o", "file/there"}, {"file/there", "choose a writable folder"}},
     {{"info", "none.obj"}, {"none.obj", "can't be found"}},
     {{"info", "text.xyz"}, {"text.xyz", "known are"}},
