@@ -64,7 +64,6 @@ void Contact::begin_step(const StepStart& start)
 /// surface at t1.
 void Contact::carry_with_colliders()
 {
-    const double farthest = kMaxCarrySpeed * start_.dt;
     parallel_for(kCpu, "contact/carry", start_.x.size(), [&](int v) {
         const ContactPair& last = nearest_[v];
         Vec3 motion = Vec3::Zero();
@@ -74,7 +73,7 @@ void Contact::carry_with_colliders()
                                   : partner.shape->motion(last.point);
         }
         carried_[v] = start_.x[v];
-        if (motion.norm() <= farthest)
+        if (is_carried(motion))
             carried_[v] += motion;
     });
 }
@@ -112,8 +111,14 @@ void Contact::detect(View<const Vec3> at, double radius)
     energy_.set_terms(std::move(terms), at.size());
 }
 
-/// The pair's cloth point at t0, moved along with the collider.
-Vec3 Contact::at_start(const ContactPair& pair) const { return pair.cloth_point(start_.x) + pair.motion; }
+/// The pair's cloth point at t0, moved along with the collider unless that jumped.
+Vec3 Contact::at_start(const ContactPair& pair) const
+{
+    const Vec3 start = pair.cloth_point(start_.x);
+    return is_carried(pair.motion) ? Vec3(start + pair.motion) : start;
+}
+
+bool Contact::is_carried(const Vec3& motion) const { return motion.norm() <= kMaxCarrySpeed * start_.dt; }
 
 ContactTerm Contact::make_term(const ContactPair& pair) const
 {

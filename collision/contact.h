@@ -70,6 +70,7 @@ private:
     void detect(View<const Vec3> at, double radius);
     ContactTerm make_term(const ContactPair& pair) const;
     Vec3 at_start(const ContactPair& pair) const;
+    bool is_carried(const Vec3& motion) const;
     void remember(View<const Vec3> x);
     bool update_normal_forces(View<const Vec3> x);
     bool slid_away(View<const Vec3> x) const;

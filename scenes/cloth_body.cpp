@@ -160,6 +160,13 @@ StepReport ClothBody::step(double dt, double t_t1, const std::vector<Obstacle>& 
     return report;
 }
 
+void ClothBody::place(View<const Vec3> positions)
+{
+    body_->set_positions(positions);
+    state_.positions.assign(positions.begin(), positions.end());
+    rest_time_ = 0.0;
+}
+
 /// Prescribes held vertices and moves the far ends of springs.
 void ClothBody::hold(double t_t1, const std::vector<Obstacle>& obstacles)
 {

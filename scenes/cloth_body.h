@@ -22,6 +22,9 @@ public:
     /// One time step of dt [s] that ends at time t_t1 [s], obstacles already advanced to it.
     StepReport step(double dt, double t_t1, const std::vector<Obstacle>& obstacles);
 
+    /// Puts the vertices elsewhere; velocities and rest shape stay.
+    void place(View<const Vec3> positions);
+
     const ClothState& state() const { return state_; }
 
 private:

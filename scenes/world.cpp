@@ -59,6 +59,12 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
+void World::place(int cloth, View<const Vec3> positions)
+{
+    parts_->bodies[cloth].place(positions);
+    parts_->states[cloth].positions = parts_->bodies[cloth].state().positions;
+}
+
 StepReport World::settle()
 {
     const Scene& scene = parts_->scene;

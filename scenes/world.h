@@ -33,6 +33,10 @@ public:
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
 
+    /// Puts the vertices of a cloth elsewhere, however far from its rest shape; velocities stay.
+    /// @param positions  [vertices] of that cloth [m]
+    void place(int cloth, View<const Vec3> positions);
+
     /// Simulates Scene::settle seconds with every avatar in its first pose. Call before sample 0 is taken.
     StepReport settle();
 

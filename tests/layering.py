@@ -34,9 +34,9 @@ MAY_INCLUDE = {
     "scenes/format": BELOW_SCENES,
     "scenes": BELOW_SCENES + ["scenes/format"],
     "apps/render": BELOW_SCENES + ["scenes", "export"],
-    "apps/toile": BELOW_SCENES + ["scenes", "export", "apps/render"],
+    "apps/toile": BELOW_SCENES + ["scenes", "export", "apps/render", "benchmarks"],
     "python": BELOW_SCENES + ["scenes", "export"],
-    "benchmarks": ["core", "scenes"],
+    "benchmarks": ["core", "garment", "scenes"],
     "tests": BELOW_SCENES + ["scenes", "export", "apps", "benchmarks"],
 }
 

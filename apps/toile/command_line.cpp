@@ -64,7 +64,7 @@ int parse_and_run(int argc, char** argv)
     program.set_version_flag("--version", "toile " TOILE_VERSION);
     program.require_subcommand(1);
     const std::vector<Command> commands{add_simulate(program), add_render(program), add_check(program),
-                                        add_info(program), add_schema(program)};
+                                        add_info(program),     add_schema(program), add_bench(program)};
     require_known_words(argc, argv, commands);
     try {
         program.parse(argc, argv);

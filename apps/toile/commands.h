@@ -18,5 +18,6 @@ Command add_render(CLI::App& program);
 Command add_check(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_schema(CLI::App& program);
+Command add_bench(CLI::App& program);
 
 } // namespace toile

@@ -1,5 +1,6 @@
 #include "core/pd/body.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,9 +8,23 @@
 
 namespace toile {
 
+namespace {
+
+/// Bounds of the tolerance by the farthest predicted move of a step [-]: at small steps cloth that begins to
+/// fall moves less than the tolerance, and would be left hanging in the air. Never less than kMinTolerance of
+/// the tolerance asked for: without forces nothing moves at all.
+constexpr double kTolerancePerMove = 0.1;
+constexpr double kMinTolerance = 0.01;
+
+/// Share of the tolerance [-] for a minimisation that begins where the cloth is. Cloth at rest takes no
+/// iteration there; larger lets stiff cloth rest before it has found its shape.
+constexpr double kStandingTolerance = 0.1;
+
+} // namespace
+
 Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings)
     : x_(std::move(positions)), v_(x_.size(), Vec3::Zero()), system_(std::move(system)), settings_(settings),
-      prediction_(x_.size()), x_t1_(x_.size()), inverse_masses_(x_.size())
+      prediction_(x_.size()), x_t1_(x_.size()), gradient_(x_.size()), inverse_masses_(x_.size())
 {
 }
 
@@ -53,13 +68,55 @@ void Body::predict(double dt, View<const Vec3> acceleration, View<const Vec3> ta
     });
 }
 
+/// Far enough below what moves in this step.
+double Body::tolerance() const
+{
+    double farthest = 0.0;
+    for (size_t i = 0; i < x_.size(); ++i)
+        farthest = std::max(farthest, (prediction_[i] - x_[i]).norm());
+    return std::clamp(kTolerancePerMove * farthest, kMinTolerance * settings_.tolerance, settings_.tolerance);
+}
+
+/// Begins again at the positions of t0 where standing still is better than what was found from the
+/// prediction. What comes out is then no worse than standing still, W(x_t1) <= W(x_t0) + 1/2 |v + dt a|^2_M,
+/// however early the minimisation stopped: stiff cloth gains no energy from a bad start guess, and cloth at
+/// rest stays.
+Lbfgs::Outcome Body::no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
+                                            const Lbfgs::Outcome& found)
+{
+    const View<const unsigned char> fixed = system_->fixed();
+    standing_ = x_;
+    for (size_t i = 0; i < x_.size(); ++i)
+        if (fixed[int(i)])
+            standing_[i] = prediction_[i];
+
+    // The inertia of standing still alone is often more than all that was found.
+    const View<const double> masses = system_->masses();
+    const double inertia = 0.5 / (dt * dt) * parallel_sum(kCpu, int(x_.size()), 0.0, [&](int i) {
+                               return masses[i] * (standing_[i] - prediction_[i]).squaredNorm();
+                           });
+    if (found.value <= inertia)
+        return found;
+    const double value = objective.evaluate(standing_, gradient_);
+    if (found.value <= value || !std::isfinite(value))
+        return found;
+
+    x_t1_ = standing_;
+    settings.tolerance *= kStandingTolerance;
+    Lbfgs::Outcome outcome = lbfgs_.minimise(objective, x_t1_, settings);
+    outcome.iterations += found.iterations;
+    return outcome;
+}
+
 void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
 {
     StepObjective objective(*system_, dt, prediction_, active, settings_.linear);
-    const Lbfgs::Settings settings{settings_.tolerance, settings_.max_iterations, settings_.history};
+    const Lbfgs::Settings settings{tolerance(), settings_.max_iterations, settings_.history};
     for (int round = 0; round < settings_.max_rounds; ++round) {
         const StageScope stage("pd/minimise");
-        const Lbfgs::Outcome outcome = lbfgs_.minimise(objective, x_t1_, settings);
+        Lbfgs::Outcome outcome = lbfgs_.minimise(objective, x_t1_, settings);
+        if (round == 0)
+            outcome = no_worse_than_standing(dt, objective, settings, outcome);
         report.iterations += outcome.iterations;
         report.displacement = outcome.displacement;
         report.gradient_norm = outcome.gradient_norm;

@@ -42,18 +42,22 @@ public:
 
     View<const Vec3> positions() const { return x_; }
     View<const Vec3> velocities() const { return v_; }
+    void set_positions(View<const Vec3> x) { x_.assign(x.begin(), x.end()); }
     void set_velocities(View<const Vec3> v) { v_.assign(v.begin(), v.end()); }
     const System& system() const { return *system_; }
 
 private:
     void predict(double dt, View<const Vec3> acceleration, View<const Vec3> targets);
+    double tolerance() const;
+    Lbfgs::Outcome no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
+                                          const Lbfgs::Outcome& found);
     void minimise(double dt, ActiveSetEnergy* active, StepReport& report);
 
     std::vector<Vec3> x_, v_;
     std::unique_ptr<System> system_;
     Settings settings_;
     Lbfgs lbfgs_;
-    std::vector<Vec3> prediction_, x_t1_;
+    std::vector<Vec3> prediction_, x_t1_, standing_, gradient_;
     std::vector<double> inverse_masses_;
 };
 

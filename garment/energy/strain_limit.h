@@ -15,8 +15,9 @@ namespace toile {
 ///
 /// Enforced after the step's minimisation by nonlinear Gauss-Seidel over the violating triangles: each is
 /// moved, mass-weighted, to the closest edges with clamped singular values [Wang et al. 2010; projecting
-/// after the step: Goldenthal et al. 2007]. Inside H the limit would need weights that stall every method
-/// built on a fixed H (docs/garment/strain_limit.md).
+/// after the step: Goldenthal et al. 2007]. Sweeps that run out with a larger strain than they began with are
+/// undone. Inside H the limit would need weights that stall every method built on a fixed H
+/// (docs/garment/strain_limit.md).
 class StrainLimit : public StepProjection {
 public:
     struct Settings {
@@ -47,6 +48,7 @@ private:
     std::vector<Mat2> rest_inv_;
     std::vector<unsigned char> violates_; ///< [triangles]
     std::vector<int> violating_;          ///< ascending triangle indices
+    std::vector<Vec3> before_;            ///< [vertices] positions before the first sweep [m]
 };
 
 } // namespace toile

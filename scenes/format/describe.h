@@ -102,7 +102,7 @@ void describe(V& v, Avatar& a)
     v.field("start", a.start, kTime, "Time in the clip at which it begins.");
     v.field("preroll", a.preroll, "How the figure comes from rest into its clip.");
     v.field("keyframes", a.keyframes, "Moves a shape or a body without animation.");
-    v.field("friction", a.friction, between(0.0, 5.0), "Coulomb coefficient; absent: contact.friction.");
+    v.field("friction", a.friction, between(0.0, 10.0), "Coulomb coefficient; absent: contact.friction.");
     v.field("color", a.color, kColor, "Red, green, blue in pictures.");
 }
 
@@ -213,7 +213,7 @@ void describe(V& v, Contact& c)
             "Kept between cloth and avatar, beyond half the cloth's thickness.");
     v.field("stiffness", c.stiffness, between(0.001, 1000.0),
             "Factor on the stiffness that the solver chooses.");
-    v.field("friction", c.friction, between(0.0, 5.0), "Coulomb coefficient of avatars that give none.");
+    v.field("friction", c.friction, between(0.0, 10.0), "Coulomb coefficient of avatars that give none.");
 }
 
 template <typename V>

@@ -10,6 +10,26 @@ struct BadRun {
     std::vector<std::string> says; ///< file, place and remedy
 };
 
+/// NAME.obj, and NAME.json with it as the only cloth.
+void write_cloth(const TemporaryFolder& folder, const std::string& name, const std::string& obj)
+{
+    folder.write(name + ".obj", obj);
+    folder.write(name + ".json",
+                 R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": ")" + name + R"(.obj"}]})");
+}
+
+/// The skinned column of the avatar tests, one of its joints pointing to a node that is not there.
+void write_body_without_bone(const TemporaryFolder& folder)
+{
+    std::string body = text_of(std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf");
+    const std::string joints = R"("joints": [ 1, 2 ])";
+    const size_t place = body.find(joints);
+    ASSERT_NE(place, std::string::npos);
+    folder.write("bone.gltf", body.replace(place, joints.size(), R"("joints": [ 1, 9 ])"));
+    folder.write("bone.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "disc": {}}],
+                                  "avatars": [{"name": "b", "file": "bone.gltf", "clip": "bend"}]})");
+}
+
 /// Files that the runs below find: a good scene with its cache, and broken ones.
 void fill(const TemporaryFolder& folder)
 {
@@ -18,8 +38,13 @@ void fill(const TemporaryFolder& folder)
     folder.write("syntax.json", "{\n \"toile\": 1,\n");
     folder.write("key.json", small_scene(3, R"("framse": 3)"));
     folder.write("range.json", small_scene(0));
-    folder.write("mesh.obj", "v 0 0 0\nv 1 0 zero\n");
-    folder.write("mesh.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": "mesh.obj"}]})");
+    write_cloth(folder, "mesh", "v 0 0 0\nv 1 0 zero\n");
+    write_cloth(folder, "nan", "v 0 0 0\nv 1 nan 0\n");
+    write_cloth(folder, "empty", "v 0 0 0\n");
+    write_cloth(folder, "flat", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    write_cloth(folder, "fan", "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nv 0 -1 0\nf 1 2 3\nf 2 1 4\nf 1 2 5\n");
+    write_body_without_bone(folder);
+    folder.write("weightless.json", small_scene(3, R"("fabrics": {"ghost": {"areal_density": 0}})"));
     folder.write("missing.json",
                  R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": "none.obj"}]})");
     folder.write("cut.pc2", text_of(folder.path() / "sheet.pc2").substr(0, 200));
@@ -47,6 +72,12 @@ const std::vector<BadRun> kBadRuns{
     {{"simulate", "key.json"}, {"key.json: framse", "did you mean \"frames\"?"}},
     {{"simulate", "range.json"}, {"range.json: frames: 0", "from 1 to 1000000"}},
     {{"simulate", "mesh.json"}, {"mesh.obj:2", "'zero'", "decimal number"}},
+    {{"simulate", "nan.json"}, {"nan.obj:2", "'nan'", "decimal number"}},
+    {{"simulate", "empty.json"}, {"empty.obj", "no triangle", "at least one face"}},
+    {{"simulate", "flat.json"}, {"flat.obj: triangle 0", "no area", "remove it or merge"}},
+    {{"simulate", "fan.json"}, {"fan.obj: edge (0, 1)", "non-manifold", "split the surface"}},
+    {{"simulate", "bone.json"}, {"bone.gltf", "index 9 is out of bounds"}},
+    {{"simulate", "weightless.json"}, {"weightless.json: fabrics.ghost.areal_density: 0", "above 0"}},
     {{"simulate", "missing.json"}, {"missing.json: cloths[0].file", "none.obj", "relative to"}},
     {{"simulate", "body.json"}, {"wolk", "walk"}},
     {{"render", "sheet.pc2"}, {"sheet.pc2", "without faces", "--scene"}},
@@ -61,6 +92,9 @@ const std::vector<BadRun> kBadRuns{
     {{"check", "none.pc2", "--scene", "good.json"}, {"none.pc2"}},
     {{"check", "cut.pc2", "--scene", "good.json"}, {"cut.pc2"}},
     {{"check", "sheet.pc2", "--scene", "coarse.json"}, {"sheet.pc2", "points", "made from"}},
+    {{"bench", "strss"}, {"strss", "did you mean \"stress\"?"}},
+    {{"bench", "stress", "--only", "nothing"}, {"--only", "nothing", "docs/benchmarks/README.md"}},
+    {{"bench", "stress", "-o", "file/there"}, {"file/there", "choose a writable folder"}},
     {{"info", "none.obj"}, {"none.obj", "can't be found"}},
     {{"info", "text.xyz"}, {"text.xyz", "known are"}},
     {{"info", "mesh.obj"}, {"mesh.obj:2", "decimal number"}},

@@ -1,0 +1,65 @@
+#include "apps/toile/bench.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "apps/toile/command_line.h"
+#include "apps/toile/commands.h"
+#include "core/backend/error.h"
+
+namespace toile {
+
+namespace {
+
+struct Benchmark {
+    const char* name;
+    const char* summary;
+    int (*run)(const BenchOptions& options);
+};
+
+constexpr Benchmark kBenchmarks[] = {
+    {"stress", "extreme steps, materials, meshes and starts: finite, no energy gained, back to rest",
+     bench_stress},
+};
+
+int list()
+{
+    for (const Benchmark& benchmark : kBenchmarks)
+        std::cout << benchmark.name << "  " << benchmark.summary << "\n";
+    return kExitOk;
+}
+
+int bench(const BenchOptions& options)
+{
+    if (options.name.empty())
+        return list();
+    std::vector<std::string> names;
+    for (const Benchmark& benchmark : kBenchmarks) {
+        if (options.name == benchmark.name)
+            return benchmark.run(options);
+        names.emplace_back(benchmark.name);
+    }
+    const std::string near = nearest_word(options.name, names);
+    throw InvalidInput("unknown benchmark \"" + options.name + "\"; " +
+                       (near.empty() ? "toile bench lists them" : "did you mean \"" + near + "\"?"));
+}
+
+} // namespace
+
+Command add_bench(CLI::App& program)
+{
+    Command command;
+    command.options = program.add_subcommand("bench", "Run a benchmark and print its table");
+    auto options = std::make_shared<BenchOptions>();
+    CLI::App& add = *command.options;
+    add.add_option("name", options->name, "Benchmark; without one, all are listed");
+    add.add_option("-o,--output", options->output, "Folder for the table as CSV and Markdown");
+    add.add_option("--only", options->only, "Only cases whose name contains this");
+    add.add_flag("--quick", options->quick, "Smaller and shorter cases");
+    add.add_flag("--quiet", options->quiet, "No progress on stderr");
+    command.run = [options] { return bench(*options); };
+    return command;
+}
+
+} // namespace toile

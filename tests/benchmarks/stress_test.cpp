@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "benchmarks/stress/table.h"
+
+namespace toile::stress {
+namespace {
+
+/// Cases that gain energy or don't come to rest, as docs/benchmarks/README.md explains.
+const std::set<std::string> kGainEnergy{"dt 1/1000 stiffness 1e+07 density 1",
+                                        "dt 1/10 stiffness 1e+07 density 1", "random start stiffness 1"};
+const std::set<std::string> kNeverRest{"dt 1/300", "dt 1/1000 stiffness 1 density 0.01",
+                                       "dt 1/1000 stiffness 1 density 1"};
+
+std::vector<Result> run_quick_cases()
+{
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "toile-stress-meshes";
+    std::vector<Result> results;
+    for (const Case& trial : make_cases(Size::Quick, folder))
+        results.push_back(run(trial, Limits{}, [](int) { return true; }));
+    return results;
+}
+
+TEST(Stress, LeavesClothFiniteWithoutNewEnergyAndAtRest)
+{
+    const Limits limits;
+    for (const Result& result : run_quick_cases()) {
+        SCOPED_TRACE(result.name);
+        EXPECT_TRUE(result.is_finite);
+        EXPECT_LT(result.drift, limits.drift);
+        if (!kGainEnergy.contains(result.name)) {
+            EXPECT_LT(result.energy_ratio, 1.0 + limits.energy_gain);
+        }
+        if (!kNeverRest.contains(result.name)) {
+            EXPECT_LT(result.final_speed, limits.rest_speed);
+        }
+    }
+}
+
+TEST(Stress, NamesEveryCaseOnce)
+{
+    std::set<std::string> names;
+    for (const Case& trial : make_cases(Size::Full, testing::TempDir()))
+        EXPECT_TRUE(names.insert(trial.name).second) << trial.name;
+    EXPECT_GT(names.size(), 30u);
+}
+
+TEST(StressTable, HasAHeaderAndOneLinePerCase)
+{
+    Result result;
+    result.name = "a case";
+    result.steps = 12;
+    result.is_finite = true;
+    EXPECT_EQ(
+        csv_table({result}),
+        "case,steps,iterations_per_step,ms_per_step,end_speed_m_per_s,max_strain,energy_ratio,end_energy,"
+        "drift_m,finite,rests,holds\n"
+        "a case,12,0.0,0.00,0.0e+00,0.000,0.000,0.000,,yes,no,no\n");
+    const std::string table = markdown_table({result});
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+    EXPECT_NE(table.find("| a case | 12 "), std::string::npos) << table;
+}
+
+} // namespace
+} // namespace toile::stress
