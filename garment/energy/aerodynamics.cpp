@@ -17,6 +17,7 @@ struct TriangleDrag {
     View<const Vec3> v;
     View<const Triangle> tri;
     Vec3 wind;
+    View<const Vec3> gusts; // empty in steady wind
     Aerodynamics::Settings settings;
     View<Mat3> drag;
 
@@ -29,7 +30,9 @@ struct TriangleDrag {
         if (!(length > 0.0))
             return;
         const Vec3 n = doubled_area / length;
-        const Vec3 u = wind - (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0;
+        Vec3 u = wind - (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0;
+        if (gusts.size() > 0)
+            u += (gusts[corner[0]] + gusts[corner[1]] + gusts[corner[2]]) / 3.0;
         const Mat3 along = n * n.transpose();
         const double normal_speed = std::abs(n.dot(u));
         const double tangential_speed = (u - n.dot(u) * n).norm();
@@ -47,11 +50,12 @@ Aerodynamics::Aerodynamics(std::shared_ptr<const RestShape> rest, const Settings
 }
 
 void Aerodynamics::add_acceleration(View<const Vec3> x, View<const Vec3> v, View<const double> masses,
-                                    const Vec3& wind, double dt, View<Vec3> acceleration)
+                                    const Vec3& wind, double dt, View<Vec3> acceleration,
+                                    View<const Vec3> gusts)
 {
     const StageScope stage("garment/aerodynamics");
     parallel_for(kCpu, "aerodynamics/triangles", int(drag_.size()),
-                 TriangleDrag{x, v, rest_->triangles, wind, settings_, drag_});
+                 TriangleDrag{x, v, rest_->triangles, wind, gusts, settings_, drag_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "aerodynamics/vertices", x.size(), [&](int i) {
         Mat3 C = Mat3::Zero();
@@ -59,7 +63,10 @@ void Aerodynamics::add_acceleration(View<const Vec3> x, View<const Vec3> v, View
             C += drag_[corner / 3];
         // (m + dt C) dv = dt C (wind - v)
         const Mat3 lhs = masses[i] * Mat3::Identity() + dt * C;
-        acceleration[i] += lhs.inverse() * (C * (wind - v[i]));
+        Vec3 u = wind - v[i];
+        if (gusts.size() > 0)
+            u += gusts[i];
+        acceleration[i] += lhs.inverse() * (C * u);
     });
 }
 

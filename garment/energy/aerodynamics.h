@@ -33,8 +33,10 @@ public:
     }
 
     /// Adds the acceleration over a step of dt [s] to acceleration [vertices] [m/s^2].
+    /// @param wind   mean velocity of the air [m/s]
+    /// @param gusts  [vertices] deviation from it (see gusts.h) [m/s]; empty in steady wind
     void add_acceleration(View<const Vec3> x, View<const Vec3> v, View<const double> masses, const Vec3& wind,
-                          double dt, View<Vec3> acceleration);
+                          double dt, View<Vec3> acceleration, View<const Vec3> gusts = {});
 
 private:
     std::shared_ptr<const RestShape> rest_;
