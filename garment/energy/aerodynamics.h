@@ -13,9 +13,10 @@ namespace toile {
 ///
 ///   f = 1/2 rho A ( c_n |u_n| u_n + c_t |u_t| u_t )
 ///
-/// split along its normal and in its plane. With the magnitudes taken at the start of the step the force is
-/// linear in the velocity and is integrated implicitly vertex by vertex, so no wind and no light fabric makes
-/// it unstable.
+/// split along its normal and in its plane, with velocities at the start of the step. Vertex by vertex the
+/// force is limited to what brings the vertex to the air's velocity within the step, so no wind and no light
+/// fabric makes it unstable. Integrating it implicitly by itself would do that too, but would weaken it on
+/// cloth that is held against the wind: the elastic forces that hold it are not part of that equation.
 class Aerodynamics {
 public:
     struct Settings {

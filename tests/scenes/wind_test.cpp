@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scenes/format/read_scene.h"
 #include "scenes/world.h"
 
@@ -63,6 +65,51 @@ TEST(Wind, GustsKeepClothAwake)
     const long minimised = world.stages().calls("pd/minimise");
     world.advance_frame();
     EXPECT_GT(world.stages().calls("pd/minimise"), minimised);
+}
+
+TEST(Air, LetsAFlatSheetFallAtItsTerminalSpeed)
+{
+    World world(parse_scene(
+        R"({"toile": 1, "frames": 91, "fabrics": {"bare": {"base": "cotton", "areal_density": 0.1, "damping": 0}},
+        "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.4, 0.4], "resolution": 0.05}}]})",
+        "fall.json"));
+    std::vector<Vec3> before;
+    while (world.frame() < 90) {
+        before = world.cloths()[0].positions;
+        world.advance_frame();
+    }
+    const double terminal = std::sqrt(2.0 * 0.1 * 9.81 / 1.2); // 1/2 rho c_n v^2 = m g per area, c_n = 1
+    for (size_t i = 0; i < before.size(); ++i) {
+        const double speed = (before[i] - world.cloths()[0].positions[i]).y() * 30.0;
+        EXPECT_NEAR(speed, terminal, 1e-3 * terminal);
+    }
+}
+
+/// Force of a wind of 5 m/s on a silk sheet of 20 cm x 20 cm that soft springs hold across it [N].
+double force_on_held_sheet(int substeps)
+{
+    World world(
+        parse_scene(R"({"toile": 1, "frames": 60, "gravity": [0, 0, 0], "wind": {"velocity": [0, 5, 0]},
+        "solver": {"substeps": )" +
+                        std::to_string(substeps) + R"(, "tolerance": 1e-7},
+        "fabrics": {"heavily_damped": {"base": "silk", "damping": 20, "bend": {"warp": 0.01, "weft": 0.01}}},
+        "cloths": [{"name": "sheet", "fabric": "heavily_damped", "rectangle": {"size": [0.2, 0.2], "resolution": 0.05}}],
+        "attachments": [{"cloth": "sheet", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}},
+            "stiffness": 10}]})",
+                    "held.json"));
+    while (world.frame() < 59)
+        world.advance_frame();
+    double force = 0.0;
+    for (const Vec3& x : world.cloths()[0].positions)
+        force += 10.0 * x.y();
+    return force;
+}
+
+TEST(Air, PushesHeldClothWithTheWholeDragForAnyStep)
+{
+    const double drag = 0.5 * 1.2 * 0.2 * 0.2 * 5.0 * 5.0;
+    EXPECT_NEAR(force_on_held_sheet(4), drag, 0.01 * drag);
+    EXPECT_NEAR(force_on_held_sheet(16), drag, 0.01 * drag);
 }
 
 } // namespace
