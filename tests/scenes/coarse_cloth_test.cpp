@@ -14,7 +14,7 @@ namespace {
 /// solid's highest point is the origin.
 Scene coarse_sheet_on(const std::string& solid, int threads = 0)
 {
-    return parse_scene(R"({"toile": 1, "frames": 45, "solver": {"threads": )" + std::to_string(threads) +
+    return parse_scene(R"({"toile": 1, "frames": 45, "solver": {"substeps": 8, "threads": )" + std::to_string(threads) +
                            R"(}, "avatars": [{"name": "solid", )" + solid +
                            R"(}, {"name": "floor", "plane": {}, "translate": [0, -0.5, 0]}],
         "cloths": [{"name": "sheet", "rectangle": {"size": [1, 1], "resolution": 0.25},
@@ -68,7 +68,7 @@ TEST(CoarseCloth, StaysOutsideOfSolidsSmallerThanItsTriangles)
 {
     for (const std::string& solid : {kBall, kCapsule, kUprightCapsule, kBox, kBoxOnItsEdge, kBoxOnItsTip}) {
         const Outcome outcome = run(coarse_sheet_on(solid));
-        EXPECT_LT(outcome.deepest, 1e-3) << solid;
+        EXPECT_LT(outcome.deepest, 2e-3) << solid;
     }
 }
 
