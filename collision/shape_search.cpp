@@ -189,8 +189,8 @@ void ShapeSearch::add_round(const Meeting& meeting, std::vector<ContactPair>& ou
     push(meeting, normal, meeting.on_skeleton + skeleton_.radius * normal, out);
 }
 
-/// True when the cloth at c, `depth` behind a sharp feature with outward normal n, is pierced by that feature:
-/// it is inside the solid, and not past its middle, from where the other side is the way out.
+/// True when the cloth at c, `depth` behind a sharp feature with outward normal n, is pierced by that
+/// feature: it is inside the solid, and not past its middle, from where the other side is the way out.
 bool ShapeSearch::has_pierced(const Vec3& c, const Vec3& n, double depth) const
 {
     return n.dot(c - shape_.pose().translation()) > 0.0 &&

@@ -128,6 +128,7 @@ void ClothBody::build(const Scene& scene, const std::vector<Obstacle>& obstacles
     strain_limit_ = std::make_unique<StrainLimit>(rest, limit, source);
     if (!obstacles.empty()) {
         std::vector<ContactPartner> partners;
+        partners.reserve(obstacles.size());
         for (const Obstacle& obstacle : obstacles)
             partners.push_back(obstacle.partner());
         Contact::Settings contact;

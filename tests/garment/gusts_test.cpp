@@ -38,6 +38,13 @@ Moments moments(int count, const Sample& sample)
     return m;
 }
 
+/// The i-th point of a grid of side^3 points that is incommensurate with the gusts' wavelengths [m].
+Vec3 grid_point(int i, int side)
+{
+    const int column = i % side, row = i / side % side, layer = i / (side * side);
+    return {0.31 * column, 0.37 * row, 0.29 * layer};
+}
+
 void expect_isotropic(const Moments& m, double deviation)
 {
     EXPECT_LT(m.mean.norm(), 0.01 * deviation);
@@ -56,8 +63,8 @@ TEST(Gusts, HaveZeroMeanAndTheDeclaredDeviationOverTime)
 TEST(Gusts, HaveZeroMeanAndTheDeclaredDeviationOverSpace)
 {
     const Gusts gusts = gusts_of(0.3);
-    const auto place = [](int i) { return Vec3(0.31 * (i % 60), 0.37 * (i / 60 % 60), 0.29 * (i / 3600)); };
-    expect_isotropic(moments(216000, [&](int i) { return gusts.at(place(i), 2.0); }), 0.3 * kMean.norm());
+    expect_isotropic(moments(216000, [&](int i) { return gusts.at(grid_point(i, 60), 2.0); }),
+                     0.3 * kMean.norm());
 }
 
 TEST(Gusts, AreFreeOfDivergence)
@@ -79,7 +86,7 @@ double correlation(const Gusts& gusts, const Vec3& shift, double delay)
 {
     double product = 0.0, square = 0.0;
     for (int i = 0; i < 20000; ++i) {
-        const Vec3 x(0.31 * (i % 27), 0.37 * (i / 27 % 27), 0.29 * (i / 729));
+        const Vec3 x = grid_point(i, 27);
         const double t = 0.73 * i;
         const Vec3 u = gusts.at(x, t);
         product += u.dot(gusts.at(x + shift, t + delay));

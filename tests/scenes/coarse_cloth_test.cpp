@@ -14,8 +14,8 @@ namespace {
 /// solid's highest point is the origin.
 Scene coarse_sheet_on(const std::string& solid, int threads = 0)
 {
-    return parse_scene(R"({"toile": 1, "frames": 45, "solver": {"substeps": 8, "threads": )" + std::to_string(threads) +
-                           R"(}, "avatars": [{"name": "solid", )" + solid +
+    return parse_scene(R"({"toile": 1, "frames": 45, "solver": {"substeps": 8, "threads": )" +
+                           std::to_string(threads) + R"(}, "avatars": [{"name": "solid", )" + solid +
                            R"(}, {"name": "floor", "plane": {}, "translate": [0, -0.5, 0]}],
         "cloths": [{"name": "sheet", "rectangle": {"size": [1, 1], "resolution": 0.25},
             "translate": [0.07, 0.05, 0.04]}]})",
