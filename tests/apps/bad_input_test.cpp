@@ -22,7 +22,7 @@ void fill(const TemporaryFolder& folder)
     folder.write("mesh.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": "mesh.obj"}]})");
     folder.write("missing.json",
                  R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": "none.obj"}]})");
-    folder.write("cut.pc2", text_of(folder.path() / "sheet.pc2").substr(0, 200));
+    folder.write("cut.pc2", bytes_of(folder.path() / "sheet.pc2").substr(0, 200));
     folder.write("coarse.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "sheet", "disc": {}}]})");
     folder.write("body.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "disc": {}}],
                                   "avatars": [{"name": "b", "mannequin": {}, "clip": "wolk"}]})");

@@ -2,34 +2,15 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include "core/backend/error.h"
 #include "export/cache_writer.h"
 #include "export/point_cache.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile {
 
-/// A fresh folder per test, removed afterwards.
-class ExportTest : public testing::Test {
-protected:
-    void SetUp() override
-    {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("toile_export_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
-    std::filesystem::path file(const std::string& name) const { return folder_ / name; }
-
-    std::filesystem::path folder_;
-};
+using ExportTest = FileTest;
 
 /// Two quads and a triangle over seven vertices, with texture coordinates.
 inline ObjMesh quad_mesh()
@@ -58,27 +39,9 @@ inline void write_frames(CacheWriter& writer, int first, int end, int vertex_cou
         writer.write(frame, frame_positions(frame, vertex_count));
 }
 
-inline std::string bytes_of(const std::filesystem::path& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 inline void write_bytes(const std::filesystem::path& file, const std::string& bytes)
 {
     std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
-}
-
-/// The message of the InvalidInput that `act` throws; empty when it throws none.
-template <typename Act>
-std::string refusal(const Act& act)
-{
-    try {
-        act();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return {};
 }
 
 } // namespace toile
