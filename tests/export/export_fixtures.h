@@ -16,8 +16,10 @@ using ExportTest = FileTest;
 inline ObjMesh quad_mesh()
 {
     ObjMesh mesh;
-    for (int v = 0; v < 7; ++v)
-        mesh.positions.push_back(Vec3(v % 3, v / 3, 0.25 * v));
+    for (int v = 0; v < 7; ++v) {
+        const int column = v % 3, row = v / 3;
+        mesh.positions.push_back(Vec3(column, row, 0.25 * v));
+    }
     mesh.texture_coordinates = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1), Vec2(0.5, 0.5)};
     mesh.polygons = {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 6}};
     mesh.polygon_uvs = {{0, 1, 2, 3}, {3, 2, 1, 0}, {0, 4, 2}};
@@ -28,6 +30,7 @@ inline ObjMesh quad_mesh()
 inline std::vector<Vec3> frame_positions(int frame, int vertex_count)
 {
     std::vector<Vec3> positions;
+    positions.reserve(vertex_count);
     for (int v = 0; v < vertex_count; ++v)
         positions.push_back(Vec3(frame + 0.5, v + 0.25, -(100.0 * frame + v)));
     return positions;
