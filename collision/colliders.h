@@ -75,6 +75,7 @@ public:
     Vec3 motion(const Vec3& point) const { return point - pose_t0_ * (pose_t1_.inverse() * point); }
 
     const Shape& shape() const { return shape_; }
+    const Eigen::Isometry3d& pose() const { return pose_t1_; } ///< world_from_shape at t1
 
 private:
     Shape shape_;

@@ -65,7 +65,7 @@ void Contact::begin_step(const StepStart& start)
 void Contact::carry_with_colliders()
 {
     parallel_for(kCpu, "contact/carry", start_.x.size(), [&](int v) {
-        const ContactPair& last = nearest_[v];
+        const Nearest& last = nearest_[v];
         Vec3 motion = Vec3::Zero();
         if (last.collider >= 0) {
             const ContactPartner& partner = partners_[last.collider];
@@ -95,13 +95,14 @@ void Contact::detect(View<const Vec3> at, double radius)
             detector_.detect(*partners_[c].shape, c, settings, pairs);
     }
 
-    std::fill(nearest_.begin(), nearest_.end(), ContactPair{});
+    std::fill(nearest_.begin(), nearest_.end(), Nearest{});
     std::vector<ContactTerm> terms;
     for (const ContactPair& pair : pairs) {
         if (is_vertex_pair(pair)) {
-            ContactPair& nearest = nearest_[pair.vertex[0]];
-            if (nearest.collider < 0 || pair.gap(at) < nearest.gap(at))
-                nearest = pair;
+            const double gap = pair.gap(at);
+            Nearest& nearest = nearest_[pair.vertex[0]];
+            if (nearest.collider < 0 || gap < nearest.gap)
+                nearest = {pair.collider, pair.feature, gap, pair.point};
         }
         const bool held = std::all_of(pair.vertex.begin(), pair.vertex.end(),
                                       [&](int v) { return v < 0 || start_.fixed[v]; });

@@ -66,6 +66,14 @@ private:
         Vec3 stick;          ///< [m] elastic part of the slip
     };
 
+    /// The surface point nearest to a cloth vertex.
+    struct Nearest {
+        int collider = -1; ///< -1: none near
+        int feature = -1;
+        double gap = 0.0;          ///< [m]
+        Vec3 point = Vec3::Zero(); ///< [m]
+    };
+
     void carry_with_colliders();
     void detect(View<const Vec3> at, double radius);
     ContactTerm make_term(const ContactPair& pair) const;
@@ -80,9 +88,9 @@ private:
     ContactDetector detector_;
     ContactEnergy energy_;
     StepStart start_;
-    std::vector<Vec3> carried_;        ///< [vertices] start positions moved along with the surface nearby [m]
-    std::vector<Vec3> detected_at_;    ///< [vertices] where the pairs were found [m]
-    std::vector<ContactPair> nearest_; ///< [vertices] last step's closest pair; collider -1 without one
+    std::vector<Vec3> carried_;     ///< [vertices] start positions moved along with the surface nearby [m]
+    std::vector<Vec3> detected_at_; ///< [vertices] where the pairs were found [m]
+    std::vector<Nearest> nearest_;  ///< [vertices] last step's
     std::multimap<Key, Memory> memory_;
     int active_count_ = 0;
     double min_gap_ = 0.0;

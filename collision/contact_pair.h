@@ -7,7 +7,7 @@
 namespace toile {
 
 /// What touches what: cloth first, collider second.
-enum class ContactKind { kVertexFace, kFaceVertex, kEdgeEdge, kVertexShape };
+enum class ContactKind { kVertexFace, kFaceVertex, kEdgeEdge, kVertexShape, kFaceShape, kEdgeShape };
 
 /// A place where cloth is near a collider: the half space that the cloth point should stay in,
 ///
@@ -19,6 +19,7 @@ enum class ContactKind { kVertexFace, kFaceVertex, kEdgeEdge, kVertexShape };
 //          | n                         | n                     | n
 //       ___x___ collider face          x collider vertex       x  collider edge (end on)
 //                                     / \                      |
+//    kFaceShape, kEdgeShape: a cloth face or edge against a corner or edge of a Skeleton
 struct ContactPair {
     std::array<int, 3> vertex{-1, -1, -1};    ///< cloth vertices; -1 unused
     std::array<double, 3> weight{0., 0., 0.}; ///< >= 0, sum 1; 0 where unused
@@ -27,7 +28,9 @@ struct ContactPair {
     Vec3 motion = Vec3::Zero();               ///< displacement of that material point from t0 to t1 [m]
     int collider = -1;                        ///< as given to detect()
     ContactKind kind = ContactKind::kVertexFace;
-    int feature = -1; ///< collider triangle, vertex or edge by kind; 0 for a shape
+    /// Collider triangle, vertex or edge by kind; of a shape 0 with a cloth vertex, else the number of the
+    /// skeleton's corner, or its edge's after all corners.
+    int feature = -1;
 
     /// sum_k weight_k x_k at cloth positions x [m].
     Vec3 cloth_point(View<const Vec3> x) const

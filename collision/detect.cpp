@@ -1,8 +1,19 @@
 #include "collision/detect.h"
 
 #include "collision/find_pairs.h"
+#include "collision/shape_search.h"
 
 namespace toile {
+
+namespace {
+
+/// True when nothing of one box is within `reach` [m] of anything of the other.
+bool are_apart(const Bounds& a, const Bounds& b, double reach)
+{
+    return ((a.lower - b.upper).array() > reach).any() || ((b.lower - a.upper).array() > reach).any();
+}
+
+} // namespace
 
 ContactDetector::ContactDetector(View<const Triangle> triangles, View<const Vec3> positions)
     : cloth_(triangles, positions)
@@ -30,13 +41,8 @@ const SurfaceProximity& ContactDetector::cloth_surface()
 void ContactDetector::detect(const MeshCollider& mesh, int collider, const DetectSettings& settings,
                              std::vector<ContactPair>& out)
 {
-    // Nothing to do where the boxes are farther apart than any pair may be.
-    const double reach = std::max(settings.radius, settings.max_depth);
-    const Bounds& other = mesh.bounds();
-    if (((bounds_.lower - other.upper).array() > reach).any() ||
-        ((other.lower - bounds_.upper).array() > reach).any())
+    if (are_apart(bounds_, mesh.bounds(), std::max(settings.radius, settings.max_depth)))
         return;
-
     const PairSearch search{x_, bounds_, mesh, collider, settings};
     find_vertex_face(search, out);
     if (settings.face_vertex)
@@ -48,23 +54,17 @@ void ContactDetector::detect(const MeshCollider& mesh, int collider, const Detec
 void ContactDetector::detect(const ShapeCollider& shape, int collider, const DetectSettings& settings,
                              std::vector<ContactPair>& out)
 {
-    parallel_append(
-        kCpu, "collision/shape", x_.size(),
-        [&](int begin, int end, std::vector<ContactPair>& pairs) {
-            for (int v = begin; v < end; ++v) {
-                const ShapePoint at = shape.closest(x_[v]);
-                if (at.signed_distance < settings.radius)
-                    pairs.push_back({.vertex = {v, -1, -1},
-                                     .weight = {1.0, 0.0, 0.0},
-                                     .normal = at.normal,
-                                     .point = at.point,
-                                     .motion = shape.motion(at.point),
-                                     .collider = collider,
-                                     .kind = ContactKind::kVertexShape,
-                                     .feature = 0});
-            }
-        },
-        out);
+    find_vertex_shape(x_, shape, collider, settings.radius, out);
+
+    const Skeleton skeleton = skeleton_of(shape.shape(), shape.pose());
+    if (skeleton.corners.empty() ||
+        are_apart(bounds_, bounds(skeleton.points()), skeleton.radius + settings.radius))
+        return;
+    const ShapeSearch search(cloth_, x_, shape, skeleton, collider, settings.radius);
+    if (settings.face_vertex)
+        search.find_faces(out);
+    if (settings.edge_edge)
+        search.find_edges(out);
 }
 
 } // namespace toile

@@ -16,7 +16,7 @@ struct DetectSettings {
     /// ones are left alone: they more likely belong to the other side of a limb. Shapes have no such limit.
     double max_depth = 0.1;
 
-    bool face_vertex = true; ///< cloth faces against collider vertices: sharp points under coarse cloth
+    bool face_vertex = true; ///< cloth faces against vertices, corners, balls: points under coarse cloth
     bool edge_edge = true;   ///< edges against ridges: folds over sharp rims; the most numerous kind
 };
 
@@ -43,7 +43,12 @@ public:
     void detect(const MeshCollider& mesh, int collider, const DetectSettings& settings,
                 std::vector<ContactPair>& out);
 
-    /// Appends one pair per cloth vertex nearer than the radius to the solid, or inside it at any depth.
+    /// Appends the pairs against a solid in the order of their kinds:
+    ///   kVertexShape  one per cloth vertex nearer than the radius, or inside at any depth
+    ///   kFaceShape    cloth faces against corners of a box, or the balls of a sphere or capsule
+    ///   kEdgeShape    cloth edges against corners and edges of a box, or the balls and axis of a capsule
+    /// Planes make vertex pairs only. Round shapes meet faces and edges only where these come nearer than
+    /// their own vertices.
     void detect(const ShapeCollider& shape, int collider, const DetectSettings& settings,
                 std::vector<ContactPair>& out);
 

@@ -31,6 +31,10 @@ void find_face_vertex(const PairSearch& search, const SurfaceProximity& cloth, s
 /// Appends to `out`, sorted by cloth edge, then by collider edge.
 void find_edge_edge(const PairSearch& search, const SurfaceEdges& cloth, std::vector<ContactPair>& out);
 
+/// Appends one pair per cloth vertex nearer than the radius to the solid or inside it, by vertex.
+void find_vertex_shape(View<const Vec3> x, const ShapeCollider& shape, int collider, double radius,
+                       std::vector<ContactPair>& out);
+
 /// True when the cloth point c, which lies behind a collider feature with normal n at distance `reach` or
 /// less, is inside the collider there: not outside on the far side of a thin part, where pushing along n
 /// would pull the cloth through.

@@ -12,6 +12,30 @@ namespace {
 /// any gap between body parts that matters.
 constexpr double kProbe = 2e-5;
 
+/// Accuracy of a triangle's depth in a solid [m], and how often the triangle may be halved to reach it.
+constexpr double kDepthTolerance = 1e-7;
+constexpr int kMaxHalvings = 24;
+
+/// The greater of `known` and the depth of triangle (a, b, c). The signed distance of a convex solid is
+/// convex, so its gradient at the middle bounds the depth of all of the triangle; what the bound leaves open
+/// is split in four.
+double deeper(const Shape& shape, const Eigen::Isometry3d& pose, const Vec3& a, const Vec3& b, const Vec3& c,
+              double known, int halvings)
+{
+    const Vec3 middle = (a + b + c) / 3.0;
+    const ShapePoint at = closest(shape, pose, middle);
+    known = std::max(known, -at.signed_distance);
+    const double steepest =
+        std::min({at.normal.dot(a - middle), at.normal.dot(b - middle), at.normal.dot(c - middle)});
+    if (-at.signed_distance - steepest <= known + kDepthTolerance || halvings == 0)
+        return known;
+    const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+    known = deeper(shape, pose, ab, bc, ca, known, halvings - 1);
+    known = deeper(shape, pose, a, ab, ca, known, halvings - 1);
+    known = deeper(shape, pose, ab, b, bc, known, halvings - 1);
+    return deeper(shape, pose, ca, bc, c, known, halvings - 1);
+}
+
 } // namespace
 
 ClothSamples::ClothSamples(View<const Triangle> triangles, int vertex_count)
@@ -189,6 +213,15 @@ Penetration measure_penetration(const ShapeCollider& shape, View<const Vec3> sam
             result.point = samples[i];
         }
     return result;
+}
+
+double penetration_of_triangle(const Shape& shape, const Eigen::Isometry3d& pose, const Vec3& a,
+                               const Vec3& b, const Vec3& c)
+{
+    double known = 0.0;
+    for (const Vec3& x : {a, b, c})
+        known = std::max(known, -closest(shape, pose, x).signed_distance);
+    return deeper(shape, pose, a, b, c, known, kMaxHalvings);
 }
 
 } // namespace toile

@@ -83,4 +83,10 @@ private:
 /// The same for an analytic solid: depth is the negative signed distance; nothing is excluded.
 Penetration measure_penetration(const ShapeCollider& shape, View<const Vec3> samples);
 
+/// Depth [m] of the deepest point of triangle (a, b, c) in a convex solid, wherever in the triangle it lies,
+/// to 1e-7 m; 0 when all of the triangle is outside. Finite corners only.
+/// @param pose  world_from_shape
+double penetration_of_triangle(const Shape& shape, const Eigen::Isometry3d& pose, const Vec3& a,
+                               const Vec3& b, const Vec3& c);
+
 } // namespace toile

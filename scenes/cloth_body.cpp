@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "core/backend/parallel.h"
@@ -60,10 +61,19 @@ ObjMesh placed_mesh(const scene::Cloth& cloth)
     return mesh;
 }
 
+Gusts::Settings gusts_of(const scene::Wind& wind)
+{
+    Gusts::Settings settings;
+    settings.intensity = wind.turbulence;
+    settings.seed = std::uint64_t(wind.seed);
+    return settings;
+}
+
 } // namespace
 
 ClothBody::ClothBody(const Scene& scene, const scene::Cloth& settings, const std::vector<Obstacle>& obstacles)
-    : gravity_(scene.gravity), wind_(scene.wind), sleep_(scene.solver.sleep)
+    : gravity_(scene.gravity), wind_(scene.wind), gusts_(scene.wind.velocity, gusts_of(scene.wind)),
+      sleep_(scene.solver.sleep)
 {
     state_.name = settings.name;
     state_.fabric = fabric_of(scene, settings);
@@ -124,6 +134,7 @@ void ClothBody::build(const Scene& scene, const std::vector<Obstacle>& obstacles
     strain_limit_ = std::make_unique<StrainLimit>(rest, limit, source, tension_);
     if (!obstacles.empty()) {
         std::vector<ContactPartner> partners;
+        partners.reserve(obstacles.size());
         for (const Obstacle& obstacle : obstacles)
             partners.push_back(obstacle.partner());
         Contact::Settings contact;
@@ -145,7 +156,7 @@ StepReport ClothBody::step(double dt, double t_t1, const std::vector<Obstacle>& 
         return report;
     }
     hold(t_t1, obstacles);
-    accelerate(dt);
+    accelerate(dt, t_t1);
     tension_->begin_step(body_->positions());
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, contact_.get(), strain_limit_.get());
     state_.positions.assign(body_->positions().begin(), body_->positions().end());
@@ -191,15 +202,20 @@ void ClothBody::hold(double t_t1, const std::vector<Obstacle>& obstacles)
 }
 
 /// Gravity, the fabric's damping, and the air.
-void ClothBody::accelerate(double dt)
+void ClothBody::accelerate(double dt, double t_t1)
 {
     const double decay = state_.fabric.damping / (1.0 + dt * state_.fabric.damping);
     const View<const Vec3> v = body_->velocities();
     parallel_for(kCpu, "scenes/accelerate", v.size(),
                  [&](int i) { acceleration_[i] = gravity_ - decay * v[i]; });
-    if (air_->is_active())
-        air_->add_acceleration(body_->positions(), v, body_->system().masses(), wind_.velocity, dt,
-                               acceleration_);
+    if (!air_->is_active())
+        return;
+    if (gusts_.are_active()) {
+        gusts_at_.resize(v.size());
+        gusts_.sample(body_->positions(), t_t1, gusts_at_);
+    }
+    air_->add_acceleration(body_->positions(), v, body_->system().masses(), wind_.velocity, dt, acceleration_,
+                           gusts_at_);
 }
 
 /// True when nothing has moved this cloth for a while and nothing is about to.

@@ -6,6 +6,7 @@
 #include "collision/contact.h"
 #include "core/pd/body.h"
 #include "garment/energy/aerodynamics.h"
+#include "garment/energy/gusts.h"
 #include "garment/energy/springs.h"
 #include "garment/energy/strain_limit.h"
 #include "scenes/hold.h"
@@ -31,12 +32,13 @@ private:
     void build(const Scene& scene, const std::vector<Obstacle>& obstacles, const std::string& source,
                double grain);
     void hold(double t_t1, const std::vector<Obstacle>& obstacles);
-    void accelerate(double dt);
+    void accelerate(double dt, double t_t1);
     bool sleeps(double t_t1, const std::vector<Obstacle>& obstacles);
 
     ClothState state_;
     Vec3 gravity_;
     scene::Wind wind_;
+    Gusts gusts_;
     scene::Sleep sleep_;
     std::vector<Hold> holds_;
     std::shared_ptr<Springs> springs_; ///< null without attachments that give
@@ -47,7 +49,8 @@ private:
     std::unique_ptr<Body> body_;
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;
-    double rest_time_ = 0.0; ///< [s] since when every vertex has been slow
+    std::vector<Vec3> gusts_at_; ///< [vertices] [m/s]; empty in steady wind
+    double rest_time_ = 0.0;     ///< [s] since when every vertex has been slow
 };
 
 } // namespace toile

@@ -68,7 +68,7 @@ struct Certificate {
 };
 
 FrameFindings examine(View<const Vec3> x, const ClothState& cloth, const StrainMeter& strain,
-                      const PenetrationMeter& penetration)
+                      const ScenePenetration& penetration)
 {
     FrameFindings found;
     for (const Vec3& p : x)
@@ -83,7 +83,7 @@ Certificate examine_all(const PointCache& cache, const Scene& scene, const Cloth
                         const CheckOptions& options, double strain_limit)
 {
     const StrainMeter strain(cloth.rest.positions, cloth.triangles);
-    PenetrationMeter penetration(scene);
+    ScenePenetration penetration(scene);
     Progress progress("check", cache.frame_count(), options.quiet);
     Certificate certificate;
     for (int frame = 0; frame < cache.frame_count(); ++frame) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/penetration.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -20,7 +21,7 @@ struct MeasureDepth {
 
 } // namespace
 
-PenetrationMeter::PenetrationMeter(const Scene& scene) : bodies_(make_bodies(scene))
+ScenePenetration::ScenePenetration(const Scene& scene) : bodies_(make_bodies(scene))
 {
     for (const SceneBody& body : bodies_)
         surfaces_.push_back(
@@ -29,7 +30,7 @@ PenetrationMeter::PenetrationMeter(const Scene& scene) : bodies_(make_bodies(sce
                 : std::make_unique<SurfaceProximity>(body.surface().triangles, body.surface().positions));
 }
 
-void PenetrationMeter::advance_to(double t)
+void ScenePenetration::advance_to(double t)
 {
     for (size_t b = 0; b < bodies_.size(); ++b) {
         bodies_[b].advance_to(t);
@@ -38,7 +39,7 @@ void PenetrationMeter::advance_to(double t)
     }
 }
 
-double PenetrationMeter::depth(const Vec3& point) const
+double ScenePenetration::depth(const Vec3& point) const
 {
     if (!point.allFinite())
         return 0.0;
@@ -54,7 +55,16 @@ double PenetrationMeter::depth(const Vec3& point) const
     return deepest;
 }
 
-double PenetrationMeter::deepest(View<const Vec3> x, const std::vector<Triangle>& triangles) const
+double ScenePenetration::depth(const Vec3& a, const Vec3& b, const Vec3& c) const
+{
+    double deepest = depth((a + b + c) / 3.0);
+    for (const SceneBody& body : bodies_)
+        if (body.shape() && a.allFinite() && b.allFinite() && c.allFinite())
+            deepest = std::fmax(deepest, penetration_of_triangle(*body.shape(), body.pose(), a, b, c));
+    return deepest;
+}
+
+double ScenePenetration::deepest(View<const Vec3> x, const std::vector<Triangle>& triangles) const
 {
     const int vertices = x.size();
     std::vector<double> depths(size_t(vertices) + triangles.size());
@@ -62,7 +72,7 @@ double PenetrationMeter::deepest(View<const Vec3> x, const std::vector<Triangle>
         if (i < vertices)
             return depth(x[i]);
         const Triangle& t = triangles[size_t(i - vertices)];
-        return depth((x[t[0]] + x[t[1]] + x[t[2]]) / 3.0);
+        return depth(x[t[0]], x[t[1]], x[t[2]]);
     };
     parallel_for(kCpu, "check/penetration", int(depths.size()),
                  MeasureDepth<decltype(depth_of)>{depth_of, depths});

@@ -1,9 +1,10 @@
 #include "garment/energy/aerodynamics.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include "core/backend/parallel.h"
 
@@ -17,6 +18,7 @@ struct TriangleDrag {
     View<const Vec3> v;
     View<const Triangle> tri;
     Vec3 wind;
+    View<const Vec3> gusts; // empty in steady wind
     Aerodynamics::Settings settings;
     View<Mat3> drag;
 
@@ -29,7 +31,9 @@ struct TriangleDrag {
         if (!(length > 0.0))
             return;
         const Vec3 n = doubled_area / length;
-        const Vec3 u = wind - (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0;
+        Vec3 u = wind - (v[corner[0]] + v[corner[1]] + v[corner[2]]) / 3.0;
+        if (gusts.size() > 0)
+            u += (gusts[corner[0]] + gusts[corner[1]] + gusts[corner[2]]) / 3.0;
         const Mat3 along = n * n.transpose();
         const double normal_speed = std::abs(n.dot(u));
         const double tangential_speed = (u - n.dot(u) * n).norm();
@@ -47,19 +51,23 @@ Aerodynamics::Aerodynamics(std::shared_ptr<const RestShape> rest, const Settings
 }
 
 void Aerodynamics::add_acceleration(View<const Vec3> x, View<const Vec3> v, View<const double> masses,
-                                    const Vec3& wind, double dt, View<Vec3> acceleration)
+                                    const Vec3& wind, double dt, View<Vec3> acceleration,
+                                    View<const Vec3> gusts)
 {
     const StageScope stage("garment/aerodynamics");
     parallel_for(kCpu, "aerodynamics/triangles", int(drag_.size()),
-                 TriangleDrag{x, v, rest_->triangles, wind, settings_, drag_});
+                 TriangleDrag{x, v, rest_->triangles, wind, gusts, settings_, drag_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "aerodynamics/vertices", x.size(), [&](int i) {
         Mat3 C = Mat3::Zero();
         for (const int corner : corners.of(i))
             C += drag_[corner / 3];
-        // m a = m a_others + C (wind - v - dt a): weight and drag meet within the step, at any dt.
-        const Mat3 lhs = masses[i] * Mat3::Identity() + dt * C;
-        acceleration[i] += lhs.inverse() * (C * (wind - v[i] - dt * acceleration[i]));
+        Vec3 u = wind - v[i];
+        if (gusts.size() > 0)
+            u += gusts[i];
+
+        // The whole force, unless it would blow the vertex past the air: |C| bounds the largest eigenvalue.
+        acceleration[i] += C * u / std::max(masses[i], dt * C.norm());
     });
 }
 

@@ -13,9 +13,10 @@ namespace toile {
 ///
 ///   f = 1/2 rho A ( c_n |u_n| u_n + c_t |u_t| u_t )
 ///
-/// split along its normal and in its plane. With the magnitudes taken at the start of the step the force is
-/// linear in the velocity and is integrated implicitly vertex by vertex, so no wind and no light fabric makes
-/// it unstable.
+/// split along its normal and in its plane, with velocities at the start of the step. Vertex by vertex the
+/// force is limited to what brings the vertex to the air's velocity within the step, so no wind and no light
+/// fabric makes it unstable. Integrating it implicitly by itself would do that too, but would weaken it on
+/// cloth that is held against the wind: the elastic forces that hold it are not part of that equation.
 class Aerodynamics {
 public:
     struct Settings {
@@ -32,10 +33,11 @@ public:
         return settings_.density > 0.0 && (settings_.normal > 0.0 || settings_.tangential > 0.0);
     }
 
-    /// Adds the acceleration over a step of dt [s] to acceleration [vertices] [m/s^2], which holds what else
-    /// acts: the drag is taken at the velocity that both lead to.
+    /// Adds the acceleration over a step of dt [s] to acceleration [vertices] [m/s^2].
+    /// @param wind   mean velocity of the air [m/s]
+    /// @param gusts  [vertices] deviation from it (see gusts.h) [m/s]; empty in steady wind
     void add_acceleration(View<const Vec3> x, View<const Vec3> v, View<const double> masses, const Vec3& wind,
-                          double dt, View<Vec3> acceleration);
+                          double dt, View<Vec3> acceleration, View<const Vec3> gusts = {});
 
 private:
     std::shared_ptr<const RestShape> rest_;

@@ -27,7 +27,9 @@ template <typename V>
 void describe(V& v, Wind& w)
 {
     v.field("velocity", w.velocity, between(-100.0, 100.0, "m/s"), "Direction and speed of the wind.");
-    v.field("turbulence", w.turbulence, between(0.0, 2.0), "Strength of gusts relative to the velocity.");
+    v.field("turbulence", w.turbulence, between(0.0, 2.0),
+            "Strength of gusts: standard deviation of the air's velocity relative to its mean.");
+    v.field("seed", w.seed, between(0, 1000000), "Chooses other gusts of the same strength.");
 }
 
 template <typename V>

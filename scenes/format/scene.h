@@ -31,7 +31,8 @@ struct Keyframe {
 
 struct Wind {
     Vec3 velocity = Vec3::Zero(); ///< [m/s]
-    double turbulence = 0.0;      ///< [-] strength of gusts relative to the velocity
+    double turbulence = 0.0;      ///< [-] standard deviation of the gusts relative to the velocity
+    int seed = 0;                 ///< chooses the gusts
 };
 
 /// Drag of the air on cloth, per area: 1/2 density |u| (normal u_n + tangential u_t), u relative velocity.

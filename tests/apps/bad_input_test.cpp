@@ -21,7 +21,7 @@ void write_cloth(const TemporaryFolder& folder, const std::string& name, const s
 /// The skinned column of the avatar tests, one of its joints pointing to a node that is not there.
 void write_body_without_bone(const TemporaryFolder& folder)
 {
-    std::string body = text_of(std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf");
+    std::string body = bytes_of(std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf");
     const std::string joints = R"("joints": [ 1, 2 ])";
     const size_t place = body.find(joints);
     ASSERT_NE(place, std::string::npos);
@@ -47,7 +47,7 @@ void fill(const TemporaryFolder& folder)
     folder.write("weightless.json", small_scene(3, R"("fabrics": {"ghost": {"areal_density": 0}})"));
     folder.write("missing.json",
                  R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": "none.obj"}]})");
-    folder.write("cut.pc2", text_of(folder.path() / "sheet.pc2").substr(0, 200));
+    folder.write("cut.pc2", bytes_of(folder.path() / "sheet.pc2").substr(0, 200));
     folder.write("coarse.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "sheet", "disc": {}}]})");
     folder.write("body.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "disc": {}}],
                                   "avatars": [{"name": "b", "mannequin": {}, "clip": "wolk"}]})");

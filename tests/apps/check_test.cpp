@@ -35,7 +35,7 @@ nlohmann::json certificate(const TemporaryFolder& folder, int exit_code)
     const Finished run = run_toile(
         {"check", "changed.pc2", "--scene", "drop.json", "-o", "check.json", "--quiet"}, folder.path());
     EXPECT_EQ(run.exit_code, exit_code) << run.errors;
-    return nlohmann::json::parse(text_of(folder.path() / "check.json"));
+    return nlohmann::json::parse(bytes_of(folder.path() / "check.json"));
 }
 
 TEST(Check, CertifiesClothAtRestAboveABall)

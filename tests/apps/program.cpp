@@ -2,13 +2,11 @@
 
 #include <chrono>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <thread>
 
 #include <fcntl.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,8 +42,8 @@ Finished wait_for(pid_t process, const std::filesystem::path& streams)
     ::waitpid(process, &status, 0);
     Finished finished;
     finished.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    finished.output = text_of(streams / "output");
-    finished.errors = text_of(streams / "errors");
+    finished.output = bytes_of(streams / "output");
+    finished.errors = bytes_of(streams / "errors");
     return finished;
 }
 
@@ -76,38 +74,6 @@ Finished run_and_interrupt(const std::vector<std::string>& arguments, const std:
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     ::kill(process, SIGINT);
     return wait_for(process, streams.path());
-}
-
-TemporaryFolder::TemporaryFolder()
-{
-    std::string name = (std::filesystem::temp_directory_path() / "toile-test-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-}
-
-TemporaryFolder::~TemporaryFolder()
-{
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
-std::filesystem::path TemporaryFolder::write(const std::string& name, const std::string& content) const
-{
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return path_ / name;
-}
-
-std::map<std::string, std::string> TemporaryFolder::snapshot() const
-{
-    std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
-        files[entry.path().string()] = entry.is_regular_file() ? text_of(entry.path()) : "";
-    return files;
-}
-
-std::string text_of(const std::filesystem::path& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 std::string small_scene(int frames, const std::string& more_keys)

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
+
+#include "tests/support/temporary_folder.h"
 
 namespace toile {
 
@@ -23,26 +24,6 @@ Finished run_toile(const std::vector<std::string>& arguments, const std::filesys
 /// Starts toile, sends SIGINT as soon as `file` exists, and waits.
 Finished run_and_interrupt(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                            const std::filesystem::path& file);
-
-/// An empty folder that disappears with its test.
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-    std::filesystem::path write(const std::string& name, const std::string& content) const;
-
-    /// Name and content of every file below.
-    std::map<std::string, std::string> snapshot() const;
-
-private:
-    std::filesystem::path path_;
-};
-
-std::string text_of(const std::filesystem::path& file);
 
 /// A small scene: a square of 0.4 m above a ball, `frames` samples; more keys may follow.
 std::string small_scene(int frames, const std::string& more_keys = "");

@@ -42,7 +42,7 @@ TEST(Simulate, ObeysOptionsAndTheExportList)
     EXPECT_EQ(read_cache(folder.path() / "there/a/b.mdd").frame_count(), 3);
     EXPECT_EQ(read_cache(folder.path() / "there/frames_####.obj").frame_count(), 3);
 
-    const auto report = nlohmann::json::parse(text_of(folder.path() / "run.json"));
+    const auto report = nlohmann::json::parse(bytes_of(folder.path() / "run.json"));
     EXPECT_EQ(report["outcome"], "complete");
     EXPECT_EQ(report["settings"]["frames"], 3);
     EXPECT_EQ(report["settings"]["threads"], 1);
@@ -64,7 +64,7 @@ TEST(Simulate, KeepsAReadableCacheWhenInterrupted)
     EXPECT_EQ(run.exit_code, 1);
     EXPECT_EQ(run.error_lines(), 1) << run.errors;
     EXPECT_NE(run.errors.find("interrupted at frame"), std::string::npos) << run.errors;
-    EXPECT_EQ(text_of(folder.path() / "sheet.pc2"), "an earlier cache");
+    EXPECT_EQ(bytes_of(folder.path() / "sheet.pc2"), "an earlier cache");
     EXPECT_GE(read_cache(partial).frame_count(), 1);
 }
 
@@ -74,7 +74,7 @@ TEST(Render, TakesAPictureASheetAndAFolder)
     folder.write("drop.json", small_scene(5));
     ASSERT_EQ(run_toile({"simulate", "drop.json", "-o", ".", "--quiet"}, folder.path()).exit_code, 0);
     const auto is_png = [&](const char* file) {
-        return text_of(folder.path() / file).rfind("\x89PNG", 0) == 0;
+        return bytes_of(folder.path() / file).rfind("\x89PNG", 0) == 0;
     };
 
     EXPECT_EQ(run_toile({"render", "drop.json", "--quiet"}, folder.path()).exit_code, 0);
@@ -83,7 +83,7 @@ TEST(Render, TakesAPictureASheetAndAFolder)
         run_toile({"render", "sheet.pc2", "--scene", "drop.json", "-o", "last.png"}, folder.path()).exit_code,
         0);
     EXPECT_TRUE(is_png("last.png"));
-    EXPECT_NE(text_of(folder.path() / "last.png"), text_of(folder.path() / "drop.png"));
+    EXPECT_NE(bytes_of(folder.path() / "last.png"), bytes_of(folder.path() / "drop.png"));
     EXPECT_EQ(run_toile({"render", "sheet.pc2", "--scene", "drop.json", "-o", "all.png", "--sheet", "2",
                          "--frames", "0:4:2"},
                         folder.path())

@@ -36,7 +36,7 @@ public:
     }
 
     void begin_step(const StepStart&) override {}
-    void make_feasible(View<Vec3>) const override {}
+    bool make_feasible(View<Vec3>) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
     {
         return energy_.add_gradient(x, gradient);

@@ -1,36 +1,14 @@
 #pragma once
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numbers>
-#include <string>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "apps/render/renderer.h"
-#include "core/backend/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile {
 
-/// A fresh folder per test, removed afterwards.
-class RenderFileTest : public testing::Test {
-protected:
-    void SetUp() override
-    {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("toile_render_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
-    std::filesystem::path file(const std::string& name) const { return folder_ / name; }
-
-    std::filesystem::path folder_;
-};
+using RenderFileTest = FileTest;
 
 /// A square of side 2 around `center`, its front towards +Z, or towards +Y when lying.
 inline RenderMesh square(const Vec3& center, bool lying)
@@ -69,24 +47,6 @@ inline const std::uint8_t* pixel_at(const Image& image, const Vec2& picture_coor
 {
     return image.pixel(int(0.5 * (picture_coordinates.x() + 1.0) * image.width),
                        int(0.5 * (1.0 - picture_coordinates.y()) * image.height));
-}
-
-/// The message of the InvalidInput that `act` throws; empty when it throws none.
-template <typename Act>
-std::string refusal(const Act& act)
-{
-    try {
-        act();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return {};
-}
-
-inline std::string bytes_of(const std::filesystem::path& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 } // namespace toile

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/format/read_scene.h"
+#include "scenes/world.h"
+
+namespace toile {
+namespace {
+
+/// A flag held along one side, after ten frames of wind.
+struct Flag {
+    std::vector<Vec3> positions;
+    long gust_calls;
+};
+
+Flag flag_in(const std::string& wind, int threads = 0)
+{
+    World world(parse_scene(R"({"toile": 1, "frames": 11, "solver": {"threads": )" + std::to_string(threads) +
+                                R"(}, "wind": {"velocity": [3, 0, 0.5])" + wind + R"(},
+        "cloths": [{"name": "flag", "fabric": "silk", "rectangle": {"size": [0.6, 0.4], "resolution": 0.02},
+            "rotate_deg": [90, 0, 0]}],
+        "attachments": [{"cloth": "flag", "select": {"box": {"lower": [-0.31, -1, -1], "upper": [-0.29, 1, 1]}}}]})",
+                            "flag.json"));
+    while (world.frame() < 10)
+        world.advance_frame();
+    return {world.cloths()[0].positions, world.stages().calls("garment/gusts")};
+}
+
+double farthest(const Flag& a, const Flag& b)
+{
+    double distance = 0.0;
+    for (size_t i = 0; i < a.positions.size(); ++i)
+        distance = std::max(distance, (a.positions[i] - b.positions[i]).norm());
+    return distance;
+}
+
+TEST(Wind, WithoutTurbulenceNeverComputesGusts)
+{
+    const Flag steady = flag_in("");
+    EXPECT_EQ(steady.gust_calls, 0);
+    EXPECT_EQ(farthest(steady, flag_in(R"(, "turbulence": 0, "seed": 3)")), 0.0);
+}
+
+TEST(Wind, GustsMoveClothTheSameWayForASeedAndAnyThreadCount)
+{
+    const std::string gusty = R"(, "turbulence": 0.4)";
+    const Flag one = flag_in(gusty, 1);
+    EXPECT_GT(one.gust_calls, 0);
+    EXPECT_EQ(farthest(one, flag_in(gusty, 4)), 0.0);
+    EXPECT_GT(farthest(one, flag_in("")), 0.01);
+    EXPECT_GT(farthest(one, flag_in(gusty + R"(, "seed": 1)")), 0.01);
+}
+
+TEST(Wind, GustsKeepClothAwake)
+{
+    World world(
+        parse_scene(R"({"toile": 1, "frames": 100, "wind": {"velocity": [0.2, 0, 0], "turbulence": 0.5},
+        "avatars": [{"name": "floor", "plane": {}, "friction": 1}],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.2, 0.2], "resolution": 0.04},
+            "translate": [0, 0.0015, 0]}]})",
+                    "breeze.json"));
+    while (world.frame() < 60)
+        world.advance_frame();
+    const long minimised = world.stages().calls("pd/minimise");
+    world.advance_frame();
+    EXPECT_GT(world.stages().calls("pd/minimise"), minimised);
+}
+
+TEST(Air, LetsAFlatSheetFallAtItsTerminalSpeed)
+{
+    World world(parse_scene(
+        R"({"toile": 1, "frames": 91, "fabrics": {"bare": {"base": "cotton", "areal_density": 0.1, "damping": 0}},
+        "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.4, 0.4], "resolution": 0.05}}]})",
+        "fall.json"));
+    std::vector<Vec3> before;
+    while (world.frame() < 90) {
+        before = world.cloths()[0].positions;
+        world.advance_frame();
+    }
+    const double terminal = std::sqrt(2.0 * 0.1 * 9.81 / 1.2); // 1/2 rho c_n v^2 = m g per area, c_n = 1
+    for (size_t i = 0; i < before.size(); ++i) {
+        const double speed = (before[i] - world.cloths()[0].positions[i]).y() * 30.0;
+        EXPECT_NEAR(speed, terminal, 1e-3 * terminal);
+    }
+}
+
+/// Force of a wind of 5 m/s on a silk sheet of 20 cm x 20 cm that soft springs hold across it [N].
+double force_on_held_sheet(int substeps)
+{
+    World world(
+        parse_scene(R"({"toile": 1, "frames": 60, "gravity": [0, 0, 0], "wind": {"velocity": [0, 5, 0]},
+        "solver": {"substeps": )" +
+                        std::to_string(substeps) + R"(, "tolerance": 1e-7},
+        "fabrics": {"heavily_damped": {"base": "silk", "damping": 20, "bend": {"warp": 0.01, "weft": 0.01}}},
+        "cloths": [{"name": "sheet", "fabric": "heavily_damped", "rectangle": {"size": [0.2, 0.2], "resolution": 0.05}}],
+        "attachments": [{"cloth": "sheet", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}},
+            "stiffness": 10}]})",
+                    "held.json"));
+    while (world.frame() < 59)
+        world.advance_frame();
+    double force = 0.0;
+    for (const Vec3& x : world.cloths()[0].positions)
+        force += 10.0 * x.y();
+    return force;
+}
+
+TEST(Air, PushesHeldClothWithTheWholeDragForAnyStep)
+{
+    const double drag = 0.5 * 1.2 * 0.2 * 0.2 * 5.0 * 5.0;
+    EXPECT_NEAR(force_on_held_sheet(4), drag, 0.01 * drag);
+    EXPECT_NEAR(force_on_held_sheet(16), drag, 0.01 * drag);
+}
+
+} // namespace
+} // namespace toile

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "core/backend/error.h"
+
+namespace toile {
+
+inline std::string bytes_of(const std::filesystem::path& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// An empty folder that disappears with its test.
+class TemporaryFolder {
+public:
+    TemporaryFolder()
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "toile-test-XXXXXX").string();
+        path_ = ::mkdtemp(name.data());
+    }
+    ~TemporaryFolder()
+    {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+    std::filesystem::path write(const std::string& name, const std::string& content) const
+    {
+        std::ofstream(path_ / name, std::ios::binary) << content;
+        return path_ / name;
+    }
+
+    /// Name and content of every file below.
+    std::map<std::string, std::string> snapshot() const
+    {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
+            files[entry.path().string()] = entry.is_regular_file() ? bytes_of(entry.path()) : "";
+        return files;
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// A test with a folder of its own.
+class FileTest : public testing::Test {
+protected:
+    std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+
+    const TemporaryFolder temporary_;
+    const std::filesystem::path folder_ = temporary_.path();
+};
+
+/// The message of the InvalidInput that `act` throws; empty when it throws none.
+template <typename Act>
+std::string refusal(const Act& act)
+{
+    try {
+        act();
+    } catch (const InvalidInput& error) {
+        return error.what();
+    }
+    return {};
+}
+
+} // namespace toile
