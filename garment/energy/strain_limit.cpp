@@ -99,10 +99,11 @@ void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const
     if (tension_)
         tension_->end_step(x);
     look_at_everything(x);
+    if (violating_.empty())
+        return;
+    before_.assign(x.begin(), x.end());
     for (int sweep = 0; sweep < settings_.max_sweeps && !violating_.empty(); ++sweep) {
         const StageScope stage("garment/strain_limit");
-        if (sweep == 0)
-            before_.assign(x.begin(), x.end());
 
         // Alternate the direction so that corrections travel both ways through the mesh.
         if (sweep % 2 == 1)
@@ -118,7 +119,7 @@ void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const
 
     // Millimetres that clear a wide triangle or a contact are many times the height of a sliver beside it.
     // Sweeps that end worse than they began would turn that into velocity; the membrane does better alone.
-    if (max_strain(x) > max_strain(before_))
+    if (!violating_.empty() && max_strain(x) > max_strain(before_))
         std::copy(before_.begin(), before_.end(), x.begin());
 }
 
