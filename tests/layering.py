@@ -49,7 +49,7 @@ OWNERS = {
     r"(unsupported/)?Eigen/": None,
     r"(suitesparse/)?(cholmod|SuiteSparse_config|umfpack|amd|camd|colamd|metis)\b": ["core/linear"],
     r"(cuda|cublas|cusparse|cusolver|cooperative_groups|nvtx)|(cub|thrust|nv)/": ["core/backend"],
-    r"(tbb|oneapi)/": ["core/backend"],
+    r"(tbb|oneapi|experimental)/": ["core/backend"],
     r"embree[34]/": ["collision"],
     r"assimp/": ["avatars"],
     r"CGAL/": ["garment/pattern"],
@@ -59,8 +59,8 @@ OWNERS = {
     r"benchmark/": ["benchmarks"],
     r"g(test|mock)/": [],
 }
-# Libraries that headers may show to everybody: TBB, because parallel_for is a template.
-SHOWN_TO_ALL = r"(tbb|oneapi)/"
+# Libraries that headers may show to everybody: TBB and vector types, because kernels are templates.
+SHOWN_TO_ALL = r"(tbb|oneapi|experimental)/"
 
 # The C++ library, C, and POSIX or processor headers.
 SYSTEM_HEADER = re.compile(

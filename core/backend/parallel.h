@@ -8,6 +8,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "core/backend/stages.h"
 #include "core/backend/types.h"
@@ -51,6 +52,14 @@ void parallel_for(CpuSpace, std::string_view name, int count, const Kernel& kern
         for (int i = range.begin(); i < range.end(); ++i)
             kernel(i);
     });
+}
+
+/// Runs work(task) for task in [0, count): few and long tasks, balanced one by one. The calling thread takes on
+/// nothing else while it waits, so tasks may use memory that belongs to it.
+template <typename Work>
+void parallel_tasks(CpuSpace, int count, const Work& work)
+{
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, count, work); });
 }
 
 /// Sum of term(i) over [0, count): fixed blocks of kReductionBlock items, each summed in order, then the

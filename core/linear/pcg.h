@@ -9,11 +9,12 @@ namespace toile {
 /// Preconditioned conjugate gradients for A x = b on 3-vector fields, started at x = 0. [Saad 2003, alg. 9.1]
 class Pcg {
 public:
-    /// The defaults suit the inside of a quasi-Newton method, which needs a direction, not a solution: one
-    /// iteration is the preconditioner with the best step length. More only cost time (docs/core/pd.md).
+    /// The defaults suit the inside of a quasi-Newton method, which needs a direction, not a solution: more
+    /// and tighter iterations end after as many outer ones. With a single one the direction is too short, and
+    /// the outer loop takes that for convergence.
     struct Settings {
         double tolerance = 0.1; ///< [-] of |r| / |b|
-        int max_iterations = 1;
+        int max_iterations = 4;
     };
     struct Outcome {
         int iterations = 0;

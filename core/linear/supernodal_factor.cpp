@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include "core/backend/parallel.h"
 
 namespace toile {
 
@@ -211,12 +210,7 @@ void SupernodalFactor::solve(View<const Vec3> b, View<Vec3> x) const
         const Supernode& node = supernodes[s];
         backward(node, rows.data() + node.first_row, values.data() + node.first_value, y, own_scratch);
     };
-    // Isolated: a waiting thread must not pick up another solve, which would use the same scratch.
-    const auto for_each_subtree = [&](const auto& work) {
-        tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, trees, work); });
-    };
-
-    for_each_subtree([&](int t) {
+    parallel_tasks(kCpu, trees, [&](int t) {
         for (int s = subtrees_[t].first; s < subtrees_[t].last; ++s)
             forward_node(s);
     });
@@ -227,7 +221,7 @@ void SupernodalFactor::solve(View<const Vec3> b, View<Vec3> x) const
         forward_node(s);
     for (auto s = top_.rbegin(); s != top_.rend(); ++s)
         backward_node(*s, gathered + size_t(trees) * most_rows_);
-    for_each_subtree([&](int t) {
+    parallel_tasks(kCpu, trees, [&](int t) {
         for (int s = subtrees_[t].last - 1; s >= subtrees_[t].first; --s)
             backward_node(s, gathered + size_t(t) * most_rows_);
     });

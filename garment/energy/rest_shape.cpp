@@ -1,5 +1,6 @@
 #include "garment/energy/rest_shape.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -24,6 +25,9 @@ Vec3 warp_direction(const Vec3& normal, const Vec3& grain)
     return normal.unitOrthogonal();
 }
 
+/// Longest edge over its altitude of the thinnest triangle that is no sliver [-].
+constexpr double kMaxAspect = 100.0;
+
 /// Derives areas and topology once triangles and edges are known.
 RestShape complete(RestShape shape, int vertex_count, const std::string& source)
 {
@@ -35,6 +39,14 @@ RestShape complete(RestShape shape, int vertex_count, const std::string& source)
 }
 
 } // namespace
+
+bool RestShape::is_sliver(int triangle) const
+{
+    const Mat2& edge = edges[triangle];
+    const double longest = std::max(
+        {edge.col(0).squaredNorm(), edge.col(1).squaredNorm(), (edge.col(1) - edge.col(0)).squaredNorm()});
+    return longest > kMaxAspect * 2.0 * areas[triangle];
+}
 
 std::vector<double> RestShape::vertex_areas() const
 {

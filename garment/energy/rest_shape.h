@@ -24,6 +24,10 @@ struct RestShape {
                                                         : int(topology.corners_of_vertex.first.size()) - 1;
     }
 
+    /// Longest edge more than a hundred times its altitude. The strain across such a triangle is the noise of
+    /// its neighbours' motion; the strain along it is theirs too, so limits on them suffice.
+    bool is_sliver(int triangle) const;
+
     /// Lumped vertex areas: a third of every adjacent triangle [m^2].
     std::vector<double> vertex_areas() const;
 };

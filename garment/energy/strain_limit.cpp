@@ -39,12 +39,16 @@ Vec3 relative_masses(const Triangle& corner, View<const double> inverse_masses)
 
 StrainLimit::StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings,
                          const std::string& source, std::shared_ptr<StretchTension> tension)
-    : rest_(std::move(rest)), settings_(settings), tension_(std::move(tension)), violates_(rest_->triangles.size())
+    : rest_(std::move(rest)), settings_(settings), tension_(std::move(tension)),
+      violates_(rest_->triangles.size())
 {
     if (!(settings.limit > 0.0) || !std::isfinite(settings.limit))
         throw InvalidInput(source + ": strain limit " + std::to_string(settings.limit) + " must be positive");
-    for (const Mat2& edges : rest_->edges)
-        rest_inv_.push_back(edges.inverse());
+    for (size_t t = 0; t < rest_->edges.size(); ++t) {
+        rest_inv_.push_back(rest_->edges[t].inverse());
+        is_sliver_.push_back(rest_->is_sliver(int(t)));
+        has_slivers_ = has_slivers_ || is_sliver_.back();
+    }
 }
 
 Mat32 StrainLimit::deformation_gradient(int t, View<const Vec3> x) const
@@ -64,11 +68,16 @@ double StrainLimit::max_strain(View<const Vec3> x) const
     return largest - 1.0;
 }
 
+bool StrainLimit::violates(int t, View<const Vec3> x) const
+{
+    return !is_sliver_[t] &&
+           largest_stretch(deformation_gradient(t, x)) > 1.0 + settings_.limit + settings_.tolerance;
+}
+
 void StrainLimit::look_at_everything(View<const Vec3> x)
 {
-    const double allowed = 1.0 + settings_.limit + settings_.tolerance;
     parallel_for(kCpu, "strain_limit/find", int(rest_inv_.size()),
-                 [&](int t) { violates_[t] = largest_stretch(deformation_gradient(t, x)) > allowed; });
+                 [&](int t) { violates_[t] = violates(t, x); });
     violating_.clear();
     for (int t = 0; t < int(violates_.size()); ++t)
         if (violates_[t])
@@ -79,13 +88,12 @@ void StrainLimit::look_at_everything(View<const Vec3> x)
 void StrainLimit::look_around_violating(View<const Vec3> x)
 {
     const Incidence& corners = rest_->topology.corners_of_vertex;
-    const double allowed = 1.0 + settings_.limit + settings_.tolerance;
     std::vector<int> found;
     for (const int moved : violating_)
         for (const int v : rest_->triangles[moved])
             for (const int corner : corners.of(v)) {
                 const int t = corner / 3;
-                violates_[t] = largest_stretch(deformation_gradient(t, x)) > allowed;
+                violates_[t] = violates(t, x);
                 if (violates_[t])
                     found.push_back(t);
             }
@@ -119,7 +127,7 @@ void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const
 
     // Millimetres that clear a wide triangle or a contact are many times the height of a sliver beside it.
     // Sweeps that end worse than they began would turn that into velocity; the membrane does better alone.
-    if (!violating_.empty() && max_strain(x) > max_strain(before_))
+    if ((!violating_.empty() || has_slivers_) && max_strain(x) > max_strain(before_))
         std::copy(before_.begin(), before_.end(), x.begin());
 }
 

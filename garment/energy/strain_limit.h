@@ -39,6 +39,7 @@ public:
 private:
     Mat32 deformation_gradient(int t, View<const Vec3> x) const;
     void clamp_triangle(int t, View<Vec3> x, View<const double> inverse_masses) const;
+    bool violates(int t, View<const Vec3> x) const;
     void look_at_everything(View<const Vec3> x);
     void look_around_violating(View<const Vec3> x);
 
@@ -46,6 +47,8 @@ private:
     Settings settings_;
     std::shared_ptr<StretchTension> tension_;
     std::vector<Mat2> rest_inv_;
+    std::vector<unsigned char> is_sliver_; ///< [triangles] left to the membrane
+    bool has_slivers_ = false;
     std::vector<unsigned char> violates_; ///< [triangles]
     std::vector<int> violating_;          ///< ascending triangle indices
     std::vector<Vec3> before_;            ///< [vertices] positions before the first sweep [m]

@@ -22,8 +22,10 @@ StretchTension::StretchTension(std::shared_ptr<const RestShape> rest, const Sett
     : rest_(std::move(rest)), settings_(settings), tension_(rest_->triangles.size(), Mat2::Zero()),
       near_(rest_->triangles.size())
 {
-    for (const Mat2& edges : rest_->edges)
-        rest_inv_.push_back(edges.inverse());
+    for (size_t t = 0; t < rest_->edges.size(); ++t) {
+        rest_inv_.push_back(rest_->edges[t].inverse());
+        is_sliver_.push_back(rest_->is_sliver(int(t)));
+    }
 }
 
 Mat32 StretchTension::deformation_gradient(int t, View<const Vec3> x) const
@@ -39,7 +41,8 @@ void StretchTension::begin_step(View<const Vec3> x)
 {
     const double watched = 1.0 + kWatched * settings_.limit;
     parallel_for(kCpu, "stretch_tension/watch", int(near_.size()), [&](int t) {
-        near_[t] = !tension_[t].isZero(0.0) || largest_stretch(deformation_gradient(t, x)) > watched;
+        near_[t] = !is_sliver_[t] &&
+                   (!tension_[t].isZero(0.0) || largest_stretch(deformation_gradient(t, x)) > watched);
     });
     taut_.clear();
     for (int t = 0; t < int(near_.size()); ++t)

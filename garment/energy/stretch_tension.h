@@ -24,9 +24,9 @@ namespace toile {
 class StretchTension : public Energy {
 public:
     struct Settings {
-        double limit = 0.06;       ///< [-] as StrainLimit's
-        double stiffness = 250.0;  ///< [N/m] k, the membrane's
-        double max_tension = 1.0;  ///< [-] of k: bounds the pull where a limit cannot be met
+        double limit = 0.06;      ///< [-] as StrainLimit's
+        double stiffness = 250.0; ///< [N/m] k, the membrane's
+        double max_tension = 1.0; ///< [-] of k: bounds the pull where a limit cannot be met
     };
 
     StretchTension(std::shared_ptr<const RestShape> rest, const Settings& settings);
@@ -54,8 +54,9 @@ private:
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
     std::vector<Mat2> rest_inv_;
-    std::vector<Mat2> tension_;       ///< [triangles] T_t / k in material axes
-    std::vector<unsigned char> near_; ///< [triangles] scratch
+    std::vector<unsigned char> is_sliver_; ///< [triangles] left to the membrane
+    std::vector<Mat2> tension_;            ///< [triangles] T_t / k in material axes
+    std::vector<unsigned char> near_;      ///< [triangles] scratch
     std::vector<Taut> taut_;
     std::vector<Mat32> stress_; ///< [taut] scratch, dW/dF / (k A)
 };

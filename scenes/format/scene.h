@@ -203,7 +203,7 @@ struct Sleep {
 };
 
 struct Solver {
-    int substeps = 4;        ///< time steps per sample
+    int substeps = 2;        ///< time steps per sample
     double tolerance = 2e-4; ///< [m] largest change of a position at which a step ends
     int max_iterations = 50; ///< outer iterations per step
     SolverMethod method = SolverMethod::Auto;

@@ -70,7 +70,7 @@ TEST(Wind, GustsKeepClothAwake)
 TEST(Air, LetsAFlatSheetFallAtItsTerminalSpeed)
 {
     World world(parse_scene(
-        R"({"toile": 1, "frames": 91, "fabrics": {"bare": {"base": "cotton", "areal_density": 0.1, "damping": 0}},
+        R"({"toile": 1, "frames": 91, "solver": {"tolerance": 1e-5}, "fabrics": {"bare": {"base": "cotton", "areal_density": 0.1, "damping": 0}},
         "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.4, 0.4], "resolution": 0.05}}]})",
         "fall.json"));
     std::vector<Vec3> before;
