@@ -38,9 +38,9 @@ public:
     /// Per vertex a 3x3 bound on dH: dH <= blockdiag(blocks), zero where nothing is active. [vertices]
     virtual View<const Mat3> diagonal_blocks() const = 0;
 
-    /// After the minimisation: looks again where x left the neighbourhood that the candidates were made for
-    /// and refreshes lagged quantities (friction limits). True when the energy changed and must be minimised
-    /// again.
+    /// After every minimisation: refreshes lagged quantities (friction limits) and looks again where x left
+    /// the neighbourhood that the candidates were made for. True when the energy changed enough to be
+    /// minimised again.
     virtual bool revise(View<const Vec3> x) = 0;
 
     /// Remembers what the next step builds on. x [vertices] are the final positions.

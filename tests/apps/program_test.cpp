@@ -49,7 +49,7 @@ TEST(Simulate, ObeysOptionsAndTheExportList)
     EXPECT_EQ(report["settings"]["method"], "direct");
     ASSERT_EQ(report["frames"].size(), 2u); // sample 0 costs no step
     EXPECT_EQ(report["frames"][0]["frame"], 1);
-    EXPECT_EQ(report["frames"][0]["steps"], 2);
+    EXPECT_EQ(report["frames"][0]["steps"], 4);
     EXPECT_GT(report["peak_memory_bytes"], 1e6);
     EXPECT_FALSE(report["stages"].empty());
 }
