@@ -96,12 +96,15 @@ void ClothBody::build(const Scene& scene, const std::vector<Obstacle>& obstacles
     const auto rest = std::make_shared<const RestShape>(rest_shape_of_surface(
         {state_.positions, state_.triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(), grain, source));
 
-    std::vector<std::shared_ptr<Energy>> energies;
-    energies.push_back(std::make_shared<Membrane>(
-        rest, Membrane::Settings{fabric.stretch_warp, fabric.stretch_weft, fabric.shear}, source));
-    if (fabric.bend_warp > 0.0 || fabric.bend_weft > 0.0)
-        energies.push_back(
-            std::make_shared<Bending>(rest, Bending::Settings{fabric.bend_warp, fabric.bend_weft}, source));
+    const auto membrane = std::make_shared<Membrane>(
+        rest, Membrane::Settings{fabric.stretch_warp, fabric.stretch_weft, fabric.shear}, source);
+    std::vector<std::shared_ptr<Energy>> energies{membrane};
+    if (fabric.bend_warp > 0.0 || fabric.bend_weft > 0.0) {
+        const auto bending =
+            std::make_shared<Bending>(rest, Bending::Settings{fabric.bend_warp, fabric.bend_weft}, source);
+        bending->leave_to(hessian_diagonal(*membrane, rest->vertex_count()));
+        energies.push_back(bending);
+    }
     std::vector<Springs::Spring> springs;
     for (const Hold& hold : holds_)
         if (hold.stiffness())

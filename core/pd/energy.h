@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "core/linear/sparse_matrix.h"
 
@@ -27,5 +28,17 @@ public:
     /// @param x, gradient  [vertices]
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) = 0;
 };
+
+/// Diagonal of an energy's part of H [vertices] [N/m].
+inline std::vector<double> hessian_diagonal(const Energy& energy, int vertex_count)
+{
+    Triplets entries;
+    energy.add_hessian(entries);
+    std::vector<double> diagonal(vertex_count, 0.0);
+    for (const auto& entry : entries)
+        if (entry.row() == entry.col())
+            diagonal[entry.row()] += entry.value();
+    return diagonal;
+}
 
 } // namespace toile

@@ -15,6 +15,9 @@ namespace {
 /// Slivers would exceed it by the fourth power of their aspect ratio and ruin the conditioning of H.
 constexpr double kMaxRelativeStiffness = 1e3;
 
+/// Share of the membrane's diagonal below which bending is left out of H [-]. Cloth lies near 1e-3.
+constexpr double kNegligible = 0.01;
+
 void require_valid(const Bending::Settings& s, const std::string& source)
 {
     const auto check = [&](const char* name, double value) {
@@ -63,8 +66,18 @@ Bending::Bending(const std::shared_ptr<const RestShape>& rest, const Settings& s
     vertex_energy_.resize(n);
 }
 
+bool Bending::leave_to(View<const double> membrane_diagonal)
+{
+    in_hessian_ = false;
+    for (int v = 0; v < membrane_diagonal.size(); ++v)
+        in_hessian_ = in_hessian_ || K_.coeff(v, v) > kNegligible * membrane_diagonal[v];
+    return !in_hessian_;
+}
+
 void Bending::add_hessian(Triplets& H) const
 {
+    if (!in_hessian_)
+        return;
     for (int row = 0; row < K_.outerSize(); ++row)
         for (SparseMatrix::InnerIterator entry(K_, row); entry; ++entry)
             H.emplace_back(int(entry.row()), int(entry.col()), entry.value());

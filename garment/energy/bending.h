@@ -29,12 +29,18 @@ public:
     Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings,
             const std::string& source);
 
+    /// Leaves bending out of H where it is far below the diagonal of the membrane's part [vertices] [N/m] at
+    /// every vertex: the membrane's majoriser covers bending a hundred times over, and without the second
+    /// ring of neighbours L has a fifth of the entries (docs/garment/bending.md). True when it did.
+    bool leave_to(View<const double> membrane_diagonal);
+
     std::string_view name() const override { return "garment/bending"; }
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
 
 private:
     SparseMatrix K_; ///< W = 1/2 x^T K x; rows sum to zero
+    bool in_hessian_ = true;
     std::vector<double> vertex_energy_;
 };
 
