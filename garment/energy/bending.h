@@ -31,7 +31,7 @@ public:
 
     /// Leaves bending out of H where it is far below the diagonal of the membrane's part [vertices] [N/m] at
     /// every vertex: the membrane's majoriser covers bending a hundred times over, and without the second
-    /// ring of neighbours L has a fifth of the entries (docs/garment/bending.md). True when it did.
+    /// ring of neighbours L has a third of the entries (docs/garment/bending.md). True when it did.
     bool leave_to(View<const double> membrane_diagonal);
 
     std::string_view name() const override { return "garment/bending"; }
