@@ -8,6 +8,7 @@
 #include <Eigen/SparseCholesky>
 #include <gtest/gtest.h>
 
+#include "core/backend/parallel.h"
 #include "tests/core/matrices.h"
 #include "tests/core/meshes.h"
 
@@ -51,6 +52,24 @@ TEST(Cholesky, SolvesGridLaplaciansLikeEigen)
     // Long, square and wide: supernodes of every width, with and without a remainder of the blocks of eight.
     for (const auto& [columns, rows] : {std::pair(1, 200), std::pair(30, 30), std::pair(61, 47)})
         expect_solves_like_eigen(grid_laplacian(columns, rows, 0.05));
+}
+
+TEST(Cholesky, SolvesSubtreesInParallelWithTheSameBits)
+{
+    const SparseMatrix A = grid_laplacian(250, 250, 1e-3);
+    const std::vector<Vec3> b = random_field(int(A.rows()), 7);
+    const Cholesky factor(A);
+    std::vector<Vec3> one(b.size()), many(b.size());
+    {
+        const ThreadLimit limit(1);
+        factor.solve(b, one);
+    }
+    EXPECT_LT((A * as_matrix(one) - as_matrix(b)).norm(), 1e-10 * as_matrix(b).norm());
+    for (const int threads : {2, 4}) {
+        const ThreadLimit limit(threads);
+        factor.solve(b, many);
+        EXPECT_EQ(as_matrix(one), as_matrix(many)) << threads;
+    }
 }
 
 TEST(Cholesky, SolvesDenseMatricesLikeEigen)

@@ -137,5 +137,18 @@ TEST(Body, KeepsLinearMomentum)
     EXPECT_LT((momentum() - before).norm(), 1e-6 * before.norm());
 }
 
+TEST(Bending, LeavesHToAMembraneThatCoversIt)
+{
+    const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 10, 10);
+    const auto rest = sheet.rest();
+    const std::vector<double> diagonal = hessian_diagonal(*membrane_of(rest), rest->vertex_count());
+    Bending cotton(rest, {2e-6, 2e-6}, "cotton"), board(rest, {1.0, 1.0}, "board");
+    EXPECT_TRUE(cotton.leave_to(diagonal));
+    EXPECT_FALSE(board.leave_to(diagonal));
+    EXPECT_EQ(hessian_diagonal(cotton, rest->vertex_count()), std::vector<double>(rest->vertex_count(), 0.0));
+    EXPECT_GT(hessian_diagonal(board, rest->vertex_count())[60], 0.0);
+    expect_gradient_of_value(cotton, crumpled(sheet));
+}
+
 } // namespace
 } // namespace toile::test
