@@ -8,6 +8,9 @@ namespace toile {
 
 namespace {
 
+/// Least height [m] above an avatar's surface at which it carries a vertex.
+constexpr double kLeastHeight = 0.0005;
+
 /// Orthonormal frame of a triangle: first edge, in-plane normal to it, normal.
 Mat3 frame_of(const TriangleMesh& mesh, int t)
 {
@@ -106,7 +109,10 @@ void Hold::tie(const Obstacle& obstacle)
     for (const Vec3& x : start_) {
         const SurfacePoint at = *obstacle.partner().mesh->surface().closest(x);
         const Mat3 frame = frame_of(obstacle.body().surface(), at.triangle);
-        ties_.push_back({at.triangle, at.barycentric, frame.transpose() * (x - at.point)});
+        Vec3 offset = frame.transpose() * (x - at.point);
+        if (at.signed_distance < kLeastHeight) // starts inside: held on the skin, not under it
+            offset = kLeastHeight * Vec3::UnitZ();
+        ties_.push_back({at.triangle, at.barycentric, offset});
     }
 }
 
