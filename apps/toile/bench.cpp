@@ -64,6 +64,7 @@ Command add_bench(CLI::App& program)
     add.add_option("--frames", options->frames, "Samples of each scene, instead of its own; only for stages");
     add.add_option("--repeats", options->repeats, "Runs of everything that is timed; the fastest counts [3]")
         ->check(CLI::PositiveNumber);
+    add.add_flag("--times-only", options->times_only, "Without references and errors; only for sheet");
     add.add_flag("--quick", options->quick, "Smaller and shorter cases");
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return bench(*options); };

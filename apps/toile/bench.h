@@ -15,6 +15,7 @@ struct BenchOptions {
     std::vector<std::filesystem::path> scenes; ///< for stages; empty: its own
     std::optional<int> frames;                 ///< of each scene, instead of its own
     int repeats = 3;                           ///< runs of everything that is timed; the fastest counts
+    bool times_only = false;                   ///< sheet without its references and errors
     bool quick = false;
     bool quiet = false;
 };

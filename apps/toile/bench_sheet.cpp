@@ -17,7 +17,7 @@ namespace {
 
 const std::vector<std::string> kTables{"sheet.csv", "sheet.md"};
 
-/// Settings whose name was asked for, and their references.
+/// Settings whose name was asked for, and their references unless only times count.
 std::vector<sheet::Setting> chosen_settings(const BenchOptions& options)
 {
     std::vector<sheet::Setting> settings = sheet::ladder();
@@ -26,16 +26,19 @@ std::vector<sheet::Setting> chosen_settings(const BenchOptions& options)
     };
     if (std::none_of(settings.begin(), settings.end(), asked_for))
         throw InvalidInput("--only: no setting of sheet has \"" + options.only +
-                           "\" in its name; see docs/benchmarks/sheet.md for the names");
-    std::erase_if(settings, [&](const sheet::Setting& s) { return !s.is_reference && !asked_for(s); });
+                           "\" in its name; see docs/benchmarks/speed.md for the names");
+    std::erase_if(settings, [&](const sheet::Setting& setting) {
+        if (options.times_only && !sheet::is_timed(setting))
+            return true;
+        return !setting.is_reference && !asked_for(setting);
+    });
     return settings;
 }
 
 /// References take a minute each and no one reads their times: once is enough.
 int runs_of(const sheet::Setting& setting, const BenchOptions& options)
 {
-    const bool is_timed = setting.max_iterations < 1000;
-    return is_timed && !options.quick ? options.repeats : 1;
+    return sheet::is_timed(setting) && !options.quick ? options.repeats : 1;
 }
 
 /// Runs all settings, each with its own progress; breaks off at an interrupt.

@@ -35,6 +35,8 @@ std::vector<Setting> ladder()
     return settings;
 }
 
+bool is_timed(const Setting& setting) { return setting.max_iterations < kReferenceIterations; }
+
 Scene make_scene(const Sheet& sheet, const Setting& setting)
 {
     Scene scene;

@@ -36,6 +36,9 @@ struct Setting {
 /// runs are apart: errors below that mean nothing.
 std::vector<Setting> ladder();
 
+/// False for converged runs, which are there to be compared with.
+bool is_timed(const Setting& setting);
+
 Scene make_scene(const Sheet& sheet, const Setting& setting);
 
 } // namespace toile::sheet

@@ -20,6 +20,7 @@ std::string cell(std::string text)
 std::vector<Row> scene_rows(const std::vector<Result>& results)
 {
     std::vector<Row> rows;
+    rows.reserve(results.size());
     for (const Result& r : results)
         rows.push_back({cell(r.name), std::to_string(r.vertices), std::to_string(r.frames),
                         format("%.1f", r.ms_per_frame), format("%.1f", r.median_ms),

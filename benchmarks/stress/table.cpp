@@ -33,6 +33,7 @@ const Row kCsvHeader{"case",       "steps",        "iterations_per_step", "ms_pe
 std::vector<Row> rows_of(const std::vector<Result>& results)
 {
     std::vector<Row> rows;
+    rows.reserve(results.size());
     for (const Result& result : results)
         rows.push_back(cells_of(result));
     return rows;
