@@ -19,6 +19,8 @@ struct Benchmark {
 };
 
 constexpr Benchmark kBenchmarks[] = {
+    {"sheet", "a hanging sheet of 10 000 vertices: milliseconds per step against the error", bench_sheet},
+    {"stages", "scenes: milliseconds per frame by stage, iterations, contacts, peak memory", bench_stages},
     {"stress", "extreme steps, materials, meshes and starts: finite, no energy gained, back to rest",
      bench_stress},
 };
@@ -34,6 +36,8 @@ int bench(const BenchOptions& options)
 {
     if (options.name.empty())
         return list();
+    if (options.name != "stages" && (!options.scenes.empty() || options.frames))
+        throw InvalidInput("bench " + options.name + ": takes no scenes and no --frames; only stages does");
     std::vector<std::string> names;
     for (const Benchmark& benchmark : kBenchmarks) {
         if (options.name == benchmark.name)
@@ -56,6 +60,11 @@ Command add_bench(CLI::App& program)
     add.add_option("name", options->name, "Benchmark; without one, all are listed");
     add.add_option("-o,--output", options->output, "Folder for the table as CSV and Markdown");
     add.add_option("--only", options->only, "Only cases whose name contains this");
+    add.add_option("scenes", options->scenes, "Scene files (.json); only for stages");
+    add.add_option("--frames", options->frames, "Samples of each scene, instead of its own; only for stages");
+    add.add_option("--repeats", options->repeats, "Runs of everything that is timed; the fastest counts [3]")
+        ->check(CLI::PositiveNumber);
+    add.add_flag("--times-only", options->times_only, "Without references and errors; only for sheet");
     add.add_flag("--quick", options->quick, "Smaller and shorter cases");
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return bench(*options); };

@@ -1,20 +1,28 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace toile {
 
 /// What the command line says about a benchmark.
 struct BenchOptions {
     std::string name;
-    std::filesystem::path output; ///< folder for tables; empty: only standard output
-    std::string only;             ///< run cases whose name contains this; empty: all
+    std::filesystem::path output;              ///< folder for tables; empty: only standard output
+    std::string only;                          ///< run cases whose name contains this; empty: all
+    std::vector<std::filesystem::path> scenes; ///< for stages; empty: its own
+    std::optional<int> frames;                 ///< of each scene, instead of its own
+    int repeats = 3;                           ///< runs of everything that is timed; the fastest counts
+    bool times_only = false;                   ///< sheet without its references and errors
     bool quick = false;
     bool quiet = false;
 };
 
 // One file each, named bench_NAME.cpp. They return an ExitCode and throw InvalidInput for bad options.
+int bench_sheet(const BenchOptions& options);
+int bench_stages(const BenchOptions& options);
 int bench_stress(const BenchOptions& options);
 
 } // namespace toile

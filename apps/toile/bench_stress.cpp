@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include "apps/toile/bench.h"
+#include "apps/toile/bench_tables.h"
 #include "apps/toile/command_line.h"
 #include "apps/toile/interrupt.h"
 #include "apps/toile/progress.h"
 #include "benchmarks/stress/table.h"
-#include "core/backend/atomic_file.h"
 #include "core/backend/error.h"
 
 namespace toile {
@@ -17,6 +17,8 @@ namespace {
 
 /// Steps between two looks at the clock: the smallest take microseconds.
 constexpr int kStepsPerUpdate = 50;
+
+const std::vector<std::string> kTables{"stress.csv", "stress.md"};
 
 /// A folder for meshes that disappears with the run.
 class ScratchFolder {
@@ -51,18 +53,6 @@ std::vector<stress::Case> chosen_cases(const BenchOptions& options, const std::f
     return cases;
 }
 
-/// Refuses a folder before the run that could not be written after it.
-void require_place(const std::filesystem::path& folder)
-{
-    for (const char* name : {"stress.csv", "stress.md"}) {
-        create_parent_folder(folder / name);
-        if (std::filesystem::is_directory(folder / name))
-            throw InvalidInput((folder / name).string() + ": is a folder; choose another place with -o");
-    }
-    if (::access(folder.c_str(), W_OK) != 0)
-        throw InvalidInput(folder.string() + ": can't be written to; choose another place with -o");
-}
-
 /// Runs all cases, or those before an interrupt.
 std::vector<stress::Result> run_all(const std::vector<stress::Case>& cases, const InterruptGuard& interrupt,
                                     bool quiet)
@@ -94,7 +84,7 @@ std::vector<stress::Result> run_all(const std::vector<stress::Case>& cases, cons
 int bench_stress(const BenchOptions& options)
 {
     if (!options.output.empty())
-        require_place(options.output);
+        require_place(options.output, kTables);
     const ScratchFolder scratch;
     const std::vector<stress::Case> cases = chosen_cases(options, scratch.path());
     const InterruptGuard interrupt;
@@ -105,12 +95,7 @@ int bench_stress(const BenchOptions& options)
         std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
         return kExitFailure;
     }
-    if (!options.output.empty()) {
-        write_atomically(options.output / "stress.csv", csv_table(results));
-        write_atomically(options.output / "stress.md", markdown_table(results));
-        std::cout << (options.output / "stress.csv").string() << "\n"
-                  << (options.output / "stress.md").string() << "\n";
-    }
+    write_tables(options.output, {{kTables[0], csv_table(results)}, {kTables[1], markdown_table(results)}});
     return std::all_of(results.begin(), results.end(), [](const stress::Result& r) { return r.holds; })
                ? kExitOk
                : kExitFailure;

@@ -2,9 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <sys/resource.h>
-
 #include "core/backend/atomic_file.h"
+#include "core/backend/process_usage.h"
 
 namespace toile {
 
@@ -59,13 +58,6 @@ const char* to_word(StepReport::Status status)
         break;
     }
     return "converged";
-}
-
-long peak_memory()
-{
-    struct rusage usage = {};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return usage.ru_maxrss * 1024; // Linux counts kibibytes
 }
 
 void RunReport::write(const std::filesystem::path& file, const std::string& outcome,

@@ -41,7 +41,4 @@ private:
 /// "converged", "iteration_limit" or "non_finite".
 const char* to_word(StepReport::Status status);
 
-/// Largest resident memory of this process so far [bytes].
-long peak_memory();
-
 } // namespace toile

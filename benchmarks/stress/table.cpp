@@ -1,20 +1,10 @@
 #include "benchmarks/stress/table.h"
 
-#include <algorithm>
-#include <cstdio>
+#include "benchmarks/text_table.h"
 
 namespace toile::stress {
 
 namespace {
-
-using Row = std::vector<std::string>;
-
-std::string format(const char* form, double value)
-{
-    char text[64];
-    std::snprintf(text, sizeof text, form, value);
-    return text;
-}
 
 const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 
@@ -40,47 +30,22 @@ const Row kCsvHeader{"case",       "steps",        "iterations_per_step", "ms_pe
                      "max_strain", "energy_ratio", "end_energy",          "drift_m",     "finite",
                      "rests",      "holds"};
 
-std::string markdown_line(const Row& row, const std::vector<size_t>& widths, char fill)
+std::vector<Row> rows_of(const std::vector<Result>& results)
 {
-    std::string line = "|";
-    for (size_t i = 0; i < row.size(); ++i)
-        line += fill + row[i] + std::string(widths[i] - row[i].size(), fill) + fill + "|";
-    return line + "\n";
-}
-
-std::string csv_line(const Row& row)
-{
-    std::string line;
-    for (const std::string& cell : row)
-        line += (line.empty() ? "" : ",") + cell;
-    return line + "\n";
+    std::vector<Row> rows;
+    rows.reserve(results.size());
+    for (const Result& result : results)
+        rows.push_back(cells_of(result));
+    return rows;
 }
 
 } // namespace
 
 std::string markdown_table(const std::vector<Result>& results)
 {
-    std::vector<Row> rows{kMarkdownHeader};
-    for (const Result& result : results)
-        rows.push_back(cells_of(result));
-    std::vector<size_t> widths(kMarkdownHeader.size());
-    for (const Row& row : rows)
-        for (size_t i = 0; i < row.size(); ++i)
-            widths[i] = std::max(widths[i], row[i].size());
-
-    std::string table = markdown_line(rows[0], widths, ' ');
-    table += markdown_line(Row(widths.size()), widths, '-');
-    for (size_t i = 1; i < rows.size(); ++i)
-        table += markdown_line(rows[i], widths, ' ');
-    return table;
+    return markdown(kMarkdownHeader, rows_of(results));
 }
 
-std::string csv_table(const std::vector<Result>& results)
-{
-    std::string table = csv_line(kCsvHeader);
-    for (const Result& result : results)
-        table += csv_line(cells_of(result));
-    return table;
-}
+std::string csv_table(const std::vector<Result>& results) { return csv(kCsvHeader, rows_of(results)); }
 
 } // namespace toile::stress
