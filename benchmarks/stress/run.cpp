@@ -55,6 +55,7 @@ public:
         x_ = positions;
         drift_ = std::max(drift_, farthest);
         energy_ = meter_.measure(x_, v_);
+        is_finite_ = is_finite_ && std::isfinite(energy_);
         peak_energy_ = std::max(peak_energy_, energy_);
         if ((trial_.steps() - step) * trial_.dt() < limits_.rest_window)
             final_speed_ = std::max(final_speed_, max_norm(v_));
@@ -66,6 +67,7 @@ public:
         result.drift = trial_.starts_at_rest ? drift_ : 0.0;
         result.energy_ratio = peak_energy_ / (start_energy_ + meter_.mass() * trial_.granted_energy);
         result.end_energy = energy_ / start_energy_;
+        result.is_finite = result.is_finite && is_finite_;
         result.rests = result.is_finite && final_speed_ < limits_.rest_speed;
         result.holds =
             result.rests && result.energy_ratio <= 1.0 + limits_.energy_gain && result.drift <= limits_.drift;
@@ -79,6 +81,7 @@ private:
     double start_energy_;
     double energy_ = 0.0;
     double peak_energy_ = 0.0;
+    bool is_finite_ = true; ///< every energy so far
     double drift_ = 0.0;
     double final_speed_ = 0.0;
 };

@@ -143,6 +143,7 @@ void SupernodalFactor::split_tree()
     for (int s = 0; s < count; ++s) {
         const Supernode& node = supernodes[s];
         entries[s] += long(node.width) * (node.width + node.row_count);
+        TOILE_ASSERT(children[s].empty() || children[s].back() == s - 1);
         first[s] = children[s].empty() ? s : first[children[s].front()];
         if (node.row_count == 0) {
             open.push_back(s);

@@ -24,7 +24,9 @@ public:
 class Body {
 public:
     struct Settings {
-        double tolerance = 1e-5; ///< [m] largest vertex move of the last outer iteration
+        /// [m] Largest vertex move of the last outer iteration; lowered to a tenth of the farthest predicted
+        /// move, but never below a hundredth of this.
+        double tolerance = 1e-5;
         int max_iterations = 50; ///< outer iterations per minimisation
         int max_rounds = 3;      ///< minimisations per step, when contact asks for another
         int history = 5;         ///< L-BFGS pairs

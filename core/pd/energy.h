@@ -13,7 +13,8 @@ namespace toile {
 ///   2014]
 ///
 /// whose constant quadratic part bounds its Hessian from above: w_j S_j^T A_j^T A_j S_j summed over j is a
-/// majoriser, so a step along -H^-1 grad never increases the objective.
+/// majoriser, so a step along -H^-1 grad never increases the objective. An energy may leave out what the
+/// others' share covers or what acts in few places; the line search then answers for descent.
 class Energy {
 public:
     virtual ~Energy() = default;
@@ -21,7 +22,8 @@ public:
     /// Stage name, e.g. "garment/membrane".
     virtual std::string_view name() const = 0;
 
-    /// Adds sum_j w_j S_j^T A_j^T A_j S_j, both triangles, to H [vertices x vertices] [N/m].
+    /// Adds sum_j w_j S_j^T A_j^T A_j S_j or what is needed of it, both triangles, to H [vertices x vertices]
+    /// [N/m].
     virtual void add_hessian(Triplets& H) const = 0;
 
     /// Adds dW/dx [N] to gradient and returns W [J]. Same bits for every thread count.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/linear/field.h"
 
@@ -25,6 +26,7 @@ constexpr double kMinCurvature = 1e-10;
 
 Lbfgs::Outcome Lbfgs::minimise(Objective& objective, View<Vec3> x, const Settings& settings)
 {
+    TOILE_ASSERT(settings.history > 0);
     const int n = x.size();
     for (std::vector<Vec3>* field : {&gradient_, &direction_, &trial_, &trial_gradient_})
         field->resize(n);

@@ -15,8 +15,9 @@ namespace {
 /// Slivers would exceed it by the fourth power of their aspect ratio and ruin the conditioning of H.
 constexpr double kMaxRelativeStiffness = 1e3;
 
-/// Share of the membrane's diagonal below which bending is left out of H [-]: H then bounds the Hessian to as much,
-/// and steps up to twice the bound descend. Cotton on 1 cm cells lies at 5e-4, jersey on 6 mm cells at 2e-2.
+/// Share of the membrane's diagonal below which bending is left out of H [-]: H then bounds the Hessian to as
+/// much, and steps up to twice the bound descend. Cotton on 1 cm cells lies at 5e-4, jersey on 6 mm cells at
+/// 2e-2.
 constexpr double kNegligible = 0.1;
 
 void require_valid(const Bending::Settings& s, const std::string& source)

@@ -78,7 +78,7 @@ Vec3 monomials(const Vec2& q) { return {0.5 * q.x() * q.x(), q.x() * q.y(), 0.5 
 Fit fit_triangle(const RestShape& rest, int t)
 {
     const std::array<Vec2, 3> corner = flat_corners(rest, t);
-    const Mat2 to_barycentric = rest.edges[t].inverse();
+    const Mat2 to_barycentric = rest.edges_inv[t];
     Fit result;
     Mat3 deviations = Mat3::Zero(); // of the far vertices, by second derivatives
     Mat3 averaged = Mat3::Zero();   // second derivatives of the edge-averaged operator, by deviations

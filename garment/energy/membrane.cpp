@@ -38,7 +38,7 @@ Membrane::Membrane(std::shared_ptr<const RestShape> rest, const Settings& settin
     for (int first = 0; first < triangles; first += kLanes) {
         Mat2Of<Lanes> inverse;
         for (int k = 0; k < 4; ++k)
-            inverse(k) = gather(first, triangles, [&](int t) { return rest_->edges[t].inverse().eval()(k); });
+            inverse(k) = gather(first, triangles, [&](int t) { return rest_->edges_inv[t](k); });
         rest_inv_.push_back(inverse);
         area_.push_back(gather(first, triangles, [&](int t) { return rest_->areas[t]; }));
     }
@@ -53,7 +53,7 @@ void Membrane::add_hessian(Triplets& H) const
     for (size_t t = 0; t < rest_->triangles.size(); ++t) {
         // Rows of G: gradients of the hat functions of corners 0, 1, 2 in material axes.
         Mat32 G;
-        G.bottomRows<2>() = rest_->edges[t].inverse();
+        G.bottomRows<2>() = rest_->edges_inv[t];
         G.row(0) = -G.row(1) - G.row(2);
         const Mat3 block = rest_->areas[t] * G * weight * G.transpose();
         for (int i = 0; i < 3; ++i)

@@ -32,9 +32,12 @@ constexpr double kMaxAspect = 100.0;
 RestShape complete(RestShape shape, int vertex_count, const std::string& source)
 {
     shape.topology = build_topology(shape.triangles, vertex_count, source);
+    shape.edges_inv.reserve(shape.edges.size());
     shape.areas.reserve(shape.edges.size());
-    for (const Mat2& edges : shape.edges)
+    for (const Mat2& edges : shape.edges) {
+        shape.edges_inv.push_back(edges.inverse());
         shape.areas.push_back(0.5 * std::abs(edges.determinant()));
+    }
     return shape;
 }
 

@@ -15,6 +15,7 @@ namespace toile {
 struct RestShape {
     std::vector<Triangle> triangles; ///< [triangles]
     std::vector<Mat2> edges;         ///< [triangles] columns x1 - x0, x2 - x0 in (u, v) [m]
+    std::vector<Mat2> edges_inv;     ///< [triangles] inverse of edges [1/m]
     std::vector<double> areas;       ///< [triangles] [m^2]
     Topology topology;
 
@@ -22,6 +23,16 @@ struct RestShape {
     {
         return topology.corners_of_vertex.first.empty() ? 0
                                                         : int(topology.corners_of_vertex.first.size()) - 1;
+    }
+
+    /// F_t [-]: maps rest edges of a triangle to its edges at x [vertices] [m].
+    Mat32 deformation_gradient(int triangle, View<const Vec3> x) const
+    {
+        const Triangle& corner = triangles[triangle];
+        Mat32 now;
+        now.col(0) = x[corner[1]] - x[corner[0]];
+        now.col(1) = x[corner[2]] - x[corner[0]];
+        return now * edges_inv[triangle];
     }
 
     /// Longest edge more than a hundred times its altitude. The strain across such a triangle is the noise of

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/LU>
-
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
 #include "garment/energy/principal_stretch.h"
@@ -44,39 +42,29 @@ StrainLimit::StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& 
 {
     if (!(settings.limit > 0.0) || !std::isfinite(settings.limit))
         throw InvalidInput(source + ": strain limit " + std::to_string(settings.limit) + " must be positive");
-    for (size_t t = 0; t < rest_->edges.size(); ++t) {
-        rest_inv_.push_back(rest_->edges[t].inverse());
-        is_sliver_.push_back(rest_->is_sliver(int(t)));
+    for (int t = 0; t < int(rest_->triangles.size()); ++t) {
+        is_sliver_.push_back(rest_->is_sliver(t));
         has_slivers_ = has_slivers_ || is_sliver_.back();
     }
-}
-
-Mat32 StrainLimit::deformation_gradient(int t, View<const Vec3> x) const
-{
-    const Triangle& corner = rest_->triangles[t];
-    Mat32 edges;
-    edges.col(0) = x[corner[1]] - x[corner[0]];
-    edges.col(1) = x[corner[2]] - x[corner[0]];
-    return edges * rest_inv_[t];
 }
 
 double StrainLimit::max_strain(View<const Vec3> x) const
 {
     double largest = 0.0;
-    for (int t = 0; t < int(rest_inv_.size()); ++t)
-        largest = std::max(largest, largest_stretch(deformation_gradient(t, x)));
+    for (int t = 0; t < int(is_sliver_.size()); ++t)
+        largest = std::max(largest, largest_stretch(rest_->deformation_gradient(t, x)));
     return largest - 1.0;
 }
 
 bool StrainLimit::violates(int t, View<const Vec3> x) const
 {
     return !is_sliver_[t] &&
-           largest_stretch(deformation_gradient(t, x)) > 1.0 + settings_.limit + settings_.tolerance;
+           largest_stretch(rest_->deformation_gradient(t, x)) > 1.0 + settings_.limit + settings_.tolerance;
 }
 
 void StrainLimit::look_at_everything(View<const Vec3> x)
 {
-    parallel_for(kCpu, "strain_limit/find", int(rest_inv_.size()),
+    parallel_for(kCpu, "strain_limit/find", int(is_sliver_.size()),
                  [&](int t) { violates_[t] = violates(t, x); });
     violating_.clear();
     for (int t = 0; t < int(violates_.size()); ++t)
@@ -93,8 +81,7 @@ void StrainLimit::look_around_violating(View<const Vec3> x)
         for (const int v : rest_->triangles[moved])
             for (const int corner : corners.of(v)) {
                 const int t = corner / 3;
-                violates_[t] = violates(t, x);
-                if (violates_[t])
+                if (violates(t, x))
                     found.push_back(t);
             }
     std::sort(found.begin(), found.end());
@@ -105,7 +92,7 @@ void StrainLimit::look_around_violating(View<const Vec3> x)
 void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active)
 {
     if (tension_)
-        tension_->end_step(x);
+        tension_->remember(x);
     look_at_everything(x);
     if (violating_.empty())
         return;
@@ -134,7 +121,7 @@ void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const
 void StrainLimit::clamp_triangle(int t, View<Vec3> x, View<const double> inverse_masses) const
 {
     const Triangle& corner = rest_->triangles[t];
-    const Mat32 F = deformation_gradient(t, x);
+    const Mat32 F = rest_->deformation_gradient(t, x);
     const PrincipalStretch stretch = principal_stretch(F);
     const double allowed = 1.0 + settings_.limit;
     if (stretch.sigma[0] <= allowed)

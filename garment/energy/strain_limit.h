@@ -15,7 +15,7 @@ namespace toile {
 ///
 /// Enforced after the step's minimisation by nonlinear Gauss-Seidel over the violating triangles: each is
 /// moved, mass-weighted, to the closest edges with clamped singular values [Wang et al. 2010; projecting
-/// after the step: Goldenthal et al. 2007]. Sweeps that run out with a larger strain than they began with are
+/// after the step: Goldenthal et al. 2007]. Sweeps that end with a larger strain than they began with are
 /// undone. Inside H the limit would need weights that stall every method built on a fixed H
 /// (docs/garment/strain_limit.md).
 class StrainLimit : public StepProjection {
@@ -33,11 +33,10 @@ public:
 
     void project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active) override;
 
-    /// Largest principal stretch minus one at x [-].
+    /// Largest principal stretch minus one at x, of slivers too [-].
     double max_strain(View<const Vec3> x) const;
 
 private:
-    Mat32 deformation_gradient(int t, View<const Vec3> x) const;
     void clamp_triangle(int t, View<Vec3> x, View<const double> inverse_masses) const;
     bool violates(int t, View<const Vec3> x) const;
     void look_at_everything(View<const Vec3> x);
@@ -46,7 +45,6 @@ private:
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
     std::shared_ptr<StretchTension> tension_;
-    std::vector<Mat2> rest_inv_;
     std::vector<unsigned char> is_sliver_; ///< [triangles] left to the membrane
     bool has_slivers_ = false;
     std::vector<unsigned char> violates_; ///< [triangles]

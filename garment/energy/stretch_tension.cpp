@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <Eigen/LU>
-
 #include "core/backend/parallel.h"
 #include "garment/energy/membrane_kernels.h"
 #include "garment/energy/principal_stretch.h"
@@ -22,19 +20,8 @@ StretchTension::StretchTension(std::shared_ptr<const RestShape> rest, const Sett
     : rest_(std::move(rest)), settings_(settings), tension_(rest_->triangles.size(), Mat2::Zero()),
       near_(rest_->triangles.size())
 {
-    for (size_t t = 0; t < rest_->edges.size(); ++t) {
-        rest_inv_.push_back(rest_->edges[t].inverse());
-        is_sliver_.push_back(rest_->is_sliver(int(t)));
-    }
-}
-
-Mat32 StretchTension::deformation_gradient(int t, View<const Vec3> x) const
-{
-    const Triangle& corner = rest_->triangles[t];
-    Mat32 edges;
-    edges.col(0) = x[corner[1]] - x[corner[0]];
-    edges.col(1) = x[corner[2]] - x[corner[0]];
-    return edges * rest_inv_[t];
+    for (int t = 0; t < int(rest_->triangles.size()); ++t)
+        is_sliver_.push_back(rest_->is_sliver(t));
 }
 
 void StretchTension::begin_step(View<const Vec3> x)
@@ -42,19 +29,19 @@ void StretchTension::begin_step(View<const Vec3> x)
     const double watched = 1.0 + kWatched * settings_.limit;
     parallel_for(kCpu, "stretch_tension/watch", int(near_.size()), [&](int t) {
         near_[t] = !is_sliver_[t] &&
-                   (!tension_[t].isZero(0.0) || largest_stretch(deformation_gradient(t, x)) > watched);
+                   (!tension_[t].isZero(0.0) || largest_stretch(rest_->deformation_gradient(t, x)) > watched);
     });
     taut_.clear();
     for (int t = 0; t < int(near_.size()); ++t)
         if (near_[t])
-            taut_.push_back({t, closest_isometry<double>(deformation_gradient(t, x)) * tension_[t]});
+            taut_.push_back({t, closest_isometry<double>(rest_->deformation_gradient(t, x)) * tension_[t]});
     stress_.resize(taut_.size());
 }
 
 /// G - P(G)
 Mat32 StretchTension::excess(const Taut& taut, View<const Vec3> x) const
 {
-    const Mat32 G = deformation_gradient(taut.triangle, x) + taut.tension;
+    const Mat32 G = rest_->deformation_gradient(taut.triangle, x) + taut.tension;
     const double allowed = 1.0 + settings_.limit;
     if (largest_stretch(G) <= allowed)
         return Mat32::Zero();
@@ -74,7 +61,7 @@ double StretchTension::add_gradient(View<const Vec3> x, View<Vec3> gradient)
         const int t = taut_[i].triangle;
         const double weight = settings_.stiffness * rest_->areas[t];
         energy += 0.5 * weight * stress_[i].squaredNorm();
-        const Mat32 pull = weight * stress_[i] * rest_inv_[t].transpose();
+        const Mat32 pull = weight * stress_[i] * rest_->edges_inv[t].transpose();
         const Triangle& corner = rest_->triangles[t];
         gradient[corner[0]] -= pull.col(0) + pull.col(1);
         gradient[corner[1]] += pull.col(0);
@@ -83,10 +70,10 @@ double StretchTension::add_gradient(View<const Vec3> x, View<Vec3> gradient)
     return energy;
 }
 
-void StretchTension::end_step(View<const Vec3> x)
+void StretchTension::remember(View<const Vec3> x)
 {
     for (const Taut& taut : taut_) {
-        const Mat32 F = deformation_gradient(taut.triangle, x);
+        const Mat32 F = rest_->deformation_gradient(taut.triangle, x);
         Mat2 tension = closest_isometry<double>(F).transpose() * excess(taut, x);
         const double size = tension.norm();
         if (size > settings_.max_tension)

@@ -20,12 +20,12 @@ namespace toile {
 /// [Hestenes 1969, Powell 1969]. The global solve of the minimisation carries the tension through the whole
 /// cloth at once, and it is remembered, so that after a few steps what is left for the clamping of single
 /// triangles (StrainLimit) is next to nothing. T_t turns with its triangle. It stays out of H: only triangles
-/// near the limit are looked at, and their curvature at most doubles.
+/// near the limit are looked at, and along the stiffer yarn their curvature at most doubles.
 class StretchTension : public Energy {
 public:
     struct Settings {
         double limit = 0.06;      ///< [-] as StrainLimit's
-        double stiffness = 250.0; ///< [N/m] k, the membrane's
+        double stiffness = 250.0; ///< [N/m] k, the larger of the membrane's two
         double max_tension = 1.0; ///< [-] of k: bounds the pull where a limit cannot be met
     };
 
@@ -35,11 +35,12 @@ public:
     void add_hessian(Triplets&) const override {}
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
 
-    /// Picks the triangles that are near their limit at x [vertices] and turns their tension with them.
+    /// Picks the triangles that are near their limit at x [vertices] and turns their tension with them. For
+    /// the owner to call before Body::step.
     void begin_step(View<const Vec3> x);
 
-    /// Remembers the tension at the minimiser x.
-    void end_step(View<const Vec3> x);
+    /// Remembers the tension at the minimiser x. StrainLimit calls it before it clamps.
+    void remember(View<const Vec3> x);
 
 private:
     /// A triangle near its limit.
@@ -48,12 +49,10 @@ private:
         Mat32 tension = Mat32::Zero(); ///< T_t / k at this step
     };
 
-    Mat32 deformation_gradient(int t, View<const Vec3> x) const;
     Mat32 excess(const Taut& taut, View<const Vec3> x) const;
 
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
-    std::vector<Mat2> rest_inv_;
     std::vector<unsigned char> is_sliver_; ///< [triangles] left to the membrane
     std::vector<Mat2> tension_;            ///< [triangles] T_t / k in material axes
     std::vector<unsigned char> near_;      ///< [triangles] scratch

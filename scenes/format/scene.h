@@ -205,7 +205,7 @@ struct Sleep {
 struct Solver {
     int substeps = 4;        ///< time steps per sample
     double tolerance = 2e-4; ///< [m] largest change of a position at which a step ends
-    int max_iterations = 30; ///< outer iterations per step
+    int max_iterations = 30; ///< outer iterations per minimisation; contact may ask for three a step
     SolverMethod method = SolverMethod::Auto;
     Sleep sleep;
     int threads = 0; ///< 0: all of the machine's

@@ -21,7 +21,8 @@ void write_cloth(const TemporaryFolder& folder, const std::string& name, const s
 /// The skinned column of the avatar tests, one of its joints pointing to a node that is not there.
 void write_body_without_bone(const TemporaryFolder& folder)
 {
-    std::string body = bytes_of(std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf");
+    std::string body =
+        bytes_of(std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf");
     const std::string joints = R"("joints": [ 1, 2 ])";
     const size_t place = body.find(joints);
     ASSERT_NE(place, std::string::npos);

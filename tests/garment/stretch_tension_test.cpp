@@ -39,7 +39,7 @@ TEST(StretchTension, HasTheGradientOfItsValueWithRememberedTension)
     const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 5, 5, Pattern::Irregular);
     StretchTension tension = tension_of(sheet);
     tension.begin_step(pulled(sheet, 1.1));
-    tension.end_step(pulled(sheet, 1.1));
+    tension.remember(pulled(sheet, 1.1));
     std::vector<Vec3> x = pulled(sheet, 1.08);
     tension.begin_step(x);
 
@@ -91,7 +91,7 @@ TEST(StretchTension, IsBoundedAndForgottenWhenTheClothSlackens)
     const std::vector<Vec3> far = pulled(sheet, 5.0), slack = pulled(sheet, 0.9);
     for (int k = 0; k < 100; ++k) {
         tension.begin_step(far);
-        tension.end_step(far);
+        tension.remember(far);
     }
     tension.begin_step(slack);
     const double remembered = value_of(tension, slack);
@@ -100,7 +100,7 @@ TEST(StretchTension, IsBoundedAndForgottenWhenTheClothSlackens)
 
     for (int k = 0; k < 10; ++k) {
         tension.begin_step(slack);
-        tension.end_step(slack);
+        tension.remember(slack);
     }
     tension.begin_step(slack);
     EXPECT_EQ(value_of(tension, slack), 0.0);
