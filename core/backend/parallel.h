@@ -54,8 +54,8 @@ void parallel_for(CpuSpace, std::string_view name, int count, const Kernel& kern
     });
 }
 
-/// Runs work(task) for task in [0, count): few and long tasks, balanced one by one. The calling thread takes on
-/// nothing else while it waits, so tasks may use memory that belongs to it.
+/// Runs work(task) for task in [0, count): few and long tasks, balanced one by one. The calling thread takes
+/// on nothing else while it waits, so tasks may use memory that belongs to it.
 template <typename Work>
 void parallel_tasks(CpuSpace, int count, const Work& work)
 {
