@@ -30,7 +30,7 @@ public:
             const std::string& source);
 
     /// Leaves bending out of H where it is far below the diagonal of the membrane's part [vertices] [N/m] at
-    /// every vertex: the membrane's majoriser covers bending a hundred times over, and without the second
+    /// every vertex: the membrane's majoriser covers bending at least ten times over, and without the second
     /// ring of neighbours L has a third of the entries (docs/garment/bending.md). True when it did.
     bool leave_to(View<const double> membrane_diagonal);
 

@@ -7,6 +7,7 @@
 
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
+#include "tests/garment/gradient_check.h"
 #include "tests/garment/sheets.h"
 
 namespace toile::test {
@@ -19,12 +20,6 @@ std::shared_ptr<Membrane> membrane_of(const std::shared_ptr<const RestShape>& re
     return std::make_shared<Membrane>(rest, Membrane::Settings{kWarp, kWeft, kShear}, "sheet");
 }
 
-double value_of(Energy& energy, const std::vector<Vec3>& x)
-{
-    std::vector<Vec3> ignored(x.size(), Vec3::Zero());
-    return energy.add_gradient(x, ignored);
-}
-
 /// The sheet crumpled a little, smoothly, the same way every time.
 std::vector<Vec3> crumpled(const Sheet& sheet)
 {
@@ -33,23 +28,6 @@ std::vector<Vec3> crumpled(const Sheet& sheet)
         p += 0.02 *
              Vec3(std::sin(31 * p.x() + 7 * p.z()), std::cos(23 * p.z()), std::sin(19 * p.x() * p.z() + 1));
     return x;
-}
-
-void expect_gradient_of_value(Energy& energy, std::vector<Vec3> x)
-{
-    std::vector<Vec3> gradient(x.size(), Vec3::Zero());
-    energy.add_gradient(x, gradient);
-    const double step = 1e-6;
-    for (size_t v = 0; v < x.size(); ++v)
-        for (int k = 0; k < 3; ++k) {
-            const double here = x[v][k];
-            x[v][k] = here + step;
-            const double up = value_of(energy, x);
-            x[v][k] = here - step;
-            const double down = value_of(energy, x);
-            x[v][k] = here;
-            EXPECT_NEAR(gradient[v][k], (up - down) / (2.0 * step), 1e-6 * (1.0 + std::abs(gradient[v][k])));
-        }
 }
 
 TEST(Membrane, HasTheGradientOfItsValue)
