@@ -20,6 +20,14 @@ constexpr double kMaxRadius = 0.06;
 /// its tangent plane by more than about half a millimetre (radius of curvature 5 cm).
 constexpr double kTrust = 0.007;
 
+/// The same at the end of a step, and depth [m] that a step may end with, for which nothing is looked at again: cloth
+/// at rest costs nothing then.
+constexpr double kEndTrust = 0.002;
+constexpr double kLeftOver = 1e-4;
+
+/// Sweeps over the pairs at the end of a step: neighbouring planes push against each other.
+constexpr int kClearSweeps = 5;
+
 /// Margin [m] of a second look within a step, on top of the gap.
 constexpr double kRevisionMargin = 0.003;
 
@@ -71,7 +79,7 @@ void Contact::carry_with_colliders()
         if (last.collider >= 0) {
             const ContactPartner& partner = partners_[last.collider];
             motion = partner.mesh ? partner.mesh->motion(last.feature, Vec3::Constant(1.0 / 3.0))
-                                  : partner.shape->motion(last.point);
+                                  : partner.shape->motion_from(last.point);
         }
         carried_[v] = start_.x[v];
         if (is_carried(motion))
@@ -153,23 +161,26 @@ ContactTerm Contact::make_term(const ContactPair& pair) const
 bool Contact::make_feasible(View<Vec3> x) const
 {
     bool moved = false;
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        const double depth = -energy_.gap(i, x);
-        if (depth <= 0.0)
-            continue;
-        const ContactPair& pair = energy_.terms()[i].pair;
-        double squares = 0.0;
-        for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
-            if (!start_.fixed[pair.vertex[k]])
-                squares += pair.weight[k] * pair.weight[k];
-        if (squares < kMinLeverage)
-            continue;
-        moved = true;
-        for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
-            if (!start_.fixed[pair.vertex[k]])
-                x[pair.vertex[k]] += pair.weight[k] / squares * depth * pair.normal;
-    }
+    for (int i = 0; i < int(energy_.terms().size()); ++i)
+        if (const double depth = -energy_.gap(i, x); depth > 0.0)
+            moved = push(energy_.terms()[i].pair, depth, x) || moved;
     return moved;
+}
+
+/// Adds to the field at the pair's free vertices so that its cloth point gains `amount` along the normal. False where
+/// fixed vertices carry nearly all of the pair.
+bool Contact::push(const ContactPair& pair, double amount, View<Vec3> field) const
+{
+    double squares = 0.0;
+    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+        if (!start_.fixed[pair.vertex[k]])
+            squares += pair.weight[k] * pair.weight[k];
+    if (squares < kMinLeverage)
+        return false;
+    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+        if (!start_.fixed[pair.vertex[k]])
+            field[pair.vertex[k]] += pair.weight[k] / squares * amount * pair.normal;
+    return true;
 }
 
 double Contact::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
@@ -189,22 +200,27 @@ bool Contact::revise(View<const Vec3> x)
     if (energy_.terms().empty())
         return false;
     const bool friction_changed = update_normal_forces(x);
-    if (slid_away(x)) {
-        remember(x);
+    if (slid_away(x, kTrust)) {
+        // The pairs found again begin at t0 too, with what had stuck by then.
+        remember([&](int i) {
+            const ContactTerm& term = energy_.terms()[i];
+            return Vec3(at_start(term.pair) - term.anchor);
+        });
         detect(x, settings_.gap + kRevisionMargin);
         return true;
     }
     return friction_changed;
 }
 
-bool Contact::slid_away(View<const Vec3> x) const
+/// True when a vertex of a pair that presses moved further than `trust` [m] from where it was found.
+bool Contact::slid_away(View<const Vec3> x, double trust) const
 {
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const ContactPair& pair = energy_.terms()[i].pair;
         if (energy_.gap(i, x) > 0.5 * settings_.gap)
             continue;
         for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
-            if ((x[pair.vertex[k]] - detected_at_[pair.vertex[k]]).squaredNorm() > kTrust * kTrust)
+            if ((x[pair.vertex[k]] - detected_at_[pair.vertex[k]]).squaredNorm() > trust * trust)
                 return true;
     }
     return false;
@@ -226,7 +242,9 @@ bool Contact::update_normal_forces(View<const Vec3> x)
 
 /// Keeps forces and sticking of the pairs that press, for their successors. The forces are the minimiser's:
 /// strain limits move cloth afterwards, and clear pairs to the last bit.
-void Contact::remember(View<const Vec3> x)
+/// @param slip  slip(term): what has slipped since the anchor [m]
+template <typename Slip>
+void Contact::remember(const Slip& slip)
 {
     memory_.clear();
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
@@ -234,7 +252,7 @@ void Contact::remember(View<const Vec3> x)
         const double force = term.normal_force;
         if (force == 0.0)
             continue;
-        Vec3 stick = energy_.slip(i, x);
+        Vec3 stick = slip(i);
         if (const double pull = term.stiffness * stick.norm(); pull > term.friction * force)
             stick *= term.friction * force / pull;
         const ContactPair& pair = term.pair;
@@ -243,14 +261,43 @@ void Contact::remember(View<const Vec3> x)
     }
 }
 
-void Contact::end_step(View<const Vec3> x)
+void Contact::end_step(View<Vec3> x, View<Vec3> v)
 {
-    remember(x);
+    remember([&](int i) { return energy_.slip(i, x); });
     active_count_ = int(memory_.size());
+    if (deepest(x) > kLeftOver || slid_away(x, kEndTrust))
+        clear(x, v);
     min_gap_ = 0.0;
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const double gap = energy_.terms()[i].pair.gap(x);
         min_gap_ = i == 0 ? gap : std::min(min_gap_, gap);
+    }
+}
+
+double Contact::deepest(View<const Vec3> x) const
+{
+    double depth = 0.0;
+    for (int i = 0; i < int(energy_.terms().size()); ++i)
+        depth = std::max(depth, -energy_.gap(i, x));
+    return depth;
+}
+
+/// Looks where the cloth has come to and moves it out of what is still inside there. The correction does not become
+/// velocity, or it would throw the cloth; only what moves into a surface is stopped at it.
+void Contact::clear(View<Vec3> x, View<Vec3> v)
+{
+    detect(x, settings_.gap + kRevisionMargin);
+    const StageScope stage("collision/clear");
+    for (int i = 0; i < int(energy_.terms().size()); ++i) {
+        if (energy_.gap(i, x) >= 0.0)
+            continue;
+        const ContactPair& pair = energy_.terms()[i].pair;
+        const Vec3 surface = is_carried(pair.motion) ? Vec3(pair.motion / start_.dt) : Vec3(Vec3::Zero());
+        const double approach = pair.normal.dot(surface - pair.cloth_point(v));
+        if (approach > 0.0)
+            push(pair, approach, v);
+    }
+    for (int sweep = 0; sweep < kClearSweeps && make_feasible(x); ++sweep) {
     }
 }
 

@@ -49,7 +49,7 @@ public:
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     bool revise(View<const Vec3> x) override;
-    void end_step(View<const Vec3> x) override;
+    void end_step(View<Vec3> x, View<Vec3> v) override;
 
     const ContactEnergy& energy() const { return energy_; }
     int active_count() const { return active_count_; } ///< pairs that push, after end_step()
@@ -79,9 +79,13 @@ private:
     ContactTerm make_term(const ContactPair& pair) const;
     Vec3 at_start(const ContactPair& pair) const;
     bool is_carried(const Vec3& motion) const;
-    void remember(View<const Vec3> x);
+    template <typename Slip>
+    void remember(const Slip& slip);
     bool update_normal_forces(View<const Vec3> x);
-    bool slid_away(View<const Vec3> x) const;
+    bool slid_away(View<const Vec3> x, double trust) const;
+    double deepest(View<const Vec3> x) const;
+    bool push(const ContactPair& pair, double amount, View<Vec3> field) const;
+    void clear(View<Vec3> x, View<Vec3> v);
 
     std::vector<ContactPartner> partners_;
     Settings settings_;

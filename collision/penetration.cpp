@@ -123,7 +123,7 @@ std::vector<PenetrationMeter::Inside> PenetrationMeter::find_inside(View<const V
     std::vector<Inside> inside(samples.size());
     parallel_for(kCpu, "collision/penetration_winding", samples.size(), [&](int i) {
         const Vec3& p = samples[i];
-        if ((p.array() < bounds_.lower.array()).any() || (p.array() > bounds_.upper.array()).any())
+        if (!((p.array() >= bounds_.lower.array()).all() && (p.array() <= bounds_.upper.array()).all()))
             return;
         const int winding = rays_.winding_number(p);
         if (winding > 0)
@@ -138,6 +138,8 @@ std::vector<PenetrationMeter::Inside> PenetrationMeter::find_behind(View<const V
 {
     std::vector<Inside> inside(samples.size());
     parallel_for(kCpu, "collision/penetration_sign", samples.size(), [&](int i) {
+        if (!samples[i].allFinite())
+            return;
         const std::optional<SurfacePoint> nearest = surface_.closest(samples[i], settings.open_depth);
         if (nearest && nearest->signed_distance < 0.0 && !is_on_border(*nearest))
             inside[i] = {i, samples[i], *nearest, false};
@@ -201,18 +203,6 @@ void PenetrationMeter::exclude_self_intersections(std::vector<Inside>& inside, d
             std::any_of(nearby[i].begin(), nearby[i].end(), [&](int t) { return buried[t] != 0; }))
             inside[i].is_excluded = true;
     });
-}
-
-Penetration measure_penetration(const ShapeCollider& shape, View<const Vec3> samples)
-{
-    Penetration result;
-    for (int i = 0; i < samples.size(); ++i)
-        if (const double depth = -shape.closest(samples[i]).signed_distance; depth > result.max_depth) {
-            result.max_depth = depth;
-            result.sample = i;
-            result.point = samples[i];
-        }
-    return result;
 }
 
 double penetration_of_triangle(const Shape& shape, const Eigen::Isometry3d& pose, const Vec3& a,

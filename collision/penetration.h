@@ -3,9 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "collision/colliders.h"
+#include "collision/shapes.h"
 #include "collision/ray_scene.h"
 #include "collision/surface_proximity.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace toile {
 
@@ -61,7 +62,7 @@ public:
     /// New positions of the mesh [vertices x 3] [m]. O(n).
     void move(View<const Vec3> positions);
 
-    /// The deepest of the samples [n x 3] [m]; of equally deep ones the first.
+    /// The deepest of the samples [n x 3] [m]; of equally deep ones the first. Those not finite are left out.
     Penetration measure(View<const Vec3> samples, const Settings& settings) const;
     Penetration measure(View<const Vec3> samples) const { return measure(samples, Settings{}); }
 
@@ -79,9 +80,6 @@ private:
     bool is_closed_;
     std::vector<char> is_border_vertex_; ///< [vertices]
 };
-
-/// The same for an analytic solid: depth is the negative signed distance; nothing is excluded.
-Penetration measure_penetration(const ShapeCollider& shape, View<const Vec3> samples);
 
 /// Depth [m] of the deepest point of triangle (a, b, c) in a convex solid, wherever in the triangle it lies,
 /// to 1e-7 m; 0 when all of the triangle is outside. Finite corners only.

@@ -34,6 +34,7 @@ struct CheckOptions {
 struct FrameFindings {
     int non_finite = 0;       ///< vertices
     double penetration = 0.0; ///< [m]
+    double excluded = 0.0;    ///< [m] depth where an avatar intersects itself
     double strain = 0.0;      ///< [-]
 };
 
@@ -58,6 +59,7 @@ struct Certificate {
             worst.strain = found.strain;
             worst_strain_frame = frame;
         }
+        worst.excluded = std::max(worst.excluded, found.excluded);
         const bool good =
             found.non_finite == 0 && found.penetration <= penetration_limit && found.strain <= strain_limit;
         if (!good && first_bad_frame < 0)
@@ -67,13 +69,14 @@ struct Certificate {
     bool holds() const { return first_bad_frame < 0; }
 };
 
-FrameFindings examine(View<const Vec3> x, const ClothState& cloth, const StrainMeter& strain,
-                      const ScenePenetration& penetration)
+FrameFindings examine(View<const Vec3> x, const StrainMeter& strain, const ScenePenetration& penetration)
 {
     FrameFindings found;
     for (const Vec3& p : x)
         found.non_finite += p.allFinite() ? 0 : 1;
-    found.penetration = penetration.deepest(x, cloth.triangles);
+    const Penetration inside = penetration.measure(x);
+    found.penetration = inside.max_depth;
+    found.excluded = inside.deepest_excluded;
     if (found.non_finite == 0)
         found.strain = strain.largest(x);
     return found;
@@ -83,12 +86,12 @@ Certificate examine_all(const PointCache& cache, const Scene& scene, const Cloth
                         const CheckOptions& options, double strain_limit)
 {
     const StrainMeter strain(cloth.rest.positions, cloth.triangles);
-    ScenePenetration penetration(scene);
+    ScenePenetration penetration(scene, cloth.triangles, int(cloth.positions.size()));
     Progress progress("check", cache.frame_count(), options.quiet);
     Certificate certificate;
     for (int frame = 0; frame < cache.frame_count(); ++frame) {
         penetration.advance_to(frame * scene.frame_duration());
-        certificate.add(frame, examine(cache.frame(frame), cloth, strain, penetration),
+        certificate.add(frame, examine(cache.frame(frame), strain, penetration),
                         options.penetration_limit, strain_limit);
         progress.update(frame + 1);
     }
@@ -105,6 +108,7 @@ Json json_of(const Certificate& certificate, const CheckOptions& options, const 
             {"frames", certificate.frames},
             {"max_penetration_m", certificate.worst.penetration},
             {"max_penetration_frame", certificate.worst_penetration_frame},
+            {"max_penetration_in_self_intersections_m", certificate.worst.excluded},
             {"max_strain", certificate.worst.strain},
             {"max_strain_frame", certificate.worst_strain_frame},
             {"non_finite", certificate.non_finite},

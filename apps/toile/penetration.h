@@ -3,30 +3,31 @@
 #include <memory>
 #include <vector>
 
-#include "collision/surface_proximity.h"
+#include "collision/penetration.h"
 #include "scenes/scene_body.h"
 
 namespace toile {
 
-/// How deep cloth lies inside the avatars of a scene, frame by frame.
+/// How deep one cloth lies inside the avatars of a scene, frame by frame.
 class ScenePenetration {
 public:
-    explicit ScenePenetration(const Scene& scene);
+    ScenePenetration(const Scene& scene, const std::vector<Triangle>& triangles, int vertex_count);
 
     /// Shows the avatars at time t [s].
     void advance_to(double t);
 
-    /// Largest depth below the surface of any avatar [m]; 0 when nothing is inside. In planes, spheres,
-    /// capsules and boxes of any point of the cloth, in meshes of a vertex or triangle centre. Points that
-    /// are not finite are left out.
-    double deepest(View<const Vec3> x, const std::vector<Triangle>& triangles) const;
+    /// Largest depth below the surface of any avatar [m]. In planes, spheres, capsules and boxes of any point
+    /// of the cloth, in meshes of the cloth's samples. Points that are not finite are left out.
+    /// @param x  [vertices] of the cloth [m]
+    Penetration measure(View<const Vec3> x) const;
 
 private:
-    double depth(const Vec3& point) const;
-    double depth(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    double deepest_in(const SceneBody& solid, View<const Vec3> x) const;
 
+    std::vector<Triangle> triangles_;
+    ClothSamples samples_;
     std::vector<SceneBody> bodies_;
-    std::vector<std::unique_ptr<SurfaceProximity>> surfaces_; ///< [bodies] null for shapes
+    std::vector<std::unique_ptr<PenetrationMeter>> meters_; ///< [bodies] null for shapes
 };
 
 } // namespace toile

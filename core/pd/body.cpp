@@ -50,12 +50,10 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
             inverse_masses_[i] = fixed[i] ? 0.0 : 1.0 / system_->masses()[i];
         projection->project(x_t1_, inverse_masses_, active);
     }
+    parallel_for(kCpu, "pd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - x_[i]) / dt; });
     if (active)
-        active->end_step(x_t1_);
-    parallel_for(kCpu, "pd/finish", int(x_.size()), [&](int i) {
-        v_[i] = (x_t1_[i] - x_[i]) / dt;
-        x_[i] = x_t1_[i];
-    });
+        active->end_step(x_t1_, v_);
+    x_.swap(x_t1_);
     return report;
 }
 

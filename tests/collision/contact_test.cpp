@@ -113,5 +113,50 @@ TEST(Contact, DoesNotThrowAVertexThatHardlyCarriesThePair)
     EXPECT_LT((x[2] - start[2]).norm(), 0.01);
 }
 
+/// One vertex of a small cloth and a plate under it that moves up.
+struct RisingPlate {
+    static constexpr double kDt = 0.01;
+    static constexpr double kRise = 0.02; ///< [m] in the step
+
+    ShapeCollider plate{PlaneShape{}, Eigen::Isometry3d::Identity(), "plate"};
+    std::vector<Triangle> triangles{{0, 1, 2}};
+    std::vector<Vec3> start{Vec3(0.0, 0.005, 0.0), Vec3(0.1, 0.5, 0.0), Vec3(0.0, 0.5, 0.1)};
+    std::vector<double> diagonal = std::vector<double>(3, 100.0);
+    std::vector<unsigned char> fixed = std::vector<unsigned char>(3, 0);
+    Contact::Settings settings;
+    Contact contact{triangles, start, {{nullptr, &plate, 0.3}}, settings};
+
+    RisingPlate()
+    {
+        plate.move(Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(0.0, kRise, 0.0)));
+        contact.begin_step({start, start, diagonal, fixed, kDt});
+    }
+};
+
+TEST(Contact, ClearsWhatTheMinimiserLeavesInsideWithoutThrowingIt)
+{
+    RisingPlate scene;
+    std::vector<Vec3> x = scene.start; // the plate has passed it
+    std::vector<Vec3> v(3, Vec3(1.0, -3.0, 0.0));
+    scene.contact.end_step(x, v);
+    EXPECT_NEAR(x[0].y(), RisingPlate::kRise + scene.settings.gap, 1e-12);
+    EXPECT_NEAR(v[0].y(), RisingPlate::kRise / RisingPlate::kDt, 1e-9); // the plate's, not the correction's
+    EXPECT_EQ(v[0].x(), 1.0);
+    EXPECT_EQ(x[1], scene.start[1]);
+    EXPECT_EQ(v[1], Vec3(1.0, -3.0, 0.0));
+}
+
+TEST(Contact, KeepsTheAnchorOfTheStartWhenItLooksAgain)
+{
+    RisingPlate scene;
+    std::vector<Vec3> x = scene.start;
+    x[0] = Vec3(0.02, RisingPlate::kRise + 0.5 * scene.settings.gap, 0.0); // slid 2 cm, pressing
+    ASSERT_TRUE(scene.contact.revise(x));
+    ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
+    const ContactTerm& term = scene.contact.energy().terms()[0];
+    EXPECT_GT(term.normal_force, 0.0);
+    EXPECT_EQ(term.anchor.x(), 0.0);
+}
+
 } // namespace
 } // namespace toile

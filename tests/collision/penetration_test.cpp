@@ -1,5 +1,8 @@
 #include "collision/penetration.h"
 
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -104,14 +107,13 @@ TEST(Penetration, OfAnOpenSheetGoesByItsSideAndEndsAtItsBorder)
     EXPECT_EQ(depth(Vec3(0.51, -0.02, 0.11)), 0.0) << "beside the border";
 }
 
-TEST(Penetration, OfAShapeIsItsSignedDistance)
+TEST(Penetration, LeavesOutWhatIsNotFinite)
 {
-    const ShapeCollider ball(SphereShape{0.3}, Eigen::Isometry3d::Identity(), "ball");
-    const Penetration found =
-        measure_penetration(ball, std::vector<Vec3>{{0, 0.4, 0}, {0, 0.25, 0}, {0, 0.28, 0}});
-    EXPECT_NEAR(found.max_depth, 0.05, 1e-14);
-    EXPECT_EQ(found.sample, 1);
-    EXPECT_EQ(measure_penetration(ball, std::vector<Vec3>{{0, 0.4, 0}}).sample, -1);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<Vec3> samples{{0.1, -0.02, 0.1}, {nan, 0.0, 0.0}, {0.0, -HUGE_VAL, 0.0}};
+    EXPECT_NEAR(meter_of(sheet_mesh(1.0, 10, 0.0)).measure(samples).max_depth, 0.02, 1e-12);
+    const PenetrationMeter block = meter_of(subdivide(box_mesh(Vec3(-1, -1, -1), Vec3(1, 0, 1)), 1));
+    EXPECT_NEAR(block.measure(samples).max_depth, 0.02, 1e-12);
 }
 
 TEST(Penetration, IsTheSameForEveryThreadCount)
