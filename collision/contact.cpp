@@ -1,7 +1,9 @@
 #include "collision/contact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/backend/parallel.h"
 
@@ -20,13 +22,17 @@ constexpr double kMaxRadius = 0.06;
 /// its tangent plane by more than about half a millimetre (radius of curvature 5 cm).
 constexpr double kTrust = 0.007;
 
-/// The same at the end of a step, and depth [m] that a step may end with, for which nothing is looked at again: cloth
-/// at rest costs nothing then.
+/// The same at the end of a step, and depth [m] that a step may end with, for which nothing is looked at
+/// again: cloth at rest costs nothing then.
 constexpr double kEndTrust = 0.002;
 constexpr double kLeftOver = 1e-4;
 
 /// Sweeps over the pairs at the end of a step: neighbouring planes push against each other.
 constexpr int kClearSweeps = 5;
+
+/// Farthest move of a pair in such a sweep, of the shortest altitude around it [-]: a millimetre across a
+/// sliver would be an explosion.
+constexpr double kClearance = 1.0;
 
 /// Margin [m] of a second look within a step, on top of the gap.
 constexpr double kRevisionMargin = 0.003;
@@ -53,8 +59,19 @@ bool is_vertex_pair(const ContactPair& pair)
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
                  std::vector<ContactPartner> partners, const Settings& settings)
     : partners_(std::move(partners)), settings_(settings), detector_(triangles, positions),
-      carried_(positions.size()), detected_at_(positions.size()), nearest_(positions.size())
+      carried_(positions.size()), detected_at_(positions.size()), nearest_(positions.size()),
+      altitude_(positions.size(), std::numeric_limits<double>::max())
 {
+    for (const Triangle& t : triangles) {
+        const std::array<double, 3> sides{(positions[t[1]] - positions[t[0]]).norm(),
+                                          (positions[t[2]] - positions[t[1]]).norm(),
+                                          (positions[t[0]] - positions[t[2]]).norm()};
+        const double doubled_area =
+            (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]).norm();
+        for (const int v : t)
+            altitude_[v] =
+                std::min(altitude_[v], doubled_area / *std::max_element(sides.begin(), sides.end()));
+    }
 }
 
 void Contact::begin_step(const StepStart& start)
@@ -167,8 +184,8 @@ bool Contact::make_feasible(View<Vec3> x) const
     return moved;
 }
 
-/// Adds to the field at the pair's free vertices so that its cloth point gains `amount` along the normal. False where
-/// fixed vertices carry nearly all of the pair.
+/// Adds to the field at the pair's free vertices so that its cloth point gains `amount` along the normal.
+/// False where fixed vertices carry nearly all of the pair.
 bool Contact::push(const ContactPair& pair, double amount, View<Vec3> field) const
 {
     double squares = 0.0;
@@ -282,8 +299,8 @@ double Contact::deepest(View<const Vec3> x) const
     return depth;
 }
 
-/// Looks where the cloth has come to and moves it out of what is still inside there. The correction does not become
-/// velocity, or it would throw the cloth; only what moves into a surface is stopped at it.
+/// Looks where the cloth has come to and moves it out of what is still inside there. The correction does not
+/// become velocity, or it would throw the cloth; only what moves into a surface is stopped at it.
 void Contact::clear(View<Vec3> x, View<Vec3> v)
 {
     detect(x, settings_.gap + kRevisionMargin);
@@ -297,8 +314,21 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
         if (approach > 0.0)
             push(pair, approach, v);
     }
-    for (int sweep = 0; sweep < kClearSweeps && make_feasible(x); ++sweep) {
-    }
+    for (int sweep = 0; sweep < kClearSweeps; ++sweep)
+        for (int i = 0; i < int(energy_.terms().size()); ++i) {
+            const ContactPair& pair = energy_.terms()[i].pair;
+            if (const double depth = -energy_.gap(i, x); depth > 0.0)
+                push(pair, std::min(depth, kClearance * clearance_of(pair)), x);
+        }
+}
+
+/// How far the vertices of a pair may be moved without crushing a triangle [m].
+double Contact::clearance_of(const ContactPair& pair) const
+{
+    double least = std::numeric_limits<double>::max();
+    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+        least = std::min(least, altitude_[pair.vertex[k]]);
+    return least;
 }
 
 } // namespace toile

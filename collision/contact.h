@@ -85,6 +85,7 @@ private:
     bool slid_away(View<const Vec3> x, double trust) const;
     double deepest(View<const Vec3> x) const;
     bool push(const ContactPair& pair, double amount, View<Vec3> field) const;
+    double clearance_of(const ContactPair& pair) const;
     void clear(View<Vec3> x, View<Vec3> v);
 
     std::vector<ContactPartner> partners_;
@@ -95,6 +96,7 @@ private:
     std::vector<Vec3> carried_;     ///< [vertices] start positions moved along with the surface nearby [m]
     std::vector<Vec3> detected_at_; ///< [vertices] where the pairs were found [m]
     std::vector<Nearest> nearest_;  ///< [vertices] last step's
+    std::vector<double> altitude_;  ///< [vertices] the shortest of the triangles around, at the start [m]
     std::multimap<Key, Memory> memory_;
     int active_count_ = 0;
     double min_gap_ = 0.0;

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "collision/shapes.h"
 #include "collision/ray_scene.h"
+#include "collision/shapes.h"
 #include "collision/surface_proximity.h"
 #include "core/mesh/triangle_mesh.h"
 

@@ -91,8 +91,8 @@ Certificate examine_all(const PointCache& cache, const Scene& scene, const Cloth
     Certificate certificate;
     for (int frame = 0; frame < cache.frame_count(); ++frame) {
         penetration.advance_to(frame * scene.frame_duration());
-        certificate.add(frame, examine(cache.frame(frame), strain, penetration),
-                        options.penetration_limit, strain_limit);
+        certificate.add(frame, examine(cache.frame(frame), strain, penetration), options.penetration_limit,
+                        strain_limit);
         progress.update(frame + 1);
     }
     return certificate;

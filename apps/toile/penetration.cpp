@@ -11,10 +11,9 @@ ScenePenetration::ScenePenetration(const Scene& scene, const std::vector<Triangl
     : triangles_(triangles), samples_(triangles, vertex_count), bodies_(make_bodies(scene))
 {
     for (const SceneBody& body : bodies_)
-        meters_.push_back(
-            body.shape() != nullptr
-                ? nullptr
-                : std::make_unique<PenetrationMeter>(body.surface().triangles, body.surface().positions));
+        meters_.push_back(body.shape() != nullptr ? nullptr
+                                                  : std::make_unique<PenetrationMeter>(
+                                                        body.surface().triangles, body.surface().positions));
 }
 
 void ScenePenetration::advance_to(double t)

@@ -45,16 +45,25 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
     if (report.status == StepReport::Status::NonFinite)
         return report;
 
-    if (projection) {
-        for (int i = 0; i < int(x_.size()); ++i)
-            inverse_masses_[i] = fixed[i] ? 0.0 : 1.0 / system_->masses()[i];
-        projection->project(x_t1_, inverse_masses_, active);
-    }
     parallel_for(kCpu, "pd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - x_[i]) / dt; });
     if (active)
         active->end_step(x_t1_, v_);
+    if (projection)
+        project(dt, *projection, active);
     x_.swap(x_t1_);
     return report;
+}
+
+/// What the constraint moves becomes velocity: it is a force like any other.
+void Body::project(double dt, StepProjection& projection, const ActiveSetEnergy* active)
+{
+    const View<const unsigned char> fixed = system_->fixed();
+    for (int i = 0; i < int(x_.size()); ++i)
+        inverse_masses_[i] = fixed[i] ? 0.0 : 1.0 / system_->masses()[i];
+    unprojected_ = x_t1_;
+    projection.project(x_t1_, inverse_masses_, active);
+    parallel_for(kCpu, "pd/finish", int(x_.size()),
+                 [&](int i) { v_[i] += (x_t1_[i] - unprojected_[i]) / dt; });
 }
 
 /// q* = x + dt v + dt^2 a; fixed vertices go to their targets.

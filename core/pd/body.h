@@ -50,6 +50,7 @@ public:
 
 private:
     void predict(double dt, View<const Vec3> acceleration, View<const Vec3> targets);
+    void project(double dt, StepProjection& projection, const ActiveSetEnergy* active);
     double tolerance() const;
     Lbfgs::Outcome no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
                                           const Lbfgs::Outcome& found);
@@ -59,7 +60,7 @@ private:
     std::unique_ptr<System> system_;
     Settings settings_;
     Lbfgs lbfgs_;
-    std::vector<Vec3> prediction_, x_t1_, standing_, gradient_;
+    std::vector<Vec3> prediction_, x_t1_, standing_, gradient_, unprojected_;
     std::vector<double> inverse_masses_;
 };
 

@@ -15,6 +15,10 @@ namespace {
 /// Mass of a fixed vertex relative to the heaviest free one while a triangle is fitted [-].
 constexpr double kFixedMassRatio = 1e6;
 
+/// Sweeps that clear contacts too. Cloth that is still beyond its limit then is caught between colliders, and
+/// its limit goes before theirs.
+constexpr int kSweepsWithContact = 30;
+
 /// Triangles that share a vertex with a given one, counted per vertex.
 constexpr size_t kNeighbourhood = 18;
 
@@ -105,7 +109,7 @@ void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const
             std::reverse(violating_.begin(), violating_.end());
         for (const int t : violating_)
             clamp_triangle(t, x, inverse_masses);
-        const bool cleared = active && active->make_feasible(x);
+        const bool cleared = active && sweep < kSweepsWithContact && active->make_feasible(x);
         if (cleared || kNeighbourhood * violating_.size() > violates_.size())
             look_at_everything(x);
         else
