@@ -60,7 +60,8 @@ int Skeleton::require(const std::string& name, const std::string& user) const
         names.push_back(joint.name);
     const std::string nearest = nearest_word(name, names);
     throw InvalidInput(user + ": no joint '" + name + "' in the skeleton of " + std::to_string(size()) +
-                       " joints" + (nearest.empty() ? "" : "; the nearest is '" + nearest + "'"));
+                       " joints" + (nearest.empty() ? "" : "; the nearest is '" + nearest + "'") +
+                       "; every bone that a mesh or clip names must be a node of its file");
 }
 
 std::vector<JointTransform> Skeleton::rest_pose() const

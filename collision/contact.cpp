@@ -11,10 +11,6 @@ namespace toile {
 
 namespace {
 
-/// Fastest surface that cloth is carried along with [m/s]. A body that jumps further in a step has been
-/// replaced, not moved: taking cloth along would shoot it away.
-constexpr double kMaxCarrySpeed = 20.0;
-
 /// Largest query radius [m]. Cloth that moves further relative to a collider in one step may pass it.
 constexpr double kMaxRadius = 0.06;
 
@@ -54,24 +50,29 @@ bool is_vertex_pair(const ContactPair& pair)
     return pair.kind == ContactKind::kVertexFace || pair.kind == ContactKind::kVertexShape;
 }
 
+/// Of the triangles around each vertex [m].
+std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<const Vec3> x)
+{
+    std::vector<double> shortest(x.size(), std::numeric_limits<double>::max());
+    for (const Triangle& corner : triangles) {
+        const std::array<Vec3, 3> side{x[corner[1]] - x[corner[0]], x[corner[2]] - x[corner[1]],
+                                       x[corner[0]] - x[corner[2]]};
+        const double longest = std::max({side[0].norm(), side[1].norm(), side[2].norm()});
+        const double altitude = side[0].cross(side[1]).norm() / longest;
+        for (const int v : corner)
+            shortest[v] = std::min(shortest[v], altitude);
+    }
+    return shortest;
+}
+
 } // namespace
 
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
                  std::vector<ContactPartner> partners, const Settings& settings)
     : partners_(std::move(partners)), settings_(settings), detector_(triangles, positions),
       carried_(positions.size()), detected_at_(positions.size()), nearest_(positions.size()),
-      altitude_(positions.size(), std::numeric_limits<double>::max())
+      altitude_(shortest_altitudes(triangles, positions))
 {
-    for (const Triangle& t : triangles) {
-        const std::array<double, 3> sides{(positions[t[1]] - positions[t[0]]).norm(),
-                                          (positions[t[2]] - positions[t[1]]).norm(),
-                                          (positions[t[0]] - positions[t[2]]).norm()};
-        const double doubled_area =
-            (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]).norm();
-        for (const int v : t)
-            altitude_[v] =
-                std::min(altitude_[v], doubled_area / *std::max_element(sides.begin(), sides.end()));
-    }
 }
 
 void Contact::begin_step(const StepStart& start)
@@ -84,6 +85,12 @@ void Contact::begin_step(const StepStart& start)
     for (int v = 0; v < start.x.size(); ++v)
         farthest = std::max(farthest, (start.prediction[v] - carried_[v]).norm());
     detect(carried_, std::min(settings_.gap + farthest, kMaxRadius));
+}
+
+void Contact::forget()
+{
+    memory_.clear();
+    std::fill(nearest_.begin(), nearest_.end(), Nearest{});
 }
 
 /// Moves every vertex that was near a surface along with it, so that it is still on the right side of the

@@ -22,6 +22,10 @@ struct ContactPartner {
 /// when the cloth has slid away from where they were found, and remembers friction from step to step.
 class Contact : public ActiveSetEnergy {
 public:
+    /// Fastest surface that cloth is carried along with [m/s]. A body that jumps further in a step has been
+    /// replaced, not moved: taking cloth along would shoot it away.
+    static constexpr double kMaxCarrySpeed = 20.0;
+
     struct Settings {
         double gap = 0.002; ///< [m] distance kept between the cloth's middle surface and the collider
 
@@ -50,6 +54,9 @@ public:
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     bool revise(View<const Vec3> x) override;
     void end_step(View<Vec3> x, View<Vec3> v) override;
+
+    /// Drops what earlier steps left: cloth that was put elsewhere touches nothing it knows.
+    void forget();
 
     const ContactEnergy& energy() const { return energy_; }
     int active_count() const { return active_count_; } ///< pairs that push, after end_step()

@@ -177,6 +177,9 @@ StepReport ClothBody::step(double dt, double t_t1, const std::vector<Obstacle>& 
 void ClothBody::place(View<const Vec3> positions)
 {
     body_->set_positions(positions);
+    tension_->forget();
+    if (contact_)
+        contact_->forget();
     state_.positions.assign(positions.begin(), positions.end());
     rest_time_ = 0.0;
 }

@@ -36,7 +36,7 @@ MAY_INCLUDE = {
     "apps/render": BELOW_SCENES + ["scenes", "export"],
     "apps/toile": BELOW_SCENES + ["scenes", "export", "apps/render", "benchmarks"],
     "python": BELOW_SCENES + ["scenes", "export"],
-    "benchmarks": ["core", "garment", "scenes"],
+    "benchmarks": ["core", "garment", "collision", "scenes"],
     "tests": BELOW_SCENES + ["scenes", "export", "apps", "benchmarks"],
 }
 

@@ -25,7 +25,7 @@ struct CheckOptions {
     std::filesystem::path scene;
     std::filesystem::path output; ///< empty: standard output
     std::string cloth;
-    double penetration_limit = 0.002; ///< [m]
+    double penetration_limit = 0.001; ///< [m]
     double strain_margin = 0.05;      ///< [-] allowed beyond the fabric's strain limit
     bool quiet = false;
 };

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "benchmarks/stress/sliver_sheet.h"
+#include "collision/contact.h"
 #include "core/mesh/obj.h"
 #include "scenes/format/scene_fabric.h"
 #include "scenes/shape_mesh.h"
@@ -28,11 +29,6 @@ constexpr double kSliverAspect = 1e4;
 
 /// When the ball jumps [s]: cloth that fell has arrived.
 constexpr double kJumpTime = 1.5;
-
-/// Cloth is carried along with a surface up to this speed, and pushed out of it at this one [m/s]: what
-/// bounds the energy that a jump may bring in (Contact).
-constexpr double kMaxCarrySpeed = 20.0;
-constexpr double kRecoverySpeed = 1.0;
 
 constexpr double kSide = 0.4;       ///< [m] of every sheet
 constexpr double kBallRadius = 0.1; ///< [m]
@@ -74,7 +70,7 @@ scene::Avatar ball()
 double energy_of_jump(double speed, const Scene& scene)
 {
     const Fabric fabric = fabric_of(scene, scene.cloths[0]);
-    const double fastest = speed <= kMaxCarrySpeed ? speed : kRecoverySpeed;
+    const double fastest = speed <= Contact::kMaxCarrySpeed ? speed : Contact::Settings{}.recovery_speed;
     const double stretch = fabric.stretch_warp * fabric.strain_limit * fabric.strain_limit;
     return 0.5 * fastest * fastest + scene.gravity.norm() * 2.0 * kBallRadius +
            stretch / fabric.areal_density;

@@ -131,8 +131,9 @@ void Cholesky::refactor(const SparseMatrix& A)
     const StageScope stage("linear/factor");
     cholmod_sparse view = as_cholmod(A);
     cholmod_factorize(&view, cholmod_->factor, &cholmod_->common);
-    const auto refuse = [](size_t pivot) {
-        throw InvalidInput("the system matrix is not positive definite (pivot " + std::to_string(pivot) +
+    const auto refuse = [&](size_t pivot) {
+        const int row = static_cast<const int*>(cholmod_->factor->Perm)[pivot];
+        throw InvalidInput("the system matrix is not positive definite (at vertex " + std::to_string(row) +
                            "); masses and stiffnesses must be positive and finite");
     };
     if (cholmod_->common.status != CHOLMOD_OK)

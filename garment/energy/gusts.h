@@ -40,10 +40,10 @@ public:
 
 private:
     struct Mode {
-        Vec3 wave;        ///< k_m [1/m]
+        Vec3 wave;        ///< k_m [rad/m]
         Vec3 velocity;    ///< a_m e_m [m/s]
-        double frequency; ///< w_m - k_m . U [1/s]
-        double phase;
+        double frequency; ///< w_m - k_m . U [rad/s]
+        double phase;     ///< p_m [rad]
     };
     std::vector<Mode> modes_;
 };

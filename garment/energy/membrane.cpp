@@ -6,6 +6,7 @@
 
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
+#include "garment/energy/membrane_lanes.h"
 
 namespace toile {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -38,6 +39,9 @@ public:
     /// Picks the triangles that are near their limit at x [vertices] and turns their tension with them. For
     /// the owner to call before Body::step.
     void begin_step(View<const Vec3> x);
+
+    /// Drops the tension of earlier steps: for cloth that was put elsewhere.
+    void forget() { std::fill(tension_.begin(), tension_.end(), Mat2::Zero()); }
 
     /// Remembers the tension at the minimiser x. StrainLimit calls it before it clamps.
     void remember(View<const Vec3> x);

@@ -116,7 +116,9 @@ TEST(ShapeSearch, FindsAllFourCornersUnderAFaceThatLiesOnABox)
         }
     }
     // Cloth below the box is pushed down, and not through a plate by the corners of its far side.
-    for (const ContactPair& pair : pairs_of(large_triangle(-0.025), box, {.radius = 0.06}))
+    const std::vector<ContactPair> below = pairs_of(large_triangle(-0.025), box, {.radius = 0.06});
+    EXPECT_EQ(count(below, ContactKind::kFaceShape), 4u);
+    for (const ContactPair& pair : below)
         EXPECT_LT((pair.normal + Vec3::UnitY()).norm(), 1e-12);
 }
 

@@ -146,7 +146,7 @@ TEST(Cholesky, RefactorsAMatrixOfTheSamePattern)
     EXPECT_EQ(x, fresh);
 }
 
-TEST(Cholesky, NamesThePivotWhereAMatrixIsNotPositiveDefinite)
+TEST(Cholesky, NamesTheVertexWhereAMatrixIsNotPositiveDefinite)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double bad : {0.0, -1.0, nan}) {
@@ -154,14 +154,14 @@ TEST(Cholesky, NamesThePivotWhereAMatrixIsNotPositiveDefinite)
         A.setIdentity();
         A.coeffRef(1, 1) = bad;
         const std::string message = message_of([&] { Cholesky cholesky(A); });
-        EXPECT_NE(message.find("not positive definite (pivot 1)"), std::string::npos)
+        EXPECT_NE(message.find("not positive definite (at vertex 1)"), std::string::npos)
             << bad << " on the diagonal: \"" << message << "\"";
     }
 
     // Positive diagonal, negative eigenvalue.
     SparseMatrix saddle = grid_laplacian(6, 6, 0.1);
     saddle.coeffRef(14, 15) = saddle.coeffRef(15, 14) = -50.0;
-    EXPECT_NE(message_of([&] { Cholesky cholesky(saddle); }).find("(pivot "), std::string::npos);
+    EXPECT_NE(message_of([&] { Cholesky cholesky(saddle); }).find("(at vertex "), std::string::npos);
 }
 
 TEST(Cholesky, WorksAgainAfterAMatrixThatWasNotPositiveDefinite)

