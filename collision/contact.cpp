@@ -26,9 +26,9 @@ constexpr double kLeftOver = 1e-4;
 /// Sweeps over the pairs at the end of a step: neighbouring planes push against each other.
 constexpr int kClearSweeps = 5;
 
-/// Farthest move of a pair in such a sweep, of the shortest altitude around it [-]: a millimetre across a
-/// sliver would be an explosion.
-constexpr double kClearance = 1.0;
+/// Farthest move of a vertex for a pair in such a sweep, of the shortest altitude around the pair [-]: a
+/// millimetre across a sliver would be an explosion.
+constexpr double kClearance = 0.5;
 
 /// Margin [m] of a second look within a step, on top of the gap.
 constexpr double kRevisionMargin = 0.003;
@@ -78,6 +78,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
 void Contact::begin_step(const StepStart& start)
 {
     start_ = start;
+    has_cleared_ = false;
     carry_with_colliders();
 
     // Everything that the prediction could reach from the carried start, relative to the moved surfaces.
@@ -225,15 +226,20 @@ bool Contact::revise(View<const Vec3> x)
         return false;
     const bool friction_changed = update_normal_forces(x);
     if (slid_away(x, kTrust)) {
-        // The pairs found again begin at t0 too, with what had stuck by then.
-        remember([&](int i) {
-            const ContactTerm& term = energy_.terms()[i];
-            return Vec3(at_start(term.pair) - term.anchor);
-        });
+        remember_start();
         detect(x, settings_.gap + kRevisionMargin);
         return true;
     }
     return friction_changed;
+}
+
+/// For pairs found again within the step, which begin at t0 too: what had stuck by then.
+void Contact::remember_start()
+{
+    remember([&](int i) {
+        const ContactTerm& term = energy_.terms()[i];
+        return Vec3(at_start(term.pair) - term.anchor);
+    });
 }
 
 /// True when a vertex of a pair that presses moved further than `trust` [m] from where it was found.
@@ -265,7 +271,7 @@ bool Contact::update_normal_forces(View<const Vec3> x)
 }
 
 /// Keeps forces and sticking of the pairs that press, for their successors. The forces are the minimiser's:
-/// strain limits move cloth afterwards, and clear pairs to the last bit.
+/// clearing and the strain limit move cloth afterwards, out of pairs to the last bit.
 /// @param slip  slip(term): what has slipped since the anchor [m]
 template <typename Slip>
 void Contact::remember(const Slip& slip)
@@ -285,12 +291,11 @@ void Contact::remember(const Slip& slip)
     }
 }
 
-void Contact::end_step(View<Vec3> x, View<Vec3> v)
+void Contact::end_step(View<const Vec3> x)
 {
-    remember([&](int i) { return energy_.slip(i, x); });
+    if (!has_cleared_)
+        remember([&](int i) { return energy_.slip(i, x); });
     active_count_ = int(memory_.size());
-    if (deepest(x) > kLeftOver || slid_away(x, kEndTrust))
-        clear(x, v);
     min_gap_ = 0.0;
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const double gap = energy_.terms()[i].pair.gap(x);
@@ -306,36 +311,51 @@ double Contact::deepest(View<const Vec3> x) const
     return depth;
 }
 
-/// Looks where the cloth has come to and moves it out of what is still inside there. The correction does not
-/// become velocity, or it would throw the cloth; only what moves into a surface is stopped at it.
+/// Looks where the cloth has come to and moves it out of what is still inside there. This correction does not
+/// become velocity, or it would throw the cloth.
 void Contact::clear(View<Vec3> x, View<Vec3> v)
 {
+    if (deepest(x) <= kLeftOver && !slid_away(x, kEndTrust))
+        return;
+    remember([&](int i) { return energy_.slip(i, x); });
+    has_cleared_ = true;
     detect(x, settings_.gap + kRevisionMargin);
     const StageScope stage("collision/clear");
+    stop_at_surfaces(x, v);
+    for (int sweep = 0; sweep < kClearSweeps; ++sweep)
+        for (int i = 0; i < int(energy_.terms().size()); ++i) {
+            const ContactPair& pair = energy_.terms()[i].pair;
+            if (const double depth = -energy_.gap(i, x); depth > 0.0)
+                push(pair, std::min(depth, clearance_of(pair)), x);
+        }
+}
+
+/// Cloth inside moves at least as fast out of a surface as that does.
+void Contact::stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const
+{
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         if (energy_.gap(i, x) >= 0.0)
             continue;
         const ContactPair& pair = energy_.terms()[i].pair;
         const Vec3 surface = is_carried(pair.motion) ? Vec3(pair.motion / start_.dt) : Vec3(Vec3::Zero());
-        const double approach = pair.normal.dot(surface - pair.cloth_point(v));
-        if (approach > 0.0)
+        if (const double approach = pair.normal.dot(surface - pair.cloth_point(v)); approach > 0.0)
             push(pair, approach, v);
     }
-    for (int sweep = 0; sweep < kClearSweeps; ++sweep)
-        for (int i = 0; i < int(energy_.terms().size()); ++i) {
-            const ContactPair& pair = energy_.terms()[i].pair;
-            if (const double depth = -energy_.gap(i, x); depth > 0.0)
-                push(pair, std::min(depth, kClearance * clearance_of(pair)), x);
-        }
 }
 
-/// How far the vertices of a pair may be moved without crushing a triangle [m].
+/// How far a pair may be pushed in a sweep without crushing a triangle [m].
 double Contact::clearance_of(const ContactPair& pair) const
 {
-    double least = std::numeric_limits<double>::max();
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
-        least = std::min(least, altitude_[pair.vertex[k]]);
-    return least;
+    double shortest = std::numeric_limits<double>::max();
+    double squares = 0.0, largest = 0.0;
+    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k) {
+        shortest = std::min(shortest, altitude_[pair.vertex[k]]);
+        if (!start_.fixed[pair.vertex[k]]) {
+            squares += pair.weight[k] * pair.weight[k];
+            largest = std::max(largest, pair.weight[k]);
+        }
+    }
+    return largest > 0.0 ? kClearance * shortest * squares / largest : 0.0;
 }
 
 } // namespace toile

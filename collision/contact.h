@@ -53,7 +53,8 @@ public:
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     bool revise(View<const Vec3> x) override;
-    void end_step(View<Vec3> x, View<Vec3> v) override;
+    void clear(View<Vec3> x, View<Vec3> v) override;
+    void end_step(View<const Vec3> x) override;
 
     /// Drops what earlier steps left: cloth that was put elsewhere touches nothing it knows.
     void forget();
@@ -93,7 +94,8 @@ private:
     double deepest(View<const Vec3> x) const;
     bool push(const ContactPair& pair, double amount, View<Vec3> field) const;
     double clearance_of(const ContactPair& pair) const;
-    void clear(View<Vec3> x, View<Vec3> v);
+    void stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const;
+    void remember_start();
 
     std::vector<ContactPartner> partners_;
     Settings settings_;
@@ -105,6 +107,7 @@ private:
     std::vector<Nearest> nearest_;  ///< [vertices] last step's
     std::vector<double> altitude_;  ///< [vertices] the shortest of the triangles around, at the start [m]
     std::multimap<Key, Memory> memory_;
+    bool has_cleared_ = false; ///< in this step: memory_ is the minimiser's, the pairs are new
     int active_count_ = 0;
     double min_gap_ = 0.0;
 };

@@ -75,7 +75,7 @@ struct PenetrationMeter::Inside {
 };
 
 PenetrationMeter::PenetrationMeter(View<const Triangle> triangles, View<const Vec3> positions)
-    : surface_(triangles, positions), bounds_(bounds(positions)), is_closed_(surface_.edges().is_closed()),
+    : surface_(triangles, positions), bounds_(bounds(positions)), is_closed_(surface_.edges().is_closed),
       is_border_vertex_(positions.size(), 0)
 {
     rays_.add(positions, triangles);

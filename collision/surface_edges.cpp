@@ -5,14 +5,6 @@
 
 namespace toile {
 
-bool SurfaceEdges::is_closed() const
-{
-    for (int e = 0; e < edge_count(); ++e)
-        if (triangles.of(e).size() != 2)
-            return false;
-    return edge_count() > 0;
-}
-
 SurfaceEdges build_surface_edges(View<const Triangle> triangles, int vertex_count)
 {
     // Sides of all triangles, equal edges next to each other.
@@ -33,16 +25,21 @@ SurfaceEdges build_surface_edges(View<const Triangle> triangles, int vertex_coun
     // A new edge wherever the vertex pair changes.
     SurfaceEdges edges;
     edges.triangle_edge.resize(triangles.size());
+    std::vector<int> balance; // per edge: sides run through upwards minus downwards
     for (const Side& side : sides) {
         const std::array<int, 2> pair{side.low, side.high};
         if (edges.vertex.empty() || edges.vertex.back() != pair) {
             edges.vertex.push_back(pair);
             edges.triangles.first.push_back(int(edges.triangles.items.size()));
+            balance.push_back(0);
         }
+        balance.back() += triangles[side.triangle][side.corner] == side.low ? 1 : -1;
         edges.triangles.items.push_back(side.triangle);
         edges.triangle_edge[side.triangle][side.corner] = edges.edge_count() - 1;
     }
     edges.triangles.first.push_back(int(edges.triangles.items.size()));
+    edges.is_closed =
+        !balance.empty() && std::all_of(balance.begin(), balance.end(), [](int both) { return both == 0; });
     edges.corners_of_vertex = corners_of_vertices(triangles, vertex_count);
     return edges;
 }

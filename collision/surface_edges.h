@@ -18,8 +18,8 @@ struct SurfaceEdges {
 
     int edge_count() const { return int(vertex.size()); }
 
-    /// Closed: every edge has two triangles.
-    bool is_closed() const;
+    /// The surface has an inside: every edge is run through as often one way as the other.
+    bool is_closed = false;
 };
 
 /// O(n log n).

@@ -74,9 +74,9 @@ FrameFindings examine(View<const Vec3> x, const StrainMeter& strain, const Scene
     FrameFindings found;
     for (const Vec3& p : x)
         found.non_finite += p.allFinite() ? 0 : 1;
-    const Penetration inside = penetration.measure(x);
-    found.penetration = inside.max_depth;
-    found.excluded = inside.deepest_excluded;
+    const ScenePenetration::Depth depth = penetration.measure(x);
+    found.penetration = depth.deepest;
+    found.excluded = depth.excluded;
     if (found.non_finite == 0)
         found.strain = strain.largest(x);
     return found;

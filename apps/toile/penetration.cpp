@@ -23,26 +23,20 @@ void ScenePenetration::advance_to(double t)
             meters_[b]->move(bodies_[b].surface().positions);
 }
 
-Penetration ScenePenetration::measure(View<const Vec3> x) const
+ScenePenetration::Depth ScenePenetration::measure(View<const Vec3> x) const
 {
     const std::vector<Vec3> samples = samples_.at(x);
-    Penetration worst;
+    Depth depth;
     for (size_t b = 0; b < bodies_.size(); ++b) {
-        Penetration found;
-        if (meters_[b])
-            found = meters_[b]->measure(samples);
-        else
-            found.max_depth = deepest_in(bodies_[b], x);
-        found.excluded_count += worst.excluded_count;
-        found.deepest_excluded = std::max(found.deepest_excluded, worst.deepest_excluded);
-        if (found.max_depth < worst.max_depth) {
-            found.max_depth = worst.max_depth;
-            found.sample = worst.sample;
-            found.point = worst.point;
+        if (!meters_[b]) {
+            depth.deepest = std::max(depth.deepest, deepest_in(bodies_[b], x));
+            continue;
         }
-        worst = found;
+        const Penetration found = meters_[b]->measure(samples);
+        depth.deepest = std::max(depth.deepest, found.max_depth);
+        depth.excluded = std::max(depth.excluded, found.deepest_excluded);
     }
-    return worst;
+    return depth;
 }
 
 double ScenePenetration::deepest_in(const SceneBody& solid, View<const Vec3> x) const

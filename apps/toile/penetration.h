@@ -16,10 +16,16 @@ public:
     /// Shows the avatars at time t [s].
     void advance_to(double t);
 
-    /// Largest depth below the surface of any avatar [m]. In planes, spheres, capsules and boxes of any point
-    /// of the cloth, in meshes of the cloth's samples. Points that are not finite are left out.
+    /// Largest depths below the surface of any avatar [m].
+    struct Depth {
+        double deepest = 0.0;
+        double excluded = 0.0; ///< where a mesh intersects itself (PenetrationMeter)
+    };
+
+    /// In planes, spheres, capsules and boxes of any point of the cloth, in meshes of the cloth's samples.
+    /// Points that are not finite are left out.
     /// @param x  [vertices] of the cloth [m]
-    Penetration measure(View<const Vec3> x) const;
+    Depth measure(View<const Vec3> x) const;
 
 private:
     double deepest_in(const SceneBody& solid, View<const Vec3> x) const;

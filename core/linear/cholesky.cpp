@@ -1,6 +1,7 @@
 #include "core/linear/cholesky.h"
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include <cholmod.h>
@@ -133,11 +134,14 @@ void Cholesky::refactor(const SparseMatrix& A)
     cholmod_factorize(&view, cholmod_->factor, &cholmod_->common);
     const auto refuse = [&](size_t pivot) {
         const int row = static_cast<const int*>(cholmod_->factor->Perm)[pivot];
-        throw InvalidInput("the system matrix is not positive definite (at vertex " + std::to_string(row) +
+        throw InvalidInput("the system matrix is not positive definite (row " + std::to_string(row) +
                            "); masses and stiffnesses must be positive and finite");
     };
-    if (cholmod_->common.status != CHOLMOD_OK)
+    if (cholmod_->common.status == CHOLMOD_NOT_POSDEF)
         refuse(cholmod_->factor->minor);
+    if (cholmod_->common.status != CHOLMOD_OK)
+        throw std::runtime_error("CHOLMOD could not factor a matrix of " + std::to_string(A.rows()) +
+                                 " rows (status " + std::to_string(cholmod_->common.status) + ")");
     factor_ = copy_factor(*cholmod_->factor);
     if (const int pivot = first_bad_pivot(factor_); pivot < size())
         refuse(size_t(pivot));

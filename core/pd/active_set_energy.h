@@ -43,9 +43,12 @@ public:
     /// minimised again.
     virtual bool revise(View<const Vec3> x) = 0;
 
-    /// Remembers what the next step builds on, and clears what the minimisation has left of the forbidden
-    /// half-spaces: x and v [vertices] are the final positions and velocities.
-    virtual void end_step(View<Vec3> x, View<Vec3> v) = 0;
+    /// Clears what the minimisation has left inside the forbidden half-spaces. x and v [vertices] are its
+    /// positions and velocities.
+    virtual void clear(View<Vec3> x, View<Vec3> v) = 0;
+
+    /// Remembers what the next step builds on. x [vertices] are the final positions.
+    virtual void end_step(View<const Vec3> x) = 0;
 };
 
 } // namespace toile

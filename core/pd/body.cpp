@@ -46,10 +46,14 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
         return report;
 
     parallel_for(kCpu, "pd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - x_[i]) / dt; });
+    if (projection)
+        projection->observe(x_t1_);
     if (active)
-        active->end_step(x_t1_, v_);
+        active->clear(x_t1_, v_);
     if (projection)
         project(dt, *projection, active);
+    if (active)
+        active->end_step(x_t1_);
     x_.swap(x_t1_);
     return report;
 }

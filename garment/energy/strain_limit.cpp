@@ -15,8 +15,8 @@ namespace {
 /// Mass of a fixed vertex relative to the heaviest free one while a triangle is fitted [-].
 constexpr double kFixedMassRatio = 1e6;
 
-/// Sweeps that clear contacts too. Cloth that is still beyond its limit then is caught between colliders, and
-/// its limit goes before theirs.
+/// Sweeps that clear contacts too. Beyond them the limit goes before contact: cloth caught between colliders,
+/// where the two contradict each other, would never come to an end.
 constexpr int kSweepsWithContact = 30;
 
 /// Triangles that share a vertex with a given one, counted per vertex.
@@ -93,10 +93,14 @@ void StrainLimit::look_around_violating(View<const Vec3> x)
     violating_.swap(found);
 }
 
-void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active)
+void StrainLimit::observe(View<const Vec3> x)
 {
     if (tension_)
         tension_->remember(x);
+}
+
+void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active)
+{
     look_at_everything(x);
     if (violating_.empty())
         return;

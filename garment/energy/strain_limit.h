@@ -31,6 +31,7 @@ public:
     StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source,
                 std::shared_ptr<StretchTension> tension = nullptr);
 
+    void observe(View<const Vec3> x) override;
     void project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active) override;
 
     /// Largest principal stretch minus one at x, of slivers too [-].

@@ -4,8 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/mesh/obj.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/mesh/weld.h"
 #include "export/cache_writer.h"
 #include "export/point_cache.h"
+#include "scenes/shape_mesh.h"
 #include "tests/apps/program.h"
 
 namespace toile {
@@ -62,6 +66,41 @@ TEST(Check, MeasuresDepthInsideTheBall)
     EXPECT_NEAR(found["max_penetration_m"], 0.03, 1e-6);
     EXPECT_EQ(found["max_penetration_frame"], 2);
     EXPECT_EQ(found["first_bad_frame"], 2);
+}
+
+/// Two boxes of 1 m that overlap between x = 0.45 and 0.55, with their tops at y = 0.
+TriangleMesh overlapping_boxes()
+{
+    TriangleMesh both;
+    for (const double x : {0.05, 0.95}) {
+        const TriangleMesh box = subdivide(weld(shape_mesh(BoxShape{Vec3::Constant(0.5)}, 0.0), 0.0).mesh, 3);
+        const int first = both.vertex_count();
+        for (const Vec3& p : box.positions)
+            both.positions.push_back(p + Vec3(x, -0.5, 0.0));
+        for (const Triangle& t : box.triangles)
+            both.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return both;
+}
+
+TEST(Check, TellsDepthWhereABodyIntersectsItselfApart)
+{
+    const TemporaryFolder folder;
+    write_cache(folder, 2, [](int, std::vector<Vec3>&) {});
+    write_obj(folder.path() / "body.obj", overlapping_boxes());
+    const auto found_at = [&](double x) {
+        std::string scene = small_scene(2);
+        const std::string ball = R"("sphere": {"radius": 0.2})";
+        scene.replace(scene.find(ball), ball.size(),
+                      R"("file": "body.obj", "translate": [)" + std::to_string(x) + R"(, 0.27, 0])");
+        folder.write("drop.json", scene);
+        return certificate(folder, 1);
+    };
+    // The sheet of 0.4 m lies 2 cm below the tops: on one box alone, then around the overlap too.
+    const auto beside = found_at(-0.05);
+    EXPECT_NEAR(beside["max_penetration_m"], 0.02, 1e-6);
+    EXPECT_EQ(beside["max_penetration_in_self_intersections_m"], 0.0);
+    EXPECT_GT(found_at(-0.5)["max_penetration_in_self_intersections_m"], 0.01);
 }
 
 TEST(Check, MeasuresStrain)

@@ -116,7 +116,7 @@ TEST(Contact, DoesNotThrowAVertexThatHardlyCarriesThePair)
 /// One vertex of a small cloth and a plate under it that moves up.
 struct RisingPlate {
     static constexpr double kDt = 0.01;
-    static constexpr double kRise = 0.02; ///< [m] in the step
+    double rise; ///< [m] in the step
 
     ShapeCollider plate{PlaneShape{}, Eigen::Isometry3d::Identity(), "plate"};
     std::vector<Triangle> triangles{{0, 1, 2}};
@@ -126,9 +126,9 @@ struct RisingPlate {
     Contact::Settings settings;
     Contact contact{triangles, start, {{nullptr, &plate, 0.3}}, settings};
 
-    RisingPlate()
+    explicit RisingPlate(double height = 0.02) : rise(height)
     {
-        plate.move(Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(0.0, kRise, 0.0)));
+        plate.move(Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(0.0, rise, 0.0)));
         contact.begin_step({start, start, diagonal, fixed, kDt});
     }
 };
@@ -138,19 +138,57 @@ TEST(Contact, ClearsWhatTheMinimiserLeavesInsideWithoutThrowingIt)
     RisingPlate scene;
     std::vector<Vec3> x = scene.start; // the plate has passed it
     std::vector<Vec3> v(3, Vec3(1.0, -3.0, 0.0));
-    scene.contact.end_step(x, v);
-    EXPECT_NEAR(x[0].y(), RisingPlate::kRise + scene.settings.gap, 1e-12);
-    EXPECT_NEAR(v[0].y(), RisingPlate::kRise / RisingPlate::kDt, 1e-9); // the plate's, not the correction's
+    scene.contact.clear(x, v);
+    EXPECT_NEAR(x[0].y(), scene.rise + scene.settings.gap, 1e-12);
+    EXPECT_NEAR(v[0].y(), scene.rise / RisingPlate::kDt, 1e-9); // the plate's, not the correction's
     EXPECT_EQ(v[0].x(), 1.0);
     EXPECT_EQ(x[1], scene.start[1]);
     EXPECT_EQ(v[1], Vec3(1.0, -3.0, 0.0));
+}
+
+TEST(Contact, LeavesAloneWhatEndsCloseToItsGap)
+{
+    RisingPlate scene(0.004);
+    std::vector<Vec3> x = scene.start;
+    x[0].y() = scene.rise + scene.settings.gap - 5e-5;
+    const std::vector<Vec3> end = x;
+    std::vector<Vec3> v(3, Vec3(0.0, -3.0, 0.0));
+    scene.contact.clear(x, v);
+    EXPECT_EQ(x, end);
+    EXPECT_EQ(v[0].y(), -3.0);
+}
+
+TEST(Contact, ClearsASliverByItsOwnMeasureOnly)
+{
+    // Its altitude is 0.1 mm: five sweeps move no vertex by more than a quarter of a millimetre.
+    const ShapeCollider plate(PlaneShape{}, Eigen::Isometry3d::Identity(), "plate");
+    const std::vector<Triangle> triangles{{0, 1, 2}};
+    const std::vector<Vec3> start{Vec3(0.0, -0.01, 0.0), Vec3(0.1, 0.5, 0.0), Vec3(0.05, 0.245, 1e-4)};
+    const std::vector<double> diagonal(3, 100.0);
+    const std::vector<unsigned char> fixed(3, 0);
+    Contact contact(triangles, start, {{nullptr, &plate, 0.3}}, Contact::Settings{});
+    contact.begin_step({start, start, diagonal, fixed, 0.1});
+    std::vector<Vec3> x = start, v(3, Vec3::Zero());
+    contact.clear(x, v);
+    EXPECT_GT(x[0].y(), start[0].y());
+    EXPECT_LE(x[0].y(), start[0].y() + 2.6e-4);
+}
+
+TEST(Contact, FollowsATurningShapeByThePointItStartedFrom)
+{
+    const Eigen::Isometry3d quarter(Eigen::AngleAxisd(1.5707963267948966, Vec3::UnitY()));
+    ShapeCollider box(BoxShape{Vec3::Constant(0.1)}, Eigen::Isometry3d::Identity(), "box");
+    box.move(Eigen::Isometry3d::Identity(), quarter);
+    const Vec3 point(0.1, 0.1, 0.0);
+    EXPECT_LT((box.motion_from(point) - (quarter * point - point)).norm(), 1e-15);
+    EXPECT_LT((box.motion(quarter * point) - box.motion_from(point)).norm(), 1e-15);
 }
 
 TEST(Contact, KeepsTheAnchorOfTheStartWhenItLooksAgain)
 {
     RisingPlate scene;
     std::vector<Vec3> x = scene.start;
-    x[0] = Vec3(0.02, RisingPlate::kRise + 0.5 * scene.settings.gap, 0.0); // slid 2 cm, pressing
+    x[0] = Vec3(0.02, scene.rise + 0.5 * scene.settings.gap, 0.0); // slid 2 cm, pressing
     ASSERT_TRUE(scene.contact.revise(x));
     ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
     const ContactTerm& term = scene.contact.energy().terms()[0];

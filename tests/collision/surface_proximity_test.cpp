@@ -213,7 +213,7 @@ TEST(SurfaceProximity, SignsARealBodyAsItsWindingDoes)
     RayScene rays;
     rays.add(body.positions, body.triangles);
     rays.commit();
-    EXPECT_TRUE(surface.edges().is_closed());
+    EXPECT_TRUE(surface.edges().is_closed);
     // The body intersects itself at a few places: inside one part the closest sheet may be the buried outside
     // of another. Outside the body nothing is ambiguous.
     int inside = 0, outside = 0, wrong_inside = 0, wrong_outside = 0;

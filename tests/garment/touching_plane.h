@@ -48,7 +48,8 @@ public:
     }
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     bool revise(View<const Vec3>) override { return false; }
-    void end_step(View<Vec3>, View<Vec3>) override {}
+    void clear(View<Vec3>, View<Vec3>) override {}
+    void end_step(View<const Vec3>) override {}
 
     /// Vertices that press on the plane at x.
     int pressing(const std::vector<Vec3>& x) const
