@@ -6,7 +6,8 @@
 
 namespace toile {
 
-/// Preconditioned conjugate gradients for A x = b on 3-vector fields, started at x = 0. [Saad 2003, alg. 9.1]
+/// Preconditioned conjugate gradients for A x = b on 3-vector fields, started at x = 0 [Saad 2003, alg. 9.1].
+/// Flexible: [Notay 2000].
 class Pcg {
 public:
     /// The defaults suit the inside of a quasi-Newton method, which needs a direction, not a solution: more
@@ -15,6 +16,7 @@ public:
     struct Settings {
         double tolerance = 0.1; ///< [-] of |r| / |b|
         int max_iterations = 4;
+        bool is_flexible = false; ///< for a preconditioner that is not symmetric: Polak-Ribiere's beta
     };
     struct Outcome {
         int iterations = 0;
@@ -43,13 +45,18 @@ public:
         while (outcome.iterations < settings.max_iterations && outcome.residual > settings.tolerance) {
             precondition(View<const Vec3>(r_), View<Vec3>(z_));
             const double rz = dot(r_, z_);
-            xpay(z_, outcome.iterations > 0 ? rz / rz_previous : 0.0, p_);
+            const double change =
+                settings.is_flexible && outcome.iterations > 0 ? rz - dot(r_previous_, z_) : rz;
+            xpay(z_, outcome.iterations > 0 ? change / rz_previous : 0.0, p_);
             multiply(View<const Vec3>(p_), View<Vec3>(product_));
             const double curvature = dot(p_, product_);
             if (!(curvature > 0.0)) // rounding has eaten the direction: the iterate so far is the answer
                 break;
-            axpy(rz / curvature, p_, x);
-            axpy(-rz / curvature, product_, r_);
+            const double step = settings.is_flexible ? dot(r_, p_) / curvature : rz / curvature;
+            if (settings.is_flexible)
+                r_previous_ = r_;
+            axpy(step, p_, x);
+            axpy(-step, product_, r_);
             rz_previous = rz;
             outcome.residual = std::sqrt(dot(r_, r_)) / b_norm;
             ++outcome.iterations;
@@ -58,7 +65,7 @@ public:
     }
 
 private:
-    std::vector<Vec3> r_, z_, p_, product_;
+    std::vector<Vec3> r_, z_, p_, product_, r_previous_;
 };
 
 } // namespace toile

@@ -22,8 +22,9 @@ void eliminate(SparseMatrix& H, View<const unsigned char> fixed)
 
 } // namespace
 
-System::System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> energies)
-    : masses_(std::move(masses)), energies_(std::move(energies))
+System::System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> energies,
+               std::unique_ptr<GlobalSolver> solver)
+    : masses_(std::move(masses)), energies_(std::move(energies)), solver_(std::move(solver))
 {
     const int n = vertex_count();
     Triplets entries;
@@ -37,7 +38,7 @@ System::System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> 
 
 void System::prepare(double dt, const std::vector<unsigned char>& fixed)
 {
-    if (cholesky_ && dt == dt_ && fixed == fixed_)
+    if (dt == dt_ && fixed == fixed_)
         return;
     dt_ = dt;
     fixed_ = fixed;
@@ -48,10 +49,7 @@ void System::prepare(double dt, const std::vector<unsigned char>& fixed)
         diagonal_[i] = H_.coeff(i, i);
     }
     eliminate(H_, fixed_);
-    if (cholesky_)
-        cholesky_->refactor(H_);
-    else
-        cholesky_ = std::make_unique<Cholesky>(H_);
+    solver_->update(H_, fixed_);
 }
 
 double System::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
@@ -69,6 +67,7 @@ StepObjective::StepObjective(const System& system, double dt, View<const Vec3> p
     : system_(system), dt_(dt), prediction_(prediction), active_(active), linear_(linear),
       scratch_(prediction.size())
 {
+    linear_.is_flexible = !system.solver().is_symmetric();
 }
 
 double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
@@ -113,7 +112,7 @@ void StepObjective::precondition(View<const Vec3> g, View<Vec3> z)
     if (has_active_set_)
         solve_with_active_set(g, z);
     else
-        system_.cholesky().solve(g, z);
+        system_.solver().solve(g, z);
 }
 
 /// (H + dH) z = g by PCG. The preconditioner is the paper's nesting of collision projection and
@@ -135,7 +134,7 @@ void StepObjective::solve_with_active_set(View<const Vec3> g, View<Vec3> z)
     };
     const auto precondition = [&](View<const Vec3> r, View<Vec3> out) {
         parallel_for(kCpu, "pd/nested", r.size(), [&](int i) { scratch_[i] = D[i] * (E_[i] * r[i]); });
-        system_.cholesky().solve(scratch_, scratch_);
+        system_.solver().solve(scratch_, scratch_);
         parallel_for(kCpu, "pd/nested", r.size(),
                      [&](int i) { out[i] = E_[i] * (r[i] + D[i] * scratch_[i]); });
     };

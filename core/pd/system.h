@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/linear/cholesky.h"
+#include "core/linear/direct_solver.h"
 #include "core/linear/pcg.h"
 #include "core/pd/active_set_energy.h"
 #include "core/pd/energy.h"
@@ -22,19 +22,22 @@ class System {
 public:
     /// @param masses    [vertices] [kg], positive
     /// @param energies  the terms W_j; shared because caller and system both evaluate them
-    System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> energies);
+    /// @param solver    the global step
+    System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> energies,
+           std::unique_ptr<GlobalSolver> solver = std::make_unique<DirectSolver>());
 
     int vertex_count() const { return int(masses_.size()); }
     View<const double> masses() const { return masses_; }
     View<const unsigned char> fixed() const { return fixed_; }
 
-    /// Factors H for a time step [s] and a set of fixed vertices; does nothing when neither changed.
+    /// Prepares H and its solver for a time step [s] and a set of fixed vertices; does nothing when neither
+    /// changed.
     void prepare(double dt, const std::vector<unsigned char>& fixed);
 
     /// Diagonal of H with nothing fixed [N/m].
     View<const double> diagonal() const { return diagonal_; }
     const SparseMatrix& matrix() const { return H_; }
-    const Cholesky& cholesky() const { return *cholesky_; }
+    const GlobalSolver& solver() const { return *solver_; }
 
     /// Energies at x [J]; adds their gradients [N].
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const;
@@ -46,7 +49,7 @@ private:
     SparseMatrix elastic_; ///< sum of the energies' parts, without mass
     SparseMatrix H_;
     std::vector<double> diagonal_;
-    std::unique_ptr<Cholesky> cholesky_;
+    std::unique_ptr<GlobalSolver> solver_;
     double dt_ = 0.0;
 };
 

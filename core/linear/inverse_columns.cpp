@@ -1,0 +1,138 @@
+#include "core/linear/inverse_columns.h"
+
+#include <algorithm>
+
+namespace toile {
+
+namespace {
+
+constexpr int kWide = InverseColumns::kLanesPerRow;
+
+/// Rows of a product computed together: with the lanes of a row they fill half of the vector registers.
+constexpr int kTile = 4;
+
+/// own[k] -= sum_r L(r, k) y[rows[r]] for `Count` columns of L from `L` on, its rows `stride` apart.
+template <int Count>
+void subtract_transposed(const double* L, int stride, const int* rows, int row_count, const Lanes* y,
+                         Lanes* own)
+{
+    Lanes sum[Count][kWide] = {};
+    for (int r = 0; r < row_count; ++r) {
+        const Lanes* row = y + long(rows[r]) * kWide;
+        for (int k = 0; k < Count; ++k)
+            for (int lane = 0; lane < kWide; ++lane)
+                sum[k][lane] += L[long(r) * stride + k] * row[lane];
+    }
+    for (int k = 0; k < Count; ++k)
+        for (int lane = 0; lane < kWide; ++lane)
+            own[k * kWide + lane] -= sum[k][lane];
+}
+
+/// y[rows[k]] -= sum_j L(k, j) own[j] for `Count` rows of L of length `width`.
+template <int Count>
+void subtract(const double* L, int width, const int* rows, const Lanes* own, Lanes* y)
+{
+    Lanes sum[Count][kWide] = {};
+    for (int j = 0; j < width; ++j)
+        for (int k = 0; k < Count; ++k)
+            for (int lane = 0; lane < kWide; ++lane)
+                sum[k][lane] += L[long(k) * width + j] * own[j * kWide + lane];
+    for (int k = 0; k < Count; ++k)
+        for (int lane = 0; lane < kWide; ++lane)
+            y[long(rows[k]) * kWide + lane] -= sum[k][lane];
+}
+
+void forward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Lanes* y)
+{
+    const int width = node.width;
+    Lanes* own = y + long(node.first_column) * kWide;
+    for (int i = 0; i < width; ++i)
+        for (int lane = 0; lane < kWide; ++lane) {
+            Lanes sum = own[i * kWide + lane];
+            for (int j = 0; j < i; ++j)
+                sum -= L[long(i) * width + j] * own[j * kWide + lane];
+            own[i * kWide + lane] = L[long(i) * width + i] * sum;
+        }
+    const double* below = L + long(width) * width;
+    int r = 0;
+    for (; r + kTile <= node.row_count; r += kTile)
+        subtract<kTile>(below + long(r) * width, width, rows + r, own, y);
+    for (; r < node.row_count; ++r)
+        subtract<1>(below + long(r) * width, width, rows + r, own, y);
+}
+
+void backward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Lanes* y)
+{
+    const int width = node.width;
+    Lanes* own = y + long(node.first_column) * kWide;
+    const double* below = L + long(width) * width;
+    int j = 0;
+    for (; j + kTile <= width; j += kTile)
+        subtract_transposed<kTile>(below + j, width, rows, node.row_count, y, own + j * kWide);
+    for (; j < width; ++j)
+        subtract_transposed<1>(below + j, width, rows, node.row_count, y, own + j * kWide);
+
+    for (int i = width - 1; i >= 0; --i)
+        for (int lane = 0; lane < kWide; ++lane) {
+            Lanes sum = own[i * kWide + lane];
+            for (int k = i + 1; k < width; ++k)
+                sum -= L[long(k) * width + i] * own[k * kWide + lane];
+            own[i * kWide + lane] = L[long(i) * width + i] * sum;
+        }
+}
+
+} // namespace
+
+InverseColumns::InverseColumns(const SupernodalFactor& factor)
+    : factor_(factor), row_of_(factor.permutation.size()), node_of_column_(factor.permutation.size())
+{
+    for (int k = 0; k < size(); ++k)
+        row_of_[factor.permutation[k]] = k;
+    for (int s = 0; s < int(factor.supernodes.size()); ++s)
+        std::fill_n(node_of_column_.begin() + factor.supernodes[s].first_column, factor.supernodes[s].width,
+                    s);
+}
+
+void InverseColumns::solve(View<const int> columns, Block& block) const
+{
+    TOILE_ASSERT(columns.size() <= kColumns);
+    block.assign(size_t(size()) * kWide, Lanes(0.0));
+    for (int c = 0; c < columns.size(); ++c)
+        block[size_t(row_of_[columns[c]]) * kWide + c / kLanes][c % kLanes] = 1.0;
+    forward(columns, block);
+    backward(block);
+}
+
+/// L y = b where it is not zero.
+void InverseColumns::forward(View<const int> columns, Block& block) const
+{
+    thread_local std::vector<char> is_reached;
+    is_reached.assign(factor_.supernodes.size(), 0);
+    int first = int(factor_.supernodes.size());
+    for (const int column : columns) {
+        const int node = node_of_column_[row_of_[column]];
+        is_reached[node] = 1;
+        first = std::min(first, node);
+    }
+    for (int s = first; s < int(factor_.supernodes.size()); ++s) {
+        if (!is_reached[s])
+            continue;
+        const SupernodalFactor::Supernode& node = factor_.supernodes[s];
+        const int* rows = factor_.rows.data() + node.first_row;
+        forward_node(node, rows, factor_.values.data() + node.first_value, block.data());
+        for (int r = 0; r < node.row_count; ++r)
+            is_reached[node_of_column_[rows[r]]] = 1;
+    }
+}
+
+/// L^T x = y
+void InverseColumns::backward(Block& block) const
+{
+    for (int s = int(factor_.supernodes.size()) - 1; s >= 0; --s) {
+        const SupernodalFactor::Supernode& node = factor_.supernodes[s];
+        backward_node(node, factor_.rows.data() + node.first_row, factor_.values.data() + node.first_value,
+                      block.data());
+    }
+}
+
+} // namespace toile
