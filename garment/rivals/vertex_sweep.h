@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "garment/rivals/membrane_corner.h"
+#include "garment/rivals/rival.h"
+
+namespace toile {
+
+/// One index per lane.
+using LaneIndices = std::array<int, kLanes>;
+
+/// One component of eight items of a field.
+inline Lanes gather_component(View<const Vec3> field, const LaneIndices& item, int component)
+{
+    return Lanes([&](auto lane) { return field[item[lane]][component]; });
+}
+
+/// Eight vectors of a field, side by side.
+inline Vec3Of<Lanes> gather_vectors(View<const Vec3> field, const LaneIndices& item)
+{
+    Vec3Of<Lanes> result;
+    for (int k = 0; k < 3; ++k)
+        result(k) = gather_component(field, item, k);
+    return result;
+}
+
+/// One triangle around each of eight vertices, turned so that the vertex is its corner 0.
+struct RingTriangle {
+    LaneIndices corner1, corner2;
+    Mat2Of<Lanes> rest_inv; ///< [1/m] rows: hat gradients of corners 1 and 2; 0 where a vertex has no more
+    Lanes area;             ///< [m^2]
+};
+
+/// One off-diagonal entry of K in the rows of eight vertices.
+struct RingBend {
+    LaneIndices vertex;
+    Lanes stiffness; ///< [N/m]
+};
+
+/// Eight vertices of one colour; the last of a colour repeats its last vertex.
+struct VertexBlock {
+    LaneIndices vertex;
+    int count = 0; ///< lanes that may write
+    Lanes mass;    ///< [kg]
+    Lanes bending; ///< [N/m] diagonal of K
+    int first_triangle = 0, triangles = 0;
+    int first_bend = 0, bends = 0;
+};
+
+/// Everything a sweep reads besides positions, in the order in which it reads it.
+struct SweepLayout {
+    struct Colour {
+        int first_block, blocks;
+    };
+    std::vector<Colour> colours;
+    std::vector<VertexBlock> blocks;
+    std::vector<RingTriangle> triangles;
+    std::vector<RingBend> bends;
+};
+
+/// Colours the vertices of a cloth, by triangles and by the entries of K, and lays out their terms.
+/// @param K  matrix of the bending energy [vertices x vertices] [N/m]
+SweepLayout lay_out_sweep(const ClothModel& cloth, const SparseMatrix& K);
+
+/// Newton step of eight vertices on their own positions, all others held.
+struct DescendVertices {
+    const SweepLayout& layout;
+    MembraneWeights weights;
+    double dt;                       ///< [s]
+    View<const Vec3> prediction;     ///< [vertices] [m]
+    View<const unsigned char> fixed; ///< [vertices]
+    View<Vec3> x;                    ///< [vertices] in and out [m]
+    View<double> moved;              ///< [blocks] out: largest squared move [m^2]
+
+    void operator()(int b) const;
+};
+
+} // namespace toile
