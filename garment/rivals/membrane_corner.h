@@ -3,15 +3,13 @@
 #include <Eigen/Geometry>
 
 #include "garment/energy/membrane_kernels.h"
+#include "garment/rivals/lane_gather.h"
 
 namespace toile {
 
 /// Relative difference of two principal stretches below which they count as one [-]: their eigenvectors are
 /// then rounding noise.
 constexpr double kSameStretch = 1e-9;
-
-template <typename T>
-using Vec3Of = Eigen::Matrix<T, 3, 1>;
 
 /// Symmetric 3 x 3 matrix, for one vertex (T = double) or eight (T = Lanes).
 template <typename T>

@@ -1,30 +1,12 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "garment/rivals/lane_gather.h"
 #include "garment/rivals/membrane_corner.h"
 #include "garment/rivals/rival.h"
 
 namespace toile {
-
-/// One index per lane.
-using LaneIndices = std::array<int, kLanes>;
-
-/// One component of eight items of a field.
-inline Lanes gather_component(View<const Vec3> field, const LaneIndices& item, int component)
-{
-    return Lanes([&](auto lane) { return field[item[lane]][component]; });
-}
-
-/// Eight vectors of a field, side by side.
-inline Vec3Of<Lanes> gather_vectors(View<const Vec3> field, const LaneIndices& item)
-{
-    Vec3Of<Lanes> result;
-    for (int k = 0; k < 3; ++k)
-        result(k) = gather_component(field, item, k);
-    return result;
-}
 
 /// One triangle around each of eight vertices, turned so that the vertex is its corner 0.
 struct RingTriangle {
