@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "garment/rivals/colouring.h"
 #include "garment/rivals/strain_constraints.h"
 
 namespace toile {

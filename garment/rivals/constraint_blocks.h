@@ -2,15 +2,11 @@
 
 #include <vector>
 
+#include "garment/rivals/colouring.h"
 #include "garment/rivals/lane_gather.h"
 #include "garment/rivals/rival.h"
 
 namespace toile {
-
-/// Blocks of one colour, in the order in which a pass reads them.
-struct BlockRange {
-    int first, count;
-};
 
 /// Eight triangles without a common vertex; the last block of a colour repeats its last triangle.
 struct StrainBlock {

@@ -38,12 +38,12 @@ template <typename T>
 TOILE_HD void project_stretch(const Eigen::Matrix<T, 2, 1>& p, const T& stiffness, const Mat2Of<T>& N,
                               Mat32Of<T>& F, Mat32Of<T>& D)
 {
+    // q becomes d lambda F p / |F p|, with one division.
     Vec3Of<T> q = p(0) * F.col(0) + p(1) * F.col(1);
     const T length = square_root(q.squaredNorm());
-    const auto is_valid = length > T(0.0);
     const T n0 = N(0, 0) * p(0) + N(0, 1) * p(1), n1 = N(1, 0) * p(0) + N(1, 1) * p(1);
-    const T multiplier = stiffness * (T(1.0) - length) / (stiffness * (p(0) * n0 + p(1) * n1) + T(1.0));
-    q *= multiplier / select(is_valid, length, T(1.0));
+    const T divisor = (stiffness * (p(0) * n0 + p(1) * n1) + T(1.0)) * length;
+    q *= stiffness * (T(1.0) - length) / select(length > T(0.0), divisor, T(1.0));
     D.col(0) += p(0) * q;
     D.col(1) += p(1) * q;
     F.col(0) += n0 * q;

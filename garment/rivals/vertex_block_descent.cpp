@@ -81,9 +81,9 @@ void VertexBlockDescent::begin(double dt, View<const Vec3> acceleration,
 double VertexBlockDescent::sweep(double dt, const std::vector<unsigned char>& fixed)
 {
     const DescendVertices descend{layout_, weights_, dt, prediction_, fixed, x_t1_, moved_};
-    for (const SweepLayout::Colour& colour : layout_.colours)
+    for (const BlockRange& colour : layout_.colours)
         parallel_for(
-            kCpu, "vbd/sweep", colour.blocks, [&](int k) { descend(colour.first_block + k); },
+            kCpu, "vbd/sweep", colour.count, [&](int k) { descend(colour.first + k); },
             kBlocksPerTask);
     double farthest = 0.0;
     for (const double move : moved_)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "garment/rivals/colouring.h"
 
 namespace toile {
 
@@ -88,9 +87,9 @@ private:
         block.first_triangle = int(layout_.triangles.size());
         for (int k = 0; k < block.triangles; ++k)
             layout_.triangles.push_back(ring_triangle(block.vertex, k));
-        block.first_bend = int(layout_.bends.size());
+        block.first_bend = int(layout_.bend_vertex.size());
         for (int k = 0; k < block.bends; ++k)
-            layout_.bends.push_back(ring_bend(block.vertex, k));
+            append_bend(block.vertex, k);
         layout_.blocks.push_back(block);
     }
 
@@ -118,16 +117,18 @@ private:
         return result;
     }
 
-    RingBend ring_bend(const LaneIndices& vertex, int k) const
+    void append_bend(const LaneIndices& vertex, int k)
     {
-        RingBend result;
+        LaneIndices neighbour;
+        Lanes stiffness;
         for (int lane = 0; lane < kLanes; ++lane) {
             const auto& row = rows_[vertex[lane]];
             const bool exists = k < int(row.size());
-            result.vertex[lane] = exists ? row[k].first : vertex[lane];
-            result.stiffness[lane] = exists ? row[k].second : 0.0;
+            neighbour[lane] = exists ? row[k].first : vertex[lane];
+            stiffness[lane] = exists ? row[k].second : 0.0;
         }
-        return result;
+        layout_.bend_vertex.push_back(neighbour);
+        layout_.bend_stiffness.push_back(stiffness);
     }
 
     const ClothModel& cloth_;
@@ -158,10 +159,8 @@ void DescendVertices::operator()(int b) const
     const Lanes inertia = block.mass * Lanes(1.0 / (dt * dt));
     Vec3Of<Lanes> gradient = inertia * (own - gather_vectors(prediction, block.vertex));
     Symmetric3<Lanes> hessian(inertia + block.bending);
-    for (int k = block.first_bend; k < block.first_bend + block.bends; ++k) {
-        const RingBend& bend = layout.bends[k];
-        gradient += bend.stiffness * (gather_vectors(x, bend.vertex) - own);
-    }
+    for (int k = block.first_bend; k < block.first_bend + block.bends; ++k)
+        gradient += layout.bend_stiffness[k] * (gather_vectors(x, layout.bend_vertex[k]) - own);
 
     // The membrane: the vertex is corner 0 of each triangle.
     for (int k = block.first_triangle; k < block.first_triangle + block.triangles; ++k) {

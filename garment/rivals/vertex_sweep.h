@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "garment/rivals/colouring.h"
 #include "garment/rivals/lane_gather.h"
 #include "garment/rivals/membrane_corner.h"
 #include "garment/rivals/rival.h"
@@ -13,12 +14,6 @@ struct RingTriangle {
     LaneIndices corner1, corner2;
     Mat2Of<Lanes> rest_inv; ///< [1/m] rows: hat gradients of corners 1 and 2; 0 where a vertex has no more
     Lanes area;             ///< [m^2]
-};
-
-/// One off-diagonal entry of K in the rows of eight vertices.
-struct RingBend {
-    LaneIndices vertex;
-    Lanes stiffness; ///< [N/m]
 };
 
 /// Eight vertices of one colour; the last of a colour repeats its last vertex.
@@ -33,13 +28,11 @@ struct VertexBlock {
 
 /// Everything a sweep reads besides positions, in the order in which it reads it.
 struct SweepLayout {
-    struct Colour {
-        int first_block, blocks;
-    };
-    std::vector<Colour> colours;
+    std::vector<BlockRange> colours;
     std::vector<VertexBlock> blocks;
     std::vector<RingTriangle> triangles;
-    std::vector<RingBend> bends;
+    std::vector<LaneIndices> bend_vertex; ///< off-diagonal entries of K in the rows of eight vertices
+    std::vector<Lanes> bend_stiffness;    ///< [N/m]
 };
 
 /// Colours the vertices of a cloth, by triangles and by the entries of K, and lays out their terms.

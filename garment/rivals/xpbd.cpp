@@ -13,11 +13,39 @@ namespace {
 /// Blocks of eight constraints per task: 10 to 50 us of work.
 constexpr int kBlocksPerTask = 32;
 
+/// h^2 times the largest eigenvalue of K / m up to which bending acts by explicit forces [-]. Symplectic Euler
+/// is stable up to 4; at 1 it is 5 % off in the frequency of the fastest mode and exact for those that show.
+constexpr double kExplicitBending = 1.0;
+
+/// Bound on the eigenvalues of K / m by Gershgorin's circles [1/s^2].
+double largest_eigenvalue(const SparseMatrix& K, const std::vector<double>& masses)
+{
+    double largest = 0.0;
+    for (int row = 0; row < K.outerSize(); ++row) {
+        double sum = 0.0;
+        for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry)
+            sum += std::abs(entry.value());
+        largest = std::max(largest, sum / masses[row]);
+    }
+    return largest;
+}
+
+/// (K x)_i; rows sum to zero, so differences replace positions.
+Vec3 bending_gradient(const SparseMatrix& K, int i, View<const Vec3> x)
+{
+    Vec3 sum = Vec3::Zero();
+    for (SparseMatrix::InnerIterator entry(K, i); entry; ++entry)
+        sum += entry.value() * (x[int(entry.col())] - x[i]);
+    return sum;
+}
+
 } // namespace
 
 Xpbd::Xpbd(std::vector<Vec3> positions, ClothModel cloth, Settings settings)
     : Rival(std::move(positions), std::move(cloth)), settings_(settings),
-      weights_(Membrane(cloth_.rest, cloth_.stretch, "Xpbd").weights()), layout_(lay_out_constraints(cloth_)),
+      weights_(Membrane(cloth_.rest, cloth_.stretch, "Xpbd").weights()),
+      bending_(Bending(cloth_.rest, cloth_.bending, "Xpbd").matrix()),
+      fastest_(largest_eigenvalue(bending_, cloth_.masses)), layout_(lay_out_constraints(cloth_)),
       inverse_masses_(x_.size()), x_t0_(x_.size()), before_(x_.size())
 {
 }
@@ -50,29 +78,39 @@ StepReport Xpbd::step(double dt, View<const Vec3> acceleration, const std::vecto
     return report;
 }
 
+bool Xpbd::bends_by_forces(double h) const
+{
+    return settings_.bend_by_forces && fastest_ > 0.0 && h * h * fastest_ < kExplicitBending;
+}
+
 /// Free vertices fly on; fixed ones go their straight way to the target.
 /// @param end  of the substep, as a share of the step [-]
 void Xpbd::predict(double h, double end, View<const Vec3> acceleration, View<const Vec3> targets)
 {
-    parallel_for(
-        kCpu, "xpbd/predict", int(x_.size()),
-        [&](int i) {
-            before_[i] = x_[i];
-            const bool is_free = inverse_masses_[i] > 0.0;
-            v_[i] = is_free ? Vec3(v_[i] + h * acceleration[i])
-                            : Vec3((x_t0_[i] + end * (targets[i] - x_t0_[i]) - x_[i]) / h);
-            x_[i] = is_free ? Vec3(x_[i] + h * v_[i]) : Vec3(x_t0_[i] + end * (targets[i] - x_t0_[i]));
-        },
-        kFieldGrain);
+    const bool has_forces = bends_by_forces(h);
+    before_.swap(x_);
+    parallel_for(kCpu, "xpbd/predict", int(x_.size()), [&](int i) {
+        if (inverse_masses_[i] == 0.0) {
+            x_[i] = x_t0_[i] + end * (targets[i] - x_t0_[i]);
+            v_[i] = (x_[i] - before_[i]) / h;
+            return;
+        }
+        v_[i] += h * acceleration[i];
+        if (has_forces)
+            v_[i] -= h * inverse_masses_[i] * bending_gradient(bending_, i, before_);
+        x_[i] = before_[i] + h * v_[i];
+    });
 }
 
 /// One pass, the stiff constraints last.
 void Xpbd::project(double h)
 {
     const ProjectCurvatures bend{layout_.curvatures, layout_.entries, h, inverse_masses_, x_};
-    for (const BlockRange& colour : layout_.curvature_colours)
-        parallel_for(
-            kCpu, "xpbd/curvatures", colour.count, [&](int k) { bend(colour.first + k); }, kBlocksPerTask);
+    if (!bends_by_forces(h))
+        for (const BlockRange& colour : layout_.curvature_colours)
+            parallel_for(
+                kCpu, "xpbd/curvatures", colour.count, [&](int k) { bend(colour.first + k); },
+                kBlocksPerTask);
     const ProjectStrains stretch{layout_.strains, weights_, h, inverse_masses_, x_};
     for (const BlockRange& colour : layout_.strain_colours)
         parallel_for(
