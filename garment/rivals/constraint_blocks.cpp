@@ -184,7 +184,8 @@ void ProjectCurvatures::operator()(int b) const
         for (int l = k + 1; l < 3; ++l)
             C[l] += G[k][l] * multiplier[k];
     }
-    for (int j = 0; j < block.vertices; ++j) {
+    // Backwards: entries beyond the end of a stencil repeat its first vertex unmoved, which must not stay.
+    for (int j = block.vertices - 1; j >= 0; --j) {
         for (int k = 0; k < 3; ++k)
             place[j] += (mobility[j] * stencil[j].weight[k]) * multiplier[k];
         scatter_vectors(place[j], stencil[j].vertex, block.count, x);
