@@ -34,8 +34,7 @@ void require_valid(const Bending::Settings& s, const std::string& source)
 void add_block(const Bending::Term& term, Triplets& entries)
 {
     const CurvatureStencil& stencil = term.stencil;
-    const Eigen::MatrixXd block =
-        stencil.weights.transpose() * term.stiffness.asDiagonal() * stencil.weights;
+    const Eigen::MatrixXd block = stencil.weights.transpose() * term.stiffness.asDiagonal() * stencil.weights;
     const int size = int(stencil.vertex.size());
     for (int i = 0; i < size; ++i)
         for (int j = 0; j < size; ++j)

@@ -50,7 +50,8 @@ public:
 
     /// The shares of all triangles that have neighbours; their sum is K.
     /// @throws InvalidInput as the constructor does.
-    static std::vector<Term> terms(const RestShape& rest, const Settings& settings, const std::string& source);
+    static std::vector<Term> terms(const RestShape& rest, const Settings& settings,
+                                   const std::string& source);
 
 private:
     SparseMatrix K_;

@@ -129,10 +129,11 @@ TOILE_HD void add_shear(const Mat32Of<T>& F, const HatGradient<T>& g, const T& w
 /// normal, the unclamped block per area is
 ///
 ///   warp   w g_u^2 ( a a^T + (1 - 1/|F u|) (I - a a^T) ),   a = F u / |F u|;   weft likewise
-///   shear  w ( |g|^2 I  -  (R J g)(R J g)^T / (sigma_1 + sigma_2)  -  (g^T S^(-1) g) n n^T ),   J: 90 degrees
+///   shear  w ( |g|^2 I  -  (R J g)(R J g)^T / (sigma_1 + sigma_2)  -  (g^T S^(-1) g) n n^T )
 ///
-/// 2/(sigma_1 + sigma_2), 1/sigma_1 and 1/sigma_2 are the eigenvalues of dR/dF for the twist and the two modes
-/// out of the plane [Smith et al. 2019, section 4, for 3 x 3]. The clamp cuts each of them, and 1/|F u|, at 1.
+/// where J turns by 90 degrees. 2/(sigma_1 + sigma_2), 1/sigma_1 and 1/sigma_2 are the eigenvalues of dR/dF
+/// for the twist and the two modes out of the plane [Smith et al. 2019 have them for 3 x 3]. The clamp cuts
+/// each of them, and 1/|F u| and 1/|F v|, at 1.
 /// @param F         deformation gradient; its columns are the stretched warp and weft
 /// @param area      rest area [m^2]
 /// @param gradient  += [N]

@@ -32,8 +32,8 @@ TOILE_HD Eigen::Matrix<T, 2, 1> principal_direction(const Mat32Of<T>& F)
 
 /// The constraint C = |F p| - 1 in a material direction p: its multiplier goes into D, its effect into F.
 ///
-///   d lambda = -C / (p^T N p + alpha / h^2),   dC/dx_k = q (p . g_k),   q = F p / |F p|    [Macklin et al. 2016,
-///   eq. 18]
+///   d lambda = -C / (p^T N p + alpha / h^2)                           [Macklin et al. 2016, eq. 18]
+///   dC/dx_k = q (p . g_k),   q = F p / |F p|
 template <typename T>
 TOILE_HD void project_stretch(const Eigen::Matrix<T, 2, 1>& p, const T& stiffness, const Mat2Of<T>& N,
                               Mat32Of<T>& F, Mat32Of<T>& D)

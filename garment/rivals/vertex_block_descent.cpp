@@ -83,8 +83,7 @@ double VertexBlockDescent::sweep(double dt, const std::vector<unsigned char>& fi
     const DescendVertices descend{layout_, weights_, dt, prediction_, fixed, x_t1_, moved_};
     for (const BlockRange& colour : layout_.colours)
         parallel_for(
-            kCpu, "vbd/sweep", colour.count, [&](int k) { descend(colour.first + k); },
-            kBlocksPerTask);
+            kCpu, "vbd/sweep", colour.count, [&](int k) { descend(colour.first + k); }, kBlocksPerTask);
     double farthest = 0.0;
     for (const double move : moved_)
         farthest = std::max(farthest, move);

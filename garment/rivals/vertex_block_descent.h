@@ -10,9 +10,9 @@ namespace toile {
 ///   E(x) = 1/(2 dt^2) |x - q*|^2_M + W_membrane(x) + W_bending(x)
 ///
 /// A sweep visits the vertices colour by colour and moves each by one Newton step of its own three unknowns,
-/// x_i -= H_i^(-1) dE/dx_i (eq. 9), with H_i projected to be positive definite (membrane_corner.h; the paper
-/// takes it as it is and skips singular ones). Neither the paper nor we search along the step.
-/// Same bits for every thread count.
+/// x_i -= H_i^(-1) dE/dx_i (section 3.2), with H_i projected to be positive definite (membrane_corner.h; the
+/// paper takes it as it is and skips singular ones). Neither the paper nor we search along the step. Same
+/// bits for every thread count.
 class VertexBlockDescent : public Rival {
 public:
     /// Where the sweeps begin.
@@ -22,8 +22,11 @@ public:
     };
     struct Settings {
         int max_sweeps = 50;
-        double tolerance = 0.0; ///< [m] stop when no vertex moved farther in a sweep; 0 always does max_sweeps
-        double rho = 0.0;       ///< [-] Chebyshev acceleration: estimated spectral radius (section 3.8); 0 is off
+        double tolerance = 0.0; ///< [m] stop when no vertex moved farther in a sweep; 0: all sweeps
+
+        /// [-] Estimate of the spectral radius for Chebyshev acceleration (section 3.8), 0 for none. Too
+        /// close to 1 for the number of sweeps and the cloth explodes (docs/garment/rivals.md).
+        double rho = 0.0;
         Start start = Start::Adaptive;
     };
 

@@ -25,7 +25,7 @@ Mat32 random_gradient(std::mt19937& random)
 
 TEST(ColourItems, GivesItemsWithACommonKeyDifferentColours)
 {
-    // Triangles of an irregular sheet by their vertices: at most a few more colours than triangles at a vertex.
+    // Triangles of an irregular sheet by their vertices: a few more colours than triangles at a vertex.
     const auto rest = make_sheet(Vec2(1.0, 1.0), 20, 20, Pattern::Irregular).rest();
     Incidence keys;
     keys.first.push_back(0);

@@ -50,8 +50,8 @@ struct Trial {
         Body::Settings settings;
         settings.tolerance = tolerance;
         settings.max_iterations = max_iterations;
-        auto result = std::make_unique<Body>(
-            x, std::make_unique<System>(cloth.masses, std::move(energies)), settings);
+        auto result =
+            std::make_unique<Body>(x, std::make_unique<System>(cloth.masses, std::move(energies)), settings);
         result->set_velocities(v);
         return result;
     }
@@ -109,7 +109,8 @@ TEST(VertexBlockDescent, FindsTheMinimiserOfBody)
         trial.stir(0.5);
         const auto body = trial.body(1e-12, 20000);
         (void)body->step(dt, trial.acceleration, trial.fixed, trial.x, nullptr, nullptr);
-        for (const auto start : {VertexBlockDescent::Start::Prediction, VertexBlockDescent::Start::Adaptive}) {
+        for (const auto start :
+             {VertexBlockDescent::Start::Prediction, VertexBlockDescent::Start::Adaptive}) {
             VertexBlockDescent::Settings settings;
             settings.max_sweeps = 20000;
             settings.tolerance = 1e-10;
@@ -183,7 +184,6 @@ Trial hanging()
 
 TEST(Xpbd, ConvergesToTheMotionOfBody)
 {
-    // Body at a 64th of the time step is 2e-4 m from its own limit.
     const Trial trial = hanging();
     const double dt = 1.0 / 120.0;
     const int steps = 12, parts = 64;
@@ -198,7 +198,7 @@ TEST(Xpbd, ConvergesToTheMotionOfBody)
             EXPECT_LT(apart, 0.5 * last) << substeps << " substeps";
             last = apart;
         }
-        EXPECT_LT(last, 1e-3);
+        EXPECT_LT(last, 2e-4);
     }
 }
 
@@ -278,7 +278,7 @@ TEST(Xpbd, KeepsMomentumInFreeFlight)
         (void)trial.run(*xpbd, 0.01, 20);
         const auto [linear_t1, angular_t1] = momenta(xpbd->positions(), xpbd->velocities());
         EXPECT_LT((linear_t1 - linear).norm(), 1e-12 * linear.norm());
-        EXPECT_LT((angular_t1 - angular).norm(), 1e-2 * angular.norm());
+        EXPECT_LT((angular_t1 - angular).norm(), 5e-3 * angular.norm());
     }
 }
 
