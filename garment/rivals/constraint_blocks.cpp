@@ -159,13 +159,11 @@ void ProjectCurvatures::operator()(int b) const
     const View<const CurvatureEntry> stencil = entries.subview(block.first_vertex, block.vertices);
     Vec3Of<Lanes> place[kMaxStencil];
     Lanes mobility[kMaxStencil];
+    const Lanes zero(0.0);
     Vec3Of<Lanes> C[3];
+    std::fill_n(C, 3, Vec3Of<Lanes>(zero, zero, zero));
     Lanes G[3][3];
-    for (int k = 0; k < 3; ++k) {
-        C[k] = Vec3Of<Lanes>(Lanes(0.0), Lanes(0.0), Lanes(0.0));
-        for (int l = 0; l < 3; ++l)
-            G[k][l] = Lanes(0.0);
-    }
+    std::fill_n(&G[0][0], 9, zero);
     for (int j = 0; j < block.vertices; ++j) {
         place[j] = gather_vectors(x, stencil[j].vertex);
         mobility[j] = gather_numbers(inverse_masses, stencil[j].vertex);

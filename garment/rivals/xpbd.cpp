@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
+#include "core/backend/error.h"
 #include "core/linear/field.h"
 
 namespace toile {
@@ -48,6 +50,9 @@ Xpbd::Xpbd(std::vector<Vec3> positions, ClothModel cloth, Settings settings)
       fastest_(largest_eigenvalue(bending_, cloth_.masses)), layout_(lay_out_constraints(cloth_)),
       inverse_masses_(x_.size()), x_t0_(x_.size()), before_(x_.size())
 {
+    if (settings.substeps < 1)
+        throw InvalidInput("Xpbd: substeps = " + std::to_string(settings.substeps) +
+                           "; it must be 1 or more");
 }
 
 StepReport Xpbd::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,

@@ -24,7 +24,7 @@ public:
     };
 
     /// Colours the constraints. O(triangles).
-    /// @throws InvalidInput as Membrane and Bending do.
+    /// @throws InvalidInput as Membrane and Bending do, and for less than one substep.
     Xpbd(std::vector<Vec3> positions, ClothModel cloth, Settings settings);
 
     /// The report counts substeps as iterations; its displacement is the farthest that the constraints of the

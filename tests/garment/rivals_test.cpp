@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/backend/error.h"
 #include "core/backend/parallel.h"
 #include "garment/rivals/vertex_block_descent.h"
 #include "garment/rivals/xpbd.h"
@@ -242,6 +243,8 @@ TEST(Xpbd, BendsByForcesAndByConstraintsAlike)
     const std::vector<Vec3> unbent = trial.run(*trial.xpbd({1}), h, 1);
     EXPECT_LT(farthest_apart(by_forces, by_constraints), 1e-3 * farthest_apart(by_forces, unbent));
 }
+
+TEST(Xpbd, RefusesLessThanOneSubstep) { EXPECT_THROW(hanging().xpbd({0}), InvalidInput); }
 
 TEST(Xpbd, HonoursFixedVertices)
 {
