@@ -5,7 +5,6 @@
 
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
-#include "garment/energy/curvature_stencil.h"
 
 namespace toile {
 
@@ -31,13 +30,11 @@ void require_valid(const Bending::Settings& s, const std::string& source)
     check("weft", s.weft);
 }
 
-/// Adds rows^T weight rows, limited to `largest` on the diagonal.
-void add_block(const CurvatureStencil& stencil, const Vec3& weight, double largest, Triplets& entries)
+/// Adds rows^T stiffness rows.
+void add_block(const Bending::Term& term, Triplets& entries)
 {
-    Eigen::MatrixXd block = stencil.weights.transpose() * weight.asDiagonal() * stencil.weights;
-    const double peak = block.diagonal().maxCoeff();
-    if (peak > largest)
-        block *= largest / peak;
+    const CurvatureStencil& stencil = term.stencil;
+    const Eigen::MatrixXd block = stencil.weights.transpose() * term.stiffness.asDiagonal() * stencil.weights;
     const int size = int(stencil.vertex.size());
     for (int i = 0; i < size; ++i)
         for (int j = 0; j < size; ++j)
@@ -46,23 +43,38 @@ void add_block(const CurvatureStencil& stencil, const Vec3& weight, double large
 
 } // namespace
 
+std::vector<Bending::Term> Bending::terms(const RestShape& rest, const Settings& settings,
+                                          const std::string& source)
+{
+    require_valid(settings, source);
+    const Vec3 rigidity(settings.warp, 2.0 * std::sqrt(settings.warp * settings.weft), settings.weft);
+    double mean_area = 0.0;
+    for (const double area : rest.areas)
+        mean_area += area / double(rest.areas.size());
+    const double largest = kMaxRelativeStiffness * std::max(settings.warp, settings.weft) / mean_area;
+
+    std::vector<Term> terms;
+    std::vector<CurvatureStencil> stencils = curvature_stencils(rest);
+    for (size_t t = 0; t < stencils.size(); ++t) {
+        if (stencils[t].vertex.empty())
+            continue;
+        // The largest diagonal entry of the block rows^T stiffness rows is limited.
+        Vec3 stiffness = rest.areas[t] * rigidity;
+        const double peak = (stiffness.transpose() * stencils[t].weights.cwiseAbs2()).maxCoeff();
+        if (peak > largest)
+            stiffness *= largest / peak;
+        terms.push_back({std::move(stencils[t]), stiffness});
+    }
+    return terms;
+}
+
 Bending::Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings,
                  const std::string& source)
 {
-    require_valid(settings, source);
     const int n = rest->vertex_count();
-    const Vec3 rigidity(settings.warp, 2.0 * std::sqrt(settings.warp * settings.weft), settings.weft);
-
-    double mean_area = 0.0;
-    for (const double area : rest->areas)
-        mean_area += area / double(rest->areas.size());
-    const double largest = kMaxRelativeStiffness * std::max(settings.warp, settings.weft) / mean_area;
-
     Triplets entries;
-    const std::vector<CurvatureStencil> stencils = curvature_stencils(*rest);
-    for (size_t t = 0; t < stencils.size(); ++t)
-        if (!stencils[t].vertex.empty())
-            add_block(stencils[t], rest->areas[t] * rigidity, largest, entries);
+    for (const Term& term : terms(*rest, settings, source))
+        add_block(term, entries);
     K_.resize(n, n);
     K_.setFromTriplets(entries.begin(), entries.end());
     vertex_energy_.resize(n);

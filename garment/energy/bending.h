@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/pd/energy.h"
+#include "garment/energy/curvature_stencil.h"
 #include "garment/energy/rest_shape.h"
 
 namespace toile {
@@ -38,8 +39,22 @@ public:
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
 
+    /// K [vertices x vertices] [N/m]: W = 1/2 x^T K x for x, y and z alike; rows sum to zero.
+    const SparseMatrix& matrix() const { return K_; }
+
+    /// One triangle's share of W: 1/2 sum_k stiffness_k |row_k x|^2 over the rows of the stencil.
+    struct Term {
+        CurvatureStencil stencil;
+        Vec3 stiffness; ///< [N m^3] A_t (D_u, 2 sqrt(D_u D_v), D_v), less for slivers
+    };
+
+    /// The shares of all triangles that have neighbours; their sum is K.
+    /// @throws InvalidInput as the constructor does.
+    static std::vector<Term> terms(const RestShape& rest, const Settings& settings,
+                                   const std::string& source);
+
 private:
-    SparseMatrix K_; ///< W = 1/2 x^T K x; rows sum to zero
+    SparseMatrix K_;
     bool in_hessian_ = true;
     std::vector<double> vertex_energy_;
 };

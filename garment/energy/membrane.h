@@ -32,6 +32,9 @@ public:
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
 
+    /// Weights of the three terms above [N/m].
+    const MembraneWeights& weights() const { return weights_; }
+
 private:
     std::shared_ptr<const RestShape> rest_;
     MembraneWeights weights_;

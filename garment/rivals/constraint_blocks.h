@@ -1,0 +1,65 @@
+#pragma once
+
+#include <vector>
+
+#include "garment/rivals/colouring.h"
+#include "garment/rivals/lane_gather.h"
+#include "garment/rivals/rival.h"
+
+namespace toile {
+
+/// Eight triangles without a common vertex; the last block of a colour repeats its last triangle.
+struct StrainBlock {
+    LaneIndices corner[3];
+    int count = 0;          ///< lanes that may write
+    Mat2Of<Lanes> rest_inv; ///< [1/m] rows: hat gradients of corners 1 and 2
+    Lanes area;             ///< [m^2]
+};
+
+/// Eight curvature stencils without a common vertex.
+struct CurvatureBlock {
+    int count = 0;
+    int first_vertex = 0, vertices = 0; ///< stencil entries
+    Lanes stiffness[3];                 ///< [N m^3] of the rows uu, uv, vv
+};
+
+/// One vertex in each of eight curvature stencils; weights are 0 where a stencil has no more.
+struct CurvatureEntry {
+    LaneIndices vertex;
+    Lanes weight[3]; ///< [1/m^2] in the rows uu, uv, vv
+};
+
+/// The constraints of a cloth, coloured: no two of one colour share a vertex.
+struct ConstraintLayout {
+    std::vector<BlockRange> strain_colours, curvature_colours;
+    std::vector<StrainBlock> strains;
+    std::vector<CurvatureBlock> curvatures;
+    std::vector<CurvatureEntry> entries;
+};
+
+ConstraintLayout lay_out_constraints(const ClothModel& cloth);
+
+/// Projects the strains of eight triangles: warp, weft, principal stretches (strain_constraints.h).
+struct ProjectStrains {
+    View<const StrainBlock> blocks;
+    MembraneWeights weights;
+    double h;                          ///< [s] substep
+    View<const double> inverse_masses; ///< [vertices] [1/kg], 0 for fixed vertices
+    View<Vec3> x;                      ///< [vertices] [m]
+
+    void operator()(int b) const;
+};
+
+/// Projects the curvatures of eight stencils: the three vectors row_k x to zero with compliances
+/// 1 / stiffness_k, whose energies 1/2 |C|^2 / alpha add up to Bending's.
+struct ProjectCurvatures {
+    View<const CurvatureBlock> blocks;
+    View<const CurvatureEntry> entries;
+    double h;
+    View<const double> inverse_masses;
+    View<Vec3> x;
+
+    void operator()(int b) const;
+};
+
+} // namespace toile

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+
+#include "core/backend/lanes.h"
+
+namespace toile {
+
+template <typename T>
+using Vec3Of = Eigen::Matrix<T, 3, 1>;
+
+/// One index per lane.
+using LaneIndices = std::array<int, kLanes>;
+
+/// Eight numbers of a field, side by side.
+inline Lanes gather_numbers(View<const double> field, const LaneIndices& item)
+{
+    return Lanes([&](auto lane) { return field[item[lane]]; });
+}
+
+/// Eight vectors of a field, side by side.
+inline Vec3Of<Lanes> gather_vectors(View<const Vec3> field, const LaneIndices& item)
+{
+    Vec3Of<Lanes> result;
+    for (int k = 0; k < 3; ++k)
+        result(k) = Lanes([&](auto lane) { return field[item[lane]][k]; });
+    return result;
+}
+
+/// Writes the first `count` of eight vectors back.
+inline void scatter_vectors(const Vec3Of<Lanes>& values, const LaneIndices& item, int count, View<Vec3> field)
+{
+    for (int lane = 0; lane < count; ++lane)
+        field[item[lane]] = Vec3(values(0)[lane], values(1)[lane], values(2)[lane]);
+}
+
+} // namespace toile

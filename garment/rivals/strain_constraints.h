@@ -1,0 +1,76 @@
+#pragma once
+
+#include "garment/rivals/lane_gather.h"
+
+namespace toile {
+
+/// h^2 w A of the membrane's terms on one triangle [J s^2]: one over XPBD's time-step scaled compliance
+/// alpha / h^2, finite where a term is absent.
+template <typename T>
+struct StrainStiffness {
+    T warp, weft, shear;
+};
+
+/// Unit vector in material axes along which F stretches most; (1, 0) where all stretches are the same.
+template <typename T>
+TOILE_HD Eigen::Matrix<T, 2, 1> principal_direction(const Mat32Of<T>& F)
+{
+    // Eigenvector of the deviator (half, b) of F^T F, from its row without cancellation.
+    const T a = F.col(0).squaredNorm(), b = F.col(0).dot(F.col(1)), c = F.col(1).squaredNorm();
+    const T half = T(0.5) * (a - c);
+    const T radius = square_root(half * half + b * b);
+    const auto is_warp = half > T(0.0);
+    const T u = select(is_warp, radius + half, b), v = select(is_warp, b, radius - half);
+    const T length2 = u * u + v * v;
+    const auto is_split = length2 > T(0.0);
+    const T inverse = T(1.0) / square_root(select(is_split, length2, T(1.0)));
+    Eigen::Matrix<T, 2, 1> direction;
+    direction(0) = select(is_split, u * inverse, T(1.0));
+    direction(1) = select(is_split, v * inverse, T(0.0));
+    return direction;
+}
+
+/// The constraint C = |F p| - 1 in a material direction p: its multiplier goes into D, its effect into F.
+///
+///   d lambda = -C / (p^T N p + alpha / h^2)                           [Macklin et al. 2016, eq. 18]
+///   dC/dx_k = q (p . g_k),   q = F p / |F p|
+template <typename T>
+TOILE_HD void project_stretch(const Eigen::Matrix<T, 2, 1>& p, const T& stiffness, const Mat2Of<T>& N,
+                              Mat32Of<T>& F, Mat32Of<T>& D)
+{
+    // q becomes d lambda F p / |F p|, with one division.
+    Vec3Of<T> q = p(0) * F.col(0) + p(1) * F.col(1);
+    const T length = square_root(q.squaredNorm());
+    const T n0 = N(0, 0) * p(0) + N(0, 1) * p(1), n1 = N(1, 0) * p(0) + N(1, 1) * p(1);
+    const T divisor = (stiffness * (p(0) * n0 + p(1) * n1) + T(1.0)) * length;
+    q *= stiffness * (T(1.0) - length) / select(length > T(0.0), divisor, T(1.0));
+    D.col(0) += p(0) * q;
+    D.col(1) += p(1) * q;
+    F.col(0) += n0 * q;
+    F.col(1) += n1 * q;
+}
+
+/// One Gauss-Seidel pass over the constraints of a triangle, whose energies 1/2 C^2 / alpha are those of
+/// Membrane: |F u| - 1 with compliance 1 / (A w_warp), |F v| - 1 with 1 / (A w_weft), and both principal
+/// stretches sigma - 1 with 1 / (A w_shear), because |F - R|^2 = (sigma_1 - 1)^2 + (sigma_2 - 1)^2.
+/// @param F  deformation gradient
+/// @param N  sum over corners of g_k g_k^T / m_k [1/(kg m^2)], g_k the hat gradients
+/// @return D [3 x 2]: corner k moves by D g_k / m_k
+template <typename T>
+TOILE_HD Mat32Of<T> project_strains(Mat32Of<T> F, const Mat2Of<T>& N, const StrainStiffness<T>& stiffness)
+{
+    using Direction = Eigen::Matrix<T, 2, 1>;
+    Mat32Of<T> D;
+    for (int k = 0; k < 6; ++k)
+        D(k) = T(0.0);
+    project_stretch<T>(Direction(T(1.0), T(0.0)), stiffness.warp, N, F, D);
+    project_stretch<T>(Direction(T(0.0), T(1.0)), stiffness.weft, N, F, D);
+
+    // The images of the principal directions are perpendicular: neither disturbs the other.
+    const Direction p = principal_direction<T>(F);
+    project_stretch<T>(p, stiffness.shear, N, F, D);
+    project_stretch<T>(Direction(-p(1), p(0)), stiffness.shear, N, F, D);
+    return D;
+}
+
+} // namespace toile

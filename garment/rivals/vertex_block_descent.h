@@ -1,0 +1,58 @@
+#pragma once
+
+#include "garment/rivals/rival.h"
+#include "garment/rivals/vertex_sweep.h"
+
+namespace toile {
+
+/// Vertex block descent [Chen et al. 2024] on the objective of Body:
+///
+///   E(x) = 1/(2 dt^2) |x - q*|^2_M + W_membrane(x) + W_bending(x)
+///
+/// A sweep visits the vertices colour by colour and moves each by one Newton step of its own three unknowns,
+/// x_i -= H_i^(-1) dE/dx_i (section 3.2), with H_i projected to be positive definite (membrane_corner.h; the
+/// paper takes it as it is and skips singular ones). Neither the paper nor we search along the step. Same
+/// bits for every thread count.
+class VertexBlockDescent : public Rival {
+public:
+    /// Where the sweeps begin.
+    enum class Start {
+        Prediction, ///< q* = x + dt v + dt^2 a
+        Adaptive    ///< as much of a as the vertex has followed in the last step (section 3.7)
+    };
+    struct Settings {
+        int max_sweeps = 50;
+        double tolerance = 0.0; ///< [m] stop when no vertex moved farther in a sweep; 0: all sweeps
+
+        /// [-] Estimate of the spectral radius for Chebyshev acceleration (section 3.8), 0 for none. Too
+        /// close to 1 for the number of sweeps and the cloth explodes (docs/garment/rivals.md).
+        double rho = 0.0;
+        Start start = Start::Adaptive;
+    };
+
+    /// Colours the vertices and lays out the sweep. O(vertices).
+    /// @throws InvalidInput as Membrane and Bending do.
+    VertexBlockDescent(std::vector<Vec3> positions, ClothModel cloth, Settings settings);
+
+    StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                    View<const Vec3> targets) override;
+
+    /// Vertices of one colour share no term of E; sweeps have as many barriers as there are colours.
+    int colour_count() const { return int(layout_.colours.size()); }
+
+private:
+    void begin(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+               View<const Vec3> targets);
+    double sweep(double dt, const std::vector<unsigned char>& fixed);
+    void accelerate(int sweep);
+
+    Settings settings_;
+    MembraneWeights weights_;
+    SweepLayout layout_;
+    std::vector<Vec3> prediction_, x_t1_, velocity_before_;
+    std::vector<Vec3> last_, before_last_; ///< iterates of the Chebyshev recurrence
+    double omega_ = 1.0;
+    std::vector<double> moved_; ///< [blocks] [m^2]
+};
+
+} // namespace toile

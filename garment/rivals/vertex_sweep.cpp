@@ -1,0 +1,189 @@
+#include "garment/rivals/vertex_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile {
+
+namespace {
+
+/// Entries of K below this share of their row's diagonal are rounding left over from sums that cancel [-]:
+/// on regular meshes the whole second ring. Larger drops bending.
+constexpr double kRoundingOfK = 1e-12;
+
+bool couples(const SparseMatrix& K, int row, SparseMatrix::InnerIterator& entry)
+{
+    return entry.col() != row && std::abs(entry.value()) > kRoundingOfK * K.coeff(row, row);
+}
+
+/// Pairs of vertices that share a term, as keys of both.
+Incidence pairs_of_vertices(const RestShape& rest, const SparseMatrix& K, int& pair_count)
+{
+    std::vector<std::array<int, 2>> pairs;
+    for (const Edge& edge : rest.topology.edges)
+        pairs.push_back({edge.vertex[0], edge.vertex[1]});
+    for (int row = 0; row < K.outerSize(); ++row)
+        for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry)
+            if (couples(K, row, entry))
+                pairs.push_back({row, int(entry.col())});
+    pair_count = int(pairs.size());
+
+    Incidence keys;
+    keys.first.assign(rest.vertex_count() + 1, 0);
+    for (const auto& pair : pairs)
+        for (const int v : pair)
+            ++keys.first[v + 1];
+    for (int v = 0; v < rest.vertex_count(); ++v)
+        keys.first[v + 1] += keys.first[v];
+    keys.items.resize(keys.first.back());
+    std::vector<int> next(keys.first.begin(), keys.first.end() - 1);
+    for (int p = 0; p < pair_count; ++p)
+        for (const int v : pairs[p])
+            keys.items[next[v]++] = p;
+    return keys;
+}
+
+/// Appends blocks to a layout.
+class Layouter {
+public:
+    Layouter(const ClothModel& cloth, const SparseMatrix& K, SweepLayout& layout)
+        : cloth_(cloth), corners_(cloth.rest->topology.corners_of_vertex), K_(K), layout_(layout)
+    {
+        for (int row = 0; row < K.outerSize(); ++row) {
+            rows_.emplace_back();
+            for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry)
+                if (couples(K, row, entry))
+                    rows_.back().emplace_back(int(entry.col()), entry.value());
+        }
+    }
+
+    /// Vertices with equally many terms come into the same block.
+    void append_colour(std::vector<int> vertices)
+    {
+        std::stable_sort(vertices.begin(), vertices.end(), [&](int a, int b) {
+            const int ring_a = corners_.of(a).size(), ring_b = corners_.of(b).size();
+            return ring_a != ring_b ? ring_a < ring_b : rows_[a].size() < rows_[b].size();
+        });
+        const int first = int(layout_.blocks.size());
+        for (int k = 0; k < int(vertices.size()); k += kLanes)
+            append_block(View<const int>(vertices).subview(k, std::min(kLanes, int(vertices.size()) - k)));
+        layout_.colours.push_back({first, int(layout_.blocks.size()) - first});
+    }
+
+private:
+    void append_block(View<const int> vertices)
+    {
+        VertexBlock block;
+        block.count = vertices.size();
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const int v = vertices[std::min(lane, block.count - 1)];
+            block.vertex[lane] = v;
+            block.mass[lane] = cloth_.masses[v];
+            block.bending[lane] = K_.coeff(v, v);
+            block.triangles = std::max(block.triangles, corners_.of(v).size());
+            block.bends = std::max(block.bends, int(rows_[v].size()));
+        }
+        block.first_triangle = int(layout_.triangles.size());
+        for (int k = 0; k < block.triangles; ++k)
+            layout_.triangles.push_back(ring_triangle(block.vertex, k));
+        block.first_bend = int(layout_.bend_vertex.size());
+        for (int k = 0; k < block.bends; ++k)
+            append_bend(block.vertex, k);
+        layout_.blocks.push_back(block);
+    }
+
+    RingTriangle ring_triangle(const LaneIndices& vertex, int k) const
+    {
+        RingTriangle result;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const int v = vertex[lane];
+            const bool exists = k < corners_.of(v).size();
+            const int corner = exists ? corners_.of(v)[k] : 0;
+            const Triangle& triangle = cloth_.rest->triangles[corner / 3];
+            result.corner1[lane] = exists ? triangle[(corner + 1) % 3] : v;
+            result.corner2[lane] = exists ? triangle[(corner + 2) % 3] : v;
+
+            // Hat gradients of corners 0, 1, 2 of the triangle as it is stored.
+            Mat32 hats;
+            hats.bottomRows<2>() = cloth_.rest->edges_inv[corner / 3];
+            hats.row(0) = -hats.row(1) - hats.row(2);
+            for (int axis = 0; axis < 2; ++axis) {
+                result.rest_inv(0, axis)[lane] = exists ? hats((corner + 1) % 3, axis) : 0.0;
+                result.rest_inv(1, axis)[lane] = exists ? hats((corner + 2) % 3, axis) : 0.0;
+            }
+            result.area[lane] = exists ? cloth_.rest->areas[corner / 3] : 0.0;
+        }
+        return result;
+    }
+
+    void append_bend(const LaneIndices& vertex, int k)
+    {
+        LaneIndices neighbour;
+        Lanes stiffness;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const auto& row = rows_[vertex[lane]];
+            const bool exists = k < int(row.size());
+            neighbour[lane] = exists ? row[k].first : vertex[lane];
+            stiffness[lane] = exists ? row[k].second : 0.0;
+        }
+        layout_.bend_vertex.push_back(neighbour);
+        layout_.bend_stiffness.push_back(stiffness);
+    }
+
+    const ClothModel& cloth_;
+    const Incidence& corners_;
+    const SparseMatrix& K_;
+    std::vector<std::vector<std::pair<int, double>>> rows_; ///< off-diagonal entries of K
+    SweepLayout& layout_;
+};
+
+} // namespace
+
+SweepLayout lay_out_sweep(const ClothModel& cloth, const SparseMatrix& K)
+{
+    int pair_count = 0;
+    const Incidence pairs = pairs_of_vertices(*cloth.rest, K, pair_count);
+    SweepLayout layout;
+    Layouter layouter(cloth, K, layout);
+    for (std::vector<int>& vertices : colour_items(pairs, pair_count))
+        layouter.append_colour(std::move(vertices));
+    return layout;
+}
+
+void DescendVertices::operator()(int b) const
+{
+    // Inertia, and the row of K: W_bending = 1/2 x^T K x, whose rows sum to zero.
+    const VertexBlock& block = layout.blocks[b];
+    const Vec3Of<Lanes> own = gather_vectors(x, block.vertex);
+    const Lanes inertia = block.mass * Lanes(1.0 / (dt * dt));
+    Vec3Of<Lanes> gradient = inertia * (own - gather_vectors(prediction, block.vertex));
+    Symmetric3<Lanes> hessian(inertia + block.bending);
+    for (int k = block.first_bend; k < block.first_bend + block.bends; ++k)
+        gradient += layout.bend_stiffness[k] * (gather_vectors(x, layout.bend_vertex[k]) - own);
+
+    // The membrane: the vertex is corner 0 of each triangle.
+    for (int k = block.first_triangle; k < block.first_triangle + block.triangles; ++k) {
+        const RingTriangle& triangle = layout.triangles[k];
+        const Mat2Of<Lanes>& inv = triangle.rest_inv;
+        const Vec3Of<Lanes> e1 = gather_vectors(x, triangle.corner1) - own;
+        const Vec3Of<Lanes> e2 = gather_vectors(x, triangle.corner2) - own;
+        Mat32Of<Lanes> F;
+        F.col(0) = inv(0, 0) * e1 + inv(1, 0) * e2;
+        F.col(1) = inv(0, 1) * e1 + inv(1, 1) * e2;
+        const HatGradient<Lanes> g{-inv(0, 0) - inv(1, 0), -inv(0, 1) - inv(1, 1)};
+        add_membrane_corner<Lanes>(F, g, triangle.area, weights, gradient, hessian);
+    }
+
+    const Vec3Of<Lanes> step = hessian.solve(gradient);
+    moved[b] = 0.0;
+    for (int lane = 0; lane < block.count; ++lane) {
+        const int v = block.vertex[lane];
+        if (fixed[v])
+            continue;
+        const Vec3 move(step(0)[lane], step(1)[lane], step(2)[lane]);
+        x[v] -= move;
+        moved[b] = std::max(moved[b], move.squaredNorm());
+    }
+}
+
+} // namespace toile
