@@ -33,6 +33,8 @@ public:
     int size() const;
     /// Entries of L, explicit zeros of the supernodes included.
     long factor_entries() const;
+    /// L, e.g. for InverseColumns; valid until the next refactor().
+    const SupernodalFactor& factor() const { return factor_; }
 
 private:
     struct Cholmod;
