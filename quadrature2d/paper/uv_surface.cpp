@@ -55,6 +55,7 @@ UvSurface::UvSurface(View<const Vec2> uv, View<const Triangle> triangles, int pi
         if (!(area_[k] > 0.0))
             throw InvalidInput("paper rule: vertex " + std::to_string(k) + " belongs to no triangle");
     measure_coverage();
+    find_pixels_of_vertices();
     sort_into_pixels();
 }
 
@@ -96,10 +97,23 @@ void UvSurface::measure_coverage()
                 integrals.emplace_back(pixel, t[corner], piece * weight[corner]);
         }
     }
-    for (int k = 0; k < vertex_count(); ++k)
-        is_covered_[grid_.index(pixel_of(k))] = 1;
     coverage_.resize(grid_.count(), vertex_count());
     coverage_.setFromTriplets(integrals.begin(), integrals.end());
+}
+
+void UvSurface::find_pixels_of_vertices()
+{
+    std::vector<double> largest(vertex_count(), 0.0);
+    pixel_of_vertex_.resize(vertex_count());
+    for (int pixel = 0; pixel < grid_.count(); ++pixel)
+        for (SparseMatrix::InnerIterator entry(coverage_, pixel); entry; ++entry)
+            if (const int k = int(entry.col()); entry.value() > largest[k]) {
+                largest[k] = entry.value();
+                pixel_of_vertex_[k] = grid_.at(pixel);
+            }
+    for (int k = 0; k < vertex_count(); ++k)
+        if (const Pixel own = grid_.pixel_of(uv_[k]); is_covered_[grid_.index(own)])
+            pixel_of_vertex_[k] = own;
 }
 
 void UvSurface::sort_into_pixels()

@@ -28,7 +28,10 @@ public:
     int vertex_count() const { return int(uv_.size()); }
     const Vec2& uv(int vertex) const { return uv_[vertex]; }
     const PixelGrid& grid() const { return grid_; }
-    Pixel pixel_of(int vertex) const { return grid_.pixel_of(uv_[vertex]); }
+
+    /// The covered pixel that the vertex belongs to: the one it lies in, or, for a vertex of the border that lies
+    /// between pixels, the one that holds most of its area.
+    const Pixel& pixel_of(int vertex) const { return pixel_of_vertex_[vertex]; }
 
     /// Lumped area |Omega_k| = integral of the vertex's shape function N_k [m^2]   [multilevel quadrature, eq. 10]
     double area(int vertex) const { return area_[vertex]; }
@@ -38,7 +41,7 @@ public:
     /// centre.
     const SparseMatrix& coverage() const { return coverage_; }
 
-    /// [pixels] 1 where a part of the surface or a vertex lies in the pixel: `flag` of Alg. 1, line 4.
+    /// [pixels] 1 where a part of the surface lies in the pixel: `flag` of Alg. 1, line 4.
     const std::vector<char>& is_covered() const { return is_covered_; }
 
     /// Where the point lies on the surface; nothing where it lies beside it.
@@ -47,6 +50,7 @@ public:
 private:
     void require_usable() const;
     void measure_coverage();
+    void find_pixels_of_vertices();
     void sort_into_pixels();
 
     std::vector<Vec2> uv_;
@@ -55,6 +59,7 @@ private:
     std::vector<double> area_;
     SparseMatrix coverage_;
     std::vector<char> is_covered_;
+    std::vector<Pixel> pixel_of_vertex_;
     std::vector<std::vector<int>> triangles_of_pixel_; ///< whose bounding boxes touch it
 };
 

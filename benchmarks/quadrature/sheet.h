@@ -5,8 +5,8 @@
 #include "core/linear/sparse_matrix.h"
 #include "quadrature2d/paper/uv_surface.h"
 
-/// A flat sheet with the matrix of Projective Dynamics on it, that the tests of the quadrature share.
-namespace toile::test {
+/// A flat sheet with the matrix of Projective Dynamics on it, to measure quadrature rules on.
+namespace toile {
 
 struct Sheet {
     std::vector<Vec2> uv;            ///< [vertices] in the unit square [m]
@@ -25,10 +25,10 @@ Sheet unit_sheet(int side, double jitter = 0.0);
 /// @param fixed  [vertices] 1 where row and column are the identity's; empty for none
 SparseMatrix sheet_matrix(const Sheet& sheet, double k, const std::vector<unsigned char>& fixed = {});
 
-/// Columns of the inverse, one after the other: u(i) = G(:, i) / G_ii. [vertices]
+/// u(i) = G(:, i) / G_ii with G = H^-1. [vertices] [-]
 std::vector<double> kernel_row(const SparseMatrix& H, int vertex);
 
 /// M / dt^2 q for a smooth field q: a right-hand side as inertia makes it. [vertices] [N]
 std::vector<Vec3> smooth_load(const Sheet& sheet);
 
-} // namespace toile::test
+} // namespace toile

@@ -1,11 +1,11 @@
-#include "tests/quadrature2d/sheet.h"
+#include "benchmarks/quadrature/sheet.h"
 
 #include <cmath>
 #include <random>
 
 #include "core/linear/cholesky.h"
 
-namespace toile::test {
+namespace toile {
 
 namespace {
 
@@ -97,4 +97,4 @@ std::vector<Vec3> smooth_load(const Sheet& sheet)
     return b;
 }
 
-} // namespace toile::test
+} // namespace toile
