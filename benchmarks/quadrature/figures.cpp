@@ -1,5 +1,6 @@
-/// quadrature_figures FOLDER: writes line.csv, square.csv, sheet.csv (integration errors, the paper's figures 3, 5, 6
-/// and the same on cloth) and solver.csv (one application of the rule as a global step).
+/// quadrature_figures FOLDER: writes profile.csv, line.csv, square.csv, sheet.csv (the paper's figures 3, 5,
+/// 6 and the same on cloth: relative integration errors) and solver.csv (the rule as a global step). plot.py
+/// draws them.
 
 #include <cmath>
 #include <cstdio>
@@ -28,8 +29,26 @@ std::string number(double value)
 
 std::string row(const IntegrationErrors& e)
 {
-    return number(e.gauss_legendre_3) + "," + number(e.gauss_legendre_4) + "," + number(e.gaussian_alone) + "," +
-           number(e.stacked_no_penalty) + "," + number(e.stacked) + "\n";
+    return number(e.gauss_legendre_3) + "," + number(e.gauss_legendre_4) + "," + number(e.gaussian_alone) +
+           "," + number(e.stacked_no_penalty) + "," + number(e.stacked) + "\n";
+}
+
+/// Figure 3: a centred peak, its two Gaussians (zero outside of the near box) at every hundredth.
+std::string profile()
+{
+    std::string csv = "near_share,x,target,gaussian_no_penalty,gaussian\n";
+    for (const double share : {0.7, 0.9}) {
+        const YukawaLine target(0.0, 0.2, kEpsilon);
+        const GaussianFits<1> fits = fits_on_line(target, share);
+        for (int step = -100; step <= 100; ++step) {
+            const Point<1> x(0.01 * step);
+            const bool is_near = fits.near.contains(x);
+            csv += number(share) + "," + number(x[0]) + "," + number(target(x[0])) + "," +
+                   number(is_near ? fits.no_penalty.value(x) : 0.0) + "," +
+                   number(is_near ? fits.penalty.value(x) : 0.0) + "\n";
+        }
+    }
+    return csv;
 }
 
 /// Peaks along the line, and the product with itself.
@@ -40,8 +59,9 @@ std::string lines(bool is_square)
         for (const double lambda : {0.1, 0.2, 0.3})
             for (int step = -10; step <= 10; ++step) {
                 const YukawaLine target(0.05 * step, lambda, kEpsilon);
-                csv += number(share) + "," + number(lambda) + "," + number(target.peak()) + "," +
-                       row(is_square ? errors_on_square(target, target, share) : errors_on_line(target, share));
+                csv +=
+                    number(share) + "," + number(lambda) + "," + number(target.peak()) + "," +
+                    row(is_square ? errors_on_square(target, target, share) : errors_on_line(target, share));
             }
     return csv;
 }
@@ -61,8 +81,8 @@ std::string sheets()
         for (int i = 2; i < kSide; i += 4)
             for (int j = 2; j < kSide; j += 4) {
                 const int vertex = i * kSide + j;
-                csv += number(k) + "," + number(sheet.uv[vertex].x()) + "," + number(sheet.uv[vertex].y()) + "," +
-                       row(errors_on_sheet(surface, vertex, kernel_row(H, vertex), b, {}));
+                csv += number(k) + "," + number(sheet.uv[vertex].x()) + "," + number(sheet.uv[vertex].y()) +
+                       "," + row(errors_on_sheet(surface, vertex, kernel_row(H, vertex), b, {}));
             }
     }
     return csv;
@@ -106,9 +126,9 @@ std::string solver_row(const Sheet& sheet, double k, Denominator denominator, in
         for (int i = 0; i < n; ++i)
             x[i] -= z[i];
     }
-    return number(k) + "," + (denominator == Denominator::Exact ? "exact," : "same_rule,") + number(order) + "," +
-           number(penalty) + "," + number(std::sqrt(squared / of_exact)) + "," + number(std::exp(log_growth)) +
-           "\n";
+    return number(k) + "," + (denominator == Denominator::Exact ? "exact," : "same_rule,") + number(order) +
+           "," + number(penalty) + "," + number(std::sqrt(squared / of_exact)) + "," +
+           number(std::exp(log_growth)) + "\n";
 }
 
 std::string solvers()
@@ -135,6 +155,7 @@ int main(int argc, char** argv)
     }
     try {
         const std::filesystem::path folder(argv[1]);
+        toile::write_atomically(folder / "profile.csv", toile::profile());
         toile::write_atomically(folder / "line.csv", toile::lines(false));
         toile::write_atomically(folder / "square.csv", toile::lines(true));
         toile::write_atomically(folder / "sheet.csv", toile::sheets());

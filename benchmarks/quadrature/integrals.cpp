@@ -10,6 +10,7 @@ namespace toile {
 namespace {
 
 constexpr double kPenalty = 100.0; // mu of eq. 17
+constexpr int kSamples = 8;        // |S_i|
 
 /// Mirror images to either side: with a decay length below 1 the next ones add less than 1e-10.
 constexpr int kImages = 6;
@@ -43,36 +44,34 @@ std::vector<Point<Dim>> spread_samples(const Point<Dim>& first, const Box<Dim>& 
 }
 
 /// All rules on one function.
-/// @param without, with  Gaussians fitted without and with penalty
 template <int Dim, typename Phi>
-IntegrationErrors compare(const Phi& phi, double exact, const Box<Dim>& near, const Box<Dim>& middle,
-                          const Gaussian<Dim>& without, const Gaussian<Dim>& with)
+IntegrationErrors compare(const Phi& phi, double exact, const Box<Dim>& middle, const GaussianFits<Dim>& fits)
 {
     const auto error = [&](double value) { return std::abs(value / exact - 1.0); };
-    const std::vector<QuadraturePoint<Dim>> three = gauss_legendre(middle, 3), four = gauss_legendre(middle, 4);
+    const std::vector<QuadraturePoint<Dim>> three = gauss_legendre(middle, 3),
+                                            four = gauss_legendre(middle, 4);
     IntegrationErrors errors;
     errors.gauss_legendre_3 = error(weighted_sum(phi, three));
     errors.gauss_legendre_4 = error(weighted_sum(phi, four));
-    errors.gaussian_alone = error(without.integral(middle));
-    errors.stacked_no_penalty = error(stacked_integral(phi, without, near, three));
-    errors.stacked = error(stacked_integral(phi, with, near, three));
+    errors.gaussian_alone = error(fits.no_penalty.integral(middle));
+    errors.stacked_no_penalty = error(stacked_integral(phi, fits.no_penalty, fits.near, three));
+    errors.stacked = error(stacked_integral(phi, fits.penalty, fits.near, three));
     return errors;
 }
 
 template <int Dim, typename Phi>
-IntegrationErrors fit_and_compare(const Phi& phi, double exact, const Point<Dim>& peak, const Box<Dim>& near)
+GaussianFits<Dim> fit(const Phi& phi, const Point<Dim>& peak, const Box<Dim>& near)
 {
     GaussianTarget<Dim> target;
-    target.samples = spread_samples(peak, near, 8);
+    target.samples = spread_samples(peak, near, kSamples);
     for (const Point<Dim>& sample : target.samples)
         target.values.push_back(phi(sample));
     target.faces = face_centers(near);
     target.penalty = 0.0;
-    const Gaussian<Dim> without = fit_gaussian<Dim>(peak, near, target);
+    GaussianFits<Dim> fits{near, fit_gaussian<Dim>(peak, near, target), {}};
     target.penalty = kPenalty;
-    const Gaussian<Dim> with = fit_gaussian<Dim>(peak, near, target);
-    const Box<Dim> middle(Point<Dim>::Constant(-1.0), Point<Dim>::Constant(1.0));
-    return compare(phi, exact, near, middle, without, with);
+    fits.penalty = fit_gaussian<Dim>(peak, near, target);
+    return fits;
 }
 
 } // namespace
@@ -110,19 +109,27 @@ Box<1> YukawaLine::near_box(double share) const
     return {Point<1>(lower), Point<1>(upper)};
 }
 
+GaussianFits<1> fits_on_line(const YukawaLine& target, double near_share)
+{
+    return fit<1>([&](const Point<1>& x) { return target(x[0]); }, Point<1>(target.peak()),
+                  target.near_box(near_share));
+}
+
 IntegrationErrors errors_on_line(const YukawaLine& target, double near_share)
 {
-    return fit_and_compare<1>([&](const Point<1>& x) { return target(x[0]); }, target.integral(),
-                              Point<1>(target.peak()), target.near_box(near_share));
+    const Box<1> middle{Point<1>(-1.0), Point<1>(1.0)};
+    return compare([&](const Point<1>& x) { return target(x[0]); }, target.integral(), middle,
+                   fits_on_line(target, near_share));
 }
 
 IntegrationErrors errors_on_square(const YukawaLine& target_x, const YukawaLine& target_y, double near_share)
 {
     const Box<1> near_x = target_x.near_box(near_share), near_y = target_y.near_box(near_share);
     const Box<2> near(Vec2(near_x.min()[0], near_y.min()[0]), Vec2(near_x.max()[0], near_y.max()[0]));
-    return fit_and_compare<2>([&](const Vec2& x) { return target_x(x[0]) * target_y(x[1]); },
-                              target_x.integral() * target_y.integral(), {target_x.peak(), target_y.peak()},
-                              near);
+    const Box<2> middle(Vec2(-1, -1), Vec2(1, 1));
+    const auto phi = [&](const Vec2& x) { return target_x(x[0]) * target_y(x[1]); };
+    return compare(phi, target_x.integral() * target_y.integral(), middle,
+                   fit<2>(phi, {target_x.peak(), target_y.peak()}, near));
 }
 
 IntegrationErrors errors_on_sheet(const UvSurface& surface, int vertex, View<const double> u,
@@ -156,15 +163,16 @@ IntegrationErrors errors_on_sheet(const UvSurface& surface, int vertex, View<con
         if (field.domains.middle.contains(surface.grid().at(pixel)))
             for (SparseMatrix::InnerIterator entry(surface.coverage(), pixel); entry; ++entry)
                 exact += entry.value() * density(int(entry.col()));
-    return compare(phi, exact, field.near, field.middle, gaussian(0.0), gaussian(settings.penalty));
+    return compare(phi, exact, field.middle,
+                   GaussianFits<2>{field.near, gaussian(0.0), gaussian(settings.penalty)});
 }
 
 IntegrationErrors mean(const std::vector<IntegrationErrors>& errors)
 {
     IntegrationErrors result;
-    for (const auto member :
-         {&IntegrationErrors::gauss_legendre_3, &IntegrationErrors::gauss_legendre_4,
-          &IntegrationErrors::gaussian_alone, &IntegrationErrors::stacked_no_penalty, &IntegrationErrors::stacked}) {
+    for (const auto member : {&IntegrationErrors::gauss_legendre_3, &IntegrationErrors::gauss_legendre_4,
+                              &IntegrationErrors::gaussian_alone, &IntegrationErrors::stacked_no_penalty,
+                              &IntegrationErrors::stacked}) {
         for (const IntegrationErrors& error : errors)
             result.*member += error.*member;
         result.*member /= double(errors.size());

@@ -46,15 +46,26 @@ private:
     double peak_, lambda_, epsilon_, at_peak_ = 1.0;
 };
 
-/// Figures 3 and 5: the middle box is [-1, 1], the near box holds `near_share` of the integral, S_i are 8 points.
+/// The two Gaussians of a comparison.
+template <int Dim>
+struct GaussianFits {
+    Box<Dim> near; ///< the box that they were fitted in
+    Gaussian<Dim> no_penalty, penalty;
+};
+
+/// The fits behind errors_on_line().
+GaussianFits<1> fits_on_line(const YukawaLine& target, double near_share);
+
+/// Figures 3 and 5: the middle box is [-1, 1], the near box holds `near_share` of the integral, S_i are 8
+/// points.
 IntegrationErrors errors_on_line(const YukawaLine& target, double near_share);
 
-/// Figure 6: phi(x, y) = target_x(x) target_y(y) on the square; the near box is the product of the near intervals.
-/// S_i are 8 points by farthest point sampling.
+/// Figure 6: phi(x, y) = target_x(x) target_y(y) on the square; the near box is the product of the near
+/// intervals. S_i are 8 points by farthest point sampling.
 IntegrationErrors errors_on_square(const YukawaLine& target_x, const YukawaLine& target_y, double near_share);
 
-/// The same on a sheet with its own kernel: phi = u(i) b / |Omega| over the middle box of Alg. 1, against the exact
-/// integral of the interpolant over the box.
+/// The same on a sheet with its own kernel: phi = u(i) b / |Omega| over the middle box of Alg. 1, against the
+/// exact integral of the interpolant over the box.
 /// @param b  [vertices] [N]
 IntegrationErrors errors_on_sheet(const UvSurface& surface, int vertex, View<const double> u,
                                   View<const double> b, const RuleSettings& settings);

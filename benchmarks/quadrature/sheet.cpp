@@ -9,8 +9,8 @@ namespace toile {
 
 namespace {
 
-constexpr double kDensity = 0.2;            // [kg/m^2]
-constexpr double kTimeStep = 1.0 / 120.0;   // [s]
+constexpr double kDensity = 0.2;          // [kg/m^2]
+constexpr double kTimeStep = 1.0 / 120.0; // [s]
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 

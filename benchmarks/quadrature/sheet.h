@@ -16,8 +16,8 @@ struct Sheet {
     int vertex_count() const { return int(uv.size()); }
 };
 
-/// side x side vertices on the unit square, cells cut in two; inner vertices moved by up to `jitter` cells with a
-/// fixed seed.
+/// side x side vertices on the unit square, cells cut in two; inner vertices moved by up to `jitter` cells
+/// with a fixed seed.
 Sheet unit_sheet(int side, double jitter = 0.0);
 
 /// M / dt^2 + k L on the sheet: density 0.2 kg/m^2, dt 1/120 s, L the cotangent Laplacian.

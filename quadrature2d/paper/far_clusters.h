@@ -12,9 +12,9 @@ struct FarCluster {
     double area = 0.0; ///< |C| of eq. 21: lumped areas of the cluster's vertices [m^2]
 };
 
-/// Clusters of the vertices outside of `middle`, by k-means++ with weights |u| in each connected component of the
-/// pixels outside: the first centre is the vertex with the largest weight, the next are drawn with probability
-/// weight times squared distance to the centres so far; Lloyd iterations follow.
+/// Clusters of the vertices outside of `middle`, by k-means++ with weights |u| in each connected component of
+/// the pixels outside: the first centre is the vertex with the largest weight, the next are drawn with
+/// probability weight times squared distance to the centres so far; Lloyd iterations follow.
 ///                                                         [multilevel quadrature for PD, sec. 5.3, eq. 21]
 /// Components get clusters in proportion to their areas, at least one each, so that there may be more than
 /// `count` in all. Distances are taken straight in the UV plane; the paper takes geodesic ones.

@@ -47,8 +47,7 @@ private:
     {
         const PixelGrid& grid = surface_.grid();
         PixelBox slice = box_;
-        slice.first[axis] = slice.last[axis] =
-            direction > 0 ? box_.last[axis] + 1 : box_.first[axis] - 1;
+        slice.first[axis] = slice.last[axis] = direction > 0 ? box_.last[axis] + 1 : box_.first[axis] - 1;
         if (slice.first[axis] < 0 || slice.first[axis] >= grid.size[axis])
             return false;
 

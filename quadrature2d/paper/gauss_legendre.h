@@ -63,17 +63,15 @@ double weighted_sum(const Phi& phi, const std::vector<QuadraturePoint<Dim>>& poi
     return sum;
 }
 
-/// What stacking adds to the plain rule: the Gaussian's integral over the near box less what the rule's points
-/// there take for it. Linear in the amplitude.
+/// What stacking adds to the plain rule: the Gaussian's integral over the near box less what the rule's
+/// points there take for it. Linear in the amplitude.
 template <int Dim>
 double stacking_correction(const Gaussian<Dim>& gaussian, const Box<Dim>& near,
                            const std::vector<QuadraturePoint<Dim>>& points)
 {
-    return gaussian.integral(near) - weighted_sum(
-                                         [&](const Point<Dim>& x) {
-                                             return near.contains(x) ? gaussian.value(x) : 0.0;
-                                         },
-                                         points);
+    return gaussian.integral(near) -
+           weighted_sum([&](const Point<Dim>& x) { return near.contains(x) ? gaussian.value(x) : 0.0; },
+                        points);
 }
 
 /// The stacking rule: the Gaussian's closed-form integral over the near box plus the rule on the middle box

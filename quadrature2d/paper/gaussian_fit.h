@@ -20,15 +20,16 @@ using Box = Eigen::AlignedBox<double, Dim>;
 ///                                            [multilevel quadrature for PD, eq. 15, in Dim dimensions]
 template <int Dim>
 struct Gaussian {
-    double amplitude = 1.0;                    ///< A, in the units of the function it stands for
-    Point<Dim> center = Point<Dim>::Zero();    ///< [m]
+    double amplitude = 1.0;                     ///< A, in the units of the function it stands for
+    Point<Dim> center = Point<Dim>::Zero();     ///< [m]
     Point<Dim> sigma = Point<Dim>::Constant(1); ///< [m] positive
 
     double value(const Point<Dim>& x) const;
 
     /// Closed-form integral over `box`, in units of A times m^Dim.
     ///
-    ///   A prod_a sqrt(pi)/2 sigma_a [erf((upper_a - c_a) / sigma_a) + erf((c_a - lower_a) / sigma_a)]   [eq. 16]
+    ///   A prod_a sqrt(pi)/2 sigma_a [erf((upper_a - c_a) / sigma_a) + erf((c_a - lower_a) / sigma_a)]   [eq.
+    ///   16]
     ///
     /// The centre may lie outside of the box.
     double integral(const Box<Dim>& box) const;
@@ -51,7 +52,8 @@ inline constexpr double kMostSigma = 10.0;
 
 /// The Gaussian around `center` with
 ///
-///   min over A, sigma of  sum_s (G(x_s) - value_s)^2 + mu sum_f G(x_f)^2                               [eq. 17]
+///   min over A, sigma of  sum_s (G(x_s) - value_s)^2 + mu sum_f G(x_f)^2                               [eq.
+///   17]
 ///
 /// by Levenberg-Marquardt in (A, log sigma). The paper takes one Gauss-Newton step; we run to convergence,
 /// because the result is kept (see rule_weights.h).
@@ -67,8 +69,8 @@ Gaussian<Dim> fit_gaussian(const Point<Dim>& center, const Box<Dim>& near, const
 template <int Dim>
 std::vector<double> amplitude_weights(const Gaussian<Dim>& gaussian, const GaussianTarget<Dim>& target);
 
-/// Centres of the 2 Dim faces of the box: F_i of eq. 17. The paper takes the nodes next to them; the surrogate
-/// is known everywhere, so that no node is needed.
+/// Centres of the 2 Dim faces of the box: F_i of eq. 17. The paper takes the nodes next to them; the
+/// surrogate is known everywhere, so that no node is needed.
 template <int Dim>
 std::vector<Point<Dim>> face_centers(const Box<Dim>& box);
 

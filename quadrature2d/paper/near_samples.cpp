@@ -16,7 +16,8 @@ std::vector<int> near_samples(const UvSurface& surface, const PixelBox& near, in
     while (int(samples.size()) < std::min<int>(count, int(inside.size()))) {
         int farthest = 0;
         for (int k = 0; k < int(inside.size()); ++k) {
-            squared[k] = std::min(squared[k], (surface.uv(inside[k]) - surface.uv(samples.back())).squaredNorm());
+            squared[k] =
+                std::min(squared[k], (surface.uv(inside[k]) - surface.uv(samples.back())).squaredNorm());
             if (squared[k] > squared[farthest])
                 farthest = k;
         }

@@ -16,11 +16,31 @@ namespace {
 /// taken instead. The weight of vertex i can cancel to any value; smaller ones multiply x_i.
 constexpr double kLeastDenominator = 1e-6;
 
+void require(bool is_usable, const std::string& what, double value, const std::string& range)
+{
+    if (!is_usable)
+        throw InvalidInput("paper rule: " + what + " is " + std::to_string(value) + "; " + range + " needed");
+}
+
+void require_usable(const RuleSettings& rule)
+{
+    const DomainSettings& domains = rule.domains;
+    require(domains.middle_influence > 0.0 && domains.middle_influence <= 1.0, "middle_influence",
+            domains.middle_influence, "above 0 and at most 1");
+    require(domains.near_influence > 0.0 && domains.near_influence <= domains.middle_influence,
+            "near_influence", domains.near_influence, "above 0 and at most middle_influence");
+    require(rule.sample_count >= 1, "sample_count", rule.sample_count, "at least 1");
+    require(rule.penalty >= 0.0, "penalty", rule.penalty, "at least 0");
+    require(rule.order == 3 || rule.order == 4, "order", rule.order, "3 or 4");
+    require(rule.cluster_count >= 1, "cluster_count", rule.cluster_count, "at least 1");
+}
+
 } // namespace
 
 PaperRule::PaperRule(View<const Vec2> uv, View<const Triangle> triangles, Settings settings)
     : settings_(settings), surface_(uv, triangles, settings.pixels)
 {
+    require_usable(settings.rule);
 }
 
 void PaperRule::update(const SparseMatrix& H, View<const unsigned char> fixed)

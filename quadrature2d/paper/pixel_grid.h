@@ -23,8 +23,8 @@ struct PixelBox {
 
 /// A bounding box cut into equal pixels: the two-dimensional voxels of Alg. 1, line 1.
 struct PixelGrid {
-    Box<2> bounds;        ///< [m]
-    Pixel size{};         ///< columns, rows
+    Box<2> bounds;         ///< [m]
+    Pixel size{};          ///< columns, rows
     Vec2 pixel_size{1, 1}; ///< [m]
 
     PixelGrid() = default;
@@ -48,8 +48,8 @@ struct PixelGrid {
     {
         Pixel pixel;
         for (int axis = 0; axis < 2; ++axis)
-            pixel[axis] = std::clamp(int(std::floor((point[axis] - bounds.min()[axis]) / pixel_size[axis])), 0,
-                                     size[axis] - 1);
+            pixel[axis] = std::clamp(int(std::floor((point[axis] - bounds.min()[axis]) / pixel_size[axis])),
+                                     0, size[axis] - 1);
         return pixel;
     }
 

@@ -16,7 +16,8 @@ std::vector<WeightedVertex> weights_of_density(const UvSurface& surface, int ver
     const NearField field = near_field(surface, vertex, u, settings);
     const std::vector<QuadraturePoint<2>> points = gauss_legendre(field.middle, settings.order);
 
-    // Near: the amplitude is a sum over samples; the Gaussian counts for its integral less what the points see of it.
+    // Near: the amplitude is a sum over samples; the Gaussian counts for its integral less what the points
+    // see of it.
     std::vector<WeightedVertex> weights;
     Gaussian<2> unit = field.gaussian;
     unit.amplitude = 1.0;

@@ -9,8 +9,8 @@ namespace toile {
 
 namespace {
 
-/// Barycentric weight below zero at which a point still counts as inside [-]: points on an edge belong to both
-/// of its triangles.
+/// Barycentric weight below zero at which a point still counts as inside [-]: points on an edge belong to
+/// both of its triangles.
 constexpr double kEdgeSlack = 1e-9;
 
 double twice_area(const Vec2& a, const Vec2& b, const Vec2& c)
@@ -70,8 +70,8 @@ void UvSurface::require_usable() const
     for (size_t t = 0; t < triangles_.size(); ++t) {
         const Triangle& corner = triangles_[t];
         if (corner.minCoeff() < 0 || corner.maxCoeff() >= vertex_count())
-            throw InvalidInput("paper rule: triangle " + std::to_string(t) + " names a vertex outside of 0.." +
-                               std::to_string(vertex_count() - 1));
+            throw InvalidInput("paper rule: triangle " + std::to_string(t) +
+                               " names a vertex outside of 0.." + std::to_string(vertex_count() - 1));
         if (!(twice_area(uv_[corner[0]], uv_[corner[1]], uv_[corner[2]]) > 0.0))
             throw InvalidInput("paper rule: triangle " + std::to_string(t) +
                                " is flipped or has no area in the UV plane");

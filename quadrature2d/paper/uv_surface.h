@@ -8,8 +8,8 @@
 
 namespace toile {
 
-/// A triangle surface spread out in its UV plane under a grid of pixels: what the paper's rule asks of a mesh.
-/// Panels lie side by side and must not overlap.
+/// A triangle surface spread out in its UV plane under a grid of pixels: what the paper's rule asks of a
+/// mesh. Panels lie side by side and must not overlap.
 class UvSurface {
 public:
     /// A point as a mixture of three vertices.
@@ -21,7 +21,8 @@ public:
     /// @param uv         [vertices] positions in the plane [m]
     /// @param triangles  [triangles] counter-clockwise in the plane
     /// @param pixels     of the grid along the longer side of the bounding box, at least 1
-    /// @throws InvalidInput naming the first vertex that is not finite or belongs to no triangle, or the first
+    /// @throws InvalidInput naming the first vertex that is not finite or belongs to no triangle, or the
+    /// first
     ///                      triangle that is out of range, flipped or without area
     UvSurface(View<const Vec2> uv, View<const Triangle> triangles, int pixels);
 
@@ -29,16 +30,17 @@ public:
     const Vec2& uv(int vertex) const { return uv_[vertex]; }
     const PixelGrid& grid() const { return grid_; }
 
-    /// The covered pixel that the vertex belongs to: the one it lies in, or, for a vertex of the border that lies
-    /// between pixels, the one that holds most of its area.
+    /// The covered pixel that the vertex belongs to: the one it lies in, or, for a vertex of the border that
+    /// lies between pixels, the one that holds most of its area.
     const Pixel& pixel_of(int vertex) const { return pixel_of_vertex_[vertex]; }
 
-    /// Lumped area |Omega_k| = integral of the vertex's shape function N_k [m^2]   [multilevel quadrature, eq. 10]
+    /// Lumped area |Omega_k| = integral of the vertex's shape function N_k [m^2]   [multilevel quadrature,
+    /// eq. 10]
     double area(int vertex) const { return area_[vertex]; }
 
     /// Integrals of the shape functions over the pixels, [pixels x vertices] [m^2]; columns sum to area().
-    /// Triangles are cut into pieces of less than half a pixel, and each piece counts for the pixel that holds its
-    /// centre.
+    /// Triangles are cut into pieces of less than half a pixel, and each piece counts for the pixel that
+    /// holds its centre.
     const SparseMatrix& coverage() const { return coverage_; }
 
     /// [pixels] 1 where a part of the surface lies in the pixel: `flag` of Alg. 1, line 4.

@@ -60,7 +60,8 @@ TEST(UvSurface, CoverageSumsToTheAreas)
 {
     const Sheet sheet = unit_sheet(17, 0.3);
     const UvSurface surface(sheet.uv, sheet.triangles, 23);
-    const Eigen::VectorXd sums = surface.coverage().transpose() * Eigen::VectorXd::Ones(surface.grid().count());
+    const Eigen::VectorXd sums =
+        surface.coverage().transpose() * Eigen::VectorXd::Ones(surface.grid().count());
     for (int k = 0; k < sheet.vertex_count(); ++k) {
         EXPECT_NEAR(sums[k], sheet.area[k], 1e-15);
         EXPECT_NEAR(surface.area(k), sheet.area[k], 1e-15);

@@ -151,9 +151,9 @@ TEST(GaussLegendre, IntegratesPolynomialsOfItsDegree)
                     return (std::pow(box.max()[axis], power + 1) - std::pow(box.min()[axis], power + 1)) /
                            (power + 1);
                 };
-                const double value = weighted_sum(
-                    [&](const Vec2& x) { return std::pow(x.x(), p) * std::pow(x.y(), q); },
-                    gauss_legendre(box, order));
+                const double value =
+                    weighted_sum([&](const Vec2& x) { return std::pow(x.x(), p) * std::pow(x.y(), q); },
+                                 gauss_legendre(box, order));
                 EXPECT_NEAR(value, line(0, p) * line(1, q), 1e-12 * std::pow(1.8, q)) << p << " " << q;
             }
 }

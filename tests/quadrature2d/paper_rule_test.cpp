@@ -176,5 +176,23 @@ TEST(PaperRule, RefusesAMatrixOfAnotherSize)
               "paper rule: H has 9 rows and 25 vertices may be fixed, but the surface has 25");
 }
 
+TEST(PaperRule, NamesASettingOutOfRange)
+{
+    const Sheet sheet = unit_sheet(5);
+    const auto message = [&](auto change) {
+        PaperRule::Settings settings;
+        change(settings);
+        return message_of([&] { PaperRule rule(sheet.uv, sheet.triangles, settings); });
+    };
+    EXPECT_EQ(message([](PaperRule::Settings& s) { s.rule.order = 5; }),
+              "paper rule: order is 5.000000; 3 or 4 needed");
+    EXPECT_NE(
+        message([](PaperRule::Settings& s) { s.rule.domains.near_influence = 0.95; }).find("near_influence"),
+        std::string::npos);
+    EXPECT_NE(message([](PaperRule::Settings& s) { s.rule.penalty = NAN; }).find("penalty"),
+              std::string::npos);
+    EXPECT_NE(message([](PaperRule::Settings& s) { s.pixels = 0; }).find("0 pixels"), std::string::npos);
+}
+
 } // namespace
 } // namespace toile::test
