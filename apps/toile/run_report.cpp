@@ -4,6 +4,7 @@
 
 #include "core/backend/atomic_file.h"
 #include "core/backend/process_usage.h"
+#include "scenes/format/field.h"
 
 namespace toile {
 
@@ -20,7 +21,7 @@ Json settings_of(const Scene& scene)
             {"substeps", solver.substeps},
             {"tolerance_m", solver.tolerance},
             {"max_iterations", solver.max_iterations},
-            {"method", solver.method == scene::SolverMethod::Direct ? "direct" : "auto"},
+            {"method", scene_format::word_of(solver.method)},
             {"sleep", solver.sleep.enabled},
             {"threads", solver.threads},
             {"contact_gap_m", scene.contact.gap}};

@@ -11,6 +11,7 @@
 #include "core/backend/error.h"
 #include "core/mesh/obj.h"
 #include "export/async_cache_writer.h"
+#include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world.h"
 
@@ -65,10 +66,8 @@ Scene scene_with_options(const SimulateOptions& options)
     Scene scene = read_scene(options.scene);
     scene.frames = options.frames.value_or(scene.frames);
     scene.solver.threads = options.threads.value_or(scene.solver.threads);
-    if (options.solver == "direct")
-        scene.solver.method = scene::SolverMethod::Direct;
-    else if (options.solver == "auto")
-        scene.solver.method = scene::SolverMethod::Auto;
+    if (!options.solver.empty())
+        scene.solver.method = scene_format::value_of<scene::SolverMethod>(options.solver);
     return scene;
 }
 
@@ -213,7 +212,7 @@ Command add_simulate(CLI::App& program)
     add.add_option("--frames", options->frames, "Samples to write, instead of the scene's");
     add.add_option("--threads", options->threads, "Threads to use; 0: all");
     add.add_option("--solver", options->solver, "Global solver, instead of the scene's")
-        ->check(CLI::IsMember({"auto", "direct"}));
+        ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
     add.add_option("--report", options->report, "Write stages, frames and settings to this JSON file");
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return simulate(*options); };

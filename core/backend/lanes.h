@@ -28,6 +28,13 @@ TOILE_HD inline double square_root(double x) { return std::sqrt(x); }
 inline constexpr int kLanes = 8;
 using Lanes = std::experimental::fixed_size_simd<double, kLanes>;
 
+/// The same in single precision, for tables that are read rather than computed with.
+using FloatLanes = std::experimental::fixed_size_simd<float, kLanes>;
+inline FloatLanes load(const float* numbers)
+{
+    return FloatLanes(numbers, std::experimental::element_aligned);
+}
+
 /// Lane by lane: condition ? yes : no
 inline Lanes select(const Lanes::mask_type& condition, const Lanes& yes, const Lanes& no)
 {

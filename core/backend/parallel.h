@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -60,6 +61,17 @@ template <typename Work>
 void parallel_tasks(CpuSpace, int count, const Work& work)
 {
     tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, count, work); });
+}
+
+/// Runs work(task, scratch) for task in [0, count): long tasks that need memory of their own. One scratch per
+/// thread, made by make() when a thread takes its first task. Counted as one call of stage `name`.
+template <typename Make, typename Work>
+void parallel_tasks_with(CpuSpace, std::string_view name, int count, const Make& make, const Work& work)
+{
+    const StageScope stage(name);
+    tbb::enumerable_thread_specific<decltype(make())> scratch(make);
+    tbb::this_task_arena::isolate(
+        [&] { tbb::parallel_for(0, count, [&](int task) { work(task, scratch.local()); }); });
 }
 
 /// Sum of term(i) over [0, count): fixed blocks of kReductionBlock items, each summed in order, then the

@@ -30,11 +30,11 @@ public:
     /// @param b, x  [n]; may be the same array
     void solve(View<const Vec3> b, View<Vec3> x) const;
 
+    const SupernodalFactor& factor() const { return factor_; }
+
     int size() const;
     /// Entries of L, explicit zeros of the supernodes included.
     long factor_entries() const;
-    /// L, e.g. for InverseColumns; valid until the next refactor().
-    const SupernodalFactor& factor() const { return factor_; }
 
 private:
     struct Cholmod;

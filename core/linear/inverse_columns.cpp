@@ -6,53 +6,46 @@ namespace toile {
 
 namespace {
 
-constexpr int kWide = InverseColumns::kLanesPerRow;
+using Row = InverseColumns::Row;
 
-/// Rows of a product computed together: with the lanes of a row they fill half of the vector registers.
+/// Rows of a product computed together: their accumulators fill half of the vector registers.
 constexpr int kTile = 4;
 
-/// own[k] -= sum_r L(r, k) y[rows[r]] for `Count` columns of L from `L` on, its rows `stride` apart.
+/// own[k] -= sum_r L(r, k) y[rows[r]] for `Count` columns from `L` on, the rows of L `stride` apart.
 template <int Count>
-void subtract_transposed(const double* L, int stride, const int* rows, int row_count, const Lanes* y,
-                         Lanes* own)
+void subtract_transposed(const double* L, int stride, const int* rows, int row_count, const Row* y, Row* own)
 {
-    Lanes sum[Count][kWide] = {};
-    for (int r = 0; r < row_count; ++r) {
-        const Lanes* row = y + long(rows[r]) * kWide;
+    std::array<Row, Count> sum{};
+    for (int r = 0; r < row_count; ++r)
         for (int k = 0; k < Count; ++k)
-            for (int lane = 0; lane < kWide; ++lane)
-                sum[k][lane] += L[long(r) * stride + k] * row[lane];
-    }
+            sum[k] += L[long(r) * stride + k] * y[rows[r]];
     for (int k = 0; k < Count; ++k)
-        for (int lane = 0; lane < kWide; ++lane)
-            own[k * kWide + lane] -= sum[k][lane];
+        own[k] -= sum[k];
 }
 
 /// y[rows[k]] -= sum_j L(k, j) own[j] for `Count` rows of L of length `width`.
 template <int Count>
-void subtract(const double* L, int width, const int* rows, const Lanes* own, Lanes* y)
+void subtract(const double* L, int width, const int* rows, const Row* own, Row* y)
 {
-    Lanes sum[Count][kWide] = {};
+    std::array<Row, Count> sum{};
     for (int j = 0; j < width; ++j)
         for (int k = 0; k < Count; ++k)
-            for (int lane = 0; lane < kWide; ++lane)
-                sum[k][lane] += L[long(k) * width + j] * own[j * kWide + lane];
+            sum[k] += L[long(k) * width + j] * own[j];
     for (int k = 0; k < Count; ++k)
-        for (int lane = 0; lane < kWide; ++lane)
-            y[long(rows[k]) * kWide + lane] -= sum[k][lane];
+        y[rows[k]] -= sum[k];
 }
 
-void forward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Lanes* y)
+void forward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Row* y)
 {
     const int width = node.width;
-    Lanes* own = y + long(node.first_column) * kWide;
-    for (int i = 0; i < width; ++i)
-        for (int lane = 0; lane < kWide; ++lane) {
-            Lanes sum = own[i * kWide + lane];
-            for (int j = 0; j < i; ++j)
-                sum -= L[long(i) * width + j] * own[j * kWide + lane];
-            own[i * kWide + lane] = L[long(i) * width + i] * sum;
-        }
+    Row* own = y + node.first_column;
+    for (int i = 0; i < width; ++i) {
+        const double* row = L + long(i) * width;
+        Row sum = own[i];
+        for (int j = 0; j < i; ++j)
+            sum -= row[j] * own[j];
+        own[i] = row[i] * sum;
+    }
     const double* below = L + long(width) * width;
     int r = 0;
     for (; r + kTile <= node.row_count; r += kTile)
@@ -61,24 +54,22 @@ void forward_node(const SupernodalFactor::Supernode& node, const int* rows, cons
         subtract<1>(below + long(r) * width, width, rows + r, own, y);
 }
 
-void backward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Lanes* y)
+void backward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Row* y)
 {
     const int width = node.width;
-    Lanes* own = y + long(node.first_column) * kWide;
+    Row* own = y + node.first_column;
     const double* below = L + long(width) * width;
     int j = 0;
     for (; j + kTile <= width; j += kTile)
-        subtract_transposed<kTile>(below + j, width, rows, node.row_count, y, own + j * kWide);
+        subtract_transposed<kTile>(below + j, width, rows, node.row_count, y, own + j);
     for (; j < width; ++j)
-        subtract_transposed<1>(below + j, width, rows, node.row_count, y, own + j * kWide);
-
-    for (int i = width - 1; i >= 0; --i)
-        for (int lane = 0; lane < kWide; ++lane) {
-            Lanes sum = own[i * kWide + lane];
-            for (int k = i + 1; k < width; ++k)
-                sum -= L[long(k) * width + i] * own[k * kWide + lane];
-            own[i * kWide + lane] = L[long(i) * width + i] * sum;
-        }
+        subtract_transposed<1>(below + j, width, rows, node.row_count, y, own + j);
+    for (int i = width - 1; i >= 0; --i) {
+        Row sum = own[i];
+        for (int k = i + 1; k < width; ++k)
+            sum -= L[long(k) * width + i] * own[k];
+        own[i] = L[long(i) * width + i] * sum;
+    }
 }
 
 } // namespace
@@ -96,9 +87,9 @@ InverseColumns::InverseColumns(const SupernodalFactor& factor)
 void InverseColumns::solve(View<const int> columns, Block& block) const
 {
     TOILE_ASSERT(columns.size() <= kColumns);
-    block.assign(size_t(size()) * kWide, Lanes(0.0));
+    block.assign(size(), Row{});
     for (int c = 0; c < columns.size(); ++c)
-        block[size_t(row_of_[columns[c]]) * kWide + c / kLanes][c % kLanes] = 1.0;
+        block[row_of_[columns[c]]].lanes[c / kLanes][c % kLanes] = 1.0;
     forward(columns, block);
     backward(block);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/backend/lanes.h"
@@ -13,10 +14,40 @@ namespace toile {
 class InverseColumns {
 public:
     static constexpr int kColumns = 32; ///< of a block
-    static constexpr int kLanesPerRow = kColumns / kLanes;
 
-    /// A block [n][kLanesPerRow]: row k belongs to row factor.permutation[k] of A.
-    using Block = std::vector<Lanes>;
+    /// One row of a block: an entry of each column.
+    struct Row {
+        std::array<Lanes, kColumns / kLanes> lanes{};
+
+        double operator[](int column) const { return lanes[column / kLanes][column % kLanes]; }
+        Row& operator+=(const Row& other)
+        {
+            for (size_t k = 0; k < lanes.size(); ++k)
+                lanes[k] += other.lanes[k];
+            return *this;
+        }
+        Row& operator-=(const Row& other)
+        {
+            for (size_t k = 0; k < lanes.size(); ++k)
+                lanes[k] -= other.lanes[k];
+            return *this;
+        }
+        friend Row squared(Row row)
+        {
+            for (Lanes& lane : row.lanes)
+                lane *= lane;
+            return row;
+        }
+        friend Row operator*(double factor, Row row)
+        {
+            for (Lanes& lane : row.lanes)
+                lane *= factor;
+            return row;
+        }
+    };
+
+    /// [n] row k belongs to row factor.permutation[k] of A.
+    using Block = std::vector<Row>;
 
     /// @param factor  borrowed
     explicit InverseColumns(const SupernodalFactor& factor);

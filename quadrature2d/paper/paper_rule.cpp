@@ -7,6 +7,7 @@
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
 #include "core/linear/cholesky.h"
+#include "core/linear/inverse_columns.h"
 
 namespace toile {
 
@@ -70,9 +71,10 @@ void PaperRule::update(const SparseMatrix& H, View<const unsigned char> fixed)
         InverseColumns::Block block;
         inverse.solve(vertices, block);
         std::vector<double> G(n);
-        for (int lane = 0; lane < count; ++lane) {
-            copy_column(inverse, block, lane, G);
-            rows[vertices[lane]] = tabulate(vertices[lane], G);
+        for (int column = 0; column < count; ++column) {
+            for (int k = 0; k < n; ++k)
+                G[k] = block[inverse.row_of(k)][column];
+            rows[vertices[column]] = tabulate(vertices[column], G);
         }
     });
 
@@ -84,12 +86,12 @@ void PaperRule::update(const SparseMatrix& H, View<const unsigned char> fixed)
     }
 }
 
-std::vector<WeightedVertex> PaperRule::tabulate(int vertex, View<const double> G) const
+std::vector<WeightedVertex> PaperRule::tabulate(int vertex, std::vector<double> G) const
 {
     const double diagonal = G[vertex];
-    std::vector<double> u(G.begin(), G.end());
-    for (double& value : u)
+    for (double& value : G)
         value /= diagonal;
+    const std::vector<double>& u = G;
     std::vector<WeightedVertex> weights = rule_weights(surface_, vertex, u, settings_.rule);
 
     // The rule's denominator is l_i times its weight of vertex i.
@@ -117,12 +119,6 @@ void PaperRule::solve(View<const Vec3> b, View<Vec3> x) const
             sum += entry.weight * values[entry.vertex];
         x[i] = sum;
     });
-}
-
-void copy_column(const InverseColumns& columns, const InverseColumns::Block& block, int lane, View<double> G)
-{
-    for (int k = 0; k < columns.size(); ++k)
-        G[k] = block[size_t(columns.row_of(k)) * InverseColumns::kLanesPerRow + lane / kLanes][lane % kLanes];
 }
 
 } // namespace toile

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "core/linear/global_solver.h"
-#include "core/linear/inverse_columns.h"
 #include "quadrature2d/paper/rule_weights.h"
 
 namespace toile {
@@ -54,15 +53,12 @@ public:
     }
 
 private:
-    std::vector<WeightedVertex> tabulate(int vertex, View<const double> G) const;
+    std::vector<WeightedVertex> tabulate(int vertex, std::vector<double> G) const;
 
     Settings settings_;
     UvSurface surface_;
     std::vector<int> first_; ///< [vertices + 1] into entries_
     std::vector<WeightedVertex> entries_;
 };
-
-/// Column `lane` of a block of G = H^-1 in the order of the rows of H. [n]
-void copy_column(const InverseColumns& columns, const InverseColumns::Block& block, int lane, View<double> G);
 
 } // namespace toile

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scenes/format/scene.h"
 
@@ -70,8 +72,36 @@ struct Words<PreviewPattern> {
 
 template <>
 struct Words<SolverMethod> {
-    static constexpr std::array<std::pair<const char*, SolverMethod>, 2> kAll{
-        {{"auto", SolverMethod::Auto}, {"direct", SolverMethod::Direct}}};
+    static constexpr std::array<std::pair<const char*, SolverMethod>, 3> kAll{{{"auto", SolverMethod::Auto},
+                                                                            {"direct", SolverMethod::Direct},
+                                                                            {"quadrature", SolverMethod::Quadrature}}};
 };
+
+/// All words of an enumeration, in the order of their documentation.
+template <typename E>
+std::vector<std::string> words_of()
+{
+    std::vector<std::string> words;
+    for (const auto& [word, value] : Words<E>::kAll)
+        words.emplace_back(word);
+    return words;
+}
+
+template <typename E>
+const char* word_of(E value)
+{
+    return std::find_if(Words<E>::kAll.begin(), Words<E>::kAll.end(),
+                        [&](const auto& entry) { return entry.second == value; })
+        ->first;
+}
+
+/// @param word  one of words_of()
+template <typename E>
+E value_of(const std::string& word)
+{
+    return std::find_if(Words<E>::kAll.begin(), Words<E>::kAll.end(),
+                        [&](const auto& entry) { return entry.first == word; })
+        ->second;
+}
 
 } // namespace toile::scene_format

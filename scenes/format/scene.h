@@ -195,7 +195,7 @@ struct Contact {
     double friction = 0.3;  ///< [-] of avatars that name none
 };
 
-enum class SolverMethod { Auto, Direct };
+enum class SolverMethod { Auto, Direct, Quadrature };
 
 struct Sleep {
     bool enabled = true;

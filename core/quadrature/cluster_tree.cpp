@@ -1,0 +1,110 @@
+#include "core/quadrature/cluster_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+namespace toile {
+
+namespace {
+
+/// Extent [-] of the widest direction below which another one is rounding.
+constexpr double kFlat = 1e-9;
+
+Place mean_place(View<const Place> places, View<const int> nodes)
+{
+    Place sum = Place::Zero();
+    for (const int v : nodes)
+        sum += places[v];
+    return sum / nodes.size();
+}
+
+/// Of the ball around the mean [m^2].
+double squared_radius(View<const Place> places, View<const int> nodes)
+{
+    const Place center = mean_place(places, nodes);
+    double largest = 0.0;
+    for (const int v : nodes)
+        largest = std::max(largest, (places[v] - center).squaredNorm());
+    return largest;
+}
+
+} // namespace
+
+ClusterTree::ClusterTree(View<const Place> places, std::vector<int> nodes) : nodes_(std::move(nodes))
+{
+    TOILE_ASSERT(!nodes_.empty());
+    first_of_level_ = {0};
+    for (int size = (int(nodes_.size()) + kLeaf - 1) / kLeaf;; size = (size + 1) / 2) {
+        first_of_level_.push_back(first_of_level_.back() + size);
+        if (size == 1)
+            break;
+    }
+    clusters_.resize(first_of_level_.back());
+    nodes_.resize(size_t(kLeaf) * leaf_count(), -1);
+    for (int level = level_count() - 1; level >= 0; --level)
+        for (int c = 0; c < level_size(level); ++c) {
+            measure(places, level, c);
+            if (level > 0)
+                split(places, level, c);
+        }
+}
+
+View<const int> ClusterTree::nodes_of(int level, int c) const
+{
+    const long first = (long(c) << level) * kLeaf;
+    long last = std::min((long(c + 1) << level) * kLeaf, long(nodes_.size()));
+    while (last > first && nodes_[last - 1] < 0)
+        --last;
+    return {nodes_.data() + first, int(last - first)};
+}
+
+/// Puts the nodes of the first child first: divides along the direction that leaves the rounder halves. Along
+/// the longest axis alone, which of a square is any, halves would often be triangles.
+void ClusterTree::split(View<const Place> places, int level, int c)
+{
+    if (child(level, c, 1) < 0)
+        return;
+    const View<const int> all = nodes_of(level, c);
+    const Eigen::Matrix<double, 6, 2>& axes = clusters_[first_of_level_[level] + c].axes;
+    const long first_half = long(kLeaf) << (level - 1);
+    std::vector<int> best, order(all.begin(), all.end());
+    double best_size = std::numeric_limits<double>::infinity();
+    for (const Vec2& direction : {Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(1, -1)}) {
+        const Place axis = axes * direction;
+        std::nth_element(order.begin(), order.begin() + first_half, order.end(), [&](int u, int v) {
+            const double at_u = axis.dot(places[u]), at_v = axis.dot(places[v]);
+            return at_u != at_v ? at_u < at_v : u < v;
+        });
+        const double size = squared_radius(places, {order.data(), int(first_half)}) +
+                            squared_radius(places, {order.data() + first_half, int(all.size() - first_half)});
+        if (size < best_size) {
+            best_size = size;
+            best = order;
+        }
+    }
+    std::copy(best.begin(), best.end(), nodes_.begin() + (all.begin() - nodes_.data()));
+}
+
+void ClusterTree::measure(View<const Place> places, int level, int c)
+{
+    Cluster& cluster = clusters_[first_of_level_[level] + c];
+    const View<const int> nodes = nodes_of(level, c);
+    cluster.center = mean_place(places, nodes);
+    cluster.radius = std::sqrt(squared_radius(places, nodes));
+    Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+    for (const int v : nodes) {
+        const Place away = places[v] - cluster.center;
+        covariance += away * away.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(covariance);
+    const double widest = std::sqrt(std::max(eigen.eigenvalues()[5], 0.0));
+    for (int k = 0; k < 2; ++k)
+        if (widest > 0.0 && std::sqrt(std::max(eigen.eigenvalues()[5 - k], 0.0)) > kFlat * widest)
+            cluster.axes.col(k) = eigen.eigenvectors().col(5 - k);
+}
+
+} // namespace toile

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Where a node is, in a space whose Euclidean distance stands for distance within the body [m]: a position
+/// of a volume, or the place that quadrature2d gives a point of a sewn surface. Unused axes are zero.
+using Place = Eigen::Matrix<double, 6, 1>;
+
+/// Nodes grouped by bisection across their widest direction, into leaves of exactly kLeaf nodes (the last one
+/// may be padded).
+//
+//      level 2   |          0          |     1    |        cluster (k, c) holds the leaves [c 2^k, (c + 1) 2^k)
+//      level 1   |     0    |    1     |     2    |        that exist: the tree needs no pointers
+//      level 0   | 0  |  1  | 2  |  3  | 4  |  5  |        leaves
+//
+/// Clusters are numbered level by level, leaves first: children come before their parents, the root is last.
+class ClusterTree {
+public:
+    static constexpr int kLeaf = 8;
+
+    struct Cluster {
+        Place center = Place::Zero(); ///< mean of its nodes [m]
+        double radius = 0.0;          ///< [m] of the ball around the centre that holds them
+        /// Directions of largest and second largest extent, orthonormal; zero where there is none.
+        Eigen::Matrix<double, 6, 2> axes = Eigen::Matrix<double, 6, 2>::Zero();
+    };
+
+    /// @param places  [n] of all nodes
+    /// @param nodes   those to group; at least one
+    ClusterTree(View<const Place> places, std::vector<int> nodes);
+
+    int leaf_count() const { return level_size(0); }
+    int cluster_count() const { return first_of_level_.back(); }
+    int level_count() const { return int(first_of_level_.size()) - 1; }
+    int level_size(int level) const { return first_of_level_[level + 1] - first_of_level_[level]; }
+    int first_of_level(int level) const { return first_of_level_[level]; }
+    int root() const { return cluster_count() - 1; }
+
+    /// Child 0 or 1 of cluster c of a level above 0; -1 where there is no second one.
+    int child(int level, int c, int which) const
+    {
+        const int k = 2 * c + which;
+        return k < level_size(level - 1) ? first_of_level_[level - 1] + k : -1;
+    }
+
+    const Cluster& cluster(int id) const { return clusters_[id]; }
+
+    /// [kLeaf * leaf_count] node at every slot, -1 where the last leaf is padded.
+    View<const int> nodes() const { return nodes_; }
+
+private:
+    View<const int> nodes_of(int level, int c) const;
+    void split(View<const Place> places, int level, int c);
+    void measure(View<const Place> places, int level, int c);
+
+    std::vector<int> nodes_;
+    std::vector<int> first_of_level_; ///< [levels + 1]
+    std::vector<Cluster> clusters_;
+};
+
+} // namespace toile

@@ -1,0 +1,254 @@
+#include "core/quadrature/quadrature_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "core/linear/field.h"
+#include "core/linear/inverse_columns.h"
+#include "tests/core/matrices.h"
+
+namespace toile::test {
+namespace {
+
+constexpr int kLeaf = ClusterTree::kLeaf;
+constexpr int kRank = ClusterBasis::kRank;
+
+/// Nodes of a columns x rows grid at unit distance.
+std::vector<Place> grid_places(int columns, int rows)
+{
+    std::vector<Place> places;
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < columns; ++i) {
+            places.emplace_back(Place::Zero());
+            places.back().head<2>() << i, j;
+        }
+    return places;
+}
+
+std::vector<int> all_nodes(const std::vector<Place>& places)
+{
+    std::vector<int> nodes(places.size());
+    for (size_t v = 0; v < nodes.size(); ++v)
+        nodes[v] = int(v);
+    return nodes;
+}
+
+/// Nodes below a cluster.
+std::vector<int> nodes_below(const ClusterTree& tree, int level, int c)
+{
+    std::vector<int> nodes;
+    for (int slot = (c << level) * kLeaf; slot < std::min<int>((c + 1) << level, tree.leaf_count()) * kLeaf; ++slot)
+        if (tree.nodes()[slot] >= 0)
+            nodes.push_back(tree.nodes()[slot]);
+    return nodes;
+}
+
+TEST(ClusterTree, HoldsEveryNodeOnceInsideItsBalls)
+{
+    for (const int columns : {1, 3, 8, 23}) {
+        const std::vector<Place> places = grid_places(columns, 17);
+        const ClusterTree tree(places, all_nodes(places));
+        std::vector<int> found = nodes_below(tree, tree.level_count() - 1, 0);
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, all_nodes(places));
+        for (int level = 0; level < tree.level_count(); ++level)
+            for (int c = 0; c < tree.level_size(level); ++c) {
+                const ClusterTree::Cluster& cluster = tree.cluster(tree.first_of_level(level) + c);
+                for (const int v : nodes_below(tree, level, c))
+                    EXPECT_LE((places[v] - cluster.center).norm(), cluster.radius * (1.0 + 1e-12));
+            }
+    }
+}
+
+TEST(ClusterTree, CutsASquareIntoRoundClusters)
+{
+    const std::vector<Place> places = grid_places(64, 64);
+    const ClusterTree tree(places, all_nodes(places));
+    for (int level = 0; level < tree.level_count(); ++level)
+        for (int c = 0; c < tree.level_size(level); ++c) {
+            const double nodes = kLeaf * double(1 << level);
+            EXPECT_LT(tree.cluster(tree.first_of_level(level) + c).radius, 1.2 * std::sqrt(nodes));
+        }
+}
+
+TEST(ClusterTree, TakesNodesThatAllLieInOnePlace)
+{
+    const std::vector<Place> places(21, Place::Ones());
+    const ClusterTree tree(places, all_nodes(places));
+    EXPECT_EQ(tree.leaf_count(), 3);
+    EXPECT_NEAR(tree.cluster(tree.root()).radius, 0.0, 1e-12);
+    const ClusterBasis basis(tree, places);
+    for (int leaf = 0; leaf < 3; ++leaf)
+        EXPECT_TRUE(basis.leaf(leaf).allFinite());
+}
+
+TEST(ClusterBasis, CarriesLinearFieldsExactlyOnEveryCluster)
+{
+    // A basis of 1 and the plane's two coordinates: the moments keep the whole norm of a linear field.
+    const std::vector<Place> places = grid_places(21, 13);
+    const ClusterTree tree(places, all_nodes(places));
+    const ClusterBasis basis(tree, places);
+    const auto field = [&](int v) { return 0.3 - 0.2 * places[v][0] + 0.7 * places[v][1]; };
+    std::vector<double> moments(size_t(kRank) * tree.cluster_count());
+    const auto value = [&](int slot) { return tree.nodes()[slot] < 0 ? 0.0 : field(tree.nodes()[slot]); };
+    for (int level = 0; level < tree.level_count(); ++level)
+        for (int c = 0; c < tree.level_size(level); ++c) {
+            basis.gather(level, c, 0.0, value, View<double>(moments));
+            double squares = 0.0, carried = 0.0;
+            for (const int v : nodes_below(tree, level, c))
+                squares += field(v) * field(v);
+            for (int r = 0; r < kRank; ++r)
+                carried += std::pow(moments[size_t(kRank) * (tree.first_of_level(level) + c) + r], 2);
+            EXPECT_NEAR(carried, squares, 1e-9 * squares);
+        }
+}
+
+TEST(InverseColumns, AreThoseOfTheInverse)
+{
+    const SparseMatrix A = grid_laplacian(19, 14, 0.05);
+    const Cholesky cholesky(A);
+    const InverseColumns inverse(cholesky.factor());
+    const Eigen::MatrixXd exact = Eigen::MatrixXd(A).inverse();
+    std::vector<int> columns;
+    for (int k = 0; k < InverseColumns::kColumns - 3; ++k)
+        columns.push_back((k * 53) % int(A.rows()));
+    InverseColumns::Block block;
+    inverse.solve(columns, block);
+    for (int i = 0; i < A.rows(); ++i) {
+        for (size_t k = 0; k < columns.size(); ++k)
+            EXPECT_NEAR(block[inverse.row_of(i)][int(k)], exact(i, columns[k]), 1e-12 * exact.maxCoeff());
+        EXPECT_EQ(block[inverse.row_of(i)][InverseColumns::kColumns - 1], 0.0);
+    }
+}
+
+/// Largest factor by which x -> x - A H x lengthens a random field in the long run.
+double contraction(const GlobalSolver& solver, const SparseMatrix& H, int steps = 40)
+{
+    const int n = int(H.rows());
+    std::vector<Vec3> x = random_field(n, 5), product(n), correction(n);
+    double ratio = 0.0;
+    for (int step = 0; step < steps; ++step) {
+        const double before = std::sqrt(dot(x, x));
+        for (int i = 0; i < n; ++i)
+            product[i] = row_times(H, i, x);
+        solver.solve(product, correction);
+        axpy(-1.0, correction, x);
+        const double after = std::sqrt(dot(x, x));
+        ratio = after / before;
+        for (Vec3& v : x)
+            v /= after;
+    }
+    return ratio;
+}
+
+struct Grid {
+    static constexpr int kColumns = 40, kRows = 32;
+    std::vector<Place> places = grid_places(kColumns, kRows);
+    std::vector<unsigned char> fixed = std::vector<unsigned char>(places.size(), 0);
+
+    /// @param shift  mass over stiffness: the kernel reaches 1 / sqrt(shift) nodes far
+    SparseMatrix H(double shift) const { return grid_laplacian(kColumns, kRows, shift); }
+};
+
+TEST(Quadrature, ContractsWhateverTheReachOfTheKernel)
+{
+    const Grid grid;
+    for (const double shift : {0.05, 1e-3, 1e-5, 1e-7}) {
+        QuadratureSolver solver(grid.places);
+        const SparseMatrix H = grid.H(shift);
+        solver.update(H, grid.fixed);
+        EXPECT_LT(contraction(solver, H), 0.45) << shift;
+        EXPECT_LT(solver.table().gathers_per_node(), 160.0) << shift;
+    }
+}
+
+TEST(Quadrature, TendsToTheExactSolution)
+{
+    const Grid grid;
+    const SparseMatrix H = grid.H(1e-3);
+    double before = 1.0;
+    for (const double tolerance : {0.3, 0.1, 0.03, 0.003}) {
+        QuadratureSolver solver(grid.places, {tolerance});
+        solver.update(H, grid.fixed);
+        const double now = contraction(solver, H);
+        EXPECT_LT(now, 0.6 * before) << tolerance;
+        before = now;
+    }
+    EXPECT_LT(before, 0.01);
+}
+
+TEST(Quadrature, LeavesFixedNodesAlone)
+{
+    Grid grid;
+    SparseMatrix H = grid.H(1e-3);
+    for (const int v : {0, 39, 500, 501, 777}) {
+        grid.fixed[v] = 1;
+        for (SparseMatrix::InnerIterator entry(H, v); entry; ++entry)
+            entry.valueRef() = H.coeffRef(int(entry.col()), v) = entry.col() == v ? 1.0 : 0.0;
+    }
+    QuadratureSolver solver(grid.places);
+    solver.update(H, grid.fixed);
+    EXPECT_LT(contraction(solver, H), 0.45);
+    std::vector<Vec3> b = random_field(int(H.rows()), 3), x(b.size());
+    solver.solve(b, x);
+    EXPECT_EQ(x[500], b[500]);
+    solver.solve(b, b);
+    EXPECT_EQ(x, b) << "in place";
+}
+
+TEST(Quadrature, SolvesNothingWhereEverythingIsFixed)
+{
+    Grid grid;
+    grid.fixed.assign(grid.fixed.size(), 1);
+    SparseMatrix identity(long(grid.fixed.size()), long(grid.fixed.size()));
+    identity.setIdentity();
+    QuadratureSolver solver(grid.places);
+    solver.update(identity, grid.fixed);
+    const std::vector<Vec3> b = random_field(int(grid.fixed.size()), 3);
+    std::vector<Vec3> x(b.size());
+    solver.solve(b, x);
+    EXPECT_EQ(x, b);
+}
+
+TEST(Quadrature, HasTheSameBitsForAnyThreadCount)
+{
+    const Grid grid;
+    const SparseMatrix H = grid.H(1e-3);
+    const std::vector<Vec3> b = random_field(int(H.rows()), 4);
+    std::vector<Vec3> reference;
+    for (const int threads : {1, 2, 4}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        QuadratureSolver solver(grid.places);
+        solver.update(H, grid.fixed);
+        std::vector<Vec3> x(b.size());
+        solver.solve(b, x);
+        if (reference.empty())
+            reference = x;
+        EXPECT_EQ(x, reference) << threads;
+    }
+}
+
+TEST(Quadrature, CanBeCancelledWhileItIsBuilt)
+{
+    const Grid grid;
+    const Cholesky cholesky(grid.H(1e-3));
+    const ClusterTree tree(grid.places, all_nodes(grid.places));
+    const ClusterBasis basis(tree, grid.places);
+    const std::vector<double> diagonal(grid.places.size(), 4.0);
+    std::vector<double> shares;
+    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+    const auto cancelled = build_kernel_table(cholesky.factor(), diagonal, basis, {}, [&](double share) {
+        shares.push_back(share);
+        return shares.size() < 3;
+    });
+    EXPECT_FALSE(cancelled.has_value());
+    EXPECT_EQ(shares.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+}
+
+} // namespace
+} // namespace toile::test
