@@ -36,12 +36,14 @@ MAY_INCLUDE = {
     "apps/render": BELOW_SCENES + ["scenes", "export"],
     "apps/toile": BELOW_SCENES + ["scenes", "export", "apps/render", "benchmarks"],
     "python": BELOW_SCENES + ["scenes", "export"],
+    "benchmarks/quadrature": ["core", "quadrature2d"],
     "benchmarks": ["core", "garment", "collision", "scenes"],
     "tests": BELOW_SCENES + ["scenes", "export", "apps", "benchmarks"],
 }
 
 # Modules of CMake whose name is not their folder.
-FOLDER_OF_MODULE = {"scene_format": "scenes/format", "render": "apps/render"}
+FOLDER_OF_MODULE = {"scene_format": "scenes/format", "render": "apps/render",
+                    "quadrature_figures": "benchmarks/quadrature"}
 
 # Third-party headers by the start of their name, and the folders that own them. None: everybody may.
 # Tests may use any, as an oracle.

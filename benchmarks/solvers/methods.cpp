@@ -1,0 +1,127 @@
+#include "benchmarks/solvers/methods.h"
+
+#include "core/linear/baselines/aggregated_jacobi.h"
+#include "core/linear/baselines/chebyshev.h"
+#include "core/linear/baselines/jacobi_pcg.h"
+#include "core/linear/baselines/multigrid.h"
+#include "core/linear/baselines/subspace.h"
+#include "core/pd/body.h"
+#include "core/quadrature/quadrature_solver.h"
+#include "garment/rivals/vertex_block_descent.h"
+#include "garment/rivals/xpbd.h"
+#include "quadrature2d/geodesic_places.h"
+#include "quadrature2d/paper/paper_rule.h"
+
+namespace toile::solvers {
+
+namespace {
+
+constexpr int kAnySize = 1'000'000;
+
+/// Kernel rows of the paper's rule are clustered one by one: O(n^2).
+constexpr int kPaperSize = 3000;
+
+/// Body, Rival: anything that answers like a Body.
+template <typename Simulated>
+class StepperOf : public Stepper {
+public:
+    template <typename Step>
+    StepperOf(const Problem& problem, std::unique_ptr<Simulated> simulated, const Step& step)
+        : acceleration_(problem.acceleration()), simulated_(std::move(simulated)), step_(step)
+    {
+    }
+    int step(const SampledStep& from) override
+    {
+        simulated_->set_positions(from.x);
+        simulated_->set_velocities(from.v);
+        return step_(*simulated_, acceleration_).iterations;
+    }
+    View<const Vec3> positions() const override { return simulated_->positions(); }
+
+private:
+    std::vector<Vec3> acceleration_;
+    std::unique_ptr<Simulated> simulated_;
+    std::function<StepReport(Simulated&, const std::vector<Vec3>&)> step_;
+};
+
+using MakeSolver = std::function<std::unique_ptr<GlobalSolver>(const Problem&)>;
+
+template <typename Solver>
+std::unique_ptr<GlobalSolver> make_plain(const Problem&)
+{
+    return std::make_unique<Solver>();
+}
+
+std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem)
+{
+    const RestShape& rest = *problem.cloth.rest;
+    return std::make_unique<QuadratureSolver>(geodesic_places(
+        rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
+}
+
+/// On the sheet's own plane. The rule needs one flat chart, which a skirt does not have.
+std::unique_ptr<GlobalSolver> make_paper(const Problem& problem)
+{
+    std::vector<Vec2> uv;
+    for (const Vec3& p : problem.start.positions)
+        uv.emplace_back(p.z(), p.x());
+    return std::make_unique<PaperRule>(uv, problem.start.triangles);
+}
+
+Method around(const std::string& name, const MakeSolver& make, int iterations, int most_vertices = kAnySize)
+{
+    return {name + " " + std::to_string(iterations), most_vertices, [=](const Problem& problem) {
+                Body::Settings settings;
+                settings.tolerance = 0.0;
+                settings.max_iterations = iterations;
+                auto body = std::make_unique<Body>(problem.start.positions,
+                                                   problem.make_system(make(problem)), settings);
+                return std::make_unique<StepperOf<Body>>(
+                    problem, std::move(body), [&problem](Body& b, const std::vector<Vec3>& acceleration) {
+                        return b.step(problem.dt, acceleration, problem.fixed, problem.start.positions,
+                                      nullptr, nullptr);
+                    });
+            }};
+}
+
+template <typename Method_>
+Method rival(const std::string& name, const typename Method_::Settings& settings)
+{
+    return {name, kAnySize, [=](const Problem& problem) {
+                return std::make_unique<StepperOf<Rival>>(
+                    problem, std::make_unique<Method_>(problem.start.positions, problem.cloth, settings),
+                    [&problem](Rival& r, const std::vector<Vec3>& acceleration) {
+                        return r.step(problem.dt, acceleration, problem.fixed, problem.start.positions);
+                    });
+            }};
+}
+
+} // namespace
+
+std::vector<Method> all_methods()
+{
+    std::vector<Method> methods;
+    for (const int iterations : {3, 8, 20, 50}) {
+        methods.push_back(around("direct", make_plain<DirectSolver>, iterations));
+        methods.push_back(around("quadrature", make_quadrature, iterations));
+        methods.push_back(around("multigrid", make_plain<Multigrid>, iterations));
+        methods.push_back(around("subspace", make_plain<SubspaceSolver>, iterations));
+        methods.push_back(around("chebyshev", make_plain<ChebyshevSolver>, iterations));
+        methods.push_back(around("a-jacobi", make_plain<AggregatedJacobi>, iterations));
+        methods.push_back(around("jacobi-pcg", make_plain<JacobiPcg>, iterations));
+        methods.push_back(around("paper", make_paper, iterations, kPaperSize));
+    }
+    for (const int sweeps : {10, 50, 200}) {
+        VertexBlockDescent::Settings settings;
+        settings.max_sweeps = sweeps;
+        methods.push_back(rival<VertexBlockDescent>("vbd " + std::to_string(sweeps), settings));
+    }
+    for (const int substeps : {5, 20, 80}) {
+        Xpbd::Settings settings;
+        settings.substeps = substeps;
+        methods.push_back(rival<Xpbd>("xpbd " + std::to_string(substeps), settings));
+    }
+    return methods;
+}
+
+} // namespace toile::solvers

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "benchmarks/solvers/problem.h"
+
+namespace toile::solvers {
+
+/// A method ready to step one problem again and again.
+class Stepper {
+public:
+    virtual ~Stepper() = default;
+
+    /// Takes a sampled step from its start. @return iterations (sweeps, substeps)
+    virtual int step(const SampledStep& from) = 0;
+    virtual View<const Vec3> positions() const = 0;
+};
+
+/// A method with a budget of work per step.
+struct Method {
+    std::string name; ///< "direct 20": the global solver or whole method, and its budget
+    int most_vertices; ///< larger meshes are left out: set-up beyond minutes or gigabytes
+    std::function<std::unique_ptr<Stepper>(const Problem&)> make;
+};
+
+/// Projective Dynamics around every global solver at several numbers of outer iterations, then the rivals at
+/// several numbers of sweeps or substeps.
+std::vector<Method> all_methods();
+
+} // namespace toile::solvers

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+#include "core/pd/system.h"
+#include "garment/rivals/rival.h"
+
+namespace toile::solvers {
+
+/// One cloth that swings under gravity, held by a few vertices, without contact: what every method steps.
+struct Problem {
+    std::string mesh; ///< "sheet" or "skirt"
+    TriangleMesh start;
+    ClothModel cloth;
+    std::vector<unsigned char> fixed; ///< [vertices]
+    double stiffness = 0.0;           ///< [N/m] of warp and weft; shear has a fifth
+    double dt = 0.0;                  ///< [s]
+    double mean_edge = 0.0;           ///< [m]
+
+    /// A square metre held at two corners, or a skirt held at its waist, of about `vertices` vertices.
+    static Problem sheet(int vertices, double stiffness, double dt);
+    static Problem skirt(int vertices, double stiffness, double dt);
+
+    int vertex_count() const { return start.vertex_count(); }
+
+    /// The Projective Dynamics objective of the cloth, around a global solver.
+    std::unique_ptr<System> make_system(std::unique_ptr<GlobalSolver> solver) const;
+
+    std::vector<Vec3> acceleration() const; ///< [vertices] gravity [m/s^2]
+};
+
+/// One implicit Euler step to be repeated by every method: from where it starts, and the exact end.
+struct SampledStep {
+    std::vector<Vec3> x, v;       ///< [vertices] at t0 [m], [m/s]
+    std::vector<Vec3> prediction; ///< [vertices] q* [m]
+    std::vector<Vec3> minimiser;  ///< [vertices] converged [m]
+    double energy = 0.0;          ///< [J] objective there
+    double start_energy = 0.0;    ///< [J] objective at q*
+};
+
+/// Every `stride`-th of the first stride * count steps of the cloth, each converged to 1e-8 m.
+std::vector<SampledStep> sample_steps(const Problem& problem, int count, int stride);
+
+/// Objective of a sampled step at x [J].
+double objective(const Problem& problem, const System& system, const SampledStep& step,
+                 const std::vector<Vec3>& x);
+
+} // namespace toile::solvers

@@ -1,0 +1,93 @@
+#include "benchmarks/solvers/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <tbb/global_control.h>
+
+#include "benchmarks/text_table.h"
+#include "core/backend/process_usage.h"
+
+namespace toile::solvers {
+
+namespace {
+
+double now_ms()
+{
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return std::chrono::duration<double, std::milli>(now).count();
+}
+
+double mean_square_distance(View<const Vec3> a, const std::vector<Vec3>& b)
+{
+    double sum = 0.0;
+    for (int v = 0; v < a.size(); ++v)
+        sum += (a[v] - b[v]).squaredNorm();
+    return sum / a.size();
+}
+
+std::vector<Row> rows_of(const std::vector<Result>& results)
+{
+    std::vector<Row> rows;
+    for (const Result& r : results)
+        rows.push_back({r.mesh, std::to_string(r.vertices), format("%g", r.stiffness), format("%.5g", r.dt),
+                        r.method, std::to_string(r.threads), format("%.1f", r.setup_ms),
+                        format("%.3f", r.step_ms), format("%.1f", r.iterations),
+                        format("%.3e", r.rms_over_edge), format("%.3e", r.energy_gap),
+                        format("%.0f", r.peak_mb)});
+    return rows;
+}
+
+const Row kHeader{"mesh",        "vertices",   "stiffness",     "dt",         "method", "threads", "setup_ms",
+                  "ms_per_step", "iterations", "rms_over_edge", "energy_gap", "peak_mb"};
+
+} // namespace
+
+Result run(const Problem& problem, const std::vector<SampledStep>& steps, const Method& method, int repeats)
+{
+    Result result;
+    result.mesh = problem.mesh;
+    result.vertices = problem.vertex_count();
+    result.stiffness = problem.stiffness;
+    result.dt = problem.dt;
+    result.method = method.name;
+    result.threads = int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+
+    const double begin = now_ms();
+    const std::unique_ptr<Stepper> stepper = method.make(problem);
+    stepper->step(steps.front());
+    const double first_ms = now_ms() - begin;
+
+    result.step_ms = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < repeats; ++k) {
+        double total = 0.0;
+        for (const SampledStep& step : steps) {
+            const double start = now_ms();
+            stepper->step(step);
+            total += now_ms() - start;
+        }
+        result.step_ms = std::min(result.step_ms, total / double(steps.size()));
+    }
+    result.setup_ms = std::max(first_ms - result.step_ms, 0.0);
+
+    const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
+    system->prepare(problem.dt, problem.fixed);
+    double squares = 0.0;
+    for (const SampledStep& step : steps) {
+        result.iterations += stepper->step(step) / double(steps.size());
+        const std::vector<Vec3> x(stepper->positions().begin(), stepper->positions().end());
+        squares += mean_square_distance(x, step.minimiser) / double(steps.size());
+        result.energy_gap += (objective(problem, *system, step, x) - step.energy) /
+                             (step.start_energy - step.energy) / double(steps.size());
+    }
+    result.rms_over_edge = std::sqrt(squares) / problem.mean_edge;
+    result.peak_mb = double(peak_memory()) / 1e6;
+    return result;
+}
+
+std::string csv_table(const std::vector<Result>& results) { return csv(kHeader, rows_of(results)); }
+std::string markdown_table(const std::vector<Result>& results) { return markdown(kHeader, rows_of(results)); }
+
+} // namespace toile::solvers

@@ -1,0 +1,124 @@
+#include "quadrature2d/paper/paper_rule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/backend/error.h"
+#include "core/backend/parallel.h"
+#include "core/linear/cholesky.h"
+#include "core/linear/inverse_columns.h"
+
+namespace toile {
+
+namespace {
+
+/// Share of u(i)^T H u(i) at or below which the rule's own denominator says nothing [-]: the exact one is
+/// taken instead. The weight of vertex i can cancel to any value; smaller ones multiply x_i.
+constexpr double kLeastDenominator = 1e-6;
+
+void require(bool is_usable, const std::string& what, double value, const std::string& range)
+{
+    if (!is_usable)
+        throw InvalidInput("paper rule: " + what + " is " + std::to_string(value) + "; " + range + " needed");
+}
+
+void require_usable(const RuleSettings& rule)
+{
+    const DomainSettings& domains = rule.domains;
+    require(domains.middle_influence > 0.0 && domains.middle_influence <= 1.0, "middle_influence",
+            domains.middle_influence, "above 0 and at most 1");
+    require(domains.near_influence > 0.0 && domains.near_influence <= domains.middle_influence,
+            "near_influence", domains.near_influence, "above 0 and at most middle_influence");
+    require(rule.sample_count >= 1, "sample_count", rule.sample_count, "at least 1");
+    require(rule.penalty >= 0.0, "penalty", rule.penalty, "at least 0");
+    require(rule.order == 3 || rule.order == 4, "order", rule.order, "3 or 4");
+    require(rule.cluster_count >= 1, "cluster_count", rule.cluster_count, "at least 1");
+}
+
+} // namespace
+
+PaperRule::PaperRule(View<const Vec2> uv, View<const Triangle> triangles, Settings settings)
+    : settings_(settings), surface_(uv, triangles, settings.pixels)
+{
+    require_usable(settings.rule);
+}
+
+void PaperRule::update(const SparseMatrix& H, View<const unsigned char> fixed)
+{
+    const int n = surface_.vertex_count();
+    if (H.rows() != n || H.cols() != n || fixed.size() != n)
+        throw InvalidInput("paper rule: H has " + std::to_string(H.rows()) + " rows and " +
+                           std::to_string(fixed.size()) + " vertices may be fixed, but the surface has " +
+                           std::to_string(n));
+    const Cholesky cholesky(H);
+    const InverseColumns inverse(cholesky.factor());
+    std::vector<int> free;
+    for (int i = 0; i < n; ++i)
+        if (!fixed[i])
+            free.push_back(i);
+
+    // Rows of free vertices, a block of kernel columns at a time; fixed ones keep b.
+    std::vector<std::vector<WeightedVertex>> rows(n);
+    for (int i = 0; i < n; ++i)
+        if (fixed[i])
+            rows[i] = {{i, 1.0}};
+    const int blocks = (int(free.size()) + InverseColumns::kColumns - 1) / InverseColumns::kColumns;
+    parallel_tasks(kCpu, blocks, [&](int task) {
+        const int first = task * InverseColumns::kColumns;
+        const int count = std::min(InverseColumns::kColumns, int(free.size()) - first);
+        const View<const int> vertices(free.data() + first, count);
+        InverseColumns::Block block;
+        inverse.solve(vertices, block);
+        std::vector<double> G(n);
+        for (int column = 0; column < count; ++column) {
+            for (int k = 0; k < n; ++k)
+                G[k] = block[inverse.row_of(k)][column];
+            rows[vertices[column]] = tabulate(vertices[column], G);
+        }
+    });
+
+    first_.assign(1, 0);
+    entries_.clear();
+    for (const std::vector<WeightedVertex>& row : rows) {
+        entries_.insert(entries_.end(), row.begin(), row.end());
+        first_.push_back(int(entries_.size()));
+    }
+}
+
+std::vector<WeightedVertex> PaperRule::tabulate(int vertex, std::vector<double> G) const
+{
+    const double diagonal = G[vertex];
+    for (double& value : G)
+        value /= diagonal;
+    const std::vector<double>& u = G;
+    std::vector<WeightedVertex> weights = rule_weights(surface_, vertex, u, settings_.rule);
+
+    // The rule's denominator is l_i times its weight of vertex i.
+    double share = 1.0;
+    if (settings_.denominator == Denominator::SameRule) {
+        const auto own = std::find_if(weights.begin(), weights.end(),
+                                      [&](const WeightedVertex& entry) { return entry.vertex == vertex; });
+        if (own != weights.end() && std::abs(own->weight) > kLeastDenominator)
+            share = own->weight;
+    }
+    for (WeightedVertex& entry : weights)
+        entry.weight *= diagonal / share;
+    return weights;
+}
+
+void PaperRule::solve(View<const Vec3> b, View<Vec3> x) const
+{
+    // x may be b.
+    thread_local std::vector<Vec3> source;
+    source.assign(b.begin(), b.end());
+    const View<const Vec3> values(source);
+    parallel_for(kCpu, "paper_rule/solve", x.size(), [&](int i) {
+        Vec3 sum = Vec3::Zero();
+        for (const WeightedVertex& entry : row(i))
+            sum += entry.weight * values[entry.vertex];
+        x[i] = sum;
+    });
+}
+
+} // namespace toile
