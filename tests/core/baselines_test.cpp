@@ -8,6 +8,7 @@
 #include "core/backend/parallel.h"
 #include "core/linear/baselines/chebyshev_solver.h"
 #include "core/linear/baselines/jacobi_pcg.h"
+#include "core/linear/baselines/multigrid.h"
 #include "core/linear/cholesky.h"
 #include "core/linear/pcg.h"
 #include "tests/core/matrices.h"
@@ -122,7 +123,8 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(All, Baseline,
-                         testing::Values(named<JacobiPcg>("JacobiPcg"), named<ChebyshevSolver>("Chebyshev")),
+                         testing::Values(named<JacobiPcg>("JacobiPcg"), named<ChebyshevSolver>("Chebyshev"),
+                                         named<Multigrid>("Multigrid")),
                          [](const auto& test) { return test.param.name; });
 
 TEST_P(Baseline, ReducesTheErrorOfWhiteNoise)
@@ -323,6 +325,50 @@ TEST(Chebyshev, IsExactInOneSweepWhereTheIntervalIsAPoint)
     EXPECT_LT(
         (as_matrix(solve(solver, b)) - Eigen::Vector3d(0.25, 1.0, 0.25).asDiagonal() * as_matrix(b)).norm(),
         1e-9);
+}
+
+TEST(Multigrid, ContractsWhateverTheSizeAndTheStiffness)
+{
+    for (const auto& [size, reach, rate] : {std::tuple(71, 5.0, 0.5), std::tuple(71, 40.0, 0.5),
+                                            std::tuple(71, 500.0, 0.5), std::tuple(140, 40.0, 0.55)}) {
+        SCOPED_TRACE(std::to_string(size) + " vertices a side, reach " + std::to_string(reach));
+        const Problem problem = with_fixed(cloth_matrix(size, size, reach), {0, size - 1});
+        Multigrid solver;
+        solver.update(problem.H, problem.fixed);
+        EXPECT_GE(solver.level_sizes().size(), 3u);
+        EXPECT_LT(contraction(problem, solver), rate);
+        EXPECT_LE(pcg_iterations(problem, solver, 1e-4), 7);
+        EXPECT_LE(pcg_iterations(problem, solver, 1e-8), 13);
+    }
+}
+
+TEST(Multigrid, LeavesVerticesWithoutNeighboursToTheSmoother)
+{
+    // Two sheets, loose vertices between them.
+    const int n = 40 * 40;
+    const SparseMatrix sheet = cloth_matrix(40, 40, 20.0);
+    Triplets entries;
+    for (int row = 0; row < n; ++row)
+        for (SparseMatrix::InnerIterator entry(sheet, row); entry; ++entry)
+            for (const int first : {0, n + 7})
+                entries.emplace_back(first + row, first + int(entry.col()), entry.value());
+    for (int i = n; i < n + 7; ++i)
+        entries.emplace_back(i, i, 1e-3);
+    SparseMatrix H(2 * n + 7, 2 * n + 7);
+    H.setFromTriplets(entries.begin(), entries.end());
+    const Problem problem = with_fixed(H, {n + 3});
+    Multigrid solver;
+    solver.update(problem.H, problem.fixed);
+    EXPECT_LT(contraction(problem, solver), 0.5);
+}
+
+TEST(Multigrid, IsExactWhereTheFinestLevelIsTheCoarsest)
+{
+    const Problem problem = with_fixed(cloth_matrix(12, 12, 5.0), {0, 11});
+    Multigrid solver;
+    solver.update(problem.H, problem.fixed);
+    const Field b = problem.load(5);
+    EXPECT_LT(energy_error(problem, b, solve(solver, b)), 1e-12);
 }
 
 } // namespace
