@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "core/backend/parallel.h"
+#include "core/linear/baselines/aggregated_jacobi.h"
 #include "core/linear/baselines/chebyshev_solver.h"
+#include "core/linear/baselines/coarse_functions.h"
 #include "core/linear/baselines/jacobi_pcg.h"
 #include "core/linear/baselines/multigrid.h"
+#include "core/linear/baselines/subspace_solver.h"
 #include "core/linear/cholesky.h"
 #include "core/linear/pcg.h"
 #include "tests/core/matrices.h"
@@ -124,7 +127,8 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(All, Baseline,
                          testing::Values(named<JacobiPcg>("JacobiPcg"), named<ChebyshevSolver>("Chebyshev"),
-                                         named<Multigrid>("Multigrid")),
+                                         named<AggregatedJacobi>("AggregatedJacobi"),
+                                         named<SubspaceSolver>("Subspace"), named<Multigrid>("Multigrid")),
                          [](const auto& test) { return test.param.name; });
 
 TEST_P(Baseline, ReducesTheErrorOfWhiteNoise)
@@ -325,6 +329,89 @@ TEST(Chebyshev, IsExactInOneSweepWhereTheIntervalIsAPoint)
     EXPECT_LT(
         (as_matrix(solve(solver, b)) - Eigen::Vector3d(0.25, 1.0, 0.25).asDiagonal() * as_matrix(b)).norm(),
         1e-9);
+}
+
+TEST(AggregatedJacobi, OfOrderTwoEqualsTwiceAsManyChebyshevSweeps)
+{
+    const Problem problem = stiff_sheet();
+    AggregatedJacobi aggregated({2, 8});
+    ChebyshevSolver chebyshev({16});
+    aggregated.update(problem.H, problem.fixed);
+    chebyshev.update(problem.H, problem.fixed);
+    const Field b = problem.load(5);
+    const Field x = solve(chebyshev, b);
+    EXPECT_LT(energy_norm(problem, difference(solve(aggregated, b), x)), 1e-10 * energy_norm(problem, x));
+}
+
+TEST(AggregatedJacobi, WithoutAccelerationEqualsJacobiSweeps)
+{
+    const Problem problem = with_fixed(cloth_matrix(20, 20, 5.0), {0, 19});
+    const Field b = problem.load(5);
+    AggregatedJacobi plain({1, 12, false});
+    plain.update(problem.H, problem.fixed);
+    const Eigen::MatrixX3d expected = as_matrix(solve(plain, b));
+    for (const auto& [order, applications] : {std::pair(2, 6), std::pair(3, 4), std::pair(4, 3)}) {
+        AggregatedJacobi aggregated({order, applications, false});
+        aggregated.update(problem.H, problem.fixed);
+        EXPECT_LT((as_matrix(solve(aggregated, b)) - expected).norm(), 1e-12 * expected.norm()) << order;
+        EXPECT_GT(aggregated.entry_count(), order * plain.entry_count()) << "reaches more rings";
+    }
+}
+
+TEST(AggregatedJacobi, KeepsItsTheoreticalBound)
+{
+    const Problem problem = stiff_sheet();
+    const Field b = problem.load(5);
+    for (const int order : {1, 2, 3}) {
+        AggregatedJacobi solver({order, 16});
+        solver.update(problem.H, problem.fixed);
+        const double bound = chebyshev_contraction(solver.bounds(), 16);
+        EXPECT_LE(energy_error(problem, b, solve(solver, b)), bound) << order;
+        const double rate = contraction(problem, solver);
+        EXPECT_LE(rate, bound) << order;
+        EXPECT_GT(rate, 0.97 * bound) << order;
+    }
+}
+
+TEST(CoarseFunctions, AddUpToOneAndStayLocal)
+{
+    const Problem problem = with_fixed(cloth_matrix(30, 30, 5.0), {0, 29});
+    const std::vector<double> inverse_diagonal = invert_diagonal(problem.H, problem.fixed);
+    const SparseMatrix H = problem.H.pruned(0.0, 0.0);
+    const SparseMatrix P = partition_of_unity(H, inverse_diagonal, 40, 1.5);
+    EXPECT_EQ(P.cols(), 40);
+    const Eigen::VectorXd sums = P * Eigen::VectorXd::Ones(P.cols());
+    for (int i = 0; i < problem.size(); ++i)
+        EXPECT_NEAR(sums[i], problem.fixed[i] ? 0.0 : 1.0, 1e-14);
+    EXPECT_GE(P.coeffs().minCoeff(), 0.0);
+    EXPECT_LT(P.nonZeros(), 10 * P.rows());
+    EXPECT_EQ(partition_of_unity(H, inverse_diagonal, 5000, 1.5).cols(), 898) << "no more than vertices";
+}
+
+TEST(Subspace, BeatsItsSmootherAlone)
+{
+    const Problem problem = stiff_sheet();
+    SubspaceSolver subspace;
+    ChebyshevSolver smoother({8}); // as many sweeps
+    subspace.update(problem.H, problem.fixed);
+    smoother.update(problem.H, problem.fixed);
+    EXPECT_LT(contraction(problem, subspace), 0.25);
+    EXPECT_GT(contraction(problem, smoother), 0.9);
+    EXPECT_LE(pcg_iterations(problem, subspace, 1e-4), 5);
+    EXPECT_LE(pcg_iterations(problem, subspace, 1e-8), 8);
+}
+
+TEST(Subspace, ContractsMoreWithMoreFunctionsAndMoreSweeps)
+{
+    const Problem problem = stiff_sheet();
+    const auto rate = [&](int functions, int degree) {
+        SubspaceSolver solver({functions, degree});
+        solver.update(problem.H, problem.fixed);
+        return contraction(problem, solver);
+    };
+    EXPECT_LT(rate(100, 4), 0.6);
+    EXPECT_LT(rate(300, 4), rate(100, 4));
+    EXPECT_LT(rate(300, 8), rate(300, 4));
 }
 
 TEST(Multigrid, ContractsWhateverTheSizeAndTheStiffness)

@@ -96,22 +96,15 @@ Aggregation aggregate(const SparseMatrix& strong)
     return groups;
 }
 
-SparseMatrix smoothed_prolongation(const SparseMatrix& strong, const Aggregation& groups, double highest)
+SparseMatrix characteristic_functions(const Aggregation& groups)
 {
-    const double omega = 4.0 / 3.0 / highest;
     Triplets entries;
-    for (int row = 0; row < int(strong.rows()); ++row) {
-        if (groups.group[row] < 0)
-            continue;
-        const double diagonal = strong.coeff(row, row);
-        entries.emplace_back(row, groups.group[row], 1.0);
-        for (SparseMatrix::InnerIterator entry(strong, row); entry; ++entry)
-            if (const int group = groups.group[entry.col()]; group >= 0)
-                entries.emplace_back(row, group, -omega * entry.value() / diagonal);
-    }
-    SparseMatrix P(strong.rows(), groups.count);
-    P.setFromTriplets(entries.begin(), entries.end());
-    return P;
+    for (int i = 0; i < int(groups.group.size()); ++i)
+        if (groups.group[i] >= 0)
+            entries.emplace_back(i, groups.group[i], 1.0);
+    SparseMatrix functions(int(groups.group.size()), groups.count);
+    functions.setFromTriplets(entries.begin(), entries.end());
+    return functions;
 }
 
 } // namespace toile

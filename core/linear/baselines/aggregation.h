@@ -23,11 +23,7 @@ SparseMatrix strong_part(const SparseMatrix& A, View<const double> inverse_diago
 /// @param strong  see strong_part()
 Aggregation aggregate(const SparseMatrix& strong);
 
-/// Coarse functions: the groups' characteristic functions after one damped Jacobi step,
-/// P = (I - 4/3 / highest D_s^-1 A_s) T with A_s the strong part and D_s its diagonal
-/// [Vanek, Mandel, Brezina 1996, eq. 8 and 9]. Constants stay in the range where A_s has them in its kernel.
-/// @param highest  eigenvalue of D^-1 A
-/// @return         [n x count]
-SparseMatrix smoothed_prolongation(const SparseMatrix& strong, const Aggregation& groups, double highest);
+/// The groups' characteristic functions [n x count].
+SparseMatrix characteristic_functions(const Aggregation& groups);
 
 } // namespace toile
