@@ -91,8 +91,11 @@ inline SparseMatrix cloth_matrix(int columns, int rows, double reach, unsigned s
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> shake(-0.25, 0.25);
     std::vector<Vec3> x(size_t(columns) * rows);
-    for (int i = 0; i < int(x.size()); ++i)
-        x[i] = Vec3(i % columns + shake(random), i / columns + shake(random), 0.0);
+    for (int i = 0; i < int(x.size()); ++i) {
+        const int column = i % columns, row = i / columns;
+        const double dx = shake(random), dy = shake(random);
+        x[i] = Vec3(column + dx, row + dy, 0.0);
+    }
     Triplets entries;
     const auto add_triangle = [&](int a, int b, int c) {
         const double twice_area = (x[b] - x[a]).cross(x[c] - x[a]).norm();

@@ -13,14 +13,17 @@ namespace {
 /// R = I - damping D^-1 A; empty rows where vertices are fixed.
 SparseMatrix iteration_matrix(const SparseMatrix& A, View<const double> inverse_diagonal, double damping)
 {
-    SparseMatrix R = A;
-    for (int row = 0; row < int(A.rows()); ++row)
-        for (SparseMatrix::InnerIterator entry(R, row); entry; ++entry) {
-            const double change = damping * inverse_diagonal[row] * entry.value();
-            const bool is_free_diagonal = entry.col() == row && inverse_diagonal[row] > 0.0;
-            entry.valueRef() = (is_free_diagonal ? 1.0 : 0.0) - change;
-        }
-    return R.pruned(0.0, 0.0);
+    Triplets entries;
+    for (int row = 0; row < int(A.rows()); ++row) {
+        if (inverse_diagonal[row] == 0.0)
+            continue;
+        entries.emplace_back(row, row, 1.0);
+        for (SparseMatrix::InnerIterator entry(A, row); entry; ++entry)
+            entries.emplace_back(row, int(entry.col()), -damping * inverse_diagonal[row] * entry.value());
+    }
+    SparseMatrix R(A.rows(), A.cols());
+    R.setFromTriplets(entries.begin(), entries.end());
+    return R;
 }
 
 /// Of I - R^l, from those of w D^-1 H = I - R: 1 - r^l is monotonic in r for odd l and largest at r = 0 for
@@ -35,7 +38,7 @@ SpectralBounds aggregated(const SpectralBounds& bounds, double damping, int orde
 
 } // namespace
 
-void AggregatedJacobi::prepare(SparseMatrix A, std::vector<double> inverse_diagonal)
+void AggregatedJacobi::prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal)
 {
     const int order = settings_.order;
     const SpectralBounds bounds = estimate_bounds(A, inverse_diagonal, settings_.lanczos_steps);
@@ -50,8 +53,8 @@ void AggregatedJacobi::prepare(SparseMatrix A, std::vector<double> inverse_diago
         R_ = SparseMatrix(R_ * R);
     for (std::vector<Vec4>* field : {&c_, &d_, &other_})
         field->resize(inverse_diagonal.size());
-    sweeps_ = ChebyshevJacobi(std::move(A), std::move(inverse_diagonal),
-                              std::vector<ChebyshevStep>(order, {0.0, damping}));
+    sweeps_ =
+        ChebyshevJacobi(A, std::move(inverse_diagonal), std::vector<ChebyshevStep>(order, {0.0, damping}));
 }
 
 void AggregatedJacobi::solve_free(View<const Vec4> b, View<Vec4> x) const

@@ -40,7 +40,7 @@ public:
     const SpectralBounds& bounds() const { return bounds_; }
 
 private:
-    void prepare(SparseMatrix A, std::vector<double> inverse_diagonal) override;
+    void prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal) override;
     void solve_free(View<const Vec4> b, View<Vec4> x) const override;
 
     Settings settings_;

@@ -1,5 +1,6 @@
 #include "core/linear/baselines/chebyshev.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -31,9 +32,9 @@ double chebyshev_contraction(const SpectralBounds& bounds, int count)
     return 1.0 / std::cosh(count * std::acosh(sigma));
 }
 
-ChebyshevJacobi::ChebyshevJacobi(SparseMatrix A, std::vector<double> inverse_diagonal,
+ChebyshevJacobi::ChebyshevJacobi(const SparseMatrix& A, std::vector<double> inverse_diagonal,
                                  std::vector<ChebyshevStep> steps)
-    : A_(std::move(A)), inverse_diagonal_(std::move(inverse_diagonal)), steps_(std::move(steps)),
+    : A_(A), inverse_diagonal_(std::move(inverse_diagonal)), steps_(std::move(steps)),
       d_(inverse_diagonal_.size()), other_(inverse_diagonal_.size())
 {
     TOILE_ASSERT(!steps_.empty());

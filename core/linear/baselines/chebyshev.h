@@ -30,7 +30,8 @@ public:
 
     /// @param A                 [n x n] compressed
     /// @param inverse_diagonal  [n] 1 / a_ii; 0 at rows to leave alone
-    ChebyshevJacobi(SparseMatrix A, std::vector<double> inverse_diagonal, std::vector<ChebyshevStep> steps);
+    ChebyshevJacobi(const SparseMatrix& A, std::vector<double> inverse_diagonal,
+                    std::vector<ChebyshevStep> steps);
 
     /// x after the steps from zero: one product with A fewer than steps.
     void solve(View<const Vec4> b, View<Vec4> x) const;

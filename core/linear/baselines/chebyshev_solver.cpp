@@ -4,11 +4,10 @@
 
 namespace toile {
 
-void ChebyshevSolver::prepare(SparseMatrix A, std::vector<double> inverse_diagonal)
+void ChebyshevSolver::prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal)
 {
     bounds_ = estimate_bounds(A, inverse_diagonal, settings_.lanczos_steps);
-    iteration_ = ChebyshevJacobi(std::move(A), std::move(inverse_diagonal),
-                                 chebyshev_steps(bounds_, settings_.sweeps));
+    iteration_ = ChebyshevJacobi(A, std::move(inverse_diagonal), chebyshev_steps(bounds_, settings_.sweeps));
 }
 
 } // namespace toile

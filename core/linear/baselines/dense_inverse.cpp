@@ -29,7 +29,7 @@ DenseInverse::DenseInverse(const SparseMatrix& A)
 void DenseInverse::solve(View<const Vec4> b, View<Vec4> x) const
 {
     using Columns = Eigen::Matrix<double, 4, Eigen::Dynamic>;
-    const Eigen::Map<const Columns, Eigen::Aligned32> all_b(b.data()->data(), 4, b.size());
+    const Eigen::Map<const Columns, alignof(Vec4)> all_b(b.data()->data(), 4, b.size());
     parallel_for(
         kCpu, "baselines/dense", b.size(), [&](int i) { x[i].noalias() = all_b * inverse_.col(i); },
         kRowGrain);

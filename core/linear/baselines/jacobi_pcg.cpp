@@ -15,9 +15,9 @@ Vec4 ratio(const Vec4& a, const Vec4& b) { return (b.array() > 0.0).select(a.arr
 
 } // namespace
 
-void JacobiPcg::prepare(SparseMatrix A, std::vector<double> inverse_diagonal)
+void JacobiPcg::prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal)
 {
-    A_ = std::move(A);
+    A_ = A;
     inverse_diagonal_ = std::move(inverse_diagonal);
     for (std::vector<Vec4>* field : {&r_, &p_, &product_})
         field->resize(inverse_diagonal_.size());

@@ -27,7 +27,7 @@ public:
     int iterations() const { return iterations_; }
 
 private:
-    void prepare(SparseMatrix A, std::vector<double> inverse_diagonal) override;
+    void prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal) override;
     void solve_free(View<const Vec4> b, View<Vec4> x) const override;
 
     Settings settings_;

@@ -7,21 +7,22 @@
 
 namespace toile {
 
-void Multigrid::prepare(SparseMatrix A, std::vector<double> inverse_diagonal)
+void Multigrid::prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal)
 {
     cycle_ = VCycle();
+    SparseMatrix level = A;
     double strength = settings_.strength;
-    while (A.rows() > settings_.coarsest_size) {
-        const SparseMatrix strong = strong_part(A, inverse_diagonal, strength);
-        const double highest = estimate_bounds(A, inverse_diagonal, settings_.smoother.lanczos_steps).highest;
+    while (level.rows() > settings_.coarsest_size) {
+        const SparseMatrix strong = strong_part(level, inverse_diagonal, strength);
         const SparseMatrix groups = characteristic_functions(aggregate(strong));
-        SparseMatrix P = jacobi_smoothed(strong, groups, kProlongationDamping / highest);
-        A = cycle_.add_level(std::move(A), std::move(inverse_diagonal), highest, std::move(P),
-                             settings_.smoother);
-        inverse_diagonal = invert_diagonal(A, std::vector<unsigned char>(A.rows(), 0));
+        const double highest =
+            estimate_bounds(level, inverse_diagonal, settings_.smoother.lanczos_steps).highest;
+        const SparseMatrix P = jacobi_smoothed(strong, groups, kProlongationDamping / highest);
+        level = cycle_.add_level(level, std::move(inverse_diagonal), highest, P, settings_.smoother);
+        inverse_diagonal = invert_diagonal(level, std::vector<unsigned char>(level.rows(), 0));
         strength *= 0.5;
     }
-    cycle_.end(A);
+    cycle_.end(level);
 }
 
 } // namespace toile

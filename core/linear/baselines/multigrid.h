@@ -31,7 +31,7 @@ public:
     std::vector<int> level_sizes() const { return cycle_.sizes(); }
 
 private:
-    void prepare(SparseMatrix A, std::vector<double> inverse_diagonal) override;
+    void prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal) override;
     void solve_free(View<const Vec4> b, View<Vec4> x) const override { cycle_.solve(b, x); }
 
     Settings settings_;

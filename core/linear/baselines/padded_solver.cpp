@@ -1,7 +1,6 @@
 #include "core/linear/baselines/padded_solver.h"
 
 #include <string>
-#include <utility>
 
 #include "core/backend/error.h"
 #include "core/linear/field.h"
@@ -30,8 +29,7 @@ void PaddedSolver::update(const SparseMatrix& H, View<const unsigned char> fixed
     x_.resize(fixed.size());
     SparseMatrix A = H.pruned(0.0, 0.0);
     A.makeCompressed();
-    std::vector<double> inverse_diagonal = invert_diagonal(A, fixed);
-    prepare(std::move(A), std::move(inverse_diagonal));
+    prepare(A, invert_diagonal(A, fixed));
 }
 
 void PaddedSolver::solve(View<const Vec3> b, View<Vec3> x) const

@@ -28,7 +28,7 @@ protected:
     /// Everything is rebuilt, for the same pattern too: no baseline is measured by its setup.
     /// @param A                 [n x n] H, compressed, without explicit zeros
     /// @param inverse_diagonal  [n] see invert_diagonal()
-    virtual void prepare(SparseMatrix A, std::vector<double> inverse_diagonal) = 0;
+    virtual void prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal) = 0;
 
     /// x = A^-1 b or close to it.
     /// @param b  [n] zero at fixed vertices

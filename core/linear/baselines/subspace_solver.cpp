@@ -18,7 +18,7 @@ constexpr double kLeastRatio = 4.0;
 
 } // namespace
 
-void SubspaceSolver::prepare(SparseMatrix A, std::vector<double> inverse_diagonal)
+void SubspaceSolver::prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal)
 {
     SmootherSettings smoother;
     const double highest = estimate_bounds(A, inverse_diagonal, smoother.lanczos_steps).highest;
@@ -30,7 +30,7 @@ void SubspaceSolver::prepare(SparseMatrix A, std::vector<double> inverse_diagona
     smoother.degree = settings_.degree;
     smoother.ratio = std::max(kLeastRatio, kRatioPerVertex * vertices);
     cycle_ = VCycle();
-    cycle_.end(cycle_.add_level(std::move(A), std::move(inverse_diagonal), highest, std::move(P), smoother));
+    cycle_.end(cycle_.add_level(A, std::move(inverse_diagonal), highest, P, smoother));
 }
 
 } // namespace toile

@@ -30,7 +30,7 @@ public:
     bool is_symmetric() const override { return true; }
 
 private:
-    void prepare(SparseMatrix A, std::vector<double> inverse_diagonal) override;
+    void prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal) override;
     void solve_free(View<const Vec4> b, View<Vec4> x) const override { cycle_.solve(b, x); }
 
     Settings settings_;

@@ -6,8 +6,8 @@
 
 namespace toile {
 
-SparseMatrix VCycle::add_level(SparseMatrix A, std::vector<double> inverse_diagonal, double highest,
-                               SparseMatrix P, const SmootherSettings& settings)
+SparseMatrix VCycle::add_level(const SparseMatrix& A, std::vector<double> inverse_diagonal, double highest,
+                               const SparseMatrix& P, const SmootherSettings& settings)
 {
     const SparseMatrix P_transposed = P.transpose();
     const SparseMatrix AP = A * P;
@@ -18,9 +18,9 @@ SparseMatrix VCycle::add_level(SparseMatrix A, std::vector<double> inverse_diago
     level.r.resize(A.rows());
     level.coarse_b.resize(P.cols());
     level.coarse_x.resize(P.cols());
-    level.P = std::move(P);
+    level.P = P;
     level.P_transposed = P_transposed;
-    level.smoother = ChebyshevJacobi(std::move(A), std::move(inverse_diagonal),
+    level.smoother = ChebyshevJacobi(A, std::move(inverse_diagonal),
                                      chebyshev_steps({highest / settings.ratio, highest}, settings.degree));
     levels_.push_back(std::move(level));
     return coarse;

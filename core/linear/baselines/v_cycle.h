@@ -24,8 +24,8 @@ public:
     /// @param A        [n x n] the finest, or what the last call returned
     /// @param highest  eigenvalue of D^-1 A, from above
     /// @param P        [n x coarse] empty rows for vertices left to the smoother or alone
-    SparseMatrix add_level(SparseMatrix A, std::vector<double> inverse_diagonal, double highest,
-                           SparseMatrix P, const SmootherSettings& settings);
+    SparseMatrix add_level(const SparseMatrix& A, std::vector<double> inverse_diagonal, double highest,
+                           const SparseMatrix& P, const SmootherSettings& settings);
 
     /// Ends the hierarchy. @throws InvalidInput where A is not positive definite
     void end(const SparseMatrix& A);
