@@ -13,11 +13,11 @@ struct Aggregation {
 };
 
 /// The entries of A that are strong, |a_ij| > strength sqrt(a_ii a_jj), and the diagonal, to which weak ones
-/// are added: rows keep their sum [Vanek, Mandel, Brezina 1996, section 5]. Rows left out are empty.
+/// are added: rows keep their sum [Vanek, Mandel, Brezina 1996]. Rows left out are empty.
 /// @param inverse_diagonal  [n] 1 / a_ii, or 0 for rows to leave out
 SparseMatrix strong_part(const SparseMatrix& A, View<const double> inverse_diagonal, double strength);
 
-/// Greedy grouping [Vanek, Mandel, Brezina 1996, alg. 5.1]: whole neighbourhoods first, then left-over
+/// Greedy grouping [Vanek, Mandel, Brezina 1996]: whole neighbourhoods first, then left-over
 /// vertices to the neighbouring group they are coupled to most, then what remains by neighbourhoods again.
 /// Rows without neighbours stay out.
 /// @param strong  see strong_part()

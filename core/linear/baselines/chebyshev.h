@@ -19,7 +19,7 @@ struct ChebyshevStep {
 /// @param count  at least 1
 std::vector<ChebyshevStep> chebyshev_steps(const SpectralBounds& bounds, int count);
 
-/// 1 / T_count((highest + lowest) / (highest - lowest)) [-]      [Saad 2003, eq. 12.10]
+/// 1 / T_count((highest + lowest) / (highest - lowest)) [-]      [Golub & Varga 1961]
 double chebyshev_contraction(const SpectralBounds& bounds, int count);
 
 /// Chebyshev with M = D = diag(A) on padded fields, one pass over A per step: a solver with many steps, a

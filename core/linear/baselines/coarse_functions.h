@@ -7,7 +7,7 @@
 namespace toile {
 
 /// Damping of a Jacobi step that smooths coarse functions, over the highest eigenvalue of D^-1 A [-]
-/// [Vanek, Mandel, Brezina 1996, eq. 9].
+/// [Vanek, Mandel, Brezina 1996].
 inline constexpr double kProlongationDamping = 4.0 / 3.0;
 
 /// functions - damping D^-1 A functions, D = diag(A): one Jacobi step towards A functions = 0 for every

@@ -16,7 +16,7 @@ public:
         SmootherSettings smoother;
 
         /// Entries |a_ij| up to strength sqrt(a_ii a_jj) are weak: they form no groups
-        /// [Vanek et al. 1996, eq. 5]. Halved from level to level.
+        /// [Vanek et al. 1996]. Halved from level to level.
         double strength = 0.08; ///< [-]
 
         int coarsest_size = 300; ///< rows at which a level is solved by its dense inverse

@@ -5,12 +5,12 @@
 namespace toile {
 
 /// A subspace of smooth functions solved directly, with Chebyshev smoothing before and after: the two-level
-/// form of what subspace-preconditioned Projective Dynamics does for cloth. There [Li et al. 2023; Lan et al.
-/// 2024, "subspace reuse"] the subspace takes care of low frequencies and iterations of high ones.
+/// idea behind subspace-preconditioned Projective Dynamics for cloth, where a subspace takes care of low
+/// frequencies and GPU iterations of high ones [Lan et al. 2024, "subspace reuse"; Li et al. 2023].
 ///
-/// Their subspaces come from grids or modes of the rest shape; ours from H alone, so that any sewn surface
-/// serves: bumps around farthest-point samples that add up to 1 (coarse_functions.h), each smoothed by a
-/// Jacobi step against H, H projected to them (Galerkin), dense Cholesky.
+/// Not either paper's basis: our functions come from H alone, so that any sewn surface serves. They are bumps
+/// around farthest-point samples that add up to 1 (coarse_functions.h), each smoothed by a Jacobi step
+/// against H; H is projected to them (Galerkin) and inverted through its dense Cholesky factor.
 ///
 /// O(n degree + functions^2) to apply. What lies between two functions is the smoother's, so that its
 /// interval grows with n / functions and the degree must grow with the square root of that for the same rate.
