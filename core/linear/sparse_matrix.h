@@ -14,13 +14,18 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 /// Entries (row, column, value) that are summed into a SparseMatrix in the order they were added.
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// One row of A times a field of 3-vectors.
-inline Vec3 row_times(const SparseMatrix& A, int row, View<const Vec3> x)
+/// One row of A times a field of vectors.
+template <typename Vec>
+Vec row_times(const SparseMatrix& A, int row, View<const Vec> x)
 {
-    Vec3 sum = Vec3::Zero();
+    Vec sum = Vec::Zero();
     for (int k = A.outerIndexPtr()[row]; k < A.outerIndexPtr()[row + 1]; ++k)
         sum += A.valuePtr()[k] * x[A.innerIndexPtr()[k]];
     return sum;
+}
+inline Vec3 row_times(const SparseMatrix& A, int row, View<const Vec3> x)
+{
+    return row_times<Vec3>(A, row, x);
 }
 
 } // namespace toile

@@ -83,6 +83,43 @@ inline SparseMatrix grid_laplacian(int columns, int rows, double shift)
     return A;
 }
 
+/// Like H of an irregular sheet that stretches with unit stiffness: cotangent weights on a grid of unit
+/// cells, shaken by a quarter and split along random diagonals, plus masses so small that stretch waves
+/// travel `reach` cells in a time step.
+inline SparseMatrix cloth_matrix(int columns, int rows, double reach, unsigned seed = 1)
+{
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> shake(-0.25, 0.25);
+    std::vector<Vec3> x(size_t(columns) * rows);
+    for (int i = 0; i < int(x.size()); ++i) {
+        const int column = i % columns, row = i / columns;
+        const double dx = shake(random), dy = shake(random);
+        x[i] = Vec3(column + dx, row + dy, 0.0);
+    }
+    Triplets entries;
+    const auto add_triangle = [&](int a, int b, int c) {
+        const double twice_area = (x[b] - x[a]).cross(x[c] - x[a]).norm();
+        for (int k = 0; k < 3; ++k, std::swap(a, b), std::swap(b, c)) { // a, b, c turn
+            const double w = 0.5 * (x[a] - x[c]).dot(x[b] - x[c]) / twice_area;
+            entries.emplace_back(a, a, w);
+            entries.emplace_back(b, b, w);
+            entries.emplace_back(a, b, -w);
+            entries.emplace_back(b, a, -w);
+            entries.emplace_back(c, c, twice_area / (6.0 * reach * reach));
+        }
+    };
+    for (int row = 0; row + 1 < rows; ++row)
+        for (int column = 0; column + 1 < columns; ++column) {
+            const int a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;
+            const bool rising = random() % 2 == 0;
+            add_triangle(a, b, rising ? d : c);
+            rising ? add_triangle(a, d, c) : add_triangle(b, d, c);
+        }
+    SparseMatrix A(columns * rows, columns * rows);
+    A.setFromTriplets(entries.begin(), entries.end());
+    return A;
+}
+
 /// Makes row and column `index` the identity's, keeping the pattern.
 inline void isolate(SparseMatrix& A, int index)
 {
