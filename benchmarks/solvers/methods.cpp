@@ -1,10 +1,10 @@
 #include "benchmarks/solvers/methods.h"
 
 #include "core/linear/baselines/aggregated_jacobi.h"
-#include "core/linear/baselines/chebyshev.h"
+#include "core/linear/baselines/chebyshev_solver.h"
 #include "core/linear/baselines/jacobi_pcg.h"
 #include "core/linear/baselines/multigrid.h"
-#include "core/linear/baselines/subspace.h"
+#include "core/linear/baselines/subspace_solver.h"
 #include "core/pd/body.h"
 #include "core/quadrature/quadrature_solver.h"
 #include "garment/rivals/vertex_block_descent.h"
@@ -68,9 +68,9 @@ std::unique_ptr<GlobalSolver> make_paper(const Problem& problem)
     return std::make_unique<PaperRule>(uv, problem.start.triangles);
 }
 
-Method around(const std::string& name, const MakeSolver& make, int iterations, int most_vertices = kAnySize)
+Method around(const std::string& name, const MakeSolver& make, int iterations)
 {
-    return {name + " " + std::to_string(iterations), most_vertices, [=](const Problem& problem) {
+    return {name + " " + std::to_string(iterations), kAnySize, false, [=](const Problem& problem) {
                 Body::Settings settings;
                 settings.tolerance = 0.0;
                 settings.max_iterations = iterations;
@@ -84,12 +84,12 @@ Method around(const std::string& name, const MakeSolver& make, int iterations, i
             }};
 }
 
-template <typename Method_>
-Method rival(const std::string& name, const typename Method_::Settings& settings)
+template <typename Rule>
+Method rival(const std::string& name, const typename Rule::Settings& settings)
 {
-    return {name, kAnySize, [=](const Problem& problem) {
+    return {name, kAnySize, false, [=](const Problem& problem) {
                 return std::make_unique<StepperOf<Rival>>(
-                    problem, std::make_unique<Method_>(problem.start.positions, problem.cloth, settings),
+                    problem, std::make_unique<Rule>(problem.start.positions, problem.cloth, settings),
                     [&problem](Rival& r, const std::vector<Vec3>& acceleration) {
                         return r.step(problem.dt, acceleration, problem.fixed, problem.start.positions);
                     });
@@ -97,6 +97,11 @@ Method rival(const std::string& name, const typename Method_::Settings& settings
 }
 
 } // namespace
+
+bool applies(const Method& method, const Problem& problem)
+{
+    return problem.vertex_count() <= method.most_vertices && !(method.needs_chart && problem.mesh != "sheet");
+}
 
 std::vector<Method> all_methods()
 {
@@ -109,7 +114,9 @@ std::vector<Method> all_methods()
         methods.push_back(around("chebyshev", make_plain<ChebyshevSolver>, iterations));
         methods.push_back(around("a-jacobi", make_plain<AggregatedJacobi>, iterations));
         methods.push_back(around("jacobi-pcg", make_plain<JacobiPcg>, iterations));
-        methods.push_back(around("paper", make_paper, iterations, kPaperSize));
+        methods.push_back(around("paper", make_paper, iterations));
+        methods.back().most_vertices = kPaperSize;
+        methods.back().needs_chart = true;
     }
     for (const int sweeps : {10, 50, 200}) {
         VertexBlockDescent::Settings settings;

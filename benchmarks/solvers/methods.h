@@ -22,9 +22,12 @@ public:
 /// A method with a budget of work per step.
 struct Method {
     std::string name; ///< "direct 20": the global solver or whole method, and its budget
-    int most_vertices; ///< larger meshes are left out: set-up beyond minutes or gigabytes
+    int most_vertices = 0;   ///< larger meshes are left out: their set-up takes too long
+    bool needs_chart = false; ///< only for cloth that lies in a plane before it falls
     std::function<std::unique_ptr<Stepper>(const Problem&)> make;
 };
+
+bool applies(const Method& method, const Problem& problem);
 
 /// Projective Dynamics around every global solver at several numbers of outer iterations, then the rivals at
 /// several numbers of sweeps or substeps.
