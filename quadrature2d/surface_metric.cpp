@@ -10,7 +10,7 @@ namespace {
 
 /// A triangle's corner opposite to an edge in that edge's frame: along it from its first end, and beside it.
 struct Apex {
-    double length = 0.0; ///< of the edge [m]
+    double length = 0.0;              ///< of the edge [m]
     double along = 0.0, beside = 0.0; ///< [m]
 };
 
@@ -46,7 +46,8 @@ std::vector<MetricEdge> surface_metric(View<const Triangle> triangles, View<cons
         const double height = left.beside + right.beside;
         const double crossing = left.along + (right.along - left.along) * left.beside / height;
         if (crossing > 0.0 && crossing < left.length)
-            ways.push_back({edge.opposite[0], edge.opposite[1], std::hypot(height, right.along - left.along)});
+            ways.push_back(
+                {edge.opposite[0], edge.opposite[1], std::hypot(height, right.along - left.along)});
     }
     return ways;
 }

@@ -60,7 +60,8 @@ ClusterBasis::ClusterBasis(const ClusterTree& tree, View<const Place> places)
     std::vector<LinearMoments> moments(tree.cluster_count(), LinearMoments::Zero());
     for (int id = 0; id < tree.leaf_count(); ++id) {
         const ClusterTree::Cluster& cluster = tree.cluster(id);
-        Eigen::Matrix<double, ClusterTree::kLeaf, 7> linear = Eigen::Matrix<double, ClusterTree::kLeaf, 7>::Zero();
+        Eigen::Matrix<double, ClusterTree::kLeaf, 7> linear =
+            Eigen::Matrix<double, ClusterTree::kLeaf, 7>::Zero();
         for (int i = 0; i < ClusterTree::kLeaf; ++i)
             if (const int v = tree.nodes()[id * ClusterTree::kLeaf + i]; v >= 0)
                 linear.row(i) << 1.0, (places[v] - cluster.center).transpose();
@@ -74,7 +75,8 @@ ClusterBasis::ClusterBasis(const ClusterTree& tree, View<const Place> places)
         for (int c = 0; c < tree.level_size(level); ++c) {
             const int id = tree.first_of_level(level) + c;
             const ClusterTree::Cluster& cluster = tree.cluster(id);
-            Eigen::Matrix<double, 2 * kRank, kRank> functions = Eigen::Matrix<double, 2 * kRank, kRank>::Zero();
+            Eigen::Matrix<double, 2 * kRank, kRank> functions =
+                Eigen::Matrix<double, 2 * kRank, kRank>::Zero();
             for (int which = 0; which < 2; ++which)
                 if (const int child = tree.child(level, c, which); child >= 0)
                     functions.middleRows<kRank>(which * kRank) =

@@ -15,9 +15,9 @@ using Place = Eigen::Matrix<double, 6, 1>;
 /// Nodes grouped by bisection across their widest direction, into leaves of exactly kLeaf nodes (the last one
 /// may be padded).
 //
-//      level 2   |          0          |     1    |        cluster (k, c) holds the leaves [c 2^k, (c + 1) 2^k)
-//      level 1   |     0    |    1     |     2    |        that exist: the tree needs no pointers
-//      level 0   | 0  |  1  | 2  |  3  | 4  |  5  |        leaves
+//      level 2   |          0          |     1    |        cluster (k, c) holds the leaves [c 2^k, (c + 1)
+//      2^k) level 1   |     0    |    1     |     2    |        that exist: the tree needs no pointers level
+//      0   | 0  |  1  | 2  |  3  | 4  |  5  |        leaves
 //
 /// Clusters are numbered level by level, leaves first: children come before their parents, the root is last.
 class ClusterTree {

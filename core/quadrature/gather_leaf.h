@@ -17,10 +17,12 @@ struct GatherLeaf {
     {
         Sum sum;
         for (int e = table.near_first[leaf]; e < table.near_first[leaf + 1]; ++e)
-            sum.template add<ClusterTree::kLeaf>(table.near_weights.data() + size_t(e) * KernelTable::kNearWeights,
+            sum.template add<ClusterTree::kLeaf>(table.near_weights.data() +
+                                                     size_t(e) * KernelTable::kNearWeights,
                                                  &sources[table.near_leaf[e] * ClusterTree::kLeaf]);
         for (int e = table.far_first[leaf]; e < table.far_first[leaf + 1]; ++e)
-            sum.template add<ClusterBasis::kRank>(table.far_weights.data() + size_t(e) * KernelTable::kFarWeights,
+            sum.template add<ClusterBasis::kRank>(table.far_weights.data() +
+                                                      size_t(e) * KernelTable::kFarWeights,
                                                   &moments[table.far_cluster[e] * ClusterBasis::kRank]);
         for (int t = 0; t < KernelTable::kTargets; ++t)
             if (const int v = nodes[leaf * ClusterTree::kLeaf + t]; v >= 0)

@@ -79,7 +79,10 @@ public:
         const int v = basis_.tree().nodes()[slot];
         return v >= 0 ? rows_[columns_.row_of(v)] : Row{};
     }
-    const Row& moment(int cluster, int function) const { return moments_[size_t(kRank) * cluster + function]; }
+    const Row& moment(int cluster, int function) const
+    {
+        return moments_[size_t(kRank) * cluster + function];
+    }
 
     /// |G_iC - P_C P_C^T G_iC|^2 for one column
     double squared_error(int cluster, int column) const

@@ -12,12 +12,13 @@ namespace toile {
 /// Rows of the kernel G = H^-1, tabulated for quadrature: exact towards nodes nearby, projected onto the
 /// functions of a cluster towards nodes far away,
 ///
-///   q_i = sum_{j near i} G_ij r_j + sum_{C far from i} w_iC . m_C,    w_iC = P_C^T G_{C,i},   m_C = P_C^T r_C
+///   q_i = sum_{j near i} G_ij r_j + sum_{C far from i} w_iC . m_C,    w_iC = P_C^T G_{C,i},   m_C = P_C^T
+///   r_C
 ///
 /// [Barnes & Hut 1986 applied to eq. 7 of the paper]. The eight targets of a leaf share their lists.
 struct KernelTable {
     static constexpr int kTargets = ClusterTree::kLeaf;
-    static constexpr int kNearWeights = ClusterTree::kLeaf * kTargets;  ///< [source node][target]
+    static constexpr int kNearWeights = ClusterTree::kLeaf * kTargets; ///< [source node][target]
     static constexpr int kFarWeights = ClusterBasis::kRank * kTargets; ///< [function][target]
 
     struct Settings {

@@ -37,8 +37,8 @@ void QuadratureSolver::update(const SparseMatrix& H, View<const unsigned char> f
     basis_ = std::make_unique<ClusterBasis>(*tree_, places_);
     const Cholesky cholesky(H);
     const Eigen::VectorXd diagonal = H.diagonal();
-    table_ = *build_kernel_table(cholesky.factor(), {diagonal.data(), int(diagonal.size())}, *basis_, settings_,
-                                 nullptr);
+    table_ = *build_kernel_table(cholesky.factor(), {diagonal.data(), int(diagonal.size())}, *basis_,
+                                 settings_, nullptr);
 }
 
 /// P_C^T b for all clusters, leaves first.

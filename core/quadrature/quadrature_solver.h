@@ -9,9 +9,9 @@
 
 namespace toile {
 
-/// H^-1 by kernel-side quadrature: the paper's near and far fields, with the kernel sampled and the right-hand
-/// side aggregated (docs/core/quadrature.md). Not exact and not symmetric; as an iteration
-/// x += solve(b - H x) it contracts by 0.2 to 0.35.
+/// H^-1 by kernel-side quadrature: the paper's near and far fields, with the kernel sampled and the
+/// right-hand side aggregated (docs/core/quadrature.md). Not exact and not symmetric; as an iteration x +=
+/// solve(b - H x) it contracts by 0.2 to 0.35.
 ///
 /// Two passes: moments of b up the cluster tree, then a sum over each target's lists. O(n log n) numbers are
 /// read. Fixed nodes are left out of both: their kernel rows are the identity's.

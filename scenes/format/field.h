@@ -72,9 +72,10 @@ struct Words<PreviewPattern> {
 
 template <>
 struct Words<SolverMethod> {
-    static constexpr std::array<std::pair<const char*, SolverMethod>, 3> kAll{{{"auto", SolverMethod::Auto},
-                                                                            {"direct", SolverMethod::Direct},
-                                                                            {"quadrature", SolverMethod::Quadrature}}};
+    static constexpr std::array<std::pair<const char*, SolverMethod>, 3> kAll{
+        {{"auto", SolverMethod::Auto},
+         {"direct", SolverMethod::Direct},
+         {"quadrature", SolverMethod::Quadrature}}};
 };
 
 /// All words of an enumeration, in the order of their documentation.

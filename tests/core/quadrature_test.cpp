@@ -41,7 +41,8 @@ std::vector<int> all_nodes(const std::vector<Place>& places)
 std::vector<int> nodes_below(const ClusterTree& tree, int level, int c)
 {
     std::vector<int> nodes;
-    for (int slot = (c << level) * kLeaf; slot < std::min<int>((c + 1) << level, tree.leaf_count()) * kLeaf; ++slot)
+    for (int slot = (c << level) * kLeaf; slot < std::min<int>((c + 1) << level, tree.leaf_count()) * kLeaf;
+         ++slot)
         if (tree.nodes()[slot] >= 0)
             nodes.push_back(tree.nodes()[slot]);
     return nodes;

@@ -78,7 +78,8 @@ TEST(GeodesicPlaces, PutPiecesFarFromEachOther)
     FlatSurface two = strip(4, 4, 0.01, false);
     const size_t triangles = two.triangles.size();
     for (size_t t = 0; t < triangles; ++t) {
-        two.triangles.push_back({25 + two.triangles[t][0], 25 + two.triangles[t][1], 25 + two.triangles[t][2]});
+        two.triangles.push_back(
+            {25 + two.triangles[t][0], 25 + two.triangles[t][1], 25 + two.triangles[t][2]});
         two.edges.push_back(two.edges[t]);
     }
     two.vertex_count = 51; // and a vertex without triangles

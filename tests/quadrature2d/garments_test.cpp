@@ -1,0 +1,101 @@
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "core/linear/field.h"
+#include "core/mesh/obj.h"
+#include "core/quadrature/quadrature_solver.h"
+#include "garment/energy/membrane.h"
+#include "garment/energy/rest_shape.h"
+#include "quadrature2d/geodesic_places.h"
+
+/// Contraction of the quadrature solver on garments as they are modelled: panels joined by seams, holes,
+/// several pieces, cells of very different sizes.
+namespace toile::test {
+namespace {
+
+struct Garment {
+    std::shared_ptr<const RestShape> rest;
+    std::vector<unsigned char> fixed; ///< the top 3 cm
+    SparseMatrix H;
+
+    /// @param stiffness  [N/m] of the warp; the weft has 0.4, shear 0.1 of it
+    Garment(const std::filesystem::path& file, double stiffness)
+    {
+        const TriangleMesh mesh = read_obj(file).triangulated();
+        rest = std::make_shared<const RestShape>(
+            rest_shape_of_surface(mesh, Vec3::UnitY(), 0.0, file.filename().string()));
+        const double top = bounds(mesh.positions).upper.y();
+        for (const Vec3& p : mesh.positions)
+            fixed.push_back(p.y() > top - 0.03);
+        const Membrane membrane(rest, {stiffness, 0.4 * stiffness, 0.1 * stiffness}, "garment");
+        Triplets entries;
+        membrane.add_hessian(entries);
+        const std::vector<double> areas = rest->vertex_areas();
+        for (int v = 0; v < rest->vertex_count(); ++v)
+            entries.emplace_back(v, v, 0.2 * areas[v] * 120.0 * 120.0);
+        H.resize(rest->vertex_count(), rest->vertex_count());
+        H.setFromTriplets(entries.begin(), entries.end());
+        for (int row = 0; row < H.rows(); ++row)
+            for (SparseMatrix::InnerIterator entry(H, row); entry; ++entry)
+                if (fixed[row] || fixed[int(entry.col())])
+                    entry.valueRef() = entry.row() == entry.col() ? 1.0 : 0.0;
+    }
+};
+
+/// Factor by which x -> x - A H x lengthens a field per step after many steps, as a mean of the last ten.
+double contraction(const GlobalSolver& solver, const Garment& garment)
+{
+    const int n = int(garment.H.rows());
+    std::vector<Vec3> x(n), product(n), correction(n);
+    for (int v = 0; v < n; ++v)
+        x[v] = garment.fixed[v] ? Vec3(Vec3::Zero())
+                                : Vec3(std::sin(3.1 * v), std::cos(7.7 * v), std::sin(1.0 * v * v));
+    double log_ratio = 0.0;
+    for (int step = 0; step < 50; ++step) {
+        for (int i = 0; i < n; ++i)
+            product[i] = row_times(garment.H, i, x);
+        solver.solve(product, correction);
+        const double before = std::sqrt(dot(x, x));
+        axpy(-1.0, correction, x);
+        const double after = std::sqrt(dot(x, x));
+        if (step >= 40)
+            log_ratio += std::log(after / before) / 10.0;
+        for (Vec3& v : x)
+            v /= after;
+    }
+    return std::exp(log_ratio);
+}
+
+class Garments : public testing::TestWithParam<const char*> {};
+
+TEST_P(Garments, AreSolvedByQuadratureThatContracts)
+{
+    const std::filesystem::path file = std::filesystem::path(TOILE_DATA_DIR) / "garments" / GetParam();
+    if (!std::filesystem::exists(file))
+        GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no garments/" << GetParam();
+    for (const double stiffness : {10.0, 1e3, 1e5}) {
+        const Garment garment(file, stiffness);
+        const RestShape& rest = *garment.rest;
+        QuadratureSolver solver(
+            geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
+        solver.update(garment.H, garment.fixed);
+        const double factor = contraction(solver, garment);
+        // At 10 N/m the kernel of these coarse meshes reaches two cells only, and H weighs every error fully.
+        EXPECT_LT(factor, stiffness < 100.0 ? 0.75 : 0.5) << stiffness << " N/m";
+        EXPECT_LT(solver.table().gathers_per_node(), 320.0);
+        RecordProperty("contraction at " + std::to_string(int(stiffness)) + " N/m", std::to_string(factor));
+        RecordProperty("gathers at " + std::to_string(int(stiffness)) + " N/m",
+                       std::to_string(solver.table().gathers_per_node()));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, Garments,
+                         testing::Values("diffcloth_skirt3448.obj", "diffcloth_tshirt1900.obj",
+                                         "mh_man_male_casualsuit04.obj", "mh_woman_female_casualsuit01.obj",
+                                         "mh_woman_skirt.obj", "mh_woman_tights.obj"));
+
+} // namespace
+} // namespace toile::test
