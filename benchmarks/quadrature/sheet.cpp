@@ -80,9 +80,9 @@ std::vector<double> kernel_row(const SparseMatrix& H, int vertex)
     std::vector<Vec3> column(H.rows(), Vec3::Zero());
     column[vertex].x() = 1.0;
     Cholesky(H).solve(column, column);
-    std::vector<double> u;
-    for (const Vec3& value : column)
-        u.push_back(value.x() / column[vertex].x());
+    std::vector<double> u(column.size());
+    for (size_t k = 0; k < u.size(); ++k)
+        u[k] = column[k].x() / column[vertex].x();
     return u;
 }
 
