@@ -42,6 +42,8 @@ public:
         }
     }
 
+    bool is_alone(int v) const { return first_[v] == first_[v + 1]; }
+
     /// Length of the shortest path to every vertex [m], kFar where there is none. [Dijkstra 1959]
     std::vector<double> distances_from(int source) const
     {
@@ -141,6 +143,10 @@ std::vector<Place> geodesic_places(int vertex_count, View<const MetricEdge> metr
     for (int v = 0; v < vertex_count; ++v) {
         if (is_placed[v])
             continue;
+        if (ways.is_alone(v)) {
+            pieces.push_back({v});
+            continue;
+        }
         const std::vector<double> reached = ways.distances_from(v);
         std::vector<int> piece;
         for (int u = 0; u < vertex_count; ++u)
@@ -154,7 +160,7 @@ std::vector<Place> geodesic_places(int vertex_count, View<const MetricEdge> metr
     }
     for (size_t k = 0; k < pieces.size(); ++k)
         for (const int v : pieces[k])
-            places[v][0] += kApart * largest * double(k);
+            places[v][0] += kApart * (largest > 0.0 ? largest : 1.0) * double(k);
     return places;
 }
 

@@ -13,7 +13,7 @@ namespace toile {
 /// not in the cloth stay apart.
 ///
 /// Landmark multidimensional scaling [de Silva & Tenenbaum 2004] of shortest paths along the metric's ways,
-/// each connected piece by itself; pieces are put far from each other. O(landmarks * n log n).
+/// each connected piece by itself; pieces are put far from each other. O(landmarks * n log n) for each piece.
 /// @param vertex_count  n; a vertex without ways is a piece of its own
 std::vector<Place> geodesic_places(int vertex_count, View<const MetricEdge> metric);
 

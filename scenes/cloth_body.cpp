@@ -7,12 +7,11 @@
 
 #include "core/backend/parallel.h"
 #include "core/linear/field.h"
-#include "core/quadrature/quadrature_solver.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
 #include "garment/pattern/shapes.h"
-#include "quadrature2d/geodesic_places.h"
 #include "scenes/format/scene_fabric.h"
+#include "scenes/global_solver_choice.h"
 
 namespace toile {
 
@@ -61,14 +60,6 @@ ObjMesh placed_mesh(const scene::Cloth& cloth)
     for (Vec3& p : mesh.positions)
         p = cloth.translate + turn * (cloth.scale * scene::metres_per(cloth.unit) * p);
     return mesh;
-}
-
-std::unique_ptr<GlobalSolver> make_solver(scene::SolverMethod method, const RestShape& rest)
-{
-    if (method == scene::SolverMethod::Quadrature)
-        return std::make_unique<QuadratureSolver>(
-            geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
-    return std::make_unique<DirectSolver>();
 }
 
 Gusts::Settings gusts_of(const scene::Wind& wind)
@@ -139,7 +130,7 @@ void ClothBody::build(const Scene& scene, const std::vector<Obstacle>& obstacles
     settings.max_iterations = scene.solver.max_iterations;
     body_ = std::make_unique<Body>(state_.positions,
                                    std::make_unique<System>(std::move(masses), std::move(energies),
-                                                            make_solver(scene.solver.method, *rest)),
+                                                            make_global_solver(scene.solver.method, *rest)),
                                    settings);
 
     air_ = std::make_unique<Aerodynamics>(

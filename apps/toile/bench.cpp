@@ -20,7 +20,8 @@ struct Benchmark {
 
 constexpr Benchmark kBenchmarks[] = {
     {"sheet", "a hanging sheet of 10 000 vertices: milliseconds per step against the error", bench_sheet},
-    {"solvers", "the same steps by every global solver, XPBD and VBD: milliseconds against the error", bench_solvers},
+    {"solvers", "the same steps by every global solver, XPBD and VBD: milliseconds against the error",
+     bench_solvers},
     {"stages", "scenes: milliseconds per frame by stage, iterations, contacts, peak memory", bench_stages},
     {"stress", "extreme steps, materials, meshes and starts: finite, no energy gained, back to rest",
      bench_stress},

@@ -40,9 +40,8 @@ std::vector<Problem> problems(bool quick)
 std::vector<Method> chosen_methods(const BenchOptions& options)
 {
     std::vector<Method> methods = solvers::all_methods();
-    std::erase_if(methods, [&](const Method& method) {
-        return method.name.find(options.only) == std::string::npos;
-    });
+    std::erase_if(methods,
+                  [&](const Method& method) { return method.name.find(options.only) == std::string::npos; });
     if (methods.empty())
         throw InvalidInput("--only: no method of solvers has \"" + options.only +
                            "\" in its name; see docs/benchmarks/solvers.md for the names");
@@ -75,8 +74,7 @@ int bench_solvers(const BenchOptions& options)
         }
     }
     std::cout << markdown_table(results);
-    write_tables(options.output,
-                 {{kTables[0], csv_table(results)}, {kTables[1], markdown_table(results)}});
+    write_tables(options.output, {{kTables[0], csv_table(results)}, {kTables[1], markdown_table(results)}});
     return kExitOk;
 }
 

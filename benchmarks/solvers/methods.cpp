@@ -55,8 +55,8 @@ std::unique_ptr<GlobalSolver> make_plain(const Problem&)
 std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem)
 {
     const RestShape& rest = *problem.cloth.rest;
-    return std::make_unique<QuadratureSolver>(geodesic_places(
-        rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
+    return std::make_unique<QuadratureSolver>(
+        geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
 }
 
 /// On the sheet's own plane. The rule needs one flat chart, which a skirt does not have.

@@ -21,8 +21,8 @@ public:
 
 /// A method with a budget of work per step.
 struct Method {
-    std::string name; ///< "direct 20": the global solver or whole method, and its budget
-    int most_vertices = 0;   ///< larger meshes are left out: their set-up takes too long
+    std::string name;         ///< "direct 20": the global solver or whole method, and its budget
+    int most_vertices = 0;    ///< larger meshes are left out: their set-up takes too long
     bool needs_chart = false; ///< only for cloth that lies in a plane before it falls
     std::function<std::unique_ptr<Stepper>(const Problem&)> make;
 };

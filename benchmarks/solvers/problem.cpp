@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "core/pd/body.h"
 #include "garment/pattern/shapes.h"
@@ -33,8 +34,8 @@ Problem make_problem(const std::string& name, TriangleMesh mesh, double stiffnes
         mass *= kArealDensity;
     const std::vector<Edge>& edges = problem.cloth.rest->topology.edges;
     for (const Edge& edge : edges)
-        problem.mean_edge += (mesh.positions[edge.vertex[0]] - mesh.positions[edge.vertex[1]]).norm() /
-                             double(edges.size());
+        problem.mean_edge +=
+            (mesh.positions[edge.vertex[0]] - mesh.positions[edge.vertex[1]]).norm() / double(edges.size());
     problem.fixed.assign(mesh.positions.size(), 0);
     problem.start = std::move(mesh);
     return problem;
@@ -43,9 +44,10 @@ Problem make_problem(const std::string& name, TriangleMesh mesh, double stiffnes
 /// The vertex farthest in a direction.
 int extreme(const TriangleMesh& mesh, const Vec3& direction)
 {
-    return int(std::max_element(mesh.positions.begin(), mesh.positions.end(),
-                                [&](const Vec3& a, const Vec3& b) { return direction.dot(a) < direction.dot(b); }) -
-               mesh.positions.begin());
+    return int(
+        std::max_element(mesh.positions.begin(), mesh.positions.end(),
+                         [&](const Vec3& a, const Vec3& b) { return direction.dot(a) < direction.dot(b); }) -
+        mesh.positions.begin());
 }
 
 } // namespace
@@ -53,8 +55,7 @@ int extreme(const TriangleMesh& mesh, const Vec3& direction)
 Problem Problem::sheet(int vertices, double stiffness, double dt)
 {
     const double side = std::round(std::sqrt(double(vertices)));
-    Problem problem =
-        make_problem("sheet", cut_rectangle(Vec2(1.0, 1.0), 1.0 / (side - 1.0)), stiffness, dt);
+    Problem problem = make_problem("sheet", cut_rectangle(Vec2(1.0, 1.0), 1.0 / (side - 1.0)), stiffness, dt);
     problem.fixed[extreme(problem.start, Vec3(1, 0, 1))] = 1;
     problem.fixed[extreme(problem.start, Vec3(1, 0, -1))] = 1;
     return problem;
@@ -77,8 +78,8 @@ std::unique_ptr<System> Problem::make_system(std::unique_ptr<GlobalSolver> solve
     const auto membrane = std::make_shared<Membrane>(cloth.rest, cloth.stretch, mesh);
     const auto bending = std::make_shared<Bending>(cloth.rest, cloth.bending, mesh);
     bending->leave_to(hessian_diagonal(*membrane, vertex_count()));
-    return std::make_unique<System>(
-        cloth.masses, std::vector<std::shared_ptr<Energy>>{membrane, bending}, std::move(solver));
+    return std::make_unique<System>(cloth.masses, std::vector<std::shared_ptr<Energy>>{membrane, bending},
+                                    std::move(solver));
 }
 
 std::vector<Vec3> Problem::acceleration() const
@@ -98,14 +99,19 @@ std::vector<SampledStep> sample_steps(const Problem& problem, int count, int str
         SampledStep step;
         step.x.assign(body.positions().begin(), body.positions().end());
         step.v.assign(body.velocities().begin(), body.velocities().end());
-        body.step(problem.dt, acceleration, problem.fixed, problem.start.positions, nullptr, nullptr);
+        const StepReport report =
+            body.step(problem.dt, acceleration, problem.fixed, problem.start.positions, nullptr, nullptr);
+        if (report.status == StepReport::Status::NonFinite)
+            throw std::runtime_error("solvers: step " + std::to_string(k) +
+                                     " of the reference is not finite");
         if (k % stride != 0)
             continue;
         step.minimiser.assign(body.positions().begin(), body.positions().end());
         for (int v = 0; v < problem.vertex_count(); ++v)
-            step.prediction.push_back(problem.fixed[v]
-                                          ? problem.start.positions[v]
-                                          : Vec3(step.x[v] + problem.dt * (step.v[v] + problem.dt * acceleration[v])));
+            step.prediction.push_back(
+                problem.fixed[v] ? problem.start.positions[v]
+                                 : Vec3(step.x[v] + problem.dt * (step.v[v] + problem.dt * acceleration[v])));
+        step.is_converged = report.status == StepReport::Status::Converged;
         step.energy = objective(problem, body.system(), step, step.minimiser);
         step.start_energy = objective(problem, body.system(), step, step.prediction);
         steps.push_back(std::move(step));

@@ -12,8 +12,9 @@ struct Result {
     double dt = 0.0;        ///< [s]
     std::string method;
     int threads = 0;
-    double setup_ms = 0.0;   ///< matrices, factors, tables, colours: until the first step has ended, less a step
-    double step_ms = 0.0;    ///< wall clock, mean over the sampled steps, the fastest of the repeats
+    double setup_ms =
+        0.0;              ///< matrices, factors, tables, colours: until the first step has ended, less a step
+    double step_ms = 0.0; ///< wall clock, mean over the sampled steps, the fastest of the repeats
     double iterations = 0.0; ///< outer iterations, sweeps or substeps a step, mean
     /// RMS distance of a vertex from the converged minimiser, in mean edges: root mean square over the steps.
     double rms_over_edge = 0.0;

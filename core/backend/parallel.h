@@ -63,6 +63,14 @@ void parallel_tasks(CpuSpace, int count, const Work& work)
     tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, count, work); });
 }
 
+/// Runs work(), which may itself run in parallel: while the calling thread waits there it takes on nothing
+/// from outside, so work may use memory that belongs to the thread.
+template <typename Work>
+void parallel_isolated(CpuSpace, const Work& work)
+{
+    tbb::this_task_arena::isolate(work);
+}
+
 /// Runs work(task, scratch) for task in [0, count): long tasks that need memory of their own. One scratch per
 /// thread, made by make() when a thread takes its first task. Counted as one call of stage `name`.
 template <typename Make, typename Work>

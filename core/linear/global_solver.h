@@ -17,7 +17,8 @@ public:
     /// @throws InvalidInput where H is not positive definite
     virtual void update(const SparseMatrix& H, View<const unsigned char> fixed) = 0;
 
-    /// x = H^-1 b, or close to it; linear in b. Same bits for every thread count.
+    /// x = H^-1 b, or close to it; linear in b unless the solver says otherwise. Same bits for every thread
+    /// count.
     /// @param b, x  [n]; may be the same array
     virtual void solve(View<const Vec3> b, View<Vec3> x) const = 0;
 

@@ -24,7 +24,8 @@ public:
     };
 
     /// @param multiply      multiply(p, out): out = A p, A symmetric positive definite
-    /// @param precondition  precondition(r, z): z = P r, P symmetric positive definite
+    /// @param precondition  precondition(r, z): z = P r, P symmetric positive definite unless
+    ///                      the form is flexible
     template <typename Multiply, typename Precondition>
     Outcome solve(const Multiply& multiply, const Precondition& precondition, View<const Vec3> b,
                   View<Vec3> x, const Settings& settings)

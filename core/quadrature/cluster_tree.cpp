@@ -12,7 +12,7 @@ namespace toile {
 namespace {
 
 /// Extent [-] of the widest direction below which another one is rounding.
-constexpr double kFlat = 1e-9;
+constexpr double kFlat = 1e-6;
 
 Place mean_place(View<const Place> places, View<const int> nodes)
 {

@@ -21,8 +21,7 @@ constexpr int kLeavesPerBlock = InverseColumns::kColumns / kLeaf;
 
 /// Growth of the squared error that is let pass from one level to the next, twice as many nodes [-]. What
 /// functions leave out is smooth inside a cluster and jumps at its rim: H weighs the jumps, and the rim grows
-/// with the square root of the nodes. At 1 far fewer and at 2 far more large clusters are opened for the
-/// same contraction.
+/// with the square root of the nodes. At 1 and at 2 the same contraction takes longer lists.
 constexpr double kGrowth = 1.4142135623730951;
 
 /// Mean of a field over the nodes of every cluster.

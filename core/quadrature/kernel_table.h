@@ -24,8 +24,8 @@ struct KernelTable {
     struct Settings {
         /// [-] A cluster is far from a leaf where its functions carry the kernel's rows to this accuracy:
         ///   sqrt(H_ii mean_C(H_jj)) |G_iC - P_C P_C^T G_iC| <= tolerance (|C| / 8)^(1/4)
-        /// for the eight targets i. Smaller: more accurate, longer lists. 0.2 contracts by 0.33 to 0.46 on
-        /// every garment and stiffness tried, 0.1 by half of that.
+        /// for the eight targets i. Smaller: more accurate, longer lists. What it
+        /// buys: docs/core/quadrature.md.
         double tolerance = 0.2;
     };
 
@@ -40,11 +40,11 @@ struct KernelTable {
     double gathers_per_node() const;
 };
 
-/// Called now and then with the finished share [0, 1]; false cancels.
+/// Called with the finished share (0, 1], from any of the building threads; false cancels.
 using BuildProgress = std::function<bool(double)>;
 
-/// Tabulates H^-1 from its factor. N solves with 32 right-hand sides at once on all threads; memory for the
-/// table and one block of N x 32 numbers per thread.
+/// Tabulates H^-1 from its factor. N solves with 32 right-hand sides at once on all threads; memory for twice
+/// the table and two blocks of N x 32 numbers per thread.
 /// @param factor    of H
 /// @param diagonal  [n] of H [N/m]
 /// @return nothing when cancelled

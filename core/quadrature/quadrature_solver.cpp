@@ -29,32 +29,32 @@ void QuadratureSolver::update(const SparseMatrix& H, View<const unsigned char> f
     for (int v = 0; v < fixed.size(); ++v)
         if (!fixed[v])
             nodes.push_back(v);
-    basis_.reset();
-    tree_.reset();
-    if (nodes.empty())
+    if (nodes.empty()) {
+        tables_.reset();
         return;
-    tree_ = std::make_unique<ClusterTree>(places_, std::move(nodes));
-    basis_ = std::make_unique<ClusterBasis>(*tree_, places_);
+    }
+    auto tables = std::make_unique<Tables>(places_, std::move(nodes));
     const Cholesky cholesky(H);
     const Eigen::VectorXd diagonal = H.diagonal();
-    table_ = *build_kernel_table(cholesky.factor(), {diagonal.data(), int(diagonal.size())}, *basis_,
-                                 settings_, nullptr);
+    tables->kernel = *build_kernel_table(cholesky.factor(), {diagonal.data(), int(diagonal.size())},
+                                         tables->basis, settings_, nullptr);
+    tables_ = std::move(tables);
 }
 
 /// P_C^T b for all clusters, leaves first.
 void QuadratureSolver::gather_moments(View<const Vec3> b, View<Vec3f> moments) const
 {
     const auto value = [&](int slot) {
-        const int v = tree_->nodes()[slot];
+        const int v = tables_->tree.nodes()[slot];
         return v >= 0 ? b[v] : Vec3(Vec3::Zero());
     };
     thread_local std::vector<Vec3> sums;
-    sums.resize(size_t(kRank) * tree_->cluster_count());
+    sums.resize(size_t(kRank) * tables_->tree.cluster_count());
     const View<Vec3> out(sums);
-    for (int level = 0; level < tree_->level_count(); ++level)
+    for (int level = 0; level < tables_->tree.level_count(); ++level)
         parallel_for(
-            kCpu, "quadrature/moments", tree_->level_size(level),
-            [&](int c) { basis_->gather(level, c, Vec3(Vec3::Zero()), value, out); }, kLeafGrain);
+            kCpu, "quadrature/moments", tables_->tree.level_size(level),
+            [&](int c) { tables_->basis.gather(level, c, Vec3(Vec3::Zero()), value, out); }, kLeafGrain);
     for (int i = 0; i < moments.size(); ++i)
         moments[i] = sums[i].cast<float>();
 }
@@ -64,18 +64,22 @@ void QuadratureSolver::solve(View<const Vec3> b, View<Vec3> x) const
     const StageScope stage("quadrature/solve");
     if (x.data() != b.data())
         std::copy(b.begin(), b.end(), x.begin());
-    if (!tree_)
-        return;
+    if (tables_)
+        parallel_isolated(kCpu, [&] { apply(b, x); });
+}
+
+void QuadratureSolver::apply(View<const Vec3> b, View<Vec3> x) const
+{
     thread_local std::vector<Vec3f> moments, sources;
-    moments.resize(size_t(kRank) * tree_->cluster_count());
-    sources.resize(tree_->nodes().size());
+    moments.resize(size_t(kRank) * tables_->tree.cluster_count());
+    sources.resize(tables_->tree.nodes().size());
     gather_moments(b, moments);
     for (int slot = 0; slot < int(sources.size()); ++slot) {
-        const int v = tree_->nodes()[slot];
+        const int v = tables_->tree.nodes()[slot];
         sources[slot] = v >= 0 ? Vec3f(b[v].cast<float>()) : Vec3f(Vec3f::Zero());
     }
-    const GatherLeaf gather{table_, sources, moments, tree_->nodes(), x};
-    parallel_for(kCpu, "quadrature/gather", tree_->leaf_count(), gather, kLeafGrain);
+    const GatherLeaf gather{tables_->kernel, sources, moments, tables_->tree.nodes(), x};
+    parallel_for(kCpu, "quadrature/gather", tables_->tree.leaf_count(), gather, kLeafGrain);
 }
 
 } // namespace toile

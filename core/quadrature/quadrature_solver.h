@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/linear/cholesky.h"
@@ -10,8 +11,8 @@
 namespace toile {
 
 /// H^-1 by kernel-side quadrature: the paper's near and far fields, with the kernel sampled and the
-/// right-hand side aggregated (docs/core/quadrature.md). Not exact and not symmetric; as an iteration x +=
-/// solve(b - H x) it contracts by 0.2 to 0.35.
+/// right-hand side aggregated. Not exact and not symmetric; how far x += solve(b - H x) contracts is measured
+/// in docs/core/quadrature.md.
 ///
 /// Two passes: moments of b up the cluster tree, then a sum over each target's lists. O(n log n) numbers are
 /// read. Fixed nodes are left out of both: their kernel rows are the identity's.
@@ -27,18 +28,29 @@ public:
     void solve(View<const Vec3> b, View<Vec3> x) const override;
     bool is_symmetric() const override { return false; }
 
-    const KernelTable& table() const { return table_; } ///< after update()
+    const KernelTable& table() const { return tables_->kernel; } ///< after update() with a free node
 
 private:
     using Vec3f = Eigen::Vector3f;
 
+    /// What update() makes; the basis borrows the tree.
+    struct Tables {
+        ClusterTree tree;
+        ClusterBasis basis;
+        KernelTable kernel;
+
+        Tables(View<const Place> places, std::vector<int> nodes)
+            : tree(places, std::move(nodes)), basis(tree, places)
+        {
+        }
+    };
+
+    void apply(View<const Vec3> b, View<Vec3> x) const;
     void gather_moments(View<const Vec3> b, View<Vec3f> moments) const;
 
     std::vector<Place> places_;
     Settings settings_;
-    std::unique_ptr<ClusterTree> tree_;
-    std::unique_ptr<ClusterBasis> basis_;
-    KernelTable table_;
+    std::unique_ptr<Tables> tables_; ///< null while nothing is free
 };
 
 } // namespace toile

@@ -235,7 +235,8 @@ void describe(V& v, Solver& s)
     v.field("max_iterations", s.max_iterations, between(1, 10000),
             "Iterations after which a minimisation ends anyway; contact may ask for three a step.");
     v.field("method", s.method,
-            "How the global linear system is solved: exactly, or by quadrature of its kernel. auto chooses.");
+            "How the global linear system is solved: exactly (auto, direct), by quadrature of its kernel, or "
+            "by a baseline to compare with.");
     v.field("sleep", s.sleep, "When resting cloth is skipped.");
     v.field("threads", s.threads, between(0, 1024),
             "Threads to use; 0: all. The result does not depend on it.");

@@ -72,10 +72,15 @@ struct Words<PreviewPattern> {
 
 template <>
 struct Words<SolverMethod> {
-    static constexpr std::array<std::pair<const char*, SolverMethod>, 3> kAll{
+    static constexpr std::array<std::pair<const char*, SolverMethod>, 8> kAll{
         {{"auto", SolverMethod::Auto},
          {"direct", SolverMethod::Direct},
-         {"quadrature", SolverMethod::Quadrature}}};
+         {"quadrature", SolverMethod::Quadrature},
+         {"multigrid", SolverMethod::Multigrid},
+         {"subspace", SolverMethod::Subspace},
+         {"chebyshev", SolverMethod::Chebyshev},
+         {"a-jacobi", SolverMethod::AJacobi},
+         {"jacobi-pcg", SolverMethod::JacobiPcg}}};
 };
 
 /// All words of an enumeration, in the order of their documentation.

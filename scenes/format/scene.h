@@ -195,7 +195,7 @@ struct Contact {
     double friction = 0.3;  ///< [-] of avatars that name none
 };
 
-enum class SolverMethod { Auto, Direct, Quadrature };
+enum class SolverMethod { Auto, Direct, Quadrature, Multigrid, Subspace, Chebyshev, AJacobi, JacobiPcg };
 
 struct Sleep {
     bool enabled = true;

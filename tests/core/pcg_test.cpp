@@ -1,5 +1,7 @@
 #include "core/linear/pcg.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "core/linear/cholesky.h"
@@ -125,6 +127,29 @@ TEST(Pcg, KeepsItsIterateWhereTheMatrixIsNotPositiveDefinite)
     EXPECT_EQ(outcome.iterations, 0);
     EXPECT_EQ(outcome.residual, 1.0);
     EXPECT_EQ(problem.x, std::vector<Vec3>(300, Vec3::Zero()));
+}
+
+TEST(Pcg, NeedsItsFlexibleFormForAPreconditionerThatChanges)
+{
+    const SparseMatrix A = grid_laplacian(24, 24, 0.05);
+    const int n = int(A.rows());
+    const auto multiply = [&](View<const Vec3> p, View<Vec3> out) {
+        for (int i = 0; i < n; ++i)
+            out[i] = row_times(A, i, p);
+    };
+    const std::vector<Vec3> b = random_field(n, 7);
+    const auto residual = [&](bool is_flexible) {
+        int call = 0;
+        const auto changing = [&](View<const Vec3> r, View<Vec3> z) {
+            ++call;
+            for (int i = 0; i < n; ++i)
+                z[i] = (1.0 + 0.7 * std::sin(1.3 * call * (i + 1))) * r[i];
+        };
+        std::vector<Vec3> x(n);
+        return Pcg().solve(multiply, changing, b, x, {0.0, 40, is_flexible}).residual;
+    };
+    EXPECT_LT(residual(true), 0.1);
+    EXPECT_GT(residual(false), 5.0 * residual(true));
 }
 
 } // namespace

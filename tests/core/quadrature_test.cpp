@@ -87,6 +87,16 @@ TEST(ClusterTree, TakesNodesThatAllLieInOnePlace)
         EXPECT_TRUE(basis.leaf(leaf).allFinite());
 }
 
+TEST(ClusterTree, SeesThatALineHasOneDirection)
+{
+    std::vector<Place> places(40, Place::Zero());
+    for (int v = 0; v < 40; ++v)
+        places[v].head<3>() = 0.37 * v * Vec3(1.0, -2.0, 0.5);
+    const ClusterTree tree(places, all_nodes(places));
+    for (int id = 0; id < tree.cluster_count(); ++id)
+        EXPECT_EQ(tree.cluster(id).axes.col(1).norm(), 0.0);
+}
+
 TEST(ClusterBasis, CarriesLinearFieldsExactlyOnEveryCluster)
 {
     // A basis of 1 and the plane's two coordinates: the moments keep the whole norm of a linear field.
@@ -199,6 +209,33 @@ TEST(Quadrature, LeavesFixedNodesAlone)
     EXPECT_EQ(x[500], b[500]);
     solver.solve(b, b);
     EXPECT_EQ(x, b) << "in place";
+}
+
+TEST(Quadrature, TakesASingleFreeNodeAndPiecesThatDoNotTouch)
+{
+    // Two grids side by side without an entry between them, and one of them down to one free node.
+    Grid grid;
+    const int n = int(grid.places.size());
+    SparseMatrix one = grid.H(1e-3), both(2 * n, 2 * n);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int row = 0; row < n; ++row) {
+        entries.emplace_back(n + row, n + row, row == 5 ? 3.0 : 1.0);
+        for (SparseMatrix::InnerIterator entry(one, row); entry; ++entry)
+            entries.emplace_back(row, int(entry.col()), entry.value());
+    }
+    both.setFromTriplets(entries.begin(), entries.end());
+    for (int v = 0; v < n; ++v) {
+        grid.places.push_back(grid.places[v] + 1e4 * Place::Unit(0));
+        grid.fixed.push_back(v != 5);
+    }
+    QuadratureSolver solver(grid.places);
+    solver.update(both, grid.fixed);
+    EXPECT_LT(contraction(solver, both), 0.45);
+    std::vector<Vec3> b(2 * n, Vec3::Zero()), x(2 * n);
+    b[n + 5] = Vec3(3.0, 6.0, 9.0);
+    solver.solve(b, x);
+    EXPECT_LT((x[n + 5] - Vec3(1.0, 2.0, 3.0)).norm(), 0.05);
+    EXPECT_LT(x[5].norm(), 0.05);
 }
 
 TEST(Quadrature, SolvesNothingWhereEverythingIsFixed)
