@@ -339,7 +339,7 @@ void Contact::stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const
         const ContactPair& pair = energy_.terms()[i].pair;
         const Vec3 surface = is_carried(pair.motion) ? Vec3(pair.motion / start_.dt) : Vec3(Vec3::Zero());
         if (const double approach = pair.normal.dot(surface - pair.cloth_point(v)); approach > 0.0)
-            push(pair, approach, v);
+            push(pair, std::min(approach, clearance_of(pair) / start_.dt), v);
     }
 }
 

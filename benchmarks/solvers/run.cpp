@@ -5,9 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include <tbb/global_control.h>
-
 #include "benchmarks/text_table.h"
+#include "core/backend/parallel.h"
 #include "core/backend/process_usage.h"
 
 namespace toile::solvers {
@@ -31,6 +30,7 @@ double mean_square_distance(View<const Vec3> a, const std::vector<Vec3>& b)
 std::vector<Row> rows_of(const std::vector<Result>& results)
 {
     std::vector<Row> rows;
+    rows.reserve(results.size());
     for (const Result& r : results)
         rows.push_back({r.mesh, std::to_string(r.vertices), format("%g", r.stiffness), format("%.5g", r.dt),
                         r.method, std::to_string(r.threads), format("%.1f", r.setup_ms),
@@ -53,7 +53,7 @@ Result run(const Problem& problem, const std::vector<SampledStep>& steps, const 
     result.stiffness = problem.stiffness;
     result.dt = problem.dt;
     result.method = method.name;
-    result.threads = int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    result.threads = thread_count(kCpu);
 
     const double begin = now_ms();
     const std::unique_ptr<Stepper> stepper = method.make(problem);

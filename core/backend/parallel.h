@@ -33,6 +33,12 @@ private:
     std::optional<tbb::global_control> control_;
 };
 
+/// Threads that work may run on now.
+inline int thread_count(CpuSpace)
+{
+    return int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 /// Items per task. Small enough to balance, large enough to hide the scheduler (about 1 us a task).
 inline constexpr int kGrain = 256;
 

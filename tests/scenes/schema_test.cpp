@@ -1,3 +1,4 @@
+#include "scenes/format/field.h"
 #include "scenes/format/schema.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +42,8 @@ TEST(SceneSchema, SaysRangesDefaultsAndExclusiveKeys)
     EXPECT_EQ(solver["additionalProperties"], false);
     EXPECT_EQ(solver["properties"]["tolerance"]["exclusiveMinimum"], 0.0);
     EXPECT_EQ(solver["properties"]["tolerance"]["default"], 2e-4);
-    EXPECT_EQ(solver["properties"]["method"]["enum"], (nlohmann::json{"auto", "direct"}));
+    EXPECT_EQ(solver["properties"]["method"]["enum"],
+              (nlohmann::json(scene_format::words_of<scene::SolverMethod>())));
     EXPECT_EQ(schema["properties"]["cloths"]["items"]["oneOf"].size(), 4u);
     EXPECT_EQ(schema["required"], (nlohmann::json{"toile", "frames", "cloths"}));
 }
