@@ -30,6 +30,9 @@ constexpr int kClearSweeps = 5;
 /// millimetre across a sliver would be an explosion.
 constexpr double kClearance = 0.5;
 
+/// Clearance [m] below which velocities are left alone too: one vertex of a sliver stopped, the others not.
+constexpr double kThinnest = 5e-5;
+
 /// Margin [m] of a second look within a step, on top of the gap.
 constexpr double kRevisionMargin = 0.003;
 
@@ -337,9 +340,11 @@ void Contact::stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const
         if (energy_.gap(i, x) >= 0.0)
             continue;
         const ContactPair& pair = energy_.terms()[i].pair;
+        if (clearance_of(pair) < kThinnest)
+            continue;
         const Vec3 surface = is_carried(pair.motion) ? Vec3(pair.motion / start_.dt) : Vec3(Vec3::Zero());
         if (const double approach = pair.normal.dot(surface - pair.cloth_point(v)); approach > 0.0)
-            push(pair, std::min(approach, clearance_of(pair) / start_.dt), v);
+            push(pair, approach, v);
     }
 }
 

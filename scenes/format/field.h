@@ -88,6 +88,7 @@ template <typename E>
 std::vector<std::string> words_of()
 {
     std::vector<std::string> words;
+    words.reserve(Words<E>::kAll.size());
     for (const auto& [word, value] : Words<E>::kAll)
         words.emplace_back(word);
     return words;
