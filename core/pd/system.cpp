@@ -40,7 +40,7 @@ void System::prepare(double dt, const std::vector<unsigned char>& fixed)
 {
     if (dt == dt_ && fixed == fixed_)
         return;
-    dt_ = dt;
+    dt_ = 0.0; // not prepared, should the solver refuse H
     fixed_ = fixed;
     H_ = elastic_;
     diagonal_.resize(masses_.size());
@@ -50,6 +50,7 @@ void System::prepare(double dt, const std::vector<unsigned char>& fixed)
     }
     eliminate(H_, fixed_);
     solver_->update(H_, fixed_);
+    dt_ = dt;
 }
 
 double System::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
