@@ -19,6 +19,12 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// Long work stopped because its listener asked for it. Nothing was changed.
+class Cancelled : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
 /// The candidate closest to `word` by edit distance, for "did you mean" in error messages; empty when
 /// none is nearer than half of the word's length. The first of equally near candidates wins.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);

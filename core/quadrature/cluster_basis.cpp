@@ -4,10 +4,10 @@ namespace toile {
 
 namespace {
 
-constexpr int kRank = ClusterBasis::kRank;
+constexpr int kLeaf = ClusterTree::kLeaf;
 
-/// Columns shorter than this [-] of their length before orthogonalisation are rounding: fewer than kRank
-/// nodes, or nodes on a line.
+/// Columns shorter than this [-] of their length before orthogonalisation are rounding: fewer nodes
+/// than functions, nodes on a line or in a plane.
 constexpr double kDependent = 1e-6;
 
 /// Modified Gram-Schmidt; dependent columns become zero.
@@ -28,65 +28,92 @@ void orthonormalise(Matrix& columns)
 }
 
 /// Moments of 1 and of the six coordinates relative to a cluster's centre.
-using LinearMoments = Eigen::Matrix<double, kRank, 7>;
+template <int Rank>
+using LinearMoments = Eigen::Matrix<double, Rank, 7>;
 
-/// Moments of the functions 1 and the two coordinates along `of`'s axes, seen from a cluster with other
-/// moments and centre.
-ClusterBasis::Transfer moments_of_coordinates(const LinearMoments& moments, const Place& center,
-                                              const ClusterTree::Cluster& of)
+/// Moments of the functions 1 and the coordinates along `of`'s axes, seen from a cluster with other moments
+/// and centre.
+template <int Rank>
+Eigen::Matrix<double, Rank, Rank> moments_of_coordinates(const LinearMoments<Rank>& moments,
+                                                         const Place& center, const ClusterTree::Cluster& of)
 {
-    ClusterBasis::Transfer result;
+    Eigen::Matrix<double, Rank, Rank> result;
     result.col(0) = moments.col(0);
-    for (int k = 0; k < 2; ++k)
-        result.col(1 + k) =
-            moments.rightCols<6>() * of.axes.col(k) + of.axes.col(k).dot(center - of.center) * moments.col(0);
+    for (int k = 0; k + 1 < Rank; ++k)
+        result.col(1 + k) = moments.template rightCols<6>() * of.axes.col(k) +
+                            of.axes.col(k).dot(center - of.center) * moments.col(0);
     return result;
 }
 
 /// The same seen from another centre.
-LinearMoments shifted(const LinearMoments& moments, const Place& from, const Place& to)
+template <int Rank>
+LinearMoments<Rank> shifted(const LinearMoments<Rank>& moments, const Place& from, const Place& to)
 {
-    LinearMoments result = moments;
-    result.rightCols<6>() += moments.col(0) * (from - to).transpose();
+    LinearMoments<Rank> result = moments;
+    result.template rightCols<6>() += moments.col(0) * (from - to).transpose();
     return result;
+}
+
+/// 1 and the six coordinates relative to the centre at the slots of a leaf, zero where padded.
+Eigen::Matrix<double, kLeaf, 7> linear_functions(const ClusterTree& tree, int leaf, View<const Place> places)
+{
+    Eigen::Matrix<double, kLeaf, 7> linear = Eigen::Matrix<double, kLeaf, 7>::Zero();
+    for (int i = 0; i < kLeaf; ++i)
+        if (const int v = tree.nodes()[leaf * kLeaf + i]; v >= 0)
+            linear.row(i) << 1.0, (places[v] - tree.cluster(leaf).center).transpose();
+    return linear;
 }
 
 } // namespace
 
 ClusterBasis::ClusterBasis(const ClusterTree& tree, View<const Place> places)
-    : tree_(tree), leaf_(tree.leaf_count(), LeafFunctions::Zero()),
-      to_parent_(tree.cluster_count(), Transfer::Zero())
+    : tree_(tree), rank_(rank_of(tree.extent())), leaves_(size_t(tree.leaf_count()) * kLeaf * rank_, 0.0),
+      transfers_(size_t(tree.cluster_count()) * rank_ * rank_, 0.0)
 {
-    std::vector<LinearMoments> moments(tree.cluster_count(), LinearMoments::Zero());
-    for (int id = 0; id < tree.leaf_count(); ++id) {
-        const ClusterTree::Cluster& cluster = tree.cluster(id);
-        Eigen::Matrix<double, ClusterTree::kLeaf, 7> linear =
-            Eigen::Matrix<double, ClusterTree::kLeaf, 7>::Zero();
-        for (int i = 0; i < ClusterTree::kLeaf; ++i)
-            if (const int v = tree.nodes()[id * ClusterTree::kLeaf + i]; v >= 0)
-                linear.row(i) << 1.0, (places[v] - cluster.center).transpose();
-        leaf_[id].col(0) = linear.col(0);
-        leaf_[id].rightCols<2>() = linear.rightCols<6>() * cluster.axes;
-        orthonormalise(leaf_[id]);
-        moments[id] = leaf_[id].transpose() * linear;
+    if (tree.extent() == Extent::Surface)
+        fill<rank_of(Extent::Surface)>(places);
+    else
+        fill<rank_of(Extent::Volume)>(places);
+}
+
+template <int Rank>
+void ClusterBasis::fill(View<const Place> places)
+{
+    using LeafFunctions = Eigen::Matrix<double, kLeaf, Rank>;
+    using Transfer = Eigen::Matrix<double, Rank, Rank>;
+    using StoredLeaf = Eigen::Map<Eigen::Matrix<double, kLeaf, Rank, Eigen::RowMajor>>;
+    using StoredTransfer = Eigen::Map<Eigen::Matrix<double, Rank, Rank, Eigen::RowMajor>>;
+
+    // Leaves: orthonormalise 1 and the coordinates at their nodes.
+    std::vector<LinearMoments<Rank>> moments(tree_.cluster_count(), LinearMoments<Rank>::Zero());
+    for (int id = 0; id < tree_.leaf_count(); ++id) {
+        const Eigen::Matrix<double, kLeaf, 7> linear = linear_functions(tree_, id, places);
+        LeafFunctions functions;
+        functions.col(0) = linear.col(0);
+        functions.template rightCols<Rank - 1>() =
+            linear.template rightCols<6>() * tree_.cluster(id).axes.template leftCols<Rank - 1>();
+        orthonormalise(functions);
+        moments[id] = functions.transpose() * linear;
+        StoredLeaf(leaves_.data() + size_t(id) * kLeaf * Rank) = functions;
     }
 
-    for (int level = 1; level < tree.level_count(); ++level)
-        for (int c = 0; c < tree.level_size(level); ++c) {
-            const int id = tree.first_of_level(level) + c;
-            const ClusterTree::Cluster& cluster = tree.cluster(id);
-            Eigen::Matrix<double, 2 * kRank, kRank> functions =
-                Eigen::Matrix<double, 2 * kRank, kRank>::Zero();
+    // Above: orthonormalise what the children carry of 1 and the coordinates.
+    for (int level = 1; level < tree_.level_count(); ++level)
+        for (int c = 0; c < tree_.level_size(level); ++c) {
+            const int id = tree_.first_of_level(level) + c;
+            const ClusterTree::Cluster& cluster = tree_.cluster(id);
+            Eigen::Matrix<double, 2 * Rank, Rank> functions = Eigen::Matrix<double, 2 * Rank, Rank>::Zero();
             for (int which = 0; which < 2; ++which)
-                if (const int child = tree.child(level, c, which); child >= 0)
-                    functions.middleRows<kRank>(which * kRank) =
-                        moments_of_coordinates(moments[child], tree.cluster(child).center, cluster);
+                if (const int child = tree_.child(level, c, which); child >= 0)
+                    functions.template middleRows<Rank>(which * Rank) =
+                        moments_of_coordinates<Rank>(moments[child], tree_.cluster(child).center, cluster);
             orthonormalise(functions);
             for (int which = 0; which < 2; ++which)
-                if (const int child = tree.child(level, c, which); child >= 0) {
-                    to_parent_[child] = functions.middleRows<kRank>(which * kRank);
-                    moments[id] += to_parent_[child].transpose() *
-                                   shifted(moments[child], tree.cluster(child).center, cluster.center);
+                if (const int child = tree_.child(level, c, which); child >= 0) {
+                    const Transfer transfer = functions.template middleRows<Rank>(which * Rank);
+                    StoredTransfer(transfers_.data() + size_t(child) * Rank * Rank) = transfer;
+                    moments[id] += transfer.transpose() *
+                                   shifted<Rank>(moments[child], tree_.cluster(child).center, cluster.center);
                 }
         }
 }

@@ -22,6 +22,16 @@ Place mean_place(View<const Place> places, View<const int> nodes)
     return sum / nodes.size();
 }
 
+/// Along which to look for the cut: the axes and the diagonals between two of them.
+std::vector<Vec3> cut_directions(Extent extent)
+{
+    std::vector<Vec3> directions{{1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, -1, 0}};
+    if (extent == Extent::Volume)
+        for (const Vec3& more : {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(1, 0, -1), Vec3(0, 1, 1), Vec3(0, 1, -1)})
+            directions.push_back(more);
+    return directions;
+}
+
 /// Of the ball around the mean [m^2].
 double squared_radius(View<const Place> places, View<const int> nodes)
 {
@@ -34,13 +44,13 @@ double squared_radius(View<const Place> places, View<const int> nodes)
 
 } // namespace
 
-ClusterTree::ClusterTree(View<const Place> places, std::vector<int> nodes) : nodes_(std::move(nodes))
+ClusterTree::ClusterTree(View<const Place> places, std::vector<int> nodes, Extent extent)
+    : extent_(extent), nodes_(std::move(nodes))
 {
-    TOILE_ASSERT(!nodes_.empty());
     first_of_level_ = {0};
     for (int size = (int(nodes_.size()) + kLeaf - 1) / kLeaf;; size = (size + 1) / 2) {
         first_of_level_.push_back(first_of_level_.back() + size);
-        if (size == 1)
+        if (size <= 1)
             break;
     }
     clusters_.resize(first_of_level_.back());
@@ -69,11 +79,11 @@ void ClusterTree::split(View<const Place> places, int level, int c)
     if (child(level, c, 1) < 0)
         return;
     const View<const int> all = nodes_of(level, c);
-    const Eigen::Matrix<double, 6, 2>& axes = clusters_[first_of_level_[level] + c].axes;
+    const Eigen::Matrix<double, 6, 3>& axes = clusters_[first_of_level_[level] + c].axes;
     const long first_half = long(kLeaf) << (level - 1);
     std::vector<int> best, order(all.begin(), all.end());
     double best_size = std::numeric_limits<double>::infinity();
-    for (const Vec2& direction : {Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(1, -1)}) {
+    for (const Vec3& direction : cut_directions(extent_)) {
         const Place axis = axes * direction;
         std::nth_element(order.begin(), order.begin() + first_half, order.end(), [&](int u, int v) {
             const double at_u = axis.dot(places[u]), at_v = axis.dot(places[v]);
@@ -102,7 +112,7 @@ void ClusterTree::measure(View<const Place> places, int level, int c)
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(covariance);
     const double widest = std::sqrt(std::max(eigen.eigenvalues()[5], 0.0));
-    for (int k = 0; k < 2; ++k)
+    for (int k = 0; k < rank_of(extent_) - 1; ++k)
         if (widest > 0.0 && std::sqrt(std::max(eigen.eigenvalues()[5 - k], 0.0)) > kFlat * widest)
             cluster.axes.col(k) = eigen.eigenvectors().col(5 - k);
 }

@@ -12,13 +12,21 @@ namespace toile {
 /// of a volume, or the place that quadrature2d gives a point of a sewn surface. Unused axes are zero.
 using Place = Eigen::Matrix<double, 6, 1>;
 
+/// What the places fill: decides how many axes clusters have.
+enum class Extent { Surface, Volume };
+
+/// Functions on a cluster: 1 and a coordinate along each of its axes.
+constexpr int rank_of(Extent extent) { return extent == Extent::Surface ? 3 : 4; }
+
 /// Nodes grouped by bisection across their widest direction, into leaves of exactly kLeaf nodes (the last one
 /// may be padded).
+// clang-format off
 //
-//      level 2   |          0          |     1    |        cluster (k, c) holds the leaves [c 2^k, (c + 1)
-//      2^k) level 1   |     0    |    1     |     2    |        that exist: the tree needs no pointers level
-//      0   | 0  |  1  | 2  |  3  | 4  |  5  |        leaves
+//      level 2   |          0          |     1    |        cluster (k, c) holds the leaves
+//      level 1   |     0    |    1     |     2    |        [c 2^k, (c + 1) 2^k) that exist:
+//      level 0   | 0  |  1  | 2  |  3  | 4  |  5  |        the tree needs no pointers
 //
+// clang-format on
 /// Clusters are numbered level by level, leaves first: children come before their parents, the root is last.
 class ClusterTree {
 public:
@@ -27,20 +35,22 @@ public:
     struct Cluster {
         Place center = Place::Zero(); ///< mean of its nodes [m]
         double radius = 0.0;          ///< [m] of the ball around the centre that holds them
-        /// Directions of largest and second largest extent, orthonormal; zero where there is none.
-        Eigen::Matrix<double, 6, 2> axes = Eigen::Matrix<double, 6, 2>::Zero();
+        /// Directions of largest extent, longest first, orthonormal: two on a surface, three in a volume.
+        /// Zero where there is none.
+        Eigen::Matrix<double, 6, 3> axes = Eigen::Matrix<double, 6, 3>::Zero();
     };
 
     /// @param places  [n] of all nodes
-    /// @param nodes   those to group; at least one
-    ClusterTree(View<const Place> places, std::vector<int> nodes);
+    /// @param nodes   those to group; there may be none
+    ClusterTree(View<const Place> places, std::vector<int> nodes, Extent extent = Extent::Surface);
 
+    Extent extent() const { return extent_; }
     int leaf_count() const { return level_size(0); }
     int cluster_count() const { return first_of_level_.back(); }
     int level_count() const { return int(first_of_level_.size()) - 1; }
     int level_size(int level) const { return first_of_level_[level + 1] - first_of_level_[level]; }
     int first_of_level(int level) const { return first_of_level_[level]; }
-    int root() const { return cluster_count() - 1; }
+    int root() const { return cluster_count() - 1; } ///< -1 without nodes
 
     /// Child 0 or 1 of cluster c of a level above 0; -1 where there is no second one.
     int child(int level, int c, int which) const
@@ -59,6 +69,7 @@ private:
     void split(View<const Place> places, int level, int c);
     void measure(View<const Place> places, int level, int c);
 
+    Extent extent_;
     std::vector<int> nodes_;
     std::vector<int> first_of_level_; ///< [levels + 1]
     std::vector<Cluster> clusters_;

@@ -6,10 +6,12 @@
 namespace toile {
 
 /// Second pass of quadrature for the targets of one leaf: q_i = sum_near G_ij r_j + sum_far w_iC . m_C
+/// Rank: the table's, known to the compiler so that the inner loop is unrolled.
+template <int Rank>
 struct GatherLeaf {
     const KernelTable& table;
     View<const Eigen::Vector3f> sources; ///< [slots] r
-    View<const Eigen::Vector3f> moments; ///< [kRank * clusters] m
+    View<const Eigen::Vector3f> moments; ///< [Rank * clusters] m
     View<const int> nodes;               ///< [slots] node of every slot, -1 for padding
     View<Vec3> x;                        ///< [n] out
 
@@ -21,9 +23,8 @@ struct GatherLeaf {
                                                      size_t(e) * KernelTable::kNearWeights,
                                                  &sources[table.near_leaf[e] * ClusterTree::kLeaf]);
         for (int e = table.far_first[leaf]; e < table.far_first[leaf + 1]; ++e)
-            sum.template add<ClusterBasis::kRank>(table.far_weights.data() +
-                                                      size_t(e) * KernelTable::kFarWeights,
-                                                  &moments[table.far_cluster[e] * ClusterBasis::kRank]);
+            sum.template add<Rank>(table.far_weights.data() + size_t(e) * Rank * KernelTable::kTargets,
+                                   &moments[table.far_cluster[e] * Rank]);
         for (int t = 0; t < KernelTable::kTargets; ++t)
             if (const int v = nodes[leaf * ClusterTree::kLeaf + t]; v >= 0)
                 x[v] = Vec3(sum.of(0, t), sum.of(1, t), sum.of(2, t));

@@ -12,7 +12,6 @@ namespace toile {
 namespace {
 
 constexpr int kLeaf = ClusterTree::kLeaf;
-constexpr int kRank = ClusterBasis::kRank;
 
 using Row = InverseColumns::Row;
 
@@ -21,7 +20,9 @@ constexpr int kLeavesPerBlock = InverseColumns::kColumns / kLeaf;
 
 /// Growth of the squared error that is let pass from one level to the next, twice as many nodes [-]. What
 /// functions leave out is smooth inside a cluster and jumps at its rim: H weighs the jumps, and the rim grows
-/// with the square root of the nodes. At 1 and at 2 the same contraction takes longer lists.
+/// with the square root of a surface's nodes. At 1 and at 2 the same contraction takes longer lists. A
+/// volume's rim grows faster, but with 2^(2/3) large blocks no longer contracted; from 1 to 2^(1/2) it makes
+/// no difference there.
 constexpr double kGrowth = 1.4142135623730951;
 
 /// Mean of a field over the nodes of every cluster.
@@ -51,7 +52,7 @@ std::vector<double> cluster_means(const ClusterTree& tree, View<const double> fi
 class KernelRows {
 public:
     KernelRows(const InverseColumns& columns, const ClusterBasis& basis)
-        : columns_(columns), basis_(basis), moments_(size_t(kRank) * basis.tree().cluster_count()),
+        : columns_(columns), basis_(basis), moments_(size_t(basis.rank()) * basis.tree().cluster_count()),
           squares_(basis.tree().cluster_count())
     {
     }
@@ -72,6 +73,8 @@ public:
             }
     }
 
+    int rank() const { return basis_.rank(); }
+
     /// G between a slot and all columns; zero where the slot is padding.
     Row at(int slot) const
     {
@@ -80,14 +83,14 @@ public:
     }
     const Row& moment(int cluster, int function) const
     {
-        return moments_[size_t(kRank) * cluster + function];
+        return moments_[size_t(rank()) * cluster + function];
     }
 
     /// |G_iC - P_C P_C^T G_iC|^2 for one column
     double squared_error(int cluster, int column) const
     {
         double rest = squares_[cluster][column];
-        for (int r = 0; r < kRank; ++r)
+        for (int r = 0; r < rank(); ++r)
             rest -= std::pow(moment(cluster, r)[column], 2);
         return rest;
     }
@@ -110,7 +113,7 @@ private:
     const InverseColumns& columns_;
     const ClusterBasis& basis_;
     InverseColumns::Block rows_;
-    std::vector<Row> moments_; ///< [kRank * clusters]
+    std::vector<Row> moments_; ///< [rank * clusters]
     std::vector<Row> squares_; ///< [clusters] sum over their nodes
 };
 
@@ -145,7 +148,7 @@ private:
         const int id = tree_.first_of_level(level) + c;
         if (is_accurate(level, id)) {
             table.far.push_back(id);
-            for (int r = 0; r < kRank; ++r)
+            for (int r = 0; r < rows_.rank(); ++r)
                 append(rows_.moment(id, r), table.far_weights);
         } else if (level == 0) {
             table.near.push_back(c);
@@ -189,9 +192,10 @@ void append(const std::vector<T>& from, std::vector<T>& to)
 }
 
 /// One leaf after the other.
-KernelTable joined(const std::vector<LeafTable>& leaves)
+KernelTable joined(const std::vector<LeafTable>& leaves, int rank)
 {
     KernelTable table;
+    table.rank = rank;
     for (const LeafTable& leaf : leaves) {
         table.near_first.push_back(int(table.near_leaf.size()));
         table.far_first.push_back(int(table.far_cluster.size()));
@@ -209,8 +213,8 @@ KernelTable joined(const std::vector<LeafTable>& leaves)
 
 double KernelTable::gathers_per_node() const
 {
-    const double leaves = double(near_first.size()) - 1.0;
-    return (double(near_leaf.size()) * kLeaf + double(far_cluster.size()) * kRank) / leaves;
+    const double leaves = std::max(double(near_first.size()) - 1.0, 1.0);
+    return (double(near_leaf.size()) * kLeaf + double(far_cluster.size()) * rank) / leaves;
 }
 
 std::optional<KernelTable> build_kernel_table(const SupernodalFactor& factor, View<const double> diagonal,
@@ -242,7 +246,7 @@ std::optional<KernelTable> build_kernel_table(const SupernodalFactor& factor, Vi
         });
     if (is_cancelled)
         return std::nullopt;
-    return joined(leaves);
+    return joined(leaves, basis.rank());
 }
 
 } // namespace toile

@@ -7,46 +7,14 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "core/linear/field.h"
+#include "core/linear/cholesky.h"
 #include "core/linear/inverse_columns.h"
-#include "tests/core/matrices.h"
+#include "tests/core/quadrature_problems.h"
 
 namespace toile::test {
 namespace {
 
 constexpr int kLeaf = ClusterTree::kLeaf;
-constexpr int kRank = ClusterBasis::kRank;
-
-/// Nodes of a columns x rows grid at unit distance.
-std::vector<Place> grid_places(int columns, int rows)
-{
-    std::vector<Place> places;
-    for (int j = 0; j < rows; ++j)
-        for (int i = 0; i < columns; ++i) {
-            places.emplace_back(Place::Zero());
-            places.back().head<2>() << i, j;
-        }
-    return places;
-}
-
-std::vector<int> all_nodes(const std::vector<Place>& places)
-{
-    std::vector<int> nodes(places.size());
-    for (size_t v = 0; v < nodes.size(); ++v)
-        nodes[v] = int(v);
-    return nodes;
-}
-
-/// Nodes below a cluster.
-std::vector<int> nodes_below(const ClusterTree& tree, int level, int c)
-{
-    std::vector<int> nodes;
-    for (int slot = (c << level) * kLeaf; slot < std::min<int>((c + 1) << level, tree.leaf_count()) * kLeaf;
-         ++slot)
-        if (tree.nodes()[slot] >= 0)
-            nodes.push_back(tree.nodes()[slot]);
-    return nodes;
-}
 
 TEST(ClusterTree, HoldsEveryNodeOnceInsideItsBalls)
 {
@@ -83,8 +51,8 @@ TEST(ClusterTree, TakesNodesThatAllLieInOnePlace)
     EXPECT_EQ(tree.leaf_count(), 3);
     EXPECT_NEAR(tree.cluster(tree.root()).radius, 0.0, 1e-12);
     const ClusterBasis basis(tree, places);
-    for (int leaf = 0; leaf < 3; ++leaf)
-        EXPECT_TRUE(basis.leaf(leaf).allFinite());
+    for (const double value : basis.leaves())
+        EXPECT_TRUE(std::isfinite(value));
 }
 
 TEST(ClusterTree, SeesThatALineHasOneDirection)
@@ -97,14 +65,15 @@ TEST(ClusterTree, SeesThatALineHasOneDirection)
         EXPECT_EQ(tree.cluster(id).axes.col(1).norm(), 0.0);
 }
 
-TEST(ClusterBasis, CarriesLinearFieldsExactlyOnEveryCluster)
+/// The moments keep the whole norm of a linear field, on every cluster.
+void expect_linear_fields_are_carried(const std::vector<Place>& places, Extent extent)
 {
-    // A basis of 1 and the plane's two coordinates: the moments keep the whole norm of a linear field.
-    const std::vector<Place> places = grid_places(21, 13);
-    const ClusterTree tree(places, all_nodes(places));
+    const ClusterTree tree(places, all_nodes(places), extent);
     const ClusterBasis basis(tree, places);
-    const auto field = [&](int v) { return 0.3 - 0.2 * places[v][0] + 0.7 * places[v][1]; };
-    std::vector<double> moments(size_t(kRank) * tree.cluster_count());
+    const auto field = [&](int v) {
+        return 0.3 - 0.2 * places[v][0] + 0.7 * places[v][1] + 0.4 * places[v][2];
+    };
+    std::vector<double> moments(size_t(basis.rank()) * tree.cluster_count());
     const auto value = [&](int slot) { return tree.nodes()[slot] < 0 ? 0.0 : field(tree.nodes()[slot]); };
     for (int level = 0; level < tree.level_count(); ++level)
         for (int c = 0; c < tree.level_size(level); ++c) {
@@ -112,10 +81,16 @@ TEST(ClusterBasis, CarriesLinearFieldsExactlyOnEveryCluster)
             double squares = 0.0, carried = 0.0;
             for (const int v : nodes_below(tree, level, c))
                 squares += field(v) * field(v);
-            for (int r = 0; r < kRank; ++r)
-                carried += std::pow(moments[size_t(kRank) * (tree.first_of_level(level) + c) + r], 2);
+            for (int r = 0; r < basis.rank(); ++r)
+                carried += std::pow(moments[size_t(basis.rank()) * (tree.first_of_level(level) + c) + r], 2);
             EXPECT_NEAR(carried, squares, 1e-9 * squares);
         }
+}
+
+TEST(ClusterBasis, CarriesLinearFieldsExactlyOnEveryCluster)
+{
+    expect_linear_fields_are_carried(grid_places(21, 13), Extent::Surface);
+    expect_linear_fields_are_carried(grid_places(10, 10, 10), Extent::Volume);
 }
 
 TEST(InverseColumns, AreThoseOfTheInverse)
@@ -135,35 +110,6 @@ TEST(InverseColumns, AreThoseOfTheInverse)
         EXPECT_EQ(block[inverse.row_of(i)][InverseColumns::kColumns - 1], 0.0);
     }
 }
-
-/// Largest factor by which x -> x - A H x lengthens a random field in the long run.
-double contraction(const GlobalSolver& solver, const SparseMatrix& H, int steps = 40)
-{
-    const int n = int(H.rows());
-    std::vector<Vec3> x = random_field(n, 5), product(n), correction(n);
-    double ratio = 0.0;
-    for (int step = 0; step < steps; ++step) {
-        const double before = std::sqrt(dot(x, x));
-        for (int i = 0; i < n; ++i)
-            product[i] = row_times(H, i, x);
-        solver.solve(product, correction);
-        axpy(-1.0, correction, x);
-        const double after = std::sqrt(dot(x, x));
-        ratio = after / before;
-        for (Vec3& v : x)
-            v /= after;
-    }
-    return ratio;
-}
-
-struct Grid {
-    static constexpr int kColumns = 40, kRows = 32;
-    std::vector<Place> places = grid_places(kColumns, kRows);
-    std::vector<unsigned char> fixed = std::vector<unsigned char>(places.size(), 0);
-
-    /// @param shift  mass over stiffness: the kernel reaches 1 / sqrt(shift) nodes far
-    SparseMatrix H(double shift) const { return grid_laplacian(kColumns, kRows, shift); }
-};
 
 TEST(Quadrature, ContractsWhateverTheReachOfTheKernel)
 {

@@ -1,0 +1,34 @@
+#include "core/quadrature/quadrature_tables.h"
+
+#include <optional>
+
+#include "core/backend/error.h"
+#include "core/linear/cholesky.h"
+
+namespace toile {
+
+std::shared_ptr<QuadratureTables> begin_tables(const TableInput& input)
+{
+    TOILE_ASSERT(input.H.rows() == input.places.size() && input.fixed.size() == input.places.size());
+    std::vector<int> nodes;
+    for (int v = 0; v < input.fixed.size(); ++v)
+        if (!input.fixed[v])
+            nodes.push_back(v);
+    return std::make_shared<QuadratureTables>(input.places, std::move(nodes), input.settings.extent);
+}
+
+std::shared_ptr<const QuadratureTables> build_tables(const TableInput& input, const BuildProgress& progress)
+{
+    std::shared_ptr<QuadratureTables> tables = begin_tables(input);
+    const Cholesky cholesky(input.H);
+    const Eigen::VectorXd diagonal = input.H.diagonal();
+    std::optional<KernelTable> kernel =
+        build_kernel_table(cholesky.factor(), {diagonal.data(), int(diagonal.size())}, tables->basis,
+                           input.settings.kernel, progress);
+    if (!kernel)
+        throw Cancelled("building the quadrature tables was cancelled");
+    tables->kernel = std::move(*kernel);
+    return tables;
+}
+
+} // namespace toile
