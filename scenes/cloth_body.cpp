@@ -49,8 +49,9 @@ std::string source_of(const scene::Cloth& cloth)
     return file ? file->string() : "cloth \"" + cloth.name + "\"";
 }
 
-/// Reads or cuts the cloth, subdivides and places it.
-ObjMesh placed_mesh(const scene::Cloth& cloth)
+/// Reads or cuts the cloth, subdivides, sizes and turns it. Where it goes is left to the caller: equal cloths
+/// in several places then have the same rest shape to the bit, and so share factors and tables.
+ObjMesh turned_mesh(const scene::Cloth& cloth)
 {
     ObjMesh mesh = cut(cloth);
     require_usable(mesh.triangulated(), source_of(cloth));
@@ -58,7 +59,7 @@ ObjMesh placed_mesh(const scene::Cloth& cloth)
         mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
     const Mat3 turn = rotation_of(cloth.rotate_deg);
     for (Vec3& p : mesh.positions)
-        p = cloth.translate + turn * (cloth.scale * scene::metres_per(cloth.unit) * p);
+        p = turn * (cloth.scale * scene::metres_per(cloth.unit) * p);
     return mesh;
 }
 
@@ -78,24 +79,27 @@ ClothBody::ClothBody(const Scene& scene, const scene::Cloth& settings, const std
 {
     state_.name = settings.name;
     state_.fabric = fabric_of(scene, settings);
-    state_.rest = placed_mesh(settings);
-    state_.positions = state_.rest.positions;
+    state_.rest = turned_mesh(settings);
     state_.triangles = state_.rest.triangulated().triangles;
+    const std::vector<Vec3> unmoved = state_.rest.positions;
+    for (Vec3& p : state_.rest.positions)
+        p += settings.translate;
+    state_.positions = state_.rest.positions;
     for (size_t i = 0; i < scene.attachments.size(); ++i)
         if (scene.attachments[i].cloth == settings.name)
             holds_.emplace_back(scene.attachments[i], state_.positions, obstacles,
                                 scene.source.string() + ": attachments[" + std::to_string(i) + "]");
-    build(scene, obstacles, source_of(settings), settings.grain_deg * std::numbers::pi / 180.0);
+    build(scene, unmoved, obstacles, source_of(settings), settings.grain_deg * std::numbers::pi / 180.0);
 }
 
 /// Energies, body and contact. Stages that the scene rules out are not even built.
-void ClothBody::build(const Scene& scene, const std::vector<Obstacle>& obstacles, const std::string& source,
-                      double grain)
+void ClothBody::build(const Scene& scene, const std::vector<Vec3>& unmoved,
+                      const std::vector<Obstacle>& obstacles, const std::string& source, double grain)
 {
     const Fabric& fabric = state_.fabric;
-    const bool is_flat = bounds(state_.positions).upper.y() - bounds(state_.positions).lower.y() < 1e-9;
+    const bool is_flat = bounds(unmoved).upper.y() - bounds(unmoved).lower.y() < 1e-9;
     const auto rest = std::make_shared<const RestShape>(rest_shape_of_surface(
-        {state_.positions, state_.triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(), grain, source));
+        {unmoved, state_.triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(), grain, source));
 
     const auto membrane = std::make_shared<Membrane>(
         rest, Membrane::Settings{fabric.stretch_warp, fabric.stretch_weft, fabric.shear}, source);

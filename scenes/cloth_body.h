@@ -29,8 +29,9 @@ public:
     const ClothState& state() const { return state_; }
 
 private:
-    void build(const Scene& scene, const std::vector<Obstacle>& obstacles, const std::string& source,
-               double grain);
+    /// @param unmoved  [vertices] rest positions before the cloth's translation [m]
+    void build(const Scene& scene, const std::vector<Vec3>& unmoved, const std::vector<Obstacle>& obstacles,
+               const std::string& source, double grain);
     void hold(double t_t1, const std::vector<Obstacle>& obstacles);
     void accelerate(double dt, double t_t1);
     bool sleeps(double t_t1, const std::vector<Obstacle>& obstacles);

@@ -52,6 +52,7 @@ OWNERS = {
     r"(suitesparse/)?(cholmod|SuiteSparse_config|umfpack|amd|camd|colamd|metis)\b": ["core/linear"],
     r"(cuda|cublas|cusparse|cusolver|cooperative_groups|nvtx)|(cub|thrust|nv)/": ["core/backend"],
     r"(tbb|oneapi|experimental)/": ["core/backend"],
+    r"xxhash\.h": ["core/backend"],
     r"embree[34]/": ["collision"],
     r"assimp/": ["avatars"],
     r"CGAL/": ["garment/pattern"],

@@ -16,6 +16,7 @@ BUILD=(
     libtbb-dev
     libsuitesparse-dev # CHOLMOD; brings METIS
     libopenblas0       # CHOLMOD's BLAS; the reference BLAS it would take instead is several times slower
+    libxxhash-dev
     libembree-dev
     libassimp-dev
     nlohmann-json3-dev

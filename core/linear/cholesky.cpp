@@ -142,18 +142,19 @@ void Cholesky::refactor(const SparseMatrix& A)
     if (cholmod_->common.status != CHOLMOD_OK)
         throw std::runtime_error("CHOLMOD could not factor a matrix of " + std::to_string(A.rows()) +
                                  " rows (status " + std::to_string(cholmod_->common.status) + ")");
-    factor_ = copy_factor(*cholmod_->factor);
-    if (const int pivot = first_bad_pivot(factor_); pivot < size())
+    const auto factor = std::make_shared<const SupernodalFactor>(copy_factor(*cholmod_->factor));
+    if (const int pivot = first_bad_pivot(*factor); pivot < int(factor->permutation.size()))
         refuse(size_t(pivot));
+    factor_ = factor;
 }
 
 void Cholesky::solve(View<const Vec3> b, View<Vec3> x) const
 {
     const StageScope stage("linear/solve");
-    factor_.solve(b, x);
+    factor_->solve(b, x);
 }
 
-int Cholesky::size() const { return int(factor_.permutation.size()); }
-long Cholesky::factor_entries() const { return long(factor_.values.size()); }
+int Cholesky::size() const { return int(factor_->permutation.size()); }
+long Cholesky::factor_entries() const { return long(factor_->values.size()); }
 
 } // namespace toile

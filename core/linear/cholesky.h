@@ -30,7 +30,9 @@ public:
     /// @param b, x  [n]; may be the same array
     void solve(View<const Vec3> b, View<Vec3> x) const;
 
-    const SupernodalFactor& factor() const { return factor_; }
+    const SupernodalFactor& factor() const { return *factor_; }
+    /// The same, to be kept beyond the next refactor(): it is never changed.
+    std::shared_ptr<const SupernodalFactor> shared_factor() const { return factor_; }
 
     int size() const;
     /// Entries of L, explicit zeros of the supernodes included.
@@ -39,7 +41,7 @@ public:
 private:
     struct Cholmod;
     std::unique_ptr<Cholmod> cholmod_;
-    SupernodalFactor factor_;
+    std::shared_ptr<const SupernodalFactor> factor_;
 };
 
 } // namespace toile

@@ -4,6 +4,7 @@
 
 #include <Eigen/SparseCore>
 
+#include "core/backend/hash.h"
 #include "core/backend/types.h"
 
 namespace toile {
@@ -13,6 +14,10 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// Entries (row, column, value) that are summed into a SparseMatrix in the order they were added.
 using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// Of the pattern and the bits of the values.
+/// @param A  compressed
+Hash128 hash_of(const SparseMatrix& A);
 
 /// One row of A times a field of vectors.
 template <typename Vec>

@@ -4,6 +4,7 @@
 
 #include "core/backend/error.h"
 #include "core/linear/cholesky.h"
+#include "core/linear/shared_factor.h"
 
 namespace toile {
 
@@ -20,11 +21,11 @@ std::shared_ptr<QuadratureTables> begin_tables(const TableInput& input)
 std::shared_ptr<const QuadratureTables> build_tables(const TableInput& input, const BuildProgress& progress)
 {
     std::shared_ptr<QuadratureTables> tables = begin_tables(input);
-    const Cholesky cholesky(input.H);
+    const std::shared_ptr<const SupernodalFactor> factor =
+        shared_factor(input.H, [&] { return Cholesky(input.H).shared_factor(); });
     const Eigen::VectorXd diagonal = input.H.diagonal();
-    std::optional<KernelTable> kernel =
-        build_kernel_table(cholesky.factor(), {diagonal.data(), int(diagonal.size())}, tables->basis,
-                           input.settings.kernel, progress);
+    std::optional<KernelTable> kernel = build_kernel_table(*factor, {diagonal.data(), int(diagonal.size())},
+                                                           tables->basis, input.settings.kernel, progress);
     if (!kernel)
         throw Cancelled("building the quadrature tables was cancelled");
     tables->kernel = std::move(*kernel);

@@ -1,0 +1,19 @@
+#include "core/quadrature/quadrature_solver.h"
+
+#include <utility>
+
+namespace toile {
+
+QuadratureSolver::QuadratureSolver(std::vector<Place> places, Settings settings,
+                                   std::shared_ptr<TableStore> store, TableListener listener)
+    : places_(std::move(places)), settings_(settings), store_(std::move(store)),
+      listener_(std::move(listener))
+{
+}
+
+void QuadratureSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
+{
+    operator_ = QuadratureOperator(store_->get({H, fixed, places_, settings_}, listener_));
+}
+
+} // namespace toile

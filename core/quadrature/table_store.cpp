@@ -1,0 +1,59 @@
+#include "core/quadrature/table_store.h"
+
+#include "core/backend/error.h"
+
+namespace toile {
+
+namespace {
+
+/// To be raised whenever the same input would give other tables: trees, functions, lists, weights.
+constexpr int kTableVersion = 1;
+
+/// What a compiler may make of the same source: fused products and the width of sums.
+constexpr std::string_view kCompiledAs = __VERSION__
+#ifdef __FMA__
+    " fma"
+#endif
+#ifdef __AVX__
+    " avx"
+#endif
+#ifdef __AVX512F__
+    " avx512"
+#endif
+    ;
+
+} // namespace
+
+Hash128 table_key(const TableInput& input)
+{
+    const Hash128 matrix = hash_of(input.H);
+    Hasher hasher;
+    hasher.add(kTableVersion);
+    hasher.add(kCompiledAs);
+    hasher.add(matrix.high);
+    hasher.add(matrix.low);
+    hasher.add(input.fixed);
+    hasher.add(input.places);
+    hasher.add(input.settings.kernel.tolerance);
+    hasher.add(rank_of(input.settings.extent));
+    return hasher.result();
+}
+
+const std::shared_ptr<TableStore>& TableStore::of_process()
+{
+    static const auto store = std::make_shared<TableStore>();
+    return store;
+}
+
+std::shared_ptr<const QuadratureTables> TableStore::get(const TableInput& input,
+                                                        const TableListener& listener)
+{
+    const auto make = [&] { return build_tables(input, listener.progress); };
+    const auto waiting = [&] {
+        if (listener.progress && !listener.progress(0.0))
+            throw Cancelled("waiting for quadrature tables was cancelled");
+    };
+    return shared_.get(table_key(input), make, waiting);
+}
+
+} // namespace toile

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+
+#include "core/backend/shared_by_key.h"
+#include "core/quadrature/quadrature_tables.h"
+
+namespace toile {
+
+/// Identifies tables: everything in the input, bit by bit, and what else decides their bits (the version of
+/// their making, compiler and instruction set).
+Hash128 table_key(const TableInput& input);
+
+/// Hears of tables that are being prepared. Calls come from the thread that asked or from those that build.
+struct TableListener {
+    /// Finished share; stays 0 while another thread builds the same tables. Returning false cancels. May be
+    /// empty.
+    BuildProgress progress;
+};
+
+/// Where solvers get their tables from: equal bodies share one, which is built once and freed with its last
+/// user. Safe to call from several threads.
+class TableStore {
+public:
+    /// The one that all solvers of the process use unless told otherwise.
+    static const std::shared_ptr<TableStore>& of_process();
+
+    /// The tables of `input`: those in use, or built ("quadrature/build"). Who asks while another thread
+    /// prepares them waits.
+    /// @throws InvalidInput where H is not positive definite, Cancelled where the listener wants no more
+    std::shared_ptr<const QuadratureTables> get(const TableInput& input, const TableListener& listener = {});
+
+private:
+    SharedByKey<QuadratureTables> shared_;
+};
+
+} // namespace toile

@@ -1,0 +1,42 @@
+#include <gtest/gtest.h>
+
+#include "scenes/format/read_scene.h"
+#include "scenes/world.h"
+
+namespace toile {
+namespace {
+
+/// Five equal sheets in five places, each held at one corner.
+World five_sheets(const std::string& method)
+{
+    std::string cloths, attachments;
+    for (int k = 0; k < 5; ++k) {
+        const std::string name = "\"sheet" + std::to_string(k) + "\"", x = std::to_string(k * 0.7);
+        cloths += std::string(k > 0 ? "," : "") + R"({"name": )" + name +
+                  R"(, "rectangle": {"size": [0.3, 0.3], "resolution": 0.02}, "translate": [)" + x +
+                  ", 0.3, 0.1]}";
+        attachments += std::string(k > 0 ? "," : "") + R"({"cloth": )" + name +
+                       R"(, "select": {"nearest": [[)" + x + ", 0.3, 0.1]]}}";
+    }
+    return World(parse_scene(R"({"toile": 1, "frames": 3, "solver": {"method": ")" + method +
+                                 R"("}, "cloths": [)" + cloths + R"(], "attachments": [)" + attachments +
+                                 "]}",
+                             "test.json"));
+}
+
+TEST(EqualCloths, ShareTheirFactor)
+{
+    World world = five_sheets("direct");
+    world.advance_frame();
+    EXPECT_EQ(world.stages().calls("linear/factor"), 1);
+}
+
+TEST(EqualCloths, ShareTheirTables)
+{
+    World world = five_sheets("quadrature");
+    world.advance_frame();
+    EXPECT_EQ(world.stages().calls("quadrature/build"), 1);
+}
+
+} // namespace
+} // namespace toile
