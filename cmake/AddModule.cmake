@@ -17,11 +17,12 @@ function(add_module name)
 endfunction()
 
 # add_toile_test(<folder> SOURCES ... DEPENDS <our modules> [PRIVATE <targets>])
-# One GoogleTest program per folder of tests/, each test case registered with ctest.
+# One GoogleTest program per folder of tests/, each test case registered with ctest. TOILE_CACHE_DIR is empty in
+# all of them (no_cache.cpp).
 function(add_toile_test folder)
     cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
     set(target test_${folder})
-    add_executable(${target} ${TEST_SOURCES})
+    add_executable(${target} ${TEST_SOURCES} "${PROJECT_SOURCE_DIR}/tests/support/no_cache.cpp")
     list(TRANSFORM TEST_DEPENDS PREPEND toile:: OUTPUT_VARIABLE test_targets)
     target_link_libraries(${target} PRIVATE ${test_targets} ${TEST_PRIVATE} GTest::gtest_main toile_options)
     target_compile_definitions(${target} PRIVATE

@@ -1,5 +1,6 @@
 #include "core/backend/atomic_file.h"
 
+#include <atomic>
 #include <fstream>
 #include <string>
 #include <system_error>
@@ -9,6 +10,19 @@
 #include "core/backend/error.h"
 
 namespace toile {
+
+namespace {
+
+constexpr const char* kPartial = ".partial-";
+
+/// Differs between the threads and processes of a machine.
+std::filesystem::path partial_name(const std::filesystem::path& file)
+{
+    static std::atomic<long> count = 0;
+    return file.string() + kPartial + std::to_string(::getpid()) + "-" + std::to_string(++count);
+}
+
+} // namespace
 
 void create_parent_folder(const std::filesystem::path& file)
 {
@@ -20,15 +34,21 @@ void create_parent_folder(const std::filesystem::path& file)
                            "); choose a writable folder");
 }
 
-void write_atomically(const std::filesystem::path& file, std::string_view content)
+bool is_partial(const std::filesystem::path& file)
+{
+    return file.filename().string().find(kPartial) != std::string::npos;
+}
+
+void write_atomically(const std::filesystem::path& file, std::span<const std::string_view> pieces)
 {
     create_parent_folder(file);
     std::error_code error;
-    const std::filesystem::path partial = file.string() + ".partial-" + std::to_string(::getpid());
+    const std::filesystem::path partial = partial_name(file);
     std::ofstream stream(partial, std::ios::binary);
     if (!stream)
         throw InvalidInput(file.string() + ": can't be written; choose a writable folder");
-    stream.write(content.data(), std::streamsize(content.size()));
+    for (const std::string_view piece : pieces)
+        stream.write(piece.data(), std::streamsize(piece.size()));
     stream.close();
     const bool written = stream.good();
     if (written)

@@ -18,17 +18,22 @@ std::shared_ptr<QuadratureTables> begin_tables(const TableInput& input)
     return std::make_shared<QuadratureTables>(input.places, std::move(nodes), input.settings.extent);
 }
 
-std::shared_ptr<const QuadratureTables> build_tables(const TableInput& input, const BuildProgress& progress)
+void build_kernel(const TableInput& input, const BuildProgress& progress, QuadratureTables& tables)
 {
-    std::shared_ptr<QuadratureTables> tables = begin_tables(input);
     const std::shared_ptr<const SupernodalFactor> factor =
         shared_factor(input.H, [&] { return Cholesky(input.H).shared_factor(); });
     const Eigen::VectorXd diagonal = input.H.diagonal();
     std::optional<KernelTable> kernel = build_kernel_table(*factor, {diagonal.data(), int(diagonal.size())},
-                                                           tables->basis, input.settings.kernel, progress);
+                                                           tables.basis, input.settings.kernel, progress);
     if (!kernel)
         throw Cancelled("building the quadrature tables was cancelled");
-    tables->kernel = std::move(*kernel);
+    tables.kernel = std::move(*kernel);
+}
+
+std::shared_ptr<const QuadratureTables> build_tables(const TableInput& input, const BuildProgress& progress)
+{
+    const std::shared_ptr<QuadratureTables> tables = begin_tables(input);
+    build_kernel(input, progress, *tables);
     return tables;
 }
 

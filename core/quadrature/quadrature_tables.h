@@ -41,9 +41,13 @@ struct TableInput {
 /// The tables' tree and basis: all that does not take the inverse.
 std::shared_ptr<QuadratureTables> begin_tables(const TableInput& input);
 
-/// Factors H and tabulates its inverse. N solves: seconds for 10 000 nodes.
+/// Factors H and tabulates its inverse into tables begun with the same input. N solves: seconds for 10 000
+/// nodes.
 /// @param progress  may be empty
 /// @throws InvalidInput where H is not positive definite, Cancelled where `progress` returned false
+void build_kernel(const TableInput& input, const BuildProgress& progress, QuadratureTables& tables);
+
+/// Both.
 std::shared_ptr<const QuadratureTables> build_tables(const TableInput& input, const BuildProgress& progress);
 
 } // namespace toile

@@ -39,21 +39,36 @@ Hash128 table_key(const TableInput& input)
     return hasher.result();
 }
 
+TableStore::TableStore(const std::filesystem::path& folder, std::uintmax_t byte_limit)
+{
+    if (!folder.empty())
+        cache_.emplace(folder, byte_limit);
+}
+
 const std::shared_ptr<TableStore>& TableStore::of_process()
 {
-    static const auto store = std::make_shared<TableStore>();
+    static const auto store = std::make_shared<TableStore>(default_cache_folder());
     return store;
 }
 
 std::shared_ptr<const QuadratureTables> TableStore::get(const TableInput& input,
                                                         const TableListener& listener)
 {
-    const auto make = [&] { return build_tables(input, listener.progress); };
+    const Hash128 key = table_key(input);
+    const auto make = [&] {
+        const std::shared_ptr<QuadratureTables> tables = begin_tables(input);
+        if (!cache_ || !cache_->load(key, *tables, listener.warn)) {
+            build_kernel(input, listener.progress, *tables);
+            if (cache_)
+                cache_->store(key, *tables, listener.warn);
+        }
+        return std::shared_ptr<const QuadratureTables>(tables);
+    };
     const auto waiting = [&] {
         if (listener.progress && !listener.progress(0.0))
             throw Cancelled("waiting for quadrature tables was cancelled");
     };
-    return shared_.get(table_key(input), make, waiting);
+    return shared_.get(key, make, waiting);
 }
 
 } // namespace toile
