@@ -71,9 +71,24 @@ Gusts::Settings gusts_of(const scene::Wind& wind)
     return settings;
 }
 
+/// The options as one cloth's solver sees them.
+TableSource source_of_tables(const WorldOptions& options, const std::string& cloth)
+{
+    TableSource source;
+    if (options.tables)
+        source.store = options.tables;
+    if (options.building)
+        source.listener.progress = [building = options.building, cloth](double share) {
+            return building(cloth, share);
+        };
+    source.listener.warn = options.warn;
+    return source;
+}
+
 } // namespace
 
-ClothBody::ClothBody(const Scene& scene, const scene::Cloth& settings, const std::vector<Obstacle>& obstacles)
+ClothBody::ClothBody(const Scene& scene, const scene::Cloth& settings, const std::vector<Obstacle>& obstacles,
+                     const WorldOptions& options)
     : gravity_(scene.gravity), wind_(scene.wind), gusts_(scene.wind.velocity, gusts_of(scene.wind)),
       sleep_(scene.solver.sleep)
 {
@@ -89,12 +104,14 @@ ClothBody::ClothBody(const Scene& scene, const scene::Cloth& settings, const std
         if (scene.attachments[i].cloth == settings.name)
             holds_.emplace_back(scene.attachments[i], state_.positions, obstacles,
                                 scene.source.string() + ": attachments[" + std::to_string(i) + "]");
-    build(scene, unmoved, obstacles, source_of(settings), settings.grain_deg * std::numbers::pi / 180.0);
+    build(scene, unmoved, obstacles, options, source_of(settings),
+          settings.grain_deg * std::numbers::pi / 180.0);
 }
 
 /// Energies, body and contact. Stages that the scene rules out are not even built.
 void ClothBody::build(const Scene& scene, const std::vector<Vec3>& unmoved,
-                      const std::vector<Obstacle>& obstacles, const std::string& source, double grain)
+                      const std::vector<Obstacle>& obstacles, const WorldOptions& options,
+                      const std::string& source, double grain)
 {
     const Fabric& fabric = state_.fabric;
     const bool is_flat = bounds(unmoved).upper.y() - bounds(unmoved).lower.y() < 1e-9;
@@ -132,10 +149,12 @@ void ClothBody::build(const Scene& scene, const std::vector<Vec3>& unmoved,
     Body::Settings settings;
     settings.tolerance = scene.solver.tolerance;
     settings.max_iterations = scene.solver.max_iterations;
-    body_ = std::make_unique<Body>(state_.positions,
-                                   std::make_unique<System>(std::move(masses), std::move(energies),
-                                                            make_global_solver(scene.solver.method, *rest)),
-                                   settings);
+    body_ = std::make_unique<Body>(
+        state_.positions,
+        std::make_unique<System>(
+            std::move(masses), std::move(energies),
+            make_global_solver(scene.solver.method, *rest, source_of_tables(options, state_.name))),
+        settings);
 
     air_ = std::make_unique<Aerodynamics>(
         rest, Aerodynamics::Settings{scene.air.density, scene.air.normal, scene.air.tangential});
@@ -156,6 +175,12 @@ void ClothBody::build(const Scene& scene, const std::vector<Vec3>& unmoved,
     fixed_.assign(state_.positions.size(), 0);
     targets_.assign(state_.positions.size(), Vec3::Zero());
     acceleration_.assign(state_.positions.size(), Vec3::Zero());
+}
+
+void ClothBody::prepare(double dt, double t_t1)
+{
+    mark_fixed(t_t1);
+    body_->prepare(dt, fixed_);
 }
 
 StepReport ClothBody::step(double dt, double t_t1, const std::vector<Obstacle>& obstacles)
@@ -191,10 +216,20 @@ void ClothBody::place(View<const Vec3> positions)
     rest_time_ = 0.0;
 }
 
+/// Marks the vertices whose place is prescribed at time t_t1.
+void ClothBody::mark_fixed(double t_t1)
+{
+    std::fill(fixed_.begin(), fixed_.end(), 0);
+    for (const Hold& hold : holds_)
+        if (!hold.stiffness() && hold.holds_at(t_t1))
+            for (const int v : hold.vertices())
+                fixed_[v] = 1;
+}
+
 /// Prescribes held vertices and moves the far ends of springs.
 void ClothBody::hold(double t_t1, const std::vector<Obstacle>& obstacles)
 {
-    std::fill(fixed_.begin(), fixed_.end(), 0);
+    mark_fixed(t_t1);
     int spring = 0;
     for (const Hold& hold : holds_) {
         const bool holds = hold.holds_at(t_t1);
@@ -207,7 +242,6 @@ void ClothBody::hold(double t_t1, const std::vector<Obstacle>& obstacles)
                     springs_->release(spring);
                 ++spring;
             } else if (holds) {
-                fixed_[hold.vertices()[k]] = 1;
                 targets_[hold.vertices()[k]] = target;
             }
         }

@@ -18,7 +18,11 @@ namespace toile {
 class ClothBody {
 public:
     /// @throws InvalidInput for a mesh, fabric or attachment that does not work.
-    ClothBody(const Scene& scene, const scene::Cloth& settings, const std::vector<Obstacle>& obstacles);
+    ClothBody(const Scene& scene, const scene::Cloth& settings, const std::vector<Obstacle>& obstacles,
+              const WorldOptions& options);
+
+    /// Prepares the global solver for a step of dt [s] that ends at time t_t1 [s].
+    void prepare(double dt, double t_t1);
 
     /// One time step of dt [s] that ends at time t_t1 [s], obstacles already advanced to it.
     StepReport step(double dt, double t_t1, const std::vector<Obstacle>& obstacles);
@@ -31,7 +35,8 @@ public:
 private:
     /// @param unmoved  [vertices] rest positions before the cloth's translation [m]
     void build(const Scene& scene, const std::vector<Vec3>& unmoved, const std::vector<Obstacle>& obstacles,
-               const std::string& source, double grain);
+               const WorldOptions& options, const std::string& source, double grain);
+    void mark_fixed(double t_t1);
     void hold(double t_t1, const std::vector<Obstacle>& obstacles);
     void accelerate(double dt, double t_t1);
     bool sleeps(double t_t1, const std::vector<Obstacle>& obstacles);

@@ -11,13 +11,15 @@
 
 namespace toile {
 
-std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method, const RestShape& rest)
+std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method, const RestShape& rest,
+                                                 const TableSource& tables)
 {
     using scene::SolverMethod;
     switch (method) {
     case SolverMethod::Quadrature:
         return std::make_unique<QuadratureSolver>(
-            geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
+            geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)),
+            QuadratureSolver::Settings{}, tables.store, tables.listener);
     case SolverMethod::Multigrid:
         return std::make_unique<Multigrid>();
     case SolverMethod::Subspace:

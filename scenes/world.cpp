@@ -16,6 +16,9 @@ struct World::Parts {
     Stages stages;
     int frame = 0;
 
+    double dt() const { return scene.frame_duration() / scene.solver.substeps; }
+    int settle_steps() const { return int(std::ceil(scene.settle / dt() - 1e-9)); }
+
     /// Steps of dt [s] each, the last of them ending at `end` [s]; with still avatars when `end` is not after
     /// 0.
     StepReport advance(int steps, double dt, double end)
@@ -44,13 +47,13 @@ struct World::Parts {
     }
 };
 
-World::World(const Scene& scene) : parts_(std::make_unique<Parts>())
+World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make_unique<Parts>())
 {
     parts_->scene = scene;
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->obstacles.emplace_back(avatar, scene.contact.friction);
     for (const scene::Cloth& cloth : scene.cloths) {
-        parts_->bodies.emplace_back(scene, cloth, parts_->obstacles);
+        parts_->bodies.emplace_back(scene, cloth, parts_->obstacles, options);
         parts_->states.push_back(parts_->bodies.back().state());
     }
 }
@@ -65,19 +68,24 @@ void World::place(int cloth, View<const Vec3> positions)
     parts_->states[cloth].positions = parts_->bodies[cloth].state().positions;
 }
 
-StepReport World::settle()
+void World::prepare()
 {
-    const Scene& scene = parts_->scene;
-    const double dt = scene.frame_duration() / scene.solver.substeps;
-    return parts_->advance(int(std::ceil(scene.settle / dt - 1e-9)), dt, 0.0);
+    const ThreadLimit threads(parts_->scene.solver.threads);
+    const Stages::Activate recording(parts_->stages);
+    const double dt = parts_->dt();
+    const int steps = parts_->settle_steps();
+    const double first_end = steps > 0 ? -(steps - 1) * dt : dt;
+    for (ClothBody& body : parts_->bodies)
+        body.prepare(dt, first_end);
 }
+
+StepReport World::settle() { return parts_->advance(parts_->settle_steps(), parts_->dt(), 0.0); }
 
 StepReport World::advance_frame()
 {
     const Scene& scene = parts_->scene;
     ++parts_->frame;
-    return parts_->advance(scene.solver.substeps, scene.frame_duration() / scene.solver.substeps,
-                           parts_->frame * scene.frame_duration());
+    return parts_->advance(scene.solver.substeps, parts_->dt(), parts_->frame * scene.frame_duration());
 }
 
 int World::frame() const { return parts_->frame; }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/backend/stages.h"
@@ -11,6 +13,8 @@
 
 namespace toile {
 
+class TableStore;
+
 /// A cloth of a running scene as others see it.
 struct ClothState {
     std::string name;
@@ -18,6 +22,19 @@ struct ClothState {
     std::vector<Triangle> triangles;
     ObjMesh rest; ///< start placement, rest lengths, faces and texture coordinates as stored
     Fabric fabric;
+};
+
+/// How a World prepares its global solvers, beyond what the scene says.
+struct WorldOptions {
+    /// Where quadrature tables come from; null: TableStore::of_process(), which keeps them on disk.
+    std::shared_ptr<TableStore> tables = nullptr;
+
+    /// Called with a cloth's name and the finished share [0, 1] of its tables while they are built, from any
+    /// of the building threads. Returning false ends the call that builds with Cancelled. May be empty.
+    std::function<bool(const std::string& cloth, double share)> building = nullptr;
+
+    /// Told what went wrong without stopping the run, e.g. a damaged cache file; may be empty.
+    std::function<void(const std::string&)> warn = nullptr;
 };
 
 /// A running scene: avatars, cloths, contact and the time-step loop. The only place that knows them all.
@@ -28,7 +45,7 @@ class World {
 public:
     /// Loads everything and places it; nothing is simulated or factored yet.
     /// @throws InvalidInput for files, materials and selections that do not work.
-    explicit World(const Scene& scene);
+    explicit World(const Scene& scene, const WorldOptions& options = {});
     ~World();
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
@@ -36,6 +53,13 @@ public:
     /// Puts the vertices of a cloth elsewhere, however far from its rest shape; velocities stay.
     /// @param positions  [vertices] of that cloth [m]
     void place(int cloth, View<const Vec3> positions);
+
+    /// Prepares the global solvers for the first step, which otherwise would: factors, and the tables of
+    /// quadrature, seconds for 10 000 vertices. Where holds let go during the run, a step prepares again.
+    /// @throws Cancelled where WorldOptions::building wants no more; so do settle() and advance_frame(),
+    /// after
+    ///         which the sample they were at is lost.
+    void prepare();
 
     /// Simulates Scene::settle seconds with every avatar in its first pose. Call before sample 0 is taken.
     StepReport settle();

@@ -8,8 +8,10 @@
 #include "apps/toile/interrupt.h"
 #include "apps/toile/progress.h"
 #include "apps/toile/run_report.h"
+#include "apps/toile/table_progress.h"
 #include "core/backend/error.h"
 #include "core/mesh/obj.h"
+#include "core/quadrature/table_store.h"
 #include "export/async_cache_writer.h"
 #include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
@@ -26,6 +28,7 @@ struct SimulateOptions {
     std::optional<int> threads;
     std::string solver;
     std::filesystem::path report;
+    bool no_cache = false;
     bool quiet = false;
 };
 
@@ -134,10 +137,12 @@ struct Outcome {
     std::string message;           ///< why it failed
 };
 
-/// Runs to the last frame, to an interrupt, or to a failure.
-Outcome run(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
-            const InterruptGuard& interrupt, bool quiet)
+/// Settles and runs to the last frame, to an interrupt, or to a failure.
+/// @throws Cancelled when interrupted while tables were built
+Outcome run_frames(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
+                   const InterruptGuard& interrupt, bool quiet)
 {
+    world.settle();
     Progress progress("frame", scene.frames, quiet);
     write_frame(world, caches);
     progress.update(1);
@@ -154,6 +159,16 @@ Outcome run(World& world, const Scene& scene, std::vector<OpenCache>& caches, Ru
         progress.update(world.frame() + 1, note_of(step));
     }
     return {};
+}
+
+Outcome run(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
+            const InterruptGuard& interrupt, bool quiet)
+{
+    try {
+        return run_frames(world, scene, caches, report, interrupt, quiet);
+    } catch (const Cancelled&) {
+        return {"interrupted", ""};
+    }
 }
 
 /// Says where a run ended that did not get to its end, and lists the partial caches.
@@ -173,10 +188,28 @@ int explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>&
 int simulate(const SimulateOptions& options)
 {
     const Scene scene = scene_with_options(options);
-    World world(scene);
+    TableProgress tables(options.quiet);
+    std::optional<InterruptGuard> interrupt;
+    WorldOptions world_options;
+    if (options.no_cache)
+        world_options.tables = std::make_shared<TableStore>();
+    world_options.building = [&](const std::string& cloth, double share) {
+        tables.update(cloth, share);
+        return !interrupt->requested();
+    };
+    world_options.warn = [&](const std::string& text) { tables.warn(text); };
+    World world(scene, world_options);
+    interrupt.emplace(); // from here on something may be half-done
+    try {
+        world.prepare();
+    } catch (const Cancelled&) {
+        tables.end_line();
+        std::cerr << "toile: error: interrupted before the first frame; nothing was written" << std::endl;
+        return kExitFailure;
+    }
+
     const std::filesystem::path folder =
         options.output.empty() ? std::filesystem::path("out") / scene.source.stem() : options.output;
-    const InterruptGuard interrupt; // from here on there are files that a reader must find complete
     std::vector<OpenCache> caches = open_caches(scene, world, folder);
 
     int vertex_count = 0;
@@ -186,8 +219,8 @@ int simulate(const SimulateOptions& options)
     for (const OpenCache& cache : caches)
         write_start_mesh(world, cache, caches);
 
-    world.settle();
-    const Outcome outcome = run(world, scene, caches, report, interrupt, options.quiet);
+    const Outcome outcome = run(world, scene, caches, report, *interrupt, options.quiet);
+    tables.end_line();
     if (!options.report.empty())
         report.write(options.report, outcome.word, world.stages());
     if (outcome.word != "complete")
@@ -214,6 +247,7 @@ Command add_simulate(CLI::App& program)
     add.add_option("--solver", options->solver, "Global solver, instead of the scene's")
         ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
     add.add_option("--report", options->report, "Write stages, frames and settings to this JSON file");
+    add.add_flag("--no-cache", options->no_cache, "Neither read nor keep quadrature tables on disk");
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return simulate(*options); };
     return command;

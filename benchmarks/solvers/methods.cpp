@@ -56,7 +56,9 @@ std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem)
 {
     const RestShape& rest = *problem.cloth.rest;
     return std::make_unique<QuadratureSolver>(
-        geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
+        geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)),
+        QuadratureSolver::Settings{},
+        std::make_shared<TableStore>()); // the set-up is measured: none from disk
 }
 
 /// On the sheet's own plane. The rule needs one flat chart, which a skirt does not have.

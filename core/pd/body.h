@@ -38,6 +38,9 @@ public:
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);
 
+    /// Prepares the system for steps of dt [s] with these vertices fixed, which step() otherwise does.
+    void prepare(double dt, const std::vector<unsigned char>& fixed) { system_->prepare(dt, fixed); }
+
     /// Advances by dt [s].
     /// @param acceleration  [vertices] external acceleration of this step [m/s^2]
     /// @param fixed         [vertices] 1 where `targets` prescribes the position at the end of the step

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <random>
+#include <thread>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -8,6 +10,7 @@
 #include "apps/toile/frame_range.h"
 #include "apps/toile/progress.h"
 #include "apps/toile/strain.h"
+#include "apps/toile/table_progress.h"
 #include "core/backend/error.h"
 #include "scenes/shape_mesh.h"
 
@@ -97,6 +100,36 @@ TEST(ClockText, ShowsHoursOnlyWhenThereAreSome)
     EXPECT_EQ(clock_text(0.4), "0:00");
     EXPECT_EQ(clock_text(75.0), "1:15");
     EXPECT_EQ(clock_text(3675.0), "1:01:15");
+}
+
+/// What TableProgress prints on the way to finished tables, with a pause after the first call.
+std::string told_of_tables(bool quiet, std::chrono::milliseconds pause)
+{
+    testing::internal::CaptureStderr();
+    {
+        TableProgress progress(quiet);
+        progress.update("skirt", 0.1);
+        std::this_thread::sleep_for(pause);
+        progress.update("skirt", 0.4);
+        progress.update("skirt", 0.5);
+        progress.update("skirt", 1.0);
+    }
+    return testing::internal::GetCapturedStderr();
+}
+
+TEST(TableProgress, TellsWhatTakesLongerThanHalfASecond)
+{
+    EXPECT_EQ(told_of_tables(false, std::chrono::milliseconds(0)), "");
+    EXPECT_EQ(told_of_tables(true, std::chrono::milliseconds(600)), "");
+    const std::string told = told_of_tables(false, std::chrono::milliseconds(600));
+    EXPECT_EQ(told.rfind("tables of cloth \"skirt\": 40 %, ", 0), 0u) << told;
+    EXPECT_NE(told.find(" left\ntables of cloth \"skirt\": 100 %, built in "), std::string::npos) << told;
+}
+
+TEST(TableProgress, WritesDurationsForPeople)
+{
+    EXPECT_EQ(duration_text(3.2), "3 s");
+    EXPECT_EQ(duration_text(75.0), "1:15");
 }
 
 } // namespace

@@ -1,0 +1,83 @@
+#include "apps/toile/table_progress.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <unistd.h>
+
+#include "apps/toile/progress.h"
+
+namespace toile {
+
+namespace {
+
+/// Tables that are sooner ready are not worth a line.
+constexpr std::chrono::milliseconds kSilence(500);
+
+/// Between two lines of a log file, and between two states of a terminal's line.
+constexpr std::chrono::seconds kLogInterval(10);
+constexpr std::chrono::milliseconds kTerminalInterval(100);
+
+} // namespace
+
+TableProgress::TableProgress(bool quiet) : quiet_(quiet), on_terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+TableProgress::~TableProgress() { end_line(); }
+
+void TableProgress::update(const std::string& cloth, double share)
+{
+    const std::lock_guard lock(mutex_);
+    const Clock::time_point now = Clock::now();
+    if (!is_building_ || cloth != cloth_) {
+        is_building_ = true;
+        cloth_ = cloth;
+        first_share_ = share;
+        start_ = now;
+        last_line_ = now + kSilence - (on_terminal_ ? Clock::duration(kTerminalInterval) : kLogInterval);
+    }
+    const bool is_finished = share >= 1.0;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const bool is_due =
+        now - last_line_ >= (on_terminal_ ? Clock::duration(kTerminalInterval) : kLogInterval);
+    if (!quiet_ && (is_finished ? now - start_ >= kSilence : is_due)) {
+        last_line_ = now;
+        std::string text = "tables of cloth \"" + cloth + "\": " + std::to_string(int(100.0 * share)) + " %";
+        if (is_finished)
+            text += ", built in " + duration_text(seconds);
+        else if (share > first_share_)
+            text += ", " + duration_text(seconds * (1.0 - share) / (share - first_share_)) + " left";
+        print(text);
+    }
+    if (is_finished) {
+        is_building_ = false;
+        end_line();
+    }
+}
+
+void TableProgress::warn(const std::string& text)
+{
+    const std::lock_guard lock(mutex_);
+    end_line();
+    std::fprintf(stderr, "toile: warning: %s\n", text.c_str());
+}
+
+void TableProgress::end_line()
+{
+    if (line_open_)
+        std::fputc('\n', stderr);
+    line_open_ = false;
+}
+
+void TableProgress::print(const std::string& text)
+{
+    std::fprintf(stderr, on_terminal_ ? "\r%s\033[K" : "%s\n", text.c_str());
+    std::fflush(stderr);
+    line_open_ = on_terminal_;
+}
+
+std::string duration_text(double seconds)
+{
+    return seconds < 59.5 ? std::to_string(std::lround(seconds)) + " s" : clock_text(seconds);
+}
+
+} // namespace toile
