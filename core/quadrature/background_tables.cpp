@@ -1,0 +1,84 @@
+#include "core/quadrature/background_tables.h"
+
+#include <utility>
+
+#include "core/backend/error.h"
+#include "core/backend/low_priority.h"
+
+namespace toile {
+
+BackgroundTables::BackgroundTables(std::shared_ptr<TableStore> store, int threads, TableCache::Warn warn)
+    : store_(std::move(store)), threads_(threads), warn_(std::move(warn))
+{
+}
+
+BackgroundTables::~BackgroundTables() = default; // the thread is asked to stop, then joined
+
+void BackgroundTables::start(Request request)
+{
+    {
+        const std::lock_guard lock(mutex_);
+        ++number_;
+        request_ = std::move(request);
+        ready_ = nullptr;
+        failure_ = nullptr;
+        share_ = 0.0;
+    }
+    changed_.notify_all();
+    if (!thread_.joinable())
+        thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+}
+
+std::shared_ptr<const QuadratureTables> BackgroundTables::take_if_ready()
+{
+    const std::lock_guard lock(mutex_);
+    if (failure_)
+        std::rethrow_exception(std::exchange(failure_, nullptr));
+    return std::exchange(ready_, nullptr);
+}
+
+void BackgroundTables::work(const std::stop_token& stop)
+{
+    for (;;) {
+        std::optional<Request> request;
+        long number = 0;
+        {
+            std::unique_lock lock(mutex_);
+            if (!changed_.wait(lock, stop, [&] { return request_.has_value(); }))
+                return;
+            request = std::exchange(request_, std::nullopt);
+            number = number_;
+        }
+        prepare(*request, number, stop);
+    }
+}
+
+void BackgroundTables::prepare(const Request& request, long number, const std::stop_token& stop)
+{
+    const auto progress = [&](double share) {
+        const bool is_wanted = !stop.stop_requested() && number == number_;
+        if (is_wanted)
+            share_ = share;
+        return is_wanted;
+    };
+    std::shared_ptr<const QuadratureTables> tables;
+    std::exception_ptr failure;
+    try {
+        with_low_priority(kCpu, threads_, [&] {
+            tables =
+                store_->get({request.H, request.fixed, request.places, request.settings}, {progress, warn_});
+        });
+    } catch (const Cancelled&) {
+        return;
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    if (number != number_)
+        return;
+    ready_ = std::move(tables);
+    failure_ = failure;
+    share_ = 1.0;
+}
+
+} // namespace toile
