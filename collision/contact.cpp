@@ -23,27 +23,12 @@ constexpr double kTrust = 0.007;
 constexpr double kEndTrust = 0.002;
 constexpr double kLeftOver = 1e-4;
 
-/// Sweeps over the pairs at the end of a step: neighbouring planes push against each other.
-constexpr int kClearSweeps = 5;
-
-/// Farthest move of a vertex for a pair in such a sweep, of the shortest altitude around the pair [-]: a
-/// millimetre across a sliver would be an explosion.
-constexpr double kClearance = 0.5;
-
-/// Clearance [m] below which velocities are left alone too: one vertex of a sliver stopped, the others not.
-constexpr double kThinnest = 5e-5;
-
 /// Margin [m] of a second look within a step, on top of the gap.
 constexpr double kRevisionMargin = 0.003;
 
 /// Relative change of the friction limits that calls for another minimisation [-]: cloth that lands. At 0.1 a
 /// walking skirt was minimised three times a step for nothing that could be measured.
 constexpr double kFrictionChange = 0.5;
-
-/// Least sum of squared weights of a pair's free vertices for which the pair is cleared by moving them [-].
-/// Where fixed vertices carry nearly all of the pair, the free one would have to be thrown far; the energy
-/// deals with it.
-constexpr double kMinLeverage = 0.1;
 
 /// cos of the angle up to which a pair's normal may turn and still be the same contact [-].
 constexpr double kSameContact = 0.7;
@@ -191,24 +176,8 @@ bool Contact::make_feasible(View<Vec3> x) const
     bool moved = false;
     for (int i = 0; i < int(energy_.terms().size()); ++i)
         if (const double depth = -energy_.gap(i, x); depth > 0.0)
-            moved = push(energy_.terms()[i].pair, depth, x) || moved;
+            moved = push(energy_.terms()[i].pair, depth * energy_.terms()[i].pair.normal, x) || moved;
     return moved;
-}
-
-/// Adds to the field at the pair's free vertices so that its cloth point gains `amount` along the normal.
-/// False where fixed vertices carry nearly all of the pair.
-bool Contact::push(const ContactPair& pair, double amount, View<Vec3> field) const
-{
-    double squares = 0.0;
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
-        if (!start_.fixed[pair.vertex[k]])
-            squares += pair.weight[k] * pair.weight[k];
-    if (squares < kMinLeverage)
-        return false;
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
-        if (!start_.fixed[pair.vertex[k]])
-            field[pair.vertex[k]] += pair.weight[k] / squares * amount * pair.normal;
-    return true;
 }
 
 double Contact::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
@@ -325,42 +294,21 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
     detect(x, settings_.gap + kRevisionMargin);
     const StageScope stage("collision/clear");
     stop_at_surfaces(x, v);
-    for (int sweep = 0; sweep < kClearSweeps; ++sweep)
-        for (int i = 0; i < int(energy_.terms().size()); ++i) {
-            const ContactPair& pair = energy_.terms()[i].pair;
-            if (const double depth = -energy_.gap(i, x); depth > 0.0)
-                push(pair, std::min(depth, clearance_of(pair)), x);
-        }
+    push_out(x);
 }
 
-/// Cloth inside moves at least as fast out of a surface as that does.
-void Contact::stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const
+/// Coulomb's law with the distance pushed out for the normal impulse [Macklin et al. 2014, eq. 24]. Nothing
+/// of a stick stays for the next step: friction has undone it.
+void Contact::resolve(View<Vec3> x, View<Vec3> v)
 {
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        if (energy_.gap(i, x) >= 0.0)
-            continue;
-        const ContactPair& pair = energy_.terms()[i].pair;
-        if (clearance_of(pair) < kThinnest)
-            continue;
-        const Vec3 surface = is_carried(pair.motion) ? Vec3(pair.motion / start_.dt) : Vec3(Vec3::Zero());
-        if (const double approach = pair.normal.dot(surface - pair.cloth_point(v)); approach > 0.0)
-            push(pair, approach, v);
-    }
-}
-
-/// How far a pair may be pushed in a sweep without crushing a triangle [m].
-double Contact::clearance_of(const ContactPair& pair) const
-{
-    double shortest = std::numeric_limits<double>::max();
-    double squares = 0.0, largest = 0.0;
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k) {
-        shortest = std::min(shortest, altitude_[pair.vertex[k]]);
-        if (!start_.fixed[pair.vertex[k]]) {
-            squares += pair.weight[k] * pair.weight[k];
-            largest = std::max(largest, pair.weight[k]);
-        }
-    }
-    return largest > 0.0 ? kClearance * shortest * squares / largest : 0.0;
+    if (slid_away(x, kEndTrust))
+        detect(x, settings_.gap + kRevisionMargin);
+    const StageScope stage("collision/resolve");
+    update_normal_forces(x);
+    remember([](int) { return Vec3(Vec3::Zero()); });
+    has_cleared_ = true;
+    rub(x, v);
+    push_out(x);
 }
 
 } // namespace toile

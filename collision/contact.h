@@ -54,6 +54,7 @@ public:
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     bool revise(View<const Vec3> x) override;
     void clear(View<Vec3> x, View<Vec3> v) override;
+    void resolve(View<Vec3> x, View<Vec3> v) override;
     void end_step(View<const Vec3> x) override;
 
     /// Drops what earlier steps left: cloth that was put elsewhere touches nothing it knows.
@@ -92,9 +93,13 @@ private:
     bool update_normal_forces(View<const Vec3> x);
     bool slid_away(View<const Vec3> x, double trust) const;
     double deepest(View<const Vec3> x) const;
-    bool push(const ContactPair& pair, double amount, View<Vec3> field) const;
+    double leverage_of(const ContactPair& pair) const;
+    bool push(const ContactPair& pair, const Vec3& move, View<Vec3> field) const;
     double clearance_of(const ContactPair& pair) const;
+    Vec3 surface_velocity(const ContactPair& pair) const;
     void stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const;
+    void rub(View<Vec3> x, View<Vec3> v) const;
+    void push_out(View<Vec3> x) const;
     void remember_start();
 
     std::vector<ContactPartner> partners_;

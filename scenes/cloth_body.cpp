@@ -7,11 +7,12 @@
 
 #include "core/backend/parallel.h"
 #include "core/linear/field.h"
+#include "core/pd/body.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
 #include "garment/pattern/shapes.h"
 #include "scenes/format/scene_fabric.h"
-#include "scenes/global_solver_choice.h"
+#include "scenes/method_choice.h"
 
 namespace toile {
 
@@ -101,14 +102,16 @@ ClothBody::ClothBody(const Scene& scene, const scene::Cloth& settings, const std
         p += settings.translate;
     state_.positions = state_.rest.positions;
     for (size_t i = 0; i < scene.attachments.size(); ++i)
-        if (scene.attachments[i].cloth == settings.name)
-            holds_.emplace_back(scene.attachments[i], state_.positions, obstacles,
-                                scene.source.string() + ": attachments[" + std::to_string(i) + "]");
+        if (scene.attachments[i].cloth == settings.name) {
+            const std::string place = scene.source.string() + ": attachments[" + std::to_string(i) + "]";
+            require_method_holds(scene.solver.method, scene.attachments[i], place);
+            holds_.emplace_back(scene.attachments[i], state_.positions, obstacles, place);
+        }
     build(scene, unmoved, obstacles, options, source_of(settings),
           settings.grain_deg * std::numbers::pi / 180.0);
 }
 
-/// Energies, body and contact. Stages that the scene rules out are not even built.
+/// Body and contact. Stages that the scene rules out are not even built.
 void ClothBody::build(const Scene& scene, const std::vector<Vec3>& unmoved,
                       const std::vector<Obstacle>& obstacles, const WorldOptions& options,
                       const std::string& source, double grain)
@@ -117,7 +120,42 @@ void ClothBody::build(const Scene& scene, const std::vector<Vec3>& unmoved,
     const bool is_flat = bounds(unmoved).upper.y() - bounds(unmoved).lower.y() < 1e-9;
     const auto rest = std::make_shared<const RestShape>(rest_shape_of_surface(
         {unmoved, state_.triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(), grain, source));
+    body_ = is_rival(scene.solver.method) ? make_rival(scene, rest) : make_body(scene, rest, options, source);
 
+    air_ = std::make_unique<Aerodynamics>(
+        rest, Aerodynamics::Settings{scene.air.density, scene.air.normal, scene.air.tangential});
+    StrainLimit::Settings limit;
+    limit.limit = fabric.strain_limit;
+    strain_limit_ = std::make_unique<StrainLimit>(rest, limit, source, tension_);
+    if (!obstacles.empty()) {
+        std::vector<ContactPartner> partners;
+        partners.reserve(obstacles.size());
+        for (const Obstacle& obstacle : obstacles)
+            partners.push_back(obstacle.partner());
+        Contact::Settings contact;
+        contact.gap = scene.contact.gap + 0.5 * fabric.thickness;
+        contact.stiffness *= scene.contact.stiffness;
+        contact_ =
+            std::make_unique<Contact>(state_.triangles, state_.positions, std::move(partners), contact);
+    }
+    fixed_.assign(state_.positions.size(), 0);
+    targets_.assign(state_.positions.size(), Vec3::Zero());
+    acceleration_.assign(state_.positions.size(), Vec3::Zero());
+}
+
+std::vector<double> ClothBody::vertex_masses(const RestShape& rest) const
+{
+    std::vector<double> masses = rest.vertex_areas();
+    for (double& mass : masses)
+        mass *= state_.fabric.areal_density;
+    return masses;
+}
+
+/// Projective dynamics: every term is an energy.
+std::unique_ptr<PointMasses> ClothBody::make_body(const Scene& scene, std::shared_ptr<const RestShape> rest,
+                                                  const WorldOptions& options, const std::string& source)
+{
+    const Fabric& fabric = state_.fabric;
     const auto membrane = std::make_shared<Membrane>(
         rest, Membrane::Settings{fabric.stretch_warp, fabric.stretch_weft, fabric.shear}, source);
     std::vector<std::shared_ptr<Energy>> energies{membrane};
@@ -143,38 +181,26 @@ void ClothBody::build(const Scene& scene, const std::vector<Vec3>& unmoved,
     tension_ = std::make_shared<StretchTension>(rest, tension);
     energies.push_back(tension_);
 
-    std::vector<double> masses = rest->vertex_areas();
-    for (double& mass : masses)
-        mass *= fabric.areal_density;
     Body::Settings settings;
     settings.tolerance = scene.solver.tolerance;
     settings.max_iterations = scene.solver.max_iterations;
-    body_ = std::make_unique<Body>(
+    auto solver = make_global_solver(scene.solver.method, *rest, {state_.positions, state_.triangles}, source,
+                                     source_of_tables(options, state_.name));
+    return std::make_unique<Body>(
         state_.positions,
-        std::make_unique<System>(
-            std::move(masses), std::move(energies),
-            make_global_solver(scene.solver.method, *rest, source_of_tables(options, state_.name))),
-        settings);
+        std::make_unique<System>(vertex_masses(*rest), std::move(energies), std::move(solver)), settings);
+}
 
-    air_ = std::make_unique<Aerodynamics>(
-        rest, Aerodynamics::Settings{scene.air.density, scene.air.normal, scene.air.tangential});
-    StrainLimit::Settings limit;
-    limit.limit = fabric.strain_limit;
-    strain_limit_ = std::make_unique<StrainLimit>(rest, limit, source, tension_);
-    if (!obstacles.empty()) {
-        std::vector<ContactPartner> partners;
-        partners.reserve(obstacles.size());
-        for (const Obstacle& obstacle : obstacles)
-            partners.push_back(obstacle.partner());
-        Contact::Settings contact;
-        contact.gap = scene.contact.gap + 0.5 * fabric.thickness;
-        contact.stiffness *= scene.contact.stiffness;
-        contact_ =
-            std::make_unique<Contact>(state_.triangles, state_.positions, std::move(partners), contact);
-    }
-    fixed_.assign(state_.positions.size(), 0);
-    targets_.assign(state_.positions.size(), Vec3::Zero());
-    acceleration_.assign(state_.positions.size(), Vec3::Zero());
+std::unique_ptr<PointMasses> ClothBody::make_rival(const Scene& scene,
+                                                   std::shared_ptr<const RestShape> rest) const
+{
+    const Fabric& fabric = state_.fabric;
+    ClothModel cloth;
+    cloth.masses = vertex_masses(*rest);
+    cloth.rest = std::move(rest);
+    cloth.stretch = {fabric.stretch_warp, fabric.stretch_weft, fabric.shear};
+    cloth.bending = {fabric.bend_warp, fabric.bend_weft};
+    return toile::make_rival(scene.solver, state_.positions, std::move(cloth));
 }
 
 void ClothBody::prepare(double dt, double t_t1)
@@ -192,7 +218,8 @@ StepReport ClothBody::step(double dt, double t_t1, const std::vector<Obstacle>& 
     }
     hold(t_t1, obstacles);
     accelerate(dt, t_t1);
-    tension_->begin_step(body_->positions());
+    if (tension_)
+        tension_->begin_step(body_->positions());
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, contact_.get(), strain_limit_.get());
     state_.positions.assign(body_->positions().begin(), body_->positions().end());
     if (contact_) {
@@ -202,14 +229,19 @@ StepReport ClothBody::step(double dt, double t_t1, const std::vector<Obstacle>& 
     if (report.status == StepReport::Status::NonFinite)
         report.message = "cloth \"" + state_.name + "\": " + report.message;
     report.max_strain = strain_limit_->max_strain(body_->positions());
-    rest_time_ = max_norm(body_->velocities()) < sleep_.speed ? rest_time_ + dt : 0.0;
+
+    // A solver whose every direction was refused leaves the cloth standing: that is no rest.
+    const bool is_stuck = report.status == StepReport::Status::IterationLimit && report.iterations == 0;
+    const bool is_slow = max_norm(body_->velocities()) < sleep_.speed;
+    rest_time_ = is_slow && !is_stuck ? rest_time_ + dt : 0.0;
     return report;
 }
 
 void ClothBody::place(View<const Vec3> positions)
 {
     body_->set_positions(positions);
-    tension_->forget();
+    if (tension_)
+        tension_->forget();
     if (contact_)
         contact_->forget();
     state_.positions.assign(positions.begin(), positions.end());
@@ -261,7 +293,7 @@ void ClothBody::accelerate(double dt, double t_t1)
         gusts_at_.resize(v.size());
         gusts_.sample(body_->positions(), t_t1, gusts_at_);
     }
-    air_->add_acceleration(body_->positions(), v, body_->system().masses(), wind_.velocity, dt, acceleration_,
+    air_->add_acceleration(body_->positions(), v, body_->masses(), wind_.velocity, dt, acceleration_,
                            gusts_at_);
 }
 

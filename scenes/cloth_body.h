@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "collision/contact.h"
-#include "core/pd/body.h"
+#include "core/pd/point_masses.h"
 #include "garment/energy/aerodynamics.h"
 #include "garment/energy/gusts.h"
 #include "garment/energy/springs.h"
@@ -14,7 +14,7 @@
 
 namespace toile {
 
-/// One cloth of a running scene: fabric, energies, holds, contact, and the body that is stepped.
+/// One cloth of a running scene: fabric, energies, holds, contact, and the point masses that are stepped.
 class ClothBody {
 public:
     /// @throws InvalidInput for a mesh, fabric or attachment that does not work.
@@ -36,6 +36,10 @@ private:
     /// @param unmoved  [vertices] rest positions before the cloth's translation [m]
     void build(const Scene& scene, const std::vector<Vec3>& unmoved, const std::vector<Obstacle>& obstacles,
                const WorldOptions& options, const std::string& source, double grain);
+    std::unique_ptr<PointMasses> make_body(const Scene& scene, std::shared_ptr<const RestShape> rest,
+                                           const WorldOptions& options, const std::string& source);
+    std::unique_ptr<PointMasses> make_rival(const Scene& scene, std::shared_ptr<const RestShape> rest) const;
+    std::vector<double> vertex_masses(const RestShape& rest) const;
     void mark_fixed(double t_t1);
     void hold(double t_t1, const std::vector<Obstacle>& obstacles);
     void accelerate(double dt, double t_t1);
@@ -49,10 +53,10 @@ private:
     std::vector<Hold> holds_;
     std::shared_ptr<Springs> springs_; ///< null without attachments that give
     std::unique_ptr<Aerodynamics> air_;
-    std::shared_ptr<StretchTension> tension_;
+    std::shared_ptr<StretchTension> tension_; ///< null for a rival
     std::unique_ptr<StrainLimit> strain_limit_;
     std::unique_ptr<Contact> contact_; ///< null without obstacles
-    std::unique_ptr<Body> body_;
+    std::unique_ptr<PointMasses> body_;
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;
     std::vector<Vec3> gusts_at_; ///< [vertices] [m/s]; empty in steady wind

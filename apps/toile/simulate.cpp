@@ -244,7 +244,7 @@ Command add_simulate(CLI::App& program)
     add.add_option("-o,--output", options->output, "Folder for the caches [out/NAME]");
     add.add_option("--frames", options->frames, "Samples to write, instead of the scene's");
     add.add_option("--threads", options->threads, "Threads to use; 0: all");
-    add.add_option("--solver", options->solver, "Global solver, instead of the scene's")
+    add.add_option("--solver", options->solver, "solver.method, instead of the scene's")
         ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
     add.add_option("--report", options->report, "Write stages, frames and settings to this JSON file");
     add.add_flag("--no-cache", options->no_cache, "Neither read nor keep quadrature tables on disk");

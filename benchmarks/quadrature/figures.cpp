@@ -1,11 +1,12 @@
-/// quadrature_figures FOLDER: writes profile.csv, line.csv, square.csv, sheet.csv (the paper's figures 3, 5,
-/// 6 and the same on cloth: relative integration errors) and solver.csv (the rule as a global step). plot.py
-/// draws them.
+/// quadrature_figures FOLDER: writes profile.csv, line.csv, wave.csv, square.csv, sheet.csv (the paper's
+/// figures 3, 5, 6 and the same on cloth: relative integration errors) and solver.csv (the rule as a global
+/// step). plot.py draws them.
 
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <numbers>
 #include <string>
 
 #include "benchmarks/quadrature/integrals.h"
@@ -62,6 +63,20 @@ std::string lines(bool is_square)
                 csv +=
                     number(share) + "," + number(lambda) + "," + number(target.peak()) + "," +
                     row(is_square ? errors_on_square(target, target, share) : errors_on_line(target, share));
+            }
+    return csv;
+}
+
+/// The same peaks along the line times a wave: half a period, one and two in [-1, 1].
+std::string waves()
+{
+    std::string csv = std::string("near_share,omega,peak,") + kErrorNames + "\n";
+    for (const double share : {0.7, 0.9})
+        for (const double omega : {0.5 * std::numbers::pi, std::numbers::pi, 2.0 * std::numbers::pi})
+            for (int step = -10; step <= 10; ++step) {
+                const YukawaLine target(0.05 * step, 0.2, kEpsilon);
+                csv += number(share) + "," + number(omega) + "," + number(target.peak()) + "," +
+                       row(errors_on_wave(target, omega, share));
             }
     return csv;
 }
@@ -157,6 +172,7 @@ int main(int argc, char** argv)
         const std::filesystem::path folder(argv[1]);
         toile::write_atomically(folder / "profile.csv", toile::profile());
         toile::write_atomically(folder / "line.csv", toile::lines(false));
+        toile::write_atomically(folder / "wave.csv", toile::waves());
         toile::write_atomically(folder / "square.csv", toile::lines(true));
         toile::write_atomically(folder / "sheet.csv", toile::sheets());
         toile::write_atomically(folder / "solver.csv", toile::solvers());

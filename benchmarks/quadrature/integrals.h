@@ -60,6 +60,11 @@ GaussianFits<1> fits_on_line(const YukawaLine& target, double near_share);
 /// points.
 IntegrationErrors errors_on_line(const YukawaLine& target, double near_share);
 
+/// Figure 5, right half: the peak times a wave, phi(x) = target(x) cos(omega (x - peak)). Its near box is the
+/// peak's alone: in a global step the wave is b. The paper gives neither phase nor omega.
+/// @param omega  [1/m]
+IntegrationErrors errors_on_wave(const YukawaLine& target, double omega, double near_share);
+
 /// Figure 6: phi(x, y) = target_x(x) target_y(y) on the square; the near box is the product of the near
 /// intervals. S_i are 8 points by farthest point sampling.
 IntegrationErrors errors_on_square(const YukawaLine& target_x, const YukawaLine& target_y, double near_share);

@@ -47,6 +47,10 @@ public:
     /// positions and velocities.
     virtual void clear(View<Vec3> x, View<Vec3> v) = 0;
 
+    /// Instead of clear(), for a method that knows nothing of this energy: takes the positions x and
+    /// velocities v [vertices] that it has found without, and changes them as rigid contact would.
+    virtual void resolve(View<Vec3> x, View<Vec3> v) { clear(x, v); }
+
     /// Remembers what the next step builds on. x [vertices] are the final positions.
     virtual void end_step(View<const Vec3> x) = 0;
 };

@@ -23,8 +23,8 @@ constexpr double kStandingTolerance = 0.1;
 } // namespace
 
 Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings)
-    : x_(std::move(positions)), v_(x_.size(), Vec3::Zero()), system_(std::move(system)), settings_(settings),
-      prediction_(x_.size()), x_t1_(x_.size()), gradient_(x_.size()), inverse_masses_(x_.size())
+    : PointMasses(std::move(positions)), system_(std::move(system)), settings_(settings),
+      prediction_(x_.size()), gradient_(x_.size())
 {
 }
 
@@ -34,7 +34,7 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
     StepReport report;
     report.steps = 1;
     system_->prepare(dt, fixed);
-    predict(dt, acceleration, targets);
+    predict(dt, acceleration, system_->fixed(), targets, prediction_);
 
     x_t1_ = prediction_;
     if (active) {
@@ -51,32 +51,11 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
     if (active)
         active->clear(x_t1_, v_);
     if (projection)
-        project(dt, *projection, active);
+        project(dt, system_->fixed(), *projection, active);
     if (active)
         active->end_step(x_t1_);
     x_.swap(x_t1_);
     return report;
-}
-
-/// What the constraint moves becomes velocity: it is a force like any other.
-void Body::project(double dt, StepProjection& projection, const ActiveSetEnergy* active)
-{
-    const View<const unsigned char> fixed = system_->fixed();
-    for (int i = 0; i < int(x_.size()); ++i)
-        inverse_masses_[i] = fixed[i] ? 0.0 : 1.0 / system_->masses()[i];
-    unprojected_ = x_t1_;
-    projection.project(x_t1_, inverse_masses_, active);
-    parallel_for(kCpu, "pd/finish", int(x_.size()),
-                 [&](int i) { v_[i] += (x_t1_[i] - unprojected_[i]) / dt; });
-}
-
-/// q* = x + dt v + dt^2 a; fixed vertices go to their targets.
-void Body::predict(double dt, View<const Vec3> acceleration, View<const Vec3> targets)
-{
-    const View<const unsigned char> fixed = system_->fixed();
-    parallel_for(kCpu, "pd/predict", int(x_.size()), [&](int i) {
-        prediction_[i] = fixed[i] ? targets[i] : Vec3(x_[i] + dt * (v_[i] + dt * acceleration[i]));
-    });
 }
 
 /// Far enough below what moves in this step.

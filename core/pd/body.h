@@ -3,28 +3,13 @@
 #include <memory>
 #include <vector>
 
-#include "core/pd/step_report.h"
+#include "core/pd/point_masses.h"
 #include "core/pd/system.h"
 
 namespace toile {
 
-/// A hard constraint applied after the minimisation of a step, outside H: limits that would need weights far
-/// above the rest of H (strain limits) stall every method that inverts a fixed H.
-class StepProjection {
-public:
-    virtual ~StepProjection() = default;
-
-    /// Looks at the minimiser of the step before anything moves it.
-    virtual void observe(View<const Vec3> x) = 0;
-
-    /// Moves x [vertices] onto the constraint, vertices with weight 0 not at all.
-    /// @param inverse_masses  [vertices] [1/kg], 0 for fixed vertices
-    /// @param active          contact to respect while projecting; may be null
-    virtual void project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active) = 0;
-};
-
 /// A deformable body advanced by implicit Euler: each step minimises StepObjective.
-class Body {
+class Body : public PointMasses {
 public:
     struct Settings {
         /// [m] Largest vertex move of the last outer iteration; lowered to a tenth of the farthest predicted
@@ -38,36 +23,23 @@ public:
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);
 
-    /// Prepares the system for steps of dt [s] with these vertices fixed, which step() otherwise does.
-    void prepare(double dt, const std::vector<unsigned char>& fixed) { system_->prepare(dt, fixed); }
-
-    /// Advances by dt [s].
-    /// @param acceleration  [vertices] external acceleration of this step [m/s^2]
-    /// @param fixed         [vertices] 1 where `targets` prescribes the position at the end of the step
-    /// @param targets       [vertices] read where fixed [m]
+    void prepare(double dt, const std::vector<unsigned char>& fixed) override { system_->prepare(dt, fixed); }
     StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
-                    View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection);
+                    View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection) override;
 
-    View<const Vec3> positions() const { return x_; }
-    View<const Vec3> velocities() const { return v_; }
-    void set_positions(View<const Vec3> x) { x_.assign(x.begin(), x.end()); }
-    void set_velocities(View<const Vec3> v) { v_.assign(v.begin(), v.end()); }
+    View<const double> masses() const override { return system_->masses(); }
     const System& system() const { return *system_; }
 
 private:
-    void predict(double dt, View<const Vec3> acceleration, View<const Vec3> targets);
-    void project(double dt, StepProjection& projection, const ActiveSetEnergy* active);
     double tolerance() const;
     Lbfgs::Outcome no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
                                           const Lbfgs::Outcome& found);
     void minimise(double dt, ActiveSetEnergy* active, StepReport& report);
 
-    std::vector<Vec3> x_, v_;
     std::unique_ptr<System> system_;
     Settings settings_;
     Lbfgs lbfgs_;
-    std::vector<Vec3> prediction_, x_t1_, standing_, gradient_, unprojected_;
-    std::vector<double> inverse_masses_;
+    std::vector<Vec3> prediction_, standing_, gradient_;
 };
 
 } // namespace toile

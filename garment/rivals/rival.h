@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pd/step_report.h"
+#include "core/pd/point_masses.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
 
@@ -18,33 +18,42 @@ struct ClothModel {
     Bending::Settings bending;
 };
 
-/// A whole simulation method by other people, to be measured against Body. It answers like Body, without
-/// contact and without strain limits.
-class Rival {
+/// A whole simulation method by other people, to be measured against Body.
+///
+/// None of them knows contact. A step with contact moves the cloth first and resolves contact by positions
+/// afterwards (ActiveSetEnergy::resolve), as position-based programs do; a StepProjection follows.
+class Rival : public PointMasses {
 public:
     Rival(std::vector<Vec3> positions, ClothModel cloth)
-        : cloth_(std::move(cloth)), x_(std::move(positions)), v_(x_.size(), Vec3::Zero())
+        : PointMasses(std::move(positions)), cloth_(std::move(cloth))
     {
     }
-    virtual ~Rival() = default;
 
-    /// Advances by dt [s]. Same bits for every thread count.
-    /// @param acceleration  [vertices] external acceleration of this step [m/s^2]
-    /// @param fixed         [vertices] 1 where `targets` prescribes the position at the end of the step
-    /// @param targets       [vertices] read where fixed [m]
     /// @return iterations, displacement and status; energy and gradient are left 0: evaluating them is no
     ///         part of these methods
-    virtual StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
-                            View<const Vec3> targets) = 0;
+    StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                    View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection) override;
+    StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                    View<const Vec3> targets)
+    {
+        return step(dt, acceleration, fixed, targets, nullptr, nullptr);
+    }
 
-    View<const Vec3> positions() const { return x_; }
-    View<const Vec3> velocities() const { return v_; }
-    void set_positions(View<const Vec3> x) { x_.assign(x.begin(), x.end()); }
-    void set_velocities(View<const Vec3> v) { v_.assign(v.begin(), v.end()); }
+    View<const double> masses() const override { return cloth_.masses; }
 
 protected:
+    /// The method itself: x_t1_ and v_ after dt [s] from x_ and v_, which has no contact.
+    virtual StepReport advance(double dt, View<const Vec3> acceleration,
+                               const std::vector<unsigned char>& fixed, View<const Vec3> targets) = 0;
+
     ClothModel cloth_;
-    std::vector<Vec3> x_, v_;
+
+private:
+    void begin_contact(double dt, View<const Vec3> acceleration, View<const unsigned char> fixed,
+                       View<const Vec3> targets, ActiveSetEnergy& active);
+
+    std::vector<Vec3> reach_;      ///< [vertices] q*, where contact is looked for [m]
+    std::vector<double> diagonal_; ///< [vertices] M / dt^2 [N/m]
 };
 
 } // namespace toile

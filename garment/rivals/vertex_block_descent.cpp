@@ -28,12 +28,12 @@ VertexBlockDescent::VertexBlockDescent(std::vector<Vec3> positions, ClothModel c
     : Rival(std::move(positions), std::move(cloth)), settings_(settings),
       weights_(Membrane(cloth_.rest, cloth_.stretch, "VertexBlockDescent").weights()),
       layout_(lay_out_sweep(cloth_, Bending(cloth_.rest, cloth_.bending, "VertexBlockDescent").matrix())),
-      prediction_(x_.size()), x_t1_(x_.size()), velocity_before_(v_), moved_(layout_.blocks.size())
+      prediction_(x_.size()), velocity_before_(v_), moved_(layout_.blocks.size())
 {
 }
 
-StepReport VertexBlockDescent::step(double dt, View<const Vec3> acceleration,
-                                    const std::vector<unsigned char>& fixed, View<const Vec3> targets)
+StepReport VertexBlockDescent::advance(double dt, View<const Vec3> acceleration,
+                                       const std::vector<unsigned char>& fixed, View<const Vec3> targets)
 {
     StepReport report;
     report.steps = 1;
@@ -57,7 +57,6 @@ StepReport VertexBlockDescent::step(double dt, View<const Vec3> acceleration,
 
     velocity_before_ = v_;
     parallel_for(kCpu, "vbd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - x_[i]) / dt; });
-    x_.swap(x_t1_);
     return report;
 }
 

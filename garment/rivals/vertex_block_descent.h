@@ -34,13 +34,12 @@ public:
     /// @throws InvalidInput as Membrane and Bending do.
     VertexBlockDescent(std::vector<Vec3> positions, ClothModel cloth, Settings settings);
 
-    StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
-                    View<const Vec3> targets) override;
-
     /// Vertices of one colour share no term of E; sweeps have as many barriers as there are colours.
     int colour_count() const { return int(layout_.colours.size()); }
 
 private:
+    StepReport advance(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                       View<const Vec3> targets) override;
     void begin(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                View<const Vec3> targets);
     double sweep(double dt, const std::vector<unsigned char>& fixed);
@@ -49,7 +48,7 @@ private:
     Settings settings_;
     MembraneWeights weights_;
     SweepLayout layout_;
-    std::vector<Vec3> prediction_, x_t1_, velocity_before_;
+    std::vector<Vec3> prediction_, velocity_before_;
     std::vector<Vec3> last_, before_last_; ///< iterates of the Chebyshev recurrence
     double omega_ = 1.0;
     std::vector<double> moved_; ///< [blocks] [m^2]

@@ -48,20 +48,20 @@ Xpbd::Xpbd(std::vector<Vec3> positions, ClothModel cloth, Settings settings)
       weights_(Membrane(cloth_.rest, cloth_.stretch, "Xpbd").weights()),
       bending_(Bending(cloth_.rest, cloth_.bending, "Xpbd").matrix()),
       fastest_(largest_eigenvalue(bending_, cloth_.masses)), layout_(lay_out_constraints(cloth_)),
-      inverse_masses_(x_.size()), x_t0_(x_.size()), before_(x_.size())
+      inverse_masses_(x_.size()), before_(x_.size())
 {
     if (settings.substeps < 1)
         throw InvalidInput("Xpbd: substeps = " + std::to_string(settings.substeps) +
                            "; it must be 1 or more");
 }
 
-StepReport Xpbd::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
-                      View<const Vec3> targets)
+StepReport Xpbd::advance(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                         View<const Vec3> targets)
 {
     StepReport report;
     report.steps = 1;
     report.status = StepReport::Status::IterationLimit;
-    x_t0_ = x_;
+    x_t1_ = x_;
     for (size_t i = 0; i < x_.size(); ++i)
         inverse_masses_[i] = fixed[i] ? 0.0 : 1.0 / cloth_.masses[i];
 
@@ -71,12 +71,13 @@ StepReport Xpbd::step(double dt, View<const Vec3> acceleration, const std::vecto
         project(h);
         if (s == settings_.substeps)
             for (size_t i = 0; i < x_.size(); ++i)
-                report.displacement = std::max(report.displacement, (x_[i] - before_[i] - h * v_[i]).norm());
+                report.displacement =
+                    std::max(report.displacement, (x_t1_[i] - before_[i] - h * v_[i]).norm());
         parallel_for(
-            kCpu, "xpbd/finish", int(x_.size()), [&](int i) { v_[i] = (x_[i] - before_[i]) / h; },
+            kCpu, "xpbd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - before_[i]) / h; },
             kFieldGrain);
     }
-    if (!std::isfinite(max_norm(x_))) {
+    if (!std::isfinite(max_norm(x_t1_))) {
         report.status = StepReport::Status::NonFinite;
         report.message = "XPBD: a position is not finite";
     }
@@ -93,30 +94,30 @@ bool Xpbd::bends_by_forces(double h) const
 void Xpbd::predict(double h, double end, View<const Vec3> acceleration, View<const Vec3> targets)
 {
     const bool has_forces = bends_by_forces(h);
-    before_.swap(x_);
+    before_.swap(x_t1_);
     parallel_for(kCpu, "xpbd/predict", int(x_.size()), [&](int i) {
         if (inverse_masses_[i] == 0.0) {
-            x_[i] = x_t0_[i] + end * (targets[i] - x_t0_[i]);
-            v_[i] = (x_[i] - before_[i]) / h;
+            x_t1_[i] = x_[i] + end * (targets[i] - x_[i]);
+            v_[i] = (x_t1_[i] - before_[i]) / h;
             return;
         }
         v_[i] += h * acceleration[i];
         if (has_forces)
             v_[i] -= h * inverse_masses_[i] * bending_gradient(bending_, i, before_);
-        x_[i] = before_[i] + h * v_[i];
+        x_t1_[i] = before_[i] + h * v_[i];
     });
 }
 
 /// One pass, the stiff constraints last.
 void Xpbd::project(double h)
 {
-    const ProjectCurvatures bend{layout_.curvatures, layout_.entries, h, inverse_masses_, x_};
+    const ProjectCurvatures bend{layout_.curvatures, layout_.entries, h, inverse_masses_, x_t1_};
     if (!bends_by_forces(h))
         for (const BlockRange& colour : layout_.curvature_colours)
             parallel_for(
                 kCpu, "xpbd/curvatures", colour.count, [&](int k) { bend(colour.first + k); },
                 kBlocksPerTask);
-    const ProjectStrains stretch{layout_.strains, weights_, h, inverse_masses_, x_};
+    const ProjectStrains stretch{layout_.strains, weights_, h, inverse_masses_, x_t1_};
     for (const BlockRange& colour : layout_.strain_colours)
         parallel_for(
             kCpu, "xpbd/strains", colour.count, [&](int k) { stretch(colour.first + k); }, kBlocksPerTask);

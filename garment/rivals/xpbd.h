@@ -12,6 +12,9 @@ namespace toile {
 /// The constraints are those whose energies 1/2 C^T alpha^(-1) C are Membrane's and Bending's terms
 /// (strain_constraints.h, constraint_blocks.h), so that more substeps lead to the same motion that Body finds
 /// with ever smaller steps. Same bits for every thread count.
+///
+/// The report counts substeps as iterations; its displacement is the farthest that the constraints of the
+/// last substep moved a vertex. There is no criterion of convergence.
 class Xpbd : public Rival {
 public:
     struct Settings {
@@ -27,16 +30,13 @@ public:
     /// @throws InvalidInput as Membrane and Bending do, and for less than one substep.
     Xpbd(std::vector<Vec3> positions, ClothModel cloth, Settings settings);
 
-    /// The report counts substeps as iterations; its displacement is the farthest that the constraints of the
-    /// last substep moved a vertex. There is no criterion of convergence.
-    StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
-                    View<const Vec3> targets) override;
-
     /// Colours of the triangles' constraints and of the bending stencils.
     int strain_colour_count() const { return int(layout_.strain_colours.size()); }
     int curvature_colour_count() const { return int(layout_.curvature_colours.size()); }
 
 private:
+    StepReport advance(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                       View<const Vec3> targets) override;
     bool bends_by_forces(double h) const;
     void predict(double h, double end, View<const Vec3> acceleration, View<const Vec3> targets);
     void project(double h);
@@ -47,7 +47,7 @@ private:
     double fastest_ = 0.0; ///< [1/s^2] bound on the eigenvalues of K / m
     ConstraintLayout layout_;
     std::vector<double> inverse_masses_;
-    std::vector<Vec3> x_t0_, before_; ///< [vertices] at the start of the step and of the substep [m]
+    std::vector<Vec3> before_; ///< [vertices] at the start of the substep [m]
 };
 
 } // namespace toile

@@ -231,12 +231,14 @@ void describe(V& v, Solver& s)
 {
     v.field("substeps", s.substeps, between(1, 1000), "Time steps from one sample to the next.");
     v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
-            "A step ends when no vertex moves farther than this.");
-    v.field("max_iterations", s.max_iterations, between(1, 10000),
-            "Iterations after which a minimisation ends anyway; contact may ask for three a step.");
+            "A step ends when no vertex moves farther than this; xpbd and vbd do not ask.");
+    v.field(
+        "max_iterations", s.max_iterations, between(1, 10000),
+        "Iterations after which a minimisation ends anyway; contact may ask for three a step. With vbd the "
+        "sweeps of a step, with xpbd the substeps of one pass: all of them are done.");
     v.field("method", s.method,
             "How the global linear system is solved: exactly (auto, direct), by quadrature of its kernel, or "
-            "by a baseline to compare with.");
+            "by a baseline to compare with. xpbd and vbd replace the whole time step.");
     v.field("sleep", s.sleep, "When resting cloth is skipped.");
     v.field("threads", s.threads, between(0, 1024),
             "Threads to use; 0: all. The result does not depend on it.");

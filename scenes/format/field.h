@@ -72,7 +72,7 @@ struct Words<PreviewPattern> {
 
 template <>
 struct Words<SolverMethod> {
-    static constexpr std::array<std::pair<const char*, SolverMethod>, 8> kAll{
+    static constexpr std::array<std::pair<const char*, SolverMethod>, 11> kAll{
         {{"auto", SolverMethod::Auto},
          {"direct", SolverMethod::Direct},
          {"quadrature", SolverMethod::Quadrature},
@@ -80,7 +80,10 @@ struct Words<SolverMethod> {
          {"subspace", SolverMethod::Subspace},
          {"chebyshev", SolverMethod::Chebyshev},
          {"a-jacobi", SolverMethod::AJacobi},
-         {"jacobi-pcg", SolverMethod::JacobiPcg}}};
+         {"jacobi-pcg", SolverMethod::JacobiPcg},
+         {"paper", SolverMethod::Paper},
+         {"xpbd", SolverMethod::Xpbd},
+         {"vbd", SolverMethod::Vbd}}};
 };
 
 /// All words of an enumeration, in the order of their documentation.

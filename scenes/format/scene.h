@@ -195,7 +195,20 @@ struct Contact {
     double friction = 0.3;  ///< [-] of avatars that name none
 };
 
-enum class SolverMethod { Auto, Direct, Quadrature, Multigrid, Subspace, Chebyshev, AJacobi, JacobiPcg };
+/// Auto to Paper: the global step inside projective dynamics. Xpbd, Vbd: another method altogether.
+enum class SolverMethod {
+    Auto,
+    Direct,
+    Quadrature,
+    Multigrid,
+    Subspace,
+    Chebyshev,
+    AJacobi,
+    JacobiPcg,
+    Paper,
+    Xpbd,
+    Vbd
+};
 
 struct Sleep {
     bool enabled = true;

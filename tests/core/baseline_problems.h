@@ -7,6 +7,7 @@
 #include "core/linear/global_solver.h"
 #include "core/linear/pcg.h"
 #include "tests/core/matrices.h"
+#include "tests/support/contraction.h"
 
 /// Systems for approximate global solvers, and how far one application comes.
 namespace toile::test {
@@ -68,17 +69,10 @@ inline double energy_error(const Problem& problem, const Field& b, const Field& 
     return energy_norm(problem, difference(x, exact)) / energy_norm(problem, exact);
 }
 
-/// Spectral radius of the iteration x += S (b - H x), by its power.
+/// Spectral radius of the iteration x += S (b - H x).
 inline double contraction(const Problem& problem, const GlobalSolver& solver)
 {
-    Field error = problem.load(3);
-    double factor = 0.0;
-    for (int k = 0; k < 30; ++k) {
-        const double before = energy_norm(problem, error);
-        error = difference(error, solve(solver, problem.times(error)));
-        factor = energy_norm(problem, error) / before;
-    }
-    return factor;
+    return contraction(solver, problem.H, problem.load(3), 30);
 }
 
 /// Iterations of conjugate gradients around the solver until |r| / |b| <= tolerance, from white noise.

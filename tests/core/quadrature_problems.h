@@ -8,6 +8,7 @@
 #include "core/linear/global_solver.h"
 #include "core/quadrature/cluster_tree.h"
 #include "tests/core/matrices.h"
+#include "tests/support/contraction.h"
 
 /// Bodies for the tests of quadrature, and what is measured on them.
 namespace toile::test {
@@ -44,24 +45,10 @@ inline std::vector<int> nodes_below(const ClusterTree& tree, int level, int c)
     return nodes;
 }
 
-/// Largest factor by which x -> x - A H x lengthens a random field in the long run.
-inline double contraction(const GlobalSolver& solver, const SparseMatrix& H, int steps = 40)
+/// Contraction of x -> x - A H x, from a rough field.
+inline double contraction(const GlobalSolver& solver, const SparseMatrix& H)
 {
-    const int n = int(H.rows());
-    std::vector<Vec3> x = random_field(n, 5), product(n), correction(n);
-    double ratio = 0.0;
-    for (int step = 0; step < steps; ++step) {
-        const double before = std::sqrt(dot(x, x));
-        for (int i = 0; i < n; ++i)
-            product[i] = row_times(H, i, x);
-        solver.solve(product, correction);
-        axpy(-1.0, correction, x);
-        const double after = std::sqrt(dot(x, x));
-        ratio = after / before;
-        for (Vec3& v : x)
-            v /= after;
-    }
-    return ratio;
+    return contraction(solver, H, random_field(int(H.rows()), 5), 40);
 }
 
 struct Grid {

@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "benchmarks/quadrature/integrals.h"
@@ -62,6 +64,36 @@ TEST(PaperFigure3, HoldsForACentredPeakAndAWideNearBox)
     EXPECT_GT(errors.stacked_no_penalty, errors.gaussian_alone);
     EXPECT_GT(errors.gaussian_alone, errors.stacked);
     EXPECT_LT(errors.stacked, 0.03);
+}
+
+/// Without a wave it is the line, and the sum that replaces the closed form is as good.
+TEST(PaperFigure5, WaveOfNoFrequencyIsTheLine)
+{
+    const YukawaLine target(0.2, kLambda, kEpsilon);
+    const IntegrationErrors wave = errors_on_wave(target, 0.0, 0.9), line = errors_on_line(target, 0.9);
+    EXPECT_NEAR(wave.gauss_legendre_3, line.gauss_legendre_3, 2e-6);
+    EXPECT_NEAR(wave.stacked, line.stacked, 2e-6);
+}
+
+/// The paper's best rule on both integrands: with sign changes it is best nowhere in the mean, and at two
+/// periods no rule is right to a third.
+TEST(PaperFigure5, OscillatingIntegrandIsResolvedByNoRule)
+{
+    const auto mean_on_waves = [](double omega, double near_share) {
+        std::vector<IntegrationErrors> errors;
+        for (int step = -10; step <= 10; ++step)
+            errors.push_back(errors_on_wave(YukawaLine(0.05 * step, kLambda, kEpsilon), omega, near_share));
+        return mean(errors);
+    };
+    for (const double near_share : {0.7, 0.9}) {
+        const IntegrationErrors slow = mean_on_waves(std::numbers::pi, near_share);
+        EXPECT_LT(slow.gaussian_alone, 0.2 * slow.stacked);
+        EXPECT_LT(slow.stacked, 0.5 * slow.gauss_legendre_4);
+        const IntegrationErrors fast = mean_on_waves(2.0 * std::numbers::pi, near_share);
+        EXPECT_GT(fast.gaussian_alone, 0.3);
+        EXPECT_GT(fast.stacked, 0.3);
+        EXPECT_GT(fast.gauss_legendre_4, 1.0);
+    }
 }
 
 TEST(PaperFigure3, TurnsAroundForANearBoxOfSeventyPercent)

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include "core/backend/types.h"
+#include "core/pd/active_set_energy.h"
+#include "core/pd/step_projection.h"
+#include "core/pd/step_report.h"
+
+namespace toile {
+
+/// Point masses that a method moves through time: what is asked of a Body, and of every method that it is
+/// compared with.
+class PointMasses {
+public:
+    explicit PointMasses(std::vector<Vec3> positions)
+        : x_(std::move(positions)), v_(x_.size(), Vec3::Zero()), x_t1_(x_.size())
+    {
+    }
+    virtual ~PointMasses() = default;
+
+    /// Prepares for steps of dt [s] with these vertices fixed, which step() otherwise does.
+    virtual void prepare([[maybe_unused]] double dt, [[maybe_unused]] const std::vector<unsigned char>& fixed)
+    {
+    }
+
+    /// Advances by dt [s]. Same bits for every thread count.
+    /// @param acceleration  [vertices] external acceleration of this step [m/s^2]
+    /// @param fixed         [vertices] 1 where `targets` prescribes the position at the end of the step
+    /// @param targets       [vertices] read where fixed [m]
+    /// @param active        contact; may be null
+    /// @param projection    constraint on the end of the step; may be null
+    virtual StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                            View<const Vec3> targets, ActiveSetEnergy* active,
+                            StepProjection* projection) = 0;
+
+    View<const Vec3> positions() const { return x_; }
+    View<const Vec3> velocities() const { return v_; }
+    void set_positions(View<const Vec3> x) { x_.assign(x.begin(), x.end()); }
+    void set_velocities(View<const Vec3> v) { v_.assign(v.begin(), v.end()); }
+
+    /// [vertices] [kg], positive
+    virtual View<const double> masses() const = 0;
+
+protected:
+    /// q* = x + dt v + dt^2 a; fixed vertices go to their targets.
+    /// @param prediction  [vertices] out [m]
+    void predict(double dt, View<const Vec3> acceleration, View<const unsigned char> fixed,
+                 View<const Vec3> targets, View<Vec3> prediction) const;
+
+    /// Moves x_t1_ onto the constraint; what that moves becomes velocity.
+    void project(double dt, View<const unsigned char> fixed, StepProjection& projection,
+                 const ActiveSetEnergy* active);
+
+    std::vector<Vec3> x_, v_; ///< [vertices] [m], [m/s]
+    std::vector<Vec3> x_t1_;  ///< [vertices] end of the step in the making [m]
+
+private:
+    std::vector<Vec3> unprojected_;
+    std::vector<double> inverse_masses_;
+};
+
+} // namespace toile

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/pd/active_set_energy.h"
+
+namespace toile {
+
+/// A hard constraint applied after the minimisation of a step, outside H: limits that would need weights far
+/// above the rest of H (strain limits) stall every method that inverts a fixed H.
+class StepProjection {
+public:
+    virtual ~StepProjection() = default;
+
+    /// Looks at the minimiser of the step before anything moves it.
+    virtual void observe(View<const Vec3> x) = 0;
+
+    /// Moves x [vertices] onto the constraint, vertices with weight 0 not at all.
+    /// @param inverse_masses  [vertices] [1/kg], 0 for fixed vertices
+    /// @param active          contact to respect while projecting; may be null
+    virtual void project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active) = 0;
+};
+
+} // namespace toile

@@ -1,0 +1,44 @@
+#include "garment/rivals/rival.h"
+
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+StepReport Rival::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                       View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
+{
+    if (active)
+        begin_contact(dt, acceleration, fixed, targets, *active);
+    StepReport report = advance(dt, acceleration, fixed, targets);
+    if (report.status == StepReport::Status::NonFinite)
+        return report;
+
+    if (projection)
+        projection->observe(x_t1_);
+    if (active)
+        active->resolve(x_t1_, v_);
+    if (projection)
+        project(dt, fixed, *projection, active);
+    if (active) {
+        // Where limit and contact contradict each other, contact has the last word.
+        if (projection)
+            active->make_feasible(x_t1_);
+        active->end_step(x_t1_);
+    }
+    x_.swap(x_t1_);
+    return report;
+}
+
+/// There is no H whose diagonal contact could be scaled by: inertia alone stands in for it.
+void Rival::begin_contact(double dt, View<const Vec3> acceleration, View<const unsigned char> fixed,
+                          View<const Vec3> targets, ActiveSetEnergy& active)
+{
+    reach_.resize(x_.size());
+    predict(dt, acceleration, fixed, targets, reach_);
+    diagonal_ = cloth_.masses;
+    for (double& inertia : diagonal_)
+        inertia /= dt * dt;
+    active.begin_step({x_, reach_, diagonal_, fixed, dt});
+}
+
+} // namespace toile
