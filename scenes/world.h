@@ -56,9 +56,8 @@ public:
 
     /// Prepares the global solvers for the first step, which otherwise would: factors, and the tables of
     /// quadrature, seconds for 10 000 vertices. Where holds let go during the run, a step prepares again.
-    /// @throws Cancelled where WorldOptions::building wants no more; so do settle() and advance_frame(),
-    /// after
-    ///         which the sample they were at is lost.
+    /// @throws Cancelled where WorldOptions::building wants no more. settle() and advance_frame() do so too;
+    /// the sample they were at is then lost.
     void prepare();
 
     /// Simulates Scene::settle seconds with every avatar in its first pose. Call before sample 0 is taken.

@@ -185,29 +185,10 @@ int explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>&
     return kExitFailure;
 }
 
-int simulate(const SimulateOptions& options)
+/// Runs a prepared world and writes what it is to leave.
+int run_into_caches(World& world, const Scene& scene, const SimulateOptions& options,
+                    const InterruptGuard& interrupt)
 {
-    const Scene scene = scene_with_options(options);
-    TableProgress tables(options.quiet);
-    std::optional<InterruptGuard> interrupt;
-    WorldOptions world_options;
-    if (options.no_cache)
-        world_options.tables = std::make_shared<TableStore>();
-    world_options.building = [&](const std::string& cloth, double share) {
-        tables.update(cloth, share);
-        return !interrupt->requested();
-    };
-    world_options.warn = [&](const std::string& text) { tables.warn(text); };
-    World world(scene, world_options);
-    interrupt.emplace(); // from here on something may be half-done
-    try {
-        world.prepare();
-    } catch (const Cancelled&) {
-        tables.end_line();
-        std::cerr << "toile: error: interrupted before the first frame; nothing was written" << std::endl;
-        return kExitFailure;
-    }
-
     const std::filesystem::path folder =
         options.output.empty() ? std::filesystem::path("out") / scene.source.stem() : options.output;
     std::vector<OpenCache> caches = open_caches(scene, world, folder);
@@ -219,8 +200,7 @@ int simulate(const SimulateOptions& options)
     for (const OpenCache& cache : caches)
         write_start_mesh(world, cache, caches);
 
-    const Outcome outcome = run(world, scene, caches, report, *interrupt, options.quiet);
-    tables.end_line();
+    const Outcome outcome = run(world, scene, caches, report, interrupt, options.quiet);
     if (!options.report.empty())
         report.write(options.report, outcome.word, world.stages());
     if (outcome.word != "complete")
@@ -230,6 +210,33 @@ int simulate(const SimulateOptions& options)
         std::cout << cache.file.string() << std::endl;
     }
     return kExitOk;
+}
+
+int simulate(const SimulateOptions& options)
+{
+    const Scene scene = scene_with_options(options);
+    TableProgress tables(options.quiet);
+    std::optional<InterruptGuard> interrupt;
+    WorldOptions world_options;
+    if (options.no_cache)
+        world_options.tables = std::make_shared<TableStore>();
+    world_options.building = [&](const std::string& cloth, double share) {
+        const bool goes_on = !interrupt->requested();
+        goes_on ? tables.update(cloth, share) : tables.stop();
+        return goes_on;
+    };
+    world_options.warn = [&](const std::string& text) { tables.warn(text); };
+    World world(scene, world_options);
+
+    // Loading may be interrupted at any place; from here on it is done where nothing is left half-written.
+    interrupt.emplace();
+    try {
+        world.prepare();
+    } catch (const Cancelled&) {
+        std::cerr << "toile: error: interrupted before the first frame; nothing was written" << std::endl;
+        return kExitFailure;
+    }
+    return run_into_caches(world, scene, options, *interrupt);
 }
 
 } // namespace

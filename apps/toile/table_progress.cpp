@@ -54,6 +54,13 @@ void TableProgress::update(const std::string& cloth, double share)
     }
 }
 
+void TableProgress::stop()
+{
+    const std::lock_guard lock(mutex_);
+    is_building_ = false;
+    end_line();
+}
+
 void TableProgress::warn(const std::string& text)
 {
     const std::lock_guard lock(mutex_);

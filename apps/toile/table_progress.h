@@ -22,12 +22,13 @@ public:
     /// Prints "toile: warning: ..." on a line of its own, quiet or not.
     void warn(const std::string& text);
 
-    /// Ends a rewritten line, so that what follows starts on its own.
-    void end_line();
+    /// The building was cancelled: what is printed next starts on a line of its own.
+    void stop();
 
 private:
     using Clock = std::chrono::steady_clock;
 
+    void end_line();
     void print(const std::string& text);
 
     std::mutex mutex_;

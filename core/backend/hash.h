@@ -16,7 +16,7 @@ namespace toile {
 struct Hash128 {
     std::uint64_t high = 0, low = 0;
 
-    auto operator<=>(const Hash128&) const = default;
+    auto operator<=>(const Hash128&) const = default; // NOLINT(modernize-use-nullptr): means the 0 inside
 };
 
 /// 32 hexadecimal digits.
