@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/pd/make_outer_loop.h"
 #include "core/pd/step_report.h"
 #include "core/pd/system.h"
 
@@ -32,8 +33,9 @@ public:
         double tolerance = 1e-5;
         int max_iterations = 50; ///< outer iterations per minimisation
         int max_rounds = 3;      ///< minimisations per step, when contact asks for another
-        int history = 5;         ///< L-BFGS pairs
-        Pcg::Settings linear;    ///< inner PCG while contacts are active
+        int history = 5;         ///< pairs of L-BFGS, moves of Anderson acceleration
+        OuterMethod outer = OuterMethod::Lbfgs;
+        Pcg::Settings linear; ///< inner PCG while contacts are active
     };
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);
@@ -55,14 +57,14 @@ private:
     void predict(double dt, View<const Vec3> acceleration, View<const Vec3> targets);
     void project(double dt, StepProjection& projection, const ActiveSetEnergy* active);
     double tolerance() const;
-    Lbfgs::Outcome no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
-                                          const Lbfgs::Outcome& found);
+    OuterLoop::Outcome no_worse_than_standing(double dt, StepObjective& objective,
+                                              OuterLoop::Settings settings, const OuterLoop::Outcome& found);
     void minimise(double dt, ActiveSetEnergy* active, StepReport& report);
 
     std::vector<Vec3> x_, v_;
     std::unique_ptr<System> system_;
     Settings settings_;
-    Lbfgs lbfgs_;
+    std::unique_ptr<OuterLoop> outer_;
     std::vector<Vec3> prediction_, x_t1_, standing_, gradient_, unprojected_;
     std::vector<double> inverse_masses_;
 };

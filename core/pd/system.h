@@ -8,7 +8,7 @@
 #include "core/linear/pcg.h"
 #include "core/pd/active_set_energy.h"
 #include "core/pd/energy.h"
-#include "core/pd/lbfgs.h"
+#include "core/pd/objective.h"
 
 namespace toile {
 
