@@ -128,6 +128,7 @@ void ClothBody::build(const Scene& scene, const std::vector<Obstacle>& obstacles
     Body::Settings settings;
     settings.tolerance = scene.solver.tolerance;
     settings.max_iterations = scene.solver.max_iterations;
+    settings.outer = scene.solver.outer;
     body_ = std::make_unique<Body>(state_.positions,
                                    std::make_unique<System>(std::move(masses), std::move(energies),
                                                             make_global_solver(scene.solver.method, *rest)),

@@ -124,6 +124,9 @@ std::vector<Method> all_methods()
         methods.back().most_vertices = kPaperSize;
         methods.back().needs_chart = true;
     }
+    for (const int iterations : {1, 2, 4, 8})
+        methods.push_back(
+            around("direct newton-pcg", make_plain<DirectSolver>, iterations, OuterMethod::NewtonPcg));
     for (const int sweeps : {10, 50, 200}) {
         VertexBlockDescent::Settings settings;
         settings.max_sweeps = sweeps;

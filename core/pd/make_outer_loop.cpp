@@ -3,6 +3,7 @@
 #include "core/pd/anderson.h"
 #include "core/pd/lbfgs.h"
 #include "core/pd/local_global.h"
+#include "core/pd/newton_pcg.h"
 
 namespace toile {
 
@@ -13,6 +14,8 @@ std::unique_ptr<OuterLoop> make_outer_loop(OuterMethod method, int history)
         return std::make_unique<LocalGlobal>();
     case OuterMethod::Anderson:
         return std::make_unique<Anderson>(history);
+    case OuterMethod::NewtonPcg:
+        return std::make_unique<NewtonPcg>();
     case OuterMethod::Lbfgs:
         break;
     }
