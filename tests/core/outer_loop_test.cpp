@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/backend/error.h"
 #include "core/pd/make_outer_loop.h"
 #include "tests/core/objectives.h"
 
@@ -128,6 +129,14 @@ TEST(Anderson, TakesThePlainMoveWhereTheAcceleratedOneRaisesTheValue)
         make_outer_loop(OuterMethod::Anderson, 5)->minimise(objective, x, {1e-12, 100});
     EXPECT_GT(objective.evaluated, outcome.iterations + 1) << "some accelerated moves were refused";
     EXPECT_LE(objective.preconditioned, outcome.iterations + 1);
+}
+
+TEST(NewtonPcg, RefusesAnObjectiveWithoutSecondDerivatives)
+{
+    Quadratic objective;
+    std::vector<Vec3> x = random_field(100, 2);
+    EXPECT_THROW((void)make_outer_loop(OuterMethod::NewtonPcg, 5)->minimise(objective, x, {1e-10, 50}),
+                 InvalidInput);
 }
 
 } // namespace
