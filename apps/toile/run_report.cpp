@@ -22,6 +22,7 @@ Json settings_of(const Scene& scene)
             {"tolerance_m", solver.tolerance},
             {"max_iterations", solver.max_iterations},
             {"method", scene_format::word_of(solver.method)},
+            {"outer", scene_format::word_of(solver.outer)},
             {"sleep", solver.sleep.enabled},
             {"threads", solver.threads},
             {"contact_gap_m", scene.contact.gap}};

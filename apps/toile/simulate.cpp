@@ -27,6 +27,7 @@ struct SimulateOptions {
     std::optional<int> frames;
     std::optional<int> threads;
     std::string solver;
+    std::string outer;
     std::filesystem::path report;
     bool no_cache = false;
     bool quiet = false;
@@ -71,6 +72,8 @@ Scene scene_with_options(const SimulateOptions& options)
     scene.solver.threads = options.threads.value_or(scene.solver.threads);
     if (!options.solver.empty())
         scene.solver.method = scene_format::value_of<scene::SolverMethod>(options.solver);
+    if (!options.outer.empty())
+        scene.solver.outer = scene_format::value_of<OuterMethod>(options.outer);
     return scene;
 }
 
@@ -253,6 +256,8 @@ Command add_simulate(CLI::App& program)
     add.add_option("--threads", options->threads, "Threads to use; 0: all");
     add.add_option("--solver", options->solver, "solver.method, instead of the scene's")
         ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
+    add.add_option("--outer", options->outer, "Minimisation of a step, instead of the scene's")
+        ->check(CLI::IsMember(scene_format::words_of<OuterMethod>()));
     add.add_option("--report", options->report, "Write stages, frames and settings to this JSON file");
     add.add_flag("--no-cache", options->no_cache, "Neither read nor keep quadrature tables on disk");
     add.add_flag("--quiet", options->quiet, "No progress on stderr");

@@ -70,12 +70,14 @@ std::unique_ptr<GlobalSolver> make_paper(const Problem& problem)
     return std::make_unique<PaperRule>(uv, problem.start.triangles);
 }
 
-Method around(const std::string& name, const MakeSolver& make, int iterations)
+Method around(const std::string& name, const MakeSolver& make, int iterations,
+              OuterMethod outer = OuterMethod::Lbfgs)
 {
     return {name + " " + std::to_string(iterations), kAnySize, false, [=](const Problem& problem) {
                 Body::Settings settings;
                 settings.tolerance = 0.0;
                 settings.max_iterations = iterations;
+                settings.outer = outer;
                 auto body = std::make_unique<Body>(problem.start.positions,
                                                    problem.make_system(make(problem)), settings);
                 return std::make_unique<StepperOf<Body>>(
@@ -110,6 +112,10 @@ std::vector<Method> all_methods()
     std::vector<Method> methods;
     for (const int iterations : {3, 8, 20, 50}) {
         methods.push_back(around("direct", make_plain<DirectSolver>, iterations));
+        methods.push_back(
+            around("direct lg", make_plain<DirectSolver>, iterations, OuterMethod::LocalGlobal));
+        methods.push_back(
+            around("direct anderson", make_plain<DirectSolver>, iterations, OuterMethod::Anderson));
         methods.push_back(around("quadrature", make_quadrature, iterations));
         methods.push_back(around("multigrid", make_plain<Multigrid>, iterations));
         methods.push_back(around("subspace", make_plain<SubspaceSolver>, iterations));
@@ -120,6 +126,9 @@ std::vector<Method> all_methods()
         methods.back().most_vertices = kPaperSize;
         methods.back().needs_chart = true;
     }
+    for (const int iterations : {1, 2, 4, 8})
+        methods.push_back(
+            around("direct newton-pcg", make_plain<DirectSolver>, iterations, OuterMethod::NewtonPcg));
     for (const int sweeps : {10, 50, 200}) {
         VertexBlockDescent::Settings settings;
         settings.max_sweeps = sweeps;

@@ -5,7 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/pd/body.h"
+#include "core/pd/lbfgs.h"
+#include "core/pd/newton_direct.h"
 #include "garment/pattern/shapes.h"
 
 namespace toile::solvers {
@@ -15,9 +16,14 @@ namespace {
 constexpr double kArealDensity = 0.15; ///< [kg/m^2]
 constexpr double kRigidity = 5e-6;     ///< [N m]
 
-/// When a reference step counts as converged [m], and where it gives up.
-constexpr double kConverged = 1e-8;
-constexpr int kMostIterations = 5000;
+/// Share of the step's whole decrease E(q*) - E* that Newton's method may still expect when a reference
+/// counts as converged [-]: positions are then exact to about the root of it.
+constexpr double kConverged = 1e-10;
+
+/// L-BFGS finds the valley, Newton's method its bottom: the longest move of its last step [m], where it gives
+/// up.
+constexpr OuterLoop::Settings kApproach{0.0, 50};
+constexpr OuterLoop::Settings kFinish{1e-10, 60};
 
 Problem make_problem(const std::string& name, TriangleMesh mesh, double stiffness, double dt)
 {
@@ -87,34 +93,47 @@ std::vector<Vec3> Problem::acceleration() const
     return std::vector<Vec3>(start.positions.size(), Vec3(0.0, -9.81, 0.0));
 }
 
+namespace {
+
+/// Fills in prediction, minimiser and energies of a step whose x and v are set.
+void converge(const Problem& problem, const System& system, SampledStep& step)
+{
+    const std::vector<Vec3> acceleration = problem.acceleration();
+    step.prediction.resize(step.x.size());
+    for (int v = 0; v < problem.vertex_count(); ++v)
+        step.prediction[v] = problem.fixed[v]
+                                 ? problem.start.positions[v]
+                                 : Vec3(step.x[v] + problem.dt * (step.v[v] + problem.dt * acceleration[v]));
+
+    StepObjective objective(system, problem.dt, step.prediction, nullptr, Pcg::Settings{});
+    step.minimiser = step.prediction;
+    step.start_energy = Lbfgs().minimise(objective, step.minimiser, {0.0, 0}).value;
+    (void)Lbfgs().minimise(objective, step.minimiser, kApproach);
+    NewtonDirect newton;
+    step.energy = newton.minimise(objective, step.minimiser, kFinish).value;
+    step.is_converged = 0.5 * newton.decrement() <= kConverged * (step.start_energy - step.energy);
+}
+
+} // namespace
+
 std::vector<SampledStep> sample_steps(const Problem& problem, int count, int stride)
 {
-    Body::Settings settings;
-    settings.tolerance = kConverged;
-    settings.max_iterations = kMostIterations;
-    Body body(problem.start.positions, problem.make_system(std::make_unique<DirectSolver>()), settings);
-    const std::vector<Vec3> acceleration = problem.acceleration();
+    const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
+    system->prepare(problem.dt, problem.fixed);
     std::vector<SampledStep> steps;
+    SampledStep step;
+    step.x = problem.start.positions;
+    step.v.assign(step.x.size(), Vec3::Zero());
     for (int k = 1; k <= stride * count; ++k) {
-        SampledStep step;
-        step.x.assign(body.positions().begin(), body.positions().end());
-        step.v.assign(body.velocities().begin(), body.velocities().end());
-        const StepReport report =
-            body.step(problem.dt, acceleration, problem.fixed, problem.start.positions, nullptr, nullptr);
-        if (report.status == StepReport::Status::NonFinite)
-            throw std::runtime_error("solvers: step " + std::to_string(k) +
-                                     " of the reference is not finite");
-        if (k % stride != 0)
-            continue;
-        step.minimiser.assign(body.positions().begin(), body.positions().end());
-        for (int v = 0; v < problem.vertex_count(); ++v)
-            step.prediction.push_back(
-                problem.fixed[v] ? problem.start.positions[v]
-                                 : Vec3(step.x[v] + problem.dt * (step.v[v] + problem.dt * acceleration[v])));
-        step.is_converged = report.status == StepReport::Status::Converged;
-        step.energy = objective(problem, body.system(), step, step.minimiser);
-        step.start_energy = objective(problem, body.system(), step, step.prediction);
-        steps.push_back(std::move(step));
+        converge(problem, *system, step);
+        if (!std::isfinite(step.energy))
+            throw std::runtime_error("solvers: step " + std::to_string(k) + " of the reference on " +
+                                     problem.mesh + " is not finite");
+        if (k % stride == 0)
+            steps.push_back(step);
+        for (size_t v = 0; v < step.x.size(); ++v)
+            step.v[v] = (step.minimiser[v] - step.x[v]) / problem.dt;
+        step.x = step.minimiser;
     }
     return steps;
 }

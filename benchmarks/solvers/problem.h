@@ -38,11 +38,12 @@ struct SampledStep {
     std::vector<Vec3> minimiser;  ///< [vertices] converged [m]
     double energy = 0.0;          ///< [J] objective there
     double start_energy = 0.0;    ///< [J] objective at q*
-    bool is_converged = false;    ///< false: the reference ended at its limit of iterations
+    /// Newton's method expects no further decrease beyond 1e-10 of energy to start_energy.
+    bool is_converged = false;
 };
 
-/// Every `stride`-th of the first stride * count steps of the cloth, each until a quasi-Newton move is below
-/// 1e-8 m.
+/// Every `stride`-th of the first stride * count steps of the cloth, each minimised by L-BFGS and then by
+/// Newton's method with a direct solver.
 std::vector<SampledStep> sample_steps(const Problem& problem, int count, int stride);
 
 /// Objective of a sampled step at x [J].

@@ -34,14 +34,16 @@ std::vector<Row> rows_of(const std::vector<Result>& results)
     for (const Result& r : results)
         rows.push_back({r.mesh, std::to_string(r.vertices), format("%g", r.stiffness), format("%.5g", r.dt),
                         r.method, std::to_string(r.threads), format("%.1f", r.setup_ms),
-                        format("%.3f", r.step_ms), format("%.1f", r.iterations),
-                        format("%.3e", r.rms_over_edge), format("%.3e", r.energy_gap),
-                        format("%.0f", r.peak_mb)});
+                        format("%.3f", r.step_ms), format("%.1f", r.iterations), format("%.1f", r.gradients),
+                        format("%.1f", r.solves), format("%.3e", r.rms_over_edge),
+                        format("%.3e", r.energy_gap), format("%.0f", r.peak_mb),
+                        r.is_reference_converged ? "converged" : "not converged"});
     return rows;
 }
 
-const Row kHeader{"mesh",        "vertices",   "stiffness",     "dt",         "method", "threads", "setup_ms",
-                  "ms_per_step", "iterations", "rms_over_edge", "energy_gap", "peak_mb"};
+const Row kHeader{"mesh",    "vertices",      "stiffness",   "dt",         "method",
+                  "threads", "setup_ms",      "ms_per_step", "iterations", "gradients",
+                  "solves",  "rms_over_edge", "energy_gap",  "peak_mb",    "reference"};
 
 } // namespace
 
@@ -76,8 +78,15 @@ Result run(const Problem& problem, const std::vector<SampledStep>& steps, const 
     system->prepare(problem.dt, problem.fixed);
     double squares = 0.0;
     for (const SampledStep& step : steps) {
-        result.iterations += stepper->step(step) / double(steps.size());
+        Stages stages;
+        {
+            const Stages::Activate activate(stages);
+            result.iterations += stepper->step(step) / double(steps.size());
+        }
+        result.gradients += double(stages.calls("garment/membrane")) / double(steps.size());
+        result.solves += double(stages.calls("linear/solve")) / double(steps.size());
         const std::vector<Vec3> x(stepper->positions().begin(), stepper->positions().end());
+        result.is_reference_converged &= step.is_converged;
         squares += mean_square_distance(x, step.minimiser) / double(steps.size());
         result.energy_gap += (objective(problem, *system, step, x) - step.energy) /
                              (step.start_energy - step.energy) / double(steps.size());

@@ -15,9 +15,13 @@
 namespace toile {
 
 template <typename T>
+using Vec3Of = Eigen::Matrix<T, 3, 1>;
+template <typename T>
 using Mat2Of = Eigen::Matrix<T, 2, 2>;
 template <typename T>
 using Mat32Of = Eigen::Matrix<T, 3, 2>;
+template <typename T>
+using Mat3Of = Eigen::Matrix<T, 3, 3>;
 
 /// condition ? yes : no
 TOILE_HD inline double select(bool condition, double yes, double no) { return condition ? yes : no; }

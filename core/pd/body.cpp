@@ -24,7 +24,7 @@ constexpr double kStandingTolerance = 0.1;
 
 Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings)
     : PointMasses(std::move(positions)), system_(std::move(system)), settings_(settings),
-      prediction_(x_.size()), gradient_(x_.size())
+      outer_(make_outer_loop(settings.outer, settings.history)), prediction_(x_.size()), gradient_(x_.size())
 {
 }
 
@@ -71,8 +71,8 @@ double Body::tolerance() const
 /// prediction. What comes out is then no worse than standing still, W(x_t1) <= W(x_t0) + 1/2 |v + dt a|^2_M,
 /// however early the minimisation stopped: stiff cloth gains no energy from a bad start guess, and cloth at
 /// rest stays.
-Lbfgs::Outcome Body::no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
-                                            const Lbfgs::Outcome& found)
+OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& objective,
+                                                OuterLoop::Settings settings, const OuterLoop::Outcome& found)
 {
     const View<const unsigned char> fixed = system_->fixed();
     standing_ = x_;
@@ -93,21 +93,23 @@ Lbfgs::Outcome Body::no_worse_than_standing(double dt, StepObjective& objective,
 
     x_t1_ = standing_;
     settings.tolerance *= kStandingTolerance;
-    Lbfgs::Outcome outcome = lbfgs_.minimise(objective, x_t1_, settings);
+    OuterLoop::Outcome outcome = outer_->minimise(objective, x_t1_, settings);
     outcome.iterations += found.iterations;
+    outcome.linear_iterations += found.linear_iterations;
     return outcome;
 }
 
 void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
 {
     StepObjective objective(*system_, dt, prediction_, active, settings_.linear);
-    const Lbfgs::Settings settings{tolerance(), settings_.max_iterations, settings_.history};
+    const OuterLoop::Settings settings{tolerance(), settings_.max_iterations};
     for (int round = 0; round < settings_.max_rounds; ++round) {
         const StageScope stage("pd/minimise");
-        Lbfgs::Outcome outcome = lbfgs_.minimise(objective, x_t1_, settings);
+        OuterLoop::Outcome outcome = outer_->minimise(objective, x_t1_, settings);
         if (round == 0)
             outcome = no_worse_than_standing(dt, objective, settings, outcome);
         report.iterations += outcome.iterations;
+        report.linear_iterations += outcome.linear_iterations;
         report.displacement = outcome.displacement;
         report.gradient_norm = outcome.gradient_norm;
         report.energy = outcome.value;
@@ -121,7 +123,7 @@ void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
         if (!active || !active->revise(x_t1_))
             break;
     }
-    report.linear_iterations = objective.linear_iterations();
+    report.linear_iterations += objective.linear_iterations();
 }
 
 } // namespace toile

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/pd/make_outer_loop.h"
 #include "core/pd/point_masses.h"
 #include "core/pd/system.h"
 
@@ -17,8 +18,9 @@ public:
         double tolerance = 1e-5;
         int max_iterations = 50; ///< outer iterations per minimisation
         int max_rounds = 3;      ///< minimisations per step, when contact asks for another
-        int history = 5;         ///< L-BFGS pairs
-        Pcg::Settings linear;    ///< inner PCG while contacts are active
+        int history = 5;         ///< pairs of L-BFGS, moves of Anderson acceleration
+        OuterMethod outer = OuterMethod::Lbfgs;
+        Pcg::Settings linear; ///< inner PCG while contacts are active
     };
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);
@@ -32,13 +34,13 @@ public:
 
 private:
     double tolerance() const;
-    Lbfgs::Outcome no_worse_than_standing(double dt, StepObjective& objective, Lbfgs::Settings settings,
-                                          const Lbfgs::Outcome& found);
+    OuterLoop::Outcome no_worse_than_standing(double dt, StepObjective& objective,
+                                              OuterLoop::Settings settings, const OuterLoop::Outcome& found);
     void minimise(double dt, ActiveSetEnergy* active, StepReport& report);
 
     std::unique_ptr<System> system_;
     Settings settings_;
-    Lbfgs lbfgs_;
+    std::unique_ptr<OuterLoop> outer_;
     std::vector<Vec3> prediction_, standing_, gradient_;
 };
 

@@ -1,11 +1,19 @@
 #pragma once
 
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "core/linear/block_matrix.h"
 #include "core/linear/sparse_matrix.h"
 
 namespace toile {
+
+/// What becomes of directions in which an energy bends downwards.
+enum class Definiteness {
+    Exact,     ///< the Hessian as it is
+    Projected, ///< negative eigenvalues of each element become zero: positive semi-definite
+};
 
 /// One term W(x) of a Projective Dynamics objective,
 ///
@@ -29,6 +37,17 @@ public:
     /// Adds dW/dx [N] to gradient and returns W [J]. Same bits for every thread count.
     /// @param x, gradient  [vertices]
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) = 0;
+
+    /// The true Hessian of W, for Newton's method, in two parts [N/m]: what does not depend on x and is the
+    /// same for x, y and z, and the rest in 3 x 3 blocks. By default all is constant and what H has of W:
+    /// true of quadratic energies, a bound for others.
+    virtual void add_constant_curvature(Triplets& S) const { add_hessian(S); }
+
+    /// Adds the pairs of vertices between which add_curvature() has blocks.
+    virtual void add_couplings(std::vector<std::pair<int, int>>&) const {}
+
+    /// Adds the part that depends on x [vertices]. Same bits for every thread count.
+    virtual void add_curvature(View<const Vec3>, Definiteness, BlockMatrix&) {}
 };
 
 /// Diagonal of an energy's part of H [vertices] [N/m].

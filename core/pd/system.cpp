@@ -63,6 +63,13 @@ double System::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
     return value;
 }
 
+Curvature& System::curvature() const
+{
+    if (!curvature_)
+        curvature_ = std::make_unique<Curvature>(vertex_count(), energies_);
+    return *curvature_;
+}
+
 StepObjective::StepObjective(const System& system, double dt, View<const Vec3> prediction,
                              ActiveSetEnergy* active, const Pcg::Settings& linear)
     : system_(system), dt_(dt), prediction_(prediction), active_(active), linear_(linear),
@@ -106,6 +113,14 @@ void StepObjective::accept(View<const Vec3> x)
         else
             E_[i] = (blocks[i] + D[i] * Mat3::Identity()).inverse();
     });
+}
+
+Hessian* StepObjective::hessian()
+{
+    if (!hessian_)
+        hessian_.emplace(system_.curvature(), system_.masses(), system_.fixed(), dt_);
+    hessian_->set_active(has_active_set_ ? active_ : nullptr);
+    return &*hessian_;
 }
 
 void StepObjective::precondition(View<const Vec3> g, View<Vec3> z)

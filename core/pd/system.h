@@ -8,7 +8,7 @@
 #include "core/linear/pcg.h"
 #include "core/pd/active_set_energy.h"
 #include "core/pd/energy.h"
-#include "core/pd/lbfgs.h"
+#include "core/pd/step_hessian.h"
 
 namespace toile {
 
@@ -42,6 +42,9 @@ public:
     /// Energies at x [J]; adds their gradients [N].
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const;
 
+    /// The energies' true Hessian; its pattern is made at the first call, so methods without it pay nothing.
+    Curvature& curvature() const;
+
 private:
     std::vector<double> masses_;
     std::vector<std::shared_ptr<Energy>> energies_;
@@ -50,6 +53,7 @@ private:
     SparseMatrix H_;
     std::vector<double> diagonal_;
     std::unique_ptr<GlobalSolver> solver_;
+    mutable std::unique_ptr<Curvature> curvature_;
     double dt_ = 0.0;
 };
 
@@ -62,7 +66,9 @@ public:
 
     double evaluate(View<const Vec3> x, View<Vec3> gradient) override;
     void precondition(View<const Vec3> g, View<Vec3> z) override;
+    void precondition_linearly(View<const Vec3> g, View<Vec3> z) override { system_.solver().solve(g, z); }
     void accept(View<const Vec3> x) override;
+    Hessian* hessian() override;
 
     int linear_iterations() const { return linear_iterations_; }
 
@@ -77,6 +83,7 @@ private:
     Pcg pcg_;
     bool has_active_set_ = false;
     int linear_iterations_ = 0;
+    std::optional<StepHessian> hessian_;
     std::vector<Mat3> E_; ///< [vertices] (D + dH)^-1, blocks
     std::vector<Vec3> scratch_;
 };

@@ -90,11 +90,15 @@ bool Bending::leave_to(View<const double> membrane_diagonal)
 
 void Bending::add_hessian(Triplets& H) const
 {
-    if (!in_hessian_)
-        return;
+    if (in_hessian_)
+        add_constant_curvature(H);
+}
+
+void Bending::add_constant_curvature(Triplets& S) const
+{
     for (int row = 0; row < K_.outerSize(); ++row)
         for (SparseMatrix::InnerIterator entry(K_, row); entry; ++entry)
-            H.emplace_back(int(entry.row()), int(entry.col()), entry.value());
+            S.emplace_back(int(entry.row()), int(entry.col()), entry.value());
 }
 
 double Bending::add_gradient(View<const Vec3> x, View<Vec3> gradient)

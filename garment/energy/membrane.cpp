@@ -75,4 +75,25 @@ double Membrane::add_gradient(View<const Vec3> x, View<Vec3> gradient)
     return parallel_sum(kCpu, triangles, 0.0, [&](int t) { return triangle_energy_[t]; });
 }
 
+void Membrane::add_couplings(std::vector<std::pair<int, int>>& couplings) const
+{
+    add_triangle_couplings(rest_->triangles, couplings);
+}
+
+void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, BlockMatrix& K)
+{
+    const int triangles = int(rest_->triangles.size());
+    curvature_.resize(triangles);
+    parallel_for(kCpu, "membrane/curvature", lane_blocks(triangles),
+                 CurveMembrane{x, rest_->triangles, rest_inv_, weights_, definiteness, curvature_});
+    const Incidence& corners = rest_->topology.corners_of_vertex;
+    parallel_for(kCpu, "membrane/gather_curvature", K.rows(), [&](int v) {
+        for (int k = corners.first[v]; k < corners.first[v + 1]; ++k) {
+            const int t = corners.items[k] / 3;
+            add_corner_row(curvature_[t], rest_->edges_inv[t], rest_->areas[t], rest_->triangles[t],
+                           corners.items[k] % 3, K);
+        }
+    });
+}
+
 } // namespace toile

@@ -6,6 +6,7 @@
 #include "core/pd/energy.h"
 #include "garment/energy/membrane_kernels.h"
 #include "garment/energy/rest_shape.h"
+#include "garment/energy/stretch_curvature.h"
 
 namespace toile {
 
@@ -31,6 +32,9 @@ public:
     std::string_view name() const override { return "garment/membrane"; }
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
+    void add_constant_curvature(Triplets&) const override {}
+    void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
+    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockMatrix& K) override;
 
     /// Weights of the three terms above [N/m].
     const MembraneWeights& weights() const { return weights_; }
@@ -42,6 +46,7 @@ private:
     std::vector<Lanes> area_;             ///< [blocks of triangles]
     std::vector<Mat32> corner_gradient_;
     std::vector<double> triangle_energy_;
+    std::vector<StretchCurvature> curvature_; ///< [triangles] scratch
 };
 
 } // namespace toile

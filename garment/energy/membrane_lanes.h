@@ -2,9 +2,25 @@
 
 #include <algorithm>
 
-#include "garment/energy/membrane_kernels.h"
+#include "core/pd/energy.h"
+#include "garment/energy/membrane_curvature.h"
+#include "garment/energy/stretch_curvature.h"
 
 namespace toile {
+
+/// Deformation gradients of a block of eight triangles.
+inline Mat32Of<Lanes> deformation_gradients(View<const Vec3> x, View<const Triangle> tri,
+                                            const Mat2Of<Lanes>& rest_inv, int block)
+{
+    const int first = block * kLanes, count = tri.size();
+    Mat32Of<Lanes> edges;
+    for (int i = 0; i < 3; ++i) {
+        const Lanes x0 = gather(first, count, [&](int t) { return x[tri[t][0]][i]; });
+        for (int k = 0; k < 2; ++k)
+            edges(i, k) = gather(first, count, [&](int t) { return x[tri[t][k + 1]][i]; }) - x0;
+    }
+    return edges.lazyProduct(rest_inv);
+}
 
 /// project_membrane() for eight triangles at a time.
 struct ProjectMembrane {
@@ -19,13 +35,7 @@ struct ProjectMembrane {
     void operator()(int block) const
     {
         const int first = block * kLanes, count = tri.size();
-        Mat32Of<Lanes> edges;
-        for (int i = 0; i < 3; ++i) {
-            const Lanes x0 = gather(first, count, [&](int t) { return x[tri[t][0]][i]; });
-            for (int k = 0; k < 2; ++k)
-                edges(i, k) = gather(first, count, [&](int t) { return x[tri[t][k + 1]][i]; }) - x0;
-        }
-        const Mat32Of<Lanes> F = edges.lazyProduct(rest_inv[block]);
+        const Mat32Of<Lanes> F = deformation_gradients(x, tri, rest_inv[block], block);
         const MembraneResponse<Lanes> response =
             project_membrane<Lanes>(F, rest_inv[block], area[block], weights);
         const int lanes = std::min(kLanes, count - first);
@@ -34,6 +44,30 @@ struct ProjectMembrane {
             for (int i = 0; i < 6; ++i)
                 corner_gradient[first + k](i) = response.corner_gradient(i)[k];
         }
+    }
+};
+
+/// membrane_curvature() for eight triangles at a time.
+struct CurveMembrane {
+    View<const Vec3> x;                 ///< [vertices] positions [m]
+    View<const Triangle> tri;           ///< [triangles] vertex indices
+    View<const Mat2Of<Lanes>> rest_inv; ///< [blocks] inverse rest edge matrices [1/m]
+    MembraneWeights weights;
+    Definiteness definiteness;
+    View<StretchCurvature> curvature; ///< [triangles] out
+
+    void operator()(int block) const
+    {
+        const int first = block * kLanes, lanes = std::min(kLanes, tri.size() - first);
+        const MembraneCurvature<Lanes> H =
+            membrane_curvature<Lanes>(deformation_gradients(x, tri, rest_inv[block], block), weights,
+                                      definiteness == Definiteness::Projected);
+        for (int k = 0; k < lanes; ++k)
+            for (int i = 0; i < 9; ++i) {
+                curvature[first + k].uu(i) = H.uu(i)[k];
+                curvature[first + k].uv(i) = H.uv(i)[k];
+                curvature[first + k].vv(i) = H.vv(i)[k];
+            }
     }
 };
 

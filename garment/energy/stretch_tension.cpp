@@ -5,6 +5,7 @@
 #include "core/backend/parallel.h"
 #include "garment/energy/membrane_kernels.h"
 #include "garment/energy/principal_stretch.h"
+#include "garment/energy/stretch_curvature.h"
 
 namespace toile {
 
@@ -68,6 +69,26 @@ double StretchTension::add_gradient(View<const Vec3> x, View<Vec3> gradient)
         gradient[corner[2]] += pull.col(1);
     }
     return energy;
+}
+
+void StretchTension::add_couplings(std::vector<std::pair<int, int>>& couplings) const
+{
+    add_triangle_couplings(rest_->triangles, couplings);
+}
+
+/// The excess is convex in x: exact and projected are the same.
+void StretchTension::add_curvature(View<const Vec3> x, Definiteness, BlockMatrix& K)
+{
+    for (const Taut& taut : taut_) {
+        const int t = taut.triangle;
+        const Mat32 G = rest_->deformation_gradient(t, x) + taut.tension;
+        if (largest_stretch(G) <= 1.0 + settings_.limit)
+            continue;
+        const StretchCurvature H = excess_curvature(G, 1.0 + settings_.limit);
+        for (int row = 0; row < 3; ++row)
+            add_corner_row(H, rest_->edges_inv[t], settings_.stiffness * rest_->areas[t], rest_->triangles[t],
+                           row, K);
+    }
 }
 
 void StretchTension::remember(View<const Vec3> x)

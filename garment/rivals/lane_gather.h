@@ -6,9 +6,6 @@
 
 namespace toile {
 
-template <typename T>
-using Vec3Of = Eigen::Matrix<T, 3, 1>;
-
 /// One index per lane.
 using LaneIndices = std::array<int, kLanes>;
 

@@ -2,14 +2,10 @@
 
 #include <Eigen/Geometry>
 
-#include "garment/energy/membrane_kernels.h"
+#include "garment/energy/membrane_curvature.h"
 #include "garment/rivals/lane_gather.h"
 
 namespace toile {
-
-/// Relative difference of two principal stretches below which they count as one [-]: their eigenvectors are
-/// then rounding noise.
-constexpr double kSameStretch = 1e-9;
 
 /// Symmetric 3 x 3 matrix, for one vertex (T = double) or eight (T = Lanes).
 template <typename T>
@@ -89,38 +85,18 @@ template <typename T>
 TOILE_HD void add_shear(const Mat32Of<T>& F, const HatGradient<T>& g, const T& weight, Vec3Of<T>& gradient,
                         Symmetric3<T>& hessian)
 {
-    // Invariants of C = F^T F: d = sigma_1 sigma_2, r = sigma_1 + sigma_2. S^(-1) = adj(C + d I) / (d r).
-    const T zero(0.0), one(1.0);
-    const T a = F.col(0).squaredNorm(), b = F.col(0).dot(F.col(1)), c = F.col(1).squaredNorm();
-    const T square = a * c - b * b;
-    const T d = square_root(select(square > zero, square, zero));
-    const T r = square_root(a + c + T(2.0) * d);
-    const auto is_valid = d * r * r > T(kCollapsed);
-    const T scale = one / select(is_valid, d * r, one);
-    const T S00 = scale * (c + d), S01 = -scale * b, S11 = scale * (a + d);
-    const Vec3Of<T> R0 = S00 * F.col(0) + S01 * F.col(1), R1 = S01 * F.col(0) + S11 * F.col(1);
+    const IsometryDerivative<T> D = isometry_derivative<T>(F, true);
 
     // The gradient, and the bound w |g|^2 I that is all a collapsed triangle has.
-    const T used = select(is_valid, weight, zero);
+    const T used = select(D.is_valid, weight, T(0.0));
     const T square_of_g = g.u * g.u + g.v * g.v;
-    gradient += used * (g.u * (F.col(0) - R0) + g.v * (F.col(1) - R1));
+    gradient += used * (g.u * (F.col(0) - D.R0) + g.v * (F.col(1) - D.R1));
     hessian.add_identity(weight * square_of_g);
 
-    // Twist within the plane: 2 / r, at most 1.
-    const T twist = select(r > T(2.0), one / r, T(0.5));
-    hessian.add_square(-used * twist, g.u * R1 - g.v * R0);
-
-    // Out of the plane: min(I, S^(-1)) = alpha I + beta S^(-1), through the two eigenvalues 1 / sigma.
-    const T half = T(0.5) * r, discriminant = half * half - d;
-    const T spread = square_root(select(discriminant > zero, discriminant, zero));
-    const T low = scale * r * (half - spread), high = scale * r * (half + spread);
-    const T low_cut = select(low < one, low, one), high_cut = select(high < one, high, one);
-    const auto is_split = high - low > T(kSameStretch) * high;
-    const T beta = select(is_split, (high_cut - low_cut) / select(is_split, high - low, one),
-                          select(high < one, one, zero));
-    const T alpha = low_cut - beta * low;
-    const T through = g.u * g.u * S00 + T(2.0) * g.u * g.v * S01 + g.v * g.v * S11;
-    hessian.add_square(-used * (alpha * square_of_g + beta * through), R0.cross(R1));
+    // Twist within the plane, and out of it.
+    hessian.add_square(-used * D.twist, g.u * D.R1 - g.v * D.R0);
+    const T through = g.u * g.u * D.S00 + T(2.0) * g.u * g.v * D.S01 + g.v * g.v * D.S11;
+    hessian.add_square(-used * (D.alpha * square_of_g + D.beta * through), D.R0.cross(D.R1));
 }
 
 /// Adds what one triangle of the membrane contributes to a corner: the gradient of its energy by the corner's
@@ -131,9 +107,8 @@ TOILE_HD void add_shear(const Mat32Of<T>& F, const HatGradient<T>& g, const T& w
 ///   warp   w g_u^2 ( a a^T + (1 - 1/|F u|) (I - a a^T) ),   a = F u / |F u|;   weft likewise
 ///   shear  w ( |g|^2 I  -  (R J g)(R J g)^T / (sigma_1 + sigma_2)  -  (g^T S^(-1) g) n n^T )
 ///
-/// where J turns by 90 degrees. 2/(sigma_1 + sigma_2), 1/sigma_1 and 1/sigma_2 are the eigenvalues of dR/dF
-/// for the twist and the two modes out of the plane [Smith et al. 2019 have them for 3 x 3]. The clamp cuts
-/// each of them, and 1/|F u| and 1/|F v|, at 1.
+/// where J turns by 90 degrees (IsometryDerivative). The clamp cuts each eigenvalue of dR/dF, and 1/|F u| and
+/// 1/|F v|, at 1.
 /// @param F         deformation gradient; its columns are the stretched warp and weft
 /// @param area      rest area [m^2]
 /// @param gradient  += [N]

@@ -239,6 +239,10 @@ void describe(V& v, Solver& s)
     v.field("method", s.method,
             "How the global linear system is solved: exactly (auto, direct), by quadrature of its kernel, or "
             "by a baseline to compare with. xpbd and vbd replace the whole time step.");
+    v.field(
+        "outer", s.outer,
+        "How each step is minimised: by L-BFGS, or by a method to compare with. An iteration of newton-pcg "
+        "costs many of the others'; local-global is slow and stops early.");
     v.field("sleep", s.sleep, "When resting cloth is skipped.");
     v.field("threads", s.threads, between(0, 1024),
             "Threads to use; 0: all. The result does not depend on it.");

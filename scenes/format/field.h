@@ -86,6 +86,15 @@ struct Words<SolverMethod> {
          {"vbd", SolverMethod::Vbd}}};
 };
 
+template <>
+struct Words<OuterMethod> {
+    static constexpr std::array<std::pair<const char*, OuterMethod>, 4> kAll{
+        {{"lbfgs", OuterMethod::Lbfgs},
+         {"local-global", OuterMethod::LocalGlobal},
+         {"anderson", OuterMethod::Anderson},
+         {"newton-pcg", OuterMethod::NewtonPcg}}};
+};
+
 /// All words of an enumeration, in the order of their documentation.
 template <typename E>
 std::vector<std::string> words_of()

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/backend/types.h"
+#include "core/pd/outer_method.h"
 
 /// A scene as its JSON file says it: plain values, checked on reading, nothing loaded yet.
 ///
@@ -220,6 +221,7 @@ struct Solver {
     double tolerance = 2e-4; ///< [m] largest change of a position at which a step ends
     int max_iterations = 30; ///< outer iterations per minimisation; contact may ask for three a step
     SolverMethod method = SolverMethod::Auto;
+    OuterMethod outer = OuterMethod::Lbfgs;
     Sleep sleep;
     int threads = 0; ///< 0: all of the machine's
 };

@@ -34,7 +34,7 @@ TEST(Simulate, ObeysOptionsAndTheExportList)
     const TemporaryFolder folder;
     folder.write("drop.json", small_scene(9, R"("export": [{"file": "a/b.mdd"}, {"file": "frames.obj"}])"));
     const Finished run = run_toile({"simulate", "drop.json", "-o", "there", "--frames", "3", "--threads", "1",
-                                    "--solver", "direct", "--report", "run.json"},
+                                    "--solver", "direct", "--outer", "anderson", "--report", "run.json"},
                                    folder.path());
     EXPECT_EQ(run.exit_code, 0) << run.errors;
     EXPECT_EQ(run.output, "there/a/b.mdd\nthere/frames.obj\n");
@@ -47,6 +47,7 @@ TEST(Simulate, ObeysOptionsAndTheExportList)
     EXPECT_EQ(report["settings"]["frames"], 3);
     EXPECT_EQ(report["settings"]["threads"], 1);
     EXPECT_EQ(report["settings"]["method"], "direct");
+    EXPECT_EQ(report["settings"]["outer"], "anderson");
     ASSERT_EQ(report["frames"].size(), 2u); // sample 0 costs no step
     EXPECT_EQ(report["frames"][0]["frame"], 1);
     EXPECT_EQ(report["frames"][0]["steps"], 4);

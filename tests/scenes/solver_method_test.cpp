@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world.h"
 #include "tests/support/temporary_folder.h"
@@ -62,6 +63,13 @@ const std::vector<Vec3>& swing_of_direct()
     return x;
 }
 
+/// The word of a parameter as a test's name.
+std::string to_name(std::string word)
+{
+    std::erase(word, '-');
+    return word;
+}
+
 class SolverMethods : public testing::TestWithParam<const char*> {};
 
 TEST_P(SolverMethods, PutTheClothWhereTheDirectSolverDoes)
@@ -75,11 +83,21 @@ TEST_P(SolverMethods, PutTheClothWhereTheDirectSolverDoes)
 INSTANTIATE_TEST_SUITE_P(Scene, SolverMethods,
                          testing::Values("auto", "quadrature", "multigrid", "subspace", "chebyshev",
                                          "a-jacobi", "jacobi-pcg", "vbd"),
-                         [](const auto& method) {
-                             std::string name = method.param;
-                             std::erase(name, '-');
-                             return name;
-                         });
+                         [](const auto& method) { return to_name(method.param); });
+
+class OuterMethods : public testing::TestWithParam<std::string> {};
+
+TEST_P(OuterMethods, PutTheClothWhereLbfgsDoes)
+{
+    // The slow one's moves fall below the tolerance before it has arrived.
+    const double distance = GetParam() == "local-global" ? 3e-3 : 1e-3;
+    const std::vector<Vec3> found =
+        swing(R"("tolerance": 1e-6, "max_iterations": 400, "outer": ")" + GetParam() + '"');
+    EXPECT_LT(farthest_apart(found, swing_of_direct()), distance);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scene, OuterMethods, testing::ValuesIn(scene_format::words_of<OuterMethod>()),
+                         [](const auto& method) { return to_name(method.param); });
 
 /// XPBD knows no time step that it would solve: many substeps lead to the motion that small steps find.
 TEST(XpbdMethod, PutsTheClothWhereSmallStepsDo)

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Symmetric sparse matrix of 3 x 3 blocks, [3n x 3n], whose pattern stays while its values change: both
+/// triangles stored, rows contiguous, columns ascending, the diagonal always there.
+class BlockMatrix {
+public:
+    BlockMatrix() = default;
+
+    /// All blocks zero.
+    /// @param couplings  pairs (i, j) of block rows that share entries, in any order, repeats allowed
+    BlockMatrix(int rows, const std::vector<std::pair<int, int>>& couplings);
+
+    int rows() const { return int(diagonal_.size()); }
+    void set_zero();
+
+    /// Block (row, column), which must be in the pattern. O(log of the row's length). Tasks that write rows
+    /// of their own may run in parallel.
+    Mat3& block(int row, int column);
+
+    const Mat3& diagonal(int row) const { return blocks_[diagonal_[row]]; }
+
+    /// Row `row` times x [n].
+    Vec3 row_times(int row, View<const Vec3> x) const
+    {
+        Vec3 sum = Vec3::Zero();
+        for (int k = first_[row]; k < first_[row + 1]; ++k)
+            sum.noalias() += blocks_[k] * x[columns_[k]];
+        return sum;
+    }
+
+    /// Columns and blocks of a row.
+    View<const int> columns(int row) const
+    {
+        return {columns_.data() + first_[row], first_[row + 1] - first_[row]};
+    }
+    View<const Mat3> blocks(int row) const
+    {
+        return {blocks_.data() + first_[row], first_[row + 1] - first_[row]};
+    }
+
+private:
+    std::vector<int> first_;    ///< [rows + 1] into columns_ and blocks_
+    std::vector<int> columns_;  ///< ascending in each row
+    std::vector<int> diagonal_; ///< [rows] into blocks_
+    std::vector<Mat3> blocks_;
+};
+
+} // namespace toile

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "core/linear/pcg.h"
+#include "core/pd/outer_loop.h"
+
+namespace toile {
+
+/// Newton's method with inexact steps [Nocedal & Wright 2006, alg. 7.1]: K d = -g is solved by conjugate
+/// gradients as tightly as the gradient falls [Eisenstat & Walker 1996, choice 2], with the true Hessian K
+/// and
+///
+///   P = H^-1 + blockdiag(K)^-1
+///
+/// H^-1 carries what is stiff through the whole cloth at once, the blocks know how soft it is across its
+/// plane. K is the exact Hessian: it converges quadratically where projected ones stall. Where CG meets
+/// negative curvature it stops at the direction found so far, which descends (P's own in the first
+/// iteration).
+///
+/// An iteration costs one assembly of K and, for each of CG's, one product with K and one H^-1. Objectives
+/// without second derivatives are refused.
+class NewtonPcg : public OuterLoop {
+protected:
+    void begin(int vertex_count) override;
+    void find_direction(Objective& objective, const Here& here, View<Vec3> direction) override;
+    int linear_iterations() const override { return linear_iterations_; }
+
+private:
+    double forcing_term(View<const Vec3> gradient);
+    void invert(View<const Mat3> blocks);
+
+    Pcg pcg_;
+    std::vector<Mat3> inverse_blocks_; ///< [vertices]
+    int linear_iterations_ = 0;
+    double previous_norm_ = 0.0;    ///< [N] of the gradient; 0 before the first iteration
+    double previous_forcing_ = 0.0; ///< [-]
+};
+
+} // namespace toile

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "core/linear/sparse_matrix.h"
+#include "core/pd/energy.h"
+
+namespace toile {
+
+/// The Hessian K of an objective, for Newton's method.
+class Hessian {
+public:
+    virtual ~Hessian() = default;
+
+    /// Evaluates K at x, the last accepted point.
+    virtual void linearise(View<const Vec3> x, Definiteness definiteness) = 0;
+
+    /// out = K p [N].
+    virtual void multiply(View<const Vec3> p, View<Vec3> out) = 0;
+
+    /// 3 x 3 blocks on the diagonal, or bounds on them: positive definite when projected. [vertices]
+    virtual View<const Mat3> diagonal_blocks() const = 0;
+
+    /// K as a matrix of numbers [3 vertices x 3 vertices], coordinates of a vertex next to each other.
+    /// Without what an active set adds.
+    virtual SparseMatrix matrix() const = 0;
+};
+
+/// A smooth function of a 3-vector field together with an approximate inverse of its Hessian.
+class Objective {
+public:
+    virtual ~Objective() = default;
+
+    /// Value at x [J]; gradient [N] is overwritten.
+    virtual double evaluate(View<const Vec3> x, View<Vec3> gradient) = 0;
+
+    /// z = B g with B symmetric positive definite and close to the inverse Hessian at the last accepted
+    /// point.
+    virtual void precondition(View<const Vec3> g, View<Vec3> z) = 0;
+
+    /// The linear part of B, the same from one accepted point to the next: a preconditioner for CG. It may
+    /// leave out an active set.
+    virtual void precondition_linearly(View<const Vec3> g, View<Vec3> z) { precondition(g, z); }
+
+    /// Called at every accepted point, before the next precondition().
+    virtual void accept(View<const Vec3> x) = 0;
+
+    /// Null where the objective has no second derivatives to offer.
+    virtual Hessian* hessian() { return nullptr; }
+};
+
+} // namespace toile

@@ -1,0 +1,86 @@
+#include "core/pd/outer_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/linear/field.h"
+
+namespace toile {
+
+namespace {
+
+/// Share of the predicted decrease that a step must reach [-] (Armijo).
+constexpr double kSufficientDecrease = 1e-4;
+
+/// Rounding noise of an objective value relative to its size [-]: differences below it prove nothing.
+constexpr double kValueNoise = 1e-14;
+
+/// Halvings (or stronger cuts) before a direction is given up.
+constexpr int kMaxBacktracks = 12;
+
+} // namespace
+
+int OuterLoop::max_trials() const { return kMaxBacktracks; }
+
+OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const Settings& settings)
+{
+    for (std::vector<Vec3>* field : {&gradient_, &direction_, &trial_, &trial_gradient_})
+        field->resize(x.size());
+    begin(x.size());
+
+    Outcome outcome;
+    outcome.value = objective.evaluate(x, gradient_);
+    objective.accept(x);
+    while (std::isfinite(outcome.value) && outcome.iterations < settings.max_iterations) {
+        // Stop on a full move that nobody would see: rest and free flight need none at all.
+        find_direction(objective, {x, gradient_, trial_gradient_}, direction_);
+        outcome.displacement = max_norm(direction_);
+        outcome.converged = outcome.displacement <= settings.tolerance;
+        if (outcome.converged)
+            break;
+
+        const double step = line_search(objective, x, outcome.value);
+        if (step == 0.0) {
+            if (!fall_back())
+                break;
+            continue;
+        }
+        ++outcome.iterations;
+        outcome.displacement *= step;
+        learn({step, direction_, gradient_, trial_gradient_});
+        gradient_.swap(trial_gradient_);
+        objective.accept(x);
+    }
+    outcome.linear_iterations = linear_iterations();
+    outcome.gradient_norm = max_norm(gradient_);
+    return outcome;
+}
+
+/// Backtracks along the direction from x until the value decreases sufficiently; x and value move on success.
+/// @return the accepted step length, 0 when there is none
+double OuterLoop::line_search(Objective& objective, View<Vec3> x, double& value)
+{
+    const double slope = dot(gradient_, direction_);
+    if (!(slope < 0.0))
+        return 0.0;
+
+    double step = 1.0;
+    for (int attempt = 0; attempt < max_trials(); ++attempt) {
+        parallel_for(
+            kCpu, "outer/trial", x.size(), [&](int i) { trial_[i] = x[i] + step * direction_[i]; },
+            kFieldGrain);
+        const double trial_value = objective.evaluate(trial_, trial_gradient_);
+        if (trial_value <= value + kSufficientDecrease * step * slope + kValueNoise * std::abs(value)) {
+            std::copy(trial_.begin(), trial_.end(), x.begin());
+            value = trial_value;
+            return step;
+        }
+        // Minimum of the parabola through value, slope and trial value, kept away from both ends.
+        const double excess = trial_value - value - step * slope;
+        const double parabola = std::isfinite(excess) ? -0.5 * slope * step * step / excess : 0.0;
+        step = std::clamp(parabola, 0.1 * step, 0.5 * step);
+    }
+    return 0.0;
+}
+
+} // namespace toile

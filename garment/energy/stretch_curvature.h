@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "core/linear/block_matrix.h"
+#include "garment/energy/principal_stretch.h"
+
+namespace toile {
+
+/// Second derivative of an energy per area of a triangle by its deformation gradient F: 3 x 3 blocks for the
+/// columns u and v of F; vu is the transpose of uv. [N/m]
+struct StretchCurvature {
+    Mat3 uu = Mat3::Zero(), uv = Mat3::Zero(), vv = Mat3::Zero();
+
+    /// += weight vec(E) vec(E)^T
+    void add_mode(double weight, const Mat32& E)
+    {
+        uu += weight * E.col(0) * E.col(0).transpose();
+        uv += weight * E.col(0) * E.col(1).transpose();
+        vv += weight * E.col(1) * E.col(1).transpose();
+    }
+};
+
+/// Blocks between corner `row` of a triangle and its three corners, for one row of the matrix.
+/// @param rest_inv  inverse rest edge matrix [1/m]
+/// @param area      rest area [m^2]
+inline void add_corner_row(const StretchCurvature& H, const Mat2& rest_inv, double area,
+                           const Triangle& triangle, int row, BlockMatrix& K)
+{
+    // Gradients of the corners' hat functions.
+    Vec2 g[3];
+    g[1] = rest_inv.row(0);
+    g[2] = rest_inv.row(1);
+    g[0] = -g[1] - g[2];
+    const Mat3 u = area * (g[row][0] * H.uu + g[row][1] * H.uv.transpose());
+    const Mat3 v = area * (g[row][0] * H.uv + g[row][1] * H.vv);
+    for (int k = 0; k < 3; ++k)
+        K.block(triangle[row], triangle[k]) += g[k][0] * u + g[k][1] * v;
+}
+
+/// Adds the pairs of corners of every triangle.
+inline void add_triangle_couplings(View<const Triangle> triangles,
+                                   std::vector<std::pair<int, int>>& couplings)
+{
+    for (const Triangle& t : triangles)
+        for (int k = 0; k < 3; ++k)
+            couplings.emplace_back(t[k], t[(k + 1) % 3]);
+}
+
+/// Second derivative of 1/2 |G - P(G)|^2, P the projection onto the matrices with singular values up to
+/// `allowed`. With f(s) = max(s - allowed, 0) of the singular values s_1 >= s_2 its eigenvalues are, all of
+/// them at least zero because the set is convex:
+///
+///   stretches          f'(s_1), f'(s_2)
+///   twist, flip        (f_1 + f_2) / (s_1 + s_2),  (f_1 - f_2) / (s_1 - s_2)
+///   out of the plane   f_1 / s_1, f_2 / s_2
+///
+/// after [Smith et al. 2019], whose 3 x 3 case has three of each. Zero where s_1 is allowed.
+inline StretchCurvature excess_curvature(const Mat32& G, double allowed)
+{
+    StretchCurvature H;
+    const PrincipalStretch stretch = principal_stretch(G);
+    const double s1 = stretch.sigma[0], s2 = stretch.sigma[1];
+    if (!(s1 > allowed))
+        return H;
+    const double f1 = s1 - allowed, f2 = std::fmax(s2 - allowed, 0.0);
+
+    // Left singular vectors; the second is free where G has collapsed to a line.
+    const Vec2 v1 = stretch.V.col(0), v2 = stretch.V.col(1);
+    const Vec3 u1 = (G * v1).normalized();
+    Vec3 u2 = G * v2 - u1 * u1.dot(G * v2);
+    u2 = u2.norm() > 1e-12 * s1 ? u2.normalized() : u1.unitOrthogonal();
+    const Vec3 n = u1.cross(u2);
+
+    const Mat32 across = u1 * v2.transpose(), back = u2 * v1.transpose();
+    const double flip = s1 - s2 > 1e-9 * s1 ? (f1 - f2) / (s1 - s2) : 1.0;
+    H.add_mode(1.0, u1 * v1.transpose());
+    H.add_mode(s2 > allowed ? 1.0 : 0.0, u2 * v2.transpose());
+    H.add_mode(0.5 * (f1 + f2) / (s1 + s2), across - back);
+    H.add_mode(0.5 * flip, across + back);
+    H.add_mode(f1 / s1, n * v1.transpose());
+    H.add_mode(f2 / std::fmax(s2, allowed), n * v2.transpose());
+    return H;
+}
+
+} // namespace toile

@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include <Eigen/Eigenvalues>
+
+#include "core/pd/curvature.h"
+#include "garment/energy/bending.h"
+#include "garment/energy/membrane.h"
+#include "garment/energy/springs.h"
+#include "garment/energy/stretch_tension.h"
+#include "tests/garment/sheets.h"
+
+/// True Hessians of the energies against differences of their gradients.
+namespace toile::test {
+namespace {
+
+/// Constant part and blocks as one dense matrix.
+Eigen::MatrixXd dense_hessian(const std::shared_ptr<Energy>& energy, const std::vector<Vec3>& x,
+                              Definiteness definiteness)
+{
+    const int n = int(x.size());
+    Curvature curvature(n, {energy});
+    curvature.assemble(x, definiteness);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+    for (int i = 0; i < n; ++i) {
+        for (SparseMatrix::InnerIterator entry(curvature.constant(), i); entry; ++entry)
+            H.block<3, 3>(3 * i, 3 * entry.col()).diagonal().array() += entry.value();
+        for (int k = 0; k < curvature.blocks().columns(i).size(); ++k)
+            H.block<3, 3>(3 * i, 3 * curvature.blocks().columns(i)[k]) += curvature.blocks().blocks(i)[k];
+    }
+    return H;
+}
+
+Eigen::MatrixXd differences_of_gradient(Energy& energy, std::vector<Vec3> x)
+{
+    const double step = 1e-6;
+    const int n = int(x.size());
+    Eigen::MatrixXd H(3 * n, 3 * n);
+    for (int j = 0; j < 3 * n; ++j) {
+        std::vector<Vec3> up(n, Vec3::Zero()), down(n, Vec3::Zero());
+        const double here = x[j / 3][j % 3];
+        x[j / 3][j % 3] = here + step;
+        energy.add_gradient(x, up);
+        x[j / 3][j % 3] = here - step;
+        energy.add_gradient(x, down);
+        x[j / 3][j % 3] = here;
+        for (int i = 0; i < 3 * n; ++i)
+            H(i, j) = (up[i / 3][i % 3] - down[i / 3][i % 3]) / (2.0 * step);
+    }
+    return H;
+}
+
+double smallest_eigenvalue(const Eigen::MatrixXd& H)
+{
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(H, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+void expect_exact(const std::shared_ptr<Energy>& energy, const std::vector<Vec3>& x)
+{
+    const Eigen::MatrixXd H = dense_hessian(energy, x, Definiteness::Exact);
+    const double scale = H.cwiseAbs().maxCoeff();
+    ASSERT_GT(scale, 0.0);
+    EXPECT_LT((H - differences_of_gradient(*energy, x)).cwiseAbs().maxCoeff(), 1e-6 * scale);
+    EXPECT_LT((H - H.transpose()).cwiseAbs().maxCoeff(), 1e-13 * scale);
+}
+
+void expect_semidefinite(const std::shared_ptr<Energy>& energy, const std::vector<Vec3>& x)
+{
+    const Eigen::MatrixXd H = dense_hessian(energy, x, Definiteness::Projected);
+    EXPECT_GT(smallest_eigenvalue(H), -1e-12 * H.cwiseAbs().maxCoeff());
+}
+
+/// The sheet stretched by the two factors, with waves.
+std::vector<Vec3> stretched(const Sheet& sheet, double warp, double weft, double height)
+{
+    std::vector<Vec3> x = sheet.flat();
+    for (Vec3& p : x)
+        p = Vec3(warp * p.x() + 0.1 * p.z(), height * std::sin(40 * p.x() + 9 * p.z()), weft * p.z());
+    return x;
+}
+
+class MembraneHessian : public testing::Test {
+protected:
+    Sheet sheet_ = make_sheet(Vec2(0.2, 0.2), 4, 4, Pattern::Irregular);
+    std::shared_ptr<Energy> membrane_ =
+        std::make_shared<Membrane>(sheet_.rest(), Membrane::Settings{300.0, 200.0, 40.0}, "sheet");
+};
+
+TEST_F(MembraneHessian, IsTheDerivativeOfTheGradient)
+{
+    expect_exact(membrane_, stretched(sheet_, 1.1, 1.2, 0.004));
+    expect_exact(membrane_, stretched(sheet_, 0.7, 0.8, 0.01));
+}
+
+TEST_F(MembraneHessian, ProjectsWhatBendsDownwards)
+{
+    const std::vector<Vec3> slack = stretched(sheet_, 0.7, 0.8, 0.01);
+    EXPECT_LT(smallest_eigenvalue(dense_hessian(membrane_, slack, Definiteness::Exact)), -1.0);
+    expect_semidefinite(membrane_, slack);
+    expect_semidefinite(membrane_, stretched(sheet_, 0.8, 1.3, 0.01));
+}
+
+TEST_F(MembraneHessian, NeedsNoProjectionWhereTheClothIsTaut)
+{
+    std::vector<Vec3> taut = sheet_.flat();
+    for (Vec3& p : taut)
+        p = 1.1 * p;
+    const Eigen::MatrixXd exact = dense_hessian(membrane_, taut, Definiteness::Exact);
+    const Eigen::MatrixXd projected = dense_hessian(membrane_, taut, Definiteness::Projected);
+    EXPECT_LT((exact - projected).cwiseAbs().maxCoeff(), 1e-12 * exact.cwiseAbs().maxCoeff());
+}
+
+TEST_F(MembraneHessian, LiesBelowTheConstantBound)
+{
+    // The majoriser that makes plain local/global descend.
+    Triplets entries;
+    membrane_->add_hessian(entries);
+    const int n = sheet_.rest()->vertex_count();
+    for (const double factor : {0.6, 1.0, 1.4}) {
+        Eigen::MatrixXd gap =
+            -dense_hessian(membrane_, stretched(sheet_, factor, 1.0, 0.01), Definiteness::Projected);
+        for (const auto& entry : entries)
+            gap.block<3, 3>(3 * entry.row(), 3 * entry.col()).diagonal().array() += entry.value();
+        EXPECT_GT(smallest_eigenvalue(gap), -1e-9 * gap.cwiseAbs().maxCoeff()) << factor << " of " << n;
+    }
+}
+
+TEST_F(MembraneHessian, IsFiniteOnACollapsedTriangle)
+{
+    const std::vector<Vec3> point(sheet_.uv.size(), Vec3(1, 2, 3));
+    EXPECT_TRUE(dense_hessian(membrane_, point, Definiteness::Exact).allFinite());
+    expect_semidefinite(membrane_, point);
+    const std::vector<Vec3> line = stretched(sheet_, 1.0, 0.0, 0.0);
+    EXPECT_TRUE(dense_hessian(membrane_, line, Definiteness::Projected).allFinite());
+}
+
+TEST(BendingHessian, IsTheDerivativeOfTheGradientWhetherHHasItOrNot)
+{
+    const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 4, 4, Pattern::Irregular);
+    const auto bending = std::make_shared<Bending>(sheet.rest(), Bending::Settings{0.02, 0.01}, "sheet");
+    expect_exact(bending, stretched(sheet, 1.0, 1.0, 0.01));
+    bending->leave_to(std::vector<double>(sheet.uv.size(), 1e9));
+    expect_exact(bending, stretched(sheet, 1.0, 1.0, 0.01));
+    expect_semidefinite(bending, stretched(sheet, 1.0, 1.0, 0.01));
+}
+
+TEST(SpringsHessian, FollowsReleases)
+{
+    const auto springs =
+        std::make_shared<Springs>(std::vector<Springs::Spring>{{0, 10.0}, {2, 20.0}, {2, 5.0}});
+    const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+    expect_exact(springs, x);
+    springs->release(1);
+    expect_exact(springs, x);
+}
+
+class TensionHessian : public testing::Test {
+protected:
+    Sheet sheet_ = make_sheet(Vec2(0.2, 0.2), 4, 4, Pattern::Irregular);
+    std::shared_ptr<StretchTension> tension_ =
+        std::make_shared<StretchTension>(sheet_.rest(), StretchTension::Settings{0.06, 250.0, 1.0});
+};
+
+TEST_F(TensionHessian, IsTheDerivativeOfTheGradient)
+{
+    for (const double weft : {0.9, 1.2}) { // one principal stretch beyond the limit, then both
+        const std::vector<Vec3> x = stretched(sheet_, 1.15, weft, 0.004);
+        tension_->begin_step(x);
+        expect_exact(tension_, x);
+        expect_semidefinite(tension_, x);
+    }
+}
+
+TEST_F(TensionHessian, IncludesTheTensionRemembered)
+{
+    const std::vector<Vec3> far = stretched(sheet_, 1.2, 1.0, 0.004),
+                            near = stretched(sheet_, 1.03, 1.0, 0.004);
+    tension_->begin_step(far);
+    tension_->remember(far);
+    tension_->begin_step(near);
+    expect_exact(tension_, near);
+}
+
+TEST_F(TensionHessian, IsFiniteOnTrianglesPulledToALine)
+{
+    const std::vector<Vec3> line = stretched(sheet_, 1.3, 0.0, 0.0);
+    tension_->begin_step(line);
+    expect_semidefinite(tension_, line);
+}
+
+} // namespace
+} // namespace toile::test
