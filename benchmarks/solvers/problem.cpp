@@ -122,7 +122,8 @@ std::vector<SampledStep> sample_steps(const Problem& problem, int count, int str
 double objective(const Problem& problem, const System& system, const SampledStep& step,
                  const std::vector<Vec3>& x)
 {
-    StepObjective objective(system, problem.dt, step.prediction, nullptr, Pcg::Settings{});
+    StepObjective objective(system, {step.x, step.prediction, system.diagonal(), system.fixed(), problem.dt},
+                            nullptr, Pcg::Settings{});
     std::vector<Vec3> gradient(x.size());
     return objective.evaluate(x, gradient);
 }

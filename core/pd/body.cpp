@@ -14,7 +14,7 @@ namespace {
 /// fall moves less than the tolerance, and would be left hanging in the air. Never less than kMinTolerance of
 /// the tolerance asked for: without forces nothing moves at all.
 constexpr double kTolerancePerMove = 0.1;
-constexpr double kMinTolerance = 0.01;
+constexpr double kMinTolerance = 0.002;
 
 /// Share of the tolerance [-] for a minimisation that begins where the cloth is. Cloth at rest takes no
 /// iteration there; larger lets stiff cloth rest before it has found its shape.
@@ -39,7 +39,7 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
 
     x_t1_ = prediction_;
     if (active) {
-        active->begin_step({x_, prediction_, system_->diagonal(), system_->fixed(), dt});
+        active->begin_step(start_of(dt));
         active->make_feasible(x_t1_);
     }
     minimise(dt, active, report);
@@ -69,6 +69,11 @@ void Body::project(double dt, StepProjection& projection, const ActiveSetEnergy*
     projection.project(x_t1_, inverse_masses_, active);
     parallel_for(kCpu, "pd/finish", int(x_.size()),
                  [&](int i) { v_[i] += (x_t1_[i] - unprojected_[i]) / dt; });
+}
+
+StepStart Body::start_of(double dt) const
+{
+    return {x_, prediction_, system_->diagonal(), system_->fixed(), dt};
 }
 
 /// q* = x + dt v + dt^2 a; fixed vertices go to their targets.
@@ -123,7 +128,7 @@ OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& object
 
 void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
 {
-    StepObjective objective(*system_, dt, prediction_, active, settings_.linear);
+    StepObjective objective(*system_, start_of(dt), active, settings_.linear);
     const OuterLoop::Settings settings{tolerance(), settings_.max_iterations};
     for (int round = 0; round < settings_.max_rounds; ++round) {
         const StageScope stage("pd/minimise");

@@ -28,8 +28,8 @@ public:
 class Body {
 public:
     struct Settings {
-        /// [m] Largest vertex move of the last outer iteration; lowered to a tenth of the farthest predicted
-        /// move, but never below a hundredth of this.
+        /// [m] Error that a step may end with: what StepError estimates, and the next move of any vertex.
+        /// Lowered to a tenth of the farthest predicted move, but never below a hundredth of this.
         double tolerance = 1e-5;
         int max_iterations = 50; ///< outer iterations per minimisation
         int max_rounds = 3;      ///< minimisations per step, when contact asks for another
@@ -54,6 +54,7 @@ public:
     const System& system() const { return *system_; }
 
 private:
+    StepStart start_of(double dt) const;
     void predict(double dt, View<const Vec3> acceleration, View<const Vec3> targets);
     void project(double dt, StepProjection& projection, const ActiveSetEnergy* active);
     double tolerance() const;
