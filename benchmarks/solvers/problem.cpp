@@ -105,7 +105,7 @@ void converge(const Problem& problem, const System& system, SampledStep& step)
                                  ? problem.start.positions[v]
                                  : Vec3(step.x[v] + problem.dt * (step.v[v] + problem.dt * acceleration[v]));
 
-    StepObjective objective(system, problem.dt, step.prediction, nullptr, Pcg::Settings{});
+    StepObjective objective(system, step_start(problem, system, step), nullptr, Pcg::Settings{});
     step.minimiser = step.prediction;
     step.start_energy = Lbfgs().minimise(objective, step.minimiser, {0.0, 0}).value;
     (void)Lbfgs().minimise(objective, step.minimiser, kApproach);
@@ -138,10 +138,15 @@ std::vector<SampledStep> sample_steps(const Problem& problem, int count, int str
     return steps;
 }
 
+StepStart step_start(const Problem& problem, const System& system, const SampledStep& step)
+{
+    return {step.x, step.prediction, system.diagonal(), system.fixed(), problem.dt};
+}
+
 double objective(const Problem& problem, const System& system, const SampledStep& step,
                  const std::vector<Vec3>& x)
 {
-    StepObjective objective(system, problem.dt, step.prediction, nullptr, Pcg::Settings{});
+    StepObjective objective(system, step_start(problem, system, step), nullptr, Pcg::Settings{});
     std::vector<Vec3> gradient(x.size());
     return objective.evaluate(x, gradient);
 }

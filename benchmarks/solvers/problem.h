@@ -46,6 +46,10 @@ struct SampledStep {
 /// Newton's method with a direct solver.
 std::vector<SampledStep> sample_steps(const Problem& problem, int count, int stride);
 
+/// A sampled step as an objective needs it, borrowed.
+/// @param system  of the problem, prepared
+StepStart step_start(const Problem& problem, const System& system, const SampledStep& step);
+
 /// Objective of a sampled step at x [J].
 double objective(const Problem& problem, const System& system, const SampledStep& step,
                  const std::vector<Vec3>& x);

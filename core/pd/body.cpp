@@ -14,7 +14,7 @@ namespace {
 /// fall moves less than the tolerance, and would be left hanging in the air. Never less than kMinTolerance of
 /// the tolerance asked for: without forces nothing moves at all.
 constexpr double kTolerancePerMove = 0.1;
-constexpr double kMinTolerance = 0.01;
+constexpr double kMinTolerance = 0.002;
 
 /// Share of the tolerance [-] for a minimisation that begins where the cloth is. Cloth at rest takes no
 /// iteration there; larger lets stiff cloth rest before it has found its shape.
@@ -38,7 +38,7 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
 
     x_t1_ = prediction_;
     if (active) {
-        active->begin_step({x_, prediction_, system_->diagonal(), system_->fixed(), dt});
+        active->begin_step(start_of(dt));
         active->make_feasible(x_t1_);
     }
     minimise(dt, active, report);
@@ -56,6 +56,11 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
         active->end_step(x_t1_);
     x_.swap(x_t1_);
     return report;
+}
+
+StepStart Body::start_of(double dt) const
+{
+    return {x_, prediction_, system_->diagonal(), system_->fixed(), dt};
 }
 
 /// Far enough below what moves in this step.
@@ -101,7 +106,7 @@ OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& object
 
 void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
 {
-    StepObjective objective(*system_, dt, prediction_, active, settings_.linear);
+    StepObjective objective(*system_, start_of(dt), active, settings_.linear);
     const OuterLoop::Settings settings{tolerance(), settings_.max_iterations};
     for (int round = 0; round < settings_.max_rounds; ++round) {
         const StageScope stage("pd/minimise");

@@ -13,8 +13,8 @@ namespace toile {
 class Body : public PointMasses {
 public:
     struct Settings {
-        /// [m] Largest vertex move of the last outer iteration; lowered to a tenth of the farthest predicted
-        /// move, but never below a hundredth of this.
+        /// [m] Error that a step may end with: what StepError estimates, and the next move of any vertex.
+        /// Lowered to a tenth of the farthest predicted move, but never below a five-hundredth of this.
         double tolerance = 1e-5;
         int max_iterations = 50; ///< outer iterations per minimisation
         int max_rounds = 3;      ///< minimisations per step, when contact asks for another
@@ -33,6 +33,7 @@ public:
     const System& system() const { return *system_; }
 
 private:
+    StepStart start_of(double dt) const;
     double tolerance() const;
     OuterLoop::Outcome no_worse_than_standing(double dt, StepObjective& objective,
                                               OuterLoop::Settings settings, const OuterLoop::Outcome& found);

@@ -45,6 +45,15 @@ public:
 
     /// Null where the objective has no second derivatives to offer.
     virtual Hessian* hessian() { return nullptr; }
+
+    /// True when the point with this gradient is the minimiser for all that matters.
+    /// @param move       that the method wants next, no longer than the tolerance anywhere [m]
+    /// @param tolerance  [m]
+    virtual bool is_minimiser([[maybe_unused]] View<const Vec3> gradient,
+                              [[maybe_unused]] View<const Vec3> move, [[maybe_unused]] double tolerance) const
+    {
+        return true;
+    }
 };
 
 } // namespace toile

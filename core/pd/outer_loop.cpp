@@ -35,7 +35,8 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
         // Stop on a full move that nobody would see: rest and free flight need none at all.
         find_direction(objective, {x, gradient_, trial_gradient_}, direction_);
         outcome.displacement = max_norm(direction_);
-        outcome.converged = outcome.displacement <= settings.tolerance;
+        outcome.converged = outcome.displacement <= settings.tolerance &&
+                            objective.is_minimiser(gradient_, direction_, settings.tolerance);
         if (outcome.converged)
             break;
 

@@ -14,7 +14,8 @@ namespace toile {
 class OuterLoop {
 public:
     struct Settings {
-        double tolerance = 1e-5; ///< [m] stop when no vertex would move further in an iteration
+        /// [m] Stop when no vertex would move further in an iteration and the objective agrees.
+        double tolerance = 1e-5;
         int max_iterations = 50;
     };
     struct Outcome {

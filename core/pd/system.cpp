@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "core/linear/field.h"
+#include "core/pd/step_error.h"
 
 namespace toile {
 
@@ -70,20 +71,19 @@ Curvature& System::curvature() const
     return *curvature_;
 }
 
-StepObjective::StepObjective(const System& system, double dt, View<const Vec3> prediction,
-                             ActiveSetEnergy* active, const Pcg::Settings& linear)
-    : system_(system), dt_(dt), prediction_(prediction), active_(active), linear_(linear),
-      scratch_(prediction.size())
+StepObjective::StepObjective(const System& system, const StepStart& start, ActiveSetEnergy* active,
+                             const Pcg::Settings& linear)
+    : system_(system), start_(start), active_(active), linear_(linear), scratch_(start.prediction.size())
 {
     linear_.is_flexible = !system.solver().is_symmetric();
 }
 
 double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
 {
-    const double inverse_dt2 = 1.0 / (dt_ * dt_);
+    const double inverse_dt2 = 1.0 / (start_.dt * start_.dt);
     const View<const double> masses = system_.masses();
     double value = parallel_sum(kCpu, x.size(), 0.0, [&](int i) {
-        const Vec3 away = x[i] - prediction_[i];
+        const Vec3 away = x[i] - start_.prediction[i];
         gradient[i] = masses[i] * inverse_dt2 * away;
         return 0.5 * gradient[i].dot(away);
     });
@@ -118,9 +118,15 @@ void StepObjective::accept(View<const Vec3> x)
 Hessian* StepObjective::hessian()
 {
     if (!hessian_)
-        hessian_.emplace(system_.curvature(), system_.masses(), system_.fixed(), dt_);
+        hessian_.emplace(system_.curvature(), system_.masses(), system_.fixed(), start_.dt);
     hessian_->set_active(has_active_set_ ? active_ : nullptr);
     return &*hessian_;
+}
+
+bool StepObjective::is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const
+{
+    const StepError error(system_.masses(), system_.fixed(), start_.x, start_.prediction, start_.dt);
+    return error.is_within(tolerance, gradient, move);
 }
 
 void StepObjective::precondition(View<const Vec3> g, View<Vec3> z)

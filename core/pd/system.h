@@ -60,8 +60,9 @@ private:
 /// Objective of one step: inertia, the system's energies, and an energy with an active set.
 class StepObjective : public Objective {
 public:
+    /// @param start   borrowed fields
     /// @param active  may be null: then the inverse is one direct solve and PCG never runs
-    StepObjective(const System& system, double dt, View<const Vec3> prediction, ActiveSetEnergy* active,
+    StepObjective(const System& system, const StepStart& start, ActiveSetEnergy* active,
                   const Pcg::Settings& linear);
 
     double evaluate(View<const Vec3> x, View<Vec3> gradient) override;
@@ -69,6 +70,7 @@ public:
     void precondition_linearly(View<const Vec3> g, View<Vec3> z) override { system_.solver().solve(g, z); }
     void accept(View<const Vec3> x) override;
     Hessian* hessian() override;
+    bool is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const override;
 
     int linear_iterations() const { return linear_iterations_; }
 
@@ -76,8 +78,7 @@ private:
     void solve_with_active_set(View<const Vec3> g, View<Vec3> z);
 
     const System& system_;
-    double dt_;
-    View<const Vec3> prediction_;
+    StepStart start_;
     ActiveSetEnergy* active_;
     Pcg::Settings linear_;
     Pcg pcg_;

@@ -218,7 +218,7 @@ struct Sleep {
 
 struct Solver {
     int substeps = 4;        ///< time steps per sample
-    double tolerance = 2e-4; ///< [m] largest change of a position at which a step ends
+    double tolerance = 1e-3; ///< [m] error that a step may end with
     int max_iterations = 30; ///< outer iterations per minimisation; contact may ask for three a step
     SolverMethod method = SolverMethod::Auto;
     OuterMethod outer = OuterMethod::Lbfgs;

@@ -136,7 +136,8 @@ struct OneStep {
         System system(masses, energies);
         system.prepare(dt, fixed);
         const std::vector<Vec3> prediction = predicted();
-        StepObjective objective(system, dt, prediction, nullptr, Pcg::Settings{});
+        StepObjective objective(system, {x, prediction, system.diagonal(), system.fixed(), dt}, nullptr,
+                                Pcg::Settings{});
         std::vector<Vec3> solution = prediction;
         NewtonDirect newton;
         const OuterLoop::Outcome outcome = newton.minimise(objective, solution, {1e-11, 100});

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Tells from the gradient how far a point of a step is from the step's minimiser, whatever method and
+/// whatever approximate inverse have led there. All lengths are root mean squares by mass [m].
+///
+/// Where the energies are convex, M/dt^2 <= Hessian <= H: the error is at least the move -H^-1 g, and at most
+/// dt^2 M^-1 g. Soft modes are near one end, stretch near the other; the geometric mean of the two follows
+/// the true error within a factor of two or so over four decades (docs/core/pd.md).
+class StepError {
+public:
+    /// @param masses      [vertices] [kg]
+    /// @param fixed       [vertices] 1: left out
+    /// @param start       [vertices] positions at t0 [m]
+    /// @param prediction  [vertices] q* [m]
+    /// All are borrowed.
+    StepError(View<const double> masses, View<const unsigned char> fixed, View<const Vec3> start,
+              View<const Vec3> prediction, double dt);
+
+    /// True when the error is about the tolerance or less, and the step has answered what drives it: a move
+    /// too small to see is no sign of rest while most of the weight hangs in the air.
+    /// @param gradient  [vertices] [N]
+    /// @param move      [vertices] that the method wants next [m]
+    bool is_within(double tolerance, View<const Vec3> gradient, View<const Vec3> move) const;
+
+private:
+    struct Sums;
+    Sums sums(View<const Vec3> gradient, View<const Vec3> move) const;
+
+    View<const double> masses_;
+    View<const unsigned char> fixed_;
+    View<const Vec3> start_, prediction_;
+    double dt2_;
+};
+
+} // namespace toile
