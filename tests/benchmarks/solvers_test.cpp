@@ -3,9 +3,20 @@
 #include "benchmarks/solvers/methods.h"
 #include "benchmarks/solvers/run.h"
 #include "core/linear/field.h"
+#include "core/pd/lbfgs.h"
+#include "core/pd/newton_direct.h"
+#include "core/pd/newton_pcg.h"
 
 namespace toile::solvers {
 namespace {
+
+double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
+{
+    double distance = 0.0;
+    for (size_t v = 0; v < a.size(); ++v)
+        distance = std::max(distance, (a[v] - b[v]).norm());
+    return distance;
+}
 
 TEST(SolverReferences, ConvergeOnStiffClothAtLongSteps)
 {
@@ -23,6 +34,62 @@ TEST(SolverReferences, ConvergeOnStiffClothAtLongSteps)
         EXPECT_LT(max_norm(gradient), 1e-7) << "a vertex weighs " << 9.81 * problem.cloth.masses[0] << " N";
         EXPECT_LT(step.energy, step.start_energy);
     }
+}
+
+TEST(SolverReferences, AgreeWithAFactorOfTheWholeHessian)
+{
+    for (const Problem& problem :
+         {Problem::sheet(200, 1e3, 1.0 / 120.0), Problem::drape(200, 1e2, 1.0 / 120.0)}) {
+        SCOPED_TRACE(problem.mesh);
+        const SampledStep step = sample_steps(problem, 1, 40).front();
+        EXPECT_TRUE(step.is_converged);
+        const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
+        system->prepare(problem.dt, problem.fixed);
+        StepObjective objective(*system, step_start(problem, *system, step), nullptr, Pcg::Settings{});
+        std::vector<Vec3> x = step.prediction;
+        (void)Lbfgs().minimise(objective, x, {0.0, 50});
+        NewtonDirect direct;
+        const double energy = direct.minimise(objective, x, {1e-10, 60}).value;
+        EXPECT_LT(direct.decrement(), 1e-10 * (step.start_energy - energy));
+        EXPECT_LT(farthest(x, step.minimiser), 1e-5 * problem.mean_edge);
+        EXPECT_NEAR(energy, step.energy, 1e-10 * (step.start_energy - energy));
+    }
+}
+
+TEST(NewtonPcg, PromisesNothingFromLooseSolves)
+{
+    const Problem problem = Problem::sheet(200, 1e3, 1.0 / 120.0);
+    const SampledStep step = sample_steps(problem, 1, 8).front();
+    const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
+    system->prepare(problem.dt, problem.fixed);
+    StepObjective objective(*system, step_start(problem, *system, step), nullptr, Pcg::Settings{});
+    std::vector<Vec3> x = step.prediction;
+    NewtonPcg cut(1);
+    const OuterLoop::Outcome outcome = cut.minimise(objective, x, {0.0, 4});
+    EXPECT_EQ(outcome.linear_iterations, outcome.iterations) << "one CG iteration each";
+    EXPECT_TRUE(std::isinf(cut.decrement()));
+}
+
+TEST(SolverProblems, ThePenaltyBallHasTheDerivativesItSays)
+{
+    BallPenalty ball({Vec3(0.1, 0.2, 0.3), 0.25, 5e4, 1e-3}, {1e-2, 2e-2, 1e-2});
+    // Below the softness, above it, outside.
+    const std::vector<Vec3> x{Vec3(0.1, 0.4495, 0.3), Vec3(0.2, 0.38, 0.4), Vec3(0.5, 0.5, 0.5)};
+    BlockMatrix K(3, {});
+    ball.add_curvature(x, Definiteness::Exact, K);
+    std::vector<Vec3> gradient(3, Vec3::Zero());
+    EXPECT_GT(ball.add_gradient(x, gradient), 0.0);
+    EXPECT_TRUE(gradient[2].isZero());
+    const double h = 1e-6;
+    for (int v = 0; v < 2; ++v)
+        for (int k = 0; k < 3; ++k) {
+            std::vector<Vec3> left = x, right = x, at_left(3, Vec3::Zero()), at_right(3, Vec3::Zero());
+            left[v][k] -= h;
+            right[v][k] += h;
+            const double low = ball.add_gradient(left, at_left), high = ball.add_gradient(right, at_right);
+            EXPECT_NEAR((high - low) / (2.0 * h), gradient[v][k], 1e-4);
+            EXPECT_LT(((at_right[v] - at_left[v]) / (2.0 * h) - K.diagonal(v).col(k)).norm(), 0.05);
+        }
 }
 
 TEST(SolverMethods, CountWorkAndFlagReferences)
