@@ -13,7 +13,7 @@ namespace toile {
 
 namespace {
 
-const std::vector<std::string> kTables{"solvers.csv", "solvers.md"};
+const std::vector<std::string> kTables{"solvers.csv"};
 
 /// Methods by vertices, in thousands: what progress counts, since their time is about proportional.
 int work(const solvers::Case& c, size_t methods)
@@ -23,7 +23,7 @@ int work(const solvers::Case& c, size_t methods)
 
 std::vector<TableFile> tables(const std::vector<solvers::Result>& results)
 {
-    return {{kTables[0], csv_table(results)}, {kTables[1], markdown_table(results)}};
+    return {{kTables[0], csv_table(results)}};
 }
 
 int end_interrupted(const BenchOptions& options, const std::vector<solvers::Result>& finished)

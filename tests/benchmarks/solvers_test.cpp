@@ -1,7 +1,13 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "benchmarks/solvers/methods.h"
 #include "benchmarks/solvers/run.h"
+#include "benchmarks/solvers/suite.h"
+#include "core/backend/error.h"
 #include "core/linear/field.h"
 #include "core/pd/lbfgs.h"
 #include "core/pd/newton_direct.h"
@@ -112,6 +118,91 @@ TEST(SolverMethods, CountWorkAndFlagReferences)
 
     steps[0].is_converged = false;
     EXPECT_NE(csv_table({result_of("direct 8")}).find(",not converged"), std::string::npos);
+}
+
+TEST(SolverTable, HasThePromisedColumnsAndFiniteRowsOfEveryMethod)
+{
+    const Problem problem = Problem::sheet(64, 1e3, 1.0 / 120.0);
+    const std::vector<SampledStep> steps = sample_steps(problem, 1, 4);
+    std::vector<Result> results;
+    KeptTables kept;
+    for (const Method& method : all_methods())
+        results.push_back(run(problem, steps, method, 1, &kept));
+    std::map<std::string, Result> by_name;
+    for (const Result& r : results) {
+        SCOPED_TRACE(r.method);
+        by_name[r.method] = r;
+        for (const double number :
+             {r.setup_ms, r.step_ms, r.iterations, r.rms_over_edge, r.energy_gap, r.peak_mb})
+            EXPECT_TRUE(std::isfinite(number));
+        EXPECT_GT(r.step_ms, 0.0);
+        EXPECT_GE(r.setup_ms, 0.0);
+        EXPECT_GT(r.iterations, 0.0);
+        EXPECT_EQ(r.vertices, 64);
+    }
+    EXPECT_EQ(by_name.size(), all_methods().size()) << "names are unique";
+    for (const char* solver : {"direct", "quadrature", "multigrid", "subspace", "chebyshev", "a-jacobi",
+                               "jacobi-pcg", "direct newton-pcg", "quadrature newton-pcg"}) {
+        SCOPED_TRACE(solver);
+        const std::string most = std::string(solver).ends_with("newton-pcg") ? " 8" : " 50";
+        const std::string least = std::string(solver).ends_with("newton-pcg") ? " 1" : " 3";
+        EXPECT_LT(by_name.at(solver + most).rms_over_edge, 0.5 * by_name.at(solver + least).rms_over_edge);
+        EXPECT_LT(by_name.at(solver + most).energy_gap, 0.5 * by_name.at(solver + least).energy_gap);
+    }
+
+    const std::string csv = csv_table(results);
+    EXPECT_EQ(csv.substr(0, csv.find(",gradients")),
+              "mesh,vertices,stiffness,dt,method,threads,setup_ms,ms_per_step,iterations,rms_over_edge,"
+              "energy_gap,peak_mb");
+    EXPECT_EQ(size_t(std::count(csv.begin(), csv.end(), '\n')), results.size() + 1);
+}
+
+TEST(SolverTable, CountsKeptTablesForEveryMethodThatUsesThem)
+{
+    const Problem problem = Problem::sheet(400, 1e3, 1.0 / 120.0);
+    const std::vector<SampledStep> steps = sample_steps(problem, 1, 1);
+    KeptTables kept;
+    for (const Method& method : choose_methods("quadrature 3"))
+        (void)run(problem, steps, method, 1, &kept);
+    ASSERT_TRUE(kept.owner);
+    EXPECT_GT(kept.build_ms, 0.0);
+    kept.build_ms = 1e6;
+    for (const Method& method : choose_methods(" 3")) {
+        const double setup_ms = run(problem, steps, method, 1, &kept).setup_ms;
+        EXPECT_EQ(setup_ms > 1e6, method.uses_tables) << method.name;
+    }
+}
+
+TEST(SolverSuite, ChoosesByMeshAndSizeAndRefusesTheUnknown)
+{
+    for (const Case& c : choose_cases("drape", true))
+        EXPECT_EQ(c.problem.mesh, "drape");
+    const std::vector<Case> one = choose_cases("skirt:300", false);
+    ASSERT_EQ(one.size(), 1u);
+    EXPECT_NEAR(one[0].problem.vertex_count(), 300, 60);
+    EXPECT_EQ(choose_cases("", true).size(), 3u);
+
+    for (const char* wrong : {"shirt", "sheet:", "sheet:ten", "sheet:10", "sheet:-900", "sheet:900x",
+                              "sheet:99999999999", ":900", "Sheet"})
+        EXPECT_THROW((void)choose_cases(wrong, false), InvalidInput) << wrong;
+    try {
+        (void)choose_cases("shirt", false);
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("sheet, skirt or drape"), std::string::npos);
+    }
+    EXPECT_EQ(choose_methods("xpbd").size(), 3u);
+    EXPECT_THROW((void)choose_methods("gauss"), InvalidInput);
+}
+
+TEST(SolverSuite, LeavesOutWhatAMethodCannotDo)
+{
+    const Problem drape = Problem::drape(100, 1e3, 1.0 / 120.0), skirt = Problem::skirt(200, 1e3, 1.0 / 60.0);
+    for (const Method& method : choose_methods("xpbd"))
+        EXPECT_FALSE(applies(method, drape)) << "no rival knows the ball";
+    for (const Method& method : choose_methods("paper"))
+        EXPECT_FALSE(applies(method, skirt)) << "no chart";
+    for (const Method& method : choose_methods("direct"))
+        EXPECT_TRUE(applies(method, drape) && applies(method, skirt));
 }
 
 } // namespace
