@@ -23,7 +23,7 @@ constexpr int kPaperSize = 3000;
 
 /// Vertices times outer iterations of Jacobi-PCG, whose inner iterations grow with the mesh as well: beyond
 /// it one step takes seconds.
-constexpr int kJacobiPcgSize = 220'000;
+constexpr int kJacobiPcgSize = 130'000;
 
 /// Body, Rival: anything that answers like a Body.
 template <typename Simulated>

@@ -23,12 +23,13 @@ constexpr double kConverged = 1e-10;
 
 /// L-BFGS finds the valley, Newton's method its bottom: the longest move of its last step [m], where it gives
 /// up, and where CG does. Where the Hessian is indefinite, on stiff cloth at long steps, CG stops early and
-/// Newton's method creeps; L-BFGS then has to come nearer first, several times over.
+/// Newton's method creeps; L-BFGS and the projected Hessian then come nearer first, several times over.
 constexpr OuterLoop::Settings kApproach{0.0, 50};
-constexpr OuterLoop::Settings kApproachAgain{0.0, 200};
-constexpr OuterLoop::Settings kFinish{1e-9, 25};
+constexpr OuterLoop::Settings kApproachAgain{0.0, 30};
+constexpr OuterLoop::Settings kProjected{1e-9, 40};
+constexpr OuterLoop::Settings kFinish{1e-9, 12};
 constexpr int kFinishLinearIterations = 300;
-constexpr int kMostRounds = 4;
+constexpr int kMostRounds = 8;
 
 /// Up to here a factor of the whole Hessian, which can be projected, is tried last.
 constexpr int kFactorSize = 5500;
@@ -167,6 +168,9 @@ void converge(const Problem& problem, const System& system, SampledStep& step)
     };
     for (int round = 0; round < kMostRounds && !step.is_converged; ++round) {
         (void)Lbfgs().minimise(objective, step.minimiser, round == 0 ? kApproach : kApproachAgain);
+        if (round > 0)
+            (void)NewtonPcg(kFinishLinearIterations, Definiteness::Projected)
+                .minimise(objective, step.minimiser, kProjected);
         NewtonPcg newton(kFinishLinearIterations);
         step.energy = newton.minimise(objective, step.minimiser, kFinish).value;
         judge(newton.decrement());

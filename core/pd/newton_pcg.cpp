@@ -40,7 +40,7 @@ void NewtonPcg::find_direction(Objective& objective, const Here& here, View<Vec3
     Hessian* const K = objective.hessian();
     if (K == nullptr)
         throw InvalidInput("newton-pcg: the objective has no second derivatives; choose another method");
-    K->linearise(here.x, Definiteness::Exact);
+    K->linearise(here.x, definiteness_);
     invert(K->diagonal_blocks());
 
     const auto multiply = [&](View<const Vec3> p, View<Vec3> out) { K->multiply(p, out); };

@@ -27,8 +27,10 @@ public:
     static constexpr int kMaxLinearIterations = 20;
 
     /// @param max_linear_iterations  at which CG is cut; hundreds for references that must have converged
-    explicit NewtonPcg(int max_linear_iterations = kMaxLinearIterations)
-        : max_linear_iterations_(max_linear_iterations)
+    /// @param definiteness  Projected: slower, but CG is never stopped by negative curvature
+    explicit NewtonPcg(int max_linear_iterations = kMaxLinearIterations,
+                       Definiteness definiteness = Definiteness::Exact)
+        : max_linear_iterations_(max_linear_iterations), definiteness_(definiteness)
     {
     }
 
@@ -46,6 +48,7 @@ private:
     void invert(View<const Mat3> blocks);
 
     int max_linear_iterations_;
+    Definiteness definiteness_;
     Pcg pcg_;
     std::vector<Mat3> inverse_blocks_; ///< [vertices]
     int linear_iterations_ = 0;
