@@ -43,6 +43,8 @@ int bench(const BenchOptions& options)
         throw InvalidInput("bench " + options.name + ": takes no scenes and no --frames; only stages does");
     if (options.name != "stress" && !options.solver.empty())
         throw InvalidInput("bench " + options.name + ": takes no --solver; only stress does");
+    if (options.name != "solvers" && !options.mesh.empty())
+        throw InvalidInput("bench " + options.name + ": takes no --mesh; only solvers does");
     std::vector<std::string> names;
     for (const Benchmark& benchmark : kBenchmarks) {
         if (options.name == benchmark.name)
@@ -65,6 +67,7 @@ Command add_bench(CLI::App& program)
     add.add_option("name", options->name, "Benchmark; without one, all are listed");
     add.add_option("-o,--output", options->output, "Folder for the table as CSV and Markdown");
     add.add_option("--only", options->only, "Only cases whose name contains this");
+    add.add_option("--mesh", options->mesh, "sheet, skirt or drape, or NAME:VERTICES; only for solvers");
     add.add_option("scenes", options->scenes, "Scene files (.json); only for stages");
     add.add_option("--frames", options->frames, "Samples of each scene, instead of its own; only for stages");
     add.add_option("--solver", options->solver, "solver.method of all cases; only for stress")

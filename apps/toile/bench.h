@@ -12,6 +12,7 @@ struct BenchOptions {
     std::string name;
     std::filesystem::path output;              ///< folder for tables; empty: only standard output
     std::string only;                          ///< run cases whose name contains this; empty: all
+    std::string mesh;                          ///< of solvers: "NAME" or "NAME:VERTICES"; empty: all
     std::vector<std::filesystem::path> scenes; ///< for stages; empty: its own
     std::string solver;                        ///< for stress: solver.method; empty: the default
     std::optional<int> frames;                 ///< of each scene, instead of its own

@@ -1,6 +1,5 @@
-#include <algorithm>
 #include <iostream>
-#include <utility>
+#include <numeric>
 
 #include "apps/toile/bench.h"
 #include "apps/toile/bench_tables.h"
@@ -8,44 +7,34 @@
 #include "apps/toile/interrupt.h"
 #include "apps/toile/progress.h"
 #include "benchmarks/solvers/run.h"
-#include "core/backend/error.h"
+#include "benchmarks/solvers/suite.h"
 
 namespace toile {
 
 namespace {
 
-using solvers::Method;
-using solvers::Problem;
+const std::vector<std::string> kTables{"solvers.csv"};
 
-const std::vector<std::string> kTables{"solvers.csv", "solvers.md"};
-
-/// Steps taken from each trajectory: every kStride-th.
-constexpr int kSteps = 4;
-constexpr int kStride = 8;
-
-std::vector<Problem> problems(bool quick)
+/// Methods by vertices, in thousands: what progress counts, since their time is about proportional.
+int work(const solvers::Case& c, size_t methods)
 {
-    if (quick)
-        return {Problem::sheet(900, 1e3, 1.0 / 120.0), Problem::skirt(900, 1e3, 1.0 / 60.0)};
-    std::vector<Problem> result;
-    for (const int vertices : {1000, 2500, 10000})
-        for (const double stiffness : {1e2, 1e3, 1e4})
-            result.push_back(Problem::sheet(vertices, stiffness, 1.0 / 120.0));
-    for (const double dt : {1.0 / 60.0, 1.0 / 30.0})
-        result.push_back(Problem::sheet(2500, 1e3, dt));
-    result.push_back(Problem::skirt(5000, 1e3, 1.0 / 120.0));
-    return result;
+    return int(methods) * (1 + c.problem.vertex_count() / 1000);
 }
 
-std::vector<Method> chosen_methods(const BenchOptions& options)
+std::vector<TableFile> tables(const std::vector<solvers::Result>& results)
 {
-    std::vector<Method> methods = solvers::all_methods();
-    std::erase_if(methods,
-                  [&](const Method& method) { return method.name.find(options.only) == std::string::npos; });
-    if (methods.empty())
-        throw InvalidInput("--only: no method of solvers has \"" + options.only +
-                           "\" in its name; see docs/benchmarks/solvers.md for the names");
-    return methods;
+    return {{kTables[0], csv_table(results)}};
+}
+
+int end_interrupted(const BenchOptions& options, const std::vector<solvers::Result>& finished)
+{
+    if (!finished.empty())
+        write_tables(options.output, tables(finished));
+    std::cerr << "toile: error: interrupted; "
+              << (finished.empty() || options.output.empty() ? "nothing was written"
+                                                             : "only problems that were finished are written")
+              << std::endl;
+    return kExitFailure;
 }
 
 } // namespace
@@ -54,27 +43,36 @@ int bench_solvers(const BenchOptions& options)
 {
     if (!options.output.empty())
         require_place(options.output, kTables);
-    const std::vector<Method> methods = chosen_methods(options);
-    const std::vector<Problem> all = problems(options.quick);
+    const std::vector<solvers::Method> methods = solvers::choose_methods(options.only);
+    const std::vector<solvers::Case> cases = solvers::choose_cases(options.mesh, options.quick);
+    const int total = std::accumulate(cases.begin(), cases.end(), 0, [&](int sum, const solvers::Case& c) {
+        return sum + work(c, methods.size());
+    });
+
     const InterruptGuard interrupt;
-    Progress progress("run", int(all.size() * methods.size()), options.quiet);
-    std::vector<solvers::Result> results;
+    Progress progress("run", total, options.quiet);
+    std::vector<solvers::Result> results; // of whole problems: half a one cannot be compared
     int done = 0;
-    for (const Problem& problem : all) {
-        const std::vector<solvers::SampledStep> steps =
-            solvers::sample_steps(problem, options.quick ? 2 : kSteps, kStride);
-        for (const Method& method : methods) {
-            if (interrupt.requested()) {
-                std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
-                return kExitFailure;
-            }
-            if (solvers::applies(method, problem))
-                results.push_back(solvers::run(problem, steps, method, options.quick ? 1 : options.repeats));
-            progress.update(++done, method.name);
+    for (const solvers::Case& c : cases) {
+        const std::string name = c.problem.mesh + " " + std::to_string(c.problem.vertex_count());
+        progress.update(done, name + " reference");
+        const std::vector<solvers::SampledStep> steps = solvers::sample_steps(c.problem, c.steps, c.stride);
+        std::vector<solvers::Result> of_problem;
+        solvers::KeptTables tables_of_problem;
+        for (const solvers::Method& method : methods) {
+            if (interrupt.requested())
+                return end_interrupted(options, results);
+            progress.update(done, name + " " + method.name);
+            if (solvers::applies(method, c.problem))
+                of_problem.push_back(solvers::run(c.problem, steps, method,
+                                                  options.quick ? 1 : options.repeats, &tables_of_problem));
+            done += work(c, 1);
         }
+        results.insert(results.end(), of_problem.begin(), of_problem.end());
     }
+    progress.update(total);
     std::cout << markdown_table(results);
-    write_tables(options.output, {{kTables[0], csv_table(results)}, {kTables[1], markdown_table(results)}});
+    write_tables(options.output, tables(results));
     return kExitOk;
 }
 

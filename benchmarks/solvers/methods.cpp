@@ -21,6 +21,10 @@ constexpr int kAnySize = 1'000'000;
 /// Kernel rows of the paper's rule are clustered one by one: O(n^2).
 constexpr int kPaperSize = 3000;
 
+/// Vertices times outer iterations of Jacobi-PCG, whose inner iterations grow with the mesh as well: beyond
+/// it one step takes seconds.
+constexpr int kJacobiPcgSize = 130'000;
+
 /// Body, Rival: anything that answers like a Body.
 template <typename Simulated>
 class StepperOf : public Stepper {
@@ -57,8 +61,7 @@ std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem)
     const RestShape& rest = *problem.cloth.rest;
     return std::make_unique<QuadratureSolver>(
         geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)),
-        QuadratureSolver::Settings{},
-        std::make_shared<TableStore>()); // the set-up is measured: none from disk
+        QuadratureSolver::Settings{}, problem.tables);
 }
 
 /// On the sheet's own plane. The rule needs one flat chart, which a skirt does not have.
@@ -73,7 +76,12 @@ std::unique_ptr<GlobalSolver> make_paper(const Problem& problem)
 Method around(const std::string& name, const MakeSolver& make, int iterations,
               OuterMethod outer = OuterMethod::Lbfgs)
 {
-    return {name + " " + std::to_string(iterations), kAnySize, false, [=](const Problem& problem) {
+    return {name + " " + std::to_string(iterations),
+            kAnySize,
+            false,
+            true,
+            name.starts_with("quadrature"),
+            [=](const Problem& problem) {
                 Body::Settings settings;
                 settings.tolerance = 0.0;
                 settings.max_iterations = iterations;
@@ -91,7 +99,7 @@ Method around(const std::string& name, const MakeSolver& make, int iterations,
 template <typename Rule>
 Method rival(const std::string& name, const typename Rule::Settings& settings)
 {
-    return {name, kAnySize, false, [=](const Problem& problem) {
+    return {name, kAnySize, false, false, false, [=](const Problem& problem) {
                 return std::make_unique<StepperOf<Rival>>(
                     problem, std::make_unique<Rule>(problem.start.positions, problem.cloth, settings),
                     [&problem](Rival& r, const std::vector<Vec3>& acceleration) {
@@ -104,12 +112,16 @@ Method rival(const std::string& name, const typename Rule::Settings& settings)
 
 bool applies(const Method& method, const Problem& problem)
 {
-    return problem.vertex_count() <= method.most_vertices && !(method.needs_chart && problem.mesh != "sheet");
+    return problem.vertex_count() <= method.most_vertices && (problem.is_flat || !method.needs_chart) &&
+           (method.knows_energies || !problem.ball);
 }
 
 std::vector<Method> all_methods()
 {
     std::vector<Method> methods;
+    // Where XPBD ends, one iteration may be enough.
+    methods.push_back(around("direct", make_plain<DirectSolver>, 1));
+    methods.push_back(around("quadrature", make_quadrature, 1));
     for (const int iterations : {3, 8, 20, 50}) {
         methods.push_back(around("direct", make_plain<DirectSolver>, iterations));
         methods.push_back(
@@ -122,13 +134,17 @@ std::vector<Method> all_methods()
         methods.push_back(around("chebyshev", make_plain<ChebyshevSolver>, iterations));
         methods.push_back(around("a-jacobi", make_plain<AggregatedJacobi>, iterations));
         methods.push_back(around("jacobi-pcg", make_plain<JacobiPcg>, iterations));
+        methods.back().most_vertices = iterations > 8 ? kJacobiPcgSize / iterations : kAnySize;
         methods.push_back(around("paper", make_paper, iterations));
         methods.back().most_vertices = kPaperSize;
         methods.back().needs_chart = true;
     }
-    for (const int iterations : {1, 2, 4, 8})
+    for (const int iterations : {1, 2, 4, 8}) {
         methods.push_back(
             around("direct newton-pcg", make_plain<DirectSolver>, iterations, OuterMethod::NewtonPcg));
+        methods.push_back(
+            around("quadrature newton-pcg", make_quadrature, iterations, OuterMethod::NewtonPcg));
+    }
     for (const int sweeps : {10, 50, 200}) {
         VertexBlockDescent::Settings settings;
         settings.max_sweeps = sweeps;

@@ -21,9 +21,11 @@ public:
 
 /// A method with a budget of work per step.
 struct Method {
-    std::string name;         ///< "direct 20": the global solver or whole method, and its budget
-    int most_vertices = 0;    ///< larger meshes are left out: their set-up takes too long
-    bool needs_chart = false; ///< only for cloth that lies in a plane before it falls
+    std::string name;           ///< "direct 20": the global solver or whole method, and its budget
+    int most_vertices = 0;      ///< larger meshes are left out: their set-up takes too long
+    bool needs_chart = false;   ///< only for cloth that lies in a plane before it falls
+    bool knows_energies = true; ///< false: knows cloth alone, no ball
+    bool uses_tables = false;   ///< Problem::tables
     std::function<std::unique_ptr<Stepper>(const Problem&)> make;
 };
 

@@ -1,27 +1,38 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "benchmarks/solvers/ball_penalty.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/pd/system.h"
+#include "core/quadrature/table_store.h"
 #include "garment/rivals/rival.h"
 
 namespace toile::solvers {
 
-/// One cloth that swings under gravity, held by a few vertices, without contact: what every method steps.
+/// One cloth that swings under gravity, held by a few vertices, or falls onto a ball: what every method
+/// steps.
 struct Problem {
-    std::string mesh; ///< "sheet" or "skirt"
+    std::string mesh; ///< "sheet", "skirt" or "drape"
     TriangleMesh start;
     ClothModel cloth;
     std::vector<unsigned char> fixed; ///< [vertices]
     double stiffness = 0.0;           ///< [N/m] of warp and weft; shear has a fifth
     double dt = 0.0;                  ///< [s]
     double mean_edge = 0.0;           ///< [m]
+    bool is_flat = true;              ///< lies in the plane y = 0 before it falls
+    std::optional<BallPenalty::Ball> ball;
+    /// Of this problem alone and none from disk: their making is measured.
+    std::shared_ptr<TableStore> tables = std::make_shared<TableStore>();
 
     /// A square metre held at two corners, or a skirt held at its waist, of about `vertices` vertices.
     static Problem sheet(int vertices, double stiffness, double dt);
     static Problem skirt(int vertices, double stiffness, double dt);
+
+    /// The sheet, free and slightly wavy, above a smooth penalty ball.
+    static Problem drape(int vertices, double stiffness, double dt);
 
     int vertex_count() const { return start.vertex_count(); }
 
@@ -38,12 +49,18 @@ struct SampledStep {
     std::vector<Vec3> minimiser;  ///< [vertices] converged [m]
     double energy = 0.0;          ///< [J] objective there
     double start_energy = 0.0;    ///< [J] objective at q*
-    /// Newton's method expects no further decrease beyond 1e-10 of energy to start_energy.
+    /// Newton's method expects no further decrease beyond 1e-10 of start_energy - energy.
     bool is_converged = false;
 };
 
-/// Every `stride`-th of the first stride * count steps of the cloth, each minimised by L-BFGS and then by
-/// Newton's method with a direct solver.
+/// Takes the step of `problem` from step.x and step.v: fills in prediction, minimiser and energies, by L-BFGS
+/// and then by Newton's method with nearly exact steps.
+/// @param system  of the problem around a good solver, prepared
+void converge(const Problem& problem, const System& system, SampledStep& step);
+
+/// Every `stride`-th of the first stride * count steps of the cloth, converged. The steps between them are
+/// only minimised well enough for a trajectory that is smooth: they are where sampled steps start from.
+/// @throws std::runtime_error  naming the step, where an energy is not finite
 std::vector<SampledStep> sample_steps(const Problem& problem, int count, int stride);
 
 /// A sampled step as an objective needs it, borrowed.

@@ -22,10 +22,20 @@ struct Result {
     double rms_over_edge = 0.0;
     double energy_gap = 0.0;            ///< [-] (E - E*) / (E(q*) - E*), mean over the steps
     bool is_reference_converged = true; ///< false: the errors are no better than the reference
-    double peak_mb = 0.0;               ///< of the process so far [MB]
+    double peak_mb = 0.0;               ///< that set-up and the first step add to the process, at most [MB]
 };
 
-Result run(const Problem& problem, const std::vector<SampledStep>& steps, const Method& method, int repeats);
+/// Quadrature tables of one problem, which take half a minute at 50 000 vertices: the first method that
+/// builds them keeps them for the others, whose results count the same time and memory.
+struct KeptTables {
+    std::unique_ptr<Stepper> owner;
+    double build_ms = 0.0;
+    double peak_mb = 0.0; ///< of the owner's set-up
+};
+
+/// @param kept  null: every method builds its own
+Result run(const Problem& problem, const std::vector<SampledStep>& steps, const Method& method, int repeats,
+           KeptTables* kept = nullptr);
 
 std::string csv_table(const std::vector<Result>& results);
 std::string markdown_table(const std::vector<Result>& results);

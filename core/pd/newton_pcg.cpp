@@ -21,8 +21,9 @@ constexpr double kLeastForcing = 1e-6;
 constexpr double kGamma = 0.9;
 constexpr double kSafeguard = 0.1;
 
-/// CG iterations a step: a Newton step cut here costs as much as 20 of L-BFGS's.
-constexpr int kMostLinearIterations = 20;
+/// Residual relative to the gradient [-] up to which a step counts as solved: CG's g . d grows towards
+/// g . K^-1 g, and a loose solve would promise less decrease than there is.
+constexpr double kAccurate = 0.01;
 
 } // namespace
 
@@ -30,6 +31,7 @@ void NewtonPcg::begin(int vertex_count)
 {
     linear_iterations_ = 0;
     previous_norm_ = 0.0;
+    decrement_ = std::numeric_limits<double>::infinity();
     inverse_blocks_.resize(vertex_count);
 }
 
@@ -38,7 +40,7 @@ void NewtonPcg::find_direction(Objective& objective, const Here& here, View<Vec3
     Hessian* const K = objective.hessian();
     if (K == nullptr)
         throw InvalidInput("newton-pcg: the objective has no second derivatives; choose another method");
-    K->linearise(here.x, Definiteness::Exact);
+    K->linearise(here.x, definiteness_);
     invert(K->diagonal_blocks());
 
     const auto multiply = [&](View<const Vec3> p, View<Vec3> out) { K->multiply(p, out); };
@@ -48,8 +50,11 @@ void NewtonPcg::find_direction(Objective& objective, const Here& here, View<Vec3
             kCpu, "newton/blocks", r.size(), [&](int i) { z[i] += inverse_blocks_[i] * r[i]; }, kFieldGrain);
     };
     // Flexible, for global solvers that are not symmetric.
-    const Pcg::Settings settings{forcing_term(here.gradient), kMostLinearIterations, true};
-    linear_iterations_ += pcg_.solve(multiply, precondition, here.gradient, direction, settings).iterations;
+    const Pcg::Settings settings{forcing_term(here.gradient), max_linear_iterations_, true};
+    const Pcg::Outcome outcome = pcg_.solve(multiply, precondition, here.gradient, direction, settings);
+    linear_iterations_ += outcome.iterations;
+    if (outcome.residual <= kAccurate)
+        decrement_ = dot(here.gradient, direction);
     if (max_norm(direction) == 0.0) // negative curvature at once
         precondition(here.gradient, direction);
     for (Vec3& d : direction)
