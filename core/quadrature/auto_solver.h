@@ -37,7 +37,7 @@ public:
         /// as fast as tables, and a solve takes a tenth of a millisecond.
         int least_vertices = 5000;
 
-        /// Solves with one H before its costs are found, which takes as long as some twenty: an H that does
+        /// Solves with one H before its costs are found, which takes as long as some thirty: an H that does
         /// not live longer is not worth them.
         long least_solves = 128;
 

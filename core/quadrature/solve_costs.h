@@ -24,7 +24,7 @@ double expected_gathers(int vertex_count);
 
 /// Costs of tables that do not exist yet, found by doing some of the work: solves with the factor, a pass
 /// over a table of the expected size with arbitrary weights, one block of columns of the inverse. Costs about
-/// as much as twenty solves; 64 MB at most.
+/// as much as thirty solves; 64 MB at most.
 SolveCosts expected_costs(const SupernodalFactor& factor);
 
 /// Costs of tables that exist; building them is 0.

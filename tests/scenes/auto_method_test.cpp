@@ -26,12 +26,12 @@ World swinging(const std::string& method, double resolution, int threads = 0)
 TEST(AutoMethod, IsTheDirectOneOnSmallClothAndCostsNothing)
 {
     World automatic = swinging("auto", 0.04, 2), direct = swinging("direct", 0.04, 2);
-    for (int frame = 0; frame < 10; ++frame) {
+    while (automatic.stages().calls("linear/solve") < 200 && automatic.frame() < 90) {
         automatic.advance_frame();
         direct.advance_frame();
     }
     EXPECT_EQ(automatic.cloths()[0].positions, direct.cloths()[0].positions);
-    EXPECT_GT(automatic.stages().calls("linear/solve"), 128) << "as many as larger cloth rehearses after";
+    EXPECT_GE(automatic.stages().calls("linear/solve"), 200) << "as many as larger cloth rehearses after";
     EXPECT_EQ(automatic.stages().calls("auto/prepare"), 2) << "held, and let go";
     for (const char* stage : {"auto/rehearse", "auto/look", "auto/begin", "auto/switch", "auto/fail"})
         EXPECT_EQ(automatic.stages().calls(stage), 0) << stage;
