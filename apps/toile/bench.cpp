@@ -7,6 +7,7 @@
 #include "apps/toile/command_line.h"
 #include "apps/toile/commands.h"
 #include "core/backend/error.h"
+#include "scenes/format/field.h"
 
 namespace toile {
 
@@ -40,6 +41,8 @@ int bench(const BenchOptions& options)
         return list();
     if (options.name != "stages" && (!options.scenes.empty() || options.frames))
         throw InvalidInput("bench " + options.name + ": takes no scenes and no --frames; only stages does");
+    if (options.name != "stress" && !options.solver.empty())
+        throw InvalidInput("bench " + options.name + ": takes no --solver; only stress does");
     std::vector<std::string> names;
     for (const Benchmark& benchmark : kBenchmarks) {
         if (options.name == benchmark.name)
@@ -64,6 +67,8 @@ Command add_bench(CLI::App& program)
     add.add_option("--only", options->only, "Only cases whose name contains this");
     add.add_option("scenes", options->scenes, "Scene files (.json); only for stages");
     add.add_option("--frames", options->frames, "Samples of each scene, instead of its own; only for stages");
+    add.add_option("--solver", options->solver, "solver.method of all cases; only for stress")
+        ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
     add.add_option("--repeats", options->repeats, "Runs of everything that is timed; the fastest counts [3]")
         ->check(CLI::PositiveNumber);
     add.add_flag("--times-only", options->times_only, "Without references and errors; only for sheet");

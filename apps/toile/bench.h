@@ -13,6 +13,7 @@ struct BenchOptions {
     std::filesystem::path output;              ///< folder for tables; empty: only standard output
     std::string only;                          ///< run cases whose name contains this; empty: all
     std::vector<std::filesystem::path> scenes; ///< for stages; empty: its own
+    std::string solver;                        ///< for stress: solver.method; empty: the default
     std::optional<int> frames;                 ///< of each scene, instead of its own
     int repeats = 3;                           ///< runs of everything that is timed; the fastest counts
     bool times_only = false;                   ///< sheet without its references and errors

@@ -10,6 +10,7 @@
 #include "apps/toile/progress.h"
 #include "benchmarks/stress/table.h"
 #include "core/backend/error.h"
+#include "scenes/format/field.h"
 
 namespace toile {
 
@@ -18,7 +19,12 @@ namespace {
 /// Steps between two looks at the clock: the smallest take microseconds.
 constexpr int kStepsPerUpdate = 50;
 
-const std::vector<std::string> kTables{"stress.csv", "stress.md"};
+/// Names of the tables, told apart by the solver that was asked for.
+std::vector<std::string> table_names(const std::string& solver)
+{
+    const std::string name = solver.empty() ? "stress" : "stress_" + solver;
+    return {name + ".csv", name + ".md"};
+}
 
 /// A folder for meshes that disappears with the run.
 class ScratchFolder {
@@ -50,6 +56,9 @@ std::vector<stress::Case> chosen_cases(const BenchOptions& options, const std::f
     if (cases.empty())
         throw InvalidInput("--only: no case of stress has \"" + options.only + "\" in its name; see " +
                            "docs/benchmarks/README.md for the names");
+    if (!options.solver.empty())
+        for (stress::Case& trial : cases)
+            trial.scene.solver.method = scene_format::value_of<scene::SolverMethod>(options.solver);
     return cases;
 }
 
@@ -83,8 +92,9 @@ std::vector<stress::Result> run_all(const std::vector<stress::Case>& cases, cons
 
 int bench_stress(const BenchOptions& options)
 {
+    const std::vector<std::string> names = table_names(options.solver);
     if (!options.output.empty())
-        require_place(options.output, kTables);
+        require_place(options.output, names);
     const ScratchFolder scratch;
     const std::vector<stress::Case> cases = chosen_cases(options, scratch.path());
     const InterruptGuard interrupt;
@@ -95,7 +105,7 @@ int bench_stress(const BenchOptions& options)
         std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
         return kExitFailure;
     }
-    write_tables(options.output, {{kTables[0], csv_table(results)}, {kTables[1], markdown_table(results)}});
+    write_tables(options.output, {{names[0], csv_table(results)}, {names[1], markdown_table(results)}});
     return std::all_of(results.begin(), results.end(), [](const stress::Result& r) { return r.holds; })
                ? kExitOk
                : kExitFailure;

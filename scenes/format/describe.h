@@ -231,7 +231,9 @@ void describe(V& v, Solver& s)
 {
     v.field("substeps", s.substeps, between(1, 1000), "Time steps from one sample to the next.");
     v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
-            "A step ends when no vertex moves farther than this; xpbd and vbd do not ask.");
+            "Error that a step may end with: the estimated RMS distance to its solution, and the next move "
+            "of any "
+            "vertex. xpbd and vbd do not ask.");
     v.field(
         "max_iterations", s.max_iterations, between(1, 10000),
         "Iterations after which a minimisation ends anyway; contact may ask for three a step. With vbd the "

@@ -17,19 +17,23 @@ const std::set<std::string> kGainEnergy{"dt 1/1000 stiffness 1e+07 density 1",
 /// which case still creeps changes with the last bits, and so with the processor.
 constexpr double kCreep = 0.3;
 
-std::vector<Result> run_quick_cases()
+std::vector<Result> run_quick_cases(scene::SolverMethod method)
 {
     const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "toile-stress-meshes";
     std::vector<Result> results;
-    for (const Case& trial : make_cases(Size::Quick, folder))
+    for (Case& trial : make_cases(Size::Quick, folder)) {
+        trial.scene.solver.method = method;
         results.push_back(run(trial, Limits{}, [](int) { return true; }));
+    }
     return results;
 }
 
-TEST(Stress, LeavesClothFiniteWithoutNewEnergyAndAtRest)
+class StressBy : public testing::TestWithParam<scene::SolverMethod> {};
+
+TEST_P(StressBy, LeavesClothFiniteWithoutNewEnergyAndAtRest)
 {
     const Limits limits;
-    for (const Result& result : run_quick_cases()) {
+    for (const Result& result : run_quick_cases(GetParam())) {
         SCOPED_TRACE(result.name);
         EXPECT_TRUE(result.is_finite);
         EXPECT_LT(result.drift, limits.drift);
@@ -39,6 +43,12 @@ TEST(Stress, LeavesClothFiniteWithoutNewEnergyAndAtRest)
         EXPECT_LT(result.final_speed, kCreep);
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Solver, StressBy,
+                         testing::Values(scene::SolverMethod::Auto, scene::SolverMethod::Quadrature),
+                         [](const auto& solver) {
+                             return solver.param == scene::SolverMethod::Auto ? "Auto" : "Quadrature";
+                         });
 
 TEST(Stress, NamesEveryCaseOnce)
 {

@@ -173,8 +173,9 @@ struct OneStep {
         const std::vector<Vec3> oracle_end = by_newton();
         for (const OuterMethod outer : {OuterMethod::Lbfgs, OuterMethod::Anderson, OuterMethod::NewtonPcg})
             EXPECT_LT(farthest(by_body(outer), oracle_end), 1e-8) << "method " << int(outer);
-        if (!active)
+        if (!active) {
             EXPECT_LT(farthest(by_newton_direct(), oracle_end), 1e-8);
+        }
         std::vector<Vec3> free = x;
         for (size_t i = 0; i < x.size(); ++i)
             free[i] += dt * (v[i] + dt * gravity[i]);

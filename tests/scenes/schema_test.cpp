@@ -41,11 +41,10 @@ TEST(SceneSchema, SaysRangesDefaultsAndExclusiveKeys)
     const auto& solver = schema["properties"]["solver"];
     EXPECT_EQ(solver["additionalProperties"], false);
     EXPECT_EQ(solver["properties"]["tolerance"]["exclusiveMinimum"], 0.0);
-    EXPECT_EQ(solver["properties"]["tolerance"]["default"], 2e-4);
+    EXPECT_EQ(solver["properties"]["tolerance"]["default"], 1e-3);
     EXPECT_EQ(solver["properties"]["method"]["enum"],
               (nlohmann::json(scene_format::words_of<scene::SolverMethod>())));
-    EXPECT_EQ(solver["properties"]["outer"]["enum"],
-              (nlohmann::json(scene_format::words_of<OuterMethod>())));
+    EXPECT_EQ(solver["properties"]["outer"]["enum"], (nlohmann::json(scene_format::words_of<OuterMethod>())));
     EXPECT_EQ(solver["properties"]["outer"]["default"], "lbfgs");
     EXPECT_EQ(schema["properties"]["cloths"]["items"]["oneOf"].size(), 4u);
     EXPECT_EQ(schema["required"], (nlohmann::json{"toile", "frames", "cloths"}));
