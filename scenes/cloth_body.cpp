@@ -185,7 +185,7 @@ std::unique_ptr<PointMasses> ClothBody::make_body(const Scene& scene, std::share
     settings.tolerance = scene.solver.tolerance;
     settings.max_iterations = scene.solver.max_iterations;
     settings.outer = scene.solver.outer;
-    auto solver = make_global_solver(scene.solver.method, *rest, {state_.positions, state_.triangles}, source,
+    auto solver = make_global_solver(scene.solver.method, rest, {state_.positions, state_.triangles}, source,
                                      source_of_tables(options, state_.name));
     return std::make_unique<Body>(
         state_.positions,

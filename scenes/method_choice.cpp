@@ -7,6 +7,7 @@
 #include "core/linear/baselines/multigrid.h"
 #include "core/linear/baselines/subspace_solver.h"
 #include "core/linear/direct_solver.h"
+#include "core/quadrature/auto_solver.h"
 #include "core/quadrature/quadrature_solver.h"
 #include "garment/rivals/vertex_block_descent.h"
 #include "garment/rivals/xpbd.h"
@@ -37,6 +38,11 @@ std::string methods_that(const Condition& holds)
     return list;
 }
 
+std::vector<Place> places_of(const RestShape& rest)
+{
+    return geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology));
+}
+
 std::unique_ptr<GlobalSolver> make_paper_rule(const TriangleMesh& start, const std::string& source)
 {
     const auto chart = flat_chart(start);
@@ -49,15 +55,14 @@ std::unique_ptr<GlobalSolver> make_paper_rule(const TriangleMesh& start, const s
 
 } // namespace
 
-std::unique_ptr<GlobalSolver> make_global_solver(SolverMethod method, const RestShape& rest,
+std::unique_ptr<GlobalSolver> make_global_solver(SolverMethod method, std::shared_ptr<const RestShape> rest,
                                                  const TriangleMesh& start, const std::string& source,
                                                  const TableSource& tables)
 {
     switch (method) {
     case SolverMethod::Quadrature:
-        return std::make_unique<QuadratureSolver>(
-            geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)),
-            QuadratureSolver::Settings{}, tables.store, tables.listener);
+        return std::make_unique<QuadratureSolver>(places_of(*rest), QuadratureSolver::Settings{},
+                                                  tables.store, tables.listener);
     case SolverMethod::Multigrid:
         return std::make_unique<Multigrid>();
     case SolverMethod::Subspace:
@@ -70,6 +75,9 @@ std::unique_ptr<GlobalSolver> make_global_solver(SolverMethod method, const Rest
         return std::make_unique<JacobiPcg>();
     case SolverMethod::Paper:
         return make_paper_rule(start, source);
+    case SolverMethod::Auto:
+        return std::make_unique<AutoSolver>([rest = std::move(rest)] { return places_of(*rest); },
+                                            tables.store, tables.listener.warn);
     default:
         return std::make_unique<DirectSolver>();
     }

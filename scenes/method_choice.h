@@ -18,11 +18,13 @@ struct TableSource {
     TableListener listener;
 };
 
-/// The global solver that a scene asks for. Auto is the direct one.
+/// The global solver that a scene asks for.
+/// @param rest    kept by auto, which may need it later
 /// @param start   the cloth as placed, its rest shape in space
-/// @param tables  used by quadrature
+/// @param tables  used by quadrature and auto; auto builds in the background and shows no progress
 /// @throws InvalidInput naming `source` where the method cannot work on this cloth
-std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method, const RestShape& rest,
+std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method,
+                                                 std::shared_ptr<const RestShape> rest,
                                                  const TriangleMesh& start, const std::string& source,
                                                  const TableSource& tables);
 

@@ -36,6 +36,14 @@ public:
         return value;
     }
 
+    /// True while somebody uses the value of `key`; one that is being made is not there yet.
+    bool holds(const Hash128& key) const
+    {
+        const std::lock_guard lock(mutex_);
+        const auto entry = entries_.find(key);
+        return entry != entries_.end() && !entry->second.value.expired();
+    }
+
 private:
     struct Entry {
         std::weak_ptr<const T> value;
@@ -75,7 +83,7 @@ private:
         changed_.notify_all();
     }
 
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::map<Hash128, Entry> entries_;
 };

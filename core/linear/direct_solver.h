@@ -17,6 +17,9 @@ public:
     void solve(View<const Vec3> b, View<Vec3> x) const override;
     bool is_symmetric() const override { return true; }
 
+    /// Of the last H; null before update().
+    const std::shared_ptr<const SupernodalFactor>& factor() const { return factor_; }
+
 private:
     bool has_pattern_of(const SparseMatrix& H) const;
 

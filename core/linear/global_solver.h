@@ -17,6 +17,10 @@ public:
     /// @throws InvalidInput where H is not positive definite
     virtual void update(const SparseMatrix& H, View<const unsigned char> fixed) = 0;
 
+    /// Called before every step, after update() where that is due: the only place, besides update(), where
+    /// the operator behind solve() may change.
+    virtual void begin_step() {}
+
     /// x = H^-1 b, or close to it; linear in b unless the solver says otherwise. Same bits for every thread
     /// count.
     /// @param b, x  [n]; may be the same array

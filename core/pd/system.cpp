@@ -39,8 +39,13 @@ System::System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> 
 
 void System::prepare(double dt, const std::vector<unsigned char>& fixed)
 {
-    if (dt == dt_ && fixed == fixed_)
-        return;
+    if (dt != dt_ || fixed != fixed_)
+        update(dt, fixed);
+    solver_->begin_step();
+}
+
+void System::update(double dt, const std::vector<unsigned char>& fixed)
+{
     dt_ = 0.0; // not prepared, should the solver refuse H
     fixed_ = fixed;
     H_ = elastic_;

@@ -30,8 +30,8 @@ public:
     View<const double> masses() const { return masses_; }
     View<const unsigned char> fixed() const { return fixed_; }
 
-    /// Prepares H and its solver for a time step [s] and a set of fixed vertices; does nothing when neither
-    /// changed.
+    /// To be called before every step: prepares H and its solver for a time step [s] and a set of fixed
+    /// vertices. Where neither changed, the solver only hears that a step begins.
     void prepare(double dt, const std::vector<unsigned char>& fixed);
 
     /// Diagonal of H with nothing fixed [N/m].
@@ -46,6 +46,8 @@ public:
     Curvature& curvature() const;
 
 private:
+    void update(double dt, const std::vector<unsigned char>& fixed);
+
     std::vector<double> masses_;
     std::vector<std::shared_ptr<Energy>> energies_;
     std::vector<unsigned char> fixed_;

@@ -1,11 +1,40 @@
 #include "core/quadrature/background_tables.h"
 
+#include <chrono>
 #include <utility>
 
 #include "core/backend/error.h"
 #include "core/backend/low_priority.h"
 
 namespace toile {
+
+namespace {
+
+/// Whoever has it builds. Bodies would otherwise each take a thread from those that simulate, and equal ones
+/// only to wait for each other.
+class Turn {
+public:
+    /// @throws Cancelled where `progress` wants no more
+    explicit Turn(const BuildProgress& progress)
+    {
+        while (!lock_.try_lock_for(kPoll))
+            if (!progress(0.0))
+                throw Cancelled("waiting for other quadrature tables was cancelled");
+    }
+
+private:
+    static constexpr std::chrono::milliseconds kPoll{20};
+
+    static std::timed_mutex& mutex()
+    {
+        static std::timed_mutex of_process;
+        return of_process;
+    }
+
+    std::unique_lock<std::timed_mutex> lock_{mutex(), std::defer_lock};
+};
+
+} // namespace
 
 BackgroundTables::BackgroundTables(std::shared_ptr<TableStore> store, int threads, TableCache::Warn warn)
     : store_(std::move(store)), threads_(threads), warn_(std::move(warn))
@@ -14,20 +43,25 @@ BackgroundTables::BackgroundTables(std::shared_ptr<TableStore> store, int thread
 
 BackgroundTables::~BackgroundTables() = default; // the thread is asked to stop, then joined
 
+void BackgroundTables::ask(std::optional<Request> request)
+{
+    const std::lock_guard lock(mutex_);
+    ++number_;
+    request_ = std::move(request);
+    ready_ = nullptr;
+    failure_ = nullptr;
+    share_ = 0.0;
+}
+
 void BackgroundTables::start(Request request)
 {
-    {
-        const std::lock_guard lock(mutex_);
-        ++number_;
-        request_ = std::move(request);
-        ready_ = nullptr;
-        failure_ = nullptr;
-        share_ = 0.0;
-    }
+    ask(std::move(request));
     changed_.notify_all();
     if (!thread_.joinable())
         thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
+
+void BackgroundTables::cancel() { ask(std::nullopt); }
 
 std::shared_ptr<const QuadratureTables> BackgroundTables::take_if_ready()
 {
@@ -64,9 +98,12 @@ void BackgroundTables::prepare(const Request& request, long number, const std::s
     std::shared_ptr<const QuadratureTables> tables;
     std::exception_ptr failure;
     try {
+        const Turn turn(progress);
         with_low_priority(kCpu, threads_, [&] {
-            tables =
-                store_->get({request.H, request.fixed, request.places, request.settings}, {progress, warn_});
+            const std::vector<Place> places = request.places();
+            const TableInput input{request.H, request.fixed, places, request.settings};
+            if (progress(0.0) && (!request.only_at_hand || store_->holds(input)))
+                tables = store_->get(input, {progress, warn_});
         });
     } catch (const Cancelled&) {
         return;

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -17,20 +18,25 @@ namespace toile {
 /// them between two steps:
 ///
 ///   BackgroundTables background;
-///   background.start({H, fixed, places, {}});
+///   background.start({H, fixed, [=] { return places; }, {}});
 ///   ... steps with a DirectSolver ...
 ///   if (auto tables = background.take_if_ready())
 ///       quadrature = QuadratureOperator(tables);
 ///
-/// For one caller at a time. When tables become ready depends on the machine; what they hold does not.
+/// For one caller at a time. All objects of the process build one after the other. When tables become ready
+/// depends on the machine; what they hold does not.
 class BackgroundTables {
 public:
     /// A TableInput that owns what it is made of.
     struct Request {
         SparseMatrix H;
         std::vector<unsigned char> fixed;
-        std::vector<Place> places;
+        std::function<std::vector<Place>()> places; ///< called on the own thread
         QuadratureTables::Settings settings;
+        bool only_at_hand = false; ///< tables that the store would have to build do not come
+
+        /// Kept until the request is done, so that building shares it instead of factoring; may be null.
+        std::shared_ptr<const SupernodalFactor> factor = nullptr;
     };
 
     /// @param store    where tables come from and are kept
@@ -40,7 +46,8 @@ public:
     explicit BackgroundTables(std::shared_ptr<TableStore> store = TableStore::of_process(), int threads = 1,
                               TableCache::Warn warn = nullptr);
 
-    /// Cancels and waits for the thread: for the rest of a block of 32 columns, or of a factorisation.
+    /// Cancels and waits for the thread: for the rest of a block of 32 columns, of a factorisation, or of the
+    /// places.
     ~BackgroundTables();
     BackgroundTables(const BackgroundTables&) = delete;
     BackgroundTables& operator=(const BackgroundTables&) = delete;
@@ -49,15 +56,19 @@ public:
     /// not.
     void start(Request request);
 
+    /// Cancels and forgets what was asked for, and returns at once.
+    void cancel();
+
     /// Finished share [0, 1] of what was asked for last.
     double progress() const { return share_; }
 
     /// The tables, once; null while they are not ready, and again afterwards.
-    /// @throws what building them threw, once: InvalidInput where H is not positive definite
+    /// @throws what building them threw, or the places, once: InvalidInput where H is not positive definite
     std::shared_ptr<const QuadratureTables> take_if_ready();
 
 private:
     void work(const std::stop_token& stop);
+    void ask(std::optional<Request> request);
     void prepare(const Request& request, long number, const std::stop_token& stop);
 
     std::shared_ptr<TableStore> store_;

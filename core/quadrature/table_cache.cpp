@@ -57,11 +57,16 @@ std::filesystem::path TableCache::file_of(const Hash128& key) const
     return folder_ / (to_hex(key) + kExtension);
 }
 
+bool TableCache::has_file(const Hash128& key) const
+{
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(file_of(key), ignored);
+}
+
 bool TableCache::load(const Hash128& key, QuadratureTables& tables, const Warn& warn) const
 {
     const std::filesystem::path file = file_of(key);
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored))
+    if (!has_file(key))
         return false;
     const StageScope stage("quadrature/load");
     const TableFileOutcome outcome = read_table_file(file, key, tables);
@@ -69,6 +74,7 @@ bool TableCache::load(const Hash128& key, QuadratureTables& tables, const Warn& 
         warn(file.string() + ": " + outcome.reason + "; the tables are built anew");
     if (outcome.status != TableFileOutcome::Status::Read)
         return false;
+    std::error_code ignored;
     std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now(), ignored);
     return true;
 }

@@ -36,6 +36,9 @@ public:
     /// written is warned of and ends all writing.
     void store(const Hash128& key, const QuadratureTables& tables, const Warn& warn);
 
+    /// True where there is a file for `key`, whatever is in it.
+    bool has_file(const Hash128& key) const;
+
     std::filesystem::path file_of(const Hash128& key) const;
 
 private:

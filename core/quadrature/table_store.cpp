@@ -51,6 +51,12 @@ const std::shared_ptr<TableStore>& TableStore::of_process()
     return store;
 }
 
+bool TableStore::holds(const TableInput& input) const
+{
+    const Hash128 key = table_key(input);
+    return shared_.holds(key) || (cache_ && cache_->has_file(key));
+}
+
 std::shared_ptr<const QuadratureTables> TableStore::get(const TableInput& input,
                                                         const TableListener& listener)
 {

@@ -40,6 +40,10 @@ public:
     /// @throws InvalidInput where H is not positive definite, Cancelled where the listener wants no more
     std::shared_ptr<const QuadratureTables> get(const TableInput& input, const TableListener& listener = {});
 
+    /// True where get() would most likely not build: the tables are in use, or the cache has a file for them.
+    /// Costs a hash of the input.
+    bool holds(const TableInput& input) const;
+
 private:
     std::optional<TableCache> cache_;
     SharedByKey<QuadratureTables> shared_;

@@ -239,15 +239,17 @@ void describe(V& v, Solver& s)
         "Iterations after which a minimisation ends anyway; contact may ask for three a step. With vbd the "
         "sweeps of a step, with xpbd the substeps of one pass: all of them are done.");
     v.field("method", s.method,
-            "How the global linear system is solved: exactly (auto, direct), by quadrature of its kernel, or "
-            "by a baseline to compare with. xpbd and vbd replace the whole time step.");
+            "How the global linear system is solved: exactly (direct), by quadrature of its kernel, by "
+            "whichever of the two is faster (auto), or by a baseline to compare with. xpbd and vbd replace "
+            "the whole time step.");
     v.field(
         "outer", s.outer,
         "How each step is minimised: by L-BFGS, or by a method to compare with. An iteration of newton-pcg "
         "costs many of the others'; local-global is slow and stops early.");
     v.field("sleep", s.sleep, "When resting cloth is skipped.");
     v.field("threads", s.threads, between(0, 1024),
-            "Threads to use; 0: all. The result does not depend on it.");
+            "Threads to use; 0: all. The result does not depend on it, but where auto changes from direct to "
+            "quadrature.");
 }
 
 template <typename V>

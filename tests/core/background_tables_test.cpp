@@ -18,7 +18,10 @@ namespace {
 BackgroundTables::Request request_for(int columns, int rows, double shift = 1e-3)
 {
     const std::vector<Place> places = grid_places(columns, rows);
-    return {grid_laplacian(columns, rows, shift), std::vector<unsigned char>(places.size(), 0), places, {}};
+    return {grid_laplacian(columns, rows, shift),
+            std::vector<unsigned char>(places.size(), 0),
+            [places] { return places; },
+            {}};
 }
 
 /// Waits for what was asked for.
@@ -43,10 +46,10 @@ void wait_for_progress(const BackgroundTables& background)
 TEST(BackgroundTables, AreThoseOfTheSolverThatWaits)
 {
     const BackgroundTables::Request request = request_for(31, 23);
-    const int n = int(request.places.size());
+    const int n = int(request.H.rows());
     const std::vector<Vec3> b = random_field(n, 3);
     std::vector<Vec3> x(n), expected(n);
-    QuadratureSolver waits(request.places, {}, std::make_shared<TableStore>());
+    QuadratureSolver waits(request.places(), {}, std::make_shared<TableStore>());
     waits.update(request.H, request.fixed);
     waits.solve(b, expected);
 
@@ -70,7 +73,8 @@ protected:
     /// True when tables of `request` were finished: then they are on disk.
     bool was_finished(const BackgroundTables::Request& request) const
     {
-        const Hash128 key = table_key({request.H, request.fixed, request.places, request.settings});
+        const std::vector<Place> places = request.places();
+        const Hash128 key = table_key({request.H, request.fixed, places, request.settings});
         return std::filesystem::exists(TableCache(folder_).file_of(key));
     }
 

@@ -26,9 +26,11 @@ World five_sheets(const std::string& method)
 
 TEST(EqualCloths, ShareTheirFactor)
 {
-    World world = five_sheets("direct");
-    world.advance_frame();
-    EXPECT_EQ(world.stages().calls("linear/factor"), 1);
+    for (const char* method : {"direct", "auto"}) {
+        World world = five_sheets(method);
+        world.advance_frame();
+        EXPECT_EQ(world.stages().calls("linear/factor"), 1) << method;
+    }
 }
 
 TEST(EqualCloths, ShareTheirTables)

@@ -1,0 +1,132 @@
+#include "core/quadrature/auto_solver.h"
+
+#include <utility>
+
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+/// The threads that build tables of one body.
+constexpr int kThreads = 1;
+
+/// `make`, called once. For one thread at a time.
+AutoSolver::MakePlaces made_once(AutoSolver::MakePlaces make)
+{
+    return [make = std::move(make), places = std::make_shared<std::vector<Place>>()] {
+        if (places->empty())
+            *places = make();
+        return *places;
+    };
+}
+
+} // namespace
+
+AutoSolver::AutoSolver(MakePlaces places, std::shared_ptr<TableStore> store, TableCache::Warn warn,
+                       Settings settings)
+    : places_(made_once(std::move(places))), warn_(std::move(warn)), settings_(std::move(settings)),
+      background_(std::move(store), kThreads, [warnings = warnings_](const std::string& text) {
+          const std::lock_guard lock(warnings->mutex);
+          warnings->texts.push_back(text);
+      })
+{
+}
+
+void AutoSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
+{
+    const StageScope stage("auto/prepare");
+    background_.cancel();
+    quadrature_ = QuadratureOperator();
+    phase_ = Phase::Direct;
+    direct_.update(H, fixed);
+    solves_ = 0;
+
+    // Tables are built beside the simulation: with one thread alone there is no beside.
+    if (has_failed_ || fixed.size() < settings_.least_vertices || thread_count(kCpu) < 2)
+        return;
+    H_ = H;
+    fixed_.assign(fixed.begin(), fixed.end());
+    phase_ = Phase::New;
+}
+
+void AutoSolver::solve(View<const Vec3> b, View<Vec3> x) const
+{
+    if (phase_ == Phase::Quadrature) {
+        quadrature_.solve(b, x);
+    } else {
+        ++solves_;
+        direct_.solve(b, x);
+    }
+}
+
+void AutoSolver::begin_step()
+{
+    pass_warnings_on();
+    if (phase_ == Phase::New && solves_ >= settings_.least_solves)
+        find_costs();
+    if (phase_ == Phase::Saving || phase_ == Phase::Building)
+        take_tables();
+    if (phase_ == Phase::Saving && double(solves_) * costs_.loss() >= costs_.build) {
+        const StageScope stage("auto/begin");
+        phase_ = Phase::Building;
+        begin_tables(false);
+    }
+}
+
+void AutoSolver::find_costs()
+{
+    const StageScope stage("auto/rehearse");
+    costs_ = settings_.expect(*direct_.factor());
+    phase_ = costs_.loss() > 0.0 ? Phase::Saving : Phase::Direct;
+    if (phase_ == Phase::Saving) {
+        const StageScope look("auto/look");
+        begin_tables(true);
+    }
+}
+
+void AutoSolver::begin_tables(bool only_at_hand)
+{
+    background_.start({H_, fixed_, places_, {}, only_at_hand, direct_.factor()});
+}
+
+/// Takes what the background has ready, if anything. Promises are cheap: only tables that are faster now are
+/// taken, others dropped for this H.
+void AutoSolver::take_tables()
+try {
+    std::shared_ptr<const QuadratureTables> tables = background_.take_if_ready();
+    if (!tables)
+        return;
+    quadrature_ = QuadratureOperator(std::move(tables));
+    {
+        const StageScope stage("auto/rehearse");
+        phase_ = settings_.measure(*direct_.factor(), quadrature_).loss() > 0.0 ? Phase::Quadrature
+                                                                                : Phase::Direct;
+    }
+    if (phase_ == Phase::Direct)
+        quadrature_ = QuadratureOperator();
+    else
+        const StageScope stage("auto/switch");
+} catch (const std::exception& error) {
+    const StageScope stage("auto/fail");
+    phase_ = Phase::Direct;
+    has_failed_ = true;
+    background_.cancel();
+    if (warn_)
+        warn_(std::string("quadrature tables could not be made: ") + error.what() +
+              "; the direct solver goes on alone");
+}
+
+void AutoSolver::pass_warnings_on()
+{
+    std::vector<std::string> texts;
+    {
+        const std::lock_guard lock(warnings_->mutex);
+        texts.swap(warnings_->texts);
+    }
+    if (warn_)
+        for (const std::string& text : texts)
+            warn_(text);
+}
+
+} // namespace toile
