@@ -110,6 +110,34 @@ TEST_F(BackgroundTablesOnDisk, AreThoseThatWereAskedForLast)
     EXPECT_TRUE(was_finished(small));
 }
 
+TEST_F(BackgroundTablesOnDisk, AreForgottenWhenTheyAreCancelled)
+{
+    const BackgroundTables::Request large = request_for(70, 70);
+    BackgroundTables background(store_);
+    background.start(large);
+    wait_for_progress(background);
+    background.cancel();
+    EXPECT_EQ(background.progress(), 0.0);
+    background.start(request_for(20, 20));
+    EXPECT_EQ(awaited(background)->tree.leaf_count(), 50);
+    EXPECT_FALSE(was_finished(large));
+}
+
+TEST_F(BackgroundTablesOnDisk, ComeOnlyFromDiskWhereOnlyThoseAtHandAreAskedFor)
+{
+    BackgroundTables::Request request = request_for(20, 20);
+    request.only_at_hand = true;
+    BackgroundTables background(store_);
+    background.start(request);
+    wait_for_progress(background);
+    EXPECT_EQ(background.take_if_ready(), nullptr);
+    EXPECT_FALSE(was_finished(request));
+    store_->get({request.H, request.fixed, request.places(), request.settings});
+    EXPECT_TRUE(was_finished(request));
+    background.start(request);
+    EXPECT_NE(awaited(background), nullptr);
+}
+
 TEST(BackgroundTables, HandOverWhatWentWrong)
 {
     BackgroundTables background(std::make_shared<TableStore>());
