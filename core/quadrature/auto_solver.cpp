@@ -78,7 +78,7 @@ void AutoSolver::find_costs()
 {
     const StageScope stage("auto/rehearse");
     costs_ = settings_.expect(*direct_.factor());
-    phase_ = costs_.loss() > 0.0 ? Phase::Saving : Phase::Direct;
+    phase_ = costs_.pays() ? Phase::Saving : Phase::Direct;
     if (phase_ == Phase::Saving) {
         const StageScope look("auto/look");
         begin_tables(true);
@@ -100,8 +100,7 @@ try {
     quadrature_ = QuadratureOperator(std::move(tables));
     {
         const StageScope stage("auto/rehearse");
-        phase_ = settings_.measure(*direct_.factor(), quadrature_).loss() > 0.0 ? Phase::Quadrature
-                                                                                : Phase::Direct;
+        phase_ = settings_.measure(*direct_.factor(), quadrature_).pays() ? Phase::Quadrature : Phase::Direct;
     }
     if (phase_ == Phase::Direct)
         quadrature_ = QuadratureOperator();

@@ -10,12 +10,19 @@ struct SolveCosts {
     /// Solves with quadrature for one with the factor [-]: being inexact, it takes 5 to 10 % more iterations.
     static constexpr double kMoreSolves = 1.08;
 
+    /// Gain [-] below which quadrature is not worth giving up reproducible last bits for; timings of a busy
+    /// machine are no more certain than that.
+    static constexpr double kWorthwhile = 1.15;
+
     double direct = 0.0;     ///< [s] one solve with the factor
     double quadrature = 0.0; ///< [s] one application of the tables
     double build = 0.0;      ///< [s] building them on one thread
 
     /// What a solve with the factor loses against quadrature [s]; negative where it gains.
     double loss() const { return direct - kMoreSolves * quadrature; }
+
+    /// True where quadrature is faster by a worthwhile share.
+    bool pays() const { return direct > kWorthwhile * kMoreSolves * quadrature; }
 };
 
 /// Numbers that quadrature reads per node of a surface, at the default tolerance: 168 (n / 10 000)^0.215,
