@@ -26,8 +26,9 @@ constexpr double kConverged = 1e-10;
 /// Newton's method creeps; L-BFGS and the projected Hessian then come nearer first, several times over.
 constexpr OuterLoop::Settings kApproach{0.0, 50};
 constexpr OuterLoop::Settings kApproachAgain{0.0, 30};
-constexpr OuterLoop::Settings kProjected{1e-9, 40};
-constexpr OuterLoop::Settings kFinish{1e-9, 12};
+/// Leaves some way to go: a first exact step is solved too loosely to tell what is left.
+constexpr OuterLoop::Settings kProjected{1e-5, 40};
+constexpr OuterLoop::Settings kFinish{1e-9, 25};
 constexpr int kFinishLinearIterations = 300;
 constexpr int kMostRounds = 8;
 
