@@ -152,7 +152,8 @@ std::vector<double> ClothBody::vertex_masses(const RestShape& rest) const
 }
 
 /// Projective dynamics: every term is an energy.
-std::unique_ptr<PointMasses> ClothBody::make_body(const Scene& scene, std::shared_ptr<const RestShape> rest,
+std::unique_ptr<PointMasses> ClothBody::make_body(const Scene& scene,
+                                                  const std::shared_ptr<const RestShape>& rest,
                                                   const WorldOptions& options, const std::string& source)
 {
     const Fabric& fabric = state_.fabric;

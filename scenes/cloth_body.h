@@ -36,7 +36,7 @@ private:
     /// @param unmoved  [vertices] rest positions before the cloth's translation [m]
     void build(const Scene& scene, const std::vector<Vec3>& unmoved, const std::vector<Obstacle>& obstacles,
                const WorldOptions& options, const std::string& source, double grain);
-    std::unique_ptr<PointMasses> make_body(const Scene& scene, std::shared_ptr<const RestShape> rest,
+    std::unique_ptr<PointMasses> make_body(const Scene& scene, const std::shared_ptr<const RestShape>& rest,
                                            const WorldOptions& options, const std::string& source);
     std::unique_ptr<PointMasses> make_rival(const Scene& scene, std::shared_ptr<const RestShape> rest) const;
     std::vector<double> vertex_masses(const RestShape& rest) const;

@@ -23,9 +23,9 @@ TEST(StrainMeter, IsZeroAtRestAndAfterARigidMotion)
     const StrainMeter meter(rest, {Triangle(0, 1, 2), Triangle(1, 3, 2)});
     EXPECT_NEAR(meter.largest(rest), 0.0, 1e-14);
     const Mat3 Q = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-    std::vector<Vec3> moved;
-    for (const Vec3& p : rest)
-        moved.push_back(Q * p + Vec3(1, 2, 3));
+    std::vector<Vec3> moved = rest;
+    for (Vec3& p : moved)
+        p = Q * p + Vec3(1, 2, 3);
     EXPECT_NEAR(meter.largest(moved), 0.0, 1e-13);
 }
 

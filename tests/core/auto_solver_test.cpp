@@ -93,7 +93,7 @@ protected:
     Stages stages_;
     Stages::Activate activate_{stages_};
     Grid grid_;
-    SparseMatrix H_ = grid_.H(1e-3), other_H_ = grid_.H(1e-1);
+    SparseMatrix H_ = grid_.matrix(1e-3), other_H_ = grid_.matrix(1e-1);
     std::vector<Vec3> b_ = random_field(int(H_.rows()), 3);
     std::shared_ptr<TableStore> store_ = std::make_shared<TableStore>();
     std::atomic<int> places_made_ = 0;

@@ -17,7 +17,7 @@ namespace {
 /// A grid and the request for its tables.
 BackgroundTables::Request request_for(int columns, int rows, double shift = 1e-3)
 {
-    const std::vector<Place> places = grid_places(columns, rows);
+    std::vector<Place> places = grid_places(columns, rows);
     return {grid_laplacian(columns, rows, shift),
             std::vector<unsigned char>(places.size(), 0),
             [places] { return places; },

@@ -57,7 +57,7 @@ struct Grid {
     std::vector<unsigned char> fixed = std::vector<unsigned char>(places.size(), 0);
 
     /// @param shift  mass over stiffness: the kernel reaches 1 / sqrt(shift) nodes far
-    SparseMatrix H(double shift) const { return grid_laplacian(kColumns, kRows, shift); }
+    SparseMatrix matrix(double shift) const { return grid_laplacian(kColumns, kRows, shift); }
 };
 
 } // namespace toile::test

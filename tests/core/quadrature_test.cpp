@@ -99,9 +99,9 @@ TEST(InverseColumns, AreThoseOfTheInverse)
     const Cholesky cholesky(A);
     const InverseColumns inverse(cholesky.factor());
     const Eigen::MatrixXd exact = Eigen::MatrixXd(A).inverse();
-    std::vector<int> columns;
-    for (int k = 0; k < InverseColumns::kColumns - 3; ++k)
-        columns.push_back((k * 53) % int(A.rows()));
+    std::vector<int> columns(InverseColumns::kColumns - 3);
+    for (size_t k = 0; k < columns.size(); ++k)
+        columns[k] = int(k * 53) % int(A.rows());
     InverseColumns::Block block;
     inverse.solve(columns, block);
     for (int i = 0; i < A.rows(); ++i) {
@@ -116,7 +116,7 @@ TEST(Quadrature, ContractsWhateverTheReachOfTheKernel)
     const Grid grid;
     for (const double shift : {0.05, 1e-3, 1e-5, 1e-7}) {
         QuadratureSolver solver(grid.places);
-        const SparseMatrix H = grid.H(shift);
+        const SparseMatrix H = grid.matrix(shift);
         solver.update(H, grid.fixed);
         EXPECT_LT(contraction(solver, H), 0.45) << shift;
         EXPECT_LT(solver.table().gathers_per_node(), 160.0) << shift;
@@ -126,7 +126,7 @@ TEST(Quadrature, ContractsWhateverTheReachOfTheKernel)
 TEST(Quadrature, TendsToTheExactSolution)
 {
     const Grid grid;
-    const SparseMatrix H = grid.H(1e-3);
+    const SparseMatrix H = grid.matrix(1e-3);
     double before = 1.0;
     for (const double tolerance : {0.3, 0.1, 0.03, 0.003}) {
         QuadratureSolver solver(grid.places, {tolerance});
@@ -141,7 +141,7 @@ TEST(Quadrature, TendsToTheExactSolution)
 TEST(Quadrature, LeavesFixedNodesAlone)
 {
     Grid grid;
-    SparseMatrix H = grid.H(1e-3);
+    SparseMatrix H = grid.matrix(1e-3);
     for (const int v : {0, 39, 500, 501, 777}) {
         grid.fixed[v] = 1;
         for (SparseMatrix::InnerIterator entry(H, v); entry; ++entry)
@@ -162,7 +162,7 @@ TEST(Quadrature, TakesASingleFreeNodeAndPiecesThatDoNotTouch)
     // Two grids side by side without an entry between them, and one of them down to one free node.
     Grid grid;
     const int n = int(grid.places.size());
-    SparseMatrix one = grid.H(1e-3), both(2 * n, 2 * n);
+    SparseMatrix one = grid.matrix(1e-3), both(2 * n, 2 * n);
     std::vector<Eigen::Triplet<double>> entries;
     for (int row = 0; row < n; ++row) {
         entries.emplace_back(n + row, n + row, row == 5 ? 3.0 : 1.0);
@@ -201,7 +201,7 @@ TEST(Quadrature, SolvesNothingWhereEverythingIsFixed)
 TEST(Quadrature, HasTheSameBitsForAnyThreadCount)
 {
     const Grid grid;
-    const SparseMatrix H = grid.H(1e-3);
+    const SparseMatrix H = grid.matrix(1e-3);
     const std::vector<Vec3> b = random_field(int(H.rows()), 4);
     std::vector<Vec3> reference;
     for (const int threads : {1, 2, 4}) {
@@ -219,7 +219,7 @@ TEST(Quadrature, HasTheSameBitsForAnyThreadCount)
 TEST(Quadrature, CanBeCancelledWhileItIsBuilt)
 {
     const Grid grid;
-    const Cholesky cholesky(grid.H(1e-3));
+    const Cholesky cholesky(grid.matrix(1e-3));
     const ClusterTree tree(grid.places, all_nodes(grid.places));
     const ClusterBasis basis(tree, grid.places);
     const std::vector<double> diagonal(grid.places.size(), 4.0);

@@ -13,7 +13,7 @@ struct Cube {
     std::vector<Place> places = grid_places(n, n, n);
     std::vector<unsigned char> fixed = std::vector<unsigned char>(places.size(), 0);
 
-    SparseMatrix H(double shift) const
+    SparseMatrix matrix(double shift) const
     {
         Triplets entries;
         const auto connect = [&](int a, int b) {
@@ -45,7 +45,7 @@ TEST(QuadratureOfVolumes, ContractsFasterWithShorterListsThanThreeFunctions)
 {
     const Cube cube{10};
     for (const double shift : {1e-2, 1e-4}) {
-        const SparseMatrix H = cube.H(shift);
+        const SparseMatrix H = cube.matrix(shift);
         QuadratureSolver four(cube.places, kVolume), three(cube.places, {kVolume.kernel, Extent::Surface});
         four.update(H, cube.fixed);
         three.update(H, cube.fixed);
@@ -60,7 +60,7 @@ TEST(QuadratureOfVolumes, ContractsWhateverTheSize)
 {
     for (const int n : {7, 14}) {
         const Cube cube{n};
-        const SparseMatrix H = cube.H(1e-2);
+        const SparseMatrix H = cube.matrix(1e-2);
         QuadratureSolver solver(cube.places, kVolume);
         solver.update(H, cube.fixed);
         EXPECT_LT(contraction(solver, H), 0.35) << n;
@@ -110,7 +110,7 @@ TEST(QuadratureOfVolumes, AppliesTheMatrixThatItsTableStandsFor)
 {
     const Cube cube{9};
     const int n = int(cube.places.size());
-    const auto tables = build_tables({cube.H(1e-2), cube.fixed, cube.places, kVolume}, nullptr);
+    const auto tables = build_tables({cube.matrix(1e-2), cube.fixed, cube.places, kVolume}, nullptr);
     ASSERT_EQ(tables->kernel.rank, 4);
     ASSERT_FALSE(tables->kernel.far_cluster.empty());
     const std::vector<Vec3> b = random_field(n, 8);

@@ -20,16 +20,16 @@ TEST(SolveCosts, AreFoundWithoutCountingAsTheRunsOwn)
 {
     const Grid grid;
     DirectSolver direct;
-    direct.update(grid.H(1e-3), grid.fixed);
+    direct.update(grid.matrix(1e-3), grid.fixed);
     Stages stages;
     const Stages::Activate activate(stages);
     const SolveCosts expected = expected_costs(*direct.factor());
     EXPECT_GT(expected.direct, 0.0);
     EXPECT_GT(expected.quadrature, 0.0);
     EXPECT_GT(expected.build, expected.direct);
-    const SolveCosts measured = measured_costs(
-        *direct.factor(),
-        QuadratureOperator(std::make_shared<TableStore>()->get({grid.H(1e-3), grid.fixed, grid.places, {}})));
+    const SolveCosts measured =
+        measured_costs(*direct.factor(), QuadratureOperator(std::make_shared<TableStore>()->get(
+                                             {grid.matrix(1e-3), grid.fixed, grid.places, {}})));
     EXPECT_GT(measured.quadrature, 0.0);
     EXPECT_EQ(stages.calls("linear/solve") + stages.calls("quadrature/solve"), 0);
 }

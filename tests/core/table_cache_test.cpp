@@ -30,7 +30,7 @@ protected:
         const Stages::Activate recording(stages);
         warnings_.clear();
         TableStore store(folder_, limit);
-        const auto tables =
+        auto tables =
             store.get(input(), {nullptr, [&](const std::string& warning) { warnings_.push_back(warning); }});
         builds_ = stages.calls("quadrature/build");
         return tables;
@@ -161,9 +161,9 @@ TEST_F(TableCacheTest, MayBeWrittenByManyAtOnce)
         write_often();
         ::_exit(testing::Test::HasFailure() ? 1 : 0);
     }
-    std::vector<std::thread> threads;
-    for (int k = 0; k < 2; ++k)
-        threads.emplace_back(write_often);
+    std::vector<std::thread> threads(2);
+    for (std::thread& thread : threads)
+        thread = std::thread(write_often);
     for (int k = 0; k < 20; ++k) { // a reader finds all or nothing
         run();
         EXPECT_TRUE(warnings_.empty());

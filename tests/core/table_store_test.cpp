@@ -35,7 +35,7 @@ long builds(const Act& act)
 struct Body {
     Grid grid;
     std::shared_ptr<TableStore> store = std::make_shared<TableStore>();
-    SparseMatrix H = grid.H(1e-3);
+    SparseMatrix H = grid.matrix(1e-3);
 
     TableInput input() const { return {H, grid.fixed, grid.places, {}}; }
     QuadratureSolver solver() const { return QuadratureSolver(grid.places, {}, store); }
@@ -45,7 +45,7 @@ TEST(TableStore, BuildsOnceForEqualBodies)
 {
     const Body body;
     QuadratureSolver one = body.solver(), two = body.solver(), other = body.solver();
-    const SparseMatrix copy = body.H, different = body.grid.H(2e-3);
+    const SparseMatrix copy = body.H, different = body.grid.matrix(2e-3);
     EXPECT_EQ(builds([&] {
                   one.update(body.H, body.grid.fixed);
                   two.update(copy, body.grid.fixed);
@@ -59,7 +59,7 @@ TEST(TableStore, FindsTheTablesOfATimeStepThatComesBack)
 {
     const Body body;
     QuadratureSolver one = body.solver(), two = body.solver();
-    const SparseMatrix other_step = body.grid.H(4e-3);
+    const SparseMatrix other_step = body.grid.matrix(4e-3);
     one.update(body.H, body.grid.fixed);
     two.update(body.H, body.grid.fixed);
     EXPECT_EQ(builds([&] { one.update(other_step, body.grid.fixed); }), 1);
@@ -81,9 +81,9 @@ TEST(TableStore, LetsThreadsThatAskForTheSameWaitForOne)
     std::latch together(kThreads);
     std::vector<std::shared_ptr<const QuadratureTables>> found(kThreads);
     std::vector<long> built(kThreads);
-    std::vector<std::thread> threads;
+    std::vector<std::thread> threads(kThreads);
     for (int k = 0; k < kThreads; ++k)
-        threads.emplace_back([&, k] {
+        threads[k] = std::thread([&, k] {
             together.arrive_and_wait();
             built[k] = builds([&] { found[k] = body.store->get(body.input()); });
         });
@@ -176,18 +176,19 @@ TEST(TableStore, LeavesASolverAsItWasWhenItsUpdateIsCancelled)
     std::vector<Vec3> before(b.size()), after(b.size());
     solver.solve(b, before);
     wants_more = false;
-    EXPECT_THROW(solver.update(body.grid.H(1e-2), body.grid.fixed), Cancelled);
+    EXPECT_THROW(solver.update(body.grid.matrix(1e-2), body.grid.fixed), Cancelled);
     solver.solve(b, after);
     EXPECT_EQ(after, before);
     wants_more = true;
-    solver.update(body.grid.H(1e-2), body.grid.fixed);
+    solver.update(body.grid.matrix(1e-2), body.grid.fixed);
     solver.solve(b, after);
     EXPECT_NE(after, before);
 }
 
 TEST(DirectSolver, FactorsOnceForEqualMatrices)
 {
-    const SparseMatrix H = grid_laplacian(12, 11, 0.0123), copy = H, other = grid_laplacian(12, 11, 0.0456);
+    const SparseMatrix H = grid_laplacian(12, 11, 0.0123), equal = grid_laplacian(12, 11, 0.0123),
+                       other = grid_laplacian(12, 11, 0.0456);
     const std::vector<unsigned char> fixed(H.rows(), 0);
     const std::vector<Vec3> b = random_field(int(H.rows()), 2);
     std::vector<Vec3> x(b.size()), y(b.size());
@@ -195,7 +196,7 @@ TEST(DirectSolver, FactorsOnceForEqualMatrices)
     Stages stages;
     const Stages::Activate recording(stages);
     one.update(H, fixed);
-    two.update(copy, fixed);
+    two.update(equal, fixed);
     EXPECT_EQ(stages.calls("linear/factor"), 1);
     one.solve(b, x);
     two.solve(b, y);

@@ -170,7 +170,7 @@ struct OneStep {
     /// @return Newton's
     std::vector<Vec3> expect_agreement(double least_correction) const
     {
-        const std::vector<Vec3> oracle_end = by_newton();
+        std::vector<Vec3> oracle_end = by_newton();
         for (const OuterMethod outer : {OuterMethod::Lbfgs, OuterMethod::Anderson, OuterMethod::NewtonPcg})
             EXPECT_LT(farthest(by_body(outer), oracle_end), 1e-8) << "method " << int(outer);
         if (!active) {
