@@ -29,7 +29,10 @@ void NewtonDirect::factor(Hessian& hessian, View<const Vec3> x)
 
 void NewtonDirect::find_direction(Objective& objective, const Here& here, View<Vec3> direction)
 {
-    factor(*objective.hessian(), here.x);
+    Hessian* const K = objective.hessian();
+    if (K == nullptr)
+        throw InvalidInput("newton-direct: the objective has no second derivatives; choose another method");
+    factor(*K, here.x);
     const int n = direction.size();
     for (int i = 0; i < n; ++i)
         for (int k = 0; k < 3; ++k)

@@ -90,6 +90,7 @@ void BackgroundTables::work(const std::stop_token& stop)
 void BackgroundTables::prepare(const Request& request, long number, const std::stop_token& stop)
 {
     const auto progress = [&](double share) {
+        const std::lock_guard lock(mutex_);
         const bool is_wanted = !stop.stop_requested() && number == number_;
         if (is_wanted)
             share_ = share;
@@ -98,13 +99,19 @@ void BackgroundTables::prepare(const Request& request, long number, const std::s
     std::shared_ptr<const QuadratureTables> tables;
     std::exception_ptr failure;
     try {
-        const Turn turn(progress);
+        std::vector<Place> places;
         with_low_priority(kCpu, threads_, [&] {
-            const std::vector<Place> places = request.places();
-            const TableInput input{request.H, request.fixed, places, request.settings};
-            if (progress(0.0) && (!request.only_at_hand || store_->holds(input)))
-                tables = store_->get(input, {progress, warn_});
+            places = request.places();
+            if (progress(0.0))
+                tables =
+                    store_->find({request.H, request.fixed, places, request.settings}, {progress, warn_});
         });
+        if (!tables && !request.only_at_hand) {
+            const Turn turn(progress);
+            with_low_priority(kCpu, threads_, [&] {
+                tables = store_->get({request.H, request.fixed, places, request.settings}, {progress, warn_});
+            });
+        }
     } catch (const Cancelled&) {
         return;
     } catch (...) {

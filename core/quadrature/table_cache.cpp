@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -19,6 +20,15 @@ constexpr const char* kExtension = ".tables";
 
 /// Unfinished files of this age were left by processes that are no more.
 constexpr std::chrono::hours kAbandoned(24);
+
+/// True for tables, finished or not, by what file_of() calls them.
+bool is_ours(const std::filesystem::path& file)
+{
+    constexpr size_t kDigits = 32;
+    const std::string name = file.filename().string();
+    return name.find_first_not_of("0123456789abcdef") == kDigits &&
+           name.compare(kDigits, std::string_view(kExtension).size(), kExtension) == 0;
+}
 
 std::filesystem::path path_in(const char* variable)
 {
@@ -108,7 +118,7 @@ void TableCache::forget_least_used() const
          entry.increment(error)) {
         std::error_code gone;
         const File file{entry->last_write_time(gone), entry->file_size(gone), entry->path()};
-        if (gone)
+        if (gone || !is_ours(file.path))
             continue;
         if (is_partial(file.path) && now - file.used > kAbandoned)
             std::filesystem::remove(file.path, gone);
@@ -121,7 +131,8 @@ void TableCache::forget_least_used() const
     for (const File& file : files) {
         if (total <= byte_limit_)
             break;
-        if (std::filesystem::remove(file.path, error))
+        std::filesystem::remove(file.path, error);
+        if (!error)
             total -= file.bytes;
     }
 }

@@ -60,15 +60,30 @@ bool TableStore::holds(const TableInput& input) const
 std::shared_ptr<const QuadratureTables> TableStore::get(const TableInput& input,
                                                         const TableListener& listener)
 {
+    return prepare(input, listener, true);
+}
+
+std::shared_ptr<const QuadratureTables> TableStore::find(const TableInput& input,
+                                                         const TableListener& listener)
+{
+    return holds(input) ? prepare(input, listener, false) : nullptr;
+}
+
+/// Null where nothing is at hand and `may_build` is false.
+std::shared_ptr<const QuadratureTables> TableStore::prepare(const TableInput& input,
+                                                            const TableListener& listener, bool may_build)
+{
     const Hash128 key = table_key(input);
-    const auto make = [&] {
-        const std::shared_ptr<QuadratureTables> tables = begin_tables(input);
-        if (!cache_ || !cache_->load(key, *tables, listener.warn)) {
-            build_kernel(input, listener.progress, *tables);
-            if (cache_)
-                cache_->store(key, *tables, listener.warn);
-        }
-        return std::shared_ptr<const QuadratureTables>(tables);
+    const auto make = [&]() -> std::shared_ptr<const QuadratureTables> {
+        std::shared_ptr<QuadratureTables> tables = begin_tables(input);
+        if (cache_ && cache_->load(key, *tables, listener.warn))
+            return tables;
+        if (!may_build)
+            return nullptr;
+        build_kernel(input, listener.progress, *tables);
+        if (cache_)
+            cache_->store(key, *tables, listener.warn);
+        return tables;
     };
     const auto waiting = [&] {
         if (listener.progress && !listener.progress(0.0))

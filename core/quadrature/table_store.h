@@ -34,17 +34,22 @@ public:
     /// The one that all solvers of the process use unless told otherwise, with default_cache_folder().
     static const std::shared_ptr<TableStore>& of_process();
 
-    /// The tables of `input`: those in use, else read from the cache, else built ("quadrature/build")
-    /// and written there. Who asks while another thread
-    /// prepares them waits.
+    /// The tables of `input`: those in use, else read from the cache, else built ("quadrature/build") and
+    /// written there. Who asks while another thread prepares them waits.
     /// @throws InvalidInput where H is not positive definite, Cancelled where the listener wants no more
     std::shared_ptr<const QuadratureTables> get(const TableInput& input, const TableListener& listener = {});
+
+    /// As get(), but null where they would have to be built.
+    std::shared_ptr<const QuadratureTables> find(const TableInput& input, const TableListener& listener = {});
 
     /// True where get() would most likely not build: the tables are in use, or the cache has a file for them.
     /// Costs a hash of the input.
     bool holds(const TableInput& input) const;
 
 private:
+    std::shared_ptr<const QuadratureTables> prepare(const TableInput& input, const TableListener& listener,
+                                                    bool may_build);
+
     std::optional<TableCache> cache_;
     SharedByKey<QuadratureTables> shared_;
 };

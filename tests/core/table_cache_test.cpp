@@ -135,6 +135,42 @@ TEST_F(TableCacheTest, ReplacesAnotherVersionWithoutAWord)
     EXPECT_EQ(bytes_of(table()), good);
 }
 
+TEST_F(TableCacheTest, FindsNothingWhereTheFileIsDamagedAndBuildsNothing)
+{
+    run();
+    Stages stages;
+    const Stages::Activate recording(stages);
+    EXPECT_NE(TableStore(folder_).find(input()), nullptr);
+    const std::string good = bytes_of(table());
+    std::ofstream(table(), std::ios::binary) << good.substr(0, good.size() / 2);
+    TableStore store(folder_);
+    EXPECT_TRUE(store.holds(input()));
+    EXPECT_EQ(store.find(input()), nullptr);
+    EXPECT_EQ(stages.calls("quadrature/build"), 0);
+    EXPECT_NE(store.get(input()), nullptr) << "the next one builds";
+    EXPECT_EQ(stages.calls("quadrature/build"), 1);
+}
+
+TEST_F(TableCacheTest, LeavesFilesThatAreNotItsOwn)
+{
+    const std::vector<std::filesystem::path> others{folder_ / "seating.tables",
+                                                    folder_ / "skirt.pc2.partial-7"};
+    for (const std::filesystem::path& other : others) {
+        std::ofstream(other) << "not ours";
+        std::filesystem::last_write_time(other, std::filesystem::file_time_type::clock::now() -
+                                                    std::chrono::hours(100));
+    }
+    run();
+    const std::filesystem::path first = table();
+    std::filesystem::last_write_time(first,
+                                     std::filesystem::file_time_type::clock::now() - std::chrono::hours(3));
+    change_body();
+    run(std::filesystem::file_size(first) + 1);
+    EXPECT_FALSE(std::filesystem::exists(first));
+    for (const std::filesystem::path& other : others)
+        EXPECT_TRUE(std::filesystem::exists(other)) << other;
+}
+
 TEST_F(TableCacheTest, RefusesTheTablesOfAnotherKey)
 {
     run();
