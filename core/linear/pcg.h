@@ -51,7 +51,8 @@ public:
             xpay(z_, outcome.iterations > 0 ? change / rz_previous : 0.0, p_);
             multiply(View<const Vec3>(p_), View<Vec3>(product_));
             const double curvature = dot(p_, product_);
-            if (!(curvature > 0.0)) // rounding, or A is indefinite after all: the iterate so far is the answer
+            if (!(curvature >
+                  0.0)) // rounding, or A is indefinite after all: the iterate so far is the answer
                 break;
             const double step = settings.is_flexible ? dot(r_, p_) / curvature : rz / curvature;
             if (settings.is_flexible)
