@@ -102,10 +102,11 @@ try {
         const StageScope stage("auto/rehearse");
         phase_ = settings_.measure(*direct_.factor(), quadrature_).pays() ? Phase::Quadrature : Phase::Direct;
     }
-    if (phase_ == Phase::Direct)
-        quadrature_ = QuadratureOperator();
-    else
+    if (phase_ == Phase::Quadrature) {
         const StageScope stage("auto/switch");
+    } else {
+        quadrature_ = QuadratureOperator();
+    }
 } catch (const std::exception& error) {
     const StageScope stage("auto/fail");
     phase_ = Phase::Direct;

@@ -5,6 +5,9 @@
 
 namespace toile {
 
+/// Leaves or clusters per task: small enough to balance, a few microseconds each.
+inline constexpr int kLeafGrain = 16;
+
 /// Second pass of quadrature for the targets of one leaf: q_i = sum_near G_ij r_j + sum_far w_iC . m_C
 /// Rank: the table's, known to the compiler so that the inner loop is unrolled.
 template <int Rank>

@@ -7,13 +7,6 @@
 
 namespace toile {
 
-namespace {
-
-/// Leaves or clusters per task: small enough to balance, a few microseconds each.
-constexpr int kLeafGrain = 16;
-
-} // namespace
-
 /// P_C^T b for all clusters, leaves first.
 void QuadratureOperator::gather_moments(View<const Vec3> b, View<Vec3f> moments) const
 {

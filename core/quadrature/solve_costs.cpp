@@ -30,9 +30,6 @@ constexpr double kMostBytes = 64e6;
 
 constexpr int kRepeats = 5; ///< of what is timed
 
-/// Leaves per task, as QuadratureOperator has them.
-constexpr int kLeafGrain = 16;
-
 template <typename Work>
 double seconds_of(const Work& work)
 {
