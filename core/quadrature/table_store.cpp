@@ -51,29 +51,30 @@ const std::shared_ptr<TableStore>& TableStore::of_process()
     return store;
 }
 
-bool TableStore::holds(const TableInput& input) const
+bool TableStore::holds(const TableInput& input) const { return holds(table_key(input)); }
+
+bool TableStore::holds(const Hash128& key) const
 {
-    const Hash128 key = table_key(input);
     return shared_.holds(key) || (cache_ && cache_->has_file(key));
 }
 
 std::shared_ptr<const QuadratureTables> TableStore::get(const TableInput& input,
                                                         const TableListener& listener)
 {
-    return prepare(input, listener, true);
+    return prepare(table_key(input), input, listener, true);
 }
 
 std::shared_ptr<const QuadratureTables> TableStore::find(const TableInput& input,
                                                          const TableListener& listener)
 {
-    return holds(input) ? prepare(input, listener, false) : nullptr;
+    const Hash128 key = table_key(input);
+    return holds(key) ? prepare(key, input, listener, false) : nullptr;
 }
 
 /// Null where nothing is at hand and `may_build` is false.
-std::shared_ptr<const QuadratureTables> TableStore::prepare(const TableInput& input,
+std::shared_ptr<const QuadratureTables> TableStore::prepare(const Hash128& key, const TableInput& input,
                                                             const TableListener& listener, bool may_build)
 {
-    const Hash128 key = table_key(input);
     const auto make = [&]() -> std::shared_ptr<const QuadratureTables> {
         std::shared_ptr<QuadratureTables> tables = begin_tables(input);
         if (cache_ && cache_->load(key, *tables, listener.warn))

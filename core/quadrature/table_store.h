@@ -47,8 +47,9 @@ public:
     bool holds(const TableInput& input) const;
 
 private:
-    std::shared_ptr<const QuadratureTables> prepare(const TableInput& input, const TableListener& listener,
-                                                    bool may_build);
+    bool holds(const Hash128& key) const;
+    std::shared_ptr<const QuadratureTables> prepare(const Hash128& key, const TableInput& input,
+                                                    const TableListener& listener, bool may_build);
 
     std::optional<TableCache> cache_;
     SharedByKey<QuadratureTables> shared_;

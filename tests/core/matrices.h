@@ -59,24 +59,27 @@ inline SparseMatrix random_spd(int n, unsigned seed)
     return A;
 }
 
+/// Adds a spring of stiffness 1 between two nodes.
+inline void connect(int a, int b, Triplets& entries)
+{
+    entries.emplace_back(a, a, 1.0);
+    entries.emplace_back(b, b, 1.0);
+    entries.emplace_back(a, b, -1.0);
+    entries.emplace_back(b, a, -1.0);
+}
+
 /// Five-point Laplacian of a grid plus `shift` times the identity.
 inline SparseMatrix grid_laplacian(int columns, int rows, double shift)
 {
     Triplets entries;
-    const auto connect = [&](int a, int b) {
-        entries.emplace_back(a, a, 1.0);
-        entries.emplace_back(b, b, 1.0);
-        entries.emplace_back(a, b, -1.0);
-        entries.emplace_back(b, a, -1.0);
-    };
     for (int r = 0; r < rows; ++r)
         for (int c = 0; c < columns; ++c) {
             const int a = r * columns + c;
             entries.emplace_back(a, a, shift);
             if (c + 1 < columns)
-                connect(a, a + 1);
+                connect(a, a + 1, entries);
             if (r + 1 < rows)
-                connect(a, a + columns);
+                connect(a, a + columns, entries);
         }
     SparseMatrix A(columns * rows, columns * rows);
     A.setFromTriplets(entries.begin(), entries.end());

@@ -16,21 +16,15 @@ struct Cube {
     SparseMatrix matrix(double shift) const
     {
         Triplets entries;
-        const auto connect = [&](int a, int b) {
-            entries.emplace_back(a, a, 1.0);
-            entries.emplace_back(b, b, 1.0);
-            entries.emplace_back(a, b, -1.0);
-            entries.emplace_back(b, a, -1.0);
-        };
         for (int a = 0; a < n * n * n; ++a) {
             entries.emplace_back(a, a, shift);
             const int i = a % n, j = a / n % n, k = a / (n * n);
             if (i + 1 < n)
-                connect(a, a + 1);
+                connect(a, a + 1, entries);
             if (j + 1 < n)
-                connect(a, a + n);
+                connect(a, a + n, entries);
             if (k + 1 < n)
-                connect(a, a + n * n);
+                connect(a, a + n * n, entries);
         }
         SparseMatrix A(n * n * n, n * n * n);
         A.setFromTriplets(entries.begin(), entries.end());
