@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Two primitives of one triangle soup that share no vertex and are near each other: a vertex and a
+/// triangle, or two edges. "First" and "second" below are these two.
+struct NearPair {
+    std::array<int, 4> vertex;    ///< vertex, then the triangle's corners; or both ends of each edge
+    std::array<double, 4> weight; ///< signed, sum 0: sum_k weight_k x_k runs from the second's closest
+                                  ///< point to the first's
+    Vec3 normal;     ///< unit, along that difference; where they touch the triangle's normal or the cross
+                     ///< product of the edges, of either sign
+    double distance; ///< [m] between the closest points
+    bool is_edge_edge;
+    bool is_facing; ///< stands for a local minimum of the distance between two SURFACES (see below)
+};
+
+/// Finds the pairs of primitives that might meet while the vertices of one triangle soup move: every cloth
+/// that is stepped together is part of the soup.
+///
+/// A tree of boxes over the triangles, built once and refitted per search, is descended against itself.
+/// Every vertex and every edge belongs to the lowest of its triangles, so each pair is met exactly once
+/// [Curtis et al. 2008, Fast collision detection for deformable models using representative-triangles].
+///
+/// NearPair::is_facing picks, of the many pairs around one place where two surfaces face each other, those
+/// that stand for it:
+/// - vertex and triangle: where the closest point lies on an edge or a corner, all triangles around that edge
+///   or corner agree that it is closest (else the minimum lies on another triangle, which has its own pair),
+///   and this is the lowest of them; of two vertices the smaller is the pair's `vertex`;
+/// - two edges: closest inside both, not parallel, and the direction between them leads into no face beside
+///   either.
+/// docs/collision/cloth.md draws them.
+class NearPairs {
+public:
+    /// Builds edges and tree. O(n log n).
+    /// @param triangles  [triangles x 3] indices into positions; any list: collapsed, non-manifold
+    /// @param positions  [vertices x 3] [m] the first pose
+    NearPairs(View<const Triangle> triangles, View<const Vec3> positions);
+    ~NearPairs();
+    NearPairs(NearPairs&&) noexcept;
+    NearPairs& operator=(NearPairs&&) noexcept;
+
+    /// All pairs with
+    ///   distance(x) <= margin + max over (a of the first, b of the second) |motion_a - motion_b| .
+    /// Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
+    /// edges numbered as in build_surface_edges. Same bits for every thread count.
+    /// @param x       [vertices x 3] [m]
+    /// @param motion  [vertices x 3] [m] the displacement each vertex is expected to make; a common one
+    ///                (free fall) costs nothing
+    /// @param margin  [m] >= 0
+    void find(View<const Vec3> x, View<const Vec3> motion, double margin, std::vector<NearPair>& out);
+
+private:
+    class Search;
+    std::unique_ptr<Search> search_;
+};
+
+} // namespace toile

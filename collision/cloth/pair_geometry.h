@@ -1,0 +1,76 @@
+#pragma once
+
+/// The closest points of a pair of primitives given by four points: vertex and triangle (p, a, b, c) or two
+/// edges (a0, a1, b0, b1). "First" is the vertex or the edge a, "second" the triangle or the edge b.
+
+#include <array>
+#include <cmath>
+
+#include "collision/distance.h"
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Distance below which the difference of two closest points no longer tells their direction [m]: rounding of
+/// coordinates of some metres turns it by 1e-3 there.
+inline constexpr double kNoDirection = 1e-12;
+
+/// Corners of the first primitive; those of the second fill the rest of the four.
+TOILE_HD inline int first_count(bool is_edge_edge) { return is_edge_edge ? 2 : 1; }
+
+/// Signed weights, sum 0: sum_k weight_k x_k runs from the second's closest point to the first's.
+TOILE_HD inline std::array<double, 4> closest_weights(bool is_edge_edge, const std::array<Vec3, 4>& x)
+{
+    if (is_edge_edge) {
+        const ClosestOnSegments closest = closest_on_segments(x[0], x[1], x[2], x[3]);
+        return {1.0 - closest.s, closest.s, closest.t - 1.0, -closest.t};
+    }
+    const Vec3 w = closest_on_triangle(x[0], x[1], x[2], x[3]).barycentric;
+    return {1.0, -w[0], -w[1], -w[2]};
+}
+
+/// From the second's closest point to the first's [m].
+TOILE_HD inline Vec3 closest_difference(const std::array<double, 4>& weight, const std::array<Vec3, 4>& x)
+{
+    // Relative to one corner: the weights sum to 0 and large coordinates would cost digits.
+    return weight[0] * (x[0] - x[3]) + weight[1] * (x[1] - x[3]) + weight[2] * (x[2] - x[3]);
+}
+
+/// The direction across both primitives: the triangle's normal or the cross product of the edges, unit, on
+/// the side that `difference` points to; zero where they have none (collapsed, parallel).
+TOILE_HD inline Vec3 direction_across(bool is_edge_edge, const std::array<Vec3, 4>& x, const Vec3& difference)
+{
+    const Vec3 u = is_edge_edge ? Vec3(x[1] - x[0]) : Vec3(x[2] - x[1]);
+    const Vec3 v = is_edge_edge ? Vec3(x[3] - x[2]) : Vec3(x[3] - x[1]);
+    const Vec3 across = u.cross(v);
+    const double length2 = across.squaredNorm();
+    if (!(length2 > kFlatTriangle2 * u.squaredNorm() * v.squaredNorm()))
+        return Vec3::Zero();
+    return across * ((across.dot(difference) < 0.0 ? -1.0 : 1.0) / std::sqrt(length2));
+}
+
+/// A unit vector perpendicular to v; any unit vector where v is zero.
+TOILE_HD inline Vec3 perpendicular(const Vec3& v)
+{
+    const Vec3 a = v.cwiseAbs();
+    const Vec3 axis = a[0] <= a[1] && a[0] <= a[2] ? Vec3(1, 0, 0)
+                      : a[1] <= a[2]               ? Vec3(0, 1, 0)
+                                                   : Vec3(0, 0, 1);
+    const Vec3 across = v.cross(axis);
+    const double length = across.norm();
+    return length > 0.0 ? Vec3(across / length) : axis;
+}
+
+/// Unit direction that separates the first from the second: along their difference; where they touch the
+/// direction across both; where there is none one perpendicular to the first edge they have.
+TOILE_HD inline Vec3 separating_direction(bool is_edge_edge, const std::array<Vec3, 4>& x,
+                                          const Vec3& difference)
+{
+    const double distance = difference.norm();
+    if (distance > kNoDirection)
+        return difference / distance;
+    const Vec3 across = direction_across(is_edge_edge, x, difference);
+    return across.isZero(0.0) ? perpendicular(is_edge_edge ? x[1] - x[0] : x[2] - x[1]) : across;
+}
+
+} // namespace toile
