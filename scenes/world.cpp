@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "core/backend/parallel.h"
-#include "scenes/cloth_body.h"
+#include "scenes/cloth_group.h"
 
 namespace toile {
 
 struct World::Parts {
     Scene scene;
     std::vector<Obstacle> obstacles;
-    std::vector<ClothBody> bodies;
+    std::vector<ClothGroup> groups;
     std::vector<ClothState> states;
     Stages stages;
     int frame = 0;
@@ -32,8 +32,8 @@ struct World::Parts {
             for (Obstacle& obstacle : obstacles)
                 obstacle.advance_to(std::max(t, 0.0));
             StepReport report;
-            for (ClothBody& body : bodies)
-                report.merge(body.step(dt, t, obstacles));
+            for (ClothGroup& group : groups)
+                report.merge(group.step(dt, t, obstacles));
             report.steps = 1;
             total.energy = 0.0;
             total.contacts = 0;
@@ -41,8 +41,10 @@ struct World::Parts {
             if (total.status == StepReport::Status::NonFinite)
                 break;
         }
-        for (size_t i = 0; i < bodies.size(); ++i)
-            states[i].positions = bodies[i].state().positions;
+        int cloth = 0;
+        for (const ClothGroup& group : groups)
+            for (const SceneCloth& member : group.cloths())
+                states[cloth++].positions = member.state().positions;
         return total;
     }
 };
@@ -52,10 +54,10 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     parts_->scene = scene;
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->obstacles.emplace_back(avatar, scene.contact.friction);
-    for (const scene::Cloth& cloth : scene.cloths) {
-        parts_->bodies.emplace_back(scene, cloth, parts_->obstacles, options);
-        parts_->states.push_back(parts_->bodies.back().state());
-    }
+    parts_->groups = make_groups(scene, parts_->obstacles, options);
+    for (const ClothGroup& group : parts_->groups)
+        for (const SceneCloth& cloth : group.cloths())
+            parts_->states.push_back(cloth.state());
 }
 
 World::~World() = default;
@@ -64,8 +66,15 @@ World& World::operator=(World&&) noexcept = default;
 
 void World::place(int cloth, View<const Vec3> positions)
 {
-    parts_->bodies[cloth].place(positions);
-    parts_->states[cloth].positions = parts_->bodies[cloth].state().positions;
+    int member = cloth;
+    for (ClothGroup& group : parts_->groups) {
+        if (member < int(group.cloths().size())) {
+            group.place(member, positions);
+            break;
+        }
+        member -= int(group.cloths().size());
+    }
+    parts_->states[cloth].positions.assign(positions.begin(), positions.end());
 }
 
 void World::prepare()
@@ -75,8 +84,8 @@ void World::prepare()
     const double dt = parts_->dt();
     const int steps = parts_->settle_steps();
     const double first_end = steps > 0 ? -(steps - 1) * dt : dt;
-    for (ClothBody& body : parts_->bodies)
-        body.prepare(dt, first_end);
+    for (ClothGroup& group : parts_->groups)
+        group.prepare(dt, first_end);
 }
 
 StepReport World::settle() { return parts_->advance(parts_->settle_steps(), parts_->dt(), 0.0); }

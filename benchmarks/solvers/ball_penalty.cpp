@@ -45,7 +45,7 @@ double BallPenalty::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 }
 
 /// f'' n n^T - f' / |x - center| (I - n n^T): the second part bends downwards.
-void BallPenalty::add_curvature(View<const Vec3> x, Definiteness definiteness, BlockMatrix& K)
+void BallPenalty::add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K)
 {
     parallel_for(kCpu, "benchmarks/ball_curvature", x.size(), [&](int v) {
         const Vec3 from = x[v] - ball_.center;

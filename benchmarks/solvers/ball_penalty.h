@@ -26,7 +26,7 @@ public:
     std::string_view name() const override { return "benchmarks/ball"; }
     void add_hessian(Triplets&) const override {}
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
-    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockMatrix& K) override;
+    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
 
 private:
     Ball ball_;

@@ -52,4 +52,19 @@ private:
     std::vector<Mat3> blocks_;
 };
 
+/// Rows and columns of a BlockMatrix from `first` on, numbered from 0: where one cloth of several writes.
+class BlockWindow {
+public:
+    BlockWindow(BlockMatrix& matrix, int first = 0) : matrix_(&matrix), first_(first) {}
+
+    /// See BlockMatrix::block.
+    Mat3& block(int row, int column) const { return matrix_->block(first_ + row, first_ + column); }
+
+    BlockWindow from(int row) const { return {*matrix_, first_ + row}; }
+
+private:
+    BlockMatrix* matrix_;
+    int first_;
+};
+
 } // namespace toile

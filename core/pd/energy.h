@@ -47,7 +47,7 @@ public:
     virtual void add_couplings(std::vector<std::pair<int, int>>&) const {}
 
     /// Adds the part that depends on x [vertices]. Same bits for every thread count.
-    virtual void add_curvature(View<const Vec3>, Definiteness, BlockMatrix&) {}
+    virtual void add_curvature(View<const Vec3>, Definiteness, BlockWindow) {}
 };
 
 /// Diagonal of an energy's part of H [vertices] [N/m].

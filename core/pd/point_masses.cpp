@@ -21,7 +21,10 @@ void PointMasses::project(double dt, View<const unsigned char> fixed, StepProjec
     for (int i = 0; i < int(x_.size()); ++i)
         inverse_masses_[i] = fixed[i] ? 0.0 : 1.0 / masses[i];
     unprojected_ = x_t1_;
-    projection.project(x_t1_, inverse_masses_, active);
+    std::function<bool()> clear_contacts;
+    if (active)
+        clear_contacts = [&] { return active->make_feasible(x_t1_); };
+    projection.project(x_t1_, inverse_masses_, clear_contacts);
     parallel_for(kCpu, "pd/finish", int(x_.size()),
                  [&](int i) { v_[i] += (x_t1_[i] - unprojected_[i]) / dt; });
 }

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "core/pd/active_set_energy.h"
+#include <functional>
+
+#include "core/backend/types.h"
 
 namespace toile {
 
@@ -15,8 +17,10 @@ public:
 
     /// Moves x [vertices] onto the constraint, vertices with weight 0 not at all.
     /// @param inverse_masses  [vertices] [1/kg], 0 for fixed vertices
-    /// @param active          contact to respect while projecting; may be null
-    virtual void project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active) = 0;
+    /// @param clear_contacts  to be called while projecting, so that contact is respected: moves x, true when
+    ///                        anything moved; may be empty
+    virtual void project(View<Vec3> x, View<const double> inverse_masses,
+                         const std::function<bool()>& clear_contacts) = 0;
 };
 
 } // namespace toile

@@ -80,7 +80,7 @@ void Membrane::add_couplings(std::vector<std::pair<int, int>>& couplings) const
     add_triangle_couplings(rest_->triangles, couplings);
 }
 
-void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, BlockMatrix& K)
+void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K)
 {
     const int triangles = int(rest_->triangles.size());
     curvature_.resize(triangles);

@@ -34,7 +34,7 @@ public:
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets&) const override {}
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
-    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockMatrix& K) override;
+    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
 
     /// Weights of the three terms above [N/m].
     const MembraneWeights& weights() const { return weights_; }

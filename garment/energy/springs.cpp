@@ -24,7 +24,7 @@ double Springs::add_gradient(View<const Vec3> x, View<Vec3> gradient)
     return value;
 }
 
-void Springs::add_curvature(View<const Vec3>, Definiteness, BlockMatrix& K)
+void Springs::add_curvature(View<const Vec3>, Definiteness, BlockWindow K)
 {
     for (const Spring& spring : springs_)
         K.block(spring.vertex, spring.vertex).diagonal().array() += spring.stiffness;

@@ -23,7 +23,7 @@ public:
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets&) const override {} ///< springs are released
-    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockMatrix& K) override;
+    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
 
     /// Moves the far ends [springs] [m].
     void set_target(int spring, const Vec3& target) { targets_[spring] = target; }

@@ -40,9 +40,8 @@ Vec3 relative_masses(const Triangle& corner, View<const double> inverse_masses)
 } // namespace
 
 StrainLimit::StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings,
-                         const std::string& source, std::shared_ptr<StretchTension> tension)
-    : rest_(std::move(rest)), settings_(settings), tension_(std::move(tension)),
-      violates_(rest_->triangles.size())
+                         const std::string& source)
+    : rest_(std::move(rest)), settings_(settings), violates_(rest_->triangles.size())
 {
     if (!(settings.limit > 0.0) || !std::isfinite(settings.limit))
         throw InvalidInput(source + ": strain limit " + std::to_string(settings.limit) + " must be positive");
@@ -99,7 +98,8 @@ void StrainLimit::observe(View<const Vec3> x)
         tension_->remember(x);
 }
 
-void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active)
+void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
+                          const std::function<bool()>& clear_contacts)
 {
     look_at_everything(x);
     if (violating_.empty())
@@ -113,7 +113,7 @@ void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses, const
             std::reverse(violating_.begin(), violating_.end());
         for (const int t : violating_)
             clamp_triangle(t, x, inverse_masses);
-        const bool cleared = active && sweep < kSweepsWithContact && active->make_feasible(x);
+        const bool cleared = clear_contacts && sweep < kSweepsWithContact && clear_contacts();
         if (cleared || kNeighbourhood * violating_.size() > violates_.size())
             look_at_everything(x);
         else

@@ -26,13 +26,15 @@ public:
         int max_sweeps = 100;    ///< an unreachable limit (pins too far apart) stops here
     };
 
-    /// @param tension  told of every minimiser before it is clamped; may be null
     /// @throws InvalidInput naming `source` when the limit is not positive.
-    StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source,
-                std::shared_ptr<StretchTension> tension = nullptr);
+    StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source);
+
+    /// Tells the tension of every minimiser from now on, before it is clamped.
+    void tell(std::shared_ptr<StretchTension> tension) { tension_ = std::move(tension); }
 
     void observe(View<const Vec3> x) override;
-    void project(View<Vec3> x, View<const double> inverse_masses, const ActiveSetEnergy* active) override;
+    void project(View<Vec3> x, View<const double> inverse_masses,
+                 const std::function<bool()>& clear_contacts) override;
 
     /// Largest principal stretch minus one at x, of slivers too [-].
     double max_strain(View<const Vec3> x) const;

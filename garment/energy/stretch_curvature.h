@@ -27,7 +27,7 @@ struct StretchCurvature {
 /// @param rest_inv  inverse rest edge matrix [1/m]
 /// @param area      rest area [m^2]
 inline void add_corner_row(const StretchCurvature& H, const Mat2& rest_inv, double area,
-                           const Triangle& triangle, int row, BlockMatrix& K)
+                           const Triangle& triangle, int row, BlockWindow K)
 {
     // Gradients of the corners' hat functions.
     Vec2 g[3];

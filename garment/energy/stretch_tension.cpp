@@ -77,7 +77,7 @@ void StretchTension::add_couplings(std::vector<std::pair<int, int>>& couplings) 
 }
 
 /// The excess is convex in x: exact and projected are the same.
-void StretchTension::add_curvature(View<const Vec3> x, Definiteness, BlockMatrix& K)
+void StretchTension::add_curvature(View<const Vec3> x, Definiteness, BlockWindow K)
 {
     for (const Taut& taut : taut_) {
         const int t = taut.triangle;

@@ -37,7 +37,7 @@ public:
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets&) const override {}
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
-    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockMatrix& K) override;
+    void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
 
     /// Picks the triangles that are near their limit at x [vertices] and turns their tension with them. For
     /// the owner to call before Body::step.

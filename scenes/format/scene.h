@@ -190,6 +190,12 @@ struct Attachment {
 
 // --- the rest -------------------------------------------------------------------------------------------
 
+/// Friction between two materials or a material and an avatar, in place of what they have by themselves.
+struct FrictionPair {
+    std::vector<std::string> between; ///< two names of fabrics or avatars, equal ones for a fabric on itself
+    double friction = 0.3;            ///< [-]
+};
+
 struct Contact {
     double gap = 0.001;     ///< [m] kept between cloth and avatar beyond half the cloth's thickness
     double stiffness = 1.0; ///< [-] relative to the solver's own choice

@@ -104,7 +104,8 @@ double strain_on_two_pins(bool with_tension)
     }
     StrainLimit::Settings settings;
     settings.limit = kLimit;
-    StrainLimit limit(rest, settings, "sheet", tension);
+    StrainLimit limit(rest, settings, "sheet");
+    limit.tell(tension);
     const std::vector<Vec3> start = sheet.flat();
     Body::Settings solver;
     solver.tolerance = 1e-4;

@@ -1,0 +1,69 @@
+#include "core/linear/block_diagonal_solver.h"
+
+#include <algorithm>
+
+#include "core/backend/error.h"
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+/// Rows and columns [first, first + size) of H.
+SparseMatrix block_of(const SparseMatrix& H, int first, int size)
+{
+    Eigen::VectorXi counts(size);
+    for (int i = 0; i < size; ++i)
+        counts[i] = H.outerIndexPtr()[first + i + 1] - H.outerIndexPtr()[first + i];
+    SparseMatrix block(size, size);
+    block.reserve(counts);
+    for (int i = 0; i < size; ++i)
+        for (SparseMatrix::InnerIterator entry(H, first + i); entry; ++entry) {
+            const int column = int(entry.col()) - first;
+            if (column < 0 || column >= size)
+                throw InvalidInput("row " + std::to_string(first + i) + " of H is coupled to row " +
+                                   std::to_string(entry.col()) + " of another block");
+            block.insert(i, column) = entry.value();
+        }
+    block.makeCompressed();
+    return block;
+}
+
+} // namespace
+
+BlockDiagonalSolver::BlockDiagonalSolver(std::vector<Block> blocks)
+{
+    int first = 0;
+    for (Block& block : blocks) {
+        parts_.push_back({first, block.size, std::move(block.solver)});
+        first += block.size;
+    }
+}
+
+void BlockDiagonalSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
+{
+    for (const Part& part : parts_)
+        part.solver->update(block_of(H, part.first, part.size), fixed.subview(part.first, part.size));
+}
+
+void BlockDiagonalSolver::begin_step()
+{
+    for (const Part& part : parts_)
+        part.solver->begin_step();
+}
+
+void BlockDiagonalSolver::solve(View<const Vec3> b, View<Vec3> x) const
+{
+    parallel_tasks(kCpu, int(parts_.size()), [&](int i) {
+        const Part& part = parts_[i];
+        part.solver->solve(b.subview(part.first, part.size), x.subview(part.first, part.size));
+    });
+}
+
+bool BlockDiagonalSolver::is_symmetric() const
+{
+    return std::all_of(parts_.begin(), parts_.end(),
+                       [](const Part& part) { return part.solver->is_symmetric(); });
+}
+
+} // namespace toile

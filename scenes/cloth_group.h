@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "collision/contact.h"
+#include "core/pd/joint_projection.h"
+#include "core/pd/point_masses.h"
+#include "scenes/scene_cloth.h"
+
+namespace toile {
+
+/// Cloths that may touch each other, moved together: one minimisation per step over all of their vertices,
+/// which are numbered cloth after cloth.
+class ClothGroup {
+public:
+    /// @throws InvalidInput where the scene's method does not work on one of the cloths.
+    ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, const std::vector<Obstacle>& obstacles,
+               const WorldOptions& options);
+
+    const std::vector<SceneCloth>& cloths() const { return cloths_; }
+
+    /// Prepares the global solvers for a step of dt [s] that ends at time t_t1 [s].
+    void prepare(double dt, double t_t1);
+
+    /// One time step of dt [s] that ends at time t_t1 [s], obstacles already advanced to it.
+    StepReport step(double dt, double t_t1, const std::vector<Obstacle>& obstacles);
+
+    /// Puts the vertices of one cloth elsewhere; velocities and rest shape stay.
+    void place(int cloth, View<const Vec3> positions);
+
+private:
+    std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
+    std::unique_ptr<Contact> make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles) const;
+    std::vector<Vec3> positions() const;
+    template <typename T>
+    View<T> part(View<T> all, int cloth) const;
+    void mark_fixed(double t_t1);
+    void take_positions();
+    std::string names() const;
+    bool sleeps(double t_t1, const std::vector<Obstacle>& obstacles);
+
+    scene::Sleep sleep_;
+    std::vector<SceneCloth> cloths_;
+    std::vector<int> first_; ///< [cloths + 1] vertices
+    std::unique_ptr<JointProjection> limits_;
+    std::unique_ptr<Contact> contact_; ///< null where there is nothing to touch
+    std::unique_ptr<PointMasses> body_;
+    std::vector<unsigned char> fixed_;
+    std::vector<Vec3> targets_, acceleration_;
+    double rest_time_ = 0.0; ///< [s] since when every vertex has been slow
+};
+
+/// Sorts the cloths of a scene into groups: one of all where they may touch each other, else one each.
+std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstacle>& obstacles,
+                                    const WorldOptions& options);
+
+} // namespace toile

@@ -1,0 +1,52 @@
+#include "scenes/cloth_mesh.h"
+
+#include "garment/pattern/shapes.h"
+#include "scenes/rigid_motion.h"
+
+namespace toile {
+
+namespace {
+
+ObjMesh faces_of(const TriangleMesh& mesh)
+{
+    ObjMesh faces;
+    faces.positions = mesh.positions;
+    for (const Triangle& t : mesh.triangles)
+        faces.polygons.push_back({t[0], t[1], t[2]});
+    return faces;
+}
+
+/// The cloth in its own frame, before placement.
+ObjMesh cut(const scene::Cloth& cloth)
+{
+    if (const auto* rectangle = std::get_if<scene::Rectangle>(&cloth.shape))
+        return faces_of(cut_rectangle(rectangle->size, rectangle->resolution));
+    if (const auto* disc = std::get_if<scene::Disc>(&cloth.shape))
+        return faces_of(cut_disc(disc->radius, disc->resolution));
+    if (const auto* skirt = std::get_if<scene::Skirt>(&cloth.shape))
+        return faces_of(
+            cut_skirt({skirt->waist_radius, skirt->hem_radius, skirt->length, skirt->resolution}));
+    return read_obj(std::get<std::filesystem::path>(cloth.shape));
+}
+
+} // namespace
+
+std::string source_of(const scene::Cloth& cloth)
+{
+    const auto* file = std::get_if<std::filesystem::path>(&cloth.shape);
+    return file ? file->string() : "cloth \"" + cloth.name + "\"";
+}
+
+ObjMesh turned_mesh(const scene::Cloth& cloth)
+{
+    ObjMesh mesh = cut(cloth);
+    require_usable(mesh.triangulated(), source_of(cloth));
+    if (cloth.subdivide > 0)
+        mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
+    const Mat3 turn = rotation_of(cloth.rotate_deg);
+    for (Vec3& p : mesh.positions)
+        p = turn * (cloth.scale * scene::metres_per(cloth.unit) * p);
+    return mesh;
+}
+
+} // namespace toile

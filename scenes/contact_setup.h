@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/contact.h"
+#include "scenes/scene_cloth.h"
+
+namespace toile {
+
+/// A scene's contact as Contact takes it.
+Contact::Settings contact_settings(const Scene& scene);
+
+/// Gaps, thicknesses and friction of the cloths.
+std::vector<ContactCloth> contact_cloths(const Scene& scene, const std::vector<SceneCloth>& cloths,
+                                         const std::vector<Obstacle>& obstacles);
+
+std::vector<ContactPartner> contact_partners(const std::vector<Obstacle>& obstacles);
+
+} // namespace toile

@@ -1,0 +1,186 @@
+#include "scenes/scene_cloth.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numbers>
+
+#include "core/backend/parallel.h"
+#include "garment/energy/bending.h"
+#include "garment/energy/membrane.h"
+#include "scenes/cloth_mesh.h"
+#include "scenes/format/scene_fabric.h"
+#include "scenes/method_choice.h"
+
+namespace toile {
+
+namespace {
+
+Gusts::Settings gusts_of(const scene::Wind& wind)
+{
+    Gusts::Settings settings;
+    settings.intensity = wind.turbulence;
+    settings.seed = std::uint64_t(wind.seed);
+    return settings;
+}
+
+/// @param unmoved  [vertices] positions before the cloth's translation [m]
+std::shared_ptr<const RestShape> rest_shape_of(const std::vector<Vec3>& unmoved,
+                                               const std::vector<Triangle>& triangles, double grain_deg,
+                                               const std::string& source)
+{
+    const bool is_flat = bounds(unmoved).upper.y() - bounds(unmoved).lower.y() < 1e-9;
+    return std::make_shared<const RestShape>(
+        rest_shape_of_surface({unmoved, triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(),
+                              grain_deg * std::numbers::pi / 180.0, source));
+}
+
+} // namespace
+
+SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
+                       const std::vector<Obstacle>& obstacles)
+    : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind),
+      gusts_(scene.wind.velocity, gusts_of(scene.wind))
+{
+    state_.name = settings.name;
+    state_.fabric = fabric_of(scene, settings);
+    state_.rest = turned_mesh(settings);
+    state_.triangles = state_.rest.triangulated().triangles;
+    rest_ = rest_shape_of(state_.rest.positions, state_.triangles, settings.grain_deg, source_);
+    for (Vec3& p : state_.rest.positions)
+        p += settings.translate;
+    state_.positions = state_.rest.positions;
+    for (size_t i = 0; i < scene.attachments.size(); ++i)
+        if (scene.attachments[i].cloth == settings.name) {
+            const std::string place = scene.source.string() + ": attachments[" + std::to_string(i) + "]";
+            require_method_holds(scene.solver.method, scene.attachments[i], place);
+            holds_.emplace_back(scene.attachments[i], state_.positions, obstacles, place);
+        }
+
+    masses_ = vertex_masses();
+    air_ = std::make_unique<Aerodynamics>(
+        rest_, Aerodynamics::Settings{scene.air.density, scene.air.normal, scene.air.tangential});
+    StrainLimit::Settings limit;
+    limit.limit = state_.fabric.strain_limit;
+    strain_limit_ = std::make_unique<StrainLimit>(rest_, limit, source_);
+}
+
+std::vector<double> SceneCloth::vertex_masses() const
+{
+    std::vector<double> masses = rest_->vertex_areas();
+    for (double& mass : masses)
+        mass *= state_.fabric.areal_density;
+    return masses;
+}
+
+std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies()
+{
+    const Fabric& fabric = state_.fabric;
+    const auto membrane = std::make_shared<Membrane>(
+        rest_, Membrane::Settings{fabric.stretch_warp, fabric.stretch_weft, fabric.shear}, source_);
+    std::vector<std::shared_ptr<Energy>> energies{membrane};
+    if (fabric.bend_warp > 0.0 || fabric.bend_weft > 0.0) {
+        const auto bending =
+            std::make_shared<Bending>(rest_, Bending::Settings{fabric.bend_warp, fabric.bend_weft}, source_);
+        bending->leave_to(hessian_diagonal(*membrane, vertex_count()));
+        energies.push_back(bending);
+    }
+    add_springs(energies);
+
+    StretchTension::Settings tension;
+    tension.limit = fabric.strain_limit;
+    tension.stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+    tension_ = std::make_shared<StretchTension>(rest_, tension);
+    strain_limit_->tell(tension_);
+    energies.push_back(tension_);
+    return energies;
+}
+
+void SceneCloth::add_springs(std::vector<std::shared_ptr<Energy>>& energies)
+{
+    std::vector<Springs::Spring> springs;
+    for (const Hold& hold : holds_)
+        if (hold.stiffness())
+            for (const int v : hold.vertices())
+                springs.push_back({v, *hold.stiffness()});
+    if (springs.empty())
+        return;
+    springs_ = std::make_shared<Springs>(std::move(springs));
+    energies.push_back(springs_);
+}
+
+ClothModel SceneCloth::model() const
+{
+    const Fabric& fabric = state_.fabric;
+    ClothModel cloth;
+    cloth.masses = masses_;
+    cloth.rest = rest_;
+    cloth.stretch = {fabric.stretch_warp, fabric.stretch_weft, fabric.shear};
+    cloth.bending = {fabric.bend_warp, fabric.bend_weft};
+    return cloth;
+}
+
+void SceneCloth::begin_step(View<const Vec3> x)
+{
+    if (tension_)
+        tension_->begin_step(x);
+}
+
+void SceneCloth::take(View<const Vec3> x) { state_.positions.assign(x.begin(), x.end()); }
+
+void SceneCloth::forget()
+{
+    if (tension_)
+        tension_->forget();
+}
+
+void SceneCloth::mark_fixed(double t_t1, View<unsigned char> fixed) const
+{
+    std::fill(fixed.begin(), fixed.end(), 0);
+    for (const Hold& hold : holds_)
+        if (!hold.stiffness() && hold.holds_at(t_t1))
+            for (const int v : hold.vertices())
+                fixed[v] = 1;
+}
+
+void SceneCloth::hold(double t_t1, const std::vector<Obstacle>& obstacles, View<Vec3> targets)
+{
+    int spring = 0;
+    for (const Hold& hold : holds_) {
+        const bool holds = hold.holds_at(t_t1);
+        for (int k = 0; k < int(hold.vertices().size()); ++k) {
+            const Vec3 target = hold.target(k, t_t1, obstacles);
+            if (hold.stiffness()) {
+                if (holds)
+                    springs_->set_target(spring, target);
+                else
+                    springs_->release(spring);
+                ++spring;
+            } else if (holds) {
+                targets[hold.vertices()[k]] = target;
+            }
+        }
+    }
+}
+
+void SceneCloth::accelerate(double dt, double t_t1, View<const Vec3> x, View<const Vec3> v,
+                            View<Vec3> acceleration)
+{
+    const double decay = state_.fabric.damping / (1.0 + dt * state_.fabric.damping);
+    parallel_for(kCpu, "scenes/accelerate", v.size(),
+                 [&](int i) { acceleration[i] = gravity_ - decay * v[i]; });
+    if (!air_->is_active())
+        return;
+    if (gusts_.are_active()) {
+        gusts_at_.resize(v.size());
+        gusts_.sample(x, t_t1, gusts_at_);
+    }
+    air_->add_acceleration(x, v, masses_, wind_.velocity, dt, acceleration, gusts_at_);
+}
+
+bool SceneCloth::is_disturbed(double t) const
+{
+    return wind_.velocity.norm() > 0.0 ||
+           std::any_of(holds_.begin(), holds_.end(), [&](const Hold& hold) { return hold.changes_at(t); });
+}
+
+} // namespace toile
