@@ -30,9 +30,6 @@ constexpr double kRevisionMargin = 0.003;
 /// walking skirt was minimised three times a step for nothing that could be measured.
 constexpr double kFrictionChange = 0.5;
 
-/// cos of the angle up to which a pair's normal may turn and still be the same contact [-].
-constexpr double kSameContact = 0.7;
-
 bool is_vertex_pair(const ContactPair& pair)
 {
     return pair.kind == ContactKind::kVertexFace || pair.kind == ContactKind::kVertexShape;
@@ -55,12 +52,19 @@ std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<cons
 
 } // namespace
 
-Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
+Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
                  std::vector<ContactPartner> partners, const Settings& settings)
-    : partners_(std::move(partners)), settings_(settings), detector_(triangles, positions),
-      carried_(positions.size()), detected_at_(positions.size()), nearest_(positions.size()),
-      altitude_(shortest_altitudes(triangles, positions))
+    : cloths_(std::move(cloths)), partners_(std::move(partners)), settings_(settings),
+      detector_(triangles, positions), carried_(positions.size()), detected_at_(positions.size()),
+      nearest_(positions.size()), altitude_(shortest_altitudes(triangles, positions))
 {
+    for (int c = 0; c < int(cloths_.size()); ++c) {
+        cloth_of_.insert(cloth_of_.end(), cloths_[c].vertex_count, c);
+        largest_gap_ = std::max(largest_gap_, cloths_[c].gap);
+    }
+    TOILE_ASSERT(int(cloth_of_.size()) == positions.size());
+    if (settings_.cloth_with_cloth)
+        between_.emplace(triangles, positions, cloths_, altitude_);
 }
 
 void Contact::begin_step(const StepStart& start)
@@ -73,13 +77,17 @@ void Contact::begin_step(const StepStart& start)
     double farthest = 0.0;
     for (int v = 0; v < start.x.size(); ++v)
         farthest = std::max(farthest, (start.prediction[v] - carried_[v]).norm());
-    detect(carried_, std::min(settings_.gap + farthest, kMaxRadius));
+    if (between_)
+        between_->begin_step(start.x, start.prediction);
+    detect(carried_, std::min(largest_gap_ + farthest, kMaxRadius));
 }
 
 void Contact::forget()
 {
-    memory_.clear();
+    memory_.forget();
     std::fill(nearest_.begin(), nearest_.end(), Nearest{});
+    if (between_)
+        between_->forget();
 }
 
 /// Moves every vertex that was near a surface along with it, so that it is still on the right side of the
@@ -118,20 +126,56 @@ void Contact::detect(View<const Vec3> at, double radius)
     }
 
     std::fill(nearest_.begin(), nearest_.end(), Nearest{});
+    for (const ContactPair& pair : pairs) {
+        if (!is_vertex_pair(pair))
+            continue;
+        const double gap = pair.gap(at);
+        Nearest& nearest = nearest_[pair.vertex[0]];
+        if (nearest.collider < 0 || gap < nearest.gap)
+            nearest = {pair.collider, pair.feature, gap, pair.point};
+    }
+    if (between_)
+        between_->append_pairs(pairs);
+    make_terms(pairs);
+}
+
+/// The pairs that can move at all become terms of the energy.
+void Contact::make_terms(const std::vector<ContactPair>& pairs)
+{
     std::vector<ContactTerm> terms;
     for (const ContactPair& pair : pairs) {
-        if (is_vertex_pair(pair)) {
-            const double gap = pair.gap(at);
-            Nearest& nearest = nearest_[pair.vertex[0]];
-            if (nearest.collider < 0 || gap < nearest.gap)
-                nearest = {pair.collider, pair.feature, gap, pair.point};
-        }
-        const bool held = std::all_of(pair.vertex.begin(), pair.vertex.end(),
-                                      [&](int v) { return v < 0 || start_.fixed[v]; });
-        if (!held)
+        bool is_held = true;
+        for (int k = 0; k < pair.count(); ++k)
+            is_held = is_held && start_.fixed[pair.vertex[k]];
+        if (!is_held)
             terms.push_back(make_term(pair));
     }
-    energy_.set_terms(std::move(terms), at.size());
+    energy_.set_terms(std::move(terms), start_.x.size());
+}
+
+/// Distance that the pair is to keep [m].
+double Contact::gap_of(const ContactPair& pair) const
+{
+    return pair.is_between_cloths() ? between_->thickness_of(pair) : cloths_[cloth_of_[pair.vertex[0]]].gap;
+}
+
+/// Coulomb coefficient [-].
+double Contact::friction_of(const ContactPair& pair) const
+{
+    const ContactCloth& cloth = cloths_[cloth_of_[pair.vertex[0]]];
+    return pair.is_between_cloths() ? cloth.cloth_friction[cloth_of_[pair.vertex[3]]]
+                                    : cloth.partner_friction[pair.collider];
+}
+
+/// As stiff as the cloth is there [N/m]; between cloths as the softer of the two sides.
+double Contact::stiffness_of(const ContactPair& pair) const
+{
+    double ahead = 0.0, behind = 0.0;
+    for (int k = 0; k < pair.count(); ++k) {
+        const double share = pair.weight[k] * start_.diagonal[pair.vertex[k]];
+        (share > 0.0 ? ahead : behind) += std::abs(share);
+    }
+    return settings_.stiffness * (pair.is_between_cloths() ? std::min(ahead, behind) : ahead);
 }
 
 /// The pair's cloth point at t0, moved along with the collider unless that jumped.
@@ -147,27 +191,16 @@ ContactTerm Contact::make_term(const ContactPair& pair) const
 {
     ContactTerm term;
     term.pair = pair;
-    term.friction = partners_[pair.collider].friction;
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
-        term.stiffness += settings_.stiffness * pair.weight[k] * start_.diagonal[pair.vertex[k]];
+    term.friction = friction_of(pair);
+    term.stiffness = stiffness_of(pair);
 
     // Cloth that starts inside comes out at the recovery speed, not at once.
     const Vec3 start = at_start(pair);
     const double start_gap = pair.normal.dot(start - pair.point);
-    term.offset = std::min(settings_.gap, start_gap + settings_.recovery_speed * start_.dt);
+    term.offset = std::min(gap_of(pair), start_gap + settings_.recovery_speed * start_.dt);
     term.anchor = start;
 
-    // The same contact of the step before says how hard it pressed and how far it had stuck.
-    const auto [first, last] =
-        memory_.equal_range(Key{pair.kind, pair.collider, pair.vertex[0], pair.vertex[1], pair.vertex[2]});
-    for (auto known = first; known != last; ++known) {
-        const Memory& memory = known->second;
-        if (memory.normal.dot(pair.normal) < kSameContact)
-            continue;
-        term.normal_force = memory.normal_force;
-        term.anchor -= memory.stick - pair.normal.dot(memory.stick) * pair.normal;
-        break;
-    }
+    memory_.hand_on(term); // the same contact of the step before
     return term;
 }
 
@@ -192,14 +225,15 @@ void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
     energy_.add_hessian_product(p, out);
 }
 
-bool Contact::revise(View<const Vec3> x)
+bool Contact::revise(View<Vec3> x)
 {
-    if (energy_.terms().empty())
+    if (energy_.terms().empty() && !between_)
         return false;
     const bool friction_changed = update_normal_forces(x);
-    if (slid_away(x, kTrust)) {
+    const bool has_new_pairs = between_ && between_->advance(x);
+    if (has_new_pairs || slid_away(x, kTrust)) {
         remember_start();
-        detect(x, settings_.gap + kRevisionMargin);
+        detect(x, largest_gap_ + kRevisionMargin);
         return true;
     }
     return friction_changed;
@@ -219,9 +253,9 @@ bool Contact::slid_away(View<const Vec3> x, double trust) const
 {
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const ContactPair& pair = energy_.terms()[i].pair;
-        if (energy_.gap(i, x) > 0.5 * settings_.gap)
+        if (pair.is_between_cloths() || energy_.gap(i, x) > 0.5 * gap_of(pair))
             continue;
-        for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+        for (int k = 0; k < pair.count(); ++k)
             if ((x[pair.vertex[k]] - detected_at_[pair.vertex[k]]).squaredNorm() > trust * trust)
                 return true;
     }
@@ -248,38 +282,31 @@ bool Contact::update_normal_forces(View<const Vec3> x)
 template <typename Slip>
 void Contact::remember(const Slip& slip)
 {
-    memory_.clear();
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        const ContactTerm& term = energy_.terms()[i];
-        const double force = term.normal_force;
-        if (force == 0.0)
-            continue;
-        Vec3 stick = slip(i);
-        if (const double pull = term.stiffness * stick.norm(); pull > term.friction * force)
-            stick *= term.friction * force / pull;
-        const ContactPair& pair = term.pair;
-        memory_.emplace(Key{pair.kind, pair.collider, pair.vertex[0], pair.vertex[1], pair.vertex[2]},
-                        Memory{pair.normal, force, stick});
-    }
+    memory_.forget();
+    for (int i = 0; i < int(energy_.terms().size()); ++i)
+        memory_.keep(energy_.terms()[i], slip(i));
 }
 
 void Contact::end_step(View<const Vec3> x)
 {
     if (!has_cleared_)
         remember([&](int i) { return energy_.slip(i, x); });
-    active_count_ = int(memory_.size());
+    active_count_ = memory_.size();
     min_gap_ = 0.0;
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const double gap = energy_.terms()[i].pair.gap(x);
         min_gap_ = i == 0 ? gap : std::min(min_gap_, gap);
     }
+    if (between_)
+        between_->end_step(x);
 }
 
 double Contact::deepest(View<const Vec3> x) const
 {
     double depth = 0.0;
     for (int i = 0; i < int(energy_.terms().size()); ++i)
-        depth = std::max(depth, -energy_.gap(i, x));
+        if (!energy_.terms()[i].pair.is_between_cloths())
+            depth = std::max(depth, -energy_.gap(i, x));
     return depth;
 }
 
@@ -291,10 +318,22 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
         return;
     remember([&](int i) { return energy_.slip(i, x); });
     has_cleared_ = true;
-    detect(x, settings_.gap + kRevisionMargin);
+    detect(x, largest_gap_ + kRevisionMargin);
     const StageScope stage("collision/clear");
     stop_at_surfaces(x, v);
     push_out(x);
+}
+
+/// What would have crossed stops: it loses the velocity that it was to have got there.
+void Contact::keep_apart(View<Vec3> x, View<Vec3> v)
+{
+    if (!between_)
+        return;
+    const std::vector<Vec3> wanted(x.begin(), x.end());
+    if (!between_->hold_back(x))
+        return;
+    for (int i = 0; i < x.size(); ++i)
+        v[i] += (x[i] - wanted[i]) / start_.dt;
 }
 
 /// Coulomb's law with the distance pushed out for the normal impulse [Macklin et al. 2014, eq. 24]. Nothing
@@ -302,7 +341,7 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
 void Contact::resolve(View<Vec3> x, View<Vec3> v)
 {
     if (slid_away(x, kEndTrust))
-        detect(x, settings_.gap + kRevisionMargin);
+        detect(x, largest_gap_ + kRevisionMargin);
     const StageScope stage("collision/resolve");
     update_normal_forces(x);
     remember([](int) { return Vec3(Vec3::Zero()); });

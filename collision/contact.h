@@ -1,25 +1,26 @@
 #pragma once
 
-#include <map>
-#include <tuple>
+#include <optional>
 #include <vector>
 
-#include "collision/contact_energy.h"
+#include "collision/cloth/cloth_contact.h"
+#include "collision/contact_cloth.h"
+#include "collision/contact_memory.h"
 #include "collision/detect.h"
 #include "core/pd/active_set_energy.h"
 
 namespace toile {
 
-/// What one cloth may touch: exactly one of mesh and shape is set. Borrowed; moved by their owner before each
+/// What cloth may touch: exactly one of mesh and shape is set. Borrowed; moved by their owner before each
 /// step.
 struct ContactPartner {
     const MeshCollider* mesh = nullptr;
     const ShapeCollider* shape = nullptr;
-    double friction = 0.3; ///< [-] Coulomb coefficient
 };
 
-/// Contact of one cloth with avatars and shapes during a step: finds pairs, keeps their energy, looks again
-/// when the cloth has slid away from where they were found, and remembers friction from step to step.
+/// Contact of cloths with avatars, shapes and each other during a step: finds pairs, keeps their energy, looks
+/// again when the cloth has slid away from where they were found, and remembers friction from step to step.
+/// Cloth that starts without crossing cloth never does (SafeStep).
 class Contact : public ActiveSetEnergy {
 public:
     /// Fastest surface that cloth is carried along with [m/s]. A body that jumps further in a step has been
@@ -27,8 +28,6 @@ public:
     static constexpr double kMaxCarrySpeed = 20.0;
 
     struct Settings {
-        double gap = 0.002; ///< [m] distance kept between the cloth's middle surface and the collider
-
         /// [-] Stiffness of a pair relative to diag(H) at its vertices. Above 25 PCG slows down; at 1 a
         /// resting vertex sinks by micrometres, far less than the gap.
         double stiffness = 2.0;
@@ -39,12 +38,15 @@ public:
 
         bool face_vertex = true; ///< see DetectSettings
         bool edge_edge = true;
+
+        bool cloth_with_cloth = false; ///< cloth touches itself and other cloth
     };
 
-    /// @param triangles  [triangles] of the cloth
+    /// @param triangles  [triangles] of all cloths
     /// @param positions  [vertices] start positions [m]
-    Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactPartner> partners,
-            const Settings& settings);
+    /// @param cloths     whose vertices follow each other
+    Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
+            std::vector<ContactPartner> partners, const Settings& settings);
 
     void begin_step(const StepStart& start) override;
     bool make_feasible(View<Vec3> x) const override;
@@ -52,9 +54,10 @@ public:
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
-    bool revise(View<const Vec3> x) override;
+    bool revise(View<Vec3> x) override;
     void clear(View<Vec3> x, View<Vec3> v) override;
     void resolve(View<Vec3> x, View<Vec3> v) override;
+    void keep_apart(View<Vec3> x, View<Vec3> v) override;
     void end_step(View<const Vec3> x) override;
 
     /// Drops what earlier steps left: cloth that was put elsewhere touches nothing it knows.
@@ -65,16 +68,6 @@ public:
     double min_gap() const { return min_gap_; }        ///< [m] smallest distance of a pair, after end_step()
 
 private:
-    /// Identity of a pair over time: kind, collider, cloth vertices.
-    using Key = std::tuple<ContactKind, int, int, int, int>;
-
-    /// What a pair hands to its successor.
-    struct Memory {
-        Vec3 normal;         ///< unit
-        double normal_force; ///< [N]
-        Vec3 stick;          ///< [m] elastic part of the slip
-    };
-
     /// The surface point nearest to a cloth vertex.
     struct Nearest {
         int collider = -1; ///< -1: none near
@@ -85,7 +78,11 @@ private:
 
     void carry_with_colliders();
     void detect(View<const Vec3> at, double radius);
+    void make_terms(const std::vector<ContactPair>& pairs);
     ContactTerm make_term(const ContactPair& pair) const;
+    double gap_of(const ContactPair& pair) const;
+    double friction_of(const ContactPair& pair) const;
+    double stiffness_of(const ContactPair& pair) const;
     Vec3 at_start(const ContactPair& pair) const;
     bool is_carried(const Vec3& motion) const;
     template <typename Slip>
@@ -102,6 +99,9 @@ private:
     void push_out(View<Vec3> x) const;
     void remember_start();
 
+    std::vector<ContactCloth> cloths_;
+    std::vector<int> cloth_of_; ///< [vertices]
+    double largest_gap_ = 0.0;  ///< [m] of the cloths
     std::vector<ContactPartner> partners_;
     Settings settings_;
     ContactDetector detector_;
@@ -111,7 +111,8 @@ private:
     std::vector<Vec3> detected_at_; ///< [vertices] where the pairs were found [m]
     std::vector<Nearest> nearest_;  ///< [vertices] last step's
     std::vector<double> altitude_;  ///< [vertices] the shortest of the triangles around, at the start [m]
-    std::multimap<Key, Memory> memory_;
+    std::optional<ClothContact> between_; ///< cloth and cloth; none where that is switched off
+    ContactMemory memory_;
     bool has_cleared_ = false; ///< in this step: memory_ is the minimiser's, the pairs are new
     int active_count_ = 0;
     double min_gap_ = 0.0;

@@ -30,7 +30,7 @@ constexpr double kMinLeverage = 0.1;
 double Contact::leverage_of(const ContactPair& pair) const
 {
     double squares = 0.0;
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+    for (int k = 0; k < pair.count(); ++k)
         if (!start_.fixed[pair.vertex[k]])
             squares += pair.weight[k] * pair.weight[k];
     return squares;
@@ -43,7 +43,7 @@ bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) 
     const double leverage = leverage_of(pair);
     if (leverage < kMinLeverage)
         return false;
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k)
+    for (int k = 0; k < pair.count(); ++k)
         if (!start_.fixed[pair.vertex[k]])
             field[pair.vertex[k]] += pair.weight[k] / leverage * move;
     return true;
@@ -111,7 +111,7 @@ void Contact::stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const
 double Contact::clearance_of(const ContactPair& pair) const
 {
     double shortest = std::numeric_limits<double>::max(), largest = 0.0;
-    for (int k = 0; k < 3 && pair.vertex[k] >= 0; ++k) {
+    for (int k = 0; k < pair.count(); ++k) {
         shortest = std::min(shortest, altitude_[pair.vertex[k]]);
         if (!start_.fixed[pair.vertex[k]])
             largest = std::max(largest, pair.weight[k]);

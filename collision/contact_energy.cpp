@@ -17,16 +17,18 @@ double tangential_stiffness(const ContactTerm& term, double slip_length)
     return term.stiffness * slip_length <= limit ? term.stiffness : limit / slip_length;
 }
 
+/// 1 with a collider, 2 where cloth meets cloth.
+double total_weight(const ContactPair& pair) { return pair.is_between_cloths() ? 2.0 : 1.0; }
+
 } // namespace
 
 void ContactEnergy::set_terms(std::vector<ContactTerm> terms, int vertex_count)
 {
     terms_ = std::move(terms);
-    std::vector<std::pair<int, int>> incidence; // (vertex, 3 * term + slot)
+    std::vector<std::pair<int, int>> incidence; // (vertex, 4 * term + slot)
     for (int i = 0; i < int(terms_.size()); ++i)
-        for (int k = 0; k < 3; ++k)
-            if (const int v = terms_[i].pair.vertex[k]; v >= 0)
-                incidence.emplace_back(v, 3 * i + k);
+        for (int k = 0; k < terms_[i].pair.count(); ++k)
+            incidence.emplace_back(terms_[i].pair.vertex[k], 4 * i + k);
     std::sort(incidence.begin(), incidence.end());
 
     vertices_.clear();
@@ -71,8 +73,8 @@ void ContactEnergy::gather(View<Vec3> out, const PerTerm& value) const
     parallel_for(kCpu, "contact/gather", int(vertices_.size()), [&](int i) {
         Vec3 sum = Vec3::Zero();
         for (int k = first_[i]; k < first_[i + 1]; ++k) {
-            const int term = entries_[k] / 3;
-            sum += terms_[term].pair.weight[entries_[k] % 3] * value(term);
+            const int term = entries_[k] / 4;
+            sum += terms_[term].pair.weight[entries_[k] % 4] * value(term);
         }
         out[vertices_[i]] += sum;
     });
@@ -115,8 +117,10 @@ bool ContactEnergy::activate(View<const Vec3> x)
     bool active = false;
     for (size_t i = 0; i < vertices_.size(); ++i) {
         Mat3 block = Mat3::Zero();
-        for (int k = first_[i]; k < first_[i + 1]; ++k)
-            block += terms_[entries_[k] / 3].pair.weight[entries_[k] % 3] * frozen_[entries_[k] / 3];
+        for (int k = first_[i]; k < first_[i + 1]; ++k) {
+            const ContactPair& pair = terms_[entries_[k] / 4].pair;
+            block += std::abs(pair.weight[entries_[k] % 4]) * total_weight(pair) * frozen_[entries_[k] / 4];
+        }
         blocks_[vertices_[i]] = block;
         active = active || !block.isZero(0.0);
     }

@@ -17,7 +17,7 @@ struct ContactTerm {
     double normal_force = 0.0;  ///< [N] lagged, bounds friction
 };
 
-/// Contact and friction of one cloth as an energy of its positions.
+/// Contact and friction of cloth, with colliders and with cloth, as an energy of its positions.
 ///
 /// Normal, with the gap g = n . (sum_k b_k x_k - p) - offset:
 ///
@@ -45,7 +45,7 @@ public:
     bool activate(View<const Vec3> x);
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const;
 
-    /// Per vertex sum_p b_k A_p: bounds the frozen Hessian because the weights of a pair sum to one (Jensen).
+    /// Per vertex sum_p |b_k| (sum_j |b_j|) A_p: bounds the frozen Hessian (Cauchy-Schwarz).
     View<const Mat3> diagonal_blocks() const { return blocks_; }
 
     /// Gap g of a term at x [m]; negative where it pushes.
@@ -62,7 +62,7 @@ private:
     std::vector<ContactTerm> terms_;
     std::vector<int> vertices_;            ///< touched vertices, ascending
     std::vector<int> first_;               ///< [touched + 1] into entries_
-    std::vector<int> entries_;             ///< 3 * term + slot
+    std::vector<int> entries_;             ///< 4 * term + slot
     std::vector<Mat3> frozen_;             ///< [terms] A_p
     std::vector<Mat3> blocks_;             ///< [vertices]
     mutable std::vector<Vec3> term_force_; ///< [terms] scratch

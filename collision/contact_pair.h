@@ -6,10 +6,19 @@
 
 namespace toile {
 
-/// What touches what: cloth first, collider second.
-enum class ContactKind { kVertexFace, kFaceVertex, kEdgeEdge, kVertexShape, kFaceShape, kEdgeShape };
+/// What touches what: cloth first, then the collider or the other cloth.
+enum class ContactKind {
+    kVertexFace,
+    kFaceVertex,
+    kEdgeEdge,
+    kVertexShape,
+    kFaceShape,
+    kEdgeShape,
+    kClothVertexFace,
+    kClothEdgeEdge
+};
 
-/// A place where cloth is near a collider: the half space that the cloth point should stay in,
+/// A place where cloth is near a collider or near cloth: the half space that the cloth point should stay in,
 ///
 ///   n . (sum_k weight_k x_k - point) >= offset        offset [m]: the contact thickness
 //
@@ -20,23 +29,36 @@ enum class ContactKind { kVertexFace, kFaceVertex, kEdgeEdge, kVertexShape, kFac
 //       ___x___ collider face          x collider vertex       x  collider edge (end on)
 //                                     / \                      |
 //    kFaceShape, kEdgeShape: a cloth face or edge against a corner or edge of a Skeleton
+//    kClothVertexFace, kClothEdgeEdge: both are cloth. Weights are signed, sum 0, and point is zero:
+//                                      sum_k weight_k x_k runs from one side to the other.
 struct ContactPair {
-    std::array<int, 3> vertex{-1, -1, -1};    ///< cloth vertices; -1 unused
-    std::array<double, 3> weight{0., 0., 0.}; ///< >= 0, sum 1; 0 where unused
-    Vec3 normal = Vec3::UnitY();              ///< unit, out of the collider, at t1
-    Vec3 point = Vec3::Zero();                ///< collider surface point at t1 [m]
-    Vec3 motion = Vec3::Zero();               ///< displacement of that material point from t0 to t1 [m]
-    int collider = -1;                        ///< as given to detect()
+    std::array<int, 4> vertex{-1, -1, -1, -1};    ///< cloth vertices; -1 unused, at the end
+    std::array<double, 4> weight{0., 0., 0., 0.}; ///< of a collider's pair >= 0, sum 1; 0 where unused
+    Vec3 normal = Vec3::UnitY();                  ///< unit, out of the collider, at t1
+    Vec3 point = Vec3::Zero();                    ///< collider surface point at t1 [m]
+    Vec3 motion = Vec3::Zero();                   ///< displacement of that material point from t0 to t1 [m]
+    int collider = -1;                            ///< as given to detect(); -1 where cloth meets cloth
     ContactKind kind = ContactKind::kVertexFace;
     /// Collider triangle, vertex or edge by kind; of a shape 0 with a cloth vertex, else the number of the
     /// skeleton's corner, or its edge's after all corners.
     int feature = -1;
 
+    /// Cloth vertices in use.
+    int count() const
+    {
+        int used = 1;
+        while (used < 4 && vertex[used] >= 0)
+            ++used;
+        return used;
+    }
+
+    bool is_between_cloths() const { return kind >= ContactKind::kClothVertexFace; }
+
     /// sum_k weight_k x_k at cloth positions x [m].
     Vec3 cloth_point(View<const Vec3> x) const
     {
         Vec3 sum = weight[0] * x[vertex[0]];
-        for (int k = 1; k < 3 && vertex[k] >= 0; ++k)
+        for (int k = 1; k < 4 && vertex[k] >= 0; ++k)
             sum += weight[k] * x[vertex[k]];
         return sum;
     }
@@ -44,5 +66,8 @@ struct ContactPair {
     /// n . (sum_k weight_k x_k - point) at cloth positions x [m]: negative inside the collider.
     double gap(View<const Vec3> x) const { return normal.dot(cloth_point(x) - point); }
 };
+
+/// ContactPair::vertex of one to four vertices.
+inline std::array<int, 4> contact_vertices(int a, int b = -1, int c = -1, int d = -1) { return {a, b, c, d}; }
 
 } // namespace toile

@@ -56,8 +56,8 @@ void add_pair(const PairSearch& search, const std::array<int, 2>& cloth_edge,
             normal = direction;
     }
     const std::array<int, 2>& end = surface.edges().vertex[ridge.edge];
-    out.push_back({.vertex = {cloth_edge[0], cloth_edge[1], -1},
-                   .weight = {1.0 - s, s, 0.0},
+    out.push_back({.vertex = contact_vertices(cloth_edge[0], cloth_edge[1]),
+                   .weight = {1.0 - s, s},
                    .normal = normal,
                    .point = on_ridge,
                    .motion = (1.0 - t) * search.mesh.motion(end[0]) + t * search.mesh.motion(end[1]),

@@ -35,7 +35,7 @@ void find_sheets(const PairSearch& search, const SurfaceProximity& cloth, int v,
         if (gap < -kTouching && !is_inside_below(search.mesh, sheet.point, sheet.distance(), n))
             continue;
         const Triangle& corner = cloth.triangles()[sheet.triangle];
-        out.push_back({.vertex = {corner[0], corner[1], corner[2]},
+        out.push_back({.vertex = contact_vertices(corner[0], corner[1], corner[2]),
                        .weight = {sheet.barycentric[0], sheet.barycentric[1], sheet.barycentric[2]},
                        .normal = n,
                        .point = x,

@@ -23,8 +23,8 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
     const MeshCollider& mesh = search.mesh;
     const Vec3& x = search.x[v];
     const auto add = [&](const SurfacePoint& at) {
-        out.push_back({.vertex = {v, -1, -1},
-                       .weight = {1.0, 0.0, 0.0},
+        out.push_back({.vertex = contact_vertices(v),
+                       .weight = {1.0},
                        .normal = outward(at, x),
                        .point = at.point,
                        .motion = mesh.motion(at.triangle, at.barycentric),

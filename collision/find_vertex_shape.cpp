@@ -11,8 +11,8 @@ void find_vertex_shape(View<const Vec3> x, const ShapeCollider& shape, int colli
             for (int v = begin; v < end; ++v) {
                 const ShapePoint at = shape.closest(x[v]);
                 if (at.signed_distance < radius)
-                    pairs.push_back({.vertex = {v, -1, -1},
-                                     .weight = {1.0, 0.0, 0.0},
+                    pairs.push_back({.vertex = contact_vertices(v),
+                                     .weight = {1.0},
                                      .normal = at.normal,
                                      .point = at.point,
                                      .motion = shape.motion(at.point),

@@ -26,8 +26,8 @@ constexpr double kInsideSlope = 0.1;
 
 /// A point of the cloth that is nearest to a corner or edge of the skeleton.
 struct ShapeSearch::Meeting {
-    std::array<int, 3> vertex;
-    std::array<double, 3> weight;
+    std::array<int, 4> vertex;
+    std::array<double, 4> weight;
     Vec3 on_cloth;               ///< [m]
     Vec3 on_skeleton;            ///< [m]
     Vec3 across;                 ///< unit, along their connection, also where that has no length
@@ -102,7 +102,7 @@ void ShapeSearch::add_face(int t, std::vector<ContactPair>& out) const
             continue;
         const ClosestOnTriangle at = closest_on_triangle(p, a, b, c);
         if (at.feature == TriangleFeature::kFace)
-            add({.vertex = {corner[0], corner[1], corner[2]},
+            add({.vertex = contact_vertices(corner[0], corner[1], corner[2]),
                  .weight = {at.barycentric[0], at.barycentric[1], at.barycentric[2]},
                  .on_cloth = at.point,
                  .on_skeleton = p,
@@ -135,8 +135,8 @@ void ShapeSearch::add_corner_edge(int e, int corner, std::vector<ContactPair>& o
     if (s <= 0.0 || s >= 1.0 || distance < kTouching || distance > skeleton_.radius + radius_ ||
         !is_nearest_of_its_faces(e, p))
         return;
-    add({.vertex = {end[0], end[1], -1},
-         .weight = {1.0 - s, s, 0.0},
+    add({.vertex = contact_vertices(end[0], end[1]),
+         .weight = {1.0 - s, s},
          .on_cloth = on_cloth,
          .on_skeleton = p,
          .across = (on_cloth - p) / distance,
@@ -156,8 +156,8 @@ void ShapeSearch::add_edge_edge(int e, int edge, std::vector<ContactPair>& out) 
     if (!(at.s > 0.0 && at.s < 1.0 && at.t > 0.0 && at.t < 1.0) ||
         !(across.squaredNorm() > kParallelSine2 * da.squaredNorm() * db.squaredNorm()))
         return;
-    add({.vertex = {end[0], end[1], -1},
-         .weight = {1.0 - at.s, at.s, 0.0},
+    add({.vertex = contact_vertices(end[0], end[1]),
+         .weight = {1.0 - at.s, at.s},
          .on_cloth = a0 + at.s * da,
          .on_skeleton = ridge.a + at.t * db,
          .across = across.normalized(),

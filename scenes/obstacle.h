@@ -21,7 +21,8 @@ public:
     /// True when anything moved in the current step.
     bool moved() const { return moved_; }
 
-    ContactPartner partner() const { return {mesh_collider_.get(), shape_collider_.get(), friction_}; }
+    ContactPartner partner() const { return {mesh_collider_.get(), shape_collider_.get()}; }
+    double friction() const { return friction_; } ///< [-] with what gives no other
     const SceneBody& body() const { return body_; }
 
 private:

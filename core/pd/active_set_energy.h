@@ -41,7 +41,8 @@ public:
     /// After every minimisation: refreshes lagged quantities (friction limits) and looks again where x left
     /// the neighbourhood that the candidates were made for. True when the energy changed enough to be
     /// minimised again.
-    virtual bool revise(View<const Vec3> x) = 0;
+    /// x [vertices] is moved back where it has gone too far for what must always hold (keep_apart).
+    virtual bool revise(View<Vec3> x) = 0;
 
     /// Clears what the minimisation has left inside the forbidden half-spaces. x and v [vertices] are its
     /// positions and velocities.
@@ -50,6 +51,10 @@ public:
     /// Instead of clear(), for a method that knows nothing of this energy: takes the positions x and
     /// velocities v [vertices] that it has found without, and changes them as rigid contact would.
     virtual void resolve(View<Vec3> x, View<Vec3> v) { clear(x, v); }
+
+    /// The last word on positions x and velocities v [vertices], after all that has moved them: brings back
+    /// what would break an invariant, such as cloth that would have passed through cloth.
+    virtual void keep_apart(View<Vec3> x, View<Vec3> v) = 0;
 
     /// Remembers what the next step builds on. x [vertices] are the final positions.
     virtual void end_step(View<const Vec3> x) = 0;

@@ -52,8 +52,10 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
         active->clear(x_t1_, v_);
     if (projection)
         project(dt, system_->fixed(), *projection, active);
-    if (active)
+    if (active) {
+        active->keep_apart(x_t1_, v_);
         active->end_step(x_t1_);
+    }
     x_.swap(x_t1_);
     return report;
 }

@@ -87,7 +87,7 @@ void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, Bloc
     parallel_for(kCpu, "membrane/curvature", lane_blocks(triangles),
                  CurveMembrane{x, rest_->triangles, rest_inv_, weights_, definiteness, curvature_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
-    parallel_for(kCpu, "membrane/gather_curvature", K.rows(), [&](int v) {
+    parallel_for(kCpu, "membrane/gather_curvature", x.size(), [&](int v) {
         for (int k = corners.first[v]; k < corners.first[v + 1]; ++k) {
             const int t = corners.items[k] / 3;
             add_corner_row(curvature_[t], rest_->edges_inv[t], rest_->areas[t], rest_->triangles[t],

@@ -235,6 +235,27 @@ void check_attachments(const Document& document, const Scene& scene)
     }
 }
 
+// --- contact ---
+
+void check_contact(const Document& document, const Scene& scene)
+{
+    const std::vector<std::string> avatars = names_of(scene.avatars);
+    std::vector<std::string> known = avatars;
+    for (const Cloth& cloth : scene.cloths)
+        if (!holds(known, cloth.fabric))
+            known.push_back(cloth.fabric);
+    const std::vector<FrictionPair>& pairs = scene.contact.friction_pairs;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+        const std::string place = below(below(below("contact", "friction_pairs"), i), "between");
+        if (pairs[i].between.size() != 2)
+            document.refuse(place, std::to_string(pairs[i].between.size()) + " names; friction is between two");
+        for (const std::string& name : pairs[i].between)
+            require_known(document, place, "fabric in use or avatar", name, known);
+        if (holds(avatars, pairs[i].between[0]) && holds(avatars, pairs[i].between[1]))
+            document.refuse(place, "avatars don't rub on each other; name a fabric");
+    }
+}
+
 // --- export ---
 
 void check_exports(const Document& document, const Scene& scene)
@@ -269,6 +290,7 @@ void require_consistent(const Document& document, const Scene& scene)
     check_cloths(document, scene);
     check_fabrics(document, scene);
     check_attachments(document, scene);
+    check_contact(document, scene);
     check_exports(document, scene);
 }
 

@@ -209,13 +209,24 @@ void describe(V& v, Attachment& a)
 }
 
 template <typename V>
+void describe(V& v, FrictionPair& p)
+{
+    v.required("between", p.between,
+               "Two names of fabrics or avatars; the same name twice for a fabric on itself.");
+    v.required("friction", p.friction, between(0.0, 10.0), "Coulomb coefficient.");
+}
+
+template <typename V>
 void describe(V& v, Contact& c)
 {
     v.field("gap", c.gap, between(0.0, 0.1, "m"),
-            "Kept between cloth and avatar, beyond half the cloth's thickness.");
+            "Kept between cloth and avatar, beyond half the cloth's thickness. Cloths keep their thickness.");
     v.field("stiffness", c.stiffness, between(0.001, 1000.0),
             "Factor on the stiffness that the solver chooses.");
-    v.field("friction", c.friction, between(0.0, 10.0), "Coulomb coefficient of avatars that give none.");
+    v.field("friction", c.friction, between(0.0, 10.0),
+            "Coulomb coefficient of avatars that give none, and between cloths.");
+    v.field("friction_pairs", c.friction_pairs, "Friction of two materials in particular.");
+    v.field("self", c.self, "Cloth touches itself and other cloth. Not with xpbd and vbd.");
 }
 
 template <typename V>
@@ -289,7 +300,7 @@ void describe(V& v, Scene& s)
     v.required("cloths", s.cloths, "What is simulated; at least one.");
     v.field("fabrics", s.fabrics, "Fabrics of the scene's own, by name.");
     v.field("attachments", s.attachments, "Vertices that are held.");
-    v.field("contact", s.contact, "Contact between cloth and avatars.");
+    v.field("contact", s.contact, "Contact of cloth with avatars, itself and other cloth.");
     v.field("solver", s.solver, "Accuracy and effort.");
     v.field("export", s.exports, "Caches to write; empty: one PC2 per cloth, named after it.");
     v.field("render", s.render, "Preview pictures.");

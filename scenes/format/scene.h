@@ -199,7 +199,9 @@ struct FrictionPair {
 struct Contact {
     double gap = 0.001;     ///< [m] kept between cloth and avatar beyond half the cloth's thickness
     double stiffness = 1.0; ///< [-] relative to the solver's own choice
-    double friction = 0.3;  ///< [-] of avatars that name none
+    double friction = 0.3;  ///< [-] of avatars that name none, and between cloths
+    std::vector<FrictionPair> friction_pairs;
+    bool self = true; ///< cloth touches itself and other cloth
 };
 
 /// Auto to Paper: the global step inside projective dynamics. Xpbd, Vbd: another method altogether.

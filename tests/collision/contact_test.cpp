@@ -7,23 +7,36 @@
 namespace toile {
 namespace {
 
+constexpr double kGap = 0.002; // [m]
+
+/// A cloth that keeps kGap to one collider.
+ContactCloth one_cloth(int vertex_count)
+{
+    ContactCloth cloth;
+    cloth.vertex_count = vertex_count;
+    cloth.gap = kGap;
+    cloth.partner_friction = {0.3};
+    cloth.cloth_friction = {0.3};
+    return cloth;
+}
+
 /// Three terms on five vertices: a pressing vertex that slides, a face that sticks, an edge that does not
 /// touch.
 ContactEnergy sample_energy()
 {
     std::vector<ContactTerm> terms(3);
-    terms[0].pair.vertex = {0, -1, -1};
+    terms[0].pair.vertex = contact_vertices(0);
     terms[0].pair.weight = {1.0, 0.0, 0.0};
     terms[0].pair.normal = Vec3(1, 2, 2) / 3.0;
     terms[0].pair.point = Vec3(0.01, 0.0, 0.02);
     terms[0].friction = 0.4;
     terms[0].normal_force = 2.0;
-    terms[1].pair.vertex = {1, 2, 3};
+    terms[1].pair.vertex = contact_vertices(1, 2, 3);
     terms[1].pair.weight = {0.5, 0.3, 0.2};
     terms[1].pair.point = Vec3(0.0, 0.03, 0.0);
     terms[1].friction = 0.5;
     terms[1].normal_force = 1e3;
-    terms[2].pair.vertex = {3, 4, -1};
+    terms[2].pair.vertex = contact_vertices(3, 4);
     terms[2].pair.weight = {0.25, 0.75, 0.0};
     terms[2].pair.point = Vec3(0.0, -1.0, 0.0);
     for (ContactTerm& term : terms) {
@@ -103,7 +116,7 @@ TEST(Contact, DoesNotThrowAVertexThatHardlyCarriesThePair)
 
     const std::vector<Triangle> triangles{{0, 2, 1}};
     const std::vector<Vec3> start{Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0.05, 0, 0.1)};
-    Contact contact(triangles, start, {{&collider, nullptr, 0.3}}, Contact::Settings{});
+    Contact contact(triangles, start, {one_cloth(3)}, {{&collider, nullptr}}, Contact::Settings{});
     const std::vector<double> diagonal(3, 100.0);
     const std::vector<unsigned char> fixed{1, 1, 0};
     contact.begin_step({start, start, diagonal, fixed, 1.0 / 120.0});
@@ -124,7 +137,7 @@ struct RisingPlate {
     std::vector<double> diagonal = std::vector<double>(3, 100.0);
     std::vector<unsigned char> fixed = std::vector<unsigned char>(3, 0);
     Contact::Settings settings;
-    Contact contact{triangles, start, {{nullptr, &plate, 0.3}}, settings};
+    Contact contact{triangles, start, {one_cloth(3)}, {{nullptr, &plate}}, settings};
 
     explicit RisingPlate(double height = 0.02) : rise(height)
     {
@@ -139,7 +152,7 @@ TEST(Contact, ClearsWhatTheMinimiserLeavesInsideWithoutThrowingIt)
     std::vector<Vec3> x = scene.start; // the plate has passed it
     std::vector<Vec3> v(3, Vec3(1.0, -3.0, 0.0));
     scene.contact.clear(x, v);
-    EXPECT_NEAR(x[0].y(), scene.rise + scene.settings.gap, 1e-12);
+    EXPECT_NEAR(x[0].y(), scene.rise + kGap, 1e-12);
     EXPECT_NEAR(v[0].y(), scene.rise / RisingPlate::kDt, 1e-9); // the plate's, not the correction's
     EXPECT_EQ(v[0].x(), 1.0);
     EXPECT_EQ(x[1], scene.start[1]);
@@ -150,7 +163,7 @@ TEST(Contact, LeavesAloneWhatEndsCloseToItsGap)
 {
     RisingPlate scene(0.004);
     std::vector<Vec3> x = scene.start;
-    x[0].y() = scene.rise + scene.settings.gap - 5e-5;
+    x[0].y() = scene.rise + kGap - 5e-5;
     const std::vector<Vec3> end = x;
     std::vector<Vec3> v(3, Vec3(0.0, -3.0, 0.0));
     scene.contact.clear(x, v);
@@ -166,7 +179,7 @@ TEST(Contact, ClearsASliverByItsOwnMeasureOnly)
     const std::vector<Vec3> start{Vec3(0.0, -0.01, 0.0), Vec3(0.1, 0.5, 0.0), Vec3(0.05, 0.245, 1e-4)};
     const std::vector<double> diagonal(3, 100.0);
     const std::vector<unsigned char> fixed(3, 0);
-    Contact contact(triangles, start, {{nullptr, &plate, 0.3}}, Contact::Settings{});
+    Contact contact(triangles, start, {one_cloth(3)}, {{nullptr, &plate}}, Contact::Settings{});
     contact.begin_step({start, start, diagonal, fixed, 0.1});
     std::vector<Vec3> x = start, v(3, Vec3::Zero());
     contact.clear(x, v);
@@ -188,7 +201,7 @@ TEST(Contact, KeepsTheAnchorOfTheStartWhenItLooksAgain)
 {
     RisingPlate scene;
     std::vector<Vec3> x = scene.start;
-    x[0] = Vec3(0.02, scene.rise + 0.5 * scene.settings.gap, 0.0); // slid 2 cm, pressing
+    x[0] = Vec3(0.02, scene.rise + 0.5 * kGap, 0.0); // slid 2 cm, pressing
     ASSERT_TRUE(scene.contact.revise(x));
     ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
     const ContactTerm& term = scene.contact.energy().terms()[0];

@@ -78,7 +78,7 @@ TEST(ContactDetector, PairsAVertexWithThePlateBelowIt)
     expect_well_formed(pairs);
     ASSERT_EQ(pairs.size(), 1u);
     EXPECT_EQ(pairs[0].kind, ContactKind::kVertexFace);
-    EXPECT_EQ(pairs[0].vertex, (std::array<int, 3>{0, -1, -1}));
+    EXPECT_EQ(pairs[0].vertex, contact_vertices(0));
     EXPECT_LT((pairs[0].normal - Vec3::UnitY()).norm(), 1e-12);
     EXPECT_LT((pairs[0].point - Vec3(0.2, 0, 0.3)).norm(), 1e-12);
     EXPECT_LT((pairs[0].motion - Vec3(0.02, 0.03, 0)).norm(), 1e-12);
@@ -167,7 +167,7 @@ TEST(ContactDetector, PairsCrossedEdges)
         expect_well_formed(pairs);
         ASSERT_EQ(pairs.size(), 1u) << height;
         EXPECT_EQ(pairs[0].kind, ContactKind::kEdgeEdge);
-        EXPECT_EQ(pairs[0].vertex, (std::array<int, 3>{0, 1, -1}));
+        EXPECT_EQ(pairs[0].vertex, contact_vertices(0, 1));
         EXPECT_NEAR(pairs[0].weight[1], 0.4, 1e-12);
         EXPECT_LT((pairs[0].normal - Vec3::UnitY()).norm(), 1e-12);
         EXPECT_LT((pairs[0].point - Vec3(0.2, 0, 0)).norm(), 1e-12);

@@ -47,8 +47,9 @@ public:
         energy_.add_hessian_product(p, out);
     }
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
-    bool revise(View<const Vec3>) override { return false; }
+    bool revise(View<Vec3>) override { return false; }
     void clear(View<Vec3>, View<Vec3>) override {}
+    void keep_apart(View<Vec3>, View<Vec3>) override {}
     void end_step(View<const Vec3>) override {}
 
     /// Vertices that press on the plane at x.

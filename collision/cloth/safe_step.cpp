@@ -1,0 +1,127 @@
+#include "collision/cloth/safe_step.h"
+
+#include <algorithm>
+
+#include "collision/cloth/safe_motion.h"
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+/// Part of an allowed share that is taken [-]: the shortened way is another one, whose own limit must not be
+/// met again by rounding.
+constexpr double kTaken = 0.95;
+
+/// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way
+/// then stay where they began.
+constexpr int kRounds = 16;
+
+} // namespace
+
+void SafeStep::begin(View<const Vec3> x, View<const Vec3> motion, double slack, View<const NearPair> pairs)
+{
+    base_.assign(x.begin(), x.end());
+    expected_.resize(x.size());
+    for (int v = 0; v < x.size(); ++v)
+        expected_[v] = x[v] + motion[v];
+    slack_ = slack;
+    pairs_ = pairs;
+}
+
+double SafeStep::limit(View<Vec3> x)
+{
+    const StageScope stage("collision/safe_step");
+    const std::vector<Vec3> wanted(x.begin(), x.end());
+    const bool was_far = keep_near_expectation(x);
+    const bool was_shortened = !pairs_.empty() && find_shares(x);
+    held_count_ = 0;
+    if (!was_far && !was_shortened)
+        return 0.0;
+
+    double farthest = 0.0;
+    for (int v = 0; v < x.size(); ++v) {
+        if (was_shortened && share_[v] < 1.0)
+            x[v] = base_[v] + share_[v] * (x[v] - base_[v]);
+        const double held = (x[v] - wanted[v]).norm();
+        held_count_ += held > 0.0 ? 1 : 0;
+        farthest = std::max(farthest, held);
+    }
+    return farthest;
+}
+
+/// Of two layers that lie on each other a tenth of their distance is left; far ones may come that near too.
+double SafeStep::least_gap_of(const NearPair& pair) const
+{
+    return std::max(settings_.least_gap, settings_.least_share * std::min(pair.distance, settings_.thickness));
+}
+
+bool SafeStep::keep_near_expectation(View<Vec3> x)
+{
+    bool was_far = false;
+    for (int v = 0; v < x.size(); ++v) {
+        const Vec3 away = x[v] - expected_[v];
+        const double distance = away.norm();
+        if (distance <= slack_)
+            continue;
+        x[v] = expected_[v] + slack_ / distance * away;
+        was_far = true;
+    }
+    return was_far;
+}
+
+/// The share of the way to x that every vertex may go. False when all may go all of it.
+bool SafeStep::find_shares(View<const Vec3> x)
+{
+    std::vector<Vec3> way(x.size());
+    for (int v = 0; v < x.size(); ++v)
+        way[v] = x[v] - base_[v];
+    share_.assign(x.size(), 1.0);
+    is_stale_.assign(x.size(), 1);
+    pair_share_.assign(pairs_.size(), 1.0);
+    bool was_shortened = false;
+    for (int round = 0;; ++round) {
+        look_at_pairs(way);
+        if (!shorten(round >= kRounds))
+            return was_shortened;
+        was_shortened = true;
+    }
+}
+
+void SafeStep::look_at_pairs(View<const Vec3> way)
+{
+    parallel_for(kCpu, "collision/safe_share", pairs_.size(), [&](int i) {
+        const NearPair& pair = pairs_[i];
+        pair_share_[i] = 1.0;
+        std::array<Vec3, 4> x, move;
+        bool is_stale = false;
+        for (int k = 0; k < 4; ++k) {
+            const int v = pair.vertex[k];
+            is_stale = is_stale || is_stale_[v];
+            x[k] = base_[v];
+            move[k] = share_[v] * way[v];
+        }
+        if (is_stale && gap_along(pair.normal, pair.is_edge_edge, move) < 0.0)
+            pair_share_[i] = safe_share(pair.is_edge_edge, x, move, least_gap_of(pair));
+    });
+}
+
+/// Brings the vertices of pairs in each other's way back. False when there are none.
+bool SafeStep::shorten(bool for_good)
+{
+    std::fill(is_stale_.begin(), is_stale_.end(), 0);
+    bool any = false;
+    const std::vector<double> before = share_;
+    for (int i = 0; i < pairs_.size(); ++i) {
+        if (pair_share_[i] >= 1.0)
+            continue;
+        any = true;
+        for (const int v : pairs_[i].vertex) {
+            share_[v] = for_good ? 0.0 : std::min(share_[v], kTaken * pair_share_[i] * before[v]);
+            is_stale_[v] = 1;
+        }
+    }
+    return any;
+}
+
+} // namespace toile

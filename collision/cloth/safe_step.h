@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/cloth/near_pairs.h"
+
+namespace toile {
+
+/// Keeps cloth from crossing cloth, whatever moves it.
+///
+/// begin() takes a pose without crossings, how far the vertices are expected to move from it, and all pairs
+/// that could meet on the way. limit() then takes any pose and brings it back until the straight way there is
+/// free:
+///   1. Nobody ends farther than `slack` from where it was expected. Pairs that are not on the list stay
+///      apart by that alone: their distance is more than the motion of one against the other and twice the
+///      slack.
+///   2. A pair on the list that would come nearer than its least distance is brought back by safe_share(),
+///      with all of its four vertices. The share of its way that a vertex goes only ever shrinks, and nobody
+///      moves at share 0, so this ends.
+/// A local form of displacement bounds [Chen et al. 2025, Offset Geometric Contact]: theirs are spheres,
+/// which stop two layers that move along together; here pairs are asked.
+class SafeStep {
+public:
+    struct Settings {
+        double least_gap = 2e-6; ///< [m] that no pair falls below, more than the rounding of exported floats
+        double least_share = 0.1; ///< [-] of a pair's distance at the start, or of `thickness`, that is left of it
+        double thickness = 5e-4;  ///< [m] of the thinnest cloth
+    };
+
+    explicit SafeStep(const Settings& settings) : settings_(settings) {}
+
+    /// @param x       [vertices] the pose [m]
+    /// @param motion  [vertices] expected from there [m]
+    /// @param slack   [m] beyond it; the pairs are those found at x with a margin of at least twice that
+    /// @param pairs   borrowed until the next begin()
+    void begin(View<const Vec3> x, View<const Vec3> motion, double slack, View<const NearPair> pairs);
+
+    /// Brings x [vertices] back where needed.
+    /// @return the farthest that a vertex was brought back [m]; 0 when x was left as it is, to the bit
+    double limit(View<Vec3> x);
+
+    View<const Vec3> base() const { return base_; } ///< [vertices] the pose of begin() [m]
+
+    int held_count() const { return held_count_; } ///< vertices that the last limit() brought back
+
+private:
+    double least_gap_of(const NearPair& pair) const;
+    bool keep_near_expectation(View<Vec3> x);
+    bool find_shares(View<const Vec3> x);
+    void look_at_pairs(View<const Vec3> way);
+    bool shorten(bool for_good);
+
+    Settings settings_;
+    double slack_ = 0.0;
+    View<const NearPair> pairs_;
+    std::vector<Vec3> base_, expected_;
+    std::vector<double> share_;      ///< [vertices] of the way from base_
+    std::vector<double> pair_share_; ///< [pairs] that one allows
+    std::vector<unsigned char> is_stale_; ///< [vertices] share_ has changed since its pairs were looked at
+    int held_count_ = 0;
+};
+
+} // namespace toile
