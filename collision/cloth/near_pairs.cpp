@@ -259,7 +259,7 @@ NearPair NearPairs::Search::make_pair(const std::array<int, 4>& v, bool is_edge_
     pair.weight = closest_weights(is_edge_edge, x);
     const Vec3 difference = closest_difference(pair.weight, x);
     pair.distance = difference.norm();
-    pair.normal = separating_direction(is_edge_edge, x, difference);
+    pair.normal = separating_direction(is_edge_edge, x, pair.weight, difference);
     return pair;
 }
 
