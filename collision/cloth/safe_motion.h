@@ -150,13 +150,14 @@ TOILE_HD inline double safe_share(bool is_edge_edge, const std::array<Vec3, 4>& 
 
     double t = 0.0;
     for (int advance = 0; advance < kMaxAdvances; ++advance) {
-        // A direction that turns by more than its own length is none; up to there rounding is covered.
         const double rest = 1.0 - t;
+        double step = share_along({direction.n, Vec3::Zero()}, is_edge_edge, now, move, floor, rest);
+        if (step >= rest)
+            return 1.0;
+        // A direction that turns by more than its own length is none; up to there rounding is covered.
         const double turning = direction.rate.norm();
         const double most = turning * rest > 1.0 ? 1.0 / turning : rest;
-        const double step =
-            std::fmax(share_along({direction.n, Vec3::Zero()}, is_edge_edge, now, move, floor, rest),
-                      share_along(direction, is_edge_edge, now, move, floor, most));
+        step = std::fmax(step, share_along(direction, is_edge_edge, now, move, floor, most));
         if (step >= rest)
             return 1.0;
         t += step;

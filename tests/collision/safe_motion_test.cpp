@@ -63,7 +63,7 @@ TEST(SafeShare, NeverComesNearerThanAllowed)
         for (const double t : {share, 0.5 * share, nearest_time(c, share, 60)})
             ASSERT_GE(distance(c, t), bound) << i << " kind " << int(c.kind) << " edges " << c.is_edge_edge;
     }
-    EXPECT_GT(stopped, 5000);
+    EXPECT_GT(stopped, 4000);
 }
 
 TEST(SafeShare, StopsOnlyWhereMostOfTheGapIsUsed)
