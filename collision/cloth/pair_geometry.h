@@ -61,14 +61,69 @@ TOILE_HD inline Vec3 perpendicular(const Vec3& v)
     return length > 0.0 ? Vec3(across / length) : axis;
 }
 
-/// Unit direction that separates the first from the second: along their difference; where they touch the
-/// direction across both; where there is none one perpendicular to the first edge they have.
-TOILE_HD inline Vec3 separating_direction(bool is_edge_edge, const std::array<Vec3, 4>& x,
-                                          const Vec3& difference)
+/// The directions within the features that hold the closest points: none for a corner, one for an edge, two
+/// inside a triangle. Given by corner numbers, so that they can be taken of positions and of motions.
+struct ActiveEdges {
+    int count = 0;
+    int from[2] = {0, 0};
+    int to[2] = {0, 0};
+
+    TOILE_HD void add(int a, int b)
+    {
+        from[count] = a;
+        to[count] = b;
+        ++count;
+    }
+    TOILE_HD Vec3 of(int i, const std::array<Vec3, 4>& values) const
+    {
+        return values[to[i]] - values[from[i]];
+    }
+};
+
+/// @param weight  from closest_weights: exactly 0 off the feature
+TOILE_HD inline ActiveEdges active_edges(bool is_edge_edge, const std::array<double, 4>& weight)
 {
+    ActiveEdges edges;
+    if (is_edge_edge) {
+        for (int a = 0; a < 4; a += 2)
+            if (weight[a] != 0.0 && weight[a + 1] != 0.0)
+                edges.add(a, a + 1);
+        return edges;
+    }
+    int first = 0;
+    for (int k = 1; k < 4; ++k) {
+        if (weight[k] == 0.0)
+            continue;
+        if (first > 0)
+            edges.add(first, k);
+        else
+            first = k;
+    }
+    return edges;
+}
+
+/// Unit direction that separates the first from the second: along their difference, exactly perpendicular to
+/// the features they are closest on, which the difference of very near points is not; where they touch the
+/// direction across both; where there is none one perpendicular to an edge.
+TOILE_HD inline Vec3 separating_direction(bool is_edge_edge, const std::array<Vec3, 4>& x,
+                                          const std::array<double, 4>& weight, const Vec3& difference)
+{
+    const ActiveEdges edges = active_edges(is_edge_edge, weight);
+    if (edges.count == 2) {
+        const Vec3 u = edges.of(0, x), v = edges.of(1, x), across = u.cross(v);
+        const double length2 = across.squaredNorm();
+        if (length2 > kParallelSine2 * u.squaredNorm() * v.squaredNorm())
+            return across * ((across.dot(difference) < 0.0 ? -1.0 : 1.0) / std::sqrt(length2));
+    }
     const double distance = difference.norm();
-    if (distance > kNoDirection)
-        return difference / distance;
+    if (distance > kNoDirection) {
+        Vec3 along = difference / distance;
+        if (edges.count > 0) {
+            const Vec3 edge = edges.of(0, x);
+            along -= (along.dot(edge) / edge.squaredNorm()) * edge;
+        }
+        return along.normalized();
+    }
     const Vec3 across = direction_across(is_edge_edge, x, difference);
     return across.isZero(0.0) ? perpendicular(is_edge_edge ? x[1] - x[0] : x[2] - x[1]) : across;
 }

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "collision/cloth/near_pairs.h"
+#include "collision/surface_edges.h"
+
+namespace toile {
+
+/// Weight of a corner [-] below which the closest point counts as off that corner: one that lies on an edge
+/// up to rounding is on it for both triangles, so that one of them speaks for both.
+inline constexpr double kOffCorner = 1e-9;
+
+/// Greatest component [-] of the direction between two edges along a face beside one of them: where it is
+/// larger the face comes nearer than its edge. Above 0 so that flat sheets' edges keep their pairs.
+inline constexpr double kIntoFace = 0.1;
+
+/// NearPair::is_facing of a vertex and triangle t, whose pair is complete but for that.
+bool is_facing_triangle(const SurfaceEdges& edges, View<const Triangle> triangles, View<const Vec3> x,
+                        const NearPair& pair, int t);
+
+/// NearPair::is_facing of edges e and f, whose pair is complete but for that.
+bool is_facing_edges(const SurfaceEdges& edges, View<const Triangle> triangles, View<const Vec3> x,
+                     const NearPair& pair, int e, int f);
+
+} // namespace toile

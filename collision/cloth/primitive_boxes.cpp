@@ -1,0 +1,57 @@
+#include "collision/cloth/primitive_boxes.h"
+
+namespace toile {
+
+namespace {
+
+/// False for a side of a collapsed triangle that repeats the edge of an earlier one.
+bool is_first_side(const SurfaceEdges& surface, int t, int k)
+{
+    const std::array<int, 3>& edge = surface.triangle_edge[t];
+    return std::find(edge.begin(), edge.begin() + k, edge[k]) == edge.begin() + k;
+}
+
+/// Closes a leaf: fills its last block with empty lanes.
+void close_leaf(PrimitiveBoxes::Kind& kind)
+{
+    const size_t blocks = lane_blocks(int(kind.item.size()));
+    kind.item.resize(blocks * BoxBlock::kCount, -1);
+    kind.first_block.push_back(int(blocks));
+}
+
+void make_blocks(PrimitiveBoxes::Kind& kind)
+{
+    kind.block.resize(kind.item.size() / BoxBlock::kCount);
+    for (BoxBlock& block : kind.block)
+        for (int lane = 0; lane < BoxBlock::kCount; ++lane)
+            block.set(lane, Box());
+}
+
+} // namespace
+
+void PrimitiveBoxes::assign(const BoxTree& tree, const SurfaceEdges& surface, View<const Triangle> corners)
+{
+    for (Kind* kind : {&triangles, &edges, &vertices}) {
+        kind->first_block = {0};
+        kind->item.clear();
+    }
+    for (int leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+        for (const int t : tree.items_of(leaf)) {
+            triangles.item.push_back(t);
+            for (int k = 0; k < 3; ++k) {
+                const int e = surface.triangle_edge[t][k];
+                const int v = corners[t][k];
+                if (surface.triangles.of(e)[0] == t && is_first_side(surface, t, k))
+                    edges.item.push_back(e);
+                if (surface.corners_of_vertex.of(v)[0] == 3 * t + k)
+                    vertices.item.push_back(v);
+            }
+        }
+        for (Kind* kind : {&triangles, &edges, &vertices})
+            close_leaf(*kind);
+    }
+    for (Kind* kind : {&triangles, &edges, &vertices})
+        make_blocks(*kind);
+}
+
+} // namespace toile

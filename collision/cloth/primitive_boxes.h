@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collision/cloth/box.h"
+#include "collision/cloth/box_tree.h"
+#include "collision/surface_edges.h"
+
+namespace toile {
+
+/// Boxes of triangles, edges and vertices, in blocks of eight that belong to the leaves of a tree over the
+/// triangles. An edge or a vertex belongs to the leaf of its lowest triangle.
+class PrimitiveBoxes {
+public:
+    /// Primitives of one kind, sorted by leaf.
+    struct Kind {
+        std::vector<int> first_block; ///< [leaves + 1]
+        std::vector<int> item;        ///< [8 blocks] -1: lane not used
+        std::vector<BoxBlock> block;
+
+        int item_of(int b, int lane) const { return item[size_t(b) * BoxBlock::kCount + lane]; }
+    };
+    Kind triangles, edges, vertices;
+
+    /// Primitives without their box: their place in the blocks.
+    void assign(const BoxTree& tree, const SurfaceEdges& surface, View<const Triangle> corners);
+};
+
+/// A vertex in single precision relative to a centre, and how far its motion reaches.
+struct alignas(16) MovingPoint {
+    std::array<float, 3> x; ///< [m]
+    float reach;            ///< [m]
+};
+
+/// Box of points, grown on all sides by `margin` [m] and the longest reach.
+template <typename... Point>
+Box box_around(float margin, const Point&... point)
+{
+    Box box;
+    const float grow = margin + std::max({point.reach...});
+    for (int k = 0; k < 3; ++k) {
+        box.lower[k] = std::min({point.x[k]...}) - grow;
+        box.upper[k] = std::max({point.x[k]...}) + grow;
+    }
+    return box;
+}
+
+} // namespace toile

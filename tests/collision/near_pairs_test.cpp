@@ -1,0 +1,263 @@
+#include "collision/cloth/near_pairs.h"
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "collision/distance.h"
+#include "collision/surface_edges.h"
+#include "core/backend/parallel.h"
+#include "tests/collision/pair_cases.h"
+
+namespace toile {
+namespace {
+
+using test::Random;
+
+struct Soup {
+    std::vector<Triangle> triangles;
+    std::vector<Vec3> x;
+    std::vector<Vec3> motion;
+
+    void stand_still() { motion.assign(x.size(), Vec3::Zero()); }
+};
+
+/// Adds a grid in the plane y = `height`, side x side vertices, `edge` [m] apart.
+void add_sheet(Soup& soup, int side, double edge, double height)
+{
+    const int first = int(soup.x.size());
+    for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i)
+            soup.x.emplace_back(edge * i, height, edge * j);
+    for (int j = 0; j + 1 < side; ++j)
+        for (int i = 0; i + 1 < side; ++i) {
+            const int a = first + j * side + i, b = a + 1, c = a + side, d = c + 1;
+            soup.triangles.emplace_back(a, c, b);
+            soup.triangles.emplace_back(b, c, d);
+        }
+    soup.stand_still();
+}
+
+/// Unconnected and shared corners, some triangles collapsed, some twice.
+Soup random_soup(Random& random)
+{
+    Soup soup;
+    for (int i = 0; i < 120; ++i) {
+        soup.x.push_back(random.point());
+        soup.motion.push_back(0.05 * random.point() + Vec3(0, -30, 0));
+    }
+    for (int t = 0; t < 150; ++t) {
+        const int a = random.below(110), b = a + 1 + random.below(8), c = random.below(118);
+        soup.triangles.emplace_back(a, b, random.below(20) == 0 ? a : c);
+    }
+    return soup;
+}
+
+/// A sheet in zigzag, its layers close, each vertex moving by itself while all fall.
+Soup folded_sheet(Random& random)
+{
+    Soup soup;
+    add_sheet(soup, 24, 0.01, 0.0);
+    soup.motion.clear();
+    for (Vec3& x : soup.x) {
+        const double fold = x.x() / 0.06;
+        const double layer = std::floor(fold), along = fold - layer;
+        x.x() = 0.06 * (int(layer) % 2 == 0 ? along : 1.0 - along);
+        x.y() = 0.003 * layer + 0.003 * along * along + 1e-4 * random.uniform(-1, 1);
+        soup.motion.push_back(random.scale(1e-5, 5e-3) * random.point() + Vec3(0, -1, 0));
+    }
+    return soup;
+}
+
+using Key = std::tuple<bool, std::array<int, 4>>;
+
+/// All pairs by the definition, in no particular way.
+std::set<Key> all_pairs(const Soup& soup, double margin)
+{
+    std::set<Key> pairs;
+    const auto is_near = [&](const std::array<int, 4>& v, int first, double distance2) {
+        double motion = 0.0;
+        for (int a = 0; a < first; ++a)
+            for (int b = first; b < 4; ++b) {
+                if (v[a] == v[b])
+                    return false;
+                motion = std::max(motion, (soup.motion[v[a]] - soup.motion[v[b]]).norm());
+            }
+        return std::sqrt(distance2) <= margin + motion;
+    };
+    const std::vector<Vec3>& x = soup.x;
+    std::set<int> used;
+    for (const Triangle& t : soup.triangles)
+        used.insert(t.begin(), t.end());
+    for (const int p : used)
+        for (const Triangle& t : soup.triangles)
+            if (const std::array<int, 4> v{p, t[0], t[1], t[2]};
+                is_near(v, 1, closest_on_triangle(x[p], x[t[0]], x[t[1]], x[t[2]]).distance2))
+                pairs.emplace(false, v);
+    const auto edges = build_surface_edges(soup.triangles, int(x.size())).vertex;
+    for (size_t e = 0; e < edges.size(); ++e)
+        for (size_t f = e + 1; f < edges.size(); ++f)
+            if (const std::array<int, 4> v{edges[e][0], edges[e][1], edges[f][0], edges[f][1]};
+                is_near(v, 2, closest_on_segments(x[v[0]], x[v[1]], x[v[2]], x[v[3]]).distance2))
+                pairs.emplace(true, v);
+    return pairs;
+}
+
+std::vector<NearPair> find(const Soup& soup, double margin)
+{
+    std::vector<NearPair> pairs;
+    NearPairs(soup.triangles, soup.x).find(soup.x, soup.motion, margin, pairs);
+    return pairs;
+}
+
+/// The same set, each pair once (a triangle that stands twice in the list has each pair twice), in order.
+void expect_all_pairs(const Soup& soup, double margin, const std::vector<NearPair>& found)
+{
+    std::set<Key> keys;
+    for (const NearPair& pair : found)
+        keys.emplace(pair.is_edge_edge, pair.vertex);
+    EXPECT_EQ(keys, all_pairs(soup, margin));
+    const auto order = [](const NearPair& p) {
+        return std::tuple(p.is_edge_edge, p.vertex[0], p.is_edge_edge ? p.vertex[1] : 0);
+    };
+    EXPECT_TRUE(std::is_sorted(found.begin(), found.end(),
+                               [&](const NearPair& a, const NearPair& b) { return order(a) < order(b); }));
+}
+
+TEST(NearPairs, AreThoseOfAllPairsInRandomSoups)
+{
+    Random random(21);
+    size_t count = 0;
+    for (int i = 0; i < 20; ++i) {
+        Soup soup = random_soup(random);
+        NearPairs near(soup.triangles, soup.x);
+        std::vector<NearPair> found;
+        for (const double margin : {0.0, 0.01, 0.1}) {
+            near.find(soup.x, soup.motion, margin, found);
+            expect_all_pairs(soup, margin, found);
+            count += found.size();
+            for (Vec3& x : soup.x)
+                x += 0.3 * random.point() + Vec3(100, 0, 0);
+        }
+    }
+    EXPECT_GT(count, 10000u);
+}
+
+TEST(NearPairs, AreThoseOfAllPairsOnFoldedSheets)
+{
+    Random random(22);
+    for (int i = 0; i < 3; ++i) {
+        const Soup soup = folded_sheet(random);
+        const std::vector<NearPair> found = find(soup, 0.002);
+        expect_all_pairs(soup, 0.002, found);
+        EXPECT_GT(found.size(), 1000u);
+        EXPECT_EQ(found.size(), all_pairs(soup, 0.002).size()); // each once
+    }
+}
+
+TEST(NearPairs, TellWhereThePrimitivesAreClosest)
+{
+    Random random(23);
+    const Soup soup = folded_sheet(random);
+    for (const NearPair& pair : find(soup, 0.002)) {
+        std::array<Vec3, 4> x;
+        Vec3 difference = Vec3::Zero();
+        double sum = 0.0;
+        for (int k = 0; k < 4; ++k) {
+            x[k] = soup.x[pair.vertex[k]];
+            difference += pair.weight[k] * x[k];
+            sum += pair.weight[k];
+        }
+        EXPECT_NEAR(sum, 0.0, 1e-15);
+        EXPECT_NEAR(pair.distance, test::exact_distance(pair.is_edge_edge, x), 1e-14);
+        EXPECT_LT((pair.distance * pair.normal - difference).norm(), 1e-15);
+    }
+}
+
+TEST(NearPairs, FlatSheetHasNone)
+{
+    Soup soup;
+    add_sheet(soup, 40, 0.01, 0.2);
+    // Least distance of primitives without a common vertex: a diagonal and the corner across.
+    EXPECT_TRUE(find(soup, 0.0070).empty());
+    EXPECT_FALSE(find(soup, 0.0072).empty());
+    // Free fall is no relative motion; far from the origin single precision still sees the sheet.
+    std::fill(soup.motion.begin(), soup.motion.end(), Vec3(0.1, -40.0, 0.3));
+    for (Vec3& x : soup.x)
+        x += Vec3(5000, -3000, 100);
+    EXPECT_TRUE(find(soup, 0.0070).empty());
+}
+
+TEST(NearPairs, OfCoarseNumbersAreNotMissed)
+{
+    // Exactly at the margin, on coordinates that single precision rounds.
+    Soup soup;
+    soup.triangles = {{0, 1, 2}, {3, 4, 5}};
+    for (const double y : {1.0 / 3.0, 1.0 / 3.0 + 0.125})
+        for (const Vec3& x : {Vec3(1000.1, y, 0), Vec3(1001.1, y, 0), Vec3(1000.1, y, 1)})
+            soup.x.push_back(x);
+    soup.stand_still();
+    const double gap = soup.x[3].y() - soup.x[0].y();
+    EXPECT_EQ(find(soup, gap).size(), all_pairs(soup, gap).size());
+    EXPECT_FALSE(find(soup, gap).empty());
+    EXPECT_TRUE(find(soup, 0.999999 * gap).empty());
+}
+
+TEST(NearPairs, HaveTheSameBitsForEveryThreadCount)
+{
+    Random random(24);
+    const Soup soup = folded_sheet(random);
+    std::vector<std::vector<NearPair>> found;
+    for (const int threads : {1, 2}) {
+        const ThreadLimit limit(threads);
+        found.push_back(find(soup, 0.002));
+    }
+    ASSERT_EQ(found[0].size(), found[1].size());
+    for (size_t i = 0; i < found[0].size(); ++i) {
+        const NearPair &a = found[0][i], &b = found[1][i];
+        EXPECT_EQ(std::tie(a.vertex, a.weight, a.distance, a.is_edge_edge, a.is_facing),
+                  std::tie(b.vertex, b.weight, b.distance, b.is_edge_edge, b.is_facing));
+        EXPECT_EQ(a.normal, b.normal);
+    }
+}
+
+TEST(NearPairs, BuildAnewOnlyWhenTheTreeIsWornOut)
+{
+    Random random(25);
+    Soup soup;
+    for (int layer = 0; layer < 20; ++layer)
+        add_sheet(soup, 8, 0.01, 0.01 * layer);
+    NearPairs near(soup.triangles, soup.x);
+    Stages stages;
+    const Stages::Activate activate(stages);
+    std::vector<NearPair> found;
+    // As it was, fallen, turned, and with another margin.
+    near.find(soup.x, soup.motion, 0.004, found);
+    for (Vec3& x : soup.x)
+        x = Vec3(x.y(), 10.0 - x.x(), x.z());
+    near.find(soup.x, soup.motion, 0.04, found);
+    EXPECT_EQ(stages.calls("collision/cloth_rebuild"), 0);
+    EXPECT_EQ(stages.calls("collision/cloth_refit"), 2);
+    // Layers scattered: the tree that held them together is of no use, the new one is.
+    for (size_t v = 0; v < soup.x.size(); ++v)
+        soup.x[v] += Vec3(0.3 * double((7 * (v / 64)) % 20), 0, 0);
+    near.find(soup.x, soup.motion, 0.004, found);
+    near.find(soup.x, soup.motion, 0.004, found);
+    EXPECT_EQ(stages.calls("collision/cloth_rebuild"), 1);
+    expect_all_pairs(soup, 0.004, found);
+}
+
+TEST(NearPairs, OfNoTrianglesAreNone)
+{
+    Soup soup;
+    EXPECT_TRUE(find(soup, 1.0).empty());
+    soup.x = {Vec3::Zero(), Vec3::UnitX()};
+    soup.stand_still();
+    EXPECT_TRUE(find(soup, 1.0).empty());
+}
+
+} // namespace
+} // namespace toile
