@@ -59,6 +59,7 @@ OWNERS = {
     r"assimp/": ["avatars"],
     r"CGAL/": ["collision/crossings", "garment/pattern"],
     r"(libpng/)?png\.h": ["apps/render"],
+    r"boost/multiprecision/": [],  # comes with CGAL; rational numbers of the tests
     r"nlohmann/": ["scenes/format", "apps"],
     r"CLI/": ["apps"],
     r"benchmark/": ["benchmarks"],
