@@ -7,6 +7,7 @@
 #include "collision/cloth/ordered_records.h"
 #include "collision/cloth/pair_geometry.h"
 #include "collision/cloth/primitive_boxes.h"
+#include "collision/cloth/safe_motion.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -36,16 +37,6 @@ bool share_vertex(const std::array<int, 4>& v, int first_count)
 std::array<Vec3, 4> corners_of(const std::array<int, 4>& v, View<const Vec3> values)
 {
     return {values[v[0]], values[v[1]], values[v[2]], values[v[3]]};
-}
-
-/// max |motion_a - motion_b| over corners a of the first primitive and b of the second [m].
-double relative_motion(const std::array<int, 4>& v, int first_count, View<const Vec3> motion)
-{
-    double largest2 = 0.0;
-    for (int a = 0; a < first_count; ++a)
-        for (int b = first_count; b < 4; ++b)
-            largest2 = std::max(largest2, (motion[v[a]] - motion[v[b]]).squaredNorm());
-    return std::sqrt(largest2);
 }
 
 } // namespace
@@ -82,12 +73,7 @@ private:
     {
         return {v, triangles_[t][0], triangles_[t][1], triangles_[t][2]};
     }
-    bool is_near(const std::array<int, 4>& v, bool is_edge_edge, double distance2) const
-    {
-        const double reach =
-            is_moving_ ? margin_ + relative_motion(v, first_count(is_edge_edge), motion_) : margin_;
-        return distance2 <= reach * reach;
-    }
+    bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const;
     NearPair make_pair(const std::array<int, 4>& v, bool is_edge_edge) const;
 
     std::vector<Triangle> triangles_;
@@ -139,14 +125,16 @@ void NearPairs::Search::set_points()
         mean = parallel_sum(kCpu, motion_.size(), mean, [&](int v) { return motion_[v]; }) / motion_.size();
 
     parallel_for(kCpu, "collision/cloth_points", x_.size(), [&](int v) {
-        const Vec3 x = x_[v] - center;
-        const double reach = is_moving_ ? (motion_[v] - mean).norm() : 0.0;
-        points_[v] = {{float(x[0]), float(x[1]), float(x[2])}, float(reach)};
+        const Eigen::Vector3f from = (x_[v] - center).cast<float>();
+        const Eigen::Vector3f to = is_moving_ ? (x_[v] - center + motion_[v] - mean).cast<float>() : from;
+        for (int k = 0; k < 3; ++k)
+            points_[v].lower[k] = std::min(from[k], to[k]), points_[v].upper[k] = std::max(from[k], to[k]);
     });
-    float longest = 0.0f;
+    float farthest = 0.0f;
     for (const MovingPoint& point : points_)
-        longest = std::max(longest, point.reach);
-    const double largest = (upper - center).maxCoeff() + longest + margin_;
+        for (int k = 0; k < 3; ++k)
+            farthest = std::max({farthest, -point.lower[k], point.upper[k]});
+    const double largest = farthest + margin_;
     box_margin_ = float(0.5 * margin_ + kFloatSlack * largest);
 }
 
@@ -194,22 +182,34 @@ void NearPairs::Search::rebuild()
     built_surface_ = tree_.surface(box_margin_);
 }
 
+/// False only where the pair stays `margin` apart along the direction that separates it now: straight motion
+/// keeps that true on all of the way when it is true at its end.
+bool NearPairs::Search::may_meet(const std::array<int, 4>& v, bool is_edge_edge) const
+{
+    std::array<Vec3, 4> x = corners_of(v, x_);
+    const Vec3 difference = closest_difference(closest_weights(is_edge_edge, x), x);
+    const double distance = difference.norm();
+    if (distance <= margin_)
+        return true;
+    if (!is_moving_)
+        return false;
+    for (int k = 0; k < 4; ++k)
+        x[k] += motion_[v[k]];
+    return gap_along(difference / distance, is_edge_edge, x) <= margin_;
+}
+
 void NearPairs::Search::try_edges(int e, int f, Found& found) const
 {
     const auto [low, high] = std::minmax(e, f);
     const std::array<int, 4> v = edge_corners(low, high);
-    if (share_vertex(v, 2))
-        return;
-    if (is_near(v, true, closest_on_segments(x_[v[0]], x_[v[1]], x_[v[2]], x_[v[3]]).distance2))
+    if (!share_vertex(v, 2) && may_meet(v, true))
         found.edge_edge.push_back({low, high});
 }
 
 void NearPairs::Search::try_triangle(int p, int t, Found& found) const
 {
     const std::array<int, 4> v = triangle_corners(p, t);
-    if (share_vertex(v, 1))
-        return;
-    if (is_near(v, false, closest_on_triangle(x_[v[0]], x_[v[1]], x_[v[2]], x_[v[3]]).distance2))
+    if (!share_vertex(v, 1) && may_meet(v, false))
         found.vertex_triangle.push_back({p, t});
 }
 

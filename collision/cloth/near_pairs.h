@@ -46,9 +46,10 @@ public:
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;
 
-    /// All pairs with
-    ///   distance(x) <= margin + max over (a of the first, b of the second) |motion_a - motion_b| .
-    /// Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
+    /// All pairs that are nearer than `margin` at some time of the straight motion, and some that are not: a
+    /// pair is left out only where the boxes around its ways are `margin` apart, or where its corners stay
+    /// that far apart along the direction that separates it at x. So what is left out stays apart as long as
+    /// each vertex ends within margin / 2 of where the motion takes it. Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
     /// edges numbered as in build_surface_edges. Same bits for every thread count.
     /// @param x       [vertices x 3] [m]
     /// @param motion  [vertices x 3] [m] the displacement each vertex is expected to make; a common one

@@ -27,21 +27,20 @@ public:
     void assign(const BoxTree& tree, const SurfaceEdges& surface, View<const Triangle> corners);
 };
 
-/// A vertex in single precision relative to a centre, and how far its motion reaches.
-struct alignas(16) MovingPoint {
-    std::array<float, 3> x; ///< [m]
-    float reach;            ///< [m]
+/// The straight way of a vertex in single precision, as the box around it, relative to a centre that moves
+/// along.
+struct MovingPoint {
+    std::array<float, 3> lower, upper; ///< [m]
 };
 
-/// Box of points, grown on all sides by `margin` [m] and the longest reach.
+/// Box around the ways of points, grown on all sides by `margin` [m].
 template <typename... Point>
 Box box_around(float margin, const Point&... point)
 {
     Box box;
-    const float grow = margin + std::max({point.reach...});
     for (int k = 0; k < 3; ++k) {
-        box.lower[k] = std::min({point.x[k]...}) - grow;
-        box.upper[k] = std::max({point.x[k]...}) + grow;
+        box.lower[k] = std::min({point.lower[k]...}) - margin;
+        box.upper[k] = std::max({point.upper[k]...}) + margin;
     }
     return box;
 }
