@@ -54,8 +54,8 @@ private:
 /// Expected cost of meeting something: surface times blocks of lanes.
 float cost(const Box& box, int count)
 {
-    return count == 0 ? 0.0f
-                      : box.half_area() * float((count + BoxTree::kLeafItems - 1) / BoxTree::kLeafItems);
+    const int blocks = lane_blocks(count);
+    return blocks == 0 ? 0.0f : box.half_area() * float(blocks);
 }
 
 /// The last bin of the cheaper side of the best cut.

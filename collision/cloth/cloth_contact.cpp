@@ -10,15 +10,17 @@ namespace toile {
 
 namespace {
 
-/// How far vertices may come from where they were expected: this much more than the farthest did in the step
-/// before [-], never more than a share of the mean edge (neighbours in the same sheet become pairs beyond),
-/// never less than a share of the thickness.
+/// How far a vertex may come from where it was expected: this much more than in the step before [-], what was
+/// allowed then shrinking by a share each step.
 constexpr double kMoreThanBefore = 1.5;
-constexpr double kMostSlack = 0.25;
-constexpr double kLeastSlack = 0.25;
+constexpr double kShrinking = 0.8;
 
-/// Distance that cloth is held back by, of its thickness [-], for which it is not looked again.
-constexpr double kHeldAside = 0.1;
+/// Bounds of that, of the mean edge [-]: beyond the upper one neighbours in the same sheet become pairs.
+constexpr double kMostSlack = 0.25;
+constexpr double kLeastSlack = 0.03;
+
+/// Distance that cloth is held back by, of the mean edge [-], for which it is not looked again.
+constexpr double kHeldAside = 0.02;
 
 /// Sliding of a pair that presses, of the mean edge [-], after which its normal is out of date.
 constexpr double kSlid = 0.3;
@@ -46,7 +48,8 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths)
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                            const std::vector<ContactCloth>& cloths, View<const double> altitude)
     : near_(triangles, positions), safe_(settings_for(cloths)), edge_(mean_edge(triangles, positions)),
-      deviation_(positions.size(), Vec3::Zero()), motion_(positions.size()), slack_(kMostSlack * edge_)
+      slack_(positions.size(), kMostSlack * edge_), deviation_(positions.size(), Vec3::Zero()),
+      motion_(positions.size())
 {
     for (int c = 0; c < int(cloths.size()); ++c) {
         cloth_.insert(cloth_.end(), cloths[c].vertex_count, c);
@@ -67,7 +70,7 @@ void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction)
 void ClothContact::look(View<const Vec3> x)
 {
     const StageScope stage("collision/near_pairs");
-    near_.find(x, motion_, thickest_ + 2.0 * slack_, pairs_);
+    near_.find(x, motion_, slack_, thickest_, pairs_);
     safe_.begin(x, motion_, slack_, pairs_);
 }
 
@@ -98,7 +101,10 @@ void ClothContact::append_pairs(std::vector<ContactPair>& out) const
         pair.normal = near.normal;
         pair.kind = near.is_edge_edge ? ContactKind::kClothEdgeEdge : ContactKind::kClothVertexFace;
         const double approach = std::min(near.normal.dot(pair.cloth_point(motion_)), 0.0);
-        if (near.distance + approach <= thickness_of(pair) + 2.0 * slack_)
+        double slack = 0.0;
+        for (const int v : near.vertex)
+            slack = std::max(slack, slack_[v]);
+        if (near.distance + approach <= thickness_of(pair) + 2.0 * slack)
             out.push_back(pair);
     }
 }
@@ -107,10 +113,12 @@ bool ClothContact::advance(View<Vec3> x)
 {
     const std::vector<Vec3> wanted(x.begin(), x.end());
     const double held = safe_.limit(x);
-    if (held <= kHeldAside * thickest_ && !has_slid(x))
+    if (held <= kHeldAside * edge_ && !has_slid(x))
         return false;
-    for (int v = 0; v < x.size(); ++v)
+    for (int v = 0; v < x.size(); ++v) {
         motion_[v] = wanted[v] - x[v];
+        slack_[v] = std::max(slack_[v], bounded_slack(motion_[v].norm()));
+    }
     look(x);
     return true;
 }
@@ -140,19 +148,23 @@ bool ClothContact::has_slid(View<const Vec3> x) const
 
 void ClothContact::end_step(View<const Vec3> x)
 {
-    double farthest = 0.0;
     for (int v = 0; v < x.size(); ++v) {
         const Vec3 deviation = x[v] - prediction_[v];
-        farthest = std::max(farthest, (deviation - deviation_[v]).norm());
+        const double error = (deviation - deviation_[v]).norm();
+        slack_[v] = bounded_slack(std::max(kMoreThanBefore * error, kShrinking * slack_[v]));
         deviation_[v] = deviation;
     }
-    slack_ = std::min(std::max(kMoreThanBefore * farthest, kLeastSlack * thickest_), kMostSlack * edge_);
+}
+
+double ClothContact::bounded_slack(double slack) const
+{
+    return std::clamp(slack, kLeastSlack * edge_, kMostSlack * edge_);
 }
 
 void ClothContact::forget()
 {
     std::fill(deviation_.begin(), deviation_.end(), Vec3::Zero());
-    slack_ = kMostSlack * edge_;
+    std::fill(slack_.begin(), slack_.end(), kMostSlack * edge_);
 }
 
 } // namespace toile

@@ -51,15 +51,16 @@ private:
     double thickness_of(const std::array<int, 4>& vertex, int first_count) const;
     void look(View<const Vec3> x);
     bool has_slid(View<const Vec3> x) const;
+    double bounded_slack(double slack) const;
 
     NearPairs near_;
     SafeStep safe_;
     std::vector<int> cloth_;              ///< [vertices]
     std::vector<double> half_thickness_;  ///< [vertices] [m]
+    std::vector<double> slack_;           ///< [vertices] see SafeStep [m]
     double thickest_ = 0.0, edge_ = 0.0;  ///< [m] largest thickness, mean edge
     std::vector<NearPair> pairs_;
     std::vector<Vec3> prediction_, deviation_, motion_; ///< [vertices] [m]
-    double slack_;                                      ///< [m]
 };
 
 } // namespace toile

@@ -26,7 +26,7 @@ bool is_closest_on(View<const Triangle> triangles, View<const Vec3> x, const Vec
 bool leads_off_faces(const SurfaceEdges& edges, View<const Triangle> triangles, View<const Vec3> x, int e,
                      const Vec3& direction)
 {
-    const auto [low, high] = edges.vertex[e];
+    const int low = edges.vertex[e][0], high = edges.vertex[e][1];
     const Vec3 along = (x[high] - x[low]).normalized();
     const View<const int> faces = edges.triangles.of(e);
     return std::all_of(faces.begin(), faces.end(), [&](int t) {

@@ -46,16 +46,17 @@ public:
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;
 
-    /// All pairs that are nearer than `margin` at some time of the straight motion, and some that are not: a
-    /// pair is left out only where the boxes around its ways are `margin` apart, or where its corners stay
-    /// that far apart along the direction that separates it at x. So what is left out stays apart as long as
-    /// each vertex ends within margin / 2 of where the motion takes it. Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
+    /// All pairs that may come nearer than `margin` while each vertex moves straight to a place within its
+    /// slack of x + motion, and some more: a pair is left out only where the boxes around its ways stay apart,
+    /// or its corners along the direction that separates it at x. Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
     /// edges numbered as in build_surface_edges. Same bits for every thread count.
     /// @param x       [vertices x 3] [m]
     /// @param motion  [vertices x 3] [m] the displacement each vertex is expected to make; a common one
     ///                (free fall) costs nothing
     /// @param margin  [m] >= 0
-    void find(View<const Vec3> x, View<const Vec3> motion, double margin, std::vector<NearPair>& out);
+    /// @param slack   [vertices] [m] >= 0 how far from the expected place a vertex may end
+    void find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin,
+              std::vector<NearPair>& out);
 
 private:
     class Search;

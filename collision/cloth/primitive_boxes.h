@@ -27,20 +27,22 @@ public:
     void assign(const BoxTree& tree, const SurfaceEdges& surface, View<const Triangle> corners);
 };
 
-/// The straight way of a vertex in single precision, as the box around it, relative to a centre that moves
-/// along.
+/// The box around the straight way of a vertex, in single precision relative to a centre that moves along,
+/// and how far the vertex may end beside it.
 struct MovingPoint {
     std::array<float, 3> lower, upper; ///< [m]
+    float slack;                       ///< [m]
 };
 
-/// Box around the ways of points, grown on all sides by `margin` [m].
+/// Box around the ways of points, grown on all sides by `margin` [m] and the largest slack.
 template <typename... Point>
 Box box_around(float margin, const Point&... point)
 {
     Box box;
+    const float grow = margin + std::max({point.slack...});
     for (int k = 0; k < 3; ++k) {
-        box.lower[k] = std::min({point.lower[k]...}) - margin;
-        box.upper[k] = std::max({point.upper[k]...}) + margin;
+        box.lower[k] = std::min({point.lower[k]...}) - grow;
+        box.upper[k] = std::max({point.upper[k]...}) + grow;
     }
     return box;
 }

@@ -18,7 +18,7 @@ inline constexpr double kGapLeft = 0.05;
 /// Share of the distance that the corners must show along a direction [-] before another one is tried.
 inline constexpr double kTrustedGap = 1.0 - 1e-6;
 
-/// Advances of one pair [-], at most. Straight approach takes one or two, tumbling triangles about ten.
+/// Advances of one pair [-], at most. Straight approach takes one or two, 99 % of tumbling primitives six.
 inline constexpr int kMaxAdvances = 64;
 
 /// How far the first's corners are ahead of the second's along n, at least: a lower bound of the distance for

@@ -17,9 +17,20 @@ constexpr double kTaken = 0.95;
 /// then stay where they began.
 constexpr int kRounds = 16;
 
+/// True where the direction that separates the pair at first shows that it may go all of its way.
+bool stays_apart(const NearPair& pair, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& move,
+                 double least)
+{
+    std::array<Vec3, 4> end;
+    for (int k = 0; k < 4; ++k)
+        end[k] = x[k] + move[k];
+    return pair.distance >= least && gap_along(pair.normal, pair.is_edge_edge, end) >= least;
+}
+
 } // namespace
 
-void SafeStep::begin(View<const Vec3> x, View<const Vec3> motion, double slack, View<const NearPair> pairs)
+void SafeStep::begin(View<const Vec3> x, View<const Vec3> motion, View<const double> slack,
+                     View<const NearPair> pairs)
 {
     base_.assign(x.begin(), x.end());
     expected_.resize(x.size());
@@ -62,9 +73,9 @@ bool SafeStep::keep_near_expectation(View<Vec3> x)
     for (int v = 0; v < x.size(); ++v) {
         const Vec3 away = x[v] - expected_[v];
         const double distance = away.norm();
-        if (distance <= slack_)
+        if (distance <= slack_[v])
             continue;
-        x[v] = expected_[v] + slack_ / distance * away;
+        x[v] = expected_[v] + slack_[v] / distance * away;
         was_far = true;
     }
     return was_far;
@@ -101,8 +112,9 @@ void SafeStep::look_at_pairs(View<const Vec3> way)
             x[k] = base_[v];
             move[k] = share_[v] * way[v];
         }
-        if (is_stale && gap_along(pair.normal, pair.is_edge_edge, move) < 0.0)
-            pair_share_[i] = safe_share(pair.is_edge_edge, x, move, least_gap_of(pair));
+        const double least = least_gap_of(pair);
+        if (is_stale && !stays_apart(pair, x, move, least))
+            pair_share_[i] = safe_share(pair.is_edge_edge, x, move, least);
     });
 }
 

@@ -11,9 +11,8 @@ namespace toile {
 /// begin() takes a pose without crossings, how far the vertices are expected to move from it, and all pairs
 /// that could meet on the way. limit() then takes any pose and brings it back until the straight way there is
 /// free:
-///   1. Nobody ends farther than `slack` from where it was expected. Pairs that are not on the list stay
-///      apart by that alone: their distance is more than the motion of one against the other and twice the
-///      slack.
+///   1. Nobody ends farther than its slack from where it was expected. Pairs that are not on the list stay
+///      apart by that alone (NearPairs::find).
 ///   2. A pair on the list that would come nearer than its least distance is brought back by safe_share(),
 ///      with all of its four vertices. The share of its way that a vertex goes only ever shrinks, and nobody
 ///      moves at share 0, so this ends.
@@ -31,9 +30,10 @@ public:
 
     /// @param x       [vertices] the pose [m]
     /// @param motion  [vertices] expected from there [m]
-    /// @param slack   [m] beyond it; the pairs are those found at x with a margin of at least twice that
-    /// @param pairs   borrowed until the next begin()
-    void begin(View<const Vec3> x, View<const Vec3> motion, double slack, View<const NearPair> pairs);
+    /// @param slack   [vertices] beside it [m]
+    /// @param pairs   what NearPairs::find has found for the same; borrowed until the next begin(), like slack
+    void begin(View<const Vec3> x, View<const Vec3> motion, View<const double> slack,
+               View<const NearPair> pairs);
 
     /// Brings x [vertices] back where needed.
     /// @return the farthest that a vertex was brought back [m]; 0 when x was left as it is, to the bit
@@ -51,7 +51,7 @@ private:
     bool shorten(bool for_good);
 
     Settings settings_;
-    double slack_ = 0.0;
+    View<const double> slack_;
     View<const NearPair> pairs_;
     std::vector<Vec3> base_, expected_;
     std::vector<double> share_;      ///< [vertices] of the way from base_

@@ -1,0 +1,116 @@
+#include "collision/cloth/candidates.h"
+
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+/// Tasks that the search is cut into, at least, where the tree is large enough.
+constexpr int kTasks = 512;
+
+/// The tree's boxes may grow by this factor in surface [-] before it is built anew. Rolling a flat,
+/// axis-parallel sheet over costs up to 2.3 by itself.
+constexpr double kWornOut = 2.5;
+
+/// Single-precision slack of boxes, relative to the largest number in them [-]: several times the rounding of
+/// a coordinate and of growing it (2^-24 each), so that no pair is missed.
+constexpr double kFloatSlack = 1e-6;
+
+} // namespace
+
+Candidates::Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions)
+    : triangles_(triangles), edges_(edges), points_(positions.size())
+{
+    set_points(positions, {}, {}, 0.0);
+    rebuild();
+}
+
+void Candidates::update(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin)
+{
+    set_points(x, motion, slack, margin);
+    refit();
+    if (tree_.surface(box_margin_) > kWornOut * built_surface_)
+        rebuild();
+    tree_.pairs_of_nodes(kTasks, tasks_);
+}
+
+/// Positions in single precision around the middle of all, motions without the one common to all.
+void Candidates::set_points(View<const Vec3> x, View<const Vec3> motion, View<const double> slack,
+                            double margin)
+{
+    if (x.empty())
+        return;
+    Vec3 lower = x[0], upper = x[0];
+    for (const Vec3& corner : x) {
+        lower = lower.cwiseMin(corner);
+        upper = upper.cwiseMax(corner);
+    }
+    const Vec3 center = 0.5 * (lower + upper);
+
+    // The frame that moves with the mean motion. Exactly equal motions make no pair's distance shrink.
+    Vec3 mean = Vec3::Zero();
+    is_moving_ = std::any_of(motion.begin(), motion.end(), [&](const Vec3& m) { return m != motion[0]; });
+    if (is_moving_)
+        mean = parallel_sum(kCpu, motion.size(), mean, [&](int v) { return motion[v]; }) / motion.size();
+
+    parallel_for(kCpu, "collision/cloth_points", x.size(), [&](int v) {
+        const Eigen::Vector3f from = (x[v] - center).cast<float>();
+        const Eigen::Vector3f to = is_moving_ ? Eigen::Vector3f((x[v] - center + motion[v] - mean).cast<float>()) : from;
+        Eigen::Map<Eigen::Vector3f>(points_[v].lower.data()) = from.cwiseMin(to);
+        Eigen::Map<Eigen::Vector3f>(points_[v].upper.data()) = from.cwiseMax(to);
+        points_[v].slack = slack.empty() ? 0.0f : float(slack[v]);
+    });
+    double largest = 0.0;
+    for (const MovingPoint& point : points_)
+        for (int k = 0; k < 3; ++k)
+            largest = std::max(largest, double(std::max(-point.lower[k], point.upper[k]) + point.slack));
+    largest += margin;
+    box_margin_ = float(0.5 * margin + kFloatSlack * largest);
+}
+
+void Candidates::fill_leaf(int leaf)
+{
+    const auto fill = [&](PrimitiveBoxes::Kind& kind, const auto& box_of) {
+        for (int b = kind.first_block[leaf]; b < kind.first_block[leaf + 1]; ++b)
+            for (int lane = 0; lane < BoxBlock::kCount; ++lane)
+                if (const int item = kind.item_of(b, lane); item >= 0)
+                    kind.block[b].set(lane, box_of(item));
+    };
+    fill(boxes_.edges, [&](int e) {
+        const auto& v = edges_.vertex[e];
+        return box_around(box_margin_, points_[v[0]], points_[v[1]]);
+    });
+    fill(boxes_.vertices, [&](int v) { return box_around(box_margin_, points_[v]); });
+    Box all;
+    fill(boxes_.triangles, [&](int t) {
+        const Triangle& v = triangles_[t];
+        const Box box = box_around(box_margin_, points_[v[0]], points_[v[1]], points_[v[2]]);
+        all.add(box);
+        return box;
+    });
+    leaf_boxes_[leaf] = all;
+}
+
+void Candidates::refit()
+{
+    leaf_boxes_.resize(tree_.leaf_count());
+    parallel_for(kCpu, "collision/cloth_refit", tree_.leaf_count(), [&](int leaf) { fill_leaf(leaf); });
+    tree_.refit(leaf_boxes_);
+}
+
+void Candidates::rebuild()
+{
+    const StageScope stage("collision/cloth_rebuild");
+    std::vector<Box> items(triangles_.size());
+    for (size_t t = 0; t < items.size(); ++t) {
+        const Triangle& v = triangles_[t];
+        items[t] = box_around(0.0f, points_[v[0]], points_[v[1]], points_[v[2]]);
+    }
+    tree_.build(items);
+    boxes_.assign(tree_, edges_, triangles_);
+    refit();
+    built_surface_ = tree_.surface(box_margin_);
+}
+
+} // namespace toile

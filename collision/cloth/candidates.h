@@ -1,0 +1,94 @@
+#pragma once
+
+#include "collision/cloth/box_tree.h"
+#include "collision/cloth/primitive_boxes.h"
+#include "collision/surface_edges.h"
+
+namespace toile {
+
+/// The broad phase of NearPairs: vertices and triangles, and edges, whose boxes overlap. A box holds the
+/// straight ways of its vertices, less the mean motion, and is grown by their slack and half the margin.
+class Candidates {
+public:
+    /// Builds the tree. triangles and edges must outlive this.
+    Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions);
+
+    /// New boxes, and a new tree where the old one is worn out. See NearPairs::find.
+    void update(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin);
+
+    /// Some vertex moves otherwise than the others.
+    bool is_moving() const { return is_moving_; }
+
+    /// Parts of the search that may run at the same time; their number does not depend on the threads.
+    int task_count() const { return int(tasks_.size()); }
+
+    /// Calls try_edges(e, f) and try_triangle(v, t) for the task's candidates, primitives with common
+    /// vertices among them. Over all tasks each pair comes at most once.
+    template <typename TryEdges, typename TryTriangle>
+    void visit(int task, const TryEdges& try_edges, const TryTriangle& try_triangle) const
+    {
+        tree_.descend(tasks_[task], [&](const BoxTree::Node& a, const BoxTree::Node& b) {
+            meet_edges(a, b, try_edges);
+            meet_vertices(a, b, try_triangle);
+            if (a.leaf != b.leaf)
+                meet_vertices(b, a, try_triangle);
+        });
+    }
+
+private:
+    void set_points(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin);
+    void fill_leaf(int leaf);
+    void refit();
+    void rebuild();
+
+    template <typename TryEdges>
+    void meet_edges(const BoxTree::Node& a, const BoxTree::Node& b, const TryEdges& try_edges) const;
+    template <typename TryTriangle>
+    void meet_vertices(const BoxTree::Node& a, const BoxTree::Node& b, const TryTriangle& try_triangle) const;
+
+    View<const Triangle> triangles_;
+    const SurfaceEdges& edges_;
+    BoxTree tree_;
+    PrimitiveBoxes boxes_;
+    double built_surface_ = 0.0; ///< [m^2] of the tree when it was built
+
+    std::vector<MovingPoint> points_; ///< [vertices] relative to the middle of all
+    bool is_moving_ = false;
+    float box_margin_ = 0.0f; ///< [m] half the margin and the slack of single precision
+    std::vector<Box> leaf_boxes_;
+    std::vector<BoxTree::NodePair> tasks_;
+};
+
+template <typename TryEdges>
+void Candidates::meet_edges(const BoxTree::Node& a, const BoxTree::Node& b, const TryEdges& try_edges) const
+{
+    const PrimitiveBoxes::Kind& edges = boxes_.edges;
+    const bool is_same = a.leaf == b.leaf;
+    for (int i = edges.first_block[a.leaf]; i < edges.first_block[a.leaf + 1]; ++i)
+        for_each_lane(edges.block[i].overlaps(b.box), [&](int lane) {
+            const Box box = edges.block[i].get(lane);
+            const int e = edges.item_of(i, lane);
+            for (int j = is_same ? i : edges.first_block[b.leaf]; j < edges.first_block[b.leaf + 1]; ++j)
+                for_each_lane(edges.block[j].overlaps(box), [&](int other) {
+                    if (!is_same || j > i || other > lane)
+                        try_edges(e, edges.item_of(j, other));
+                });
+        });
+}
+
+template <typename TryTriangle>
+void Candidates::meet_vertices(const BoxTree::Node& a, const BoxTree::Node& b,
+                               const TryTriangle& try_triangle) const
+{
+    const PrimitiveBoxes::Kind &vertices = boxes_.vertices, &triangles = boxes_.triangles;
+    for (int i = vertices.first_block[a.leaf]; i < vertices.first_block[a.leaf + 1]; ++i)
+        for_each_lane(vertices.block[i].overlaps(b.box), [&](int lane) {
+            const Box box = vertices.block[i].get(lane);
+            const int v = vertices.item_of(i, lane);
+            for (int j = triangles.first_block[b.leaf]; j < triangles.first_block[b.leaf + 1]; ++j)
+                for_each_lane(triangles.block[j].overlaps(box),
+                              [&](int other) { try_triangle(v, triangles.item_of(j, other)); });
+        });
+}
+
+} // namespace toile
