@@ -48,9 +48,9 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths)
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                            const std::vector<ContactCloth>& cloths, View<const double> altitude)
     : near_(triangles, positions), safe_(settings_for(cloths)), edge_(mean_edge(triangles, positions)),
-      slack_(positions.size(), kMostSlack * edge_), deviation_(positions.size(), Vec3::Zero()),
-      motion_(positions.size())
+      deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())
 {
+    slack_.assign(positions.size(), kMostSlack * edge_);
     for (int c = 0; c < int(cloths.size()); ++c) {
         cloth_.insert(cloth_.end(), cloths[c].vertex_count, c);
         thickest_ = std::max(thickest_, cloths[c].thickness);
