@@ -135,6 +135,7 @@ std::vector<Crossing> find(const Soup& soup_a, const Soup& soup_b, bool is_one_s
     parallel_append(
         kCpu, "crossings/pairs", soup_a.triangles.size(),
         [&](int begin, int end, std::vector<Crossing>& found) {
+            const StandardArithmetic standard;
             std::vector<int> near;
             for (int a = begin; a < end; ++a) {
                 if (soup_a.boxes[a].empty())
