@@ -52,8 +52,11 @@ std::set<std::pair<int, int>> pairs_of(const std::vector<Crossing>& crossings)
 std::vector<Vec3> grid()
 {
     std::vector<Vec3> points;
-    for (int i = 0; i < 27; ++i)
-        points.push_back(Vec3(i % 3, i / 3 % 3, i / 9));
+    points.reserve(27);
+    for (int z = 0; z < 3; ++z)
+        for (int y = 0; y < 3; ++y)
+            for (int x = 0; x < 3; ++x)
+                points.push_back(Vec3(x, y, z));
     return points;
 }
 
@@ -83,12 +86,12 @@ TEST(FindCrossings, AgreesWithRationalArithmeticOnSoupsThatShareCorners)
     std::mt19937 random(5);
     const std::vector<Vec3> places = grid();
     for (int round = 0; round < 6; ++round) {
-        std::vector<Vec3> x;
-        for (int v = 0; v < 12; ++v)
-            x.push_back(places[random() % places.size()]);
-        std::vector<Triangle> triangles;
-        for (int t = 0; t < 60; ++t)
-            triangles.push_back(Triangle(random() % 12, random() % 12, random() % 12));
+        std::vector<Vec3> x(12);
+        for (Vec3& p : x)
+            p = places[random() % places.size()];
+        std::vector<Triangle> triangles(60);
+        for (Triangle& t : triangles)
+            t = Triangle(random() % 12, random() % 12, random() % 12);
         const auto expected = pairs_by_oracle(triangles, x);
         EXPECT_EQ(pairs_of(find_crossings(triangles, x)), expected);
         EXPECT_GT(expected.size(), 100u);
