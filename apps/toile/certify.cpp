@@ -1,13 +1,16 @@
 #include "apps/toile/certify.h"
 
 #include <algorithm>
+#include <iostream>
 
 #include "apps/toile/avatar_crossings.h"
 #include "apps/toile/cache_cloth.h"
+#include "apps/toile/command_line.h"
 #include "apps/toile/penetration.h"
 #include "apps/toile/strain.h"
 #include "collision/crossings/find_crossings.h"
 #include "collision/crossings/gap_meter.h"
+#include "core/backend/atomic_file.h"
 #include "core/backend/error.h"
 #include "scenes/format/field.h"
 
@@ -172,6 +175,16 @@ std::optional<Certificate> certify(const Scene& scene, const std::vector<CachedC
             return std::nullopt;
     }
     return certificate;
+}
+
+int conclude(const Certificate& certificate, const std::filesystem::path& file, bool quiet)
+{
+    write_atomically(file, to_json(certificate));
+    if (!certificate.holds())
+        std::cerr << "toile: error: " << summary_of(certificate) << "; see " << file.string() << std::endl;
+    else if (!quiet)
+        std::cerr << summary_of(certificate) << std::endl;
+    return certificate.holds() ? kExitOk : kExitFailure;
 }
 
 } // namespace toile

@@ -26,6 +26,11 @@ std::optional<Certificate> certify(const Scene& scene, const std::vector<CachedC
                                    const CertificateLimits& limits,
                                    const std::function<bool(int done, int all)>& goes_on);
 
+/// Writes the certificate and says on stderr in one line whether it holds: when it does, only unless quiet.
+/// @return kExitOk or kExitFailure
+/// @throws InvalidInput or DeviceError as write_atomically().
+int conclude(const Certificate& certificate, const std::filesystem::path& file, bool quiet);
+
 /// The name of the certificate of several caches, in their folder.
 inline constexpr const char* kCertificateName = "certificate.json";
 

@@ -8,7 +8,6 @@
 #include "apps/toile/commands.h"
 #include "apps/toile/exports.h"
 #include "apps/toile/progress.h"
-#include "core/backend/atomic_file.h"
 #include "core/backend/error.h"
 #include "scenes/format/read_scene.h"
 
@@ -104,11 +103,9 @@ int check(const CheckOptions& options)
         return true;
     });
     progress.reset();
-    const std::string text = to_json(certificate);
     if (options.output.empty())
-        std::cout << text;
-    write_atomically(place_of(options), text);
-    return certificate.holds() ? kExitOk : kExitFailure;
+        std::cout << to_json(certificate);
+    return conclude(certificate, place_of(options), options.quiet);
 }
 
 } // namespace

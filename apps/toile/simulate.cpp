@@ -11,7 +11,6 @@
 #include "apps/toile/progress.h"
 #include "apps/toile/run_report.h"
 #include "apps/toile/table_progress.h"
-#include "core/backend/atomic_file.h"
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
 #include "core/mesh/obj.h"
@@ -206,13 +205,8 @@ int check_caches(const World& world, const Scene& scene, const std::vector<OpenC
         return kExitFailure;
     }
     const std::filesystem::path file = folder / kCertificateName;
-    write_atomically(file, to_json(*certificate));
     std::cout << file.string() << std::endl;
-    if (!certificate->holds())
-        std::cerr << "toile: error: " << summary_of(*certificate) << "; see " << file.string() << std::endl;
-    else if (!quiet)
-        std::cerr << summary_of(*certificate) << std::endl;
-    return certificate->holds() ? kExitOk : kExitFailure;
+    return conclude(*certificate, file, quiet);
 }
 
 /// Runs a prepared world and writes what it is to leave.

@@ -110,7 +110,9 @@ TEST(Certificate, FindsOneClothInAnother)
     const auto check = [&](std::vector<std::string> caches, const char* certificate, int exit_code) {
         caches.insert(caches.begin(), "check");
         caches.insert(caches.end(), {"--scene", "two.json", "--quiet", "--strain-margin", "9"});
-        EXPECT_EQ(run_toile(caches, folder.path()).exit_code, exit_code);
+        const Finished run = run_toile(caches, folder.path());
+        EXPECT_EQ(run.exit_code, exit_code);
+        EXPECT_EQ(run.error_lines(), exit_code);
         return json_in(folder, certificate);
     };
     const Json both = check({"out/upper.pc2", "out/lower.pc2"}, "out/certificate.json", 1);

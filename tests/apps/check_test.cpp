@@ -108,6 +108,11 @@ TEST(Check, TellsDepthWhereABodyIntersectsItselfApart)
     EXPECT_EQ(around["cloth_avatar_crossings"], 0);
     // Halfway over the edge of the left box it crosses a wall in the open.
     EXPECT_GT(found_at(0.45)["cloth_avatar_crossings"], 5);
+    const Finished run =
+        run_toile({"check", "changed.pc2", "--scene", "drop.json", "--penetration", "9"}, folder.path());
+    EXPECT_EQ(run.exit_code, 1); // for the crossings alone
+    EXPECT_EQ(nlohmann::json::parse(run.output)["first_crossing"]["b"]["name"], "ball");
+    EXPECT_EQ(bytes_of(folder.path() / "changed.certificate.json"), run.output);
 }
 
 TEST(Check, MeasuresStrain)
