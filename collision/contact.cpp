@@ -110,6 +110,17 @@ void Contact::carry_with_colliders()
 
 void Contact::detect(View<const Vec3> at, double radius)
 {
+    std::vector<ContactPair> pairs;
+    if (!partners_.empty())
+        find_colliders(at, radius, pairs);
+    if (between_)
+        between_->append_pairs(pairs);
+    make_terms(pairs);
+}
+
+/// Appends the pairs with colliders, and learns which of them is nearest to each vertex.
+void Contact::find_colliders(View<const Vec3> at, double radius, std::vector<ContactPair>& pairs)
+{
     const StageScope stage("collision/detect");
     detected_at_.assign(at.begin(), at.end());
     DetectSettings settings;
@@ -117,7 +128,6 @@ void Contact::detect(View<const Vec3> at, double radius)
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;
     detector_.move(detected_at_);
-    std::vector<ContactPair> pairs;
     for (int c = 0; c < int(partners_.size()); ++c) {
         if (partners_[c].mesh)
             detector_.detect(*partners_[c].mesh, c, settings, pairs);
@@ -134,9 +144,6 @@ void Contact::detect(View<const Vec3> at, double radius)
         if (nearest.collider < 0 || gap < nearest.gap)
             nearest = {pair.collider, pair.feature, gap, pair.point};
     }
-    if (between_)
-        between_->append_pairs(pairs);
-    make_terms(pairs);
 }
 
 /// The pairs that can move at all become terms of the energy.

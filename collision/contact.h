@@ -78,6 +78,7 @@ private:
 
     void carry_with_colliders();
     void detect(View<const Vec3> at, double radius);
+    void find_colliders(View<const Vec3> at, double radius, std::vector<ContactPair>& pairs);
     void make_terms(const std::vector<ContactPair>& pairs);
     ContactTerm make_term(const ContactPair& pair) const;
     double gap_of(const ContactPair& pair) const;
