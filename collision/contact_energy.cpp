@@ -22,6 +22,22 @@ double total_weight(const ContactPair& pair) { return pair.is_between_cloths() ?
 
 } // namespace
 
+void ContactEnergy::Touches::clear()
+{
+    vertices.clear();
+    first.clear();
+    entries.clear();
+}
+
+void ContactEnergy::Touches::add(int vertex, int entry)
+{
+    if (vertices.empty() || vertices.back() != vertex) {
+        vertices.push_back(vertex);
+        first.push_back(int(entries.size()));
+    }
+    entries.push_back(entry);
+}
+
 void ContactEnergy::set_terms(std::vector<ContactTerm> terms, int vertex_count)
 {
     terms_ = std::move(terms);
@@ -30,21 +46,15 @@ void ContactEnergy::set_terms(std::vector<ContactTerm> terms, int vertex_count)
         for (int k = 0; k < terms_[i].pair.count(); ++k)
             incidence.emplace_back(terms_[i].pair.vertex[k], 4 * i + k);
     std::sort(incidence.begin(), incidence.end());
-
-    vertices_.clear();
-    first_.clear();
-    entries_.clear();
-    for (const auto& [v, entry] : incidence) {
-        if (vertices_.empty() || vertices_.back() != v) {
-            vertices_.push_back(v);
-            first_.push_back(int(entries_.size()));
-        }
-        entries_.push_back(entry);
-    }
-    first_.push_back(int(entries_.size()));
+    touches_.clear();
+    for (const auto& [v, entry] : incidence)
+        touches_.add(v, entry);
+    touches_.close();
     frozen_.assign(terms_.size(), Mat3::Zero());
     term_force_.resize(terms_.size());
     term_energy_.resize(terms_.size());
+    active_.clear();
+    active_touches_.clear();
     blocks_.assign(vertex_count, Mat3::Zero());
 }
 
@@ -68,15 +78,15 @@ Vec3 ContactEnergy::slip(int i, View<const Vec3> x) const
 
 /// out[v] += sum of weight * value(term) over the terms that touch v, in ascending order.
 template <typename PerTerm>
-void ContactEnergy::gather(View<Vec3> out, const PerTerm& value) const
+void ContactEnergy::gather(const Touches& touches, View<Vec3> out, const PerTerm& value) const
 {
-    parallel_for(kCpu, "contact/gather", int(vertices_.size()), [&](int i) {
+    parallel_for(kCpu, "contact/gather", int(touches.vertices.size()), [&](int i) {
         Vec3 sum = Vec3::Zero();
-        for (int k = first_[i]; k < first_[i + 1]; ++k) {
-            const int term = entries_[k] / 4;
-            sum += terms_[term].pair.weight[entries_[k] % 4] * value(term);
+        for (int k = touches.first[i]; k < touches.first[i + 1]; ++k) {
+            const int term = touches.entries[k] / 4;
+            sum += terms_[term].pair.weight[touches.entries[k] % 4] * value(term);
         }
-        out[vertices_[i]] += sum;
+        out[touches.vertices[i]] += sum;
     });
 }
 
@@ -99,7 +109,7 @@ double ContactEnergy::add_gradient(View<const Vec3> x, View<Vec3> gradient) cons
                                ? 0.5 * term.stiffness * length * length
                                : limit * length - 0.5 * limit * limit / term.stiffness;
     });
-    gather(gradient, [&](int i) -> const Vec3& { return term_force_[i]; });
+    gather(touches_, gradient, [&](int i) -> const Vec3& { return term_force_[i]; });
     return parallel_sum(kCpu, count, 0.0, [&](int i) { return term_energy_[i]; });
 }
 
@@ -114,24 +124,41 @@ bool ContactEnergy::activate(View<const Vec3> x)
         if (term.friction * term.normal_force > 0.0)
             frozen_[i] += tangential_stiffness(term, slip(i, x).norm()) * (Mat3::Identity() - normal);
     });
-    bool active = false;
-    for (size_t i = 0; i < vertices_.size(); ++i) {
-        Mat3 block = Mat3::Zero();
-        for (int k = first_[i]; k < first_[i + 1]; ++k) {
-            const ContactPair& pair = terms_[entries_[k] / 4].pair;
-            block += std::abs(pair.weight[entries_[k] % 4]) * total_weight(pair) * frozen_[entries_[k] / 4];
+    active_.clear();
+    for (int i = 0; i < int(terms_.size()); ++i)
+        if (!frozen_[i].isZero(0.0))
+            active_.push_back(i);
+    find_active_touches();
+    return !active_.empty();
+}
+
+/// Touches of the frozen terms, and the blocks of their vertices.
+void ContactEnergy::find_active_touches()
+{
+    for (const int v : active_touches_.vertices)
+        blocks_[v].setZero();
+    active_touches_.clear();
+    for (size_t i = 0; i < touches_.vertices.size(); ++i) {
+        const int v = touches_.vertices[i];
+        for (int k = touches_.first[i]; k < touches_.first[i + 1]; ++k) {
+            const int entry = touches_.entries[k], term = entry / 4;
+            if (frozen_[term].isZero(0.0))
+                continue;
+            const ContactPair& pair = terms_[term].pair;
+            blocks_[v] += std::abs(pair.weight[entry % 4]) * total_weight(pair) * frozen_[term];
+            active_touches_.add(v, entry);
         }
-        blocks_[vertices_[i]] = block;
-        active = active || !block.isZero(0.0);
     }
-    return active;
+    active_touches_.close();
 }
 
 void ContactEnergy::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
 {
-    parallel_for(kCpu, "contact/multiply", int(terms_.size()),
-                 [&](int i) { term_force_[i] = frozen_[i] * terms_[i].pair.cloth_point(p); });
-    gather(out, [&](int i) -> const Vec3& { return term_force_[i]; });
+    parallel_for(kCpu, "contact/multiply", int(active_.size()), [&](int k) {
+        const int i = active_[k];
+        term_force_[i] = frozen_[i] * terms_[i].pair.cloth_point(p);
+    });
+    gather(active_touches_, out, [&](int i) -> const Vec3& { return term_force_[i]; });
 }
 
 } // namespace toile

@@ -56,13 +56,25 @@ public:
     Vec3 slip(int term, View<const Vec3> x) const;
 
 private:
+    /// Who touches what: terms by vertex.
+    struct Touches {
+        std::vector<int> vertices; ///< touched ones, ascending
+        std::vector<int> first;    ///< [touched + 1] into entries
+        std::vector<int> entries;  ///< 4 * term + slot
+
+        void clear();
+        void add(int vertex, int entry); ///< in ascending order of vertices
+        void close() { first.push_back(int(entries.size())); }
+    };
+
+    void find_active_touches();
     template <typename PerTerm>
-    void gather(View<Vec3> out, const PerTerm& value) const;
+    void gather(const Touches& touches, View<Vec3> out, const PerTerm& value) const;
 
     std::vector<ContactTerm> terms_;
-    std::vector<int> vertices_;            ///< touched vertices, ascending
-    std::vector<int> first_;               ///< [touched + 1] into entries_
-    std::vector<int> entries_;             ///< 4 * term + slot
+    Touches touches_;        ///< of all terms
+    Touches active_touches_; ///< of those that are frozen: usually far fewer
+    std::vector<int> active_;              ///< terms that are frozen
     std::vector<Mat3> frozen_;             ///< [terms] A_p
     std::vector<Mat3> blocks_;             ///< [vertices]
     mutable std::vector<Vec3> term_force_; ///< [terms] scratch

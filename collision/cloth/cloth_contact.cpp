@@ -47,7 +47,7 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths)
 
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                            const std::vector<ContactCloth>& cloths, View<const double> altitude)
-    : near_(triangles, positions), safe_(settings_for(cloths)), edge_(mean_edge(triangles, positions)),
+    : near_(triangles, positions), safe_(near_, settings_for(cloths)), edge_(mean_edge(triangles, positions)),
       deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())
 {
     slack_.assign(positions.size(), kMostSlack * edge_);
@@ -71,7 +71,10 @@ void ClothContact::look(View<const Vec3> x)
 {
     const StageScope stage("collision/near_pairs");
     near_.find(x, motion_, slack_, thickest_, pairs_);
-    safe_.begin(x, motion_, slack_, pairs_);
+    expected_.resize(x.size());
+    for (int v = 0; v < x.size(); ++v)
+        expected_[v] = x[v] + motion_[v];
+    safe_.begin(x, expected_, slack_, pairs_);
 }
 
 /// @param first_count  vertices of the pair's first side

@@ -22,6 +22,8 @@ public:
     ///                   kept, or a fine mesh would push itself apart
     ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                  const std::vector<ContactCloth>& cloths, View<const double> altitude);
+    ClothContact(const ClothContact&) = delete;
+    ClothContact& operator=(const ClothContact&) = delete;
 
     /// Finds the pairs for a step from x to about `prediction` [vertices] [m].
     void begin_step(View<const Vec3> x, View<const Vec3> prediction);
@@ -60,7 +62,7 @@ private:
     std::vector<double> slack_;           ///< [vertices] see SafeStep [m]
     double thickest_ = 0.0, edge_ = 0.0;  ///< [m] largest thickness, mean edge
     std::vector<NearPair> pairs_;
-    std::vector<Vec3> prediction_, deviation_, motion_; ///< [vertices] [m]
+    std::vector<Vec3> prediction_, deviation_, motion_, expected_; ///< [vertices] [m]
 };
 
 } // namespace toile

@@ -29,34 +29,36 @@ bool stays_apart(const NearPair& pair, const std::array<Vec3, 4>& x, const std::
 
 } // namespace
 
-void SafeStep::begin(View<const Vec3> x, View<const Vec3> motion, View<const double> slack,
+void SafeStep::begin(View<const Vec3> x, View<const Vec3> expected, View<const double> slack,
                      View<const NearPair> pairs)
 {
     base_.assign(x.begin(), x.end());
-    expected_.resize(x.size());
-    for (int v = 0; v < x.size(); ++v)
-        expected_[v] = x[v] + motion[v];
+    expected_ = expected;
     slack_ = slack;
-    pairs_ = pairs;
+    expected_pairs_ = pairs;
 }
 
 double SafeStep::limit(View<Vec3> x)
 {
     const StageScope stage("collision/safe_step");
-    const std::vector<Vec3> wanted(x.begin(), x.end());
-    const bool was_far = keep_near_expectation(x);
-    const bool was_shortened = !pairs_.empty() && find_shares(x);
-    held_count_ = 0;
-    if (!was_far && !was_shortened)
+    way_.resize(x.size());
+    for (int v = 0; v < x.size(); ++v)
+        way_[v] = x[v] - base_[v];
+    strays_.assign(x.size(), 0.0);
+    share_.assign(x.size(), 1.0);
+    is_stale_.assign(x.size(), 1);
+    pairs_ = expected_pairs_;
+    if (strays(x))
+        look_again();
+    if (pairs_.empty() || !find_shares())
         return 0.0;
 
     double farthest = 0.0;
     for (int v = 0; v < x.size(); ++v) {
-        if (was_shortened && share_[v] < 1.0)
-            x[v] = base_[v] + share_[v] * (x[v] - base_[v]);
-        const double held = (x[v] - wanted[v]).norm();
-        held_count_ += held > 0.0 ? 1 : 0;
-        farthest = std::max(farthest, held);
+        if (share_[v] == 1.0)
+            continue;
+        x[v] = base_[v] + share_[v] * way_[v];
+        farthest = std::max(farthest, (1.0 - share_[v]) * way_[v].norm());
     }
     return farthest;
 }
@@ -64,43 +66,47 @@ double SafeStep::limit(View<Vec3> x)
 /// Of two layers that lie on each other a tenth of their distance is left; far ones may come that near too.
 double SafeStep::least_gap_of(const NearPair& pair) const
 {
-    return std::max(settings_.least_gap, settings_.least_share * std::min(pair.distance, settings_.thickness));
+    return std::max(settings_.least_gap,
+                    settings_.least_share * std::min(pair.distance, settings_.thickness));
 }
 
-bool SafeStep::keep_near_expectation(View<Vec3> x)
+/// True when somebody is not near where it was expected.
+bool SafeStep::strays(View<const Vec3> x) const
 {
-    bool was_far = false;
-    for (int v = 0; v < x.size(); ++v) {
-        const Vec3 away = x[v] - expected_[v];
-        const double distance = away.norm();
-        if (distance <= slack_[v])
-            continue;
-        x[v] = expected_[v] + slack_[v] / distance * away;
-        was_far = true;
-    }
-    return was_far;
-}
-
-/// The share of the way to x that every vertex may go. False when all may go all of it.
-bool SafeStep::find_shares(View<const Vec3> x)
-{
-    std::vector<Vec3> way(x.size());
     for (int v = 0; v < x.size(); ++v)
-        way[v] = x[v] - base_[v];
-    share_.assign(x.size(), 1.0);
-    is_stale_.assign(x.size(), 1);
-    pair_share_.assign(pairs_.size(), 1.0);
+        if ((x[v] - expected_[v]).squaredNorm() > slack_[v] * slack_[v])
+            return true;
+    return false;
+}
+
+/// The pairs for the ways as they are, of which those that lag behind may go any share.
+void SafeStep::look_again()
+{
+    const StageScope stage("collision/look_again");
+    near_.find(base_, way_, strays_, std::max(settings_.least_gap, settings_.least_share * settings_.thickness),
+               found_pairs_);
+    pairs_ = found_pairs_;
+    std::fill(is_stale_.begin(), is_stale_.end(), 1);
+    has_lag_ = false;
+}
+
+/// The share of its way that every vertex may go. False when all may go all of it.
+bool SafeStep::find_shares()
+{
     bool was_shortened = false;
     for (int round = 0;; ++round) {
-        look_at_pairs(way);
+        look_at_pairs();
         if (!shorten(round >= kRounds))
             return was_shortened;
         was_shortened = true;
+        if (has_lag_)
+            look_again();
     }
 }
 
-void SafeStep::look_at_pairs(View<const Vec3> way)
+void SafeStep::look_at_pairs()
 {
+    pair_share_.resize(pairs_.size());
     parallel_for(kCpu, "collision/safe_share", pairs_.size(), [&](int i) {
         const NearPair& pair = pairs_[i];
         pair_share_[i] = 1.0;
@@ -110,7 +116,7 @@ void SafeStep::look_at_pairs(View<const Vec3> way)
             const int v = pair.vertex[k];
             is_stale = is_stale || is_stale_[v];
             x[k] = base_[v];
-            move[k] = share_[v] * way[v];
+            move[k] = share_[v] * way_[v];
         }
         const double least = least_gap_of(pair);
         if (is_stale && !stays_apart(pair, x, move, least))
@@ -131,6 +137,8 @@ bool SafeStep::shorten(bool for_good)
         for (const int v : pairs_[i].vertex) {
             share_[v] = for_good ? 0.0 : std::min(share_[v], kTaken * pair_share_[i] * before[v]);
             is_stale_[v] = 1;
+            has_lag_ = has_lag_ || strays_[v] == 0.0;
+            strays_[v] = way_[v].norm();
         }
     }
     return any;
