@@ -7,6 +7,7 @@
 
 #include "core/backend/parallel.h"
 #include "core/linear/field.h"
+#include "core/mesh/winding.h"
 #include "core/pd/body.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
@@ -52,9 +53,11 @@ std::string source_of(const scene::Cloth& cloth)
 
 /// Reads or cuts the cloth, subdivides, sizes and turns it. Where it goes is left to the caller: equal cloths
 /// in several places then have the same rest shape to the bit, and so share factors and tables.
-ObjMesh turned_mesh(const scene::Cloth& cloth)
+/// @param turned_faces  out: faces whose winding had to be turned to agree with their neighbours
+ObjMesh turned_mesh(const scene::Cloth& cloth, int& turned_faces)
 {
     ObjMesh mesh = cut(cloth);
+    turned_faces = make_windings_agree(mesh);
     require_usable(mesh.triangulated(), source_of(cloth));
     if (cloth.subdivide > 0)
         mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
@@ -95,7 +98,10 @@ ClothBody::ClothBody(const Scene& scene, const scene::Cloth& settings, const std
 {
     state_.name = settings.name;
     state_.fabric = fabric_of(scene, settings);
-    state_.rest = turned_mesh(settings);
+    state_.rest = turned_mesh(settings, state_.turned_faces);
+    if (state_.turned_faces > 0 && options.warn)
+        options.warn(source_of(settings) + ": turned " + std::to_string(state_.turned_faces) +
+                     " faces that were wound against their neighbours");
     state_.triangles = state_.rest.triangulated().triangles;
     const std::vector<Vec3> unmoved = state_.rest.positions;
     for (Vec3& p : state_.rest.positions)

@@ -22,6 +22,8 @@ struct ClothState {
     std::vector<Triangle> triangles;
     ObjMesh rest; ///< start placement, rest lengths, faces and texture coordinates as stored
     Fabric fabric;
+    int turned_faces =
+        0; ///< faces of the file that were wound against their neighbours; `rest` has them right
 };
 
 /// How a World prepares its global solvers, beyond what the scene says.
