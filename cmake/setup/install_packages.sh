@@ -19,6 +19,7 @@ BUILD=(
     libxxhash-dev
     libembree-dev
     libassimp-dev
+    libcgal-dev        # exact predicates; header-only
     nlohmann-json3-dev
     libpng-dev
     libcli11-dev

@@ -1,0 +1,74 @@
+#include "collision/crossings/box_tree.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace toile {
+
+namespace {
+
+constexpr int kLeafSize = 4;
+
+} // namespace
+
+BoxTree::BoxTree(View<const Bounds> boxes) : boxes_(boxes.begin(), boxes.end())
+{
+    for (int i = 0; i < boxes.size(); ++i)
+        if (!boxes[i].empty())
+            order_.push_back(i);
+    if (!order_.empty())
+        build(0, int(order_.size()));
+}
+
+void BoxTree::build(int first, int count)
+{
+    const auto begin = order_.begin() + first;
+    Bounds box, centers;
+    for (auto i = begin; i != begin + count; ++i) {
+        box.extend(boxes_[*i].lower);
+        box.extend(boxes_[*i].upper);
+        centers.extend(boxes_[*i].center());
+    }
+    const size_t node = nodes_.size();
+    nodes_.push_back({box, first, count});
+    if (count <= kLeafSize)
+        return;
+
+    int axis = 0;
+    (centers.upper - centers.lower).maxCoeff(&axis);
+    const int half = count / 2;
+    // Equal centres are ordered by index, so the tree is the same wherever it is built.
+    std::nth_element(begin, begin + half, begin + count, [&](int a, int b) {
+        const double at_a = boxes_[a].lower[axis] + boxes_[a].upper[axis];
+        const double at_b = boxes_[b].lower[axis] + boxes_[b].upper[axis];
+        return at_a < at_b || (at_a == at_b && a < b);
+    });
+    build(first, half);
+    nodes_[node].first = int(nodes_.size());
+    nodes_[node].count = 0;
+    build(first + half, count - half);
+}
+
+void BoxTree::find(const Bounds& box, std::vector<int>& out) const
+{
+    constexpr int kDeepest = 64; // halving 2^31 boxes takes 31 levels
+    int waiting[kDeepest];
+    int top = 0;
+    if (!nodes_.empty())
+        waiting[top++] = 0;
+    while (top > 0) {
+        const int at = waiting[--top];
+        const Node& node = nodes_[at];
+        if (!meet(node.box, box))
+            continue;
+        if (node.count == 0) {
+            waiting[top++] = node.first;
+            waiting[top++] = at + 1;
+        }
+        for (int i = node.first; i < node.first + node.count; ++i)
+            if (meet(boxes_[order_[i]], box))
+                out.push_back(order_[i]);
+    }
+}
+
+} // namespace toile

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Two triangles that have more in common than shared corners.
+struct Crossing {
+    int a = -1, b = -1;        ///< triangles; of one soup a < b
+    Vec3 point = Vec3::Zero(); ///< in both of them, to rounding [m]
+};
+
+/// All pairs of triangles of a soup that cross: they have a point in common beyond the corners and edges that
+/// they share by index (crosses.h says what that means for each kind of pair). Exact, in double precision
+/// coordinates as they are. Touching counts, so no crossing means: nothing passes through and nothing
+/// touches. Triangles without area take part as segments and points; those with a corner that is not finite
+/// do not.
+///
+/// Independent of contact detection on purpose: this is what certifies its results.
+/// @param triangles  [triangles x 3] any list: open, closed, non-manifold
+/// @param x          [vertices x 3] [m]
+/// @return sorted by (a, b), the same for every number of threads
+std::vector<Crossing> find_crossings(View<const Triangle> triangles, View<const Vec3> x);
+
+/// The same between two soups, which share no corner: all common points count.
+/// @return sorted by (a, b); a is of the first soup, b of the second
+std::vector<Crossing> find_crossings(View<const Triangle> triangles_a, View<const Vec3> x_a,
+                                     View<const Triangle> triangles_b, View<const Vec3> x_b);
+
+} // namespace toile
