@@ -256,6 +256,16 @@ void ClothBody::place(View<const Vec3> positions)
     rest_time_ = 0.0;
 }
 
+std::vector<char> ClothBody::held_exactly() const
+{
+    std::vector<char> held(state_.positions.size(), 0);
+    for (const Hold& hold : holds_)
+        if (!hold.stiffness())
+            for (const int v : hold.vertices())
+                held[v] = 1;
+    return held;
+}
+
 /// Marks the vertices whose place is prescribed at time t_t1.
 void ClothBody::mark_fixed(double t_t1)
 {

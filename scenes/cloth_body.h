@@ -32,6 +32,9 @@ public:
 
     const ClothState& state() const { return state_; }
 
+    /// [vertices] nonzero for those that an attachment holds exactly, now or later.
+    std::vector<char> held_exactly() const;
+
 private:
     /// @param unmoved  [vertices] rest positions before the cloth's translation [m]
     void build(const Scene& scene, const std::vector<Vec3>& unmoved, const std::vector<Obstacle>& obstacles,

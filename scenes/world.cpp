@@ -5,6 +5,7 @@
 
 #include "core/backend/parallel.h"
 #include "scenes/cloth_body.h"
+#include "scenes/start_pose.h"
 
 namespace toile {
 
@@ -13,6 +14,7 @@ struct World::Parts {
     std::vector<Obstacle> obstacles;
     std::vector<ClothBody> bodies;
     std::vector<ClothState> states;
+    StartReport start;
     Stages stages;
     int frame = 0;
 
@@ -52,10 +54,14 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     parts_->scene = scene;
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->obstacles.emplace_back(avatar, scene.contact.friction);
-    for (const scene::Cloth& cloth : scene.cloths) {
+    for (const scene::Cloth& cloth : scene.cloths)
         parts_->bodies.emplace_back(scene, cloth, parts_->obstacles, options);
-        parts_->states.push_back(parts_->bodies.back().state());
-    }
+
+    const ThreadLimit threads(scene.solver.threads);
+    const Stages::Activate recording(parts_->stages);
+    parts_->start = repair_start_pose(scene, parts_->bodies, parts_->obstacles);
+    for (const ClothBody& body : parts_->bodies)
+        parts_->states.push_back(body.state());
 }
 
 World::~World() = default;
@@ -91,6 +97,7 @@ StepReport World::advance_frame()
 int World::frame() const { return parts_->frame; }
 int World::frame_count() const { return parts_->scene.frames; }
 const std::vector<ClothState>& World::cloths() const { return parts_->states; }
+const StartReport& World::start() const { return parts_->start; }
 const Stages& World::stages() const { return parts_->stages; }
 
 } // namespace toile
