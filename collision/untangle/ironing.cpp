@@ -4,15 +4,8 @@
 
 namespace toile {
 
-std::vector<char> patch_around(const JoinedCloths& cloths, const std::vector<Piercing>& piercings, int rings)
+void grow_patch(const JoinedCloths& cloths, int rings, std::vector<char>& patch)
 {
-    std::vector<char> patch(cloths.vertex_count(), 0);
-    for (const Piercing& piercing : piercings) {
-        for (const int v : cloths.edges.vertex[piercing.edge])
-            patch[v] = 1;
-        for (const int v : cloths.triangles[piercing.triangle])
-            patch[v] = 1;
-    }
     for (int ring = 0; ring < rings; ++ring) {
         const std::vector<char> inner = patch;
         for (const Triangle& corner : cloths.triangles)
@@ -20,7 +13,6 @@ std::vector<char> patch_around(const JoinedCloths& cloths, const std::vector<Pie
                 for (const int v : corner)
                     patch[v] = 1;
     }
-    return patch;
 }
 
 void iron(const JoinedCloths& cloths, const std::vector<char>& patch, int sweeps, View<Vec3> x)

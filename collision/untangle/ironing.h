@@ -2,13 +2,12 @@
 
 #include <vector>
 
-#include "collision/untangle/piercings.h"
+#include "collision/untangle/joined_cloths.h"
 
 namespace toile {
 
-/// Vertices of the edges and triangles of piercings and, `rings` times over, of the triangles around them.
-/// [vertices] nonzero for those.
-std::vector<char> patch_around(const JoinedCloths& cloths, const std::vector<Piercing>& piercings, int rings);
+/// Grows a patch by the triangles that touch it, `rings` times. [vertices] nonzero for those in it.
+void grow_patch(const JoinedCloths& cloths, int rings, std::vector<char>& patch);
 
 /// Draws every vertex of a patch to the mean of its neighbours, sweep by sweep. The patch contracts towards
 /// its rim as a smooth surface, whatever folds and knots it had: what local moves can't decide (which of two

@@ -15,7 +15,7 @@ namespace toile {
 namespace {
 
 /// Depth [m] from which on a point counts as inside a body: below, it touches.
-constexpr double kTouch = 1e-5;
+constexpr double kTouch = 1e-6;
 
 /// Growing bodies and untangling may undo a little of each other.
 constexpr int kMaxRounds = 4;
