@@ -7,13 +7,10 @@
 
 namespace toile {
 
-/// Looks at the pose that cloths start in and repairs it where cloth is inside a body or crosses cloth: stages
-/// "scenes/start_check" and, for poses that need it only, "scenes/start_repair". Rest shapes stay as they are.
-/// Places are numbered by scene: cloth and avatar as they stand in `cloths` and `obstacles`.
+/// Looks at the pose that cloths start in and repairs it where cloth is inside a body or crosses cloth:
+/// stages "scenes/start_check" and, for poses that need it only, "scenes/start_repair". Rest shapes stay as
+/// they are. Places are numbered by scene: cloth and avatar as they stand in `cloths` and `obstacles`.
 StartReport repair_start_pose(const Scene& scene, std::vector<ClothBody>& cloths,
                               const std::vector<Obstacle>& obstacles);
-
-/// The report in a sentence for the user; empty when there is nothing to say.
-std::string summary_of(const StartReport& report);
 
 } // namespace toile

@@ -120,27 +120,31 @@ void BodyClearing::carry(View<Vec3> x, const std::vector<InsideSample>& inside, 
     for (const InsideSample& sample : inside)
         deepest = std::max(deepest, -sample.place.signed_distance);
     const std::vector<Vec3> before(x.begin(), x.end());
-    parallel_for(kCpu, "untangle/carry", x.size(), [&](int v) {
-        if (cloths_.fixed[v] != 0)
-            return;
-        const double g = cloths_.gap[v];
-        const auto place = nearest_body(bodies_, before[v], g + kBand * (g + deepest));
-        if (!place)
-            return;
-        double lift = 0.0; // D + g
-        for (const InsideSample& sample : inside) {
-            const double depth = g - sample.place.signed_distance;
-            const double away = (sample.point - before[v]).norm() / (kReach * depth);
-            if (sample.place.body == place->body && away < 1.0)
-                lift = std::max(lift, depth * std::min(1.0, 2.0 * (1.0 - away)));
-        }
-        const double top = g + kBand * lift;
-        if (lift == 0.0 || place->signed_distance >= top)
-            return;
-        const double scale = kBand / (1.0 + kBand);
-        const double target = std::max(top - (top - place->signed_distance) * scale, place->signed_distance);
-        x[v] += share * (target - place->signed_distance) * place->normal;
-    }, 16);
+    parallel_for(
+        kCpu, "untangle/carry", x.size(),
+        [&](int v) {
+            if (cloths_.fixed[v] != 0)
+                return;
+            const double g = cloths_.gap[v];
+            const auto place = nearest_body(bodies_, before[v], g + kBand * (g + deepest));
+            if (!place)
+                return;
+            double lift = 0.0; // D + g
+            for (const InsideSample& sample : inside) {
+                const double depth = g - sample.place.signed_distance;
+                const double away = (sample.point - before[v]).norm() / (kReach * depth);
+                if (sample.place.body == place->body && away < 1.0)
+                    lift = std::max(lift, depth * std::min(1.0, 2.0 * (1.0 - away)));
+            }
+            const double top = g + kBand * lift;
+            if (lift == 0.0 || place->signed_distance >= top)
+                return;
+            const double scale = kBand / (1.0 + kBand);
+            const double target =
+                std::max(top - (top - place->signed_distance) * scale, place->signed_distance);
+            x[v] += share * (target - place->signed_distance) * place->normal;
+        },
+        16);
 }
 
 void BodyClearing::push(View<Vec3> x) const

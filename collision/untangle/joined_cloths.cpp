@@ -65,10 +65,9 @@ JoinedCloths::JoinedCloths(const std::vector<StartCloth>& cloths) : first_vertex
     for (int e = 0; e < edges.edge_count(); ++e) {
         const View<const int> sides = edges.triangles.of(e);
         const bool is_inner = sides.size() == 2;
-        opposite.push_back(is_inner
-                               ? std::array<int, 2>{third_corner(triangles[sides[0]], edges.vertex[e]),
-                                                    third_corner(triangles[sides[1]], edges.vertex[e])}
-                               : std::array<int, 2>{-1, -1});
+        opposite.push_back(is_inner ? std::array<int, 2>{third_corner(triangles[sides[0]], edges.vertex[e]),
+                                                         third_corner(triangles[sides[1]], edges.vertex[e])}
+                                    : std::array<int, 2>{-1, -1});
         length.push_back((start[edges.vertex[e][0]] - start[edges.vertex[e][1]]).norm());
         mean_length += length.back();
     }

@@ -192,9 +192,9 @@ struct Attachment {
 // --- the rest -------------------------------------------------------------------------------------------
 
 struct Contact {
-    double gap = 0.001;     ///< [m] kept between cloth and avatar beyond half the cloth's thickness
-    double stiffness = 1.0; ///< [-] relative to the solver's own choice
-    double friction = 0.3;  ///< [-] of avatars that name none
+    double gap = 0.001;       ///< [m] kept between cloth and avatar beyond half the cloth's thickness
+    double stiffness = 1.0;   ///< [-] relative to the solver's own choice
+    double friction = 0.3;    ///< [-] of avatars that name none
     bool repair_start = true; ///< cloth that starts inside avatars or through cloth is moved
 };
 

@@ -56,8 +56,8 @@ TriangleMesh tube_mesh(double radius, double length, int around, int along)
     for (int j = 0; j <= along; ++j)
         for (int i = 0; i < around; ++i) {
             const double angle = 2.0 * std::numbers::pi * i / around;
-            mesh.positions.push_back(Vec3(radius * std::sin(angle), length * (double(j) / along - 0.5),
-                                          radius * std::cos(angle)));
+            mesh.positions.push_back(
+                Vec3(radius * std::sin(angle), length * (double(j) / along - 0.5), radius * std::cos(angle)));
         }
     for (int j = 0; j < along; ++j)
         for (int i = 0; i < around; ++i) {
@@ -79,8 +79,7 @@ TEST(CheckStart, FindsNothingInACleanPose)
 TEST(CheckStart, SaysWhereClothIsInsideAndHowDeep)
 {
     const ShapeCollider ball(SphereShape{0.1}, Eigen::Isometry3d::Identity(), "ball");
-    const StartReport report =
-        check_start({cloth_of(sheet_mesh(0.3, 20, 0.08))}, {{nullptr, &ball, 0.3}});
+    const StartReport report = check_start({cloth_of(sheet_mesh(0.3, 20, 0.08))}, {{nullptr, &ball, 0.3}});
     ASSERT_FALSE(report.places.empty());
     EXPECT_NEAR(report.deepest(Kind::InsideBody), 0.02, 1e-12);
     for (const StartPlace& place : report.places)
