@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "collision/untangle/body_clearing.h"
 #include "collision/untangle/piercings.h"
@@ -81,6 +82,26 @@ bool separate_layers(const JoinedCloths& cloths, const std::vector<ContactPartne
         clearing.grow(x, ShapeKeeper(upper));
     }
     return true;
+}
+
+std::vector<int> layers_without_ties(const JoinedCloths& cloths, const std::vector<ContactPartner>& bodies)
+{
+    std::vector<double> sum(cloths.piece_count(), 0.0);
+    std::vector<int> count(cloths.piece_count(), 0);
+    for (int v = 0; v < cloths.vertex_count(); ++v)
+        if (const auto place = nearest_body(bodies, cloths.start[v], kMaxStartDepth);
+            place && cloths.piece[v] >= 0) {
+            sum[cloths.piece[v]] += place->signed_distance;
+            ++count[cloths.piece[v]];
+        }
+    std::vector<std::tuple<int, double, int>> order;
+    for (int p = 0; p < cloths.piece_count(); ++p)
+        order.emplace_back(cloths.layer[p], count[p] > 0 ? sum[p] / count[p] : kMaxStartDepth, p);
+    std::sort(order.begin(), order.end());
+    std::vector<int> layers(order.size());
+    for (size_t rank = 0; rank < order.size(); ++rank)
+        layers[std::get<2>(order[rank])] = int(rank);
+    return layers;
 }
 
 } // namespace toile

@@ -15,4 +15,8 @@ namespace toile {
 /// @return true when anything had to move
 bool separate_layers(const JoinedCloths& cloths, const std::vector<ContactPartner>& bodies, View<Vec3> x);
 
+/// Layers of the pieces with ties broken: of equal layers the piece that is further from the bodies on
+/// average is the higher one, then the later one. [pieces] 0, 1, 2, ...
+std::vector<int> layers_without_ties(const JoinedCloths& cloths, const std::vector<ContactPartner>& bodies);
+
 } // namespace toile

@@ -1,6 +1,7 @@
 #include "collision/untangle/repair_start.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -128,22 +129,29 @@ StartReport check_start(const std::vector<StartCloth>& cloths, const std::vector
 
 StartReport repair_start(std::vector<StartCloth>& cloths, const std::vector<ContactPartner>& bodies)
 {
-    const JoinedCloths joined(cloths);
+    JoinedCloths joined(cloths);
     const BodyClearing clearing(joined, bodies);
-    ShapeKeeper keeper(joined);
+    std::optional<ShapeKeeper> keeper(joined);
     const Faults before(joined, clearing, joined.start);
     Faults best = before;
     std::vector<Vec3> x = joined.start, best_x = x;
     StartReport report;
     report.was_repaired = true;
     while (report.rounds < kMaxRounds && best.can_be_repaired()) {
-        repair_once(joined, bodies, clearing, keeper, x);
+        repair_once(joined, bodies, clearing, *keeper, x);
         ++report.rounds;
         Faults now(joined, clearing, x);
+        const bool is_tangled = now.crossing_count > 0;
         if (std::pair(now.crossing_count, now.places.size()) <
             std::pair(best.crossing_count, best.places.size())) {
             best = std::move(now);
             best_x = x;
+        }
+        if (is_tangled && report.rounds == 1) {
+            // Contours that only layers resolve: once more from the start, with an order of all pieces.
+            joined.layer = layers_without_ties(joined, bodies);
+            x = joined.start;
+            keeper.emplace(joined);
         }
     }
 

@@ -153,6 +153,15 @@ TEST(RepairStart, BringsTheHigherLayerOutside)
     }
 }
 
+TEST(RepairStart, DecidesWhereTheLayersAreEqual)
+{
+    std::vector<StartCloth> cloths = crossing_sheets(0, 0);
+    const StartReport report = repair_start(cloths, {});
+    EXPECT_GT(report.count(Kind::Crossing), 10);
+    EXPECT_EQ(report.remaining(Kind::Crossing), 0);
+    EXPECT_LT(report.rms_strain, 0.03);
+}
+
 TEST(RepairStart, UntanglesASheetThatGoesThroughItself)
 {
     // A rolled-up sheet whose ends overlap by 40 degrees; a dent in the outer one goes through the inner one.
