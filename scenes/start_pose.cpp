@@ -25,9 +25,11 @@ StartReport repair_start_pose(const Scene& scene, std::vector<ClothBody>& cloths
                               const std::vector<Obstacle>& obstacles)
 {
     std::vector<StartCloth> starts;
+    starts.reserve(cloths.size());
     for (size_t i = 0; i < cloths.size(); ++i)
         starts.push_back(start_of(scene, scene.cloths[i], cloths[i]));
     std::vector<ContactPartner> bodies;
+    bodies.reserve(obstacles.size());
     for (const Obstacle& obstacle : obstacles)
         bodies.push_back(obstacle.partner());
 

@@ -95,6 +95,7 @@ std::vector<int> layers_without_ties(const JoinedCloths& cloths, const std::vect
             ++count[cloths.piece[v]];
         }
     std::vector<std::tuple<int, double, int>> order;
+    order.reserve(cloths.layer.size());
     for (int p = 0; p < cloths.piece_count(); ++p)
         order.emplace_back(cloths.layer[p], count[p] > 0 ? sum[p] / count[p] : kMaxStartDepth, p);
     std::sort(order.begin(), order.end());
