@@ -157,9 +157,10 @@ bool PenetrationMeter::is_on_border(const SurfacePoint& at) const
     return k >= 0 && is_border_vertex_[surface_.triangles()[at.triangle][k]];
 }
 
-/// True when the outside of a triangle is inside another part of the body, at its centroid or near a corner.
 bool PenetrationMeter::is_buried(int triangle) const
 {
+    if (!is_closed_)
+        return false;
     constexpr double kTowardsCorner = 0.9; // [-] of the way: off the crease that a corner may lie in
     const Triangle& corner = surface_.triangles()[triangle];
     Vec3 centroid = Vec3::Zero();

@@ -66,12 +66,15 @@ public:
     Penetration measure(View<const Vec3> samples, const Settings& settings) const;
     Penetration measure(View<const Vec3> samples) const { return measure(samples, Settings{}); }
 
+    /// True when the outside of a triangle is inside another part of a closed mesh, at its centroid or near a
+    /// corner. Never true of an open mesh.
+    bool is_buried(int triangle) const;
+
 private:
     struct Inside;
     std::vector<Inside> find_inside(View<const Vec3> samples) const;
     std::vector<Inside> find_behind(View<const Vec3> samples, const Settings& settings) const;
     void exclude_self_intersections(std::vector<Inside>& inside, double margin) const;
-    bool is_buried(int triangle) const;
     bool is_on_border(const SurfacePoint& at) const;
 
     SurfaceProximity surface_;

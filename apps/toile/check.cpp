@@ -1,16 +1,13 @@
-#include <cmath>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/toile/cache_cloth.h"
+#include "apps/toile/certify.h"
 #include "apps/toile/command_line.h"
 #include "apps/toile/commands.h"
-#include "apps/toile/penetration.h"
+#include "apps/toile/exports.h"
 #include "apps/toile/progress.h"
-#include "apps/toile/strain.h"
-#include "core/backend/atomic_file.h"
 #include "core/backend/error.h"
 #include "scenes/format/read_scene.h"
 
@@ -18,123 +15,97 @@ namespace toile {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct CheckOptions {
-    std::filesystem::path cache;
+    std::vector<std::filesystem::path> caches; ///< or one folder of them
     std::filesystem::path scene;
-    std::filesystem::path output; ///< empty: standard output
+    std::filesystem::path output; ///< empty: beside the caches, and standard output
     std::string cloth;
-    double penetration_limit = 0.001; ///< [m]
-    double strain_margin = 0.05;      ///< [-] allowed beyond the fabric's strain limit
+    CertificateLimits limits;
     bool quiet = false;
 };
 
-/// What was found in one frame.
-struct FrameFindings {
-    int non_finite = 0;       ///< vertices
-    double penetration = 0.0; ///< [m]
-    double excluded = 0.0;    ///< [m] depth where an avatar intersects itself
-    double strain = 0.0;      ///< [-]
-};
-
-/// What holds of a whole cache.
-struct Certificate {
-    int frames = 0;
-    int non_finite = 0;
-    FrameFindings worst;
-    int worst_penetration_frame = 0;
-    int worst_strain_frame = 0;
-    int first_bad_frame = -1;
-
-    void add(int frame, const FrameFindings& found, double penetration_limit, double strain_limit)
-    {
-        ++frames;
-        non_finite += found.non_finite;
-        if (found.penetration > worst.penetration) {
-            worst.penetration = found.penetration;
-            worst_penetration_frame = frame;
-        }
-        if (found.strain > worst.strain) {
-            worst.strain = found.strain;
-            worst_strain_frame = frame;
-        }
-        worst.excluded = std::max(worst.excluded, found.excluded);
-        const bool good =
-            found.non_finite == 0 && found.penetration <= penetration_limit && found.strain <= strain_limit;
-        if (!good && first_bad_frame < 0)
-            first_bad_frame = frame;
-    }
-
-    bool holds() const { return first_bad_frame < 0; }
-};
-
-FrameFindings examine(View<const Vec3> x, const StrainMeter& strain, const ScenePenetration& penetration)
+/// Whether a cache of this name is there: as a file, or as numbered OBJ files.
+bool cache_exists(const std::filesystem::path& file)
 {
-    FrameFindings found;
-    for (const Vec3& p : x)
-        found.non_finite += p.allFinite() ? 0 : 1;
-    const ScenePenetration::Depth depth = penetration.measure(x);
-    found.penetration = depth.deepest;
-    found.excluded = depth.excluded;
-    if (found.non_finite == 0)
-        found.strain = strain.largest(x);
-    return found;
+    if (std::filesystem::exists(file))
+        return true;
+    const std::string first = file.stem().string() + "_0000.obj";
+    return file.extension() == ".obj" && std::filesystem::exists(file.parent_path() / first);
 }
 
-Certificate examine_all(const PointCache& cache, const Scene& scene, const ClothState& cloth,
-                        const CheckOptions& options, double strain_limit)
+/// The caches that simulate writes into a folder, one of each cloth; those that are not there are left out.
+std::vector<std::filesystem::path> caches_in(const std::filesystem::path& folder, const Scene& scene)
 {
-    const StrainMeter strain(cloth.rest.positions, cloth.triangles);
-    ScenePenetration penetration(scene, cloth.triangles, int(cloth.positions.size()));
-    Progress progress("check", cache.frame_count(), options.quiet);
-    Certificate certificate;
-    for (int frame = 0; frame < cache.frame_count(); ++frame) {
-        penetration.advance_to(frame * scene.frame_duration());
-        certificate.add(frame, examine(cache.frame(frame), strain, penetration), options.penetration_limit,
-                        strain_limit);
-        progress.update(frame + 1);
+    std::vector<std::filesystem::path> caches;
+    std::vector<int> cloths;
+    std::string looked_for;
+    for (const scene::Export& entry : exports_of(scene)) {
+        const int cloth = cloth_index(scene, entry.cloth);
+        looked_for += (looked_for.empty() ? "" : ", ") + entry.file.string();
+        if (!cache_exists(folder / entry.file) || std::count(cloths.begin(), cloths.end(), cloth) > 0)
+            continue;
+        caches.push_back(folder / entry.file);
+        cloths.push_back(cloth);
     }
-    return certificate;
+    if (caches.empty())
+        throw InvalidInput(folder.string() + ": has no cache of " + scene.source.string() + "; looked for " +
+                           looked_for);
+    return caches;
 }
 
-Json json_of(const Certificate& certificate, const CheckOptions& options, const ClothState& cloth,
-             double strain_limit)
+/// Each cache with its cloth.
+std::vector<CachedCloth> cloths_of(const std::vector<std::filesystem::path>& caches, const Scene& scene,
+                                   const World& world, const std::string& named)
 {
-    return {{"cache", options.cache.string()},
-            {"scene", options.scene.string()},
-            {"cloth", cloth.name},
-            {"holds", certificate.holds()},
-            {"frames", certificate.frames},
-            {"max_penetration_m", certificate.worst.penetration},
-            {"max_penetration_frame", certificate.worst_penetration_frame},
-            {"max_penetration_in_self_intersections_m", certificate.worst.excluded},
-            {"max_strain", certificate.worst.strain},
-            {"max_strain_frame", certificate.worst_strain_frame},
-            {"non_finite", certificate.non_finite},
-            {"first_bad_frame", certificate.holds() ? Json(nullptr) : Json(certificate.first_bad_frame)},
-            {"limits", {{"penetration_m", options.penetration_limit}, {"strain", strain_limit}}}};
+    std::vector<CachedCloth> cloths;
+    for (const std::filesystem::path& file : caches) {
+        const ClothState* cloth = &world.cloths()[size_t(cloth_of_cache(scene, file, named))];
+        for (const CachedCloth& other : cloths)
+            if (other.cloth == cloth)
+                throw InvalidInput(file.string() + ": is of the same cloth \"" + cloth->name + "\" as " +
+                                   other.file.string() + "; give one cache of each cloth");
+        cloths.push_back({cloth, file});
+    }
+    return cloths;
+}
+
+/// Beside the caches: NAME.certificate.json for one, certificate.json for several or a folder of them.
+std::filesystem::path place_of(const CheckOptions& options)
+{
+    if (!options.output.empty())
+        return options.output;
+    const std::filesystem::path& first = options.caches.front();
+    if (std::filesystem::is_directory(first))
+        return first / kCertificateName;
+    if (options.caches.size() > 1)
+        return first.parent_path() / kCertificateName;
+    return first.parent_path() / (first.stem().string() + "." + kCertificateName);
 }
 
 int check(const CheckOptions& options)
 {
-    if (!(options.penetration_limit >= 0.0) || !(options.strain_margin >= 0.0))
+    if (!(options.limits.penetration >= 0.0) || !(options.limits.strain_margin >= 0.0))
         throw InvalidInput("--penetration and --strain-margin must be 0 or more");
+    const bool is_folder = options.caches.size() == 1 && std::filesystem::is_directory(options.caches[0]);
+    if (!options.cloth.empty() && (is_folder || options.caches.size() > 1))
+        throw InvalidInput("--cloth: names the cloth of a single cache; name the caches after their cloths");
     const Scene scene = read_scene(options.scene);
-    const PointCache cache = read_cache(options.cache);
-    const int index = cloth_of_cache(scene, options.cache, options.cloth);
     const World world(scene);
-    const ClothState& cloth = world.cloths()[index];
-    require_same_points(cache, options.cache, cloth.name, int(cloth.positions.size()));
+    const std::vector<std::filesystem::path> caches =
+        is_folder ? caches_in(options.caches[0], scene) : options.caches;
+    const std::vector<CachedCloth> cloths = cloths_of(caches, scene, world, options.cloth);
 
-    const double strain_limit = cloth.fabric.strain_limit + options.strain_margin;
-    const Certificate certificate = examine_all(cache, scene, cloth, options, strain_limit);
-    const std::string text = json_of(certificate, options, cloth, strain_limit).dump(2) + "\n";
+    std::optional<Progress> progress;
+    const Certificate certificate = *certify(scene, cloths, options.limits, [&](int done, int all) {
+        if (!progress)
+            progress.emplace("check", all, options.quiet);
+        progress->update(done);
+        return true;
+    });
+    progress.reset();
     if (options.output.empty())
-        std::cout << text;
-    else
-        write_atomically(options.output, text);
-    return certificate.holds() ? kExitOk : kExitFailure;
+        std::cout << to_json(certificate);
+    return conclude(certificate, place_of(options), options.quiet);
 }
 
 } // namespace
@@ -142,16 +113,19 @@ int check(const CheckOptions& options)
 Command add_check(CLI::App& program)
 {
     Command command;
-    command.options = program.add_subcommand("check", "Certify a cache: penetration, strain, finite numbers");
+    command.options = program.add_subcommand(
+        "check", "Certify caches: crossings, penetration, strain, finite numbers, every frame");
     auto options = std::make_shared<CheckOptions>();
     CLI::App& add = *command.options;
-    add.add_option("cache", options->cache, "Cache (.pc2, .mdd, .obj)")->required();
-    add.add_option("--scene", options->scene, "Scene that it was made from")->required();
-    add.add_option("-o,--output", options->output, "Write the JSON here instead of to stdout");
-    add.add_option("--cloth", options->cloth, "Cloth of the scene [told by the cache's name]");
-    add.add_option("--penetration", options->penetration_limit, "Depth inside an avatar that is let pass [m]")
+    add.add_option("caches", options->caches, "Caches (.pc2, .mdd, .obj), one of each cloth, or their folder")
+        ->required();
+    add.add_option("--scene", options->scene, "Scene that they were made from")->required();
+    add.add_option("-o,--output", options->output, "Write the JSON here [beside the caches, and to stdout]");
+    add.add_option("--cloth", options->cloth, "Cloth of a single cache [told by the cache's name]");
+    add.add_option("--penetration", options->limits.penetration,
+                   "Depth inside an avatar that is let pass [m]")
         ->capture_default_str();
-    add.add_option("--strain-margin", options->strain_margin,
+    add.add_option("--strain-margin", options->limits.strain_margin,
                    "Strain that is let pass beyond the fabric's limit")
         ->capture_default_str();
     add.add_flag("--quiet", options->quiet, "No progress on stderr");

@@ -6,9 +6,23 @@
 
 namespace toile {
 
-ScenePenetration::ScenePenetration(const Scene& scene, const std::vector<Triangle>& triangles,
-                                   int vertex_count)
-    : triangles_(triangles), samples_(triangles, vertex_count), bodies_(make_bodies(scene))
+namespace {
+
+double deepest_in(const SceneBody& solid, View<const Vec3> x, View<const Triangle> triangles)
+{
+    std::vector<double> depths(triangles.size());
+    parallel_for(kCpu, "check/penetration", triangles.size(), [&](int t) {
+        const Triangle& corner = triangles[t];
+        const Vec3 &a = x[corner[0]], &b = x[corner[1]], &c = x[corner[2]];
+        if (a.allFinite() && b.allFinite() && c.allFinite())
+            depths[t] = penetration_of_triangle(*solid.shape(), solid.pose(), a, b, c);
+    });
+    return depths.empty() ? 0.0 : *std::max_element(depths.begin(), depths.end());
+}
+
+} // namespace
+
+ScenePenetration::ScenePenetration(const Scene& scene) : bodies_(make_bodies(scene))
 {
     for (const SceneBody& body : bodies_)
         meters_.push_back(body.shape() != nullptr ? nullptr
@@ -23,32 +37,21 @@ void ScenePenetration::advance_to(double t)
             meters_[b]->move(bodies_[b].surface().positions);
 }
 
-ScenePenetration::Depth ScenePenetration::measure(View<const Vec3> x) const
+ScenePenetration::Depth ScenePenetration::measure(View<const Vec3> x, View<const Triangle> triangles,
+                                                  const ClothSamples& samples) const
 {
-    const std::vector<Vec3> samples = samples_.at(x);
+    const std::vector<Vec3> points = samples.at(x);
     Depth depth;
     for (size_t b = 0; b < bodies_.size(); ++b) {
         if (!meters_[b]) {
-            depth.deepest = std::max(depth.deepest, deepest_in(bodies_[b], x));
+            depth.deepest = std::max(depth.deepest, deepest_in(bodies_[b], x, triangles));
             continue;
         }
-        const Penetration found = meters_[b]->measure(samples);
+        const Penetration found = meters_[b]->measure(points);
         depth.deepest = std::max(depth.deepest, found.max_depth);
         depth.excluded = std::max(depth.excluded, found.deepest_excluded);
     }
     return depth;
-}
-
-double ScenePenetration::deepest_in(const SceneBody& solid, View<const Vec3> x) const
-{
-    std::vector<double> depths(triangles_.size());
-    parallel_for(kCpu, "check/penetration", int(triangles_.size()), [&](int t) {
-        const Triangle& corner = triangles_[t];
-        const Vec3 &a = x[corner[0]], &b = x[corner[1]], &c = x[corner[2]];
-        if (a.allFinite() && b.allFinite() && c.allFinite())
-            depths[t] = penetration_of_triangle(*solid.shape(), solid.pose(), a, b, c);
-    });
-    return depths.empty() ? 0.0 : *std::max_element(depths.begin(), depths.end());
 }
 
 } // namespace toile

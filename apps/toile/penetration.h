@@ -8,13 +8,19 @@
 
 namespace toile {
 
-/// How deep one cloth lies inside the avatars of a scene, frame by frame.
+/// How deep cloth lies inside the avatars of a scene, frame by frame.
 class ScenePenetration {
 public:
-    ScenePenetration(const Scene& scene, const std::vector<Triangle>& triangles, int vertex_count);
+    explicit ScenePenetration(const Scene& scene);
 
     /// Shows the avatars at time t [s].
     void advance_to(double t);
+
+    /// The avatars at the time shown.
+    const std::vector<SceneBody>& bodies() const { return bodies_; }
+
+    /// Of a mesh avatar; null for planes, spheres, capsules and boxes.
+    const PenetrationMeter* meter(int body) const { return meters_[size_t(body)].get(); }
 
     /// Largest depths below the surface of any avatar [m].
     struct Depth {
@@ -24,14 +30,11 @@ public:
 
     /// In planes, spheres, capsules and boxes of any point of the cloth, in meshes of the cloth's samples.
     /// Points that are not finite are left out.
-    /// @param x  [vertices] of the cloth [m]
-    Depth measure(View<const Vec3> x) const;
+    /// @param x        [vertices] of the cloth [m]
+    /// @param samples  of the cloth with these triangles
+    Depth measure(View<const Vec3> x, View<const Triangle> triangles, const ClothSamples& samples) const;
 
 private:
-    double deepest_in(const SceneBody& solid, View<const Vec3> x) const;
-
-    std::vector<Triangle> triangles_;
-    ClothSamples samples_;
     std::vector<SceneBody> bodies_;
     std::vector<std::unique_ptr<PenetrationMeter>> meters_; ///< [bodies] null for shapes
 };

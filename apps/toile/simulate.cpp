@@ -3,14 +3,17 @@
 #include <iostream>
 #include <memory>
 
+#include "apps/toile/certify.h"
 #include "apps/toile/command_line.h"
 #include "apps/toile/commands.h"
+#include "apps/toile/exports.h"
 #include "apps/toile/interrupt.h"
 #include "apps/toile/progress.h"
 #include "apps/toile/run_report.h"
 #include "apps/toile/start_text.h"
 #include "apps/toile/table_progress.h"
 #include "core/backend/error.h"
+#include "core/backend/parallel.h"
 #include "core/mesh/obj.h"
 #include "core/quadrature/table_store.h"
 #include "export/async_cache_writer.h"
@@ -31,6 +34,7 @@ struct SimulateOptions {
     std::string outer;
     std::filesystem::path report;
     bool no_cache = false;
+    bool no_check = false;
     bool quiet = false;
 };
 
@@ -76,25 +80,6 @@ Scene scene_with_options(const SimulateOptions& options)
     if (!options.outer.empty())
         scene.solver.outer = scene_format::value_of<OuterMethod>(options.outer);
     return scene;
-}
-
-/// What the scene exports: its list, or one PC2 per cloth.
-std::vector<scene::Export> exports_of(const Scene& scene)
-{
-    if (!scene.exports.empty())
-        return scene.exports;
-    std::vector<scene::Export> exports;
-    for (const scene::Cloth& cloth : scene.cloths)
-        exports.push_back({cloth.name + ".pc2", cloth.name});
-    return exports;
-}
-
-int cloth_index(const Scene& scene, const std::string& name)
-{
-    for (size_t i = 0; i < scene.cloths.size(); ++i)
-        if (scene.cloths[i].name == name)
-            return int(i);
-    return 0; // no name: the scene has one cloth, see checks of the scene file
 }
 
 std::vector<OpenCache> open_caches(const Scene& scene, const World& world,
@@ -189,6 +174,42 @@ int explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>&
     return kExitFailure;
 }
 
+/// One cache of each cloth, as it lies on disk.
+std::vector<CachedCloth> cloths_to_check(const World& world, const std::vector<OpenCache>& caches)
+{
+    std::vector<CachedCloth> cloths;
+    for (const OpenCache& cache : caches) {
+        const ClothState* cloth = &world.cloths()[cache.cloth];
+        if (std::none_of(cloths.begin(), cloths.end(),
+                         [&](const CachedCloth& other) { return other.cloth == cloth; }))
+            cloths.push_back({cloth, cache.file});
+    }
+    return cloths;
+}
+
+/// Certifies what lies on disk now.
+int check_caches(const World& world, const Scene& scene, const std::vector<OpenCache>& caches,
+                 const std::filesystem::path& folder, const InterruptGuard& interrupt, bool quiet)
+{
+    const ThreadLimit threads(scene.solver.threads);
+    std::optional<Progress> progress(std::in_place, "check", scene.frames, quiet);
+    const std::optional<Certificate> certificate =
+        certify(scene, cloths_to_check(world, caches), {}, [&](int done, int) {
+            progress->update(done);
+            return !interrupt.requested();
+        });
+    progress.reset(); // what follows starts on a line of its own
+    if (!certificate) {
+        std::cerr << "toile: error: interrupted while checking; the caches are complete, toile check "
+                  << folder.string() << " --scene " << scene.source.string() << " certifies them"
+                  << std::endl;
+        return kExitFailure;
+    }
+    const std::filesystem::path file = folder / kCertificateName;
+    std::cout << file.string() << std::endl;
+    return conclude(*certificate, file, quiet);
+}
+
 /// Runs a prepared world and writes what it is to leave.
 int run_into_caches(World& world, const Scene& scene, const SimulateOptions& options,
                     const InterruptGuard& interrupt)
@@ -213,7 +234,12 @@ int run_into_caches(World& world, const Scene& scene, const SimulateOptions& opt
         cache.writer->finish();
         std::cout << cache.file.string() << std::endl;
     }
-    return kExitOk;
+    // A certificate of an earlier run says nothing of these caches.
+    std::error_code none_there;
+    std::filesystem::remove(folder / kCertificateName, none_there);
+    if (options.no_check)
+        return kExitOk;
+    return check_caches(world, scene, caches, folder, interrupt, options.quiet);
 }
 
 int simulate(const SimulateOptions& options)
@@ -263,6 +289,7 @@ Command add_simulate(CLI::App& program)
         ->check(CLI::IsMember(scene_format::words_of<OuterMethod>()));
     add.add_option("--report", options->report, "Write stages, frames and settings to this JSON file");
     add.add_flag("--no-cache", options->no_cache, "Neither read nor keep quadrature tables on disk");
+    add.add_flag("--no-check", options->no_check, "Write no certificate of the caches");
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return simulate(*options); };
     return command;

@@ -23,11 +23,11 @@ private:
         int first, count; ///< of a leaf: in order_; of an inner node count = 0 and first is its second child
     };
 
-    void build(int first, int count);
+    void build(View<const Bounds> boxes, int first, int count);
 
-    std::vector<Bounds> boxes_;
-    std::vector<int> order_;  ///< boxes by leaf
-    std::vector<Node> nodes_; ///< depth first: the first child follows its parent
+    std::vector<Node> nodes_;   ///< depth first: the first child follows its parent
+    std::vector<int> order_;    ///< boxes by leaf
+    std::vector<Bounds> boxes_; ///< [order_] side by side for the cache
 };
 
 /// Touching counts; an empty box meets nothing.

@@ -91,6 +91,7 @@ bool has_no_area(const Vec3& a, const Vec3& b, const Vec3& c)
     const double scale2 = ab.squaredNorm() * ac.squaredNorm();
     if (scale2 > 1e-200 && ab.cross(ac).squaredNorm() > kCertain2 * scale2)
         return false;
+    const StandardArithmetic standard;
     return CGAL::collinear(point(a), point(b), point(c));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cfenv>
 
 #include "core/backend/types.h"
 
@@ -13,8 +14,27 @@ struct TrianglePair {
     bool is_flat = false;     ///< one of them has no area (see has_no_area)
 };
 
-/// True when the triangles have a point in common beyond the corners, or the edge, that they share. Exact: no
-/// rounding decides. Triangles are closed sets, and one without area is the segment or point it covers.
+/// IEEE arithmetic with denormal numbers, rounding to nearest, for this thread and scope. Embree leaves
+/// threads that called it flushing denormals to zero, and then the predicates below err on numbers near
+/// 1e-308. Costs as much as a predicate: one for many.
+class StandardArithmetic {
+public:
+    StandardArithmetic()
+    {
+        std::fegetenv(&before_);
+        std::fesetenv(FE_DFL_ENV);
+    }
+    ~StandardArithmetic() { std::fesetenv(&before_); }
+    StandardArithmetic(const StandardArithmetic&) = delete;
+    StandardArithmetic& operator=(const StandardArithmetic&) = delete;
+
+private:
+    std::fenv_t before_;
+};
+
+/// True when the triangles have a point in common beyond the corners, or the edge, that they share. Exact,
+/// under StandardArithmetic: no rounding decides. Triangles are closed sets, and one without area is the
+/// segment or point it covers.
 ///
 ///   shared  crosses when
 ///   0       they have any point in common; touching counts
@@ -25,7 +45,7 @@ struct TrianglePair {
 ///   3       never: they are the same triangle
 bool crosses(const TrianglePair& pair);
 
-/// True when the corners lie on one line. Exact.
+/// True when the corners lie on one line. Exact, under any arithmetic.
 bool has_no_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
 } // namespace toile

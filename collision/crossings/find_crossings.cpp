@@ -27,9 +27,29 @@ struct Soup {
         });
     }
 
+    /// Around all triangles that take part.
+    Bounds bounds() const
+    {
+        Bounds all;
+        for (const Bounds& box : boxes)
+            if (!box.empty()) {
+                all.extend(box.lower);
+                all.extend(box.upper);
+            }
+        return all;
+    }
+
+    /// Leaves out the triangles that do not reach into `region`.
+    void keep_within(const Bounds& region)
+    {
+        for (Bounds& box : boxes)
+            if (!meet(box, region))
+                box = {};
+    }
+
     View<const Triangle> triangles;
     View<const Vec3> x;
-    std::vector<Bounds> boxes;
+    std::vector<Bounds> boxes; ///< [triangles] empty: takes no part
     std::vector<char> is_flat;
 };
 
@@ -115,8 +135,11 @@ std::vector<Crossing> find(const Soup& soup_a, const Soup& soup_b, bool is_one_s
     parallel_append(
         kCpu, "crossings/pairs", soup_a.triangles.size(),
         [&](int begin, int end, std::vector<Crossing>& found) {
+            const StandardArithmetic standard;
             std::vector<int> near;
             for (int a = begin; a < end; ++a) {
+                if (soup_a.boxes[a].empty())
+                    continue;
                 near.clear();
                 tree.find(soup_a.boxes[a], near);
                 std::sort(near.begin(), near.end());
@@ -146,7 +169,10 @@ std::vector<Crossing> find_crossings(View<const Triangle> triangles_a, View<cons
                                      View<const Triangle> triangles_b, View<const Vec3> x_b)
 {
     const StageScope stage("crossings/two_soups");
-    return find(Soup(triangles_a, x_a), Soup(triangles_b, x_b), false);
+    Soup a(triangles_a, x_a), b(triangles_b, x_b);
+    b.keep_within(a.bounds());
+    a.keep_within(b.bounds());
+    return find(a, b, false);
 }
 
 } // namespace toile

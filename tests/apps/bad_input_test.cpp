@@ -53,6 +53,7 @@ void fill(const TemporaryFolder& folder)
     folder.write("body.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "disc": {}}],
                                   "avatars": [{"name": "b", "mannequin": {}, "clip": "wolk"}]})");
     folder.write("text.xyz", "?");
+    std::filesystem::create_directory(folder.path() / "bare");
     folder.write("file", "not a folder");
 }
 
@@ -94,6 +95,10 @@ const std::vector<BadRun> kBadRuns{
     {{"check", "none.pc2", "--scene", "good.json"}, {"none.pc2"}},
     {{"check", "cut.pc2", "--scene", "good.json"}, {"cut.pc2"}},
     {{"check", "sheet.pc2", "--scene", "coarse.json"}, {"sheet.pc2", "points", "made from"}},
+    {{"check", "sheet.pc2", "sheet.pc2", "--scene", "good.json"},
+     {"same cloth \"sheet\"", "one cache of each"}},
+    {{"check", "bare", "--scene", "good.json"}, {"bare", "no cache of good.json", "looked for sheet.pc2"}},
+    {{"check", ".", "--scene", "good.json", "--cloth", "sheet"}, {"--cloth", "single cache"}},
     {{"bench", "strss"}, {"strss", "did you mean \"stress\"?"}},
     {{"bench", "stress", "--only", "nothing"}, {"--only", "nothing", "docs/benchmarks/README.md"}},
     {{"bench", "stress", "-o", "file/there"}, {"file/there", "choose a writable folder"}},

@@ -100,7 +100,19 @@ TEST(Check, TellsDepthWhereABodyIntersectsItselfApart)
     const auto beside = found_at(-0.05);
     EXPECT_NEAR(beside["max_penetration_m"], 0.02, 1e-6);
     EXPECT_EQ(beside["max_penetration_in_self_intersections_m"], 0.0);
-    EXPECT_GT(found_at(-0.5)["max_penetration_in_self_intersections_m"], 0.01);
+    EXPECT_EQ(beside["cloth_avatar_crossings_in_self_intersections"], 0);
+    const auto around = found_at(-0.5);
+    EXPECT_GT(around["max_penetration_in_self_intersections_m"], 0.01);
+    // Within one box the sheet crosses the walls of the other, which are buried.
+    EXPECT_GT(around["cloth_avatar_crossings_in_self_intersections"], 10);
+    EXPECT_EQ(around["cloth_avatar_crossings"], 0);
+    // Halfway over the edge of the left box it crosses a wall in the open.
+    EXPECT_GT(found_at(0.45)["cloth_avatar_crossings"], 5);
+    const Finished run =
+        run_toile({"check", "changed.pc2", "--scene", "drop.json", "--penetration", "9"}, folder.path());
+    EXPECT_EQ(run.exit_code, 1); // for the crossings alone
+    EXPECT_EQ(nlohmann::json::parse(run.output)["first_crossing"]["b"]["name"], "ball");
+    EXPECT_EQ(bytes_of(folder.path() / "changed.certificate.json"), run.output);
 }
 
 TEST(Check, MeasuresStrain)

@@ -16,7 +16,7 @@ TEST(Simulate, WritesOneCachePerClothAndTheMeshItPlaysOn)
     folder.write("drop.json", small_scene(4));
     const Finished run = run_toile({"simulate", "drop.json", "--quiet"}, folder.path());
     EXPECT_EQ(run.exit_code, 0) << run.errors;
-    EXPECT_EQ(run.output, "out/drop/sheet.pc2\n");
+    EXPECT_EQ(run.output, "out/drop/sheet.pc2\nout/drop/certificate.json\n");
     EXPECT_EQ(run.errors, "");
 
     const PointCache cache = read_cache(folder.path() / "out/drop/sheet.pc2");
@@ -37,7 +37,8 @@ TEST(Simulate, ObeysOptionsAndTheExportList)
                                     "--solver", "direct", "--outer", "anderson", "--report", "run.json"},
                                    folder.path());
     EXPECT_EQ(run.exit_code, 0) << run.errors;
-    EXPECT_EQ(run.output, "there/a/b.mdd\nthere/frames.obj\n");
+    EXPECT_EQ(run.output, "there/a/b.mdd\nthere/frames.obj\nthere/certificate.json\n");
+    EXPECT_NE(run.errors.find("certificate holds for 3 frames"), std::string::npos) << run.errors;
     EXPECT_NE(run.errors.find("frame 3/3 (100 %)"), std::string::npos) << run.errors;
     EXPECT_EQ(read_cache(folder.path() / "there/a/b.mdd").frame_count(), 3);
     EXPECT_EQ(read_cache(folder.path() / "there/frames_####.obj").frame_count(), 3);

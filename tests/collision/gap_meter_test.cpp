@@ -66,6 +66,20 @@ TEST(GapMeter, MeasuresAFold)
     EXPECT_FALSE(meter.measure(x, 0.0015));
 }
 
+TEST(GapMeter, MeasuresACornerOverATriangleAndAnEdgeOverAnEdge)
+{
+    const std::vector<Triangle> two{Triangle(0, 1, 2), Triangle(3, 4, 5)};
+    const auto gap_of = [&](const std::vector<Vec3>& x) {
+        return GapMeter(two, x).measure(x, 0.05).value_or(GapMeter::Gap{-1.0}).distance;
+    };
+    EXPECT_NEAR(gap_of({Vec3(-1, 0, -1), Vec3(1, 0, -1), Vec3(0, 0, 1), Vec3(0, 0.001, -0.2),
+                        Vec3(0.1, 1, -0.2), Vec3(-0.1, 1, -0.2)}),
+                0.001, 1e-15);
+    EXPECT_NEAR(gap_of({Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0.002, -1), Vec3(0, 0.002, 1),
+                        Vec3(0, 1, 0)}),
+                0.002, 1e-15);
+}
+
 TEST(GapMeter, MeasuresBetweenPieces)
 {
     // Two strips above each other, shifted so that vertices face triangles, then crossed so that edges meet.

@@ -1,0 +1,81 @@
+#include "apps/toile/avatar_crossings.h"
+
+#include <gtest/gtest.h>
+
+#include "core/mesh/obj.h"
+#include "core/mesh/weld.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/shape_mesh.h"
+#include "tests/support/temporary_folder.h"
+
+namespace toile {
+namespace {
+
+/// Crossings of a body with a triangle of 2 cm around each of `places` [m].
+AvatarCrossings crossings_at(const TriangleMesh& body, const std::vector<Vec3>& places)
+{
+    const TemporaryFolder folder;
+    write_obj(folder.path() / "body.obj", body);
+    folder.write("scene.json", R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "disc": {}}],
+                                   "avatars": [{"name": "b", "file": "body.obj"}]})");
+    std::vector<Triangle> triangles;
+    std::vector<Vec3> x;
+    for (const Vec3& place : places) {
+        const int first = int(x.size());
+        triangles.push_back(Triangle(first, first + 1, first + 2));
+        x.insert(x.end(), {place + Vec3(-0.01, 0.001, 0), place + Vec3(0.01, 0.001, 0.001),
+                           place + Vec3(0.0003, -0.01, 0)});
+    }
+    return find_avatar_crossings(ScenePenetration(read_scene(folder.path() / "scene.json")), triangles, x);
+}
+
+void add_box(TriangleMesh& body, const Vec3& half_size, const Vec3& center)
+{
+    // Every face of the box has vertices of its own.
+    const TriangleMesh box = shape_mesh(BoxShape{half_size}, 0.0);
+    const int first = body.vertex_count();
+    for (const Vec3& p : box.positions)
+        body.positions.push_back(center + p);
+    for (const Triangle& t : box.triangles)
+        body.triangles.push_back(t + Triangle::Constant(first));
+}
+
+const Vec3 kOpenWall(-0.5, 0.13, 0.11);
+
+TEST(AvatarCrossings, SeamsOfDoubledVerticesAreClean)
+{
+    TriangleMesh body;
+    add_box(body, Vec3::Constant(0.5), Vec3::Zero());
+    ASSERT_EQ(body.vertex_count(), 24);
+    const AvatarCrossings found = crossings_at(body, {Vec3(0, 0, 0), kOpenWall, Vec3(2, 0, 0)});
+    ASSERT_EQ(found.clean.size(), 1u);
+    EXPECT_EQ(found.clean[0].body, 0);
+    EXPECT_EQ(found.clean[0].crossing.a, 1);
+    EXPECT_NEAR(found.clean[0].crossing.point.x(), -0.5, 1e-12);
+    EXPECT_EQ(found.elsewhere, 0);
+}
+
+TEST(AvatarCrossings, TrianglesThatCrossTheirOwnBodyAreNot)
+{
+    // A needle through a wall: the wall's two triangles have their corners and centres in the open.
+    TriangleMesh body;
+    add_box(body, Vec3::Constant(0.5), Vec3::Zero());
+    add_box(body, Vec3(0.2, 0.01, 0.01), Vec3(0.5, 0.031, 0.02));
+    const AvatarCrossings found = crossings_at(body, {Vec3(0.5, 0.31, 0.29), kOpenWall});
+    EXPECT_EQ(found.clean.size(), 1u);
+    EXPECT_EQ(found.elsewhere, 1);
+}
+
+TEST(AvatarCrossings, BuriedTrianglesAreNot)
+{
+    // A small box within a large one crosses nothing.
+    TriangleMesh body;
+    add_box(body, Vec3::Constant(0.5), Vec3::Zero());
+    add_box(body, Vec3::Constant(0.1), Vec3(0.2, 0.2, 0.2));
+    const AvatarCrossings found = crossings_at(weld(body, 0.0).mesh, {Vec3(0.1, 0.23, 0.21), kOpenWall});
+    EXPECT_EQ(found.clean.size(), 1u);
+    EXPECT_EQ(found.elsewhere, 1);
+}
+
+} // namespace
+} // namespace toile

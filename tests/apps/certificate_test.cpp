@@ -1,0 +1,177 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "export/cache_writer.h"
+#include "export/point_cache.h"
+#include "tests/apps/program.h"
+
+namespace toile {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Two square sheets, the second `height` above the first [m], without any gravity.
+std::string two_sheets(double height)
+{
+    const auto cloth = [](const std::string& name, double y) {
+        return R"({"name": ")" + name + R"(", "rectangle": {"size": [0.4, 0.4], "resolution": 0.05},
+                   "translate": [0, )" +
+               std::to_string(y) + ", 0]}";
+    };
+    return R"({"toile": 1, "frames": 3, "gravity": [0, 0, 0], "cloths": [)" + cloth("lower", 0.0) + ", " +
+           cloth("upper", height) + "]}";
+}
+
+/// Rewrites a cache with what `change(frame, positions)` makes of it.
+template <typename Change>
+void rewrite(const std::filesystem::path& file, const Change& change)
+{
+    std::vector<std::vector<Vec3>> frames;
+    {
+        const PointCache cache = read_cache(file);
+        for (int frame = 0; frame < cache.frame_count(); ++frame)
+            frames.push_back(cache.frame(frame));
+    }
+    CacheLayout layout;
+    layout.vertex_count = int(frames[0].size());
+    layout.frame_count = int(frames.size());
+    const auto writer = make_cache_writer(file, layout);
+    for (int frame = 0; frame < layout.frame_count; ++frame) {
+        change(frame, frames[size_t(frame)]);
+        writer->write(frame, frames[size_t(frame)]);
+    }
+    writer->finish();
+}
+
+Json json_in(const TemporaryFolder& folder, const char* file)
+{
+    return Json::parse(bytes_of(folder.path() / file));
+}
+
+TEST(Certificate, HasTheKeysThatItPromises)
+{
+    const TemporaryFolder folder;
+    folder.write("drop.json", small_scene(3));
+    ASSERT_EQ(run_toile({"simulate", "drop.json", "-o", ".", "--quiet"}, folder.path()).exit_code, 0);
+    const Json found = json_in(folder, "certificate.json");
+    EXPECT_EQ(found["frames"], 3);
+    EXPECT_EQ(found["cloth_cloth_crossings"], 0);
+    EXPECT_EQ(found["cloth_avatar_crossings"], 0);
+    EXPECT_TRUE(found["min_gap_m"].is_null()) << found["min_gap_m"];
+    EXPECT_EQ(found["max_penetration_m"], 0.0);
+    EXPECT_NEAR(found["max_strain"], 0.0, 0.01);
+    EXPECT_TRUE(found["first_bad_frame"].is_null());
+    EXPECT_EQ(found["solver"], "auto");
+    EXPECT_EQ(found["version"].get<std::string>().find_first_not_of("0123456789."), std::string::npos);
+    EXPECT_EQ(found["holds"], true);
+    EXPECT_EQ(found["cloths"][0]["name"], "sheet");
+    EXPECT_TRUE(found["cloths_left_out"].empty());
+    EXPECT_TRUE(found["first_crossing"].is_null());
+}
+
+TEST(Certificate, MeasuresTheGapOfTwoCloths)
+{
+    const TemporaryFolder folder;
+    folder.write("two.json", two_sheets(0.003));
+    ASSERT_EQ(run_toile({"simulate", "two.json", "-o", "out", "--no-check"}, folder.path()).exit_code, 0);
+    rewrite(folder.path() / "out/lower.pc2", [](int frame, std::vector<Vec3>& x) {
+        for (Vec3& p : x)
+            p.y() = frame == 1 ? 0.001 : 0.0;
+    });
+    rewrite(folder.path() / "out/upper.pc2", [](int, std::vector<Vec3>& x) {
+        for (Vec3& p : x)
+            p.y() = 0.003;
+    });
+    const Finished run = run_toile({"check", "out", "--scene", "two.json", "--quiet"}, folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
+    const Json found = json_in(folder, "out/certificate.json");
+    EXPECT_EQ(Json::parse(run.output), found);
+    EXPECT_NEAR(found["min_gap_m"], 0.002, 1e-7);
+    EXPECT_EQ(found["min_gap_frame"], 1);
+}
+
+TEST(Certificate, FindsOneClothInAnother)
+{
+    const TemporaryFolder folder;
+    folder.write("two.json", two_sheets(0.1));
+    ASSERT_EQ(run_toile({"simulate", "two.json", "-o", "out", "--no-check"}, folder.path()).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/certificate.json"));
+    // In the last frame the upper sheet hangs by one corner through the lower one.
+    rewrite(folder.path() / "out/upper.pc2", [](int frame, std::vector<Vec3>& x) {
+        const auto is_nearer_the_corner = [](const Vec3& a, const Vec3& b) {
+            return a.x() + a.z() < b.x() + b.z();
+        };
+        if (frame == 2)
+            *std::min_element(x.begin(), x.end(), is_nearer_the_corner) = Vec3(-0.13, -0.01, -0.12);
+    });
+    const auto check = [&](std::vector<std::string> caches, const char* certificate, int exit_code) {
+        caches.insert(caches.begin(), "check");
+        caches.insert(caches.end(), {"--scene", "two.json", "--quiet", "--strain-margin", "9"});
+        const Finished run = run_toile(caches, folder.path());
+        EXPECT_EQ(run.exit_code, exit_code);
+        EXPECT_EQ(run.error_lines(), exit_code);
+        return json_in(folder, certificate);
+    };
+    const Json both = check({"out/upper.pc2", "out/lower.pc2"}, "out/certificate.json", 1);
+    EXPECT_GE(both["cloth_cloth_crossings"], 1);
+    EXPECT_EQ(both["first_bad_frame"], 2);
+    EXPECT_EQ(both["min_gap_m"], 0.0);
+    const Json& first = both["first_crossing"];
+    EXPECT_EQ(first["frame"], 2);
+    EXPECT_EQ(first["a"]["name"], "upper");
+    EXPECT_EQ(first["b"]["name"], "lower");
+    EXPECT_NEAR(first["point_m"][0], -0.13, 0.05);
+    EXPECT_NEAR(first["point_m"][1], 0.0, 1e-6);
+    EXPECT_LT(first["b"]["triangle"], 200);
+
+    // Alone it crosses nothing, and the certificate says who was not looked at.
+    const Json alone = check({"out/upper.pc2"}, "out/upper.certificate.json", 0);
+    EXPECT_EQ(alone["cloth_cloth_crossings"], 0);
+    EXPECT_EQ(alone["cloths"].size(), 1u);
+    EXPECT_EQ(alone["cloths_left_out"], Json({"lower"}));
+}
+
+TEST(Certificate, IsOfTheFramesThatAllCachesHave)
+{
+    const TemporaryFolder folder;
+    folder.write("two.json", two_sheets(0.1));
+    ASSERT_EQ(run_toile({"simulate", "two.json", "-o", ".", "--no-check"}, folder.path()).exit_code, 0);
+    ASSERT_EQ(run_toile({"simulate", "two.json", "-o", "short", "--frames", "2", "--no-check"}, folder.path())
+                  .exit_code,
+              0);
+    std::filesystem::rename(folder.path() / "short/upper.pc2", folder.path() / "upper.pc2");
+    EXPECT_EQ(run_toile({"check", ".", "--scene", "two.json", "--quiet"}, folder.path()).exit_code, 0);
+    const Json found = json_in(folder, "certificate.json");
+    EXPECT_EQ(found["frames"], 2);
+    EXPECT_EQ(found["frames_left_out"], 1);
+}
+
+TEST(Simulate, EndsByCheckingWhatItWrote)
+{
+    // The sheets start in each other and are left so.
+    const TemporaryFolder folder;
+    std::string crossed = two_sheets(0.0);
+    crossed.replace(crossed.find(R"("translate")"), 0, R"("rotate_deg": [90, 0, 20], )");
+    crossed.replace(crossed.rfind('}'), 1, R"(, "contact": {"repair_start": false}})");
+    folder.write("crossed.json", crossed);
+    const std::vector<std::string> simulate{"simulate", "crossed.json", "-o", ".", "--quiet"};
+    const Finished run = run_toile(simulate, folder.path());
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(run.error_lines(), 1) << run.errors;
+    for (const char* part : {"first bad frame 0", "cloth-cloth crossings", "certificate.json"})
+        EXPECT_NE(run.errors.find(part), std::string::npos) << run.errors;
+    EXPECT_EQ(run.output, "./lower.pc2\n./upper.pc2\n./certificate.json\n");
+    EXPECT_EQ(json_in(folder, "certificate.json")["first_bad_frame"], 0);
+
+    // Caches that were not checked have no certificate, not even an old one.
+    std::vector<std::string> unchecked = simulate;
+    unchecked.push_back("--no-check");
+    EXPECT_EQ(run_toile(unchecked, folder.path()).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "certificate.json"));
+}
+
+} // namespace
+} // namespace toile
