@@ -24,6 +24,11 @@ constexpr double kBand = 2.0;
 /// Reach of the growth along the body, over the depth [-].
 constexpr double kReach = 4.0;
 
+/// Height [m] of a body's vertex above the cloth from which on it is another part of the body, and the
+/// distance that cloth keeps in front of one.
+constexpr double kMaxTip = 0.004;
+constexpr double kTipGap = 0.0003;
+
 } // namespace
 
 BodyClearing::BodyClearing(const JoinedCloths& cloths, std::vector<ContactPartner> bodies)
@@ -158,6 +163,40 @@ void BodyClearing::push(View<Vec3> x) const
                 const double served = move[v].dot(sample.place.normal);
                 if (served < depth)
                     move[v] += (depth - served) * sample.place.normal;
+            }
+    }
+    for (int v = 0; v < x.size(); ++v)
+        x[v] += move[v];
+}
+
+void BodyClearing::push_off_tips(View<Vec3> x) const
+{
+    std::vector<Vec3> move(x.size(), Vec3::Zero());
+    const SurfaceProximity cloth(cloths_.triangles, x);
+    const Bounds box = bounds(x);
+    for (const ContactPartner& body : bodies_) {
+        if (body.mesh == nullptr)
+            continue;
+        const SurfaceProximity& surface = body.mesh->surface();
+        std::vector<std::pair<int, Vec3>> lifts(surface.positions().size(), {-1, Vec3::Zero()});
+        parallel_for(kCpu, "untangle/tips", int(lifts.size()), [&](int v) {
+            const Vec3& q = surface.positions()[v];
+            if ((q.array() < box.lower.array()).any() || (q.array() > box.upper.array()).any())
+                return;
+            const std::optional<SurfacePoint> at = cloth.closest(q, kMaxTip);
+            if (!at)
+                return;
+            const Vec3 normal = surface.vertex_normal(v);
+            const double height = normal.dot(q - at->point);
+            if (height > kTipGap - kMaxTip && height > 0.7 * at->distance() - kTipGap)
+                lifts[v] = {at->triangle, (height + kTipGap) * normal};
+        });
+        for (const auto& [triangle, lift] : lifts)
+            for (int k = 0; triangle >= 0 && k < 3; ++k) {
+                const int v = cloths_.triangles[triangle][k];
+                const double wanted = lift.norm(), served = wanted > 0.0 ? move[v].dot(lift) / wanted : 0.0;
+                if (cloths_.fixed[v] == 0 && served < wanted)
+                    move[v] += (wanted - served) / wanted * lift;
             }
     }
     for (int v = 0; v < x.size(); ++v)

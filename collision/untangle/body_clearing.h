@@ -31,6 +31,9 @@ public:
     /// Moves what is nearer to a body than its gap out to it, without carrying anything along.
     void push(View<Vec3> x) const;
 
+    /// Moves faces of cloth out of which a body's vertex pokes between their samples.
+    void push_off_tips(View<Vec3> x) const;
+
 private:
     enum class Limit { Surface, Gap };
     InsideSample sample_at(View<const Vec3> x, int index) const;

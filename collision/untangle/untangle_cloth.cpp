@@ -114,6 +114,7 @@ void relax_untangled(const JoinedCloths& cloths, const BodyClearing& clearing, c
         const std::vector<Vec3> before(x.begin(), x.end());
         keeper.relax(x, kSweepsPerStep);
         clearing.push(x);
+        clearing.push_off_tips(x);
         int times = 0;
         while (times < kMaxTakeBacks && take_back(cloths, before, x))
             ++times;
