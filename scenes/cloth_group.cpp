@@ -204,7 +204,7 @@ std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstac
 {
     std::vector<SceneCloth> cloths;
     for (const scene::Cloth& cloth : scene.cloths)
-        cloths.emplace_back(scene, cloth, obstacles);
+        cloths.emplace_back(scene, cloth, obstacles, options);
     std::vector<std::vector<SceneCloth>> members;
     for (SceneCloth& cloth : cloths) {
         if (members.empty() || !contact_settings(scene).cloth_with_cloth)

@@ -1,5 +1,6 @@
 #include "scenes/cloth_mesh.h"
 
+#include "core/mesh/winding.h"
 #include "garment/pattern/shapes.h"
 #include "scenes/rigid_motion.h"
 
@@ -37,9 +38,10 @@ std::string source_of(const scene::Cloth& cloth)
     return file ? file->string() : "cloth \"" + cloth.name + "\"";
 }
 
-ObjMesh turned_mesh(const scene::Cloth& cloth)
+ObjMesh turned_mesh(const scene::Cloth& cloth, int& turned_faces)
 {
     ObjMesh mesh = cut(cloth);
+    turned_faces = make_windings_agree(mesh);
     require_usable(mesh.triangulated(), source_of(cloth));
     if (cloth.subdivide > 0)
         mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));

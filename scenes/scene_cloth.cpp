@@ -37,13 +37,16 @@ std::shared_ptr<const RestShape> rest_shape_of(const std::vector<Vec3>& unmoved,
 } // namespace
 
 SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
-                       const std::vector<Obstacle>& obstacles)
+                       const std::vector<Obstacle>& obstacles, const WorldOptions& options)
     : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind),
       gusts_(scene.wind.velocity, gusts_of(scene.wind))
 {
     state_.name = settings.name;
     state_.fabric = fabric_of(scene, settings);
-    state_.rest = turned_mesh(settings);
+    state_.rest = turned_mesh(settings, state_.turned_faces);
+    if (state_.turned_faces > 0 && options.warn)
+        options.warn(source_ + ": turned " + std::to_string(state_.turned_faces) +
+                     " faces that were wound against their neighbours");
     state_.triangles = state_.rest.triangulated().triangles;
     rest_ = rest_shape_of(state_.rest.positions, state_.triangles, settings.grain_deg, source_);
     for (Vec3& p : state_.rest.positions)
@@ -131,6 +134,16 @@ void SceneCloth::forget()
 {
     if (tension_)
         tension_->forget();
+}
+
+std::vector<char> SceneCloth::held_exactly() const
+{
+    std::vector<char> held(state_.positions.size(), 0);
+    for (const Hold& hold : holds_)
+        if (!hold.stiffness())
+            for (const int v : hold.vertices())
+                held[v] = 1;
+    return held;
 }
 
 void SceneCloth::mark_fixed(double t_t1, View<unsigned char> fixed) const

@@ -19,7 +19,8 @@ namespace toile {
 class SceneCloth {
 public:
     /// @throws InvalidInput for a mesh, fabric or attachment that does not work.
-    SceneCloth(const Scene& scene, const scene::Cloth& settings, const std::vector<Obstacle>& obstacles);
+    SceneCloth(const Scene& scene, const scene::Cloth& settings, const std::vector<Obstacle>& obstacles,
+               const WorldOptions& options);
 
     const ClothState& state() const { return state_; }
     int vertex_count() const { return int(state_.positions.size()); }
@@ -34,6 +35,9 @@ public:
 
     /// The same cloth for a rival method.
     ClothModel model() const;
+
+    /// [vertices] nonzero for those that an attachment holds exactly, now or later.
+    std::vector<char> held_exactly() const;
 
     /// Marks the vertices whose place is prescribed at time t_t1 [s]; the others are cleared.
     void mark_fixed(double t_t1, View<unsigned char> fixed) const;

@@ -5,6 +5,7 @@
 
 #include "core/backend/parallel.h"
 #include "scenes/cloth_group.h"
+#include "scenes/start_pose.h"
 
 namespace toile {
 
@@ -13,6 +14,7 @@ struct World::Parts {
     std::vector<Obstacle> obstacles;
     std::vector<ClothGroup> groups;
     std::vector<ClothState> states;
+    StartReport start;
     Stages stages;
     int frame = 0;
 
@@ -55,6 +57,10 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->obstacles.emplace_back(avatar, scene.contact.friction);
     parts_->groups = make_groups(scene, parts_->obstacles, options);
+
+    const ThreadLimit threads(scene.solver.threads);
+    const Stages::Activate recording(parts_->stages);
+    parts_->start = repair_start_pose(scene, parts_->groups, parts_->obstacles);
     for (const ClothGroup& group : parts_->groups)
         for (const SceneCloth& cloth : group.cloths())
             parts_->states.push_back(cloth.state());
@@ -100,6 +106,7 @@ StepReport World::advance_frame()
 int World::frame() const { return parts_->frame; }
 int World::frame_count() const { return parts_->scene.frames; }
 const std::vector<ClothState>& World::cloths() const { return parts_->states; }
+const StartReport& World::start() const { return parts_->start; }
 const Stages& World::stages() const { return parts_->stages; }
 
 } // namespace toile

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "collision/untangle/start_report.h"
 #include "core/backend/stages.h"
 #include "core/mesh/obj.h"
 #include "core/pd/step_report.h"
@@ -22,6 +23,8 @@ struct ClothState {
     std::vector<Triangle> triangles;
     ObjMesh rest; ///< start placement, rest lengths, faces and texture coordinates as stored
     Fabric fabric;
+    int turned_faces =
+        0; ///< faces of the file that were wound against their neighbours; `rest` has them right
 };
 
 /// How a World prepares its global solvers, beyond what the scene says.
@@ -43,7 +46,8 @@ struct WorldOptions {
 /// scene does not need are never entered (stages() shows it).
 class World {
 public:
-    /// Loads everything and places it; nothing is simulated or factored yet.
+    /// Loads everything and places it, and repairs a start pose with cloth inside avatars or through cloth
+    /// (docs/collision/start_repair.md); nothing is simulated or factored yet.
     /// @throws InvalidInput for files, materials and selections that do not work.
     explicit World(const Scene& scene, const WorldOptions& options = {});
     ~World();
@@ -69,6 +73,10 @@ public:
     int frame() const;       ///< sample that positions belong to; starts at 0
     int frame_count() const; ///< samples of the scene
     const std::vector<ClothState>& cloths() const;
+
+    /// What the start pose had inside avatars and through cloth, and what its repair left. Cloths and bodies
+    /// are numbered as in Scene::cloths and Scene::avatars.
+    const StartReport& start() const;
 
     /// Calls and seconds of every stage so far.
     const Stages& stages() const;

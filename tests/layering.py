@@ -30,6 +30,7 @@ MAY_INCLUDE = {
     "collision": ["core"],
     # Certifies what contact detection did, so it knows nothing of it.
     "collision/crossings": ["core", "collision/distance.h", "collision/surface_edges.h"],
+    "collision/untangle": ["core", "collision", "collision/crossings"],
     "avatars": ["core"],
     "export": ["core"],
     "garment": ["core", "quadrature2d"],
@@ -45,7 +46,8 @@ MAY_INCLUDE = {
 
 # Modules of CMake whose name is not their folder.
 FOLDER_OF_MODULE = {"scene_format": "scenes/format", "render": "apps/render",
-                    "quadrature_figures": "benchmarks/quadrature", "crossings": "collision/crossings"}
+                    "quadrature_figures": "benchmarks/quadrature", "crossings": "collision/crossings",
+                    "untangle": "collision/untangle"}
 
 # Third-party headers by the start of their name, and the folders that own them. None: everybody may.
 # Tests may use any, as an oracle.

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/toile/start_text.h"
 #include "core/backend/atomic_file.h"
 #include "core/backend/process_usage.h"
 #include "scenes/format/field.h"
@@ -25,7 +26,8 @@ Json settings_of(const Scene& scene)
             {"outer", scene_format::word_of(solver.outer)},
             {"sleep", solver.sleep.enabled},
             {"threads", solver.threads},
-            {"contact_gap_m", scene.contact.gap}};
+            {"contact_gap_m", scene.contact.gap},
+            {"repair_start", scene.contact.repair_start}};
 }
 
 Json json_of(int frame, const StepReport& report, double seconds)
@@ -70,6 +72,7 @@ void RunReport::write(const std::filesystem::path& file, const std::string& outc
                  {"outcome", outcome},
                  {"vertices", vertex_count_},
                  {"settings", settings_of(scene_)},
+                 {"start", start_json(start_, scene_)},
                  {"peak_memory_bytes", peak_memory()}};
     double seconds = 0.0;
     Json& frames = json["frames"] = Json::array();

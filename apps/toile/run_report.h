@@ -4,17 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "collision/untangle/start_report.h"
 #include "core/backend/stages.h"
 #include "core/pd/step_report.h"
 #include "scenes/format/scene.h"
 
 namespace toile {
 
-/// What a simulation did, for `simulate --report`: settings, every frame, calls and seconds of every stage,
-/// peak memory. Stages that never ran are absent.
+/// What a simulation did, for `simulate --report`: settings, the repair of the start pose, every frame, calls
+/// and seconds of every stage, peak memory. Stages that never ran are absent.
 class RunReport {
 public:
-    RunReport(const Scene& scene, int vertex_count) : scene_(scene), vertex_count_(vertex_count) {}
+    RunReport(const Scene& scene, int vertex_count, StartReport start)
+        : scene_(scene), vertex_count_(vertex_count), start_(std::move(start))
+    {
+    }
 
     void add_frame(int frame, const StepReport& report, double seconds)
     {
@@ -35,6 +39,7 @@ private:
 
     const Scene& scene_;
     int vertex_count_;
+    StartReport start_;
     std::vector<Frame> frames_;
 };
 

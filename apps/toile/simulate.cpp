@@ -10,6 +10,7 @@
 #include "apps/toile/interrupt.h"
 #include "apps/toile/progress.h"
 #include "apps/toile/run_report.h"
+#include "apps/toile/start_text.h"
 #include "apps/toile/table_progress.h"
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
@@ -220,7 +221,7 @@ int run_into_caches(World& world, const Scene& scene, const SimulateOptions& opt
     int vertex_count = 0;
     for (const auto& cloth : world.cloths())
         vertex_count += int(cloth.positions.size());
-    RunReport report(scene, vertex_count);
+    RunReport report(scene, vertex_count, world.start());
     for (const OpenCache& cache : caches)
         write_start_mesh(world, cache, caches);
 
@@ -256,6 +257,8 @@ int simulate(const SimulateOptions& options)
     };
     world_options.warn = [&](const std::string& text) { tables.warn(text); };
     World world(scene, world_options);
+    if (const std::string text = start_text(world.start(), scene); !text.empty())
+        std::cerr << "toile: " << text << std::endl;
 
     // Loading may be interrupted at any place; from here on it is done where nothing is left half-written.
     interrupt.emplace();

@@ -22,20 +22,26 @@ bool is_closest_on(View<const Triangle> triangles, View<const Vec3> x, const Vec
     return true;
 }
 
-/// No face beside edge e lies ahead of it in `direction`, a unit vector.
-bool leads_off_faces(const SurfaceEdges& edges, View<const Triangle> triangles, View<const Vec3> x, int e,
+/// Edge e stands out in `direction`, a unit vector: no face beside it lies ahead, and at least one falls back.
+/// What meets a flat edge meets its faces, with vertices of its own.
+bool stands_out(const SurfaceEdges& edges, View<const Triangle> triangles, View<const Vec3> x, int e,
                      const Vec3& direction)
 {
     const int low = edges.vertex[e][0], high = edges.vertex[e][1];
     const Vec3 along = (x[high] - x[low]).normalized();
     const View<const int> faces = edges.triangles.of(e);
-    return std::all_of(faces.begin(), faces.end(), [&](int t) {
+    bool falls_back = faces.size() == 1;
+    for (const int t : faces) {
         const Triangle& corner = triangles[t];
         const int apex = corner.sum() - low - high;
         const Vec3 arm = x[apex] - x[low];
         const Vec3 into_face = arm - along.dot(arm) * along;
-        return direction.dot(into_face) <= kIntoFace * into_face.norm();
-    });
+        const double ahead = direction.dot(into_face), length = into_face.norm();
+        if (ahead > kIntoFace * length)
+            return false;
+        falls_back = falls_back || ahead < -kFlat * length;
+    }
+    return falls_back;
 }
 
 } // namespace
@@ -79,8 +85,8 @@ bool is_facing_edges(const SurfaceEdges& edges, View<const Triangle> triangles, 
     const Vec3 b = x[pair.vertex[3]] - x[pair.vertex[2]];
     if (!(a.cross(b).squaredNorm() > kParallelSine2 * a.squaredNorm() * b.squaredNorm()))
         return false;
-    return leads_off_faces(edges, triangles, x, e, -pair.normal) &&
-           leads_off_faces(edges, triangles, x, f, pair.normal);
+    return stands_out(edges, triangles, x, e, -pair.normal) &&
+           stands_out(edges, triangles, x, f, pair.normal);
 }
 
 } // namespace toile

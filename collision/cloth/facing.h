@@ -13,6 +13,9 @@ inline constexpr double kOffCorner = 1e-9;
 /// larger the face comes nearer than its edge. Above 0 so that flat sheets' edges keep their pairs.
 inline constexpr double kIntoFace = 0.1;
 
+/// Sine of the slope off an edge up to which the faces beside it are flat [-]: one degree.
+inline constexpr double kFlat = 0.0175;
+
 /// NearPair::is_facing of a vertex and triangle t, whose pair is complete but for that.
 bool is_facing_triangle(const SurfaceEdges& edges, View<const Triangle> triangles, View<const Vec3> x,
                         const NearPair& pair, int t);

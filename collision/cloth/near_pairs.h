@@ -33,8 +33,8 @@ struct NearPair {
 /// - vertex and triangle: where the closest point lies on an edge or a corner, all triangles around that edge
 ///   or corner agree that it is closest (else the minimum lies on another triangle, which has its own pair),
 ///   and this is the lowest of them; of two vertices the smaller is the pair's `vertex`;
-/// - two edges: closest inside both, not parallel, and the direction between them leads into no face beside
-///   either.
+/// - two edges: closest inside both, not parallel, and both stand out: the direction between them leads into
+///   no face beside either, and off one of them or over a border. Flat sheets meet with their vertices.
 /// docs/collision/cloth.md draws them.
 class NearPairs {
 public:

@@ -13,6 +13,9 @@ namespace {
 /// met again by rounding.
 constexpr double kTaken = 0.95;
 
+/// How much farther than it lags behind a vertex may stray before pairs are looked for again [-].
+constexpr double kLagMore = 2.0;
+
 /// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way
 /// then stay where they began.
 constexpr int kRounds = 16;
@@ -137,8 +140,11 @@ bool SafeStep::shorten(bool for_good)
         for (const int v : pairs_[i].vertex) {
             share_[v] = for_good ? 0.0 : std::min(share_[v], kTaken * pair_share_[i] * before[v]);
             is_stale_[v] = 1;
-            has_lag_ = has_lag_ || strays_[v] == 0.0;
-            strays_[v] = way_[v].norm();
+            const double length = way_[v].norm(), lag = (1.0 - share_[v]) * length;
+            if (lag <= strays_[v])
+                continue;
+            strays_[v] = std::min(kLagMore * lag, length);
+            has_lag_ = true;
         }
     }
     return any;

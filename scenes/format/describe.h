@@ -150,6 +150,8 @@ void describe(V& v, Cloth& c)
     v.field("fabric", c.fabric, "A key of fabrics or the name of a preset.");
     v.field("grain_deg", c.grain_deg, kAngle, "Turns the warp direction in the cloth's plane.");
     v.field("thickness", c.thickness, above_zero(0.05, "m"), "Replaces the fabric's thickness.");
+    v.field("layer", c.layer, between(-100, 100),
+            "Where cloths cross at the start, the one of the higher layer is brought outside.");
     v.field("color", c.color, kColor, "Red, green, blue in pictures.");
     v.field("pattern", c.pattern, "What pictures show on the cloth.");
 }
@@ -227,6 +229,8 @@ void describe(V& v, Contact& c)
             "Coulomb coefficient of avatars that give none, and between cloths.");
     v.field("friction_pairs", c.friction_pairs, "Friction of two materials in particular.");
     v.field("self", c.self, "Cloth touches itself and other cloth. Not with xpbd and vbd.");
+    v.field("repair_start", c.repair_start,
+            "Move cloth that starts inside avatars or through cloth; otherwise only report it.");
 }
 
 template <typename V>

@@ -134,6 +134,7 @@ struct Cloth {
     std::string fabric = "cotton";       ///< key of Scene::fabrics or name of a preset
     double grain_deg = 0.0;              ///< turns the warp direction in the cloth plane
     std::optional<double> thickness;     ///< [m] replaces the fabric's
+    int layer = 0;                       ///< higher is further outside where cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     PreviewPattern pattern = PreviewPattern::Plain;
 };
@@ -201,7 +202,8 @@ struct Contact {
     double stiffness = 1.0; ///< [-] relative to the solver's own choice
     double friction = 0.3;  ///< [-] of avatars that name none, and between cloths
     std::vector<FrictionPair> friction_pairs;
-    bool self = true; ///< cloth touches itself and other cloth
+    bool self = true;         ///< cloth touches itself and other cloth
+    bool repair_start = true; ///< cloth that starts inside avatars or through cloth is moved
 };
 
 /// Auto to Paper: the global step inside projective dynamics. Xpbd, Vbd: another method altogether.

@@ -56,6 +56,32 @@ TEST(Simulate, ObeysOptionsAndTheExportList)
     EXPECT_FALSE(report["stages"].empty());
 }
 
+TEST(Simulate, SaysHowTheStartPoseWasRepaired)
+{
+    const TemporaryFolder folder;
+    folder.write("sunk.json", R"({"toile": 1, "frames": 1,
+        "avatars": [{"name": "ball", "sphere": {"radius": 0.1}}],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.03},
+                    "translate": [0, 0.09, 0]}]})");
+    const Finished run =
+        run_toile({"simulate", "sunk.json", "--quiet", "--report", "run.json"}, folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_NE(run.errors.find("toile: start pose: "), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("inside avatars, up to 10.0 mm deep; 0 crossings of cloth with cloth"),
+              std::string::npos)
+        << run.errors;
+    EXPECT_NE(run.errors.find("nothing remains"), std::string::npos) << run.errors;
+
+    const auto start = nlohmann::json::parse(bytes_of(folder.path() / "run.json"))["start"];
+    EXPECT_TRUE(start["repaired"]);
+    EXPECT_EQ(start["places_inside_remaining"], 0);
+    ASSERT_EQ(start["places"].size(), start["places_inside"]);
+    EXPECT_EQ(start["places"][0]["kind"], "inside_avatar");
+    EXPECT_EQ(start["places"][0]["other"], "ball");
+    EXPECT_EQ(start["places"][0]["repaired"], true);
+    EXPECT_EQ(start["places"][0]["position_m"].size(), 3u);
+}
+
 TEST(Simulate, KeepsAReadableCacheWhenInterrupted)
 {
     const TemporaryFolder folder;

@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "collision/crossings/find_crossings.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/scene_body.h"
+#include "scenes/world.h"
+
+namespace toile {
+namespace {
+
+using Kind = StartPlace::Kind;
+
+Scene scene_of(const std::string& keys)
+{
+    return parse_scene("{\"toile\": 1, \"frames\": 3, " + keys + "}", "test.json");
+}
+
+/// A ball of 10 cm and a sheet at a height.
+Scene ball_and_sheet(const std::string& height, const std::string& more = "")
+{
+    return scene_of(R"("avatars": [{"name": "ball", "sphere": {"radius": 0.1}}],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02},
+                    "translate": [0, )" +
+                    height + ", 0]}]" + more);
+}
+
+TEST(StartPose, OfACleanSceneIsOnlyLookedAt)
+{
+    World world(ball_and_sheet("0.102"));
+    EXPECT_EQ(world.stages().calls("scenes/start_check"), 1);
+    EXPECT_EQ(world.stages().calls("scenes/start_repair"), 0);
+    EXPECT_TRUE(world.start().places.empty());
+    EXPECT_EQ(world.cloths()[0].positions, world.cloths()[0].rest.positions);
+}
+
+TEST(StartPose, IsRepairedBeforeTheFirstStepAndKeepsTheRestShape)
+{
+    World world(ball_and_sheet("0.085"));
+    EXPECT_EQ(world.stages().calls("scenes/start_repair"), 1);
+    EXPECT_TRUE(world.start().was_repaired);
+    EXPECT_EQ(world.start().remaining(Kind::InsideBody), 0);
+    for (const Vec3& p : world.cloths()[0].positions)
+        EXPECT_GT(p.norm(), 0.1);
+    for (const Vec3& p : world.cloths()[0].rest.positions)
+        EXPECT_NEAR(p.y(), 0.085, 1e-12);
+
+    // The solver starts there too.
+    const std::vector<Vec3> start = world.cloths()[0].positions;
+    const StepReport step = world.advance_frame();
+    EXPECT_NE(step.status, StepReport::Status::NonFinite);
+    for (size_t v = 0; v < start.size(); ++v)
+        EXPECT_LT((world.cloths()[0].positions[v] - start[v]).norm(), 0.02) << v;
+}
+
+TEST(StartPose, IsLeftAloneWhenTheSceneSaysSo)
+{
+    World world(ball_and_sheet("0.085", R"(, "contact": {"repair_start": false})"));
+    EXPECT_EQ(world.stages().calls("scenes/start_repair"), 0);
+    EXPECT_FALSE(world.start().was_repaired);
+    EXPECT_GT(world.start().count(Kind::InsideBody), 0);
+    EXPECT_EQ(world.cloths()[0].positions, world.cloths()[0].rest.positions);
+}
+
+TEST(StartPose, PutsTheHigherLayerOnTop)
+{
+    // Tilted against each other, through each other along a line.
+    World world(scene_of(R"("cloths": [
+        {"name": "over", "layer": 1, "rectangle": {"size": [0.2, 0.2], "resolution": 0.02}, "rotate_deg": [0, 0, 6]},
+        {"name": "under", "rectangle": {"size": [0.2, 0.2], "resolution": 0.02}, "rotate_deg": [0, 3, -6],
+         "translate": [0.003, 0, 0.004]}])"));
+    EXPECT_GT(world.start().count(Kind::Crossing), 0);
+    EXPECT_EQ(world.start().remaining(Kind::Crossing), 0);
+    for (const Vec3& over : world.cloths()[0].positions)
+        for (const Vec3& under : world.cloths()[1].positions)
+            if (std::hypot(over.x() - under.x(), over.z() - under.z()) < 0.004 && std::abs(over.x()) < 0.08) {
+                EXPECT_GT(over.y(), under.y() - 0.001);
+            }
+}
+
+/// What the five modelled garments start with and have to end with.
+struct Garment {
+    const char* avatar;
+    const char* name;
+    int subdivide;
+    int vertices_inside; ///< at the start, at least
+    int crossings;       ///< at the start, at least
+    double max_strain, rms_strain;
+};
+
+class ModelledGarment : public ::testing::TestWithParam<Garment> {};
+
+TEST_P(ModelledGarment, StartsOnItsAvatarWithoutCrossings)
+{
+    const Garment& garment = GetParam();
+    const std::filesystem::path data = TOILE_DATA_DIR;
+    const std::string file = std::string("mh_") + garment.avatar + "_" + garment.name + ".obj";
+    if (!std::filesystem::exists(data / "garments" / file))
+        GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no garments/" << file;
+    const Scene scene =
+        scene_of(R"("avatars": [{"name": "body", "file": ")" +
+                 (data / "avatars" / ("mh_" + std::string(garment.avatar) + ".glb")).string() +
+                 R"("}], "cloths": [{"name": "garment", "file": ")" + (data / "garments" / file).string() +
+                 "\", \"subdivide\": " + std::to_string(garment.subdivide) + "}]");
+    const World world(scene);
+    const StartReport& report = world.start();
+    EXPECT_GE(report.vertices_inside(), garment.vertices_inside);
+    EXPECT_GE(report.count(Kind::Crossing), garment.crossings);
+    EXPECT_EQ(report.remaining(Kind::InsideBody), 0);
+    EXPECT_EQ(report.remaining(Kind::Crossing), 0);
+    EXPECT_LT(report.max_strain, garment.max_strain);
+    EXPECT_LT(report.rms_strain, garment.rms_strain);
+    const ClothState& cloth = world.cloths()[0];
+    EXPECT_TRUE(find_crossings(cloth.triangles, cloth.positions).empty());
+
+    // Tips of the body between the samples: dozens before they are looked for.
+    const TriangleMesh body = SceneBody(scene.avatars[0]).surface();
+    EXPECT_LT(find_crossings(cloth.triangles, cloth.positions, body.triangles, body.positions).size(), 20u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, ModelledGarment,
+                         ::testing::Values(Garment{"man", "male_casualsuit04", 0, 6, 0, 0.05, 0.005},
+                                           Garment{"woman", "female_casualsuit01", 0, 325, 1, 0.5, 0.03},
+                                           Garment{"woman", "female_elegantsuit01", 0, 75, 30, 0.3, 0.02},
+                                           Garment{"woman", "skirt", 0, 7, 0, 0.05, 0.01},
+                                           Garment{"woman", "tights", 0, 0, 0, 0.05, 0.005}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+} // namespace
+} // namespace toile
