@@ -60,6 +60,17 @@ public:
     void keep_apart(View<Vec3> x, View<Vec3> v) override;
     void end_step(View<const Vec3> x) override;
 
+    bool keeps_cloth_apart() const { return between_.has_value(); }
+
+    /// Where cloth crosses cloth at the start of the coming step: contact would keep it on the wrong side, so it
+    /// leaves those places alone (ExemptPairs).
+    /// @param crosses  [vertices] 1 for the corners of triangles that cross others
+    void set_crossing(View<const unsigned char> crosses)
+    {
+        if (between_)
+            between_->set_crossing(crosses);
+    }
+
     /// Drops what earlier steps left: cloth that was put elsewhere touches nothing it knows.
     void forget();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/crossings/find_crossings.h"
 #include "core/linear/block_diagonal_solver.h"
 #include "core/linear/field.h"
 #include "core/pd/body.h"
@@ -40,6 +41,9 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
 {
     for (const SceneCloth& cloth : cloths_)
         first_.push_back(first_.back() + cloth.vertex_count());
+    for (size_t i = 0; i < cloths_.size(); ++i)
+        for (const Triangle& t : cloths_[i].state().triangles)
+            triangles_.push_back(t + Triangle::Constant(first_[i]));
     body_ = is_rival(scene.solver.method) ? make_rival(scene.solver, positions(), cloths_.front().model())
                                           : make_body(scene, options);
     contact_ = make_contact(scene, obstacles);
@@ -88,16 +92,12 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
 }
 
 std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene,
-                                                  const std::vector<Obstacle>& obstacles) const
+                                                  const std::vector<Obstacle>& obstacles)
 {
     const Contact::Settings settings = contact_settings(scene);
     if (obstacles.empty() && !settings.cloth_with_cloth)
         return nullptr;
-    std::vector<Triangle> triangles;
-    for (size_t i = 0; i < cloths_.size(); ++i)
-        for (const Triangle& t : cloths_[i].state().triangles)
-            triangles.push_back(t + Triangle::Constant(first_[i]));
-    return std::make_unique<Contact>(triangles, positions(), contact_cloths(scene, cloths_, obstacles),
+    return std::make_unique<Contact>(triangles_, positions(), contact_cloths(scene, cloths_, obstacles),
                                      contact_partners(obstacles), settings);
 }
 
@@ -134,6 +134,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Obstacle>&
         report.steps = 1;
         return report;
     }
+    if (may_cross_ && contact_ && contact_->keeps_cloth_apart())
+        look_for_crossings();
     mark_fixed(t_t1);
     const View<const Vec3> x = body_->positions(), v = body_->velocities();
     for (int i = 0; i < int(cloths_.size()); ++i) {
@@ -161,6 +163,20 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Obstacle>&
     return report;
 }
 
+/// Exactly, at the first step and then as long as there are any.
+void ClothGroup::look_for_crossings()
+{
+    const StageScope stage("scenes/find_crossings");
+    std::vector<unsigned char> crosses(first_.back(), 0);
+    const std::vector<Crossing> crossings = find_crossings(triangles_, body_->positions());
+    for (const Crossing& crossing : crossings)
+        for (const int t : {crossing.a, crossing.b})
+            for (const int v : triangles_[t])
+                crosses[v] = 1;
+    contact_->set_crossing(crosses);
+    may_cross_ = !crossings.empty();
+}
+
 void ClothGroup::take_positions()
 {
     for (int i = 0; i < int(cloths_.size()); ++i)
@@ -183,6 +199,7 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
     if (contact_)
         contact_->forget();
     body_->set_positions(this->positions());
+    may_cross_ = true;
     rest_time_ = 0.0;
 }
 

@@ -31,12 +31,13 @@ public:
 
 private:
     std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
-    std::unique_ptr<Contact> make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles) const;
+    std::unique_ptr<Contact> make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles);
     std::vector<Vec3> positions() const;
     template <typename T>
     View<T> part(View<T> all, int cloth) const;
     void mark_fixed(double t_t1);
     void take_positions();
+    void look_for_crossings();
     std::string names() const;
     bool sleeps(double t_t1, const std::vector<Obstacle>& obstacles);
 
@@ -48,7 +49,9 @@ private:
     std::unique_ptr<PointMasses> body_;
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;
-    double rest_time_ = 0.0; ///< [s] since when every vertex has been slow
+    std::vector<Triangle> triangles_; ///< of all cloths
+    bool may_cross_ = true;           ///< cloth is known to cross cloth, or has been put anywhere
+    double rest_time_ = 0.0;          ///< [s] since when every vertex has been slow
 };
 
 /// Sorts the cloths of a scene into groups: one of all where they may touch each other, else one each.

@@ -40,11 +40,9 @@ double best_ms(const Work& work)
 
 Row measure(const Case& cloth)
 {
-    const std::vector<double> none(cloth.x.size(), 0.0);
-    const std::vector<Vec3> still(cloth.x.size(), Vec3::Zero());
     std::vector<NearPair> pairs;
     NearPairs near(cloth.triangles, cloth.x);
-    const double tree_ms = best_ms([&] { near.find(cloth.x, still, none, kMargin, pairs); });
+    const double tree_ms = best_ms([&] { near.find(cloth.x, {}, kMargin, pairs); });
 
     ByPointQueries queries(cloth.triangles, cloth.x);
     size_t count = 0;

@@ -138,16 +138,18 @@ void BoxTree::build(View<const Box> items)
     }
 }
 
-void BoxTree::refit(View<const Box> leaf_boxes)
+void BoxTree::refit(View<const Box> leaf_boxes, View<const unsigned char> wanted)
 {
     // Children come after their parents.
     for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
         if (node->child < 0) {
             node->box = leaf_boxes[node->leaf];
+            node->is_wanted = wanted[node->leaf] != 0;
             continue;
         }
         node->box = nodes_[node->child].box;
         node->box.add(nodes_[node->child + 1].box);
+        node->is_wanted = nodes_[node->child].is_wanted || nodes_[node->child + 1].is_wanted;
     }
 }
 
@@ -176,7 +178,7 @@ void BoxTree::pairs_of_nodes(int count, std::vector<NodePair>& out) const
             }
             is_open = true;
             open(pair, [&](NodePair next) {
-                if (next[0] == next[1] || nodes_[next[0]].box.overlaps(nodes_[next[1]].box))
+                if (may_meet(next))
                     below.push_back(next);
             });
         }

@@ -19,6 +19,7 @@ public:
         Box box;
         int child = -1; ///< the first of two neighbours, which come later in the list; -1: a leaf
         int leaf = -1;  ///< number of the leaf, or -1
+        bool is_wanted = true; ///< pairs of two nodes that are not are left out
     };
     /// Two nodes, or twice the same one, whose leaves are to be met with each other.
     using NodePair = std::array<int, 2>;
@@ -31,7 +32,8 @@ public:
     View<const int> items_of(int leaf) const { return leaves_.of(leaf); }
 
     /// Renews all boxes from those of the leaves. O(n).
-    void refit(View<const Box> leaf_boxes);
+    /// @param wanted  [leaves] Node::is_wanted
+    void refit(View<const Box> leaf_boxes, View<const unsigned char> wanted);
 
     /// Sum of the nodes' half surfaces [m^2], each box shrunk by `shrink` [m]: grows as the shape goes bad.
     double surface(float shrink) const;
@@ -46,15 +48,21 @@ public:
     template <typename Meet>
     void descend(NodePair pair, const Meet& meet) const
     {
-        const Node &a = nodes_[pair[0]], &b = nodes_[pair[1]];
-        if (pair[0] != pair[1] && !a.box.overlaps(b.box))
+        if (!may_meet(pair))
             return;
+        const Node &a = nodes_[pair[0]], &b = nodes_[pair[1]];
         if (a.child < 0 && b.child < 0)
             return meet(a, b);
         open(pair, [&](NodePair below) { descend(below, meet); });
     }
 
 private:
+    bool may_meet(NodePair pair) const
+    {
+        const Node &a = nodes_[pair[0]], &b = nodes_[pair[1]];
+        return (a.is_wanted || b.is_wanted) && (pair[0] == pair[1] || a.box.overlaps(b.box));
+    }
+
     /// Calls visit for the pairs one level below: the three of a node with itself, else the larger is opened.
     template <typename Visit>
     void open(NodePair pair, const Visit& visit) const

@@ -22,13 +22,14 @@ constexpr double kFloatSlack = 1e-6;
 Candidates::Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions)
     : triangles_(triangles), edges_(edges), points_(positions.size())
 {
-    set_points(positions, {}, {}, 0.0);
+    set_points(positions, {}, 0.0);
     rebuild();
 }
 
-void Candidates::update(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin)
+void Candidates::update(View<const Vec3> x, const Ways& ways, double margin)
 {
-    set_points(x, motion, slack, margin);
+    around_ = ways.around;
+    set_points(x, ways, margin);
     refit();
     if (tree_.surface(box_margin_) > kWornOut * built_surface_)
         rebuild();
@@ -36,8 +37,7 @@ void Candidates::update(View<const Vec3> x, View<const Vec3> motion, View<const 
 }
 
 /// Positions in single precision around the middle of all, motions without the one common to all.
-void Candidates::set_points(View<const Vec3> x, View<const Vec3> motion, View<const double> slack,
-                            double margin)
+void Candidates::set_points(View<const Vec3> x, const Ways& ways, double margin)
 {
     if (x.empty())
         return;
@@ -49,17 +49,24 @@ void Candidates::set_points(View<const Vec3> x, View<const Vec3> motion, View<co
     const Vec3 center = 0.5 * (lower + upper);
 
     // The frame that moves with the mean motion. Exactly equal motions make no pair's distance shrink.
+    const View<const Vec3> motion = ways.motion;
     Vec3 mean = Vec3::Zero();
-    is_moving_ = std::any_of(motion.begin(), motion.end(), [&](const Vec3& m) { return m != motion[0]; });
+    is_moving_ = !ways.least.empty() ||
+                 std::any_of(motion.begin(), motion.end(), [&](const Vec3& m) { return m != motion[0]; });
     if (is_moving_)
         mean = parallel_sum(kCpu, motion.size(), mean, [&](int v) { return motion[v]; }) / motion.size();
 
     parallel_for(kCpu, "collision/cloth_points", x.size(), [&](int v) {
-        const Eigen::Vector3f from = (x[v] - center).cast<float>();
-        const Eigen::Vector3f to = is_moving_ ? Eigen::Vector3f((x[v] - center + motion[v] - mean).cast<float>()) : from;
-        Eigen::Map<Eigen::Vector3f>(points_[v].lower.data()) = from.cwiseMin(to);
-        Eigen::Map<Eigen::Vector3f>(points_[v].upper.data()) = from.cwiseMax(to);
-        points_[v].slack = slack.empty() ? 0.0f : float(slack[v]);
+        const Vec3 from = x[v] - center;
+        Vec3 low = from, high = from;
+        for (const View<const Vec3> end : {motion, ways.least})
+            if (is_moving_ && !end.empty()) {
+                low = low.cwiseMin(from + end[v] - mean);
+                high = high.cwiseMax(from + end[v] - mean);
+            }
+        Eigen::Map<Eigen::Vector3f>(points_[v].lower.data()) = low.cast<float>();
+        Eigen::Map<Eigen::Vector3f>(points_[v].upper.data()) = high.cast<float>();
+        points_[v].slack = ways.slack.empty() ? 0.0f : float(ways.slack[v]);
     });
     double largest = 0.0;
     for (const MovingPoint& point : points_)
@@ -83,20 +90,24 @@ void Candidates::fill_leaf(int leaf)
     });
     fill(boxes_.vertices, [&](int v) { return box_around(box_margin_, points_[v]); });
     Box all;
+    bool is_wanted = false;
     fill(boxes_.triangles, [&](int t) {
         const Triangle& v = triangles_[t];
         const Box box = box_around(box_margin_, points_[v[0]], points_[v[1]], points_[v[2]]);
         all.add(box);
+        is_wanted = is_wanted || around_.empty() || around_[v[0]] || around_[v[1]] || around_[v[2]];
         return box;
     });
     leaf_boxes_[leaf] = all;
+    leaf_is_wanted_[leaf] = is_wanted;
 }
 
 void Candidates::refit()
 {
     leaf_boxes_.resize(tree_.leaf_count());
+    leaf_is_wanted_.resize(tree_.leaf_count());
     parallel_for(kCpu, "collision/cloth_refit", tree_.leaf_count(), [&](int leaf) { fill_leaf(leaf); });
-    tree_.refit(leaf_boxes_);
+    tree_.refit(leaf_boxes_, leaf_is_wanted_);
 }
 
 void Candidates::rebuild()

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/cloth/box_tree.h"
+#include "collision/cloth/near_pairs.h"
 #include "collision/cloth/primitive_boxes.h"
 #include "collision/surface_edges.h"
 
@@ -14,7 +15,7 @@ public:
     Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions);
 
     /// New boxes, and a new tree where the old one is worn out. See NearPairs::find.
-    void update(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin);
+    void update(View<const Vec3> x, const Ways& ways, double margin);
 
     /// Some vertex moves otherwise than the others.
     bool is_moving() const { return is_moving_; }
@@ -36,7 +37,7 @@ public:
     }
 
 private:
-    void set_points(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin);
+    void set_points(View<const Vec3> x, const Ways& ways, double margin);
     void fill_leaf(int leaf);
     void refit();
     void rebuild();
@@ -55,7 +56,9 @@ private:
     std::vector<MovingPoint> points_; ///< [vertices] relative to the middle of all
     bool is_moving_ = false;
     float box_margin_ = 0.0f; ///< [m] half the margin and the slack of single precision
+    View<const unsigned char> around_;
     std::vector<Box> leaf_boxes_;
+    std::vector<unsigned char> leaf_is_wanted_;
     std::vector<BoxTree::NodePair> tasks_;
 };
 

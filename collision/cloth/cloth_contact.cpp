@@ -15,8 +15,9 @@ namespace {
 constexpr double kMoreThanBefore = 1.5;
 constexpr double kShrinking = 0.8;
 
-/// Bounds of that, of the mean edge [-]: beyond the upper one neighbours in the same sheet become pairs.
-constexpr double kMostSlack = 0.25;
+/// Bounds of that, of the mean edge [-]: cloth that strays farther is looked at again, which costs less than
+/// ever more pairs for all.
+constexpr double kMostSlack = 0.1;
 constexpr double kLeastSlack = 0.03;
 
 /// Distance that cloth is held back by, of the mean edge [-], for which it is not looked again.
@@ -47,10 +48,12 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths)
 
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                            const std::vector<ContactCloth>& cloths, View<const double> altitude)
-    : near_(triangles, positions), safe_(near_, settings_for(cloths)), edge_(mean_edge(triangles, positions)),
+    : near_(triangles, positions),
+      exempt_(positions, altitude, settings_for(cloths).least_gap),
+      safe_(near_, exempt_, settings_for(cloths)), edge_(mean_edge(triangles, positions)),
       deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())
 {
-    slack_.assign(positions.size(), kMostSlack * edge_);
+    slack_.assign(positions.size(), kLeastSlack * edge_);
     for (int c = 0; c < int(cloths.size()); ++c) {
         cloth_.insert(cloth_.end(), cloths[c].vertex_count, c);
         thickest_ = std::max(thickest_, cloths[c].thickness);
@@ -70,7 +73,8 @@ void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction)
 void ClothContact::look(View<const Vec3> x)
 {
     const StageScope stage("collision/near_pairs");
-    near_.find(x, motion_, slack_, thickest_, pairs_);
+    near_.find(x, {motion_, {}, slack_}, thickest_, pairs_);
+    std::erase_if(pairs_, [&](const NearPair& pair) { return exempt_.is_exempt(pair); });
     expected_.resize(x.size());
     for (int v = 0; v < x.size(); ++v)
         expected_[v] = x[v] + motion_[v];
@@ -167,7 +171,7 @@ double ClothContact::bounded_slack(double slack) const
 void ClothContact::forget()
 {
     std::fill(deviation_.begin(), deviation_.end(), Vec3::Zero());
-    std::fill(slack_.begin(), slack_.end(), kMostSlack * edge_);
+    std::fill(slack_.begin(), slack_.end(), kLeastSlack * edge_);
 }
 
 } // namespace toile

@@ -38,6 +38,9 @@ public:
     /// Brings x back where cloth would cross; what is undone stays undone. True when anything moved.
     bool hold_back(View<Vec3> x);
 
+    /// See ExemptPairs.
+    void set_crossing(View<const unsigned char> crosses) { exempt_.set_crossing(crosses); }
+
     /// Learns how far the cloth came from what was predicted.
     void end_step(View<const Vec3> x);
 
@@ -56,6 +59,7 @@ private:
     double bounded_slack(double slack) const;
 
     NearPairs near_;
+    ExemptPairs exempt_;
     SafeStep safe_;
     std::vector<int> cloth_;              ///< [vertices]
     std::vector<double> half_thickness_;  ///< [vertices] [m]

@@ -1,12 +1,12 @@
 #include "collision/cloth/near_pairs.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "collision/cloth/candidates.h"
 #include "collision/cloth/facing.h"
 #include "collision/cloth/ordered_records.h"
 #include "collision/cloth/pair_geometry.h"
-#include "collision/cloth/safe_motion.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -33,7 +33,7 @@ class NearPairs::Search {
 public:
     Search(View<const Triangle> triangle_list, View<const Vec3> positions);
 
-    void find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin, std::vector<NearPair>& out);
+    void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
 
 private:
     /// What one task found: (vertex, triangle) and (edge, edge).
@@ -55,6 +55,11 @@ private:
     {
         return {v, triangles_[t][0], triangles_[t][1], triangles_[t][2]};
     }
+    bool is_wanted(const std::array<int, 4>& v) const
+    {
+        const View<const unsigned char>& around = ways_.around;
+        return around.empty() || around[v[0]] || around[v[1]] || around[v[2]] || around[v[3]];
+    }
     bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const;
     NearPair make_pair(const std::array<int, 4>& v, bool is_edge_edge) const;
 
@@ -64,8 +69,7 @@ private:
 
     // The arguments of find.
     View<const Vec3> x_;
-    View<const Vec3> motion_;
-    View<const double> slack_;
+    Ways ways_;
     double margin_ = 0.0;
 
     // Memory kept between searches.
@@ -83,37 +87,48 @@ NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> p
 /// that is true throughout when it is at the end.
 bool NearPairs::Search::may_meet(const std::array<int, 4>& v, bool is_edge_edge) const
 {
+    const int first = first_count(is_edge_edge);
     double slack[2] = {0.0, 0.0};
-    for (int k = 0; k < 4; ++k) {
-        double& side = slack[k < first_count(is_edge_edge) ? 0 : 1];
-        side = std::max(side, slack_[v[k]]);
-    }
+    if (!ways_.slack.empty())
+        for (int k = 0; k < 4; ++k) {
+            double& side = slack[k < first ? 0 : 1];
+            side = std::max(side, ways_.slack[v[k]]);
+        }
     const double margin = margin_ + slack[0] + slack[1];
 
-    std::array<Vec3, 4> x = corners_of(v, x_);
+    const std::array<Vec3, 4> x = corners_of(v, x_);
     const Vec3 difference = closest_difference(closest_weights(is_edge_edge, x), x);
     const double distance = difference.norm();
     if (distance <= margin)
         return true;
     if (!candidates_.is_moving())
         return false;
-    for (int k = 0; k < 4; ++k)
-        x[k] += motion_[v[k]];
-    return gap_along(difference / distance, is_edge_edge, x) <= margin;
+    const Vec3 n = difference / distance;
+    double ahead = std::numeric_limits<double>::max(), behind = -ahead;
+    for (int k = 0; k < 4; ++k) {
+        const double far = n.dot(ways_.motion[v[k]]);
+        const double near = ways_.least.empty() ? far : n.dot(ways_.least[v[k]]);
+        const double height = n.dot(x[k] - x[3]);
+        if (k < first)
+            ahead = std::min(ahead, height + std::min(far, near));
+        else
+            behind = std::max(behind, height + std::max(far, near));
+    }
+    return ahead - behind <= margin;
 }
 
 void NearPairs::Search::try_edges(int e, int f, Found& found) const
 {
     const auto [low, high] = std::minmax(e, f);
     const std::array<int, 4> v = edge_corners(low, high);
-    if (!share_vertex(v, 2) && may_meet(v, true))
+    if (is_wanted(v) && !share_vertex(v, 2) && may_meet(v, true))
         found.edge_edge.push_back({low, high});
 }
 
 void NearPairs::Search::try_triangle(int p, int t, Found& found) const
 {
     const std::array<int, 4> v = triangle_corners(p, t);
-    if (!share_vertex(v, 1) && may_meet(v, false))
+    if (is_wanted(v) && !share_vertex(v, 1) && may_meet(v, false))
         found.vertex_triangle.push_back({p, t});
 }
 
@@ -130,14 +145,12 @@ NearPair NearPairs::Search::make_pair(const std::array<int, 4>& v, bool is_edge_
     return pair;
 }
 
-void NearPairs::Search::find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin,
-                             std::vector<NearPair>& out)
+void NearPairs::Search::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {
     x_ = x;
-    motion_ = motion;
-    slack_ = slack;
+    ways_ = ways;
     margin_ = margin;
-    candidates_.update(x, motion, slack, margin);
+    candidates_.update(x, ways, margin);
     search();
     report(out);
 }
@@ -192,9 +205,9 @@ NearPairs::~NearPairs() = default;
 NearPairs::NearPairs(NearPairs&&) noexcept = default;
 NearPairs& NearPairs::operator=(NearPairs&&) noexcept = default;
 
-void NearPairs::find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin, std::vector<NearPair>& out)
+void NearPairs::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {
-    search_->find(x, motion, slack, margin, out);
+    search_->find(x, ways, margin, out);
 }
 
 } // namespace toile

@@ -21,6 +21,15 @@ struct NearPair {
     bool is_facing; ///< stands for a local minimum of the distance between two SURFACES (see below)
 };
 
+/// Where the vertices of a soup go, straight on and all in the same time [m]. A displacement common to all
+/// (free fall) costs nothing. Borrowed fields of one item per vertex, or empty ones.
+struct Ways {
+    View<const Vec3> motion; ///< the displacement that is expected; empty: none
+    View<const Vec3> least;  ///< the vertex may stop anywhere from here on to motion; empty: it does not stop
+    View<const double> slack; ///< >= 0, and end this far beside; empty: 0
+    View<const unsigned char> around; ///< 1: only pairs with such a vertex are asked for; empty: all pairs
+};
+
 /// Finds the pairs of primitives that might meet while the vertices of one triangle soup move: every cloth
 /// that is stepped together is part of the soup.
 ///
@@ -46,17 +55,14 @@ public:
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;
 
-    /// All pairs that may come nearer than `margin` while each vertex moves straight to a place within its
-    /// slack of x + motion, and some more: a pair is left out only where the boxes around its ways stay apart,
-    /// or its corners along the direction that separates it at x. Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
+    /// All pairs that may come nearer than `margin` while each vertex moves straight to where `ways` says, and
+    /// some more: a pair is left out only where the boxes around its ways stay apart, or its corners along the
+    /// direction that separates it at x. Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
     /// edges numbered as in build_surface_edges. Same bits for every thread count.
     /// @param x       [vertices x 3] [m]
-    /// @param motion  [vertices x 3] [m] the displacement each vertex is expected to make; a common one
-    ///                (free fall) costs nothing
     /// @param margin  [m] >= 0
     /// @param slack   [vertices] [m] >= 0 how far from the expected place a vertex may end
-    void find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin,
-              std::vector<NearPair>& out);
+    void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
 
 private:
     class Search;

@@ -1,6 +1,7 @@
 #include "collision/cloth/safe_step.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "collision/cloth/safe_motion.h"
 #include "core/backend/parallel.h"
@@ -13,8 +14,8 @@ namespace {
 /// met again by rounding.
 constexpr double kTaken = 0.95;
 
-/// How much farther than it lags behind a vertex may stray before pairs are looked for again [-].
-constexpr double kLagMore = 2.0;
+/// How much farther back than it is a vertex may fall before pairs are looked for again [-].
+constexpr double kLagMore = 1.5;
 
 /// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way
 /// then stay where they began.
@@ -47,13 +48,14 @@ double SafeStep::limit(View<Vec3> x)
     way_.resize(x.size());
     for (int v = 0; v < x.size(); ++v)
         way_[v] = x[v] - base_[v];
-    strays_.assign(x.size(), 0.0);
+    least_share_.assign(x.size(), 1.0);
     share_.assign(x.size(), 1.0);
     is_stale_.assign(x.size(), 1);
-    pairs_ = expected_pairs_;
-    if (strays(x))
-        look_again();
-    if (pairs_.empty() || !find_shares())
+    is_marked_.assign(x.size(), 0);
+    more_pairs_.clear();
+    if (mark_strays(x))
+        look_around_marked();
+    if (pair_count() == 0 || !find_shares())
         return 0.0;
 
     double farthest = 0.0;
@@ -73,24 +75,30 @@ double SafeStep::least_gap_of(const NearPair& pair) const
                     settings_.least_share * std::min(pair.distance, settings_.thickness));
 }
 
-/// True when somebody is not near where it was expected.
-bool SafeStep::strays(View<const Vec3> x) const
+/// Marks who is not near where it was expected. False when nobody is.
+bool SafeStep::mark_strays(View<const Vec3> x)
 {
-    for (int v = 0; v < x.size(); ++v)
-        if ((x[v] - expected_[v]).squaredNorm() > slack_[v] * slack_[v])
-            return true;
-    return false;
+    bool any = false;
+    for (int v = 0; v < x.size(); ++v) {
+        is_marked_[v] = (x[v] - expected_[v]).squaredNorm() > slack_[v] * slack_[v];
+        any = any || is_marked_[v];
+    }
+    return any;
 }
 
-/// The pairs for the ways as they are, of which those that lag behind may go any share.
-void SafeStep::look_again()
+/// Adds the pairs of marked vertices, for the ways as they are, of which those that lag behind may go less.
+void SafeStep::look_around_marked()
 {
     const StageScope stage("collision/look_again");
-    near_.find(base_, way_, strays_, std::max(settings_.least_gap, settings_.least_share * settings_.thickness),
-               found_pairs_);
-    pairs_ = found_pairs_;
-    std::fill(is_stale_.begin(), is_stale_.end(), 1);
-    has_lag_ = false;
+    least_.resize(way_.size());
+    for (size_t v = 0; v < way_.size(); ++v)
+        least_[v] = least_share_[v] * way_[v];
+    near_.find(base_, {way_, least_, {}, is_marked_},
+               std::max(settings_.least_gap, settings_.least_share * settings_.thickness), found_pairs_);
+    std::copy_if(found_pairs_.begin(), found_pairs_.end(), std::back_inserter(more_pairs_),
+                 [&](const NearPair& pair) { return !exempt_.is_exempt(pair); });
+    std::fill(is_marked_.begin(), is_marked_.end(), 0);
+    has_marked_ = false;
 }
 
 /// The share of its way that every vertex may go. False when all may go all of it.
@@ -102,16 +110,16 @@ bool SafeStep::find_shares()
         if (!shorten(round >= kRounds))
             return was_shortened;
         was_shortened = true;
-        if (has_lag_)
-            look_again();
+        if (has_marked_)
+            look_around_marked();
     }
 }
 
 void SafeStep::look_at_pairs()
 {
-    pair_share_.resize(pairs_.size());
-    parallel_for(kCpu, "collision/safe_share", pairs_.size(), [&](int i) {
-        const NearPair& pair = pairs_[i];
+    pair_share_.resize(pair_count());
+    parallel_for(kCpu, "collision/safe_share", pair_count(), [&](int i) {
+        const NearPair& pair = this->pair(i);
         pair_share_[i] = 1.0;
         std::array<Vec3, 4> x, move;
         bool is_stale = false;
@@ -133,18 +141,18 @@ bool SafeStep::shorten(bool for_good)
     std::fill(is_stale_.begin(), is_stale_.end(), 0);
     bool any = false;
     const std::vector<double> before = share_;
-    for (int i = 0; i < pairs_.size(); ++i) {
+    for (int i = 0; i < pair_count(); ++i) {
         if (pair_share_[i] >= 1.0)
             continue;
         any = true;
-        for (const int v : pairs_[i].vertex) {
+        for (const int v : pair(i).vertex) {
             share_[v] = for_good ? 0.0 : std::min(share_[v], kTaken * pair_share_[i] * before[v]);
             is_stale_[v] = 1;
-            const double length = way_[v].norm(), lag = (1.0 - share_[v]) * length;
-            if (lag <= strays_[v])
+            if (share_[v] >= least_share_[v])
                 continue;
-            strays_[v] = std::min(kLagMore * lag, length);
-            has_lag_ = true;
+            least_share_[v] = std::max(1.0 - kLagMore * (1.0 - share_[v]), 0.0);
+            is_marked_[v] = 1;
+            has_marked_ = true;
         }
     }
     return any;

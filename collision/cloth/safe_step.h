@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "collision/cloth/exempt_pairs.h"
 #include "collision/cloth/near_pairs.h"
 
 namespace toile {
@@ -27,14 +28,19 @@ public:
         double thickness = 5e-4;  ///< [m] of the thinnest cloth
     };
 
-    /// @param near  of all the vertices; used again by limit()
-    SafeStep(NearPairs& near, const Settings& settings) : near_(near), settings_(settings) {}
+    /// @param near    of all the vertices; used again by limit()
+    /// @param exempt  pairs that may do as they like
+    SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings)
+        : near_(near), exempt_(exempt), settings_(settings)
+    {
+    }
 
     /// All arguments but x are borrowed until the next begin().
     /// @param x         [vertices] the pose [m]
     /// @param expected  [vertices] where they are expected to end [m]
     /// @param slack     [vertices] beside it [m]
-    /// @param pairs     what NearPairs::find has found for the same, with a margin of at least `thickness`
+    /// @param pairs     what NearPairs::find has found for the same, with a margin of at least `thickness`, less
+    ///                  the exempt ones
     void begin(View<const Vec3> x, View<const Vec3> expected, View<const double> slack,
                View<const NearPair> pairs);
 
@@ -46,13 +52,19 @@ public:
 
 private:
     double least_gap_of(const NearPair& pair) const;
-    bool strays(View<const Vec3> x) const;
-    void look_again();
+    bool mark_strays(View<const Vec3> x);
+    void look_around_marked();
+    const NearPair& pair(int i) const
+    {
+        return i < expected_pairs_.size() ? expected_pairs_[i] : more_pairs_[i - expected_pairs_.size()];
+    }
+    int pair_count() const { return expected_pairs_.size() + int(more_pairs_.size()); }
     void look_at_pairs();
     bool shorten(bool for_good);
     bool find_shares();
 
     NearPairs& near_;
+    const ExemptPairs& exempt_;
     Settings settings_;
     View<const Vec3> expected_;
     View<const double> slack_;
@@ -60,14 +72,16 @@ private:
     std::vector<Vec3> base_;
 
     // Of one limit().
-    View<const NearPair> pairs_;          ///< the list in use
-    std::vector<NearPair> found_pairs_;   ///< what look_again() has found
+    std::vector<NearPair> more_pairs_;    ///< that the list of begin() does not have
+    std::vector<NearPair> found_pairs_;   ///< by the last look
     std::vector<Vec3> way_;               ///< [vertices] from base_ to where they want to go [m]
     std::vector<double> share_;           ///< [vertices] of the way
     std::vector<double> pair_share_;      ///< [pairs] that one allows
-    std::vector<double> strays_;          ///< [vertices] how far one may end from its whole way [m]
+    std::vector<double> least_share_;     ///< [vertices] that the lists know of
+    std::vector<Vec3> least_;             ///< [vertices] the way that it makes [m]
+    std::vector<unsigned char> is_marked_; ///< [vertices] for look_around_marked()
     std::vector<unsigned char> is_stale_; ///< [vertices] share_ has changed since its pairs were looked at
-    bool has_lag_ = false;                ///< a vertex lags behind that the list in use does not know of
+    bool has_marked_ = false;
 };
 
 } // namespace toile

@@ -32,8 +32,7 @@ struct Sheets {
     std::vector<NearPair> facing(double margin) const
     {
         std::vector<NearPair> pairs;
-        NearPairs(triangles, x).find(x, std::vector<Vec3>(x.size(), Vec3::Zero()),
-                                     std::vector<double>(x.size(), 0.0), margin, pairs);
+        NearPairs(triangles, x).find(x, {}, margin, pairs);
         std::erase_if(pairs, [](const NearPair& pair) { return !pair.is_facing; });
         return pairs;
     }
@@ -120,8 +119,7 @@ TEST(Facing, AFlatSheetFacesNothing)
     sheets.add(8, 0.01, Vec3(0, 0, 0));
     std::vector<NearPair> pairs;
     NearPairs(sheets.triangles, sheets.x)
-        .find(sheets.x, std::vector<Vec3>(sheets.x.size(), Vec3::Zero()),
-              std::vector<double>(sheets.x.size(), 0.0), 0.02, pairs);
+        .find(sheets.x, {}, 0.02, pairs);
     EXPECT_GT(pairs.size(), 1000u);
     EXPECT_TRUE(sheets.facing(0.02).empty());
 }

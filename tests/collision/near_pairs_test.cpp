@@ -23,6 +23,7 @@ struct Soup {
     std::vector<Vec3> motion;
     std::vector<double> slack;
 
+    Ways ways() const { return {motion, {}, slack}; }
     void stand_still()
     {
         motion.assign(x.size(), Vec3::Zero());
@@ -160,7 +161,7 @@ std::set<Key> all_pairs(const Soup& soup, double margin, const Rule& rule)
 std::vector<NearPair> find(const Soup& soup, double margin)
 {
     std::vector<NearPair> pairs;
-    NearPairs(soup.triangles, soup.x).find(soup.x, soup.motion, soup.slack, margin, pairs);
+    NearPairs(soup.triangles, soup.x).find(soup.x, soup.ways(), margin, pairs);
     return pairs;
 }
 
@@ -196,7 +197,7 @@ TEST(NearPairs, AreThoseOfAllPairsInRandomSoups)
         NearPairs near(soup.triangles, soup.x);
         std::vector<NearPair> found;
         for (const double margin : {0.0, 0.01, 0.1}) {
-            near.find(soup.x, soup.motion, soup.slack, margin, found);
+            near.find(soup.x, soup.ways(), margin, found);
             expect_all_pairs(soup, margin, found);
             count += found.size();
             for (Vec3& x : soup.x)
@@ -300,17 +301,17 @@ TEST(NearPairs, BuildAnewOnlyWhenTheTreeIsWornOut)
     const Stages::Activate activate(stages);
     std::vector<NearPair> found;
     // As it was, fallen, turned, and with another margin.
-    near.find(soup.x, soup.motion, soup.slack, 0.004, found);
+    near.find(soup.x, soup.ways(), 0.004, found);
     for (Vec3& x : soup.x)
         x = Vec3(x.y(), 10.0 - x.x(), x.z());
-    near.find(soup.x, soup.motion, soup.slack, 0.04, found);
+    near.find(soup.x, soup.ways(), 0.04, found);
     EXPECT_EQ(stages.calls("collision/cloth_rebuild"), 0);
     EXPECT_EQ(stages.calls("collision/cloth_refit"), 2);
     // Layers scattered: the tree that held them together is of no use, the new one is.
     for (size_t v = 0; v < soup.x.size(); ++v)
         soup.x[v] += Vec3(0.3 * double((7 * (v / 64)) % 20), 0, 0);
-    near.find(soup.x, soup.motion, soup.slack, 0.004, found);
-    near.find(soup.x, soup.motion, soup.slack, 0.004, found);
+    near.find(soup.x, soup.ways(), 0.004, found);
+    near.find(soup.x, soup.ways(), 0.004, found);
     EXPECT_EQ(stages.calls("collision/cloth_rebuild"), 1);
     expect_all_pairs(soup, 0.004, found);
 }
