@@ -1,0 +1,153 @@
+#include "collision/cloth/safe_step.h"
+
+#include <gtest/gtest.h>
+
+#include "collision/crossings/find_crossings.h"
+#include "tests/collision/pair_cases.h"
+
+namespace toile {
+namespace {
+
+using test::Random;
+
+constexpr double kEdge = 0.01; // [m]
+
+/// Sheets above each other, and how they are moved.
+struct Layers {
+    std::vector<Triangle> triangles;
+    std::vector<Vec3> x;
+
+    Layers(int count, int side, double gap)
+    {
+        for (int layer = 0; layer < count; ++layer) {
+            const int first = int(x.size());
+            for (int j = 0; j < side; ++j)
+                for (int i = 0; i < side; ++i)
+                    x.emplace_back(kEdge * (i + 0.3 * layer), gap * layer, kEdge * (j + 0.2 * layer));
+            for (int j = 0; j + 1 < side; ++j)
+                for (int i = 0; i + 1 < side; ++i) {
+                    const int a = first + j * side + i, b = a + 1, c = a + side, d = c + 1;
+                    triangles.emplace_back(a, c, b);
+                    triangles.emplace_back(b, c, d);
+                }
+        }
+    }
+};
+
+/// Steps a soup from pose to pose as ClothContact does.
+class Stepper {
+public:
+    explicit Stepper(const Layers& layers)
+        : triangles_(layers.triangles), near_(layers.triangles, layers.x),
+          exempt_(layers.x, std::vector<double>(layers.x.size(), kEdge), 2e-6), slack_(layers.x.size(), 3e-4)
+    {
+    }
+
+    /// Where `wanted` ends up, expected or not.
+    std::vector<Vec3> step(const std::vector<Vec3>& from, const std::vector<Vec3>& wanted,
+                           const std::vector<Vec3>& expected)
+    {
+        std::vector<Vec3> motion(from.size());
+        for (size_t v = 0; v < from.size(); ++v)
+            motion[v] = expected[v] - from[v];
+        near_.find(from, {motion, {}, slack_}, 5e-4, pairs_);
+        safe_.begin(from, expected, slack_, pairs_);
+        std::vector<Vec3> x = wanted;
+        held_ = safe_.limit(x);
+        return x;
+    }
+
+    double held() const { return held_; }
+
+    /// Nothing crosses at any time of the way.
+    void expect_free(const std::vector<Vec3>& from, const std::vector<Vec3>& to) const
+    {
+        for (int k = 0; k <= 6; ++k) {
+            std::vector<Vec3> x(from.size());
+            for (size_t v = 0; v < x.size(); ++v)
+                x[v] = from[v] + k / 6.0 * (to[v] - from[v]);
+            ASSERT_TRUE(find_crossings(triangles_, x).empty()) << "at " << k << "/6 of the way";
+        }
+    }
+
+private:
+    std::vector<Triangle> triangles_;
+    NearPairs near_;
+    ExemptPairs exempt_;
+    SafeStep safe_{near_, exempt_, SafeStep::Settings{}};
+    std::vector<double> slack_;
+    std::vector<NearPair> pairs_;
+    double held_ = 0.0;
+};
+
+TEST(SafeStep, NeverCrossesWhereverVerticesWantToGo)
+{
+    Random random(31);
+    for (int trial = 0; trial < 12; ++trial) {
+        const Layers layers(3, 7, 0.002);
+        Stepper stepper(layers);
+        std::vector<Vec3> x = layers.x;
+        const double reach = random.scale(1e-4, 0.1);
+        for (int step = 0; step < 8; ++step) {
+            std::vector<Vec3> wanted = x, expected = x;
+            for (size_t v = 0; v < x.size(); ++v) {
+                wanted[v] += reach * random.point() + Vec3(0, -0.05, 0);
+                expected[v] += Vec3(0, -0.05, 0);
+            }
+            const std::vector<Vec3> reached = stepper.step(x, wanted, expected);
+            stepper.expect_free(x, reached);
+            x = reached;
+        }
+    }
+}
+
+TEST(SafeStep, LeavesFreeStepsAloneToTheBit)
+{
+    const Layers layers(2, 6, 0.002);
+    Stepper stepper(layers);
+    // Both layers fly along, unexpectedly and 500 times as far as they are apart.
+    std::vector<Vec3> wanted = layers.x;
+    for (Vec3& p : wanted)
+        p += Vec3(0.3, -1.0, 0.1);
+    EXPECT_EQ(stepper.step(layers.x, wanted, layers.x), wanted);
+    EXPECT_EQ(stepper.held(), 0.0);
+}
+
+TEST(SafeStep, StopsSheetsThatMeetAtAHundredMetresPerSecond)
+{
+    const Layers layers(2, 8, 0.5);
+    Stepper stepper(layers);
+    std::vector<Vec3> x = layers.x;
+    for (int step = 0; step < 6; ++step) {
+        std::vector<Vec3> wanted = x;
+        for (size_t v = 0; v < x.size(); ++v)
+            wanted[v].y() += v < x.size() / 2 ? 0.5 : -0.5; // [m] in a step of 1/200 s each
+        const std::vector<Vec3> reached = stepper.step(x, wanted, wanted);
+        stepper.expect_free(x, reached);
+        x = reached;
+    }
+    for (size_t v = 0; v < x.size() / 2; ++v) {
+        EXPECT_LT(x[v].y(), x[v + x.size() / 2].y());
+        EXPECT_LT(x[v + x.size() / 2].y() - x[v].y(), 0.01); // and they do come near
+    }
+}
+
+TEST(SafeStep, HoldsBackOnlyThoseInTheWay)
+{
+    const Layers layers(2, 8, 0.002);
+    Stepper stepper(layers);
+    std::vector<Vec3> wanted = layers.x;
+    const size_t half = wanted.size() / 2;
+    wanted[half + 27] -= Vec3(0, 0.004, 0); // one vertex of the upper layer, through the lower one
+    const std::vector<Vec3> reached = stepper.step(layers.x, wanted, layers.x);
+    stepper.expect_free(layers.x, reached);
+    EXPECT_GT(reached[half + 27].y(), 0.0);
+    EXPECT_LT(reached[half + 27].y(), 0.001); // most of the way
+    for (size_t v = 0; v < wanted.size(); ++v)
+        if (v != half + 27) {
+            EXPECT_EQ(reached[v], wanted[v]) << v;
+        }
+}
+
+} // namespace
+} // namespace toile
