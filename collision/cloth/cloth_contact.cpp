@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "collision/cloth/pair_geometry.h"
-#include "core/backend/stages.h"
+#include "collision/cloth/safe_motion.h"
+#include "core/backend/parallel.h"
 
 namespace toile {
 
@@ -23,8 +23,11 @@ constexpr double kLeastSlack = 0.03;
 /// Distance that cloth is held back by, of the mean edge [-], for which it is not looked again.
 constexpr double kHeldAside = 0.02;
 
-/// Sliding of a pair that presses, of the mean edge [-], after which its normal is out of date.
-constexpr double kSlid = 0.3;
+/// Share of the thickness [-] that a pair must keep on its expected way, or it passes through.
+constexpr double kPassing = 0.1;
+
+/// Straying of a pair that presses, of the mean edge [-], after which its normal is out of date.
+constexpr double kSlid = 0.2;
 
 double mean_edge(View<const Triangle> triangles, View<const Vec3> x)
 {
@@ -99,21 +102,41 @@ double ClothContact::thickness_of(const ContactPair& pair) const
 
 void ClothContact::append_pairs(std::vector<ContactPair>& out) const
 {
-    for (const NearPair& near : pairs_) {
-        if (!near.is_facing)
-            continue;
-        ContactPair pair;
-        pair.vertex = near.vertex;
-        pair.weight = near.weight;
-        pair.normal = near.normal;
-        pair.kind = near.is_edge_edge ? ContactKind::kClothEdgeEdge : ContactKind::kClothVertexFace;
-        const double approach = std::min(near.normal.dot(pair.cloth_point(motion_)), 0.0);
-        double slack = 0.0;
-        for (const int v : near.vertex)
-            slack = std::max(slack, slack_[v]);
-        if (near.distance + approach <= thickness_of(pair) + 2.0 * slack)
-            out.push_back(pair);
+    parallel_append(
+        kCpu, "collision/cloth_terms", int(pairs_.size()),
+        [&](int begin, int end, std::vector<ContactPair>& found) {
+            for (int i = begin; i < end; ++i)
+                if (const std::optional<ContactPair> pair = pressing_pair(pairs_[i]))
+                    found.push_back(*pair);
+        },
+        out);
+}
+
+/// The half space that a pair should respect, if it may press at all: as it will be at the expected end of the
+/// step, or as it is now where it would pass through on the way. Cloth that slides over a border must not meet
+/// the direction in which the border was ahead of it.
+std::optional<ContactPair> ClothContact::pressing_pair(const NearPair& now) const
+{
+    const double thickness = thickness_of(now.vertex, first_count(now.is_edge_edge));
+    double slack = 0.0;
+    std::array<Vec3, 4> x, way;
+    for (int k = 0; k < 4; ++k) {
+        const int v = now.vertex[k];
+        slack = std::max(slack, slack_[v]);
+        x[k] = safe_.base()[v];
+        way[k] = motion_[v];
     }
+    const bool passes =
+        safe_share(now.is_edge_edge, x, way, std::min(kPassing * thickness, 0.5 * now.distance)) < 1.0;
+    const NearPair near = passes ? now : near_.at(expected_, now);
+    if (!near.is_facing || (!passes && near.distance > thickness + 2.0 * slack))
+        return std::nullopt;
+    ContactPair pair;
+    pair.vertex = near.vertex;
+    pair.weight = near.weight;
+    pair.normal = near.normal;
+    pair.kind = near.is_edge_edge ? ContactKind::kClothEdgeEdge : ContactKind::kClothVertexFace;
+    return pair;
 }
 
 bool ClothContact::advance(View<Vec3> x)
@@ -132,22 +155,17 @@ bool ClothContact::advance(View<Vec3> x)
 
 bool ClothContact::hold_back(View<Vec3> x) { return safe_.limit(x) > 0.0; }
 
-/// True when a pair that presses at x has slid out of the place that its normal was found for.
+/// True when a pair that presses at x has slid away from the place that its normal was expected at.
 bool ClothContact::has_slid(View<const Vec3> x) const
 {
-    const View<const Vec3> base = safe_.base();
     for (const NearPair& near : pairs_) {
-        if (!near.is_facing)
+        Vec3 strayed = Vec3::Zero();
+        for (int k = 0; k < 4; ++k)
+            strayed += near.weight[k] * (x[near.vertex[k]] - expected_[near.vertex[k]]);
+        if (strayed.squaredNorm() <= kSlid * kSlid * edge_ * edge_)
             continue;
-        Vec3 before = Vec3::Zero(), now = Vec3::Zero();
-        for (int k = 0; k < 4; ++k) {
-            before += near.weight[k] * base[near.vertex[k]];
-            now += near.weight[k] * x[near.vertex[k]];
-        }
-        if (near.normal.dot(now) > thickness_of(near.vertex, first_count(near.is_edge_edge)))
-            continue;
-        const Vec3 moved = now - before;
-        if ((moved - near.normal.dot(moved) * near.normal).norm() > kSlid * edge_)
+        const NearPair now = near_.at(x, near);
+        if (now.is_facing && now.distance <= thickness_of(now.vertex, first_count(now.is_edge_edge)))
             return true;
     }
     return false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "collision/cloth/near_pairs.h"
@@ -55,6 +56,7 @@ public:
 private:
     double thickness_of(const std::array<int, 4>& vertex, int first_count) const;
     void look(View<const Vec3> x);
+    std::optional<ContactPair> pressing_pair(const NearPair& now) const;
     bool has_slid(View<const Vec3> x) const;
     double bounded_slack(double slack) const;
 

@@ -35,6 +35,8 @@ public:
 
     void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
 
+    NearPair at(View<const Vec3> x, int first, int second, bool is_edge_edge) const;
+
 private:
     /// What one task found: (vertex, triangle) and (edge, edge).
     struct Found {
@@ -61,7 +63,6 @@ private:
         return around.empty() || around[v[0]] || around[v[1]] || around[v[2]] || around[v[3]];
     }
     bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const;
-    NearPair make_pair(const std::array<int, 4>& v, bool is_edge_edge) const;
 
     std::vector<Triangle> triangles_;
     SurfaceEdges edges_;
@@ -132,16 +133,20 @@ void NearPairs::Search::try_triangle(int p, int t, Found& found) const
         found.vertex_triangle.push_back({p, t});
 }
 
-NearPair NearPairs::Search::make_pair(const std::array<int, 4>& v, bool is_edge_edge) const
+NearPair NearPairs::Search::at(View<const Vec3> x, int first, int second, bool is_edge_edge) const
 {
-    const std::array<Vec3, 4> x = corners_of(v, x_);
     NearPair pair{};
-    pair.vertex = v;
+    pair.first = first;
+    pair.second = second;
     pair.is_edge_edge = is_edge_edge;
-    pair.weight = closest_weights(is_edge_edge, x);
-    const Vec3 difference = closest_difference(pair.weight, x);
+    pair.vertex = is_edge_edge ? edge_corners(first, second) : triangle_corners(first, second);
+    const std::array<Vec3, 4> corner = corners_of(pair.vertex, x);
+    pair.weight = closest_weights(is_edge_edge, corner);
+    const Vec3 difference = closest_difference(pair.weight, corner);
     pair.distance = difference.norm();
-    pair.normal = separating_direction(is_edge_edge, x, pair.weight, difference);
+    pair.normal = separating_direction(is_edge_edge, corner, pair.weight, difference);
+    pair.is_facing = is_edge_edge ? is_facing_edges(edges_, triangles_, x, pair, first, second)
+                                  : is_facing_triangle(edges_, triangles_, x, pair, second);
     return pair;
 }
 
@@ -185,15 +190,9 @@ void NearPairs::Search::report(std::vector<NearPair>& out)
     const int count = triangle_count + edge_edge_.size();
     out.resize(count);
     parallel_for(kCpu, "collision/cloth_facing", count, [&](int i) {
-        if (i < triangle_count) {
-            const auto [p, t] = vertex_triangle_[i];
-            out[i] = make_pair(triangle_corners(p, t), false);
-            out[i].is_facing = is_facing_triangle(edges_, triangles_, x_, out[i], t);
-        } else {
-            const auto [e, f] = edge_edge_[i - triangle_count];
-            out[i] = make_pair(edge_corners(e, f), true);
-            out[i].is_facing = is_facing_edges(edges_, triangles_, x_, out[i], e, f);
-        }
+        const bool is_edge_edge = i >= triangle_count;
+        const auto [first, second] = is_edge_edge ? edge_edge_[i - triangle_count] : vertex_triangle_[i];
+        out[i] = at(x_, first, second, is_edge_edge);
     });
 }
 
@@ -204,6 +203,11 @@ NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions)
 NearPairs::~NearPairs() = default;
 NearPairs::NearPairs(NearPairs&&) noexcept = default;
 NearPairs& NearPairs::operator=(NearPairs&&) noexcept = default;
+
+NearPair NearPairs::at(View<const Vec3> x, const NearPair& pair) const
+{
+    return search_->at(x, pair.first, pair.second, pair.is_edge_edge);
+}
 
 void NearPairs::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {

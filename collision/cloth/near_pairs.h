@@ -17,6 +17,7 @@ struct NearPair {
     Vec3 normal;     ///< unit, along that difference; where they touch the triangle's normal or the cross
                      ///< product of the edges, of either sign
     double distance; ///< [m] between the closest points
+    int first, second; ///< vertex and triangle, or two edges numbered as in build_surface_edges
     bool is_edge_edge;
     bool is_facing; ///< stands for a local minimum of the distance between two SURFACES (see below)
 };
@@ -63,6 +64,9 @@ public:
     /// @param margin  [m] >= 0
     /// @param slack   [vertices] [m] >= 0 how far from the expected place a vertex may end
     void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
+
+    /// A pair as it is at other positions [vertices x 3] [m].
+    NearPair at(View<const Vec3> x, const NearPair& pair) const;
 
 private:
     class Search;

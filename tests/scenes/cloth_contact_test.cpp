@@ -84,13 +84,13 @@ TEST(ClothContact, HeldClothThatWouldCrossIsHeldBack)
         EXPECT_GT(p.y(), 0.0);
 }
 
-/// How far a sheet slides down a tilted one that is held, in half a second [m].
+/// How far a sheet slides down a tilted one that is held, in a third of a second [m].
 double slide_on_cloth(double slope, double friction)
 {
     const double angle = std::atan(slope);
     const std::string tilt = R"(, "rotate_deg": [0, 0, )" + std::to_string(-angle * 180.0 / std::numbers::pi) + "]";
     World world = world_of(
-        R"({"toile": 1, "frames": 16, "air": {"density": 0}, "solver": {"tolerance": 1e-5},
+        R"({"toile": 1, "frames": 12, "air": {"density": 0}, "solver": {"substeps": 16},
             "fabrics": {"calm": {"base": "cotton", "damping": 0}},
             "contact": {"friction": 2.0, "friction_pairs": [{"between": ["calm", "calm"], "friction": )" +
         std::to_string(friction) + R"(}]}, "cloths": [)" +
@@ -100,7 +100,7 @@ double slide_on_cloth(double slope, double friction)
               tilt + R"(, "fabric": "calm")") +
         R"(], "attachments": [{"cloth": "ramp", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}}}]})");
     const std::vector<Vec3> start = world.cloths()[1].positions;
-    for (int frame = 0; frame < 15; ++frame)
+    for (int frame = 0; frame < 10; ++frame)
         (void)world.advance_frame();
     Vec3 moved = Vec3::Zero();
     for (size_t v = 0; v < start.size(); ++v)
@@ -111,8 +111,8 @@ double slide_on_cloth(double slope, double friction)
 TEST(ClothContact, RubsAsItsPairOfMaterialsSays)
 {
     EXPECT_LT(slide_on_cloth(0.3, 0.4), 0.002);
-    const double angle = std::atan(0.3), free = 0.5 * 0.5 * 0.5 * 9.81 * (std::sin(angle) - 0.1 * std::cos(angle));
-    EXPECT_NEAR(slide_on_cloth(0.3, 0.1), free, 0.1 * free);
+    const double angle = std::atan(0.3), exact = 0.5 / 9.0 * 9.81 * (std::sin(angle) - 0.1 * std::cos(angle));
+    EXPECT_NEAR(slide_on_cloth(0.3, 0.1), exact, 0.15 * exact);
 }
 
 TEST(ClothContact, CostsNothingWhereItIsSwitchedOffOrUnknown)
