@@ -89,7 +89,11 @@ int read_all(const std::filesystem::path& folder)
     return count;
 }
 
-TEST(SceneFiles, ReadsTheDemoScenes) { EXPECT_EQ(read_all(kSource / "scenes/demo"), 2); }
+TEST(SceneFiles, ReadsTheDemoScenes)
+{
+    EXPECT_EQ(read_all(kSource / "scenes/demo"), 2);
+    EXPECT_EQ(read_all(kSource / "scenes/contact"), 3);
+}
 
 TEST(SceneFiles, ReadsTheScenesOfRealData)
 {
