@@ -78,7 +78,7 @@ void Contact::begin_step(const StepStart& start)
     for (int v = 0; v < start.x.size(); ++v)
         farthest = std::max(farthest, (start.prediction[v] - carried_[v]).norm());
     if (between_)
-        between_->begin_step(start.x, start.prediction);
+        between_->begin_step(start.x, start.prediction, start.fixed);
     detect(carried_, std::min(largest_gap_ + farthest, kMaxRadius));
 }
 

@@ -18,9 +18,9 @@ struct ContactPartner {
     const ShapeCollider* shape = nullptr;
 };
 
-/// Contact of cloths with avatars, shapes and each other during a step: finds pairs, keeps their energy, looks
-/// again when the cloth has slid away from where they were found, and remembers friction from step to step.
-/// Cloth that starts without crossing cloth never does (SafeStep).
+/// Contact of cloths with avatars, shapes and each other during a step: finds pairs, keeps their energy,
+/// looks again when the cloth has slid away from where they were found, and remembers friction from step to
+/// step. Cloth that starts without crossing cloth never does (SafeStep).
 class Contact : public ActiveSetEnergy {
 public:
     /// Fastest surface that cloth is carried along with [m/s]. A body that jumps further in a step has been
@@ -62,8 +62,8 @@ public:
 
     bool keeps_cloth_apart() const { return between_.has_value(); }
 
-    /// Where cloth crosses cloth at the start of the coming step: contact would keep it on the wrong side, so it
-    /// leaves those places alone (ExemptPairs).
+    /// Where cloth crosses cloth at the start of the coming step: contact would keep it on the wrong side, so
+    /// it leaves those places alone (ExemptPairs).
     /// @param crosses  [vertices] 1 for the corners of triangles that cross others
     void set_crossing(View<const unsigned char> crosses)
     {

@@ -72,8 +72,8 @@ private:
     void gather(const Touches& touches, View<Vec3> out, const PerTerm& value) const;
 
     std::vector<ContactTerm> terms_;
-    Touches touches_;        ///< of all terms
-    Touches active_touches_; ///< of those that are frozen: usually far fewer
+    Touches touches_;                      ///< of all terms
+    Touches active_touches_;               ///< of those that are frozen: usually far fewer
     std::vector<int> active_;              ///< terms that are frozen
     std::vector<Mat3> frozen_;             ///< [terms] A_p
     std::vector<Mat3> blocks_;             ///< [vertices]

@@ -24,8 +24,7 @@ void ContactMemory::keep(const ContactTerm& term, const Vec3& slip)
 void ContactMemory::hand_on(ContactTerm& term) const
 {
     const Vec3& normal = term.pair.normal;
-    const auto [first, last] =
-        known_.equal_range(Key{term.pair.kind, term.pair.collider, term.pair.vertex});
+    const auto [first, last] = known_.equal_range(Key{term.pair.kind, term.pair.collider, term.pair.vertex});
     for (auto known = first; known != last; ++known) {
         const Entry& entry = known->second;
         if (entry.normal.dot(normal) < kSameContact)

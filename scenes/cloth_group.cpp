@@ -71,10 +71,10 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
                                    ? energy
                                    : std::make_shared<SlicedEnergy>(energy, first_[i], cloth.vertex_count()));
         const ClothState& state = cloth.state();
-        blocks.push_back({cloth.vertex_count(),
-                          make_global_solver(scene.solver.method, cloth.rest_shape(),
-                                             {state.positions, state.triangles}, cloth.source(),
-                                             source_of_tables(options, state.name))});
+        blocks.push_back(
+            {cloth.vertex_count(),
+             make_global_solver(scene.solver.method, cloth.rest_shape(), {state.positions, state.triangles},
+                                cloth.source(), source_of_tables(options, state.name))});
     }
     std::unique_ptr<GlobalSolver> solver = std::move(blocks.front().solver);
     if (blocks.size() > 1) {
@@ -91,8 +91,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
         settings);
 }
 
-std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene,
-                                                  const std::vector<Obstacle>& obstacles)
+std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles)
 {
     const Contact::Settings settings = contact_settings(scene);
     if (obstacles.empty() && !settings.cloth_with_cloth)
@@ -206,11 +205,10 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
 /// True when nothing has moved these cloths for a while and nothing is about to.
 bool ClothGroup::sleeps(double t_t1, const std::vector<Obstacle>& obstacles)
 {
-    const bool disturbed =
-        std::any_of(obstacles.begin(), obstacles.end(),
-                    [](const Obstacle& obstacle) { return obstacle.moved(); }) ||
-        std::any_of(cloths_.begin(), cloths_.end(),
-                    [&](const SceneCloth& cloth) { return cloth.is_disturbed(t_t1); });
+    const bool disturbed = std::any_of(obstacles.begin(), obstacles.end(),
+                                       [](const Obstacle& obstacle) { return obstacle.moved(); }) ||
+                           std::any_of(cloths_.begin(), cloths_.end(),
+                                       [&](const SceneCloth& cloth) { return cloth.is_disturbed(t_t1); });
     if (disturbed)
         rest_time_ = 0.0;
     return sleep_.enabled && rest_time_ > kSleepDelay;

@@ -17,8 +17,8 @@ public:
 
     struct Node {
         Box box;
-        int child = -1; ///< the first of two neighbours, which come later in the list; -1: a leaf
-        int leaf = -1;  ///< number of the leaf, or -1
+        int child = -1;        ///< the first of two neighbours, which come later in the list; -1: a leaf
+        int leaf = -1;         ///< number of the leaf, or -1
         bool is_wanted = true; ///< pairs of two nodes that are not are left out
     };
     /// Two nodes, or twice the same one, whose leaves are to be met with each other.

@@ -38,9 +38,10 @@ double mean_edge(View<const Triangle> triangles, View<const Vec3> x)
     return triangles.empty() ? 0.0 : sum / (3.0 * triangles.size());
 }
 
-SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths)
+SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double edge)
 {
     SafeStep::Settings settings;
+    settings.most_deflection = kMostSlack * edge;
     settings.thickness = std::numeric_limits<double>::max();
     for (const ContactCloth& cloth : cloths)
         settings.thickness = std::min(settings.thickness, cloth.thickness);
@@ -51,10 +52,10 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths)
 
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                            const std::vector<ContactCloth>& cloths, View<const double> altitude)
-    : near_(triangles, positions),
-      exempt_(positions, altitude, settings_for(cloths).least_gap),
-      safe_(near_, exempt_, settings_for(cloths)), edge_(mean_edge(triangles, positions)),
-      deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())
+    : near_(triangles, positions), exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
+      safe_(near_, exempt_, settings_for(cloths, mean_edge(triangles, positions))),
+      edge_(mean_edge(triangles, positions)), deviation_(positions.size(), Vec3::Zero()),
+      motion_(positions.size())
 {
     slack_.assign(positions.size(), kLeastSlack * edge_);
     for (int c = 0; c < int(cloths.size()); ++c) {
@@ -65,8 +66,10 @@ ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> posi
         half_thickness_.push_back(0.5 * std::min(cloths[cloth_[v]].thickness, 0.5 * altitude[v]));
 }
 
-void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction)
+void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction,
+                              View<const unsigned char> fixed)
 {
+    fixed_ = fixed;
     prediction_.assign(prediction.begin(), prediction.end());
     for (int v = 0; v < x.size(); ++v)
         motion_[v] = prediction[v] + deviation_[v] - x[v];
@@ -81,7 +84,7 @@ void ClothContact::look(View<const Vec3> x)
     expected_.resize(x.size());
     for (int v = 0; v < x.size(); ++v)
         expected_[v] = x[v] + motion_[v];
-    safe_.begin(x, expected_, slack_, pairs_);
+    safe_.begin(x, expected_, slack_, fixed_, pairs_);
 }
 
 /// @param first_count  vertices of the pair's first side
@@ -112,9 +115,9 @@ void ClothContact::append_pairs(std::vector<ContactPair>& out) const
         out);
 }
 
-/// The half space that a pair should respect, if it may press at all: as it will be at the expected end of the
-/// step, or as it is now where it would pass through on the way. Cloth that slides over a border must not meet
-/// the direction in which the border was ahead of it.
+/// The half space that a pair should respect, if it may press at all: as it will be at the expected end of
+/// the step, or as it is now where it would pass through on the way. Cloth that slides over a border must not
+/// meet the direction in which the border was ahead of it.
 std::optional<ContactPair> ClothContact::pressing_pair(const NearPair& now) const
 {
     const double thickness = thickness_of(now.vertex, first_count(now.is_edge_edge));

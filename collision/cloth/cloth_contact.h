@@ -27,7 +27,8 @@ public:
     ClothContact& operator=(const ClothContact&) = delete;
 
     /// Finds the pairs for a step from x to about `prediction` [vertices] [m].
-    void begin_step(View<const Vec3> x, View<const Vec3> prediction);
+    /// @param fixed  [vertices] 1 where the position is prescribed; borrowed during the step
+    void begin_step(View<const Vec3> x, View<const Vec3> prediction, View<const unsigned char> fixed);
 
     /// Appends the pairs that may press in this step.
     void append_pairs(std::vector<ContactPair>& out) const;
@@ -63,11 +64,12 @@ private:
     NearPairs near_;
     ExemptPairs exempt_;
     SafeStep safe_;
-    std::vector<int> cloth_;              ///< [vertices]
-    std::vector<double> half_thickness_;  ///< [vertices] [m]
-    std::vector<double> slack_;           ///< [vertices] see SafeStep [m]
-    double thickest_ = 0.0, edge_ = 0.0;  ///< [m] largest thickness, mean edge
+    std::vector<int> cloth_;             ///< [vertices]
+    std::vector<double> half_thickness_; ///< [vertices] [m]
+    std::vector<double> slack_;          ///< [vertices] see SafeStep [m]
+    double thickest_ = 0.0, edge_ = 0.0; ///< [m] largest thickness, mean edge
     std::vector<NearPair> pairs_;
+    View<const unsigned char> fixed_;
     std::vector<Vec3> prediction_, deviation_, motion_, expected_; ///< [vertices] [m]
 };
 

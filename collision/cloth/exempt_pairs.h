@@ -8,7 +8,8 @@ namespace toile {
 
 /// Pairs that contact of cloth with cloth leaves alone, because it could only do harm:
 ///
-/// - Cloth that crosses cloth already (a start pose that could not be repaired, cloth that was put elsewhere):
+/// - Cloth that crosses cloth already (a start pose that could not be repaired, cloth that was put
+/// elsewhere):
 ///   what lies on the wrong side would be kept there. Pairs of which both sides touch a crossing triangle
 ///   are free until no triangle around them crosses; everything else is held apart as ever, so crossings can
 ///   move on, shrink and vanish, but none begins elsewhere.
@@ -29,9 +30,9 @@ private:
     bool is_sliver_pair(const NearPair& pair) const;
 
     std::vector<Vec3> rest_;
-    double too_near_; ///< [m]
-    std::vector<unsigned char> is_thin_;  ///< [vertices] around a sliver
-    std::vector<unsigned char> crosses_;  ///< [vertices] of triangles that cross
+    double too_near_;                    ///< [m]
+    std::vector<unsigned char> is_thin_; ///< [vertices] around a sliver
+    std::vector<unsigned char> crosses_; ///< [vertices] of triangles that cross
 };
 
 } // namespace toile

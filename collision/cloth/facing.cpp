@@ -22,10 +22,10 @@ bool is_closest_on(View<const Triangle> triangles, View<const Vec3> x, const Vec
     return true;
 }
 
-/// Edge e stands out in `direction`, a unit vector: no face beside it lies ahead, and at least one falls back.
-/// What meets a flat edge meets its faces, with vertices of its own.
+/// Edge e stands out in `direction`, a unit vector: no face beside it lies ahead, and at least one falls
+/// back. What meets a flat edge meets its faces, with vertices of its own.
 bool stands_out(const SurfaceEdges& edges, View<const Triangle> triangles, View<const Vec3> x, int e,
-                     const Vec3& direction)
+                const Vec3& direction)
 {
     const int low = edges.vertex[e][0], high = edges.vertex[e][1];
     const Vec3 along = (x[high] - x[low]).normalized();

@@ -84,8 +84,8 @@ NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> p
 {
 }
 
-/// False only where the pair stays `margin` apart along the direction that separates it now: on a straight way
-/// that is true throughout when it is at the end.
+/// False only where the pair stays `margin` apart along the direction that separates it now: on a straight
+/// way that is true throughout when it is at the end.
 bool NearPairs::Search::may_meet(const std::array<int, 4>& v, bool is_edge_edge) const
 {
     const int first = first_count(is_edge_edge);

@@ -14,9 +14,9 @@ struct NearPair {
     std::array<int, 4> vertex;    ///< vertex, then the triangle's corners; or both ends of each edge
     std::array<double, 4> weight; ///< signed, sum 0: sum_k weight_k x_k runs from the second's closest
                                   ///< point to the first's
-    Vec3 normal;     ///< unit, along that difference; where they touch the triangle's normal or the cross
-                     ///< product of the edges, of either sign
-    double distance; ///< [m] between the closest points
+    Vec3 normal;       ///< unit, along that difference; where they touch the triangle's normal or the cross
+                       ///< product of the edges, of either sign
+    double distance;   ///< [m] between the closest points
     int first, second; ///< vertex and triangle, or two edges numbered as in build_surface_edges
     bool is_edge_edge;
     bool is_facing; ///< stands for a local minimum of the distance between two SURFACES (see below)
@@ -27,7 +27,7 @@ struct NearPair {
 struct Ways {
     View<const Vec3> motion; ///< the displacement that is expected; empty: none
     View<const Vec3> least;  ///< the vertex may stop anywhere from here on to motion; empty: it does not stop
-    View<const double> slack; ///< >= 0, and end this far beside; empty: 0
+    View<const double> slack;         ///< >= 0, and end this far beside; empty: 0
     View<const unsigned char> around; ///< 1: only pairs with such a vertex are asked for; empty: all pairs
 };
 
@@ -56,10 +56,11 @@ public:
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;
 
-    /// All pairs that may come nearer than `margin` while each vertex moves straight to where `ways` says, and
-    /// some more: a pair is left out only where the boxes around its ways stay apart, or its corners along the
-    /// direction that separates it at x. Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
-    /// edges numbered as in build_surface_edges. Same bits for every thread count.
+    /// All pairs that may come nearer than `margin` while each vertex moves straight to where `ways` says,
+    /// and some more: a pair is left out only where the boxes around its ways stay apart, or its corners
+    /// along the direction that separates it at x. Replaces the content of out. Order: vertex-triangle by
+    /// vertex, triangle; then edge-edge by edge, edge, edges numbered as in build_surface_edges. Same bits
+    /// for every thread count.
     /// @param x       [vertices x 3] [m]
     /// @param margin  [m] >= 0
     /// @param slack   [vertices] [m] >= 0 how far from the expected place a vertex may end

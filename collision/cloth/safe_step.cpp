@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "collision/cloth/pair_geometry.h"
 #include "collision/cloth/safe_motion.h"
 #include "core/backend/parallel.h"
 
@@ -16,6 +17,12 @@ constexpr double kTaken = 0.95;
 
 /// How much farther back than it is a vertex may fall before pairs are looked for again [-].
 constexpr double kLagMore = 1.5;
+
+/// How often the ends of ways are moved apart, in how many sweeps over the pairs each, and how much farther
+/// than they have to be [-].
+constexpr int kDeflections = 4;
+constexpr int kSweeps = 3;
+constexpr double kMoreThanLeast = 1.1;
 
 /// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way
 /// then stay where they began.
@@ -34,11 +41,12 @@ bool stays_apart(const NearPair& pair, const std::array<Vec3, 4>& x, const std::
 } // namespace
 
 void SafeStep::begin(View<const Vec3> x, View<const Vec3> expected, View<const double> slack,
-                     View<const NearPair> pairs)
+                     View<const unsigned char> fixed, View<const NearPair> pairs)
 {
     base_.assign(x.begin(), x.end());
     expected_ = expected;
     slack_ = slack;
+    fixed_ = fixed;
     expected_pairs_ = pairs;
 }
 
@@ -52,18 +60,22 @@ double SafeStep::limit(View<Vec3> x)
     share_.assign(x.size(), 1.0);
     is_stale_.assign(x.size(), 1);
     is_marked_.assign(x.size(), 0);
+    is_deflected_.assign(x.size(), 0);
     more_pairs_.clear();
     if (mark_strays(x))
         look_around_marked();
-    if (pair_count() == 0 || !find_shares())
+    if (pair_count() == 0)
         return 0.0;
+    deflect();
+    find_shares();
 
     double farthest = 0.0;
     for (int v = 0; v < x.size(); ++v) {
-        if (share_[v] == 1.0)
+        if (share_[v] == 1.0 && !is_deflected_[v])
             continue;
+        const Vec3 wanted = x[v];
         x[v] = base_[v] + share_[v] * way_[v];
-        farthest = std::max(farthest, (1.0 - share_[v]) * way_[v].norm());
+        farthest = std::max(farthest, (x[v] - wanted).norm());
     }
     return farthest;
 }
@@ -101,26 +113,73 @@ void SafeStep::look_around_marked()
     has_marked_ = false;
 }
 
-/// The share of its way that every vertex may go. False when all may go all of it.
-bool SafeStep::find_shares()
+/// Ends with pair_share_ of the ways as they then are.
+void SafeStep::deflect()
 {
-    bool was_shortened = false;
-    for (int round = 0;; ++round) {
+    look_at_pairs();
+    for (int round = 0; round < kDeflections && give_way(); ++round) {
+        look_around_marked();
         look_at_pairs();
-        if (!shorten(round >= kRounds))
-            return was_shortened;
-        was_shortened = true;
+    }
+}
+
+/// Moves the ends of ways apart where pairs are in each other's way, never so far that a pair parts. False
+/// when none is.
+bool SafeStep::give_way()
+{
+    std::fill(is_stale_.begin(), is_stale_.end(), 0);
+    bool any = false;
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+        for (int i = 0; i < pair_count(); ++i) {
+            if (pair_share_[i] >= 1.0)
+                continue;
+            const NearPair& pair = this->pair(i);
+            std::array<Vec3, 4> end;
+            for (int k = 0; k < 4; ++k)
+                end[k] = base_[pair.vertex[k]] + way_[pair.vertex[k]];
+            const double kept = std::min(kMoreThanLeast * least_gap_of(pair), pair.distance);
+            const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
+            const double ahead = mobility_of(pair, true), behind = mobility_of(pair, false);
+            if (lacking <= 0.0 || lacking > settings_.most_deflection || ahead + behind == 0.0)
+                continue;
+            any = true;
+            for (int k = 0; k < 4; ++k) {
+                const int v = pair.vertex[k];
+                if (fixed_[v])
+                    continue;
+                const double share = k < first_count(pair.is_edge_edge) ? ahead : -behind;
+                way_[v] += share / (ahead + behind) * lacking * pair.normal;
+                is_deflected_[v] = is_marked_[v] = is_stale_[v] = 1;
+            }
+        }
+    return any;
+}
+
+/// 1; 0 where all of the side is held.
+double SafeStep::mobility_of(const NearPair& pair, bool is_first_side) const
+{
+    const int split = first_count(pair.is_edge_edge);
+    for (int k = is_first_side ? 0 : split; k < (is_first_side ? split : 4); ++k)
+        if (!fixed_[pair.vertex[k]])
+            return 1.0;
+    return 0.0;
+}
+
+/// The share of its way that every vertex may go, from pair_share_.
+void SafeStep::find_shares()
+{
+    for (int round = 0; shorten(round >= kRounds); ++round) {
         if (has_marked_)
             look_around_marked();
+        look_at_pairs();
     }
 }
 
 void SafeStep::look_at_pairs()
 {
-    pair_share_.resize(pair_count());
+    pair_share_.resize(pair_count(), 1.0);
     parallel_for(kCpu, "collision/safe_share", pair_count(), [&](int i) {
         const NearPair& pair = this->pair(i);
-        pair_share_[i] = 1.0;
         std::array<Vec3, 4> x, move;
         bool is_stale = false;
         for (int k = 0; k < 4; ++k) {
@@ -129,9 +188,11 @@ void SafeStep::look_at_pairs()
             x[k] = base_[v];
             move[k] = share_[v] * way_[v];
         }
+        if (!is_stale)
+            return;
         const double least = least_gap_of(pair);
-        if (is_stale && !stays_apart(pair, x, move, least))
-            pair_share_[i] = safe_share(pair.is_edge_edge, x, move, least);
+        pair_share_[i] =
+            stays_apart(pair, x, move, least) ? 1.0 : safe_share(pair.is_edge_edge, x, move, least);
     });
 }
 

@@ -248,7 +248,8 @@ void check_contact(const Document& document, const Scene& scene)
     for (size_t i = 0; i < pairs.size(); ++i) {
         const std::string place = below(below(below("contact", "friction_pairs"), i), "between");
         if (pairs[i].between.size() != 2)
-            document.refuse(place, std::to_string(pairs[i].between.size()) + " names; friction is between two");
+            document.refuse(place,
+                            std::to_string(pairs[i].between.size()) + " names; friction is between two");
         for (const std::string& name : pairs[i].between)
             require_known(document, place, "fabric in use or avatar", name, known);
         if (holds(avatars, pairs[i].between[0]) && holds(avatars, pairs[i].between[1]))

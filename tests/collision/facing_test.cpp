@@ -118,8 +118,7 @@ TEST(Facing, AFlatSheetFacesNothing)
     Sheets sheets;
     sheets.add(8, 0.01, Vec3(0, 0, 0));
     std::vector<NearPair> pairs;
-    NearPairs(sheets.triangles, sheets.x)
-        .find(sheets.x, {}, 0.02, pairs);
+    NearPairs(sheets.triangles, sheets.x).find(sheets.x, {}, 0.02, pairs);
     EXPECT_GT(pairs.size(), 1000u);
     EXPECT_TRUE(sheets.facing(0.02).empty());
 }

@@ -39,7 +39,8 @@ class Stepper {
 public:
     explicit Stepper(const Layers& layers)
         : triangles_(layers.triangles), near_(layers.triangles, layers.x),
-          exempt_(layers.x, std::vector<double>(layers.x.size(), kEdge), 2e-6), slack_(layers.x.size(), 3e-4)
+          exempt_(layers.x, std::vector<double>(layers.x.size(), kEdge), 2e-6), slack_(layers.x.size(), 3e-4),
+          fixed_(layers.x.size(), 0)
     {
     }
 
@@ -51,7 +52,7 @@ public:
         for (size_t v = 0; v < from.size(); ++v)
             motion[v] = expected[v] - from[v];
         near_.find(from, {motion, {}, slack_}, 5e-4, pairs_);
-        safe_.begin(from, expected, slack_, pairs_);
+        safe_.begin(from, expected, slack_, fixed_, pairs_);
         std::vector<Vec3> x = wanted;
         held_ = safe_.limit(x);
         return x;
@@ -76,6 +77,7 @@ private:
     ExemptPairs exempt_;
     SafeStep safe_{near_, exempt_, SafeStep::Settings{}};
     std::vector<double> slack_;
+    std::vector<unsigned char> fixed_;
     std::vector<NearPair> pairs_;
     double held_ = 0.0;
 };

@@ -34,7 +34,8 @@ void expect_no_crossing(World& world, int frames)
     }
 }
 
-std::string sheet(const std::string& name, double size, const std::string& place, const std::string& more = "")
+std::string sheet(const std::string& name, double size, const std::string& place,
+                  const std::string& more = "")
 {
     return R"({"name": ")" + name + R"(", "rectangle": {"size": [)" + std::to_string(size) + ", " +
            std::to_string(size) + R"(], "resolution": 0.02}, "translate": )" + place + more + "}";
@@ -62,10 +63,11 @@ TEST(ClothContact, ASheetDroppedOnItsEdgeNeverCrossesItself)
 {
     for (const char* thickness : {"0.0001", "0.0006"}) {
         SCOPED_TRACE(thickness);
-        World world = world_of(R"({"toile": 1, "frames": 40, )" + kFloor + R"(, "cloths": [)" +
-                               sheet("sheet", 0.24, "[0, 0.13, 0]",
-                                     std::string(R"(, "rotate_deg": [88, 10, 3], "thickness": )") + thickness) +
-                               "]}");
+        World world =
+            world_of(R"({"toile": 1, "frames": 40, )" + kFloor + R"(, "cloths": [)" +
+                     sheet("sheet", 0.24, "[0, 0.13, 0]",
+                           std::string(R"(, "rotate_deg": [88, 10, 3], "thickness": )") + thickness) +
+                     "]}");
         expect_no_crossing(world, 25);
     }
 }
@@ -73,8 +75,8 @@ TEST(ClothContact, ASheetDroppedOnItsEdgeNeverCrossesItself)
 TEST(ClothContact, HeldClothThatWouldCrossIsHeldBack)
 {
     // The upper sheet's border is led through the lower one, which is held itself.
-    World world = world_of(R"({"toile": 1, "frames": 20, "cloths": [)" +
-                           sheet("low", 0.2, "[0, 0, 0]") + "," + sheet("high", 0.12, "[0.007, 0.01, 0.003]") +
+    World world = world_of(R"({"toile": 1, "frames": 20, "cloths": [)" + sheet("low", 0.2, "[0, 0, 0]") +
+                           "," + sheet("high", 0.12, "[0.007, 0.01, 0.003]") +
                            R"(], "attachments": [
         {"cloth": "low", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}}},
         {"cloth": "high", "select": {"box": {"lower": [-1, -1, -1], "upper": [-0.04, 1, 1]}},
@@ -88,15 +90,17 @@ TEST(ClothContact, HeldClothThatWouldCrossIsHeldBack)
 double slide_on_cloth(double slope, double friction)
 {
     const double angle = std::atan(slope);
-    const std::string tilt = R"(, "rotate_deg": [0, 0, )" + std::to_string(-angle * 180.0 / std::numbers::pi) + "]";
+    const std::string tilt =
+        R"(, "rotate_deg": [0, 0, )" + std::to_string(-angle * 180.0 / std::numbers::pi) + "]";
     World world = world_of(
         R"({"toile": 1, "frames": 12, "air": {"density": 0}, "solver": {"substeps": 16},
             "fabrics": {"calm": {"base": "cotton", "damping": 0}},
             "contact": {"friction": 2.0, "friction_pairs": [{"between": ["calm", "calm"], "friction": )" +
         std::to_string(friction) + R"(}]}, "cloths": [)" +
         sheet("ramp", 0.4, "[0, 0, 0]", tilt + R"(, "fabric": "calm")") + "," +
-        sheet("slider", 0.1, "[" + std::to_string(0.0004 * std::sin(angle)) + ", " +
-                                 std::to_string(0.0004 * std::cos(angle)) + ", 0.003]",
+        sheet("slider", 0.1,
+              "[" + std::to_string(0.0004 * std::sin(angle)) + ", " +
+                  std::to_string(0.0004 * std::cos(angle)) + ", 0.003]",
               tilt + R"(, "fabric": "calm")") +
         R"(], "attachments": [{"cloth": "ramp", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}}}]})");
     const std::vector<Vec3> start = world.cloths()[1].positions;
@@ -135,10 +139,11 @@ TEST(ClothContact, CostsNothingWhereItIsSwitchedOffOrUnknown)
 TEST(ClothContact, ClothThatCrossesFromTheStartComesApart)
 {
     // A sheet that stands through another one, neither repaired: it falls out on the side of its weight.
-    World world = world_of(R"({"toile": 1, "frames": 90, "contact": {"repair_start": false}, "cloths": [)" +
-                           sheet("held", 0.3, "[0, 0, 0]") + "," +
-                           sheet("through", 0.1, "[0.003, -0.02, 0.002]", R"(, "rotate_deg": [90, 0, 0])") +
-                           R"(], "attachments": [{"cloth": "held", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}}}]})");
+    World world = world_of(
+        R"({"toile": 1, "frames": 90, "contact": {"repair_start": false}, "cloths": [)" +
+        sheet("held", 0.3, "[0, 0, 0]") + "," +
+        sheet("through", 0.1, "[0.003, -0.02, 0.002]", R"(, "rotate_deg": [90, 0, 0])") +
+        R"(], "attachments": [{"cloth": "held", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}}}]})");
     EXPECT_GT(crossings_of(world), 0);
     for (int frame = 0; frame < 30; ++frame)
         ASSERT_NE(world.advance_frame().status, StepReport::Status::NonFinite);
