@@ -227,6 +227,7 @@ std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstac
         members.back().push_back(std::move(cloth));
     }
     std::vector<ClothGroup> groups;
+    groups.reserve(members.size());
     for (auto& group : members)
         groups.emplace_back(scene, std::move(group), obstacles, options);
     return groups;

@@ -58,6 +58,7 @@ std::vector<ContactCloth> contact_cloths(const Scene& scene, const std::vector<S
 std::vector<ContactPartner> contact_partners(const std::vector<Obstacle>& obstacles)
 {
     std::vector<ContactPartner> partners;
+    partners.reserve(obstacles.size());
     for (const Obstacle& obstacle : obstacles)
         partners.push_back(obstacle.partner());
     return partners;

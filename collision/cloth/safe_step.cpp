@@ -24,6 +24,10 @@ constexpr int kDeflections = 4;
 constexpr int kSweeps = 3;
 constexpr double kMoreThanLeast = 1.1;
 
+/// Ways, of the largest deflection [-], below which cloth may as well be stopped: giving way, cloth at rest
+/// would creep.
+constexpr double kSlow = 0.5;
+
 /// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way
 /// then stay where they began.
 constexpr int kRounds = 16;
@@ -135,12 +139,17 @@ bool SafeStep::give_way()
                 continue;
             const NearPair& pair = this->pair(i);
             std::array<Vec3, 4> end;
-            for (int k = 0; k < 4; ++k)
+            double longest = 0.0;
+            for (int k = 0; k < 4; ++k) {
                 end[k] = base_[pair.vertex[k]] + way_[pair.vertex[k]];
+                longest = std::max(longest, way_[pair.vertex[k]].norm());
+            }
             const double kept = std::min(kMoreThanLeast * least_gap_of(pair), pair.distance);
             const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
             const double ahead = mobility_of(pair, true), behind = mobility_of(pair, false);
-            if (lacking <= 0.0 || lacking > settings_.most_deflection || ahead + behind == 0.0)
+            const bool is_small = lacking <= settings_.most_deflection;
+            const bool is_slow = longest < kSlow * settings_.most_deflection;
+            if (lacking <= 0.0 || !is_small || is_slow || ahead + behind == 0.0)
                 continue;
             any = true;
             for (int k = 0; k < 4; ++k) {

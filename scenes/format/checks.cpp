@@ -24,6 +24,7 @@ template <typename Object>
 std::vector<std::string> names_of(const std::vector<Object>& objects)
 {
     std::vector<std::string> names;
+    names.reserve(objects.size());
     for (const Object& object : objects)
         names.push_back(object.name);
     return names;

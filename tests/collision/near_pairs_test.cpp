@@ -83,6 +83,13 @@ Soup folded_sheet(Random& random)
 
 using Key = std::tuple<bool, std::array<int, 4>>;
 
+/// Some vertex moves otherwise than the others.
+bool is_moving(const Soup& soup)
+{
+    return std::any_of(soup.motion.begin(), soup.motion.end(),
+                       [&](const Vec3& m) { return m != soup.motion[0]; });
+}
+
 /// A pair at a share of its way.
 std::array<Vec3, 4> corners_at(const Soup& soup, const std::array<int, 4>& v, double share)
 {
@@ -112,9 +119,10 @@ double distance_at(const Soup& soup, bool is_edge_edge, const std::array<int, 4>
 /// Nearer than the margin at one of the times looked at, both sides straying towards each other as they go.
 bool must_be_found(const Soup& soup, bool is_edge_edge, const std::array<int, 4>& v, double margin)
 {
-    for (int k = 0; k <= 10; ++k)
-        if (distance_at(soup, is_edge_edge, v, 0.1 * k) <=
-            margin + 0.1 * k * 0.999 * slack_of(soup, is_edge_edge, v))
+    const int times = is_moving(soup) ? 5 : 0;
+    for (int k = 0; k <= times; ++k)
+        if (distance_at(soup, is_edge_edge, v, 0.2 * k) <=
+            margin + 0.2 * k * 0.999 * slack_of(soup, is_edge_edge, v))
             return true;
     return false;
 }
@@ -127,9 +135,8 @@ bool may_be_found(const Soup& soup, bool is_edge_edge, const std::array<int, 4>&
     const Vec3 difference = closest_difference(closest_weights(is_edge_edge, x), x);
     if (difference.norm() <= margin)
         return true;
-    const bool is_moving = std::any_of(soup.motion.begin(), soup.motion.end(),
-                                       [&](const Vec3& m) { return m != soup.motion[0]; });
-    return is_moving && gap_along(difference.normalized(), is_edge_edge, corners_at(soup, v, 1.0)) <= margin;
+    return is_moving(soup) &&
+           gap_along(difference.normalized(), is_edge_edge, corners_at(soup, v, 1.0)) <= margin;
 }
 
 /// All pairs that a rule takes, in no particular way.
