@@ -15,7 +15,12 @@ const std::set<std::string> kGainEnergy{"dt 1/1000 stiffness 1e+07 density 1",
 
 /// Fastest vertex [m/s] after the five seconds of a quick case. Slow creep is what the full table judges;
 /// which case still creeps changes with the last bits, and so with the processor.
-constexpr double kCreep = 0.4;
+constexpr double kCreep = 0.3;
+
+/// Cases whose cloth a leap at dt 1/10 leaves crumpled on itself, still unfolding after those five seconds,
+/// and the bound that they get instead [m/s].
+const std::set<std::string> kUnfold{"ball jumps away dt 1/10", "ball jumps in (mesh) dt 1/10"};
+constexpr double kUnfolding = 2.0;
 
 std::vector<Result> run_quick_cases(scene::SolverMethod method)
 {
@@ -40,7 +45,7 @@ TEST_P(StressBy, LeavesClothFiniteWithoutNewEnergyAndAtRest)
         if (!kGainEnergy.contains(result.name)) {
             EXPECT_LT(result.energy_ratio, 1.0 + limits.energy_gain);
         }
-        EXPECT_LT(result.final_speed, kCreep);
+        EXPECT_LT(result.final_speed, kUnfold.contains(result.name) ? kUnfolding : kCreep);
     }
 }
 
