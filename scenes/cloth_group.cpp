@@ -64,8 +64,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     std::vector<BlockDiagonalSolver::Block> blocks;
     for (size_t i = 0; i < cloths_.size(); ++i) {
         SceneCloth& cloth = cloths_[i];
-        const std::vector<double> own = cloth.vertex_masses();
-        masses.insert(masses.end(), own.begin(), own.end());
+        masses.insert(masses.end(), cloth.masses().begin(), cloth.masses().end());
         for (auto& energy : cloth.make_energies())
             energies.push_back(cloths_.size() == 1
                                    ? energy
@@ -76,11 +75,11 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
              make_global_solver(scene.solver.method, cloth.rest_shape(), {state.positions, state.triangles},
                                 cloth.source(), source_of_tables(options, state.name))});
     }
-    std::unique_ptr<GlobalSolver> solver = std::move(blocks.front().solver);
-    if (blocks.size() > 1) {
-        blocks.front().solver = std::move(solver);
+    std::unique_ptr<GlobalSolver> solver;
+    if (blocks.size() == 1)
+        solver = std::move(blocks.front().solver);
+    else
         solver = std::make_unique<BlockDiagonalSolver>(std::move(blocks));
-    }
 
     Body::Settings settings;
     settings.tolerance = scene.solver.tolerance;
@@ -220,9 +219,10 @@ std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstac
     std::vector<SceneCloth> cloths;
     for (const scene::Cloth& cloth : scene.cloths)
         cloths.emplace_back(scene, cloth, obstacles, options);
+    const bool may_touch = contact_settings(scene).cloth_with_cloth;
     std::vector<std::vector<SceneCloth>> members;
     for (SceneCloth& cloth : cloths) {
-        if (members.empty() || !contact_settings(scene).cloth_with_cloth)
+        if (members.empty() || !may_touch)
             members.emplace_back();
         members.back().push_back(std::move(cloth));
     }

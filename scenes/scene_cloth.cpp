@@ -59,20 +59,14 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
             holds_.emplace_back(scene.attachments[i], state_.positions, obstacles, place);
         }
 
-    masses_ = vertex_masses();
+    masses_ = rest_->vertex_areas();
+    for (double& mass : masses_)
+        mass *= state_.fabric.areal_density;
     air_ = std::make_unique<Aerodynamics>(
         rest_, Aerodynamics::Settings{scene.air.density, scene.air.normal, scene.air.tangential});
     StrainLimit::Settings limit;
     limit.limit = state_.fabric.strain_limit;
     strain_limit_ = std::make_unique<StrainLimit>(rest_, limit, source_);
-}
-
-std::vector<double> SceneCloth::vertex_masses() const
-{
-    std::vector<double> masses = rest_->vertex_areas();
-    for (double& mass : masses)
-        mass *= state_.fabric.areal_density;
-    return masses;
 }
 
 std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies()

@@ -27,8 +27,7 @@ public:
     const std::string& source() const { return source_; } ///< what errors call it
     const std::shared_ptr<const RestShape>& rest_shape() const { return rest_; }
 
-    /// [vertices] [kg]
-    std::vector<double> vertex_masses() const;
+    const std::vector<double>& masses() const { return masses_; } ///< [vertices] [kg]
 
     /// The terms of projective dynamics. Once: the limit on strain learns of the tension among them.
     std::vector<std::shared_ptr<Energy>> make_energies();

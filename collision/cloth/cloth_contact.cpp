@@ -52,18 +52,17 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double 
 
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                            const std::vector<ContactCloth>& cloths, View<const double> altitude)
-    : near_(triangles, positions), exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
-      safe_(near_, exempt_, settings_for(cloths, mean_edge(triangles, positions))),
-      edge_(mean_edge(triangles, positions)), deviation_(positions.size(), Vec3::Zero()),
-      motion_(positions.size())
+    : edge_(mean_edge(triangles, positions)), near_(triangles, positions),
+      exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
+      safe_(near_, exempt_, settings_for(cloths, edge_)), slack_(positions.size(), kLeastSlack * edge_),
+      deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())
 {
-    slack_.assign(positions.size(), kLeastSlack * edge_);
-    for (int c = 0; c < int(cloths.size()); ++c) {
-        cloth_.insert(cloth_.end(), cloths[c].vertex_count, c);
-        thickest_ = std::max(thickest_, cloths[c].thickness);
+    for (const ContactCloth& cloth : cloths) {
+        thickest_ = std::max(thickest_, cloth.thickness);
+        half_thickness_.insert(half_thickness_.end(), cloth.vertex_count, 0.5 * cloth.thickness);
     }
     for (int v = 0; v < positions.size(); ++v)
-        half_thickness_.push_back(0.5 * std::min(cloths[cloth_[v]].thickness, 0.5 * altitude[v]));
+        half_thickness_[v] = std::min(half_thickness_[v], 0.25 * altitude[v]);
 }
 
 void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction,

@@ -51,8 +51,6 @@ public:
 
     /// Between the middle surfaces of a pair [m].
     double thickness_of(const ContactPair& pair) const;
-    int cloth_of(int vertex) const { return cloth_[vertex]; }
-    int near_count() const { return int(pairs_.size()); }
 
 private:
     double thickness_of(const std::array<int, 4>& vertex, int first_count) const;
@@ -61,13 +59,13 @@ private:
     bool has_slid(View<const Vec3> x) const;
     double bounded_slack(double slack) const;
 
+    double edge_; ///< [m] mean
     NearPairs near_;
     ExemptPairs exempt_;
     SafeStep safe_;
-    std::vector<int> cloth_;             ///< [vertices]
     std::vector<double> half_thickness_; ///< [vertices] [m]
     std::vector<double> slack_;          ///< [vertices] see SafeStep [m]
-    double thickest_ = 0.0, edge_ = 0.0; ///< [m] largest thickness, mean edge
+    double thickest_ = 0.0;              ///< [m] of the cloths
     std::vector<NearPair> pairs_;
     View<const unsigned char> fixed_;
     std::vector<Vec3> prediction_, deviation_, motion_, expected_; ///< [vertices] [m]

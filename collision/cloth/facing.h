@@ -10,7 +10,7 @@ namespace toile {
 inline constexpr double kOffCorner = 1e-9;
 
 /// Greatest component [-] of the direction between two edges along a face beside one of them: where it is
-/// larger the face comes nearer than its edge. Above 0 so that flat sheets' edges keep their pairs.
+/// larger the face comes nearer than its edge. Above 0 for edges that stand out on one side only.
 inline constexpr double kIntoFace = 0.1;
 
 /// Sine of the slope off an edge up to which the faces beside it are flat [-]: one degree.

@@ -43,9 +43,8 @@ public:
     /// @param expected  [vertices] where they are expected to end [m]
     /// @param slack     [vertices] beside it [m]
     /// @param fixed     [vertices] 1 where nothing is deflected: held cloth, which can only be brought back
-    /// @param pairs     what NearPairs::find has found for the same, with a margin of at least `thickness`,
-    /// less
-    ///                  the exempt ones
+    /// @param pairs     what NearPairs::find has found for the same with a margin of at least `thickness`,
+    ///                  without the exempt ones
     void begin(View<const Vec3> x, View<const Vec3> expected, View<const double> slack,
                View<const unsigned char> fixed, View<const NearPair> pairs);
 
