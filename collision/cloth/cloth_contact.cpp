@@ -25,13 +25,19 @@ constexpr double kHeldAside = 0.02;
 /// Sliding of a pair that presses, of the mean edge [-], after which its normal is out of date.
 constexpr double kSlid = 0.3;
 
-double mean_edge(View<const Triangle> triangles, View<const Vec3> x)
+/// Of cloth; rigid surfaces count where there is nothing else.
+double mean_edge(View<const Triangle> triangles, View<const Vec3> x, const std::vector<int>& rigid)
 {
-    double sum = 0.0;
-    for (const Triangle& t : triangles)
+    double sum[2] = {0.0, 0.0};
+    int count[2] = {0, 0};
+    for (const Triangle& t : triangles) {
+        const int kind = !rigid.empty() && rigid[t[0]] >= 0 ? 1 : 0;
         for (int k = 0; k < 3; ++k)
-            sum += (x[t[(k + 1) % 3]] - x[t[k]]).norm();
-    return triangles.empty() ? 0.0 : sum / (3.0 * triangles.size());
+            sum[kind] += (x[t[(k + 1) % 3]] - x[t[k]]).norm();
+        count[kind] += 3;
+    }
+    const int kind = count[0] > 0 ? 0 : 1;
+    return count[kind] > 0 ? sum[kind] / count[kind] : 0.0;
 }
 
 SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths)
@@ -47,7 +53,9 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths)
 
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                            const std::vector<ContactCloth>& cloths, View<const double> altitude)
-    : near_(triangles, positions), safe_(settings_for(cloths)), edge_(mean_edge(triangles, positions)),
+    : near_(triangles, positions, rigid_bodies_of(cloths)),
+      safe_(settings_for(cloths), rigid_bodies_of(cloths)),
+      edge_(mean_edge(triangles, positions, rigid_bodies_of(cloths))),
       deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())
 {
     slack_.assign(positions.size(), kMostSlack * edge_);
@@ -55,8 +63,11 @@ ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> posi
         cloth_.insert(cloth_.end(), cloths[c].vertex_count, c);
         thickest_ = std::max(thickest_, cloths[c].thickness);
     }
-    for (int v = 0; v < positions.size(); ++v)
-        half_thickness_.push_back(0.5 * std::min(cloths[cloth_[v]].thickness, 0.5 * altitude[v]));
+    for (int v = 0; v < positions.size(); ++v) {
+        const ContactCloth& cloth = cloths[cloth_[v]];
+        half_thickness_.push_back(
+            0.5 * (cloth.is_rigid ? cloth.thickness : std::min(cloth.thickness, 0.5 * altitude[v])));
+    }
 }
 
 void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction)

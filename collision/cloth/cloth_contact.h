@@ -19,7 +19,7 @@ public:
     /// @param positions  [vertices] start positions, without crossings [m]
     /// @param cloths     whose vertices follow each other
     /// @param altitude   [vertices] shortest altitude of the triangles around [m]: no more than half of it is
-    ///                   kept, or a fine mesh would push itself apart
+    ///                   kept, or a fine mesh would push itself apart. Rigid ones can't.
     ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                  const std::vector<ContactCloth>& cloths, View<const double> altitude);
 
@@ -55,10 +55,10 @@ private:
 
     NearPairs near_;
     SafeStep safe_;
-    std::vector<int> cloth_;              ///< [vertices]
-    std::vector<double> half_thickness_;  ///< [vertices] [m]
-    std::vector<double> slack_;           ///< [vertices] see SafeStep [m]
-    double thickest_ = 0.0, edge_ = 0.0;  ///< [m] largest thickness, mean edge
+    std::vector<int> cloth_;             ///< [vertices]
+    std::vector<double> half_thickness_; ///< [vertices] [m]
+    std::vector<double> slack_;          ///< [vertices] see SafeStep [m]
+    double thickest_ = 0.0, edge_ = 0.0; ///< [m] largest thickness, mean edge
     std::vector<NearPair> pairs_;
     std::vector<Vec3> prediction_, deviation_, motion_; ///< [vertices] [m]
 };

@@ -31,9 +31,10 @@ std::array<Vec3, 4> corners_of(const std::array<int, 4>& v, View<const Vec3> val
 
 class NearPairs::Search {
 public:
-    Search(View<const Triangle> triangle_list, View<const Vec3> positions);
+    Search(View<const Triangle> triangle_list, View<const Vec3> positions, std::vector<int> rigid);
 
-    void find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin, std::vector<NearPair>& out);
+    void find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin,
+              std::vector<NearPair>& out);
 
 private:
     /// What one task found: (vertex, triangle) and (edge, edge).
@@ -55,10 +56,15 @@ private:
     {
         return {v, triangles_[t][0], triangles_[t][1], triangles_[t][2]};
     }
+    bool are_in_one_body(int a, int b) const
+    {
+        return !rigid_.empty() && rigid_[a] >= 0 && rigid_[a] == rigid_[b];
+    }
     bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const;
     NearPair make_pair(const std::array<int, 4>& v, bool is_edge_edge) const;
 
     std::vector<Triangle> triangles_;
+    std::vector<int> rigid_; ///< [vertices], or empty
     SurfaceEdges edges_;
     Candidates candidates_;
 
@@ -73,14 +79,15 @@ private:
     OrderedRecords vertex_triangle_, edge_edge_;
 };
 
-NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> positions)
-    : triangles_(triangle_list.begin(), triangle_list.end()),
+NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> positions,
+                          std::vector<int> rigid)
+    : triangles_(triangle_list.begin(), triangle_list.end()), rigid_(std::move(rigid)),
       edges_(build_surface_edges(triangle_list, positions.size())), candidates_(triangles_, edges_, positions)
 {
 }
 
-/// False only where the pair stays `margin` apart along the direction that separates it now: on a straight way
-/// that is true throughout when it is at the end.
+/// False only where the pair stays `margin` apart along the direction that separates it now: on a straight
+/// way that is true throughout when it is at the end.
 bool NearPairs::Search::may_meet(const std::array<int, 4>& v, bool is_edge_edge) const
 {
     double slack[2] = {0.0, 0.0};
@@ -104,6 +111,8 @@ bool NearPairs::Search::may_meet(const std::array<int, 4>& v, bool is_edge_edge)
 
 void NearPairs::Search::try_edges(int e, int f, Found& found) const
 {
+    if (are_in_one_body(edges_.vertex[e][0], edges_.vertex[f][0]))
+        return;
     const auto [low, high] = std::minmax(e, f);
     const std::array<int, 4> v = edge_corners(low, high);
     if (!share_vertex(v, 2) && may_meet(v, true))
@@ -112,6 +121,8 @@ void NearPairs::Search::try_edges(int e, int f, Found& found) const
 
 void NearPairs::Search::try_triangle(int p, int t, Found& found) const
 {
+    if (are_in_one_body(p, triangles_[t][0]))
+        return;
     const std::array<int, 4> v = triangle_corners(p, t);
     if (!share_vertex(v, 1) && may_meet(v, false))
         found.vertex_triangle.push_back({p, t});
@@ -130,8 +141,8 @@ NearPair NearPairs::Search::make_pair(const std::array<int, 4>& v, bool is_edge_
     return pair;
 }
 
-void NearPairs::Search::find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin,
-                             std::vector<NearPair>& out)
+void NearPairs::Search::find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack,
+                             double margin, std::vector<NearPair>& out)
 {
     x_ = x;
     motion_ = motion;
@@ -184,15 +195,16 @@ void NearPairs::Search::report(std::vector<NearPair>& out)
     });
 }
 
-NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions)
-    : search_(std::make_unique<Search>(triangles, positions))
+NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid)
+    : search_(std::make_unique<Search>(triangles, positions, std::move(rigid)))
 {
 }
 NearPairs::~NearPairs() = default;
 NearPairs::NearPairs(NearPairs&&) noexcept = default;
 NearPairs& NearPairs::operator=(NearPairs&&) noexcept = default;
 
-void NearPairs::find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin, std::vector<NearPair>& out)
+void NearPairs::find(View<const Vec3> x, View<const Vec3> motion, View<const double> slack, double margin,
+                     std::vector<NearPair>& out)
 {
     search_->find(x, motion, slack, margin, out);
 }

@@ -41,15 +41,19 @@ public:
     /// Builds edges and tree. O(n log n).
     /// @param triangles  [triangles x 3] indices into positions; any list: collapsed, non-manifold
     /// @param positions  [vertices x 3] [m] the first pose
-    NearPairs(View<const Triangle> triangles, View<const Vec3> positions);
+    /// @param rigid      [vertices] number of the rigid body, -1 for none: no pairs within one body. Empty:
+    /// no
+    ///                   such bodies
+    NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {});
     ~NearPairs();
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;
 
     /// All pairs that may come nearer than `margin` while each vertex moves straight to a place within its
-    /// slack of x + motion, and some more: a pair is left out only where the boxes around its ways stay apart,
-    /// or its corners along the direction that separates it at x. Replaces the content of out. Order: vertex-triangle by vertex, triangle; then edge-edge by edge, edge,
-    /// edges numbered as in build_surface_edges. Same bits for every thread count.
+    /// slack of x + motion, and some more: a pair is left out only where the boxes around its ways stay
+    /// apart, or its corners along the direction that separates it at x. Replaces the content of out. Order:
+    /// vertex-triangle by vertex, triangle; then edge-edge by edge, edge, edges numbered as in
+    /// build_surface_edges. Same bits for every thread count.
     /// @param x       [vertices x 3] [m]
     /// @param motion  [vertices x 3] [m] the displacement each vertex is expected to make; a common one
     ///                (free fall) costs nothing

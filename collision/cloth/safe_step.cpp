@@ -29,6 +29,13 @@ bool stays_apart(const NearPair& pair, const std::array<Vec3, 4>& x, const std::
 
 } // namespace
 
+SafeStep::SafeStep(const Settings& settings, std::vector<int> rigid)
+    : settings_(settings), rigid_(std::move(rigid))
+{
+    for (const int body : rigid_)
+        body_count_ = std::max(body_count_, body + 1);
+}
+
 void SafeStep::begin(View<const Vec3> x, View<const Vec3> motion, View<const double> slack,
                      View<const NearPair> pairs)
 {
@@ -52,8 +59,8 @@ double SafeStep::limit(View<Vec3> x)
 
     double farthest = 0.0;
     for (int v = 0; v < x.size(); ++v) {
-        if (was_shortened && share_[v] < 1.0)
-            x[v] = base_[v] + share_[v] * (x[v] - base_[v]);
+        if (was_shortened && share_[slot(v)] < 1.0)
+            x[v] = base_[v] + share_[slot(v)] * (x[v] - base_[v]);
         const double held = (x[v] - wanted[v]).norm();
         held_count_ += held > 0.0 ? 1 : 0;
         farthest = std::max(farthest, held);
@@ -64,13 +71,16 @@ double SafeStep::limit(View<Vec3> x)
 /// Of two layers that lie on each other a tenth of their distance is left; far ones may come that near too.
 double SafeStep::least_gap_of(const NearPair& pair) const
 {
-    return std::max(settings_.least_gap, settings_.least_share * std::min(pair.distance, settings_.thickness));
+    return std::max(settings_.least_gap,
+                    settings_.least_share * std::min(pair.distance, settings_.thickness));
 }
 
 bool SafeStep::keep_near_expectation(View<Vec3> x)
 {
-    bool was_far = false;
+    bool was_far = body_count_ > 0 && keep_bodies_near_expectation(x);
     for (int v = 0; v < x.size(); ++v) {
+        if (is_rigid(v))
+            continue;
         const Vec3 away = x[v] - expected_[v];
         const double distance = away.norm();
         if (distance <= slack_[v])
@@ -81,14 +91,31 @@ bool SafeStep::keep_near_expectation(View<Vec3> x)
     return was_far;
 }
 
+/// True when a body was brought back, with all of its vertices in proportion.
+bool SafeStep::keep_bodies_near_expectation(View<Vec3> x)
+{
+    std::vector<double> reach(body_count_, 1.0);
+    for (int v = 0; v < x.size(); ++v)
+        if (is_rigid(v))
+            if (const double distance = (x[v] - expected_[v]).norm(); distance > slack_[v])
+                reach[rigid_[v]] = std::min(reach[rigid_[v]], slack_[v] / distance);
+    bool was_far = false;
+    for (int v = 0; v < x.size(); ++v)
+        if (is_rigid(v) && reach[rigid_[v]] < 1.0) {
+            x[v] = expected_[v] + reach[rigid_[v]] * (x[v] - expected_[v]);
+            was_far = true;
+        }
+    return was_far;
+}
+
 /// The share of the way to x that every vertex may go. False when all may go all of it.
 bool SafeStep::find_shares(View<const Vec3> x)
 {
     std::vector<Vec3> way(x.size());
     for (int v = 0; v < x.size(); ++v)
         way[v] = x[v] - base_[v];
-    share_.assign(x.size(), 1.0);
-    is_stale_.assign(x.size(), 1);
+    share_.assign(x.size() + body_count_, 1.0);
+    is_stale_.assign(x.size() + body_count_, 1);
     pair_share_.assign(pairs_.size(), 1.0);
     bool was_shortened = false;
     for (int round = 0;; ++round) {
@@ -108,9 +135,9 @@ void SafeStep::look_at_pairs(View<const Vec3> way)
         bool is_stale = false;
         for (int k = 0; k < 4; ++k) {
             const int v = pair.vertex[k];
-            is_stale = is_stale || is_stale_[v];
+            is_stale = is_stale || is_stale_[slot(v)];
             x[k] = base_[v];
-            move[k] = share_[v] * way[v];
+            move[k] = share_[slot(v)] * way[v];
         }
         const double least = least_gap_of(pair);
         if (is_stale && !stays_apart(pair, x, move, least))
@@ -129,8 +156,9 @@ bool SafeStep::shorten(bool for_good)
             continue;
         any = true;
         for (const int v : pairs_[i].vertex) {
-            share_[v] = for_good ? 0.0 : std::min(share_[v], kTaken * pair_share_[i] * before[v]);
-            is_stale_[v] = 1;
+            const int s = slot(v);
+            share_[s] = for_good ? 0.0 : std::min(share_[s], kTaken * pair_share_[i] * before[s]);
+            is_stale_[s] = 1;
         }
     }
     return any;
