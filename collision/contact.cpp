@@ -52,11 +52,23 @@ std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<cons
 
 } // namespace
 
+std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths)
+{
+    std::vector<int> bodies;
+    int count = 0;
+    for (const ContactCloth& cloth : cloths)
+        bodies.insert(bodies.end(), cloth.vertex_count, cloth.is_rigid ? count++ : -1);
+    if (count == 0)
+        bodies.clear();
+    return bodies;
+}
+
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
                  std::vector<ContactPartner> partners, const Settings& settings)
-    : cloths_(std::move(cloths)), partners_(std::move(partners)), settings_(settings),
-      detector_(triangles, positions), carried_(positions.size()), detected_at_(positions.size()),
-      nearest_(positions.size()), altitude_(shortest_altitudes(triangles, positions))
+    : cloths_(std::move(cloths)), rigid_(rigid_bodies_of(cloths_)), partners_(std::move(partners)),
+      settings_(settings), detector_(triangles, positions), carried_(positions.size()),
+      detected_at_(positions.size()), nearest_(positions.size()),
+      altitude_(shortest_altitudes(triangles, positions))
 {
     for (int c = 0; c < int(cloths_.size()); ++c) {
         cloth_of_.insert(cloth_of_.end(), cloths_[c].vertex_count, c);

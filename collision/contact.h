@@ -20,7 +20,8 @@ struct ContactPartner {
 
 /// Contact of cloths with avatars, shapes and each other during a step: finds pairs, keeps their energy,
 /// looks again when the cloth has slid away from where they were found, and remembers friction from step to
-/// step. Cloth that starts without crossing cloth never does (SafeStep).
+/// step. Cloth that starts without crossing cloth never does (SafeStep). Rigid bodies are cloths in all of
+/// this, but for what moves vertices one by one: only the energy moves them, and SafeStep as a whole.
 class Contact : public ActiveSetEnergy {
 public:
     /// Fastest surface that cloth is carried along with [m/s]. A body that jumps further in a step has been
@@ -102,6 +103,7 @@ private:
     bool update_normal_forces(View<const Vec3> x);
     bool slid_away(View<const Vec3> x, double trust) const;
     double deepest(View<const Vec3> x) const;
+    bool is_held(int vertex) const;
     double leverage_of(const ContactPair& pair) const;
     bool push(const ContactPair& pair, const Vec3& move, View<Vec3> field) const;
     double clearance_of(const ContactPair& pair) const;
@@ -113,6 +115,7 @@ private:
 
     std::vector<ContactCloth> cloths_;
     std::vector<int> cloth_of_; ///< [vertices]
+    std::vector<int> rigid_;    ///< [vertices] see rigid_bodies_of
     double largest_gap_ = 0.0;  ///< [m] of the cloths
     std::vector<ContactPartner> partners_;
     Settings settings_;

@@ -25,13 +25,19 @@ constexpr double kMinLeverage = 0.1;
 
 } // namespace
 
+/// Vertices that no pair moves by itself.
+bool Contact::is_held(int vertex) const
+{
+    return start_.fixed[vertex] || (!rigid_.empty() && rigid_[vertex] >= 0);
+}
+
 /// Sum of squared weights of the pair's free vertices [-]: how far its cloth point goes when each of them
 /// moves by its weight.
 double Contact::leverage_of(const ContactPair& pair) const
 {
     double squares = 0.0;
     for (int k = 0; k < pair.count(); ++k)
-        if (!start_.fixed[pair.vertex[k]])
+        if (!is_held(pair.vertex[k]))
             squares += pair.weight[k] * pair.weight[k];
     return squares;
 }
@@ -44,7 +50,7 @@ bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) 
     if (leverage < kMinLeverage)
         return false;
     for (int k = 0; k < pair.count(); ++k)
-        if (!start_.fixed[pair.vertex[k]])
+        if (!is_held(pair.vertex[k]))
             field[pair.vertex[k]] += pair.weight[k] / leverage * move;
     return true;
 }
@@ -113,7 +119,7 @@ double Contact::clearance_of(const ContactPair& pair) const
     double shortest = std::numeric_limits<double>::max(), largest = 0.0;
     for (int k = 0; k < pair.count(); ++k) {
         shortest = std::min(shortest, altitude_[pair.vertex[k]]);
-        if (!start_.fixed[pair.vertex[k]])
+        if (!is_held(pair.vertex[k]))
             largest = std::max(largest, pair.weight[k]);
     }
     return largest > 0.0 ? kClearance * shortest * leverage_of(pair) / largest : 0.0;

@@ -5,12 +5,18 @@
 namespace toile {
 
 /// One of the cloths that a Contact looks after: how it keeps its distance, and what it is like to rub on.
+/// The surface of a rigid body is one too.
 struct ContactCloth {
     int vertex_count = 0;
+    bool is_rigid = false;                ///< never touches itself, and moves or is held back as a whole
     double gap = 0.002;                   ///< [m] between the cloth's middle surface and a collider
     double thickness = 0.5e-3;            ///< [m] half of it is kept to the middle surface of other cloth
     std::vector<double> partner_friction; ///< [partners] Coulomb coefficients [-]
     std::vector<double> cloth_friction;   ///< [cloths] with each of the cloths, itself included [-]
 };
+
+/// For each vertex the number of its rigid body, -1 in cloth; empty where nothing is rigid.
+/// @param cloths  whose vertices follow each other
+std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths);
 
 } // namespace toile

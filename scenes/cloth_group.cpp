@@ -36,24 +36,33 @@ TableSource source_of_tables(const WorldOptions& options, const std::string& clo
 } // namespace
 
 ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
-                       const std::vector<Obstacle>& obstacles, const WorldOptions& options)
-    : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), first_{0}
+                       std::unique_ptr<SceneSolids> solids, const std::vector<Obstacle>& obstacles,
+                       const WorldOptions& options)
+    : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), solids_(std::move(solids)), first_{0}
 {
     for (const SceneCloth& cloth : cloths_)
         first_.push_back(first_.back() + cloth.vertex_count());
     for (size_t i = 0; i < cloths_.size(); ++i)
         for (const Triangle& t : cloths_[i].state().triangles)
             triangles_.push_back(t + Triangle::Constant(first_[i]));
+    if (solids_)
+        solids_->append_triangles(first_.back(), triangles_);
     body_ = is_rival(scene.solver.method) ? make_rival(scene.solver, positions(), cloths_.front().model())
                                           : make_body(scene, options);
     contact_ = make_contact(scene, obstacles);
+    if (solids_)
+        rigid_contact_ = std::make_unique<RigidActiveSet>(*contact_, solids_->bodies(), first_.back());
     std::vector<JointProjection::Part> limits;
     for (size_t i = 0; i < cloths_.size(); ++i)
         limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
     limits_ = std::make_unique<JointProjection>(std::move(limits));
-    fixed_.assign(first_.back(), 0);
-    targets_.assign(first_.back(), Vec3::Zero());
-    acceleration_.assign(first_.back(), Vec3::Zero());
+    const size_t unknowns = body_->positions().size();
+    fixed_.assign(unknowns, 0);
+    targets_.assign(unknowns, Vec3::Zero());
+    acceleration_.assign(unknowns, Vec3::Zero());
+    if (solids_)
+        for (int i = 0; i < solids_->count(); ++i)
+            acceleration_[first_.back() + 2 * i] = scene.gravity;
 }
 
 /// Projective dynamics: every term is an energy, every cloth keeps its own solver.
@@ -66,7 +75,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
         SceneCloth& cloth = cloths_[i];
         masses.insert(masses.end(), cloth.masses().begin(), cloth.masses().end());
         for (auto& energy : cloth.make_energies())
-            energies.push_back(cloths_.size() == 1
+            energies.push_back(cloths_.size() == 1 && !solids_
                                    ? energy
                                    : std::make_shared<SlicedEnergy>(energy, first_[i], cloth.vertex_count()));
         const ClothState& state = cloth.state();
@@ -74,6 +83,13 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
             {cloth.vertex_count(),
              make_global_solver(scene.solver.method, cloth.rest_shape(), {state.positions, state.triangles},
                                 cloth.source(), source_of_tables(options, state.name))});
+    }
+    std::vector<Vec3> unknowns = positions();
+    if (solids_) {
+        const std::vector<double> own = solids_->bodies().masses();
+        masses.insert(masses.end(), own.begin(), own.end());
+        unknowns.resize(masses.size(), Vec3::Zero()); // begin_solids() fills them in
+        blocks.push_back({int(own.size()), std::make_unique<DirectSolver>()});
     }
     std::unique_ptr<GlobalSolver> solver;
     if (blocks.size() == 1)
@@ -86,8 +102,8 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.max_iterations = scene.solver.max_iterations;
     settings.outer = scene.solver.outer;
     return std::make_unique<Body>(
-        positions(), std::make_unique<System>(std::move(masses), std::move(energies), std::move(solver)),
-        settings);
+        std::move(unknowns),
+        std::make_unique<System>(std::move(masses), std::move(energies), std::move(solver)), settings);
 }
 
 std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles)
@@ -95,7 +111,8 @@ std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene, const std:
     const Contact::Settings settings = contact_settings(scene);
     if (obstacles.empty() && !settings.cloth_with_cloth)
         return nullptr;
-    return std::make_unique<Contact>(triangles_, positions(), contact_cloths(scene, cloths_, obstacles),
+    return std::make_unique<Contact>(triangles_, surfaces(),
+                                     contact_cloths(scene, cloths_, solids_.get(), obstacles),
                                      contact_partners(obstacles), settings);
 }
 
@@ -104,6 +121,15 @@ std::vector<Vec3> ClothGroup::positions() const
     std::vector<Vec3> all;
     for (const SceneCloth& cloth : cloths_)
         all.insert(all.end(), cloth.state().positions.begin(), cloth.state().positions.end());
+    return all;
+}
+
+/// positions() and then the surfaces of solids.
+std::vector<Vec3> ClothGroup::surfaces() const
+{
+    std::vector<Vec3> all = positions();
+    if (solids_)
+        all.insert(all.end(), solids_->bodies().surface().begin(), solids_->bodies().surface().end());
     return all;
 }
 
@@ -141,7 +167,10 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Obstacle>&
         cloths_[i].accelerate(dt, t_t1, part(x, i), part(v, i), part(View<Vec3>(acceleration_), i));
         cloths_[i].begin_step(part(x, i));
     }
-    StepReport report = body_->step(dt, acceleration_, fixed_, targets_, contact_.get(), limits_.get());
+    begin_solids(dt);
+    StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
+    if (report.status != StepReport::Status::NonFinite)
+        end_solids();
     take_positions();
     if (contact_) {
         report.contacts = contact_->active_count();
@@ -161,18 +190,60 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Obstacle>&
     return report;
 }
 
-/// Exactly, at the first step and then as long as there are any.
+/// Exactly, at the first step and then as long as there are any. A solid that crosses itself stays as it is.
 void ClothGroup::look_for_crossings()
 {
     const StageScope stage("scenes/find_crossings");
-    std::vector<unsigned char> crosses(first_.back(), 0);
-    const std::vector<Crossing> crossings = find_crossings(triangles_, body_->positions());
-    for (const Crossing& crossing : crossings)
+    const std::vector<Vec3> x = surfaces();
+    std::vector<unsigned char> crosses(x.size(), 0);
+    may_cross_ = false;
+    for (const Crossing& crossing : find_crossings(triangles_, x)) {
+        if (solids_ && solid_of(crossing.a) >= 0 && solid_of(crossing.a) == solid_of(crossing.b))
+            continue;
+        may_cross_ = true;
         for (const int t : {crossing.a, crossing.b})
             for (const int v : triangles_[t])
                 crosses[v] = 1;
+    }
     contact_->set_crossing(crosses);
-    may_cross_ = !crossings.empty();
+}
+
+/// The solid that a triangle of all surfaces belongs to, -1 for cloth.
+int ClothGroup::solid_of(int triangle) const
+{
+    const int v = triangles_[triangle][0] - first_.back();
+    int solid = -1;
+    while (solid + 1 < solids_->count() && solids_->bodies().first_vertex(solid + 1) <= v)
+        ++solid;
+    return solid;
+}
+
+ActiveSetEnergy* ClothGroup::active() const
+{
+    return rigid_contact_ ? static_cast<ActiveSetEnergy*>(rigid_contact_.get()) : contact_.get();
+}
+
+/// The unknowns of solids count from the pose at the start of each step.
+void ClothGroup::begin_solids(double dt)
+{
+    if (!solids_)
+        return;
+    std::vector<Vec3> q(body_->positions().begin(), body_->positions().end());
+    std::vector<Vec3> v(body_->velocities().begin(), body_->velocities().end());
+    const int first = first_.back(), count = solids_->bodies().unknown_count();
+    solids_->bodies().begin_step(dt, View<Vec3>(q).subview(first, count),
+                                 View<Vec3>(v).subview(first, count));
+    body_->set_positions(q);
+    body_->set_velocities(v);
+}
+
+void ClothGroup::end_solids()
+{
+    if (!solids_)
+        return;
+    const int first = first_.back(), count = solids_->bodies().unknown_count();
+    solids_->bodies().end_step(body_->positions().subview(first, count),
+                               body_->velocities().subview(first, count));
 }
 
 void ClothGroup::take_positions()
@@ -181,12 +252,21 @@ void ClothGroup::take_positions()
         cloths_[i].take(part(body_->positions(), i));
 }
 
-/// cloth "skirt", or cloths "skirt", "vest".
+/// cloth "skirt", or cloths "skirt", "vest" and solids "bowl".
 std::string ClothGroup::names() const
 {
-    std::string names = cloths_.size() == 1 ? "cloth" : "cloths";
-    for (size_t i = 0; i < cloths_.size(); ++i)
-        names += (i == 0 ? " \"" : ", \"") + cloths_[i].state().name + "\"";
+    const auto list = [](std::string word, int count, const auto& name_of) {
+        word += count == 1 ? "" : "s";
+        for (int i = 0; i < count; ++i)
+            word += (i == 0 ? " \"" : ", \"") + name_of(i) + "\"";
+        return word;
+    };
+    std::string names;
+    if (!cloths_.empty())
+        names = list("cloth", int(cloths_.size()), [&](int i) { return cloths_[i].state().name; });
+    if (solids_)
+        names += (names.empty() ? "" : " and ") +
+                 list("solid", solids_->count(), [&](int i) { return solids_->state(i).name; });
     return names;
 }
 
@@ -196,7 +276,9 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
     cloths_[cloth].forget();
     if (contact_)
         contact_->forget();
-    body_->set_positions(this->positions());
+    std::vector<Vec3> all(body_->positions().begin(), body_->positions().end());
+    std::copy(positions.begin(), positions.end(), all.begin() + first_[cloth]);
+    body_->set_positions(all);
     may_cross_ = true;
     rest_time_ = 0.0;
 }
@@ -226,10 +308,15 @@ std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstac
             members.emplace_back();
         members.back().push_back(std::move(cloth));
     }
+    std::unique_ptr<SceneSolids> solids;
+    if (!scene.solids.empty()) {
+        solids = std::make_unique<SceneSolids>(scene);
+        members.resize(1); // of all cloths, if there are any
+    }
     std::vector<ClothGroup> groups;
     groups.reserve(members.size());
     for (auto& group : members)
-        groups.emplace_back(scene, std::move(group), obstacles, options);
+        groups.emplace_back(scene, std::move(group), std::move(solids), obstacles, options);
     return groups;
 }
 

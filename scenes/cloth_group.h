@@ -6,19 +6,23 @@
 #include "collision/contact.h"
 #include "core/pd/joint_projection.h"
 #include "core/pd/point_masses.h"
+#include "core/pd/rigid_active_set.h"
 #include "scenes/scene_cloth.h"
+#include "scenes/scene_solids.h"
 
 namespace toile {
 
-/// Cloths that may touch each other, moved together: one minimisation per step over all of their vertices,
-/// which are numbered cloth after cloth.
+/// Cloths and solids that may touch each other, moved together: one minimisation per step over all vertices
+/// of cloth, numbered cloth after cloth, and then the unknowns of the solids (RigidBodies).
 class ClothGroup {
 public:
     /// @throws InvalidInput where the scene's method does not work on one of the cloths.
-    ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, const std::vector<Obstacle>& obstacles,
-               const WorldOptions& options);
+    /// @param solids  null: none
+    ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, std::unique_ptr<SceneSolids> solids,
+               const std::vector<Obstacle>& obstacles, const WorldOptions& options);
 
     const std::vector<SceneCloth>& cloths() const { return cloths_; }
+    const SceneSolids* solids() const { return solids_.get(); } ///< null: none
 
     /// Prepares the global solvers for a step of dt [s] that ends at time t_t1 [s].
     void prepare(double dt, double t_t1);
@@ -33,28 +37,37 @@ private:
     std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
     std::unique_ptr<Contact> make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles);
     std::vector<Vec3> positions() const;
+    std::vector<Vec3> surfaces() const;
     template <typename T>
     View<T> part(View<T> all, int cloth) const;
     void mark_fixed(double t_t1);
+    ActiveSetEnergy* active() const;
+    void begin_solids(double dt);
+    void end_solids();
     void take_positions();
     void look_for_crossings();
+    int solid_of(int triangle) const;
     std::string names() const;
     bool sleeps(double t_t1, const std::vector<Obstacle>& obstacles);
 
     scene::Sleep sleep_;
     std::vector<SceneCloth> cloths_;
-    std::vector<int> first_; ///< [cloths + 1] vertices
+    std::unique_ptr<SceneSolids> solids_; ///< null: none
+    std::vector<int> first_;              ///< [cloths + 1] vertices
     std::unique_ptr<JointProjection> limits_;
     std::unique_ptr<Contact> contact_; ///< null where there is nothing to touch
+    std::unique_ptr<RigidActiveSet>
+        rigid_contact_; ///< contact_ as the minimiser sees it; null without solids
     std::unique_ptr<PointMasses> body_;
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;
-    std::vector<Triangle> triangles_; ///< of all cloths
+    std::vector<Triangle> triangles_; ///< of all cloths and then all solids
     bool may_cross_ = true;           ///< cloth is known to cross cloth, or has been put anywhere
     double rest_time_ = 0.0;          ///< [s] since when every vertex has been slow
 };
 
-/// Sorts the cloths of a scene into groups: one of all where they may touch each other, else one each.
+/// Sorts the cloths of a scene into groups: one of all where they may touch each other, else one each. Solids
+/// are in the one of all.
 std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstacle>& obstacles,
                                     const WorldOptions& options);
 

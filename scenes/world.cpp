@@ -47,6 +47,10 @@ struct World::Parts {
         for (const ClothGroup& group : groups)
             for (const SceneCloth& member : group.cloths())
                 states[cloth++].positions = member.state().positions;
+        for (const ClothGroup& group : groups)
+            if (const SceneSolids* solids = group.solids())
+                for (int i = 0; i < solids->count(); ++i)
+                    states[cloth++].positions = solids->positions(i);
         return total;
     }
 };
@@ -64,6 +68,10 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     for (const ClothGroup& group : parts_->groups)
         for (const SceneCloth& cloth : group.cloths())
             parts_->states.push_back(cloth.state());
+    for (const ClothGroup& group : parts_->groups)
+        if (const SceneSolids* solids = group.solids())
+            for (int i = 0; i < solids->count(); ++i)
+                parts_->states.push_back(solids->state(i));
 }
 
 World::~World() = default;
@@ -105,7 +113,11 @@ StepReport World::advance_frame()
 
 int World::frame() const { return parts_->frame; }
 int World::frame_count() const { return parts_->scene.frames; }
-const std::vector<ClothState>& World::cloths() const { return parts_->states; }
+View<const ClothState> World::surfaces() const { return parts_->states; }
+View<const ClothState> World::cloths() const
+{
+    return surfaces().subview(0, int(parts_->scene.cloths.size()));
+}
 const StartReport& World::start() const { return parts_->start; }
 const Stages& World::stages() const { return parts_->stages; }
 

@@ -16,13 +16,13 @@ namespace toile {
 
 class TableStore;
 
-/// A cloth of a running scene as others see it.
+/// A cloth of a running scene as others see it, or the surface of a solid.
 struct ClothState {
     std::string name;
     std::vector<Vec3> positions; ///< [vertices] now [m]
     std::vector<Triangle> triangles;
-    ObjMesh rest; ///< start placement, rest lengths, faces and texture coordinates as stored
-    Fabric fabric;
+    ObjMesh rest;  ///< start placement, rest lengths, faces and texture coordinates as stored
+    Fabric fabric; ///< of a solid: none, and a strain limit of 0
     int turned_faces =
         0; ///< faces of the file that were wound against their neighbours; `rest` has them right
 };
@@ -40,7 +40,8 @@ struct WorldOptions {
     std::function<void(const std::string&)> warn = nullptr;
 };
 
-/// A running scene: avatars, cloths, contact and the time-step loop. The only place that knows them all.
+/// A running scene: avatars, cloths, solids, contact and the time-step loop. The only place that knows them
+/// all.
 ///
 /// Sample k belongs to time k / fps. Each sample takes Solver::substeps implicit Euler steps; stages that the
 /// scene does not need are never entered (stages() shows it).
@@ -72,7 +73,10 @@ public:
 
     int frame() const;       ///< sample that positions belong to; starts at 0
     int frame_count() const; ///< samples of the scene
-    const std::vector<ClothState>& cloths() const;
+    View<const ClothState> cloths() const;
+
+    /// All cloths and then all solids, each in the order of the scene.
+    View<const ClothState> surfaces() const;
 
     /// What the start pose had inside avatars and through cloth, and what its repair left. Cloths and bodies
     /// are numbered as in Scene::cloths and Scene::avatars.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "apps/toile/exports.h"
 #include "core/backend/error.h"
 
 namespace toile {
@@ -19,12 +20,10 @@ std::string name_of(const std::filesystem::path& cache)
 
 int cloth_of_cache(const Scene& scene, const std::filesystem::path& cache, const std::string& named)
 {
-    std::vector<std::string> names;
+    const std::vector<std::string> names = surface_names(scene);
     std::string list;
-    for (const scene::Cloth& cloth : scene.cloths) {
-        names.push_back(cloth.name);
-        list += (list.empty() ? "" : ", ") + cloth.name;
-    }
+    for (const std::string& name : names)
+        list += (list.empty() ? "" : ", ") + name;
     const auto index_of = [&](const std::string& name) {
         for (size_t i = 0; i < names.size(); ++i)
             if (names[i] == name)

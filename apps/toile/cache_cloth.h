@@ -8,9 +8,9 @@
 
 namespace toile {
 
-/// Which cloth of a scene a cache holds: the one named, else the one that the scene exports to a file of this
-/// name, else the one whose name the file carries, else the only one.
-/// @return index in Scene::cloths
+/// Which cloth or solid of a scene a cache holds: the one named, else the one that the scene exports to a
+/// file of this name, else the one whose name the file carries, else the only one.
+/// @return index in World::surfaces()
 /// @throws InvalidInput when that leaves a choice or the named cloth does not exist.
 int cloth_of_cache(const Scene& scene, const std::filesystem::path& cache, const std::string& named);
 

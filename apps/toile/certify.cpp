@@ -6,6 +6,7 @@
 #include "apps/toile/avatar_crossings.h"
 #include "apps/toile/cache_cloth.h"
 #include "apps/toile/command_line.h"
+#include "apps/toile/exports.h"
 #include "apps/toile/penetration.h"
 #include "apps/toile/strain.h"
 #include "collision/crossings/find_crossings.h"
@@ -164,10 +165,10 @@ std::optional<Certificate> certify(const Scene& scene, const std::vector<CachedC
     for (size_t i = 0; i < cloths.size(); ++i)
         certificate.cloths.push_back(
             {cloths[i].cloth->name, cloths[i].file, examiner.cloths()[i].strain_limit});
-    for (const scene::Cloth& cloth : scene.cloths)
+    for (const std::string& name : surface_names(scene))
         if (std::none_of(cloths.begin(), cloths.end(),
-                         [&](const CachedCloth& cached) { return cached.cloth->name == cloth.name; }))
-            certificate.left_out.push_back(cloth.name);
+                         [&](const CachedCloth& cached) { return cached.cloth->name == name; }))
+            certificate.left_out.push_back(name);
 
     for (int frame = 0; frame < examiner.frame_count(); ++frame) {
         certificate.add(examiner.examine(frame, frame * scene.frame_duration()));

@@ -40,7 +40,7 @@ std::vector<std::filesystem::path> caches_in(const std::filesystem::path& folder
     std::vector<int> cloths;
     std::string looked_for;
     for (const scene::Export& entry : exports_of(scene)) {
-        const int cloth = cloth_index(scene, entry.cloth);
+        const int cloth = surface_index(scene, entry.cloth);
         looked_for += (looked_for.empty() ? "" : ", ") + entry.file.string();
         if (!cache_exists(folder / entry.file) || std::count(cloths.begin(), cloths.end(), cloth) > 0)
             continue;
@@ -59,7 +59,7 @@ std::vector<CachedCloth> cloths_of(const std::vector<std::filesystem::path>& cac
 {
     std::vector<CachedCloth> cloths;
     for (const std::filesystem::path& file : caches) {
-        const ClothState* cloth = &world.cloths()[size_t(cloth_of_cache(scene, file, named))];
+        const ClothState* cloth = &world.surfaces()[cloth_of_cache(scene, file, named)];
         for (const CachedCloth& other : cloths)
             if (other.cloth == cloth)
                 throw InvalidInput(file.string() + ": is of the same cloth \"" + cloth->name + "\" as " +

@@ -7,17 +7,28 @@ std::vector<scene::Export> exports_of(const Scene& scene)
     if (!scene.exports.empty())
         return scene.exports;
     std::vector<scene::Export> exports;
-    for (const scene::Cloth& cloth : scene.cloths)
-        exports.push_back({cloth.name + ".pc2", cloth.name});
+    for (const std::string& name : surface_names(scene))
+        exports.push_back({name + ".pc2", name});
     return exports;
 }
 
-int cloth_index(const Scene& scene, const std::string& name)
+std::vector<std::string> surface_names(const Scene& scene)
 {
-    for (size_t i = 0; i < scene.cloths.size(); ++i)
-        if (scene.cloths[i].name == name)
+    std::vector<std::string> names;
+    for (const scene::Cloth& cloth : scene.cloths)
+        names.push_back(cloth.name);
+    for (const scene::Solid& solid : scene.solids)
+        names.push_back(solid.name);
+    return names;
+}
+
+int surface_index(const Scene& scene, const std::string& name)
+{
+    const std::vector<std::string> names = surface_names(scene);
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name)
             return int(i);
-    return 0; // no name: the scene has one cloth, see checks of the scene file
+    return 0; // no name: the scene has one, see checks of the scene file
 }
 
 } // namespace toile

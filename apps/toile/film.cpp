@@ -46,10 +46,8 @@ Film Film::of_scene(const Scene& scene)
     film.bodies_ = make_bodies(scene);
     film.frame_count_ = 1;
     const World world(scene);
-    for (size_t i = 0; i < scene.cloths.size(); ++i) {
-        const ClothState& cloth = world.cloths()[i];
-        film.add_cloth(scene.cloths[i], cloth.rest, cloth.triangles, cloth.positions, std::nullopt);
-    }
+    for (int i = 0; i < world.surfaces().size(); ++i)
+        film.add_surface(i, world.surfaces()[i], std::nullopt);
     return film;
 }
 
@@ -63,9 +61,9 @@ Film Film::of_caches(const Scene& scene, const std::vector<std::filesystem::path
     for (const std::filesystem::path& file : caches) {
         const PointCache cache = read_cache(file);
         const int index = cloth_of_cache(scene, file, cloth);
-        const ClothState& state = world.cloths()[index];
+        const ClothState& state = world.surfaces()[index];
         require_same_points(cache, file, state.name, int(state.positions.size()));
-        film.add_cloth(scene.cloths[index], state.rest, state.triangles, state.positions, cache);
+        film.add_surface(index, state, cache);
     }
     return film;
 }
@@ -85,6 +83,16 @@ Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches)
                        cache);
     }
     return film;
+}
+
+/// @param index  in World::surfaces()
+void Film::add_surface(int index, const ClothState& state, std::optional<PointCache> cache)
+{
+    const int solid = index - int(settings_.cloths.size());
+    add_cloth(solid < 0 ? settings_.cloths[size_t(index)] : scene::Cloth{}, state.rest, state.triangles,
+              state.positions, std::move(cache));
+    if (solid >= 0)
+        tracks_.back().mesh.material = body_material(settings_.solids[size_t(solid)].color);
 }
 
 void Film::add_cloth(const scene::Cloth& settings, const ObjMesh& rest,

@@ -10,16 +10,17 @@
 #include "export/point_cache.h"
 #include "scenes/format/scene.h"
 #include "scenes/scene_body.h"
+#include "scenes/world.h"
 
 namespace toile {
 
-/// Cloths and avatars over time, ready to be photographed: caches with or without their scene, or a scene's
-/// start.
+/// Cloths, solids and avatars over time, ready to be photographed: caches with or without their scene, or a
+/// scene's start.
 class Film {
 public:
     /// The start state of a scene.
     static Film of_scene(const Scene& scene);
-    /// Caches of a scene's cloths among its avatars; cloths without a cache are left out.
+    /// Caches of a scene's cloths and solids among its avatars; those without a cache are left out.
     /// @param cloth  which cloth a single cache is; empty: told by its name
     static Film of_caches(const Scene& scene, const std::vector<std::filesystem::path>& caches,
                           const std::string& cloth);
@@ -45,6 +46,7 @@ private:
         RenderMesh mesh;
     };
 
+    void add_surface(int index, const ClothState& state, std::optional<PointCache> cache);
     void add_cloth(const scene::Cloth& settings, const ObjMesh& rest, const std::vector<Triangle>& triangles,
                    const std::vector<Vec3>& start, std::optional<PointCache> cache);
     std::vector<Vec3> positions(const Track& track, int frame) const;

@@ -87,8 +87,8 @@ std::vector<OpenCache> open_caches(const Scene& scene, const World& world,
 {
     std::vector<OpenCache> caches;
     for (const scene::Export& entry : exports_of(scene)) {
-        const int cloth = cloth_index(scene, entry.cloth);
-        CacheLayout layout = cache_layout(world.cloths()[cloth].rest, scene.frames);
+        const int cloth = surface_index(scene, entry.cloth);
+        CacheLayout layout = cache_layout(world.surfaces()[cloth].rest, scene.frames);
         layout.fps = scene.fps;
         const std::filesystem::path file = folder / entry.file;
         caches.push_back({file, cloth, std::make_unique<AsyncCacheWriter>(make_cache_writer(file, layout))});
@@ -99,7 +99,7 @@ std::vector<OpenCache> open_caches(const Scene& scene, const World& world,
 void write_frame(const World& world, std::vector<OpenCache>& caches)
 {
     for (OpenCache& cache : caches)
-        cache.writer->write(world.frame(), world.cloths()[cache.cloth].positions);
+        cache.writer->write(world.frame(), world.surfaces()[cache.cloth].positions);
 }
 
 /// PC2 and MDD hold positions only: the mesh they play on goes beside them, in its start state, unless an OBJ
@@ -109,8 +109,8 @@ void write_start_mesh(const World& world, const OpenCache& cache, const std::vec
     const std::filesystem::path file = std::filesystem::path(cache.file).replace_extension(".obj");
     if (std::any_of(caches.begin(), caches.end(), [&](const OpenCache& other) { return other.file == file; }))
         return;
-    ObjMesh mesh = world.cloths()[cache.cloth].rest;
-    mesh.positions = world.cloths()[cache.cloth].positions;
+    ObjMesh mesh = world.surfaces()[cache.cloth].rest;
+    mesh.positions = world.surfaces()[cache.cloth].positions;
     write_obj(file, mesh);
 }
 
@@ -179,7 +179,7 @@ std::vector<CachedCloth> cloths_to_check(const World& world, const std::vector<O
 {
     std::vector<CachedCloth> cloths;
     for (const OpenCache& cache : caches) {
-        const ClothState* cloth = &world.cloths()[cache.cloth];
+        const ClothState* cloth = &world.surfaces()[cache.cloth];
         if (std::none_of(cloths.begin(), cloths.end(),
                          [&](const CachedCloth& other) { return other.cloth == cloth; }))
             cloths.push_back({cloth, cache.file});
@@ -219,7 +219,7 @@ int run_into_caches(World& world, const Scene& scene, const SimulateOptions& opt
     std::vector<OpenCache> caches = open_caches(scene, world, folder);
 
     int vertex_count = 0;
-    for (const auto& cloth : world.cloths())
+    for (const auto& cloth : world.surfaces())
         vertex_count += int(cloth.positions.size());
     RunReport report(scene, vertex_count, world.start());
     for (const OpenCache& cache : caches)

@@ -29,13 +29,19 @@ constexpr double kPassing = 0.1;
 /// Straying of a pair that presses, of the mean edge [-], after which its normal is out of date.
 constexpr double kSlid = 0.2;
 
-double mean_edge(View<const Triangle> triangles, View<const Vec3> x)
+/// Of cloth; rigid surfaces count where there is nothing else.
+double mean_edge(View<const Triangle> triangles, View<const Vec3> x, const std::vector<int>& rigid)
 {
-    double sum = 0.0;
-    for (const Triangle& t : triangles)
+    double sum[2] = {0.0, 0.0};
+    int count[2] = {0, 0};
+    for (const Triangle& t : triangles) {
+        const int kind = !rigid.empty() && rigid[t[0]] >= 0 ? 1 : 0;
         for (int k = 0; k < 3; ++k)
-            sum += (x[t[(k + 1) % 3]] - x[t[k]]).norm();
-    return triangles.empty() ? 0.0 : sum / (3.0 * triangles.size());
+            sum[kind] += (x[t[(k + 1) % 3]] - x[t[k]]).norm();
+        count[kind] += 3;
+    }
+    const int kind = count[0] > 0 ? 0 : 1;
+    return count[kind] > 0 ? sum[kind] / count[kind] : 0.0;
 }
 
 SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double edge)
@@ -52,17 +58,21 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double 
 
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                            const std::vector<ContactCloth>& cloths, View<const double> altitude)
-    : edge_(mean_edge(triangles, positions)), near_(triangles, positions),
+    : edge_(mean_edge(triangles, positions, rigid_bodies_of(cloths))),
+      near_(triangles, positions, rigid_bodies_of(cloths)),
       exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
-      safe_(near_, exempt_, settings_for(cloths, edge_)), slack_(positions.size(), kLeastSlack * edge_),
-      deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())
+      safe_(near_, exempt_, settings_for(cloths, edge_), rigid_bodies_of(cloths)),
+      slack_(positions.size(), kLeastSlack * edge_), deviation_(positions.size(), Vec3::Zero()),
+      motion_(positions.size())
 {
     for (const ContactCloth& cloth : cloths) {
         thickest_ = std::max(thickest_, cloth.thickness);
         half_thickness_.insert(half_thickness_.end(), cloth.vertex_count, 0.5 * cloth.thickness);
     }
-    for (int v = 0; v < positions.size(); ++v)
-        half_thickness_[v] = std::min(half_thickness_[v], 0.25 * altitude[v]);
+    for (int v = 0, c = 0, last = 0; c < int(cloths.size()); ++c)
+        for (last += cloths[c].vertex_count; v < last; ++v)
+            if (!cloths[c].is_rigid)
+                half_thickness_[v] = std::min(half_thickness_[v], 0.25 * altitude[v]);
 }
 
 void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction,

@@ -20,7 +20,7 @@ public:
     /// @param positions  [vertices] start positions, without crossings [m]
     /// @param cloths     whose vertices follow each other
     /// @param altitude   [vertices] shortest altitude of the triangles around [m]: no more than half of it is
-    ///                   kept, or a fine mesh would push itself apart
+    ///                   kept, or a fine mesh would push itself apart. Rigid ones can't.
     ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
                  const std::vector<ContactCloth>& cloths, View<const double> altitude);
     ClothContact(const ClothContact&) = delete;

@@ -31,7 +31,7 @@ std::array<Vec3, 4> corners_of(const std::array<int, 4>& v, View<const Vec3> val
 
 class NearPairs::Search {
 public:
-    Search(View<const Triangle> triangle_list, View<const Vec3> positions);
+    Search(View<const Triangle> triangle_list, View<const Vec3> positions, std::vector<int> rigid);
 
     void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
 
@@ -62,9 +62,14 @@ private:
         const View<const unsigned char>& around = ways_.around;
         return around.empty() || around[v[0]] || around[v[1]] || around[v[2]] || around[v[3]];
     }
+    bool are_in_one_body(int a, int b) const
+    {
+        return !rigid_.empty() && rigid_[a] >= 0 && rigid_[a] == rigid_[b];
+    }
     bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const;
 
     std::vector<Triangle> triangles_;
+    std::vector<int> rigid_; ///< [vertices], or empty
     SurfaceEdges edges_;
     Candidates candidates_;
 
@@ -78,8 +83,9 @@ private:
     OrderedRecords vertex_triangle_, edge_edge_;
 };
 
-NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> positions)
-    : triangles_(triangle_list.begin(), triangle_list.end()),
+NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> positions,
+                          std::vector<int> rigid)
+    : triangles_(triangle_list.begin(), triangle_list.end()), rigid_(std::move(rigid)),
       edges_(build_surface_edges(triangle_list, positions.size())), candidates_(triangles_, edges_, positions)
 {
 }
@@ -120,6 +126,8 @@ bool NearPairs::Search::may_meet(const std::array<int, 4>& v, bool is_edge_edge)
 
 void NearPairs::Search::try_edges(int e, int f, Found& found) const
 {
+    if (are_in_one_body(edges_.vertex[e][0], edges_.vertex[f][0]))
+        return;
     const auto [low, high] = std::minmax(e, f);
     const std::array<int, 4> v = edge_corners(low, high);
     if (is_wanted(v) && !share_vertex(v, 2) && may_meet(v, true))
@@ -128,6 +136,8 @@ void NearPairs::Search::try_edges(int e, int f, Found& found) const
 
 void NearPairs::Search::try_triangle(int p, int t, Found& found) const
 {
+    if (are_in_one_body(p, triangles_[t][0]))
+        return;
     const std::array<int, 4> v = triangle_corners(p, t);
     if (is_wanted(v) && !share_vertex(v, 1) && may_meet(v, false))
         found.vertex_triangle.push_back({p, t});
@@ -196,8 +206,8 @@ void NearPairs::Search::report(std::vector<NearPair>& out)
     });
 }
 
-NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions)
-    : search_(std::make_unique<Search>(triangles, positions))
+NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid)
+    : search_(std::make_unique<Search>(triangles, positions, std::move(rigid)))
 {
 }
 NearPairs::~NearPairs() = default;

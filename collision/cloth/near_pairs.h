@@ -53,7 +53,10 @@ public:
     /// Builds edges and tree. O(n log n).
     /// @param triangles  [triangles x 3] indices into positions; any list: collapsed, non-manifold
     /// @param positions  [vertices x 3] [m] the first pose
-    NearPairs(View<const Triangle> triangles, View<const Vec3> positions);
+    /// @param rigid      [vertices] number of the rigid body, -1 for none: no pairs within one body. Empty:
+    /// no
+    ///                   such bodies
+    NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {});
     ~NearPairs();
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;

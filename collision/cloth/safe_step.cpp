@@ -60,6 +60,7 @@ double SafeStep::limit(View<Vec3> x)
     way_.resize(x.size());
     for (int v = 0; v < x.size(); ++v)
         way_[v] = x[v] - base_[v];
+    bodies_.begin(base_, way_);
     least_share_.assign(x.size(), 1.0);
     share_.assign(x.size(), 1.0);
     is_stale_.assign(x.size(), 1);
@@ -75,10 +76,10 @@ double SafeStep::limit(View<Vec3> x)
 
     double farthest = 0.0;
     for (int v = 0; v < x.size(); ++v) {
-        if (share_[v] == 1.0 && !is_deflected_[v])
+        if (share_[bodies_.leader_of(v)] == 1.0 && !is_deflected_[v])
             continue;
         const Vec3 wanted = x[v];
-        x[v] = base_[v] + share_[v] * way_[v];
+        x[v] = base_[v] + going_[v];
         farthest = std::max(farthest, (x[v] - wanted).norm());
     }
     return farthest;
@@ -96,8 +97,9 @@ bool SafeStep::mark_strays(View<const Vec3> x)
 {
     bool any = false;
     for (int v = 0; v < x.size(); ++v) {
-        is_marked_[v] = (x[v] - expected_[v]).squaredNorm() > slack_[v] * slack_[v];
-        any = any || is_marked_[v];
+        const bool strays = (x[v] - expected_[v]).squaredNorm() > slack_[v] * slack_[v];
+        is_marked_[bodies_.leader_of(v)] |= strays;
+        any = any || strays;
     }
     return any;
 }
@@ -107,9 +109,11 @@ void SafeStep::look_around_marked()
 {
     const StageScope stage("collision/look_again");
     least_.resize(way_.size());
-    for (size_t v = 0; v < way_.size(); ++v)
-        least_[v] = least_share_[v] * way_[v];
-    near_.find(base_, {way_, least_, {}, is_marked_},
+    for (size_t v = 0; v < way_.size(); ++v) {
+        least_[v] = least_share_[bodies_.leader_of(v)] * way_[v];
+        is_marked_[v] = is_marked_[bodies_.leader_of(v)];
+    }
+    near_.find(base_, {way_, least_, bodies_.bulge(), is_marked_},
                std::max(settings_.least_gap, settings_.least_share * settings_.thickness), found_pairs_);
     std::copy_if(found_pairs_.begin(), found_pairs_.end(), std::back_inserter(more_pairs_),
                  [&](const NearPair& pair) { return !exempt_.is_exempt(pair); });
@@ -120,8 +124,10 @@ void SafeStep::look_around_marked()
 /// Ends with pair_share_ of the ways as they then are.
 void SafeStep::deflect()
 {
+    go_shares();
     look_at_pairs();
     for (int round = 0; round < kDeflections && give_way(); ++round) {
+        go_shares();
         look_around_marked();
         look_at_pairs();
     }
@@ -154,7 +160,7 @@ bool SafeStep::give_way()
             any = true;
             for (int k = 0; k < 4; ++k) {
                 const int v = pair.vertex[k];
-                if (fixed_[v])
+                if (!may_give_way(v))
                     continue;
                 const double share = k < first_count(pair.is_edge_edge) ? ahead : -behind;
                 way_[v] += share / (ahead + behind) * lacking * pair.normal;
@@ -164,24 +170,34 @@ bool SafeStep::give_way()
     return any;
 }
 
-/// 1; 0 where all of the side is held.
+/// 1; 0 where all of the side is held or rigid.
 double SafeStep::mobility_of(const NearPair& pair, bool is_first_side) const
 {
     const int split = first_count(pair.is_edge_edge);
     for (int k = is_first_side ? 0 : split; k < (is_first_side ? split : 4); ++k)
-        if (!fixed_[pair.vertex[k]])
+        if (may_give_way(pair.vertex[k]))
             return 1.0;
     return 0.0;
 }
 
-/// The share of its way that every vertex may go, from pair_share_.
+/// The share of its way that every vertex may go, from pair_share_, and the ways that come of it.
 void SafeStep::find_shares()
 {
     for (int round = 0; shorten(round >= kRounds); ++round) {
+        go_shares();
         if (has_marked_)
             look_around_marked();
         look_at_pairs();
     }
+}
+
+/// The ways at the shares.
+void SafeStep::go_shares()
+{
+    going_.resize(way_.size());
+    for (size_t v = 0; v < way_.size(); ++v)
+        going_[v] = share_[bodies_.leader_of(v)] * way_[v];
+    bodies_.go(share_, going_);
 }
 
 void SafeStep::look_at_pairs()
@@ -193,9 +209,9 @@ void SafeStep::look_at_pairs()
         bool is_stale = false;
         for (int k = 0; k < 4; ++k) {
             const int v = pair.vertex[k];
-            is_stale = is_stale || is_stale_[v];
+            is_stale = is_stale || is_stale_[bodies_.leader_of(v)];
             x[k] = base_[v];
-            move[k] = share_[v] * way_[v];
+            move[k] = going_[v];
         }
         if (!is_stale)
             return;
@@ -215,7 +231,8 @@ bool SafeStep::shorten(bool for_good)
         if (pair_share_[i] >= 1.0)
             continue;
         any = true;
-        for (const int v : pair(i).vertex) {
+        for (const int corner : pair(i).vertex) {
+            const int v = bodies_.leader_of(corner);
             share_[v] = for_good ? 0.0 : std::min(share_[v], kTaken * pair_share_[i] * before[v]);
             is_stale_[v] = 1;
             if (share_[v] >= least_share_[v])

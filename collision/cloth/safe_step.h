@@ -4,6 +4,7 @@
 
 #include "collision/cloth/exempt_pairs.h"
 #include "collision/cloth/near_pairs.h"
+#include "collision/cloth/rigid_ways.h"
 
 namespace toile {
 
@@ -16,6 +17,9 @@ namespace toile {
 ///   2. Bring back what is still in the way: safe_share() shortens the ways of all four vertices of a pair.
 ///      The share of its way that a vertex goes only ever shrinks, and where nobody moves nobody meets, so
 ///      this ends.
+///
+/// Rigid bodies never give way. They go one share of their way as a whole, turning, so that they are still
+/// rigid there (RigidWays).
 ///
 /// Pairs are looked for again only where the list of begin() may miss one: for vertices that stray beyond
 /// their slack, and around those that are brought back, whom others may now run into.
@@ -33,8 +37,10 @@ public:
 
     /// @param near    of all the vertices; used again by limit()
     /// @param exempt  pairs that may do as they like
-    SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings)
-        : near_(near), exempt_(exempt), settings_(settings)
+    /// @param rigid   [vertices] number of the rigid body, -1 for none; empty: no such bodies
+    SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings,
+             const std::vector<int>& rigid = {})
+        : near_(near), exempt_(exempt), settings_(settings), bodies_(rigid)
     {
     }
 
@@ -67,12 +73,15 @@ private:
     void deflect();
     bool give_way();
     double mobility_of(const NearPair& pair, bool is_first_side) const;
+    bool may_give_way(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
     bool shorten(bool for_good);
     void find_shares();
+    void go_shares();
 
     NearPairs& near_;
     const ExemptPairs& exempt_;
     Settings settings_;
+    RigidWays bodies_;
     View<const Vec3> expected_;
     View<const double> slack_;
     View<const unsigned char> fixed_;
@@ -83,13 +92,15 @@ private:
     std::vector<NearPair> more_pairs_;        ///< that the list of begin() does not have
     std::vector<NearPair> found_pairs_;       ///< by the last look
     std::vector<Vec3> way_;                   ///< [vertices] from base_ to where they want to go [m]
-    std::vector<double> share_;               ///< [vertices] of the way
+    std::vector<double> share_;               ///< [vertices] of the way; a body's is that of its leader
+    std::vector<Vec3> going_;                 ///< [vertices] the way that it makes [m]
     std::vector<double> pair_share_;          ///< [pairs] that one allows
-    std::vector<double> least_share_;         ///< [vertices] that the lists know of
+    std::vector<double> least_share_;         ///< [vertices, leaders] that the lists know of
     std::vector<Vec3> least_;                 ///< [vertices] the way that it makes [m]
     std::vector<unsigned char> is_deflected_; ///< [vertices] way_ is not the one that was asked for
     std::vector<unsigned char> is_marked_;    ///< [vertices] for look_around_marked()
-    std::vector<unsigned char> is_stale_; ///< [vertices] share_ has changed since its pairs were looked at
+    std::vector<unsigned char>
+        is_stale_; ///< [vertices, leaders] share_ has changed since its pairs were looked at
     bool has_marked_ = false;
 };
 

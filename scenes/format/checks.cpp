@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "garment/fabric/fabric.h"
+#include "scenes/format/field.h"
 #include "scenes/format/scene_fabric.h"
 
 namespace toile::scene_format {
@@ -160,7 +161,7 @@ void check_skirt(const Document& document, const std::string& place, const Skirt
 
 void check_cloths(const Document& document, const Scene& scene)
 {
-    if (scene.cloths.empty())
+    if (scene.cloths.empty() && scene.solids.empty())
         document.refuse("cloths", "the list is empty; add a cloth");
     check_names(document, "cloths", scene.cloths);
     for (size_t i = 0; i < scene.cloths.size(); ++i) {
@@ -176,6 +177,37 @@ void check_cloths(const Document& document, const Scene& scene)
             document.refuse(place, "resolution and subdivide make more than 5 million vertices; choose a " +
                                        std::string("coarser resolution"));
     }
+}
+
+// --- solids ---
+
+/// Their names are those of caches and of friction pairs, so no cloth or avatar has them.
+void check_solids(const Document& document, const Scene& scene)
+{
+    check_names(document, "solids", scene.solids);
+    const std::vector<std::string> cloths = names_of(scene.cloths), avatars = names_of(scene.avatars);
+    for (size_t i = 0; i < scene.solids.size(); ++i) {
+        const Solid& solid = scene.solids[i];
+        const std::string place = below("solids", i);
+        if (holds(cloths, solid.name) || holds(avatars, solid.name))
+            document.refuse(below(place, "name"),
+                            as_written(solid.name) +
+                                " is the name of a cloth or avatar; choose another name");
+        if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
+            check_extension(document, below(place, "file"), *file, {".obj", ".vtk"});
+        else if (solid.unit != LengthUnit::Metre)
+            document.refuse(below(place, "unit"), "only a file has a unit; lengths here are in metres");
+    }
+    if (scene.solids.empty())
+        return;
+    if (!scene.contact.self)
+        document.refuse(below("contact", "self"),
+                        "false leaves solids without contact; remove it or the solids");
+    const SolverMethod method = scene.solver.method;
+    if (method == SolverMethod::Xpbd || method == SolverMethod::Vbd)
+        document.refuse(below("solver", "method"),
+                        as_written(word_of(method)) +
+                            " moves cloth only; choose another method, or remove the " + "solids");
 }
 
 // --- fabrics ---
@@ -240,8 +272,9 @@ void check_attachments(const Document& document, const Scene& scene)
 
 void check_contact(const Document& document, const Scene& scene)
 {
-    const std::vector<std::string> avatars = names_of(scene.avatars);
+    const std::vector<std::string> avatars = names_of(scene.avatars), solids = names_of(scene.solids);
     std::vector<std::string> known = avatars;
+    known.insert(known.end(), solids.begin(), solids.end());
     for (const Cloth& cloth : scene.cloths)
         if (!holds(known, cloth.fabric))
             known.push_back(cloth.fabric);
@@ -252,9 +285,9 @@ void check_contact(const Document& document, const Scene& scene)
             document.refuse(place,
                             std::to_string(pairs[i].between.size()) + " names; friction is between two");
         for (const std::string& name : pairs[i].between)
-            require_known(document, place, "fabric in use or avatar", name, known);
+            require_known(document, place, "fabric in use, avatar or solid", name, known);
         if (holds(avatars, pairs[i].between[0]) && holds(avatars, pairs[i].between[1]))
-            document.refuse(place, "avatars don't rub on each other; name a fabric");
+            document.refuse(place, "avatars don't rub on each other; name a fabric or solid");
     }
 }
 
@@ -262,7 +295,9 @@ void check_contact(const Document& document, const Scene& scene)
 
 void check_exports(const Document& document, const Scene& scene)
 {
-    const std::vector<std::string> cloths = names_of(scene.cloths);
+    std::vector<std::string> cloths = names_of(scene.cloths);
+    for (const Solid& solid : scene.solids)
+        cloths.push_back(solid.name);
     std::set<std::filesystem::path> seen;
     for (size_t i = 0; i < scene.exports.size(); ++i) {
         const Export& entry = scene.exports[i];
@@ -277,10 +312,12 @@ void check_exports(const Document& document, const Scene& scene)
             document.refuse(at_file, as_written(entry.file.string()) +
                                          " is written by an earlier entry; choose " + "another file");
         if (!entry.cloth.empty())
-            require_known(document, below(place, "cloth"), "cloth", entry.cloth, cloths);
+            require_known(document, below(place, "cloth"), scene.solids.empty() ? "cloth" : "cloth or solid",
+                          entry.cloth, cloths);
         else if (cloths.size() > 1)
             document.refuse(place, "the scene has " + std::to_string(cloths.size()) +
-                                       " cloths; name the one to write with the key \"cloth\"");
+                                       (scene.solids.empty() ? " cloths" : " cloths and solids") +
+                                       "; name the one to write with the key \"cloth\"");
     }
 }
 
@@ -290,6 +327,7 @@ void require_consistent(const Document& document, const Scene& scene)
 {
     check_avatars(document, scene);
     check_cloths(document, scene);
+    check_solids(document, scene);
     check_fabrics(document, scene);
     check_attachments(document, scene);
     check_contact(document, scene);

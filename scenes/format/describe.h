@@ -157,6 +157,28 @@ void describe(V& v, Cloth& c)
 }
 
 template <typename V>
+void describe(V& v, Solid& s)
+{
+    v.required("name", s.name, "Name, for friction pairs, messages and the cache's file.");
+    v.one_of(s.shape,
+             Alternative<std::filesystem::path>{
+                 "file", "Closed surface (.obj) or tetrahedra (.vtk, legacy ASCII), filled with matter."},
+             Alternative<Sphere>{"sphere", "Sphere."}, Alternative<Capsule>{"capsule", "Capsule along Y."},
+             Alternative<Box>{"box", "Box with edges along the axes."});
+    v.field("unit", s.unit, "Length unit of the file.");
+    v.field("scale", s.scale, above_zero(1e6), "Factor on the solid's lengths.");
+    v.field("translate", s.translate, kPlace, "Moves the solid, after scale and rotate_deg.");
+    v.field("rotate_deg", s.rotate_deg, kAngle, "Turns about the fixed X axis, then Y, then Z.");
+    v.field("density", s.density, above_zero(1e5, "kg/m^3"), "Mass per volume.");
+    v.field("velocity", s.velocity, between(-100.0, 100.0, "m/s"), "Of its centre of mass, at the start.");
+    v.field("spin", s.spin, between(-1000.0, 1000.0, "rad/s"), "Angular velocity at the start.");
+    v.field("friction", s.friction, between(0.0, 10.0),
+            "Coulomb coefficient with what no friction pair names, the lesser one of two solids; absent: "
+            "contact.friction, or the avatar's.");
+    v.field("color", s.color, kColor, "Red, green, blue in pictures.");
+}
+
+template <typename V>
 void describe(V& v, Fabric& f)
 {
     // Threads pull and bend independently; both directions of a pair share one range and one sentence.
@@ -214,7 +236,7 @@ template <typename V>
 void describe(V& v, FrictionPair& p)
 {
     v.required("between", p.between,
-               "Two names of fabrics or avatars; the same name twice for a fabric on itself.");
+               "Two names of fabrics, avatars or solids; the same name twice for a fabric on itself.");
     v.required("friction", p.friction, between(0.0, 10.0), "Coulomb coefficient.");
 }
 
@@ -222,11 +244,12 @@ template <typename V>
 void describe(V& v, Contact& c)
 {
     v.field("gap", c.gap, between(0.0, 0.1, "m"),
-            "Kept between cloth and avatar, beyond half the cloth's thickness. Cloths keep their thickness.");
+            "Kept between cloth or solid and avatar, beyond half the cloth's thickness. Cloths keep their "
+            "thickness; solids half of this around them.");
     v.field("stiffness", c.stiffness, between(0.001, 1000.0),
             "Factor on the stiffness that the solver chooses.");
     v.field("friction", c.friction, between(0.0, 10.0),
-            "Coulomb coefficient of avatars that give none, and between cloths.");
+            "Coulomb coefficient of avatars and solids that give none, and between cloths.");
     v.field("friction_pairs", c.friction_pairs, "Friction of two materials in particular.");
     v.field("self", c.self, "Cloth touches itself and other cloth. Not with xpbd and vbd.");
     v.field("repair_start", c.repair_start,
@@ -271,7 +294,7 @@ template <typename V>
 void describe(V& v, Export& e)
 {
     v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd or .obj.");
-    v.field("cloth", e.cloth, "Name of the cloth; may be left out when there is only one.");
+    v.field("cloth", e.cloth, "Name of the cloth or solid; may be left out when there is only one.");
 }
 
 template <typename V>
@@ -301,12 +324,13 @@ void describe(V& v, Scene& s)
     v.field("settle", s.settle, between(0.0, 600.0, "s"),
             "Simulated before sample 0 while avatars hold their first pose.");
     v.field("avatars", s.avatars, "Bodies that cloth touches.");
-    v.required("cloths", s.cloths, "What is simulated; at least one.");
+    v.required("cloths", s.cloths, "What is simulated; at least one, or a solid.");
+    v.field("solids", s.solids, "Rigid bodies that cloth pulls, carries and meets. Need contact.self.");
     v.field("fabrics", s.fabrics, "Fabrics of the scene's own, by name.");
     v.field("attachments", s.attachments, "Vertices that are held.");
-    v.field("contact", s.contact, "Contact of cloth with avatars, itself and other cloth.");
+    v.field("contact", s.contact, "Contact of cloth and solids with avatars, themselves and each other.");
     v.field("solver", s.solver, "Accuracy and effort.");
-    v.field("export", s.exports, "Caches to write; empty: one PC2 per cloth, named after it.");
+    v.field("export", s.exports, "Caches to write; empty: one PC2 per cloth and solid, named after it.");
     v.field("render", s.render, "Preview pictures.");
 }
 

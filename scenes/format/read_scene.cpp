@@ -50,6 +50,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& source)
     scene_format::require_consistent(document, scene);
     resolve_files(document, "avatars", scene.avatars);
     resolve_files(document, "cloths", scene.cloths);
+    resolve_files(document, "solids", scene.solids);
     return scene;
 }
 

@@ -157,6 +157,25 @@ struct Fabric {
     std::optional<double> damping;       ///< [1/s]
 };
 
+// --- solids ---------------------------------------------------------------------------------------------
+
+using SolidShape = std::variant<std::filesystem::path, Sphere, Capsule, Box>;
+
+/// A rigid body that moves by itself: cloth pulls and carries it, and it meets avatars and other solids.
+struct Solid {
+    std::string name;
+    SolidShape shape;
+    LengthUnit unit = LengthUnit::Metre; ///< of the file
+    double scale = 1.0;                  ///< [-]
+    Vec3 translate = Vec3::Zero();       ///< [m]
+    Vec3 rotate_deg = Vec3::Zero();
+    double density = 1000.0;        ///< [kg/m^3]
+    Vec3 velocity = Vec3::Zero();   ///< [m/s] at the start, of its centre of mass
+    Vec3 spin = Vec3::Zero();       ///< [rad/s] at the start
+    std::optional<double> friction; ///< [-] Coulomb coefficient; absent: Contact::friction, or the avatar's
+    Vec3 color = Vec3(0.85, 0.85, 0.88); ///< [-] sRGB
+};
+
 // --- attachments ----------------------------------------------------------------------------------------
 
 /// Vertices inside an upright box, in start positions.
@@ -191,9 +210,9 @@ struct Attachment {
 
 // --- the rest -------------------------------------------------------------------------------------------
 
-/// Friction between two materials or a material and an avatar, in place of what they have by themselves.
+/// Friction between two materials, avatars or solids, in place of what they have by themselves.
 struct FrictionPair {
-    std::vector<std::string> between; ///< two names of fabrics or avatars, equal ones for a fabric on itself
+    std::vector<std::string> between; ///< two names of fabrics, avatars or solids; equal ones for a fabric
     double friction = 0.3;            ///< [-]
 };
 
@@ -239,7 +258,7 @@ struct Solver {
 /// A cache to write, its format told by the extension.
 struct Export {
     std::filesystem::path file; ///< relative to the output folder
-    std::string cloth;          ///< empty: the scene's only cloth
+    std::string cloth;          ///< or solid; empty: the scene's only one
 };
 
 struct Render {
@@ -268,11 +287,12 @@ struct Scene {
     double settle = 0.0; ///< [s] simulated before sample 0 while avatars hold their first pose
     std::vector<scene::Avatar> avatars;
     std::vector<scene::Cloth> cloths;
+    std::vector<scene::Solid> solids;
     std::map<std::string, scene::Fabric> fabrics;
     std::vector<scene::Attachment> attachments;
     scene::Contact contact;
     scene::Solver solver;
-    std::vector<scene::Export> exports; ///< empty: one PC2 per cloth, named after it
+    std::vector<scene::Export> exports; ///< empty: one PC2 per cloth and solid, named after it
     scene::Render render;
 
     /// Seconds from one sample to the next.

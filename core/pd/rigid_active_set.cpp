@@ -1,0 +1,147 @@
+#include "core/pd/rigid_active_set.h"
+
+#include <algorithm>
+
+namespace toile {
+
+namespace {
+
+/// Scale of penalties at a rigid surface, of the inertia felt there [-]. A box at rest on its four corners
+/// sinks by g dt^2 / (2 kStiffening): 17 micrometres at 1/120 s. Cloth is stiff by its membrane, this has
+/// inertia only; below 5 the skin of a millimetre is used up by a blow of 1 m/s, and SafeStep has to stop it.
+constexpr double kStiffening = 20.0;
+
+} // namespace
+
+RigidActiveSet::RigidActiveSet(ActiveSetEnergy& surface, const RigidBodies& bodies, int free_count)
+    : surface_(surface), bodies_(bodies), free_count_(free_count)
+{
+    const size_t vertices = size_t(free_count) + bodies.vertex_count();
+    start_.resize(vertices);
+    prediction_.resize(vertices);
+    diagonal_.resize(vertices);
+    fixed_.assign(vertices, 0);
+    x_.resize(vertices);
+    field_.resize(vertices);
+    blocks_.resize(size_t(free_count) + bodies.unknown_count());
+    std::copy(bodies.surface().begin(), bodies.surface().end(), x_.begin() + free_count);
+}
+
+void RigidActiveSet::to_surface(View<const Vec3> q, View<Vec3> x) const
+{
+    std::copy_n(q.begin(), free_count_, x.begin());
+    bodies_.place(unknowns(q), rigid_part(x));
+}
+
+void RigidActiveSet::take_free(View<const Vec3> x, View<Vec3> q) const
+{
+    std::copy_n(x.begin(), free_count_, q.begin());
+}
+
+/// Puts the unknowns of bodies whose surface was moved where they give it.
+void RigidActiveSet::take_moved(View<const Vec3> before, View<const Vec3> x, View<Vec3> q) const
+{
+    take_free(x, q);
+    for (int body = 0; body < bodies_.count(); ++body) {
+        const int first = free_count_ + bodies_.first_vertex(body);
+        const int count = int(bodies_.shape(body).points.size());
+        if (!std::equal(x.begin() + first, x.begin() + first + count, before.begin() + first))
+            bodies_.fit(body, x.subview(first, count), q.subview(free_count_ + 2 * body, 2));
+    }
+}
+
+void RigidActiveSet::begin_step(const StepStart& start)
+{
+    dt_ = start.dt;
+    std::copy_n(start.x.begin(), free_count_, start_.begin());
+    std::copy(bodies_.surface().begin(), bodies_.surface().end(), start_.begin() + free_count_);
+    to_surface(start.prediction, prediction_);
+    std::copy_n(start.diagonal.begin(), free_count_, diagonal_.begin());
+    std::copy_n(start.fixed.begin(), free_count_, fixed_.begin());
+    for (int v = 0; v < bodies_.vertex_count(); ++v)
+        diagonal_[free_count_ + v] = kStiffening * bodies_.inertia(v, start.dt);
+    surface_.begin_step({start_, prediction_, diagonal_, fixed_, start.dt});
+}
+
+/// Of the start guess the free points only: pushed out one by one, the vertices of a body would come apart.
+bool RigidActiveSet::make_feasible(View<Vec3> q) const
+{
+    to_surface(q, x_);
+    const bool moved = surface_.make_feasible(x_);
+    take_free(x_, q);
+    return moved;
+}
+
+double RigidActiveSet::add_gradient(View<const Vec3> q, View<Vec3> gradient) const
+{
+    to_surface(q, x_);
+    std::fill(field_.begin(), field_.end(), Vec3::Zero());
+    const double value = surface_.add_gradient(x_, field_);
+    for (int i = 0; i < free_count_; ++i)
+        gradient[i] += field_[i];
+    bodies_.linearise(unknowns(q), rigid_part(x_), tangent_);
+    bodies_.gather(tangent_, rigid_part(field_), unknowns(gradient));
+    return value;
+}
+
+bool RigidActiveSet::activate(View<const Vec3> q)
+{
+    to_surface(q, x_);
+    if (!surface_.activate(x_))
+        return false;
+    bodies_.linearise(unknowns(q), rigid_part(x_), frozen_);
+    const View<const Mat3> blocks = surface_.diagonal_blocks();
+    std::copy_n(blocks.begin(), free_count_, blocks_.begin());
+    bodies_.bound(frozen_, blocks.subview(free_count_, bodies_.vertex_count()),
+                  View<Mat3>(blocks_).subview(free_count_, bodies_.unknown_count()));
+    return true;
+}
+
+void RigidActiveSet::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
+{
+    std::copy_n(p.begin(), free_count_, x_.begin());
+    bodies_.spread(frozen_, unknowns(p), rigid_part(x_));
+    std::fill(field_.begin(), field_.end(), Vec3::Zero());
+    surface_.add_hessian_product(x_, field_);
+    for (int i = 0; i < free_count_; ++i)
+        out[i] += field_[i];
+    bodies_.gather(frozen_, rigid_part(field_), unknowns(out));
+}
+
+bool RigidActiveSet::revise(View<Vec3> q)
+{
+    to_surface(q, x_);
+    const std::vector<Vec3> before = x_;
+    const bool changed = surface_.revise(x_);
+    take_moved(before, x_, q);
+    return changed;
+}
+
+void RigidActiveSet::clear(View<Vec3> q, View<Vec3> v)
+{
+    to_surface(q, x_);
+    const View<Vec3> velocity(field_);
+    std::copy_n(v.begin(), free_count_, velocity.begin());
+    bodies_.linearise(unknowns(q), rigid_part(x_), tangent_);
+    bodies_.spread(tangent_, unknowns(v), rigid_part(velocity));
+    surface_.clear(x_, velocity);
+    take_free(x_, q);
+    take_free(velocity, v);
+}
+
+void RigidActiveSet::keep_apart(View<Vec3> q, View<Vec3> v)
+{
+    to_surface(q, x_);
+    const std::vector<Vec3> before = x_, wanted(q.begin(), q.end());
+    std::copy_n(v.begin(), free_count_, field_.begin());
+    surface_.keep_apart(x_, field_);
+    take_free(field_, v);
+    take_moved(before, x_, q);
+    for (int i = free_count_; i < q.size(); ++i)
+        v[i] += (q[i] - wanted[i]) / dt_;
+}
+
+/// After keep_apart(), whose surfaces count.
+void RigidActiveSet::end_step(View<const Vec3>) { surface_.end_step(x_); }
+
+} // namespace toile

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "core/pd/active_set_energy.h"
+#include "core/pd/rigid_bodies.h"
+
+namespace toile {
+
+/// An energy that knows surfaces only, contact above all, for a body of free points and rigid bodies: it sees
+/// the free points and then the vertices of all rigid surfaces; the minimiser sees the free points and then
+/// the unknowns of RigidBodies.
+///
+/// Gradients come back through J^T, Hessians as J^T dH J (Gauss-Newton: without the turn of the levers),
+/// bounds as RigidBodies::bound. The rigid map is applied afresh at every evaluation, so bodies stay rigid to
+/// rounding.
+class RigidActiveSet : public ActiveSetEnergy {
+public:
+    /// @param surface     sees [free_count + bodies.vertex_count()] vertices; borrowed
+    /// @param bodies      borrowed; begin_step() of its step comes before this one's
+    /// @param free_count  points before the unknowns of the bodies
+    RigidActiveSet(ActiveSetEnergy& surface, const RigidBodies& bodies, int free_count);
+
+    void begin_step(const StepStart& start) override;
+    bool make_feasible(View<Vec3> q) const override;
+    double add_gradient(View<const Vec3> q, View<Vec3> gradient) const override;
+    bool activate(View<const Vec3> q) override;
+    void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
+    View<const Mat3> diagonal_blocks() const override { return blocks_; }
+    bool revise(View<Vec3> q) override;
+    void clear(View<Vec3> q, View<Vec3> v) override;
+    void keep_apart(View<Vec3> q, View<Vec3> v) override;
+    void end_step(View<const Vec3> q) override;
+
+private:
+    void to_surface(View<const Vec3> q, View<Vec3> x) const;
+    void take_free(View<const Vec3> x, View<Vec3> q) const;
+    View<Vec3> rigid_part(View<Vec3> x) const { return x.subview(free_count_, bodies_.vertex_count()); }
+    View<Vec3> unknowns(View<Vec3> q) const { return q.subview(free_count_, bodies_.unknown_count()); }
+    View<const Vec3> unknowns(View<const Vec3> q) const
+    {
+        return q.subview(free_count_, bodies_.unknown_count());
+    }
+    void take_moved(View<const Vec3> before, View<const Vec3> x, View<Vec3> q) const;
+
+    ActiveSetEnergy& surface_;
+    const RigidBodies& bodies_;
+    int free_count_;
+    double dt_ = 0.0;
+    std::vector<Vec3> start_, prediction_; ///< [vertices]
+    std::vector<double> diagonal_;         ///< [vertices]
+    std::vector<unsigned char> fixed_;     ///< [vertices]
+    RigidBodies::Tangent frozen_;
+    std::vector<Mat3> blocks_;             ///< [free points, unknowns]
+    mutable std::vector<Vec3> x_, field_;  ///< [vertices] scratch
+    mutable RigidBodies::Tangent tangent_; ///< scratch
+};
+
+} // namespace toile
