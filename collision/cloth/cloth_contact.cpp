@@ -78,7 +78,7 @@ void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction,
 void ClothContact::look(View<const Vec3> x)
 {
     const StageScope stage("collision/near_pairs");
-    near_.find(x, {motion_, {}, slack_}, thickest_, pairs_);
+    near_.find(x, {motion_, slack_}, thickest_, pairs_);
     std::erase_if(pairs_, [&](const NearPair& pair) { return exempt_.is_exempt(pair); });
     expected_.resize(x.size());
     for (int v = 0; v < x.size(); ++v)
