@@ -8,6 +8,7 @@ namespace toile {
 /// The surface of a rigid body is one too.
 struct ContactCloth {
     int vertex_count = 0;
+    double mass = 1.0;                    ///< [kg] of all of it
     bool is_rigid = false;                ///< never touches itself, and moves or is held back as a whole
     double gap = 0.002;                   ///< [m] between the cloth's middle surface and a collider
     double thickness = 0.5e-3;            ///< [m] half of it is kept to the middle surface of other cloth

@@ -1,6 +1,7 @@
 #include "scenes/contact_setup.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "scenes/method_choice.h"
 
@@ -69,12 +70,14 @@ std::vector<ContactCloth> contact_cloths(const Scene& scene, const std::vector<S
     for (const SceneCloth& cloth : cloths) {
         ContactCloth& one = all.emplace_back();
         one.vertex_count = cloth.vertex_count();
+        one.mass = std::accumulate(cloth.masses().begin(), cloth.masses().end(), 0.0);
         one.thickness = cloth.state().fabric.thickness;
         one.gap = scene.contact.gap + 0.5 * one.thickness;
     }
     for (int i = 0; solids && i < solids->count(); ++i) {
         ContactCloth& one = all.emplace_back();
         one.vertex_count = int(solids->state(i).positions.size());
+        one.mass = solids->bodies().shape(i).mass;
         one.is_rigid = true;
         one.thickness = std::max(scene.contact.gap, kLeastSkin);
         one.gap = one.thickness;

@@ -51,19 +51,17 @@ void Candidates::set_points(View<const Vec3> x, const Ways& ways, double margin)
     // The frame that moves with the mean motion. Exactly equal motions make no pair's distance shrink.
     const View<const Vec3> motion = ways.motion;
     Vec3 mean = Vec3::Zero();
-    is_moving_ = !ways.least.empty() ||
-                 std::any_of(motion.begin(), motion.end(), [&](const Vec3& m) { return m != motion[0]; });
+    is_moving_ = std::any_of(motion.begin(), motion.end(), [&](const Vec3& m) { return m != motion[0]; });
     if (is_moving_)
         mean = parallel_sum(kCpu, motion.size(), mean, [&](int v) { return motion[v]; }) / motion.size();
 
     parallel_for(kCpu, "collision/cloth_points", x.size(), [&](int v) {
         const Vec3 from = x[v] - center;
         Vec3 low = from, high = from;
-        for (const View<const Vec3> end : {motion, ways.least})
-            if (is_moving_ && !end.empty()) {
-                low = low.cwiseMin(from + end[v] - mean);
-                high = high.cwiseMax(from + end[v] - mean);
-            }
+        if (is_moving_) {
+            low = low.cwiseMin(from + motion[v] - mean);
+            high = high.cwiseMax(from + motion[v] - mean);
+        }
         Eigen::Map<Eigen::Vector3f>(points_[v].lower.data()) = low.cast<float>();
         Eigen::Map<Eigen::Vector3f>(points_[v].upper.data()) = high.cast<float>();
         points_[v].slack = ways.slack.empty() ? 0.0f : float(ways.slack[v]);

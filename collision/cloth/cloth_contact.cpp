@@ -54,6 +54,24 @@ SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double 
     return settings;
 }
 
+/// Bodies weigh what they do against the mean vertex of cloth.
+RigidWays rigid_ways_of(const std::vector<ContactCloth>& cloths)
+{
+    double mass = 0.0;
+    int count = 0;
+    for (const ContactCloth& cloth : cloths)
+        if (!cloth.is_rigid) {
+            mass += cloth.mass;
+            count += cloth.vertex_count;
+        }
+    const double unit = count > 0 ? mass / count : 1.0;
+    std::vector<double> weights;
+    for (const ContactCloth& cloth : cloths)
+        if (cloth.is_rigid)
+            weights.push_back(cloth.mass / unit);
+    return {rigid_bodies_of(cloths), weights};
+}
+
 } // namespace
 
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
@@ -61,7 +79,7 @@ ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> posi
     : edge_(mean_edge(triangles, positions, rigid_bodies_of(cloths))),
       near_(triangles, positions, rigid_bodies_of(cloths)),
       exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
-      safe_(near_, exempt_, settings_for(cloths, edge_), rigid_bodies_of(cloths)),
+      safe_(near_, exempt_, settings_for(cloths, edge_), rigid_ways_of(cloths)),
       slack_(positions.size(), kLeastSlack * edge_), deviation_(positions.size(), Vec3::Zero()),
       motion_(positions.size())
 {
@@ -88,7 +106,7 @@ void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction,
 void ClothContact::look(View<const Vec3> x)
 {
     const StageScope stage("collision/near_pairs");
-    near_.find(x, {motion_, {}, slack_}, thickest_, pairs_);
+    near_.find(x, {motion_, slack_}, thickest_, pairs_);
     std::erase_if(pairs_, [&](const NearPair& pair) { return exempt_.is_exempt(pair); });
     expected_.resize(x.size());
     for (int v = 0; v < x.size(); ++v)

@@ -113,13 +113,11 @@ bool NearPairs::Search::may_meet(const std::array<int, 4>& v, bool is_edge_edge)
     const Vec3 n = difference / distance;
     double ahead = std::numeric_limits<double>::max(), behind = -ahead;
     for (int k = 0; k < 4; ++k) {
-        const double far = n.dot(ways_.motion[v[k]]);
-        const double near = ways_.least.empty() ? far : n.dot(ways_.least[v[k]]);
-        const double height = n.dot(x[k] - x[3]);
+        const double height = n.dot(x[k] - x[3] + ways_.motion[v[k]]);
         if (k < first)
-            ahead = std::min(ahead, height + std::min(far, near));
+            ahead = std::min(ahead, height);
         else
-            behind = std::max(behind, height + std::max(far, near));
+            behind = std::max(behind, height);
     }
     return ahead - behind <= margin;
 }

@@ -15,8 +15,8 @@ namespace {
 /// met again by rounding.
 constexpr double kTaken = 0.95;
 
-/// How much farther back than it is a vertex may fall before pairs are looked for again [-].
-constexpr double kLagMore = 1.5;
+/// How much farther than it has strayed a vertex may go on before pairs are looked for again [-].
+constexpr double kStrayMore = 0.5;
 
 /// How often the ends of ways are moved apart, in how many sweeps over the pairs each, and how much farther
 /// than they have to be [-].
@@ -29,7 +29,7 @@ constexpr double kMoreThanLeast = 1.1;
 constexpr double kSlow = 0.5;
 
 /// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way
-/// then stay where they began.
+/// then go where their zone does.
 constexpr int kRounds = 16;
 
 /// True where the direction that separates the pair at first shows that it may go all of its way.
@@ -58,16 +58,17 @@ double SafeStep::limit(View<Vec3> x)
 {
     const StageScope stage("collision/safe_step");
     way_.resize(x.size());
-    for (int v = 0; v < x.size(); ++v)
+    known_motion_.resize(x.size());
+    for (int v = 0; v < x.size(); ++v) {
         way_[v] = x[v] - base_[v];
-    bodies_.begin(base_, way_);
-    least_share_.assign(x.size(), 1.0);
-    share_.assign(x.size(), 1.0);
+        known_motion_[v] = expected_[v] - base_[v];
+    }
+    motion_ = way_;
+    known_radius_.assign(slack_.begin(), slack_.end());
     is_stale_.assign(x.size(), 1);
-    is_marked_.assign(x.size(), 0);
     is_deflected_.assign(x.size(), 0);
     more_pairs_.clear();
-    if (mark_strays(x))
+    if (mark_strays())
         look_around_marked();
     if (pair_count() == 0)
         return 0.0;
@@ -76,10 +77,10 @@ double SafeStep::limit(View<Vec3> x)
 
     double farthest = 0.0;
     for (int v = 0; v < x.size(); ++v) {
-        if (share_[bodies_.leader_of(v)] == 1.0 && !is_deflected_[v])
+        if (zones_.share(bodies_.leader_of(v)) == 1.0 && !is_deflected_[v])
             continue;
         const Vec3 wanted = x[v];
-        x[v] = base_[v] + going_[v];
+        x[v] = base_[v] + motion_[v];
         farthest = std::max(farthest, (x[v] - wanted).norm());
     }
     return farthest;
@@ -92,43 +93,42 @@ double SafeStep::least_gap_of(const NearPair& pair) const
                     settings_.least_share * std::min(pair.distance, settings_.thickness));
 }
 
-/// Marks who is not near where it was expected. False when nobody is.
-bool SafeStep::mark_strays(View<const Vec3> x)
+/// Marks whose motion is none that the lists are complete for. False when all are.
+bool SafeStep::mark_strays()
 {
+    is_marked_.assign(motion_.size(), 0);
     bool any = false;
-    for (int v = 0; v < x.size(); ++v) {
-        const bool strays = (x[v] - expected_[v]).squaredNorm() > slack_[v] * slack_[v];
-        is_marked_[bodies_.leader_of(v)] |= strays;
-        any = any || strays;
+    for (size_t v = 0; v < motion_.size(); ++v) {
+        const double radius = known_radius_[v];
+        is_marked_[v] = (motion_[v] - known_motion_[v]).squaredNorm() > radius * radius;
+        any = any || is_marked_[v];
     }
     return any;
 }
 
-/// Adds the pairs of marked vertices, for the ways as they are, of which those that lag behind may go less.
+/// Adds the pairs of marked vertices.
 void SafeStep::look_around_marked()
 {
     const StageScope stage("collision/look_again");
-    least_.resize(way_.size());
-    for (size_t v = 0; v < way_.size(); ++v) {
-        least_[v] = least_share_[bodies_.leader_of(v)] * way_[v];
-        is_marked_[v] = is_marked_[bodies_.leader_of(v)];
-    }
-    near_.find(base_, {way_, least_, bodies_.bulge(), is_marked_},
+    for (size_t v = 0; v < motion_.size(); ++v)
+        if (is_marked_[v]) {
+            known_motion_[v] = motion_[v];
+            known_radius_[v] = std::max(slack_[int(v)], kStrayMore * (motion_[v] - way_[v]).norm());
+        }
+    near_.find(base_, {known_motion_, known_radius_, is_marked_},
                std::max(settings_.least_gap, settings_.least_share * settings_.thickness), found_pairs_);
     std::copy_if(found_pairs_.begin(), found_pairs_.end(), std::back_inserter(more_pairs_),
                  [&](const NearPair& pair) { return !exempt_.is_exempt(pair); });
-    std::fill(is_marked_.begin(), is_marked_.end(), 0);
-    has_marked_ = false;
 }
 
 /// Ends with pair_share_ of the ways as they then are.
 void SafeStep::deflect()
 {
-    go_shares();
     look_at_pairs();
     for (int round = 0; round < kDeflections && give_way(); ++round) {
-        go_shares();
-        look_around_marked();
+        motion_ = way_;
+        if (mark_strays())
+            look_around_marked();
         look_at_pairs();
     }
 }
@@ -164,7 +164,7 @@ bool SafeStep::give_way()
                     continue;
                 const double share = k < first_count(pair.is_edge_edge) ? ahead : -behind;
                 way_[v] += share / (ahead + behind) * lacking * pair.normal;
-                is_deflected_[v] = is_marked_[v] = is_stale_[v] = 1;
+                is_deflected_[v] = is_stale_[v] = 1;
             }
         }
     return any;
@@ -180,24 +180,19 @@ double SafeStep::mobility_of(const NearPair& pair, bool is_first_side) const
     return 0.0;
 }
 
-/// The share of its way that every vertex may go, from pair_share_, and the ways that come of it.
+/// motion_ of all vertices, from pair_share_.
 void SafeStep::find_shares()
 {
+    zones_.reset(way_, fixed_);
+    bodies_.begin(base_, way_);
+    for (int body = 0; body < bodies_.count(); ++body)
+        zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));
     for (int round = 0; shorten(round >= kRounds); ++round) {
-        go_shares();
-        if (has_marked_)
+        follow_zones();
+        if (mark_strays())
             look_around_marked();
         look_at_pairs();
     }
-}
-
-/// The ways at the shares.
-void SafeStep::go_shares()
-{
-    going_.resize(way_.size());
-    for (size_t v = 0; v < way_.size(); ++v)
-        going_[v] = share_[bodies_.leader_of(v)] * way_[v];
-    bodies_.go(share_, going_);
 }
 
 void SafeStep::look_at_pairs()
@@ -209,9 +204,9 @@ void SafeStep::look_at_pairs()
         bool is_stale = false;
         for (int k = 0; k < 4; ++k) {
             const int v = pair.vertex[k];
-            is_stale = is_stale || is_stale_[bodies_.leader_of(v)];
+            is_stale = is_stale || is_stale_[v];
             x[k] = base_[v];
-            move[k] = going_[v];
+            move[k] = motion_[v];
         }
         if (!is_stale)
             return;
@@ -221,28 +216,40 @@ void SafeStep::look_at_pairs()
     });
 }
 
-/// Brings the vertices of pairs in each other's way back. False when there are none.
+/// Brings the vertices of pairs in each other's way together. False when there are none.
 bool SafeStep::shorten(bool for_good)
 {
-    std::fill(is_stale_.begin(), is_stale_.end(), 0);
     bool any = false;
-    const std::vector<double> before = share_;
     for (int i = 0; i < pair_count(); ++i) {
         if (pair_share_[i] >= 1.0)
             continue;
         any = true;
-        for (const int corner : pair(i).vertex) {
-            const int v = bodies_.leader_of(corner);
-            share_[v] = for_good ? 0.0 : std::min(share_[v], kTaken * pair_share_[i] * before[v]);
-            is_stale_[v] = 1;
-            if (share_[v] >= least_share_[v])
-                continue;
-            least_share_[v] = std::max(1.0 - kLagMore * (1.0 - share_[v]), 0.0);
-            is_marked_[v] = 1;
-            has_marked_ = true;
+        const double share = for_good ? 0.0 : kTaken * pair_share_[i];
+        for (const int v : pair(i).vertex) {
+            zones_.join(bodies_.leader_of(pair(i).vertex[0]), bodies_.leader_of(v));
+            zones_.bring_back(bodies_.leader_of(v), share);
         }
     }
     return any;
+}
+
+/// Of vertices whose zone has grown or who are brought back farther.
+void SafeStep::follow_zones()
+{
+    zones_.close_round();
+    const std::vector<Vec3> before = motion_;
+    for (int v = 0; v < int(motion_.size()); ++v)
+        if (!bodies_.is_rigid(v))
+            motion_[v] = zones_.motion(v);
+    for (int body = 0; body < bodies_.count(); ++body) {
+        const int leader = bodies_.leader(body);
+        const double share = zones_.share(leader);
+        const Vec3 common = zones_.common(leader);
+        if (share < 1.0)
+            bodies_.go(body, common + share * (bodies_.move(body) - common), share, motion_);
+    }
+    for (size_t v = 0; v < motion_.size(); ++v)
+        is_stale_[v] = motion_[v] != before[v];
 }
 
 } // namespace toile

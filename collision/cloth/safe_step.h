@@ -1,8 +1,10 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "collision/cloth/exempt_pairs.h"
+#include "collision/cloth/impact_zones.h"
 #include "collision/cloth/near_pairs.h"
 #include "collision/cloth/rigid_ways.h"
 
@@ -14,15 +16,15 @@ namespace toile {
 /// meet on the way. limit() then takes any pose and changes it until the straight way there is free:
 ///   1. Deflect. Both sides of a pair that would come a little nearer than its least distance give way along
 ///      its normal, a few times over: cloth in a pinch goes on moving along with what pinches it.
-///   2. Bring back what is still in the way: safe_share() shortens the ways of all four vertices of a pair.
-///      The share of its way that a vertex goes only ever shrinks, and where nobody moves nobody meets, so
-///      this ends.
+///   2. Bring back what is still in the way: the four vertices of a pair join in a zone (ImpactZones), and
+///      safe_share() shortens what their ways differ from its. Zones only grow and shares only shrink, and
+///      where all move alike nobody meets, so this ends.
 ///
-/// Rigid bodies never give way. They go one share of their way as a whole, turning, so that they are still
-/// rigid there (RigidWays).
+/// Rigid bodies never give way; in a zone they turn by less and move as a whole, rigid to rounding
+/// (RigidWays).
 ///
-/// Pairs are looked for again only where the list of begin() may miss one: for vertices that stray beyond
-/// their slack, and around those that are brought back, whom others may now run into.
+/// Pairs are looked for again only where the list of begin() may miss one: for vertices that end farther
+/// than their slack from where they were expected, whatever has taken them there.
 ///
 /// A local form of displacement bounds [Chen et al. 2025, Offset Geometric Contact]: theirs are spheres,
 /// which stop two layers that move along together; here pairs are asked.
@@ -37,10 +39,8 @@ public:
 
     /// @param near    of all the vertices; used again by limit()
     /// @param exempt  pairs that may do as they like
-    /// @param rigid   [vertices] number of the rigid body, -1 for none; empty: no such bodies
-    SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings,
-             const std::vector<int>& rigid = {})
-        : near_(near), exempt_(exempt), settings_(settings), bodies_(rigid)
+    SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings, RigidWays bodies = {})
+        : near_(near), exempt_(exempt), settings_(settings), bodies_(std::move(bodies))
     {
     }
 
@@ -62,7 +62,7 @@ public:
 
 private:
     double least_gap_of(const NearPair& pair) const;
-    bool mark_strays(View<const Vec3> x);
+    bool mark_strays();
     void look_around_marked();
     const NearPair& pair(int i) const
     {
@@ -76,7 +76,7 @@ private:
     bool may_give_way(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
     bool shorten(bool for_good);
     void find_shares();
-    void go_shares();
+    void follow_zones();
 
     NearPairs& near_;
     const ExemptPairs& exempt_;
@@ -92,16 +92,14 @@ private:
     std::vector<NearPair> more_pairs_;        ///< that the list of begin() does not have
     std::vector<NearPair> found_pairs_;       ///< by the last look
     std::vector<Vec3> way_;                   ///< [vertices] from base_ to where they want to go [m]
-    std::vector<double> share_;               ///< [vertices] of the way; a body's is that of its leader
-    std::vector<Vec3> going_;                 ///< [vertices] the way that it makes [m]
+    std::vector<Vec3> motion_;                ///< [vertices] from base_ to where they may go [m]
+    std::vector<Vec3> known_motion_;          ///< [vertices] that the lists are complete for [m]
+    std::vector<double> known_radius_;        ///< [vertices] around it [m]
     std::vector<double> pair_share_;          ///< [pairs] that one allows
-    std::vector<double> least_share_;         ///< [vertices, leaders] that the lists know of
-    std::vector<Vec3> least_;                 ///< [vertices] the way that it makes [m]
     std::vector<unsigned char> is_deflected_; ///< [vertices] way_ is not the one that was asked for
     std::vector<unsigned char> is_marked_;    ///< [vertices] for look_around_marked()
-    std::vector<unsigned char>
-        is_stale_; ///< [vertices, leaders] share_ has changed since its pairs were looked at
-    bool has_marked_ = false;
+    std::vector<unsigned char> is_stale_; ///< [vertices] motion_ has changed since its pairs were looked at
+    ImpactZones zones_;
 };
 
 } // namespace toile

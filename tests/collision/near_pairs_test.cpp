@@ -23,7 +23,7 @@ struct Soup {
     std::vector<Vec3> motion;
     std::vector<double> slack;
 
-    Ways ways() const { return {motion, {}, slack}; }
+    Ways ways() const { return {motion, slack}; }
     void stand_still()
     {
         motion.assign(x.size(), Vec3::Zero());

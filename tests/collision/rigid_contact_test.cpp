@@ -32,7 +32,7 @@ struct Layers {
     {
         const std::vector<double> slacks(x.size(), slack);
         std::vector<NearPair> found;
-        NearPairs(triangles, x, bodies).find(x, {motion, {}, slacks}, 0.001, found);
+        NearPairs(triangles, x, bodies).find(x, {motion, slacks}, 0.001, found);
         return found;
     }
 
@@ -41,7 +41,7 @@ struct Layers {
     {
         NearPairs near(triangles, x, rigid);
         const ExemptPairs exempt(x, std::vector<double>(x.size(), 1.0), 2e-6);
-        SafeStep safe(near, exempt, {}, rigid);
+        SafeStep safe(near, exempt, {}, RigidWays(rigid, {1000.0, 1000.0}));
         const std::vector<double> slack(x.size(), 1e-4);
         const std::vector<unsigned char> fixed(x.size(), 0);
         safe.begin(x, x, slack, fixed, {});

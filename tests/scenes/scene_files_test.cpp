@@ -99,8 +99,7 @@ TEST(SceneFiles, ReadsTheScenesOfRealData)
 {
     if (!std::filesystem::is_directory(TOILE_DATA_DIR))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no data";
-    EXPECT_EQ(read_all(kSource / "scenes/data"), 6);
-    EXPECT_EQ(read_all(kSource / "scenes/contact"), 1);
+    EXPECT_EQ(read_all(kSource / "scenes/data"), 7);
 }
 
 TEST(SceneFiles, TheRoundTableIsClosedAndStandsOnTheFloor)

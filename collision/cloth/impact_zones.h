@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Vertices in each other's way, joined into zones that go on together. A vertex goes where its zone goes,
+/// plus a share of what its own way differs from that; at share 0 a zone keeps its shape, and momentum
+/// (counting vertices of cloth alike) is kept at any share that all have in common. What moves as a whole, a
+/// rigid body, is one vertex here, its first, with a weight.
+/// [Provot 1997, Collision and self-collision handling in cloth model dedicated to design garments: impact
+/// zones]. Deviation: theirs are rigid at once; here by as much as is needed.
+class ImpactZones {
+public:
+    /// Every vertex by itself, with all of its way.
+    /// @param ways  [vertices] [m]; borrowed
+    /// @param held  [vertices] 1 where the way is prescribed: a zone goes where its held vertices do;
+    /// borrowed
+    void reset(View<const Vec3> ways, View<const unsigned char> held);
+
+    /// @param way     of all of a body whose first vertex is v [m]
+    /// @param weight  against that of a vertex of cloth [-]
+    void set_body(int v, const Vec3& way, double weight) { sum_[v] = {weight * way, weight, false}; }
+
+    /// Makes the zones of two vertices one.
+    void join(int a, int b);
+
+    /// After close_round() v goes at most this factor of the share that it goes now.
+    void bring_back(int v, double factor) { next_share_[v] = std::min(next_share_[v], factor * share_[v]); }
+    void close_round() { share_ = next_share_; }
+
+    double share(int v) const { return share_[v]; } ///< [-]
+
+    Vec3 common(int v); ///< where the zone of v goes [m]
+    Vec3 motion(int v); ///< of v, a vertex of cloth [m]
+
+private:
+    /// Weighted sum of the ways of a zone: of its held vertices, where it has any, else of all.
+    struct Sum {
+        Vec3 way;
+        double weight;
+        bool is_held;
+    };
+
+    int zone(int v);
+
+    View<const Vec3> ways_;
+    View<const unsigned char> held_;
+    std::vector<double> share_, next_share_; ///< [vertices]
+    std::vector<int> parent_;                ///< [vertices] a forest; roots name zones
+    std::vector<Sum> sum_;                   ///< [vertices] of roots
+};
+
+} // namespace toile
