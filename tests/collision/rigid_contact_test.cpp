@@ -127,5 +127,20 @@ TEST(RigidContact, ClothGivesWayToABody)
     EXPECT_TRUE(find_crossings(layers.triangles, x).empty());
 }
 
+/// A body and a vertex of cloth in one zone go where their momentum takes them.
+TEST(RigidContact, ZonesWeighABodyByItsMass)
+{
+    const std::vector<Vec3> ways{Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)};
+    const std::vector<unsigned char> held(3, 0);
+    ImpactZones zones;
+    zones.reset(ways, held);
+    zones.set_body(1, Vec3(0, 0, 0.5), 3.0); // of vertices 1 and 2
+    zones.join(0, 1);
+    zones.bring_back(0, 0.0);
+    zones.close_round();
+    EXPECT_LT((zones.common(1) - Vec3(0.25, 0.0, 0.375)).norm(), 1e-15);
+    EXPECT_EQ(zones.motion(0), zones.common(1));
+}
+
 } // namespace
 } // namespace toile
