@@ -112,7 +112,7 @@ struct OneStep {
         settings.outer = outer;
         settings.tolerance = 1e-12;
         settings.max_iterations = 20000;
-        settings.linear = {1e-10, 500};
+        settings.contact_solve.pcg = {1e-10, 500};
         Body body(x, std::make_unique<System>(masses, energies), settings);
         body.set_velocities(v);
         const StepReport report = body.step(dt, gravity, fixed, x, active, nullptr);
@@ -136,8 +136,7 @@ struct OneStep {
         System system(masses, energies);
         system.prepare(dt, fixed);
         const std::vector<Vec3> prediction = predicted();
-        StepObjective objective(system, {x, prediction, system.diagonal(), system.fixed(), dt}, nullptr,
-                                Pcg::Settings{});
+        StepObjective objective(system, {x, prediction, system.diagonal(), system.fixed(), dt}, nullptr);
         std::vector<Vec3> solution = prediction;
         NewtonDirect newton;
         const OuterLoop::Outcome outcome = newton.minimise(objective, solution, {1e-11, 100});

@@ -47,6 +47,7 @@ public:
         energy_.add_hessian_product(p, out);
     }
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
+    void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     bool revise(View<Vec3>) override { return false; }
     void clear(View<Vec3>, View<Vec3>) override {}
     void keep_apart(View<Vec3>, View<Vec3>) override {}
