@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "collision/contact_energy.h"
@@ -33,6 +34,12 @@ public:
             terms[v].anchor = start[v];
         }
         energy_.set_terms(std::move(terms), int(start.size()));
+    }
+
+    /// Any other terms.
+    TouchingPlane(std::vector<ContactTerm> terms, int vertex_count)
+    {
+        energy_.set_terms(std::move(terms), vertex_count);
     }
 
     void begin_step(const StepStart&) override {}
