@@ -12,6 +12,7 @@
 #include "core/pd/lbfgs.h"
 #include "core/pd/newton_direct.h"
 #include "core/pd/newton_pcg.h"
+#include "core/pd/step_objective.h"
 
 namespace toile::solvers {
 namespace {

@@ -140,10 +140,9 @@ TEST(ClothContact, IsInvertedAsTheSceneSays)
 {
     const std::string cloths = R"("cloths": [)" + sheet("low", 0.1, "[0, 0.002, 0]") + "," +
                                sheet("high", 0.1, "[0.003, 0.003, 0.002]") + "]}";
-    for (const auto& [word, stage] : {std::pair("exact", "pd/contact_factor"),
-                                      std::pair("sherman-morrison", "pd/nested_contacts"),
-                                      std::pair("chebyshev", "pd/nested_chebyshev"),
-                                      std::pair("paper", "pd/paper_projection")}) {
+    for (const auto& [word, stage] :
+         {std::pair("exact", "pd/contact_factor"), std::pair("sherman-morrison", "pd/nested_contacts"),
+          std::pair("chebyshev", "pd/nested_chebyshev"), std::pair("paper", "pd/paper_projection")}) {
         World world = world_of(R"({"toile": 1, "frames": 3, )" + kFloor +
                                R"(, "solver": {"contact_preconditioner": ")" + word + R"("}, )" + cloths);
         (void)world.advance_frame();

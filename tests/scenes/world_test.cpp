@@ -110,10 +110,9 @@ TEST(World, SkipsWhatASceneDoesNotNeed)
     while (hanging.frame() < 4)
         hanging.advance_frame();
     EXPECT_GT(hanging.stages().calls("pd/minimise"), 0);
-    for (const char* stage :
-         {"collision/detect", "collision/refit", "pd/pcg", "pd/nested_update", "pd/nested", "pd/contact_blocks",
-          "contact/evaluate", "garment/bending",
-          "garment/springs", "garment/aerodynamics", "avatars/advance", "avatars/skin"})
+    for (const char* stage : {"collision/detect", "collision/refit", "pd/pcg", "pd/nested_update",
+                              "pd/nested", "pd/contact_blocks", "contact/evaluate", "garment/bending",
+                              "garment/springs", "garment/aerodynamics", "avatars/advance", "avatars/skin"})
         EXPECT_EQ(hanging.stages().calls(stage), 0) << stage;
     EXPECT_EQ(hanging.stages().calls("linear/analyse"), 1);
     EXPECT_EQ(hanging.stages().calls("linear/factor"), 1);
