@@ -55,6 +55,7 @@ public:
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
+    void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     bool revise(View<Vec3> x) override;
     void clear(View<Vec3> x, View<Vec3> v) override;
     void resolve(View<Vec3> x, View<Vec3> v) override;

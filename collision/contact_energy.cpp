@@ -161,4 +161,10 @@ void ContactEnergy::add_hessian_product(View<const Vec3> p, View<Vec3> out) cons
     gather(active_touches_, out, [&](int i) -> const Vec3& { return term_force_[i]; });
 }
 
+void ContactEnergy::append_frozen_terms(std::vector<FrozenTerm>& terms) const
+{
+    for (const int i : active_)
+        terms.push_back({terms_[i].pair.vertex, terms_[i].pair.weight, frozen_[i]});
+}
+
 } // namespace toile

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "collision/contact_pair.h"
-#include "core/backend/types.h"
+#include "core/pd/frozen_hessian.h"
 
 namespace toile {
 
@@ -44,6 +44,7 @@ public:
     /// Freezes the Hessian blocks at x. False when no term acts.
     bool activate(View<const Vec3> x);
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const;
+    void append_frozen_terms(std::vector<FrozenTerm>& terms) const;
 
     /// Per vertex sum_p |b_k| (sum_j |b_j|) A_p: bounds the frozen Hessian (Cauchy-Schwarz).
     View<const Mat3> diagonal_blocks() const { return blocks_; }

@@ -101,6 +101,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.tolerance = scene.solver.tolerance;
     settings.max_iterations = scene.solver.max_iterations;
     settings.outer = scene.solver.outer;
+    settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
     return std::make_unique<Body>(
         std::move(unknowns),
         std::make_unique<System>(std::move(masses), std::move(energies), std::move(solver)), settings);

@@ -24,6 +24,7 @@ Json settings_of(const Scene& scene)
             {"max_iterations", solver.max_iterations},
             {"method", scene_format::word_of(solver.method)},
             {"outer", scene_format::word_of(solver.outer)},
+            {"contact_preconditioner", scene_format::word_of(solver.contact_preconditioner)},
             {"sleep", solver.sleep.enabled},
             {"threads", solver.threads},
             {"contact_gap_m", scene.contact.gap},

@@ -8,6 +8,7 @@
 #include "core/pd/lbfgs.h"
 #include "core/pd/newton_direct.h"
 #include "core/pd/newton_pcg.h"
+#include "core/pd/step_objective.h"
 #include "garment/pattern/shapes.h"
 
 namespace toile::solvers {
@@ -149,7 +150,7 @@ void predict(const Problem& problem, SampledStep& step)
 void advance(const Problem& problem, const System& system, SampledStep& step)
 {
     predict(problem, step);
-    StepObjective objective(system, step_start(problem, system, step), nullptr, Pcg::Settings{});
+    StepObjective objective(system, step_start(problem, system, step), nullptr);
     step.minimiser = step.prediction;
     (void)Lbfgs().minimise(objective, step.minimiser, kBetween);
     step.energy = NewtonPcg().minimise(objective, step.minimiser, kBetweenFinish).value;
@@ -160,7 +161,7 @@ void advance(const Problem& problem, const System& system, SampledStep& step)
 void converge(const Problem& problem, const System& system, SampledStep& step)
 {
     predict(problem, step);
-    StepObjective objective(system, step_start(problem, system, step), nullptr, Pcg::Settings{});
+    StepObjective objective(system, step_start(problem, system, step), nullptr);
     step.minimiser = step.prediction;
     step.is_converged = false;
     step.start_energy = Lbfgs().minimise(objective, step.minimiser, {0.0, 0}).value;
@@ -216,7 +217,7 @@ StepStart step_start(const Problem& problem, const System& system, const Sampled
 double objective(const Problem& problem, const System& system, const SampledStep& step,
                  const std::vector<Vec3>& x)
 {
-    StepObjective objective(system, step_start(problem, system, step), nullptr, Pcg::Settings{});
+    StepObjective objective(system, step_start(problem, system, step), nullptr);
     std::vector<Vec3> gradient(x.size());
     return objective.evaluate(x, gradient);
 }

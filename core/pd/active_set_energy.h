@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/backend/types.h"
+#include "core/pd/frozen_hessian.h"
 
 namespace toile {
 
@@ -15,10 +15,8 @@ struct StepStart {
 
 /// A convex energy that acts on changing places, contact above all. It stays out of H; while it is active the
 /// solver inverts H + dH by preconditioned CG instead of H directly.
-class ActiveSetEnergy {
+class ActiveSetEnergy : public FrozenHessian {
 public:
-    virtual ~ActiveSetEnergy() = default;
-
     /// Finds the candidates of this step.
     virtual void begin_step(const StepStart& start) = 0;
 
@@ -31,12 +29,6 @@ public:
 
     /// Freezes the terms active at x into dH. False when none is: the solver then skips PCG.
     virtual bool activate(View<const Vec3> x) = 0;
-
-    /// out += dH p for the frozen terms.
-    virtual void add_hessian_product(View<const Vec3> p, View<Vec3> out) const = 0;
-
-    /// Per vertex a 3x3 bound on dH: dH <= blockdiag(blocks), zero where nothing is active. [vertices]
-    virtual View<const Mat3> diagonal_blocks() const = 0;
 
     /// After every minimisation: refreshes lagged quantities (friction limits) and looks again where x left
     /// the neighbourhood that the candidates were made for. True when the energy changed enough to be

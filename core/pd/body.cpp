@@ -108,7 +108,7 @@ OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& object
 
 void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
 {
-    StepObjective objective(*system_, start_of(dt), active, settings_.linear);
+    StepObjective objective(*system_, start_of(dt), active, settings_.contact_solve);
     const OuterLoop::Settings settings{tolerance(), settings_.max_iterations};
     for (int round = 0; round < settings_.max_rounds; ++round) {
         const StageScope stage("pd/minimise");

@@ -5,7 +5,7 @@
 
 #include "core/pd/make_outer_loop.h"
 #include "core/pd/point_masses.h"
-#include "core/pd/system.h"
+#include "core/pd/step_objective.h"
 
 namespace toile {
 
@@ -20,7 +20,7 @@ public:
         int max_rounds = 3;      ///< minimisations per step, when contact asks for another
         int history = 5;         ///< pairs of L-BFGS, moves of Anderson acceleration
         OuterMethod outer = OuterMethod::Lbfgs;
-        Pcg::Settings linear; ///< inner PCG while contacts are active
+        NestedPcg::Settings contact_solve; ///< while contacts are active
     };
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);

@@ -1,14 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/linear/direct_solver.h"
-#include "core/linear/pcg.h"
-#include "core/pd/active_set_energy.h"
-#include "core/pd/energy.h"
-#include "core/pd/step_hessian.h"
+#include "core/pd/curvature.h"
 
 namespace toile {
 
@@ -57,38 +53,6 @@ private:
     std::unique_ptr<GlobalSolver> solver_;
     mutable std::unique_ptr<Curvature> curvature_;
     double dt_ = 0.0;
-};
-
-/// Objective of one step: inertia, the system's energies, and an energy with an active set.
-class StepObjective : public Objective {
-public:
-    /// @param start   borrowed fields
-    /// @param active  may be null: then the inverse is one direct solve and PCG never runs
-    StepObjective(const System& system, const StepStart& start, ActiveSetEnergy* active,
-                  const Pcg::Settings& linear);
-
-    double evaluate(View<const Vec3> x, View<Vec3> gradient) override;
-    void precondition(View<const Vec3> g, View<Vec3> z) override;
-    void precondition_linearly(View<const Vec3> g, View<Vec3> z) override { system_.solver().solve(g, z); }
-    void accept(View<const Vec3> x) override;
-    Hessian* hessian() override;
-    bool is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const override;
-
-    int linear_iterations() const { return linear_iterations_; }
-
-private:
-    void solve_with_active_set(View<const Vec3> g, View<Vec3> z);
-
-    const System& system_;
-    StepStart start_;
-    ActiveSetEnergy* active_;
-    Pcg::Settings linear_;
-    Pcg pcg_;
-    bool has_active_set_ = false;
-    int linear_iterations_ = 0;
-    std::optional<StepHessian> hessian_;
-    std::vector<Mat3> E_; ///< [vertices] (D + dH)^-1, blocks
-    std::vector<Vec3> scratch_;
 };
 
 } // namespace toile

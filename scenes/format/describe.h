@@ -284,6 +284,11 @@ void describe(V& v, Solver& s)
         "outer", s.outer,
         "How each step is minimised: by L-BFGS, or by a method to compare with. An iteration of newton-pcg "
         "costs many of the others'; local-global is slow and stops early.");
+    v.field(
+        "contact_preconditioner", s.contact_preconditioner,
+        "How conjugate gradients know contact while it presses: by a bound for each vertex (block), exactly, "
+        "contact by contact (sherman-morrison) or by Chebyshev steps. The paper's does not converge: it is "
+        "there to compare with.");
     v.field("sleep", s.sleep, "When resting cloth is skipped.");
     v.field("threads", s.threads, between(0, 1024),
             "Threads to use; 0: all. The result does not depend on it, but where auto changes from direct to "

@@ -95,6 +95,16 @@ struct Words<OuterMethod> {
          {"newton-pcg", OuterMethod::NewtonPcg}}};
 };
 
+template <>
+struct Words<ContactPreconditioner> {
+    static constexpr std::array<std::pair<const char*, ContactPreconditioner>, 5> kAll{
+        {{"block", ContactPreconditioner::Block},
+         {"exact", ContactPreconditioner::Exact},
+         {"sherman-morrison", ContactPreconditioner::ShermanMorrison},
+         {"chebyshev", ContactPreconditioner::Chebyshev},
+         {"paper", ContactPreconditioner::Paper}}};
+};
+
 /// All words of an enumeration, in the order of their documentation.
 template <typename E>
 std::vector<std::string> words_of()

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/backend/types.h"
+#include "core/pd/nested/contact_preconditioner.h"
 #include "core/pd/outer_method.h"
 
 /// A scene as its JSON file says it: plain values, checked on reading, nothing loaded yet.
@@ -251,6 +252,7 @@ struct Solver {
     int max_iterations = 30; ///< outer iterations per minimisation; contact may ask for three a step
     SolverMethod method = SolverMethod::Auto;
     OuterMethod outer = OuterMethod::Lbfgs;
+    ContactPreconditioner contact_preconditioner = ContactPreconditioner::Block;
     Sleep sleep;
     int threads = 0; ///< 0: all of the machine's
 };

@@ -12,6 +12,7 @@
 #include "core/pd/lbfgs.h"
 #include "core/pd/newton_direct.h"
 #include "core/pd/newton_pcg.h"
+#include "core/pd/step_objective.h"
 
 namespace toile::solvers {
 namespace {
@@ -34,7 +35,7 @@ TEST(SolverReferences, ConvergeOnStiffClothAtLongSteps)
     ASSERT_EQ(steps.size(), 2u);
     for (const SampledStep& step : steps) {
         EXPECT_TRUE(step.is_converged);
-        StepObjective objective(*system, step_start(problem, *system, step), nullptr, Pcg::Settings{});
+        StepObjective objective(*system, step_start(problem, *system, step), nullptr);
         std::vector<Vec3> gradient(step.x.size());
         EXPECT_NEAR(objective.evaluate(step.minimiser, gradient), step.energy, 1e-12 * step.start_energy);
         EXPECT_LT(max_norm(gradient), 1e-7) << "a vertex weighs " << 9.81 * problem.cloth.masses[0] << " N";
@@ -51,7 +52,7 @@ TEST(SolverReferences, AgreeWithAFactorOfTheWholeHessian)
         EXPECT_TRUE(step.is_converged);
         const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
         system->prepare(problem.dt, problem.fixed);
-        StepObjective objective(*system, step_start(problem, *system, step), nullptr, Pcg::Settings{});
+        StepObjective objective(*system, step_start(problem, *system, step), nullptr);
         std::vector<Vec3> x = step.prediction;
         (void)Lbfgs().minimise(objective, x, {0.0, 50});
         NewtonDirect direct;
@@ -68,7 +69,7 @@ TEST(NewtonPcg, PromisesNothingFromLooseSolves)
     const SampledStep step = sample_steps(problem, 1, 8).front();
     const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
     system->prepare(problem.dt, problem.fixed);
-    StepObjective objective(*system, step_start(problem, *system, step), nullptr, Pcg::Settings{});
+    StepObjective objective(*system, step_start(problem, *system, step), nullptr);
     std::vector<Vec3> x = step.prediction;
     NewtonPcg cut(1);
     const OuterLoop::Outcome outcome = cut.minimise(objective, x, {0.0, 4});

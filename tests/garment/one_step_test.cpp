@@ -106,13 +106,15 @@ struct OneStep {
                                 std::cos(35.0 * x[i].x()));
     }
 
-    std::vector<Vec3> by_body(OuterMethod outer) const
+    std::vector<Vec3> by_body(OuterMethod outer,
+                              ContactPreconditioner preconditioner = ContactPreconditioner::Block) const
     {
         Body::Settings settings;
+        settings.contact_solve.preconditioner = preconditioner;
         settings.outer = outer;
         settings.tolerance = 1e-12;
         settings.max_iterations = 20000;
-        settings.linear = {1e-10, 500};
+        settings.contact_solve.pcg = {1e-10, 500};
         Body body(x, std::make_unique<System>(masses, energies), settings);
         body.set_velocities(v);
         const StepReport report = body.step(dt, gravity, fixed, x, active, nullptr);
@@ -136,8 +138,7 @@ struct OneStep {
         System system(masses, energies);
         system.prepare(dt, fixed);
         const std::vector<Vec3> prediction = predicted();
-        StepObjective objective(system, {x, prediction, system.diagonal(), system.fixed(), dt}, nullptr,
-                                Pcg::Settings{});
+        StepObjective objective(system, {x, prediction, system.diagonal(), system.fixed(), dt}, nullptr);
         std::vector<Vec3> solution = prediction;
         NewtonDirect newton;
         const OuterLoop::Outcome outcome = newton.minimise(objective, solution, {1e-11, 100});
@@ -257,6 +258,30 @@ TEST(OneStep, AgreesWithNewtonInContactWithFriction)
     const std::vector<Vec3> solution = step.expect_agreement(1e-3);
     EXPECT_GT(plane.sliding(solution), 5);
     EXPECT_GT(plane.pressing(solution) - plane.sliding(solution), 5);
+}
+
+TEST(OneStep, AgreesWithNewtonWhateverThePreconditionerOfContact)
+{
+    // The middles of all triangles press on the plane: terms of three vertices that share them.
+    OneStep step;
+    step.add_bending(2e-4);
+    std::vector<ContactTerm> terms;
+    for (const Triangle& t : step.sheet.triangles) {
+        ContactTerm& term = terms.emplace_back();
+        term.pair.vertex = contact_vertices(t[0], t[1], t[2]);
+        term.pair.weight = {0.5, 0.3, 0.2};
+        term.pair.normal = Vec3(0.1, 1.0, 0.2).normalized();
+        term.pair.point = 0.03 * term.pair.normal;
+        term.stiffness = 800.0;
+    }
+    TouchingPlane plane(std::move(terms), int(step.x.size()));
+    step.active = &plane;
+    step.stir(0.5);
+    const std::vector<Vec3> oracle = step.by_newton();
+    for (const auto which : {ContactPreconditioner::Block, ContactPreconditioner::Exact,
+                             ContactPreconditioner::ShermanMorrison, ContactPreconditioner::Chebyshev})
+        EXPECT_LT(OneStep::farthest(step.by_body(OuterMethod::Lbfgs, which), oracle), 1e-8)
+            << "preconditioner " << int(which);
 }
 
 } // namespace

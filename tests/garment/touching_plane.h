@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "collision/contact_energy.h"
@@ -35,6 +36,12 @@ public:
         energy_.set_terms(std::move(terms), int(start.size()));
     }
 
+    /// Any other terms.
+    TouchingPlane(std::vector<ContactTerm> terms, int vertex_count)
+    {
+        energy_.set_terms(std::move(terms), vertex_count);
+    }
+
     void begin_step(const StepStart&) override {}
     bool make_feasible(View<Vec3>) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
@@ -47,6 +54,7 @@ public:
         energy_.add_hessian_product(p, out);
     }
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
+    void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     bool revise(View<Vec3>) override { return false; }
     void clear(View<Vec3>, View<Vec3>) override {}
     void keep_apart(View<Vec3>, View<Vec3>) override {}

@@ -136,6 +136,24 @@ TEST(ClothContact, CostsNothingWhereItIsSwitchedOffOrUnknown)
     EXPECT_EQ(world.stages().calls("pd/pcg"), 0);
 }
 
+TEST(ClothContact, IsInvertedAsTheSceneSays)
+{
+    const std::string cloths = R"("cloths": [)" + sheet("low", 0.1, "[0, 0.002, 0]") + "," +
+                               sheet("high", 0.1, "[0.003, 0.003, 0.002]") + "]}";
+    for (const auto& [word, stage] :
+         {std::pair("exact", "pd/contact_factor"), std::pair("sherman-morrison", "pd/nested_contacts"),
+          std::pair("chebyshev", "pd/nested_chebyshev"), std::pair("paper", "pd/paper_projection")}) {
+        World world = world_of(R"({"toile": 1, "frames": 3, )" + kFloor +
+                               R"(, "solver": {"contact_preconditioner": ")" + word + R"("}, )" + cloths);
+        (void)world.advance_frame();
+        EXPECT_GT(world.stages().calls(stage), 0) << word;
+        World usual = world_of(R"({"toile": 1, "frames": 3, )" + kFloor + ", " + cloths);
+        (void)usual.advance_frame();
+        EXPECT_GT(usual.stages().calls("pd/nested_blocks"), 0);
+        EXPECT_EQ(usual.stages().calls(stage), 0) << word;
+    }
+}
+
 TEST(ClothContact, ClothThatCrossesFromTheStartComesApart)
 {
     // A sheet that stands through another one, neither repaired: it falls out on the side of its weight.

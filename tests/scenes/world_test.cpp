@@ -110,9 +110,9 @@ TEST(World, SkipsWhatASceneDoesNotNeed)
     while (hanging.frame() < 4)
         hanging.advance_frame();
     EXPECT_GT(hanging.stages().calls("pd/minimise"), 0);
-    for (const char* stage :
-         {"collision/detect", "collision/refit", "pd/pcg", "contact/evaluate", "garment/bending",
-          "garment/springs", "garment/aerodynamics", "avatars/advance", "avatars/skin"})
+    for (const char* stage : {"collision/detect", "collision/refit", "pd/pcg", "pd/nested_update",
+                              "pd/nested", "pd/contact_blocks", "contact/evaluate", "garment/bending",
+                              "garment/springs", "garment/aerodynamics", "avatars/advance", "avatars/skin"})
         EXPECT_EQ(hanging.stages().calls(stage), 0) << stage;
     EXPECT_EQ(hanging.stages().calls("linear/analyse"), 1);
     EXPECT_EQ(hanging.stages().calls("linear/factor"), 1);
@@ -122,7 +122,8 @@ TEST(World, SkipsWhatASceneDoesNotNeed)
     while (falling.frame() < 4)
         falling.advance_frame();
     EXPECT_GT(falling.stages().calls("collision/detect"), 0);
-    for (const char* stage : {"pd/pcg", "contact/evaluate", "collision/refit", "avatars/advance"})
+    for (const char* stage : {"pd/pcg", "pd/nested_update", "pd/nested", "pd/contact_blocks",
+                              "contact/evaluate", "collision/refit", "avatars/advance"})
         EXPECT_EQ(falling.stages().calls(stage), 0) << stage;
 }
 

@@ -1,0 +1,73 @@
+#include "core/pd/step_objective.h"
+
+#include "core/linear/field.h"
+#include "core/pd/step_error.h"
+
+namespace toile {
+
+StepObjective::StepObjective(const System& system, const StepStart& start, ActiveSetEnergy* active,
+                             const NestedPcg::Settings& contact_solve)
+    : system_(system), start_(start), active_(active), contact_solve_(contact_solve)
+{
+}
+
+double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
+{
+    const double inverse_dt2 = 1.0 / (start_.dt * start_.dt);
+    const View<const double> masses = system_.masses();
+    double value = parallel_sum(kCpu, x.size(), 0.0, [&](int i) {
+        const Vec3 away = x[i] - start_.prediction[i];
+        gradient[i] = masses[i] * inverse_dt2 * away;
+        return 0.5 * gradient[i].dot(away);
+    });
+    value += system_.add_gradient(x, gradient);
+    if (active_)
+        value += active_->add_gradient(x, gradient);
+    const View<const unsigned char> fixed = system_.fixed();
+    for (int i = 0; i < x.size(); ++i)
+        if (fixed[i])
+            gradient[i].setZero();
+    return value;
+}
+
+void StepObjective::accept(View<const Vec3> x)
+{
+    has_active_set_ = active_ && active_->activate(x);
+    is_pcg_current_ = false;
+}
+
+Hessian* StepObjective::hessian()
+{
+    if (!hessian_)
+        hessian_.emplace(system_.curvature(), system_.masses(), system_.fixed(), start_.dt);
+    hessian_->set_active(has_active_set_ ? active_ : nullptr);
+    return &*hessian_;
+}
+
+bool StepObjective::is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const
+{
+    const StepError error(system_.masses(), system_.fixed(), start_.x, start_.prediction, start_.dt);
+    return error.is_within(tolerance, gradient, move);
+}
+
+void StepObjective::precondition(View<const Vec3> g, View<Vec3> z)
+{
+    if (has_active_set_)
+        linear_iterations_ += pcg().solve(g, z).iterations;
+    else
+        system_.solver().solve(g, z);
+}
+
+/// Made when it is first needed, so that where nothing presses, or where a method has its own solver, nothing
+/// is.
+NestedPcg& StepObjective::pcg()
+{
+    if (!pcg_)
+        pcg_.emplace(system_, start_.dt, contact_solve_);
+    if (!is_pcg_current_)
+        pcg_->update(*active_);
+    is_pcg_current_ = true;
+    return *pcg_;
+}
+
+} // namespace toile

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+
+#include "core/pd/active_set_energy.h"
+#include "core/pd/nested/nested_pcg.h"
+#include "core/pd/objective.h"
+#include "core/pd/step_hessian.h"
+
+namespace toile {
+
+/// Objective of one step: inertia, the system's energies, and an energy with an active set.
+class StepObjective : public Objective {
+public:
+    /// @param start   borrowed fields
+    /// @param active  may be null: then the inverse is one direct solve and PCG never runs
+    StepObjective(const System& system, const StepStart& start, ActiveSetEnergy* active,
+                  const NestedPcg::Settings& contact_solve = {});
+
+    double evaluate(View<const Vec3> x, View<Vec3> gradient) override;
+    void precondition(View<const Vec3> g, View<Vec3> z) override;
+    void precondition_linearly(View<const Vec3> g, View<Vec3> z) override { system_.solver().solve(g, z); }
+    void accept(View<const Vec3> x) override;
+    Hessian* hessian() override;
+    bool is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const override;
+
+    int linear_iterations() const { return linear_iterations_; }
+
+private:
+    NestedPcg& pcg();
+
+    const System& system_;
+    StepStart start_;
+    ActiveSetEnergy* active_;
+    NestedPcg::Settings contact_solve_;
+    std::optional<NestedPcg> pcg_; ///< none before the active set first acts
+    bool has_active_set_ = false;
+    bool is_pcg_current_ = false; ///< pcg_ knows the active set as it was last frozen
+    int linear_iterations_ = 0;
+    std::optional<StepHessian> hessian_;
+};
+
+} // namespace toile
