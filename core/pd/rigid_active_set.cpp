@@ -108,6 +108,24 @@ void RigidActiveSet::add_hessian_product(View<const Vec3> p, View<Vec3> out) con
     bodies_.gather(frozen_, rigid_part(field_), unknowns(out));
 }
 
+void RigidActiveSet::append_terms(std::vector<FrozenTerm>& terms) const
+{
+    std::vector<FrozenTerm> of_surface;
+    surface_.append_terms(of_surface);
+    for (const FrozenTerm& term : of_surface) {
+        FrozenTerm free;
+        free.stiffness = term.stiffness;
+        int count = 0;
+        for (int k = 0; k < 4; ++k)
+            if (term.vertex[k] >= 0 && term.vertex[k] < free_count_) {
+                free.vertex[count] = term.vertex[k];
+                free.weight[count++] = term.weight[k];
+            }
+        if (count > 0)
+            terms.push_back(free);
+    }
+}
+
 bool RigidActiveSet::revise(View<Vec3> q)
 {
     to_surface(q, x_);

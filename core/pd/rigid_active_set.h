@@ -27,6 +27,11 @@ public:
     bool activate(View<const Vec3> q) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return blocks_; }
+
+    /// Of terms at a rigid surface the free points' side only: levers have no place in a FrozenTerm.
+    /// Preconditioners made of terms then know less of bodies than those made of diagonal_blocks().
+    void append_terms(std::vector<FrozenTerm>& terms) const override;
+
     bool revise(View<Vec3> q) override;
     void clear(View<Vec3> q, View<Vec3> v) override;
     void keep_apart(View<Vec3> q, View<Vec3> v) override;

