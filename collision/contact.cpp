@@ -56,7 +56,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std
                  std::vector<ContactPartner> partners, const Settings& settings)
     : cloths_(std::move(cloths)), partners_(std::move(partners)), settings_(settings),
       detector_(triangles, positions), carried_(positions.size()), detected_at_(positions.size()),
-      nearest_(positions.size()), altitude_(shortest_altitudes(triangles, positions))
+      nearest_(positions.size()), sides_(positions.size()), altitude_(shortest_altitudes(triangles, positions))
 {
     for (int c = 0; c < int(cloths_.size()); ++c) {
         cloth_of_.insert(cloth_of_.end(), cloths_[c].vertex_count, c);
@@ -86,6 +86,7 @@ void Contact::forget()
 {
     memory_.forget();
     std::fill(nearest_.begin(), nearest_.end(), Nearest{});
+    sides_.forget();
     if (between_)
         between_->forget();
 }
@@ -125,12 +126,13 @@ void Contact::find_colliders(View<const Vec3> at, double radius, std::vector<Con
     detected_at_.assign(at.begin(), at.end());
     DetectSettings settings;
     settings.radius = radius;
+    settings.farthest_motion = kMaxCarrySpeed * start_.dt;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;
     detector_.move(detected_at_);
     for (int c = 0; c < int(partners_.size()); ++c) {
         if (partners_[c].mesh)
-            detector_.detect(*partners_[c].mesh, c, settings, pairs);
+            detector_.detect(*partners_[c].mesh, c, settings, pairs, &sides_);
         else
             detector_.detect(*partners_[c].shape, c, settings, pairs);
     }
@@ -239,6 +241,9 @@ void Contact::end_step(View<const Vec3> x)
         const double gap = energy_.terms()[i].pair.gap(x);
         min_gap_ = i == 0 ? gap : std::min(min_gap_, gap);
     }
+    for (int c = 0; c < int(partners_.size()); ++c)
+        if (partners_[c].mesh)
+            sides_.learn(x, *partners_[c].mesh, c);
     if (between_)
         between_->end_step(x);
 }
