@@ -45,7 +45,8 @@ public:
     int clip_index(const std::string& name) const;
 
     /// Marks the faces that follow one of these bones, or a bone below one of them in the skeleton: a face
-    /// follows the bone with the most skin weight over its three corners, of equals the first in the skeleton.
+    /// follows the bone with the most skin weight over its three corners, of equals the first in the
+    /// skeleton.
     /// @param bones  names, matched exactly
     /// @param user   named in errors: who asks for these bones
     /// @return [triangles] 1 where marked

@@ -56,7 +56,8 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std
                  std::vector<ContactPartner> partners, const Settings& settings)
     : cloths_(std::move(cloths)), partners_(std::move(partners)), settings_(settings),
       detector_(triangles, positions), carried_(positions.size()), detected_at_(positions.size()),
-      nearest_(positions.size()), sides_(positions.size()), altitude_(shortest_altitudes(triangles, positions))
+      nearest_(positions.size()), sides_(positions.size()),
+      altitude_(shortest_altitudes(triangles, positions))
 {
     for (int c = 0; c < int(cloths_.size()); ++c) {
         cloth_of_.insert(cloth_of_.end(), cloths_[c].vertex_count, c);
@@ -152,7 +153,7 @@ bool Contact::make_feasible(View<Vec3> x) const
 {
     bool moved = false;
     for (int i = 0; i < int(energy_.terms().size()); ++i)
-        if (const double depth = -energy_.gap(i, x); depth > 0.0)
+        if (const double depth = -energy_.gap(i, x) - energy_.terms()[i].give; depth > 0.0)
             moved = push(energy_.terms()[i].pair, depth * energy_.terms()[i].pair.normal, x) || moved;
     return moved;
 }
@@ -253,7 +254,7 @@ double Contact::deepest(View<const Vec3> x) const
     double depth = 0.0;
     for (int i = 0; i < int(energy_.terms().size()); ++i)
         if (!energy_.terms()[i].pair.is_between_cloths())
-            depth = std::max(depth, -energy_.gap(i, x));
+            depth = std::max(depth, -energy_.gap(i, x) - energy_.terms()[i].give);
     return depth;
 }
 

@@ -10,9 +10,9 @@ namespace toile {
 
 namespace {
 
-/// cos of the angle between the normals of two planes [-] beyond which they squeeze what is between them: 120
+/// cos of the angle between the normals of two planes [-] beyond which they squeeze what is between them: 90
 /// degrees. More open wedges let cloth slide out.
-constexpr double kOpposing = -0.5;
+constexpr double kOpposing = 0.0;
 
 constexpr double kPlenty = std::numeric_limits<double>::infinity();
 
@@ -117,11 +117,16 @@ ContactTerm Contact::make_term(const ContactPair& pair, double room) const
     term.friction = friction_of(pair);
     term.stiffness = stiffness_of(pair);
 
-    // Cloth that starts inside comes out at the recovery speed, not at once; between two parts it is brought to
-    // the middle, where neither can push it through the other.
+    // Cloth that starts inside comes out at the recovery speed, not at once; between two parts it is brought
+    // to the middle, where neither can push it through the other, and gripped there by a gap's worth of
+    // force.
     const Vec3 start = at_start(pair);
     const double start_gap = pair.normal.dot(start - pair.point);
-    term.offset = std::min({gap_of(pair), start_gap + settings_.recovery_speed * start_.dt, room});
+    term.offset = std::min(gap_of(pair), start_gap + settings_.recovery_speed * start_.dt);
+    if (room < 0.0 && room + gap_of(pair) < term.offset) {
+        term.offset = room + gap_of(pair);
+        term.give = gap_of(pair);
+    }
     term.anchor = start;
 
     memory_.hand_on(term); // the same contact of the step before

@@ -26,9 +26,8 @@ SideMemory::Sides SideMemory::learnt(int v, const Vec3& x, const MeshCollider& m
     int count = 0;
     std::array<Vec3, kMostSides> normals;
     const auto keep = [&](const SurfacePoint& at) {
-        const bool is_known = std::any_of(normals.begin(), normals.begin() + count, [&](const Vec3& n) {
-            return n.dot(at.normal) > kDistinctCosine;
-        });
+        const bool is_known = std::any_of(normals.begin(), normals.begin() + count,
+                                          [&](const Vec3& n) { return n.dot(at.normal) > kDistinctCosine; });
         if (count == kMostSides || is_known)
             return;
         normals[size_t(count)] = at.normal;
@@ -68,7 +67,8 @@ void SideMemory::find_behind(int v, const Vec3& x, const MeshCollider& mesh, int
 {
     out.clear();
     for (const Side& side : sides_[v]) {
-        if (side.collider != collider || mesh.motion(side.triangle, Vec3::Constant(1.0 / 3.0)).norm() > farthest)
+        if (side.collider != collider ||
+            mesh.motion(side.triangle, Vec3::Constant(1.0 / 3.0)).norm() > farthest)
             continue;
         const SurfacePoint at = mesh.surface().closest_from(x, side.triangle);
         if (at.signed_distance < 0.0 && at.distance() < kDeepest)

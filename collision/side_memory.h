@@ -15,7 +15,8 @@ public:
     /// A vertex can be caught by no more: as many as planes in a corner.
     static constexpr int kMostSides = 3;
 
-    /// A sheet is remembered once it is this near [m]. Parts that close faster than this in a step pass unseen.
+    /// A sheet is remembered once it is this near [m]. Parts that close faster than this in a step pass
+    /// unseen.
     static constexpr double kReach = 0.02;
 
     /// Deeper behind a sheet [m] than this it is forgotten: the walk along the surface has lost its place.
@@ -25,8 +26,8 @@ public:
 
     void forget() { std::fill(sides_.begin(), sides_.end(), Sides{}); }
 
-    /// Learns at the end of a step. A sheet that the vertex is behind by now is kept; new ones are those it is
-    /// in front of. O(vertices) queries; none for a mesh that never moved.
+    /// Learns at the end of a step. A sheet that the vertex is behind by now is kept; new ones are those it
+    /// is in front of. O(vertices) queries; none for a mesh that never moved.
     /// @param x         [vertices] cloth at t1 [m]
     /// @param collider  number of the mesh
     void learn(View<const Vec3> x, const MeshCollider& mesh, int collider);

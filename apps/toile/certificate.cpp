@@ -134,8 +134,8 @@ std::string summary_of(const Certificate& certificate)
                   certificate.frames, 1e3 * certificate.worst.penetration, 1e2 * certificate.worst.strain);
     std::string left_out;
     for (const auto& [avatar, bones] : certificate.excluded_bones)
-        left_out += "; " + std::to_string(bones.size()) +
-                    (bones.size() == 1 ? " bone of " : " bones of ") + avatar + " left out";
+        left_out += "; " + std::to_string(bones.size()) + (bones.size() == 1 ? " bone of " : " bones of ") +
+                    avatar + " left out";
     return text + left_out;
 }
 

@@ -21,7 +21,7 @@ struct FrameFindings {
     /// One of two triangles that cross.
     struct Side {
         std::string name; ///< of the cloth or avatar
-        int triangle; ///< -1: a lid over faces of an avatar that are left out
+        int triangle;     ///< -1: a lid over faces of an avatar that are left out
     };
     struct Place {
         int frame;

@@ -137,8 +137,7 @@ void Examiner::find_all_avatar_crossings(int frame, FrameFindings& found) const
         return;
     const auto& [body, first] = crossings.clean.front();
     const SceneBody& crossed = avatars_.bodies()[size_t(body)];
-    found.crossing = {
-        frame, side(first.a), {crossed.settings().name, crossed.face_of(first.b)}, first.point};
+    found.crossing = {frame, side(first.a), {crossed.settings().name, crossed.face_of(first.b)}, first.point};
 }
 
 /// The cloth that a triangle of the soup belongs to.

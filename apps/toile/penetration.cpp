@@ -25,9 +25,10 @@ double deepest_in(const SceneBody& solid, View<const Vec3> x, View<const Triangl
 ScenePenetration::ScenePenetration(const Scene& scene) : bodies_(make_bodies(scene))
 {
     for (const SceneBody& body : bodies_)
-        meters_.push_back(body.shape() != nullptr ? nullptr
-                                                  : std::make_unique<PenetrationMeter>(
-                                                        body.contact_surface().triangles, body.contact_surface().positions));
+        meters_.push_back(body.shape() != nullptr
+                              ? nullptr
+                              : std::make_unique<PenetrationMeter>(body.contact_surface().triangles,
+                                                                   body.contact_surface().positions));
 }
 
 void ScenePenetration::advance_to(double t)

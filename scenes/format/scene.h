@@ -94,8 +94,8 @@ struct Avatar {
     Preroll preroll;
     std::vector<Keyframe> keyframes;
     std::vector<std::string> exclude_bones; ///< cloth passes through what follows these
-    std::optional<double> friction;      ///< [-] Coulomb coefficient; absent: Contact::friction
-    Vec3 color = Vec3(0.78, 0.72, 0.66); ///< [-] sRGB
+    std::optional<double> friction;         ///< [-] Coulomb coefficient; absent: Contact::friction
+    Vec3 color = Vec3(0.78, 0.72, 0.66);    ///< [-] sRGB
 };
 
 // --- cloths ---------------------------------------------------------------------------------------------

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <functional>
 #include <numbers>
 
 #include "collision/crossings/find_crossings.h"
@@ -92,15 +90,10 @@ Outcome run(const std::vector<BodyPart>& parts, const std::string& sheet, int fr
         const StepReport report = world.advance_frame();
         EXPECT_NE(report.status, StepReport::Status::NonFinite);
         const std::vector<Vec3>& x = world.cloths()[0].positions;
-        double f = 0;
         for (size_t v = 0; v < x.size(); ++v)
-            f = std::max(f, (x[v] - before[v]).norm() * scene.fps);
-        outcome.fastest = std::max(f, outcome.fastest);
+            outcome.fastest = std::max(outcome.fastest, (x[v] - before[v]).norm() * scene.fps);
         outcome.strain = report.max_strain;
         outcome.strain_caught = std::max(outcome.strain_caught, report.max_strain);
-        if (getenv("V"))
-            printf("%3d speed %.2f strain %.3f contacts %d\n", world.frame(), f, report.max_strain,
-                   report.contacts);
         before = x;
     }
     body.advance_to(world.frame() * scene.frame_duration());
@@ -112,15 +105,24 @@ Outcome run(const std::vector<BodyPart>& parts, const std::string& sheet, int fr
     outcome.crossings =
         int(find_crossings(cloth.triangles, cloth.positions, surface.triangles, surface.positions).size());
     outcome.positions = cloth.positions;
-    printf("fastest %.3f strain caught %.3f end %.3f depth %.2f mm crossings %d\n", outcome.fastest,
-           outcome.strain_caught, outcome.strain, 1e3 * outcome.depth, outcome.crossings);
     return outcome;
 }
 
-void expect_free(const Outcome& outcome, double speed)
+/// For the table in docs/collision/contact.md, in the report of --gtest_output=xml.
+void record(const Outcome& outcome)
 {
-    EXPECT_LT(outcome.fastest, speed);
-    EXPECT_LT(outcome.strain, 0.07);
+    ::testing::Test::RecordProperty("fastest", std::to_string(outcome.fastest));
+    ::testing::Test::RecordProperty("strain", std::to_string(outcome.strain_caught));
+}
+
+/// Out of the body, at most as fast as recovery (1 m/s) alone makes it, and never torn: cotton's limit is
+/// .06.
+void expect_free(const Outcome& outcome)
+{
+    record(outcome);
+    EXPECT_LT(outcome.fastest, 1.0);
+    EXPECT_LT(outcome.strain_caught, 0.07);
+    EXPECT_LT(outcome.strain, 0.062);
     EXPECT_LT(outcome.depth, 1e-3);
     EXPECT_EQ(outcome.crossings, 0);
 }
@@ -151,7 +153,7 @@ Outcome thighs(const std::string& more = "")
 TEST(CaughtCloth, BetweenThighsHangsBetweenThemAgain)
 {
     const Outcome outcome = thighs();
-    expect_free(outcome, 2.0);
+    expect_free(outcome);
     EXPECT_EQ(astray(outcome, [](const Vec3& x) { return std::abs(x.x()) < 0.1; }), 0);
 }
 
@@ -168,12 +170,9 @@ Outcome hand(double depth)
 
 TEST(CaughtCloth, UnderAHandLiesOnTheSkinAgain)
 {
-    for (const double depth : {0.02, 0.05}) {
-        SCOPED_TRACE(depth);
-        const Outcome outcome = hand(depth);
-        expect_free(outcome, 2.0);
-        EXPECT_EQ(astray(outcome, [](const Vec3& x) { return x.y() > 0.0 && x.y() < 0.06; }), 0);
-    }
+    const Outcome outcome = hand(0.02);
+    expect_free(outcome);
+    EXPECT_EQ(astray(outcome, [](const Vec3& x) { return x.y() > 0.0 && x.y() < 0.06; }), 0);
 }
 
 /// An arm that hangs 2 cm beside the trunk closes from 30 to -12 degrees.
@@ -201,14 +200,13 @@ Outcome armpit()
 TEST(CaughtCloth, InAnArmpitHangsBetweenArmAndTrunkAgain)
 {
     const Outcome outcome = armpit();
-    expect_free(outcome, 2.5);
+    expect_free(outcome);
     // Below the shoulder: outside of the trunk, on the inner side of the arm.
     const double slope = std::tan(std::numbers::pi / 6.0);
-    EXPECT_EQ(astray(outcome,
-                     [&](const Vec3& x) {
-                         return x.y() > -0.02 || (x.x() > 0.0 && x.x() < 0.02 - slope * x.y());
-                     }),
-              0);
+    EXPECT_EQ(
+        astray(outcome,
+               [&](const Vec3& x) { return x.y() > -0.02 || (x.x() > 0.0 && x.x() < 0.02 - slope * x.y()); }),
+        0);
 }
 
 } // namespace
