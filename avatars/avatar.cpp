@@ -21,4 +21,12 @@ int Avatar::clip_index(const std::string& name) const
                        (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "It has " + list);
 }
 
+std::vector<unsigned char> Avatar::faces_on_bones(const std::vector<std::string>& bones,
+                                                  const std::string& user) const
+{
+    if (!bones.empty())
+        throw InvalidInput(user + ": " + source_ + " has no bones; remove '" + bones.front() + "'");
+    return std::vector<unsigned char>(triangles_.size(), 0);
+}
+
 } // namespace toile

@@ -44,6 +44,17 @@ public:
     /// @throws InvalidInput naming the nearest clip and listing all.
     int clip_index(const std::string& name) const;
 
+    /// Marks the faces that follow one of these bones, or a bone below one of them in the skeleton: a face
+    /// follows the bone with the most skin weight over its three corners, of equals the first in the
+    /// skeleton.
+    /// @param bones  names, matched exactly
+    /// @param user   named in errors: who asks for these bones
+    /// @return [triangles] 1 where marked
+    /// @throws InvalidInput for a body without bones, an unknown name (with the nearest names there are), and
+    ///         a bone that no face follows.
+    virtual std::vector<unsigned char> faces_on_bones(const std::vector<std::string>& bones,
+                                                      const std::string& user) const;
+
     /// Vertex positions of a pose, in metres, Y up, carried through `world_from_avatar`. Reuses scratch: one
     /// thread at a time.
     /// @param out  [vertices] [m]

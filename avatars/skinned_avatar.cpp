@@ -1,5 +1,9 @@
 #include "avatars/skinned_avatar.h"
 
+#include <algorithm>
+
+#include "core/backend/error.h"
+
 namespace toile {
 
 namespace {
@@ -11,6 +15,47 @@ std::vector<Avatar::ClipName> clip_names(const std::vector<Clip>& clips)
     for (const Clip& clip : clips)
         names.push_back({clip.name, clip.duration});
     return names;
+}
+
+/// "the nearest are 'a', 'b'", or all there are where none is near.
+std::string suggestion(const std::string& name, const std::vector<std::string>& names)
+{
+    constexpr size_t kSuggestions = 3;
+    std::vector<std::string> others = names, near;
+    while (near.size() < kSuggestions) {
+        const std::string next = nearest_word(name, others);
+        if (next.empty())
+            break;
+        near.push_back(next);
+        std::erase(others, next);
+    }
+    std::string list;
+    for (const std::string& known : near.empty() ? names : near)
+        list += (list.empty() ? "'" : ", '") + known + "'";
+    return (near.empty() ? "it has " : near.size() == 1 ? "the nearest is " : "the nearest are ") + list;
+}
+
+/// The joint of that name.
+int require_bone(const Skeleton& skeleton, const std::string& name, const std::string& source,
+                 const std::string& user)
+{
+    if (const int joint = skeleton.find(name); joint >= 0)
+        return joint;
+    std::vector<std::string> names;
+    for (const Joint& joint : skeleton.joints())
+        names.push_back(joint.name);
+    throw InvalidInput(user + ": " + source + " has no bone '" + name + "'; " + suggestion(name, names));
+}
+
+/// The joint and all below it. [joints]
+std::vector<unsigned char> branch_of(const Skeleton& skeleton, int root)
+{
+    std::vector<unsigned char> is_in(skeleton.size(), 0);
+    for (int j = root; j < skeleton.size(); ++j) {
+        const int parent = skeleton.joints()[j].parent;
+        is_in[j] = j == root || (parent >= 0 && is_in[parent] != 0) ? 1 : 0;
+    }
+    return is_in;
 }
 
 } // namespace
@@ -73,6 +118,24 @@ void SkinnedAvatar::pose(const PoseAt& at, const Affine& world_from_avatar, View
     for (Affine& frame : frames_)
         frame = compose(world_from_file, frame);
     skin(model_.mesh, frames_, bones_, out);
+}
+
+std::vector<unsigned char> SkinnedAvatar::faces_on_bones(const std::vector<std::string>& bones,
+                                                         const std::string& user) const
+{
+    std::vector<unsigned char> marked(triangles().size(), 0);
+    const std::vector<int> joint_of = heaviest_joints(model_.mesh);
+    for (const std::string& name : bones) {
+        const std::vector<unsigned char> is_in =
+            branch_of(model_.skeleton, require_bone(model_.skeleton, name, source(), user));
+        if (std::none_of(joint_of.begin(), joint_of.end(), [&](int joint) { return is_in[joint] != 0; }))
+            throw InvalidInput(user + ": no face of " + source() + " follows bone '" + name +
+                               "' or one below it; name a bone that moves skin, or remove it");
+        for (size_t t = 0; t < marked.size(); ++t)
+            if (is_in[joint_of[t]] != 0)
+                marked[t] = 1;
+    }
+    return marked;
 }
 
 } // namespace toile

@@ -22,6 +22,9 @@ public:
 
     void pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out) override;
 
+    std::vector<unsigned char> faces_on_bones(const std::vector<std::string>& bones,
+                                              const std::string& user) const override;
+
     const RiggedModel& model() const { return model_; }
 
 private:

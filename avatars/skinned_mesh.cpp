@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "core/backend/error.h"
@@ -176,6 +177,22 @@ void weld_seams(SkinnedMesh& mesh, double distance)
             return;
         }
     }
+}
+
+std::vector<int> heaviest_joints(const SkinnedMesh& mesh)
+{
+    std::vector<int> heaviest;
+    heaviest.reserve(mesh.rest.triangles.size());
+    for (const Triangle& corner : mesh.rest.triangles) {
+        std::map<int, double> weight_of; // by joint: several bones may follow one
+        for (const int v : corner)
+            for (int k = mesh.first[v]; k < mesh.first[v + 1]; ++k)
+                weight_of[mesh.bones[mesh.influences[k].bone].joint] += mesh.influences[k].weight;
+        const auto most = std::max_element(weight_of.begin(), weight_of.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+        heaviest.push_back(most->first);
+    }
+    return heaviest;
 }
 
 void skin(const SkinnedMesh& mesh, View<const Affine> world_from_joint, View<Affine> bones, View<Vec3> out)

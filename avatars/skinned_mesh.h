@@ -36,6 +36,9 @@ void normalise_weights(SkinnedMesh& mesh, const std::string& source);
 /// @param distance  two positions closer than this are one place [mesh units]
 void weld_seams(SkinnedMesh& mesh, double distance);
 
+/// The joint with the most weight over the corners of each triangle, of equals the lowest. [triangles]
+std::vector<int> heaviest_joints(const SkinnedMesh& mesh);
+
 /// Poses the mesh: one call of stage "avatars/skin".
 /// @param world_from_joint  [joints]
 /// @param bones             [bones] scratch, overwritten

@@ -49,6 +49,7 @@ void MeshCollider::move(const MovingMesh& mesh)
     if (std::equal(mesh.x_t1.begin(), mesh.x_t1.end(), surface_.positions().begin()))
         return;
     const StageScope stage("collision/refit");
+    has_ever_moved_ = true;
     surface_.update(mesh.x_t1);
     bounds_ = toile::bounds(mesh.x_t1);
     update_owned_edges();

@@ -25,6 +25,9 @@ public:
     const SurfaceProximity& surface() const { return surface_; } ///< at t1
     const Bounds& bounds() const { return bounds_; }             ///< at t1
 
+    /// False until the first step in which it moves.
+    bool has_ever_moved() const { return has_ever_moved_; }
+
     /// Displacement of a vertex from t0 to t1 [m].
     Vec3 motion(int vertex) const { return surface_.positions()[vertex] - x_t0_[vertex]; }
 
@@ -56,6 +59,7 @@ private:
     std::vector<int> first_owned_;       ///< [triangles + 1] into owned_edges_
     std::vector<OwnedEdge> owned_edges_; ///< [edges]
     Bounds bounds_;
+    bool has_ever_moved_ = false;
 };
 
 /// An analytic solid that moves rigidly during the step.

@@ -68,6 +68,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std
     : cloths_(std::move(cloths)), rigid_(rigid_bodies_of(cloths_)), partners_(std::move(partners)),
       settings_(settings), detector_(triangles, positions), carried_(positions.size()),
       detected_at_(positions.size()), nearest_(positions.size()),
+      sides_(positions.size()),
       altitude_(shortest_altitudes(triangles, positions))
 {
     for (int c = 0; c < int(cloths_.size()); ++c) {
@@ -98,6 +99,7 @@ void Contact::forget()
 {
     memory_.forget();
     std::fill(nearest_.begin(), nearest_.end(), Nearest{});
+    sides_.forget();
     if (between_)
         between_->forget();
 }
@@ -137,12 +139,13 @@ void Contact::find_colliders(View<const Vec3> at, double radius, std::vector<Con
     detected_at_.assign(at.begin(), at.end());
     DetectSettings settings;
     settings.radius = radius;
+    settings.farthest_motion = kMaxCarrySpeed * start_.dt;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;
     detector_.move(detected_at_);
     for (int c = 0; c < int(partners_.size()); ++c) {
         if (partners_[c].mesh)
-            detector_.detect(*partners_[c].mesh, c, settings, pairs);
+            detector_.detect(*partners_[c].mesh, c, settings, pairs, &sides_);
         else
             detector_.detect(*partners_[c].shape, c, settings, pairs);
     }
@@ -162,7 +165,7 @@ bool Contact::make_feasible(View<Vec3> x) const
 {
     bool moved = false;
     for (int i = 0; i < int(energy_.terms().size()); ++i)
-        if (const double depth = -energy_.gap(i, x); depth > 0.0)
+        if (const double depth = -energy_.gap(i, x) - energy_.terms()[i].give; depth > 0.0)
             moved = push(energy_.terms()[i].pair, depth * energy_.terms()[i].pair.normal, x) || moved;
     return moved;
 }
@@ -251,6 +254,9 @@ void Contact::end_step(View<const Vec3> x)
         const double gap = energy_.terms()[i].pair.gap(x);
         min_gap_ = i == 0 ? gap : std::min(min_gap_, gap);
     }
+    for (int c = 0; c < int(partners_.size()); ++c)
+        if (partners_[c].mesh)
+            sides_.learn(x, *partners_[c].mesh, c);
     if (between_)
         between_->end_step(x);
 }
@@ -260,7 +266,7 @@ double Contact::deepest(View<const Vec3> x) const
     double depth = 0.0;
     for (int i = 0; i < int(energy_.terms().size()); ++i)
         if (!energy_.terms()[i].pair.is_between_cloths())
-            depth = std::max(depth, -energy_.gap(i, x));
+            depth = std::max(depth, -energy_.gap(i, x) - energy_.terms()[i].give);
     return depth;
 }
 

@@ -7,6 +7,7 @@
 #include "collision/contact_cloth.h"
 #include "collision/contact_memory.h"
 #include "collision/detect.h"
+#include "collision/side_memory.h"
 #include "core/pd/active_set_energy.h"
 
 namespace toile {
@@ -93,7 +94,8 @@ private:
     void detect(View<const Vec3> at, double radius);
     void find_colliders(View<const Vec3> at, double radius, std::vector<ContactPair>& pairs);
     void make_terms(const std::vector<ContactPair>& pairs);
-    ContactTerm make_term(const ContactPair& pair) const;
+    std::vector<double> room_of(const std::vector<ContactPair>& pairs) const;
+    ContactTerm make_term(const ContactPair& pair, double room) const;
     double gap_of(const ContactPair& pair) const;
     double friction_of(const ContactPair& pair) const;
     double stiffness_of(const ContactPair& pair) const;
@@ -126,6 +128,7 @@ private:
     std::vector<Vec3> carried_;     ///< [vertices] start positions moved along with the surface nearby [m]
     std::vector<Vec3> detected_at_; ///< [vertices] where the pairs were found [m]
     std::vector<Nearest> nearest_;  ///< [vertices] last step's
+    SideMemory sides_;              ///< of moving meshes
     std::vector<double> altitude_;  ///< [vertices] the shortest of the triangles around, at the start [m]
     std::optional<ClothContact> between_; ///< cloth and cloth; none where that is switched off
     ContactMemory memory_;

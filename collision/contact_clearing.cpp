@@ -72,7 +72,7 @@ void Contact::rub(View<Vec3> x, View<Vec3> v) const
         const ContactPair& pair = term.pair;
         const double clearance = clearance_of(pair);
         push(pair, at_most(-energy_.slip(i, x), term.friction * depth), x);
-        push(pair, std::min(depth, clearance) * pair.normal, x);
+        push(pair, std::clamp(depth - term.give, 0.0, clearance) * pair.normal, x);
 
         const Vec3 lag = surface_velocity(pair) - pair.cloth_point(v);
         const double approach = pair.normal.dot(lag);
@@ -87,7 +87,7 @@ void Contact::push_out(View<Vec3> x) const
     for (int sweep = 0; sweep < kClearSweeps; ++sweep)
         for (int i = 0; i < int(energy_.terms().size()); ++i) {
             const ContactPair& pair = energy_.terms()[i].pair;
-            if (const double depth = -energy_.gap(i, x); depth > 0.0)
+            if (const double depth = -energy_.gap(i, x) - energy_.terms()[i].give; depth > 0.0)
                 push(pair, std::min(depth, clearance_of(pair)) * pair.normal, x);
         }
 }

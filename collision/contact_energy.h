@@ -14,6 +14,7 @@ struct ContactTerm {
     double stiffness = 0.0;     ///< [N/m] w, of the normal spring and of sticking
     double friction = 0.0;      ///< [-] Coulomb coefficient
     Vec3 anchor = Vec3::Zero(); ///< [m] where the cloth point would stick, in space at t1
+    double give = 0.0;          ///< [m] below the offset where a step may end: cloth gripped from both sides
     double normal_force = 0.0;  ///< [N] lagged, bounds friction
 };
 

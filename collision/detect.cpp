@@ -39,11 +39,11 @@ const SurfaceProximity& ContactDetector::cloth_surface()
 }
 
 void ContactDetector::detect(const MeshCollider& mesh, int collider, const DetectSettings& settings,
-                             std::vector<ContactPair>& out)
+                             std::vector<ContactPair>& out, const SideMemory* sides)
 {
     if (are_apart(bounds_, mesh.bounds(), std::max(settings.radius, settings.max_depth)))
         return;
-    const PairSearch search{x_, bounds_, mesh, collider, settings};
+    const PairSearch search{x_, bounds_, mesh, collider, settings, sides};
     find_vertex_face(search, out);
     if (settings.face_vertex)
         find_face_vertex(search, cloth_surface(), out);

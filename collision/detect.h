@@ -1,9 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "collision/colliders.h"
 #include "collision/contact_pair.h"
+#include "collision/side_memory.h"
 
 namespace toile {
 
@@ -15,6 +17,9 @@ struct DetectSettings {
     /// [m] Cloth vertices up to this far inside a mesh are still pushed out to the nearest surface. Deeper
     /// ones are left alone: they more likely belong to the other side of a limb. Shapes have no such limit.
     double max_depth = 0.1;
+
+    /// [m] A sheet that moved farther than this in the step has been replaced: its remembered sides are void.
+    double farthest_motion = std::numeric_limits<double>::infinity();
 
     bool face_vertex = true; ///< cloth faces against vertices, corners, balls: points under coarse cloth
     bool edge_edge = true;   ///< edges against ridges: folds over sharp rims; the most numerous kind
@@ -39,9 +44,12 @@ public:
     ///                (armpits, between limbs: one plane is not enough there)
     ///   kFaceVertex  collider vertices against the cloth sheets that they are about to touch or have pierced
     ///   kEdgeEdge    cloth edges across ridges of the collider
+    /// A vertex that is behind sheets it was in front of gets their planes, and none of the nearest surface
+    /// that it is behind: it goes back where it came from. Without such memory the nearest surface decides.
     /// @param collider  its number, copied into the pairs
+    /// @param sides     may be null
     void detect(const MeshCollider& mesh, int collider, const DetectSettings& settings,
-                std::vector<ContactPair>& out);
+                std::vector<ContactPair>& out, const SideMemory* sides = nullptr);
 
     /// Appends the pairs against a solid in the order of their kinds:
     ///   kVertexShape  one per cloth vertex nearer than the radius, or inside at any depth

@@ -13,6 +13,9 @@ namespace toile {
 /// takes its place.
 inline constexpr double kTouching = 1e-6;
 
+/// cos of the least angle between two planes of a vertex [-]: 45 degrees.
+inline constexpr double kDistinctCosine = 0.7071;
+
 /// What the stages share.
 struct PairSearch {
     View<const Vec3> x;       // [vertices] cloth positions [m]
@@ -20,6 +23,7 @@ struct PairSearch {
     const MeshCollider& mesh; // what the cloth is near to
     int collider;             // its number
     DetectSettings settings;
+    const SideMemory* sides = nullptr; // where each vertex belongs; null: not known
 };
 
 /// Appends to `out`, sorted by cloth vertex, then by distance.

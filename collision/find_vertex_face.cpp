@@ -7,9 +7,6 @@ namespace {
 /// Planes per cloth vertex: a corner needs three, more would only repeat them.
 constexpr size_t kMaxPlanes = 3;
 
-/// cos of the least angle between two planes of a vertex [-]: 45 degrees.
-constexpr double kDistinctCosine = 0.7071;
-
 /// Gradient of the signed distance: the direction between vertex and surface, turned outwards.
 Vec3 outward(const SurfacePoint& surface, const Vec3& x)
 {
@@ -33,6 +30,12 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
                        .feature = at.triangle});
     };
 
+    const size_t first = out.size();
+    const auto is_distinct = [&](const Vec3& n) {
+        return std::all_of(out.begin() + long(first), out.end(),
+                           [&](const ContactPair& kept) { return kept.normal.dot(n) < kDistinctCosine; });
+    };
+
     // The closest point: in front within the radius, behind down to the depth.
     const double radius = search.settings.radius;
     const double reach = std::max(radius, search.settings.max_depth);
@@ -40,22 +43,29 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
     if (!nearest)
         return;
     hint = nearest->triangle;
-    if (nearest->signed_distance >= radius || nearest->signed_distance <= -search.settings.max_depth)
+    thread_local std::vector<SurfacePoint> sheets;
+    sheets.clear();
+    if (search.sides != nullptr)
+        search.sides->find_behind(v, x, mesh, search.collider, search.settings.farthest_motion, sheets);
+    const bool is_caught = !sheets.empty();
+    const bool is_behind = nearest->signed_distance < 0.0;
+    if (is_behind ? !is_caught && nearest->distance() < search.settings.max_depth
+                  : nearest->distance() < radius)
+        add(*nearest);
+
+    // Sheets that it has come behind.
+    for (const SurfacePoint& sheet : sheets)
+        if (out.size() - first < kMaxPlanes && is_distinct(outward(sheet, x)))
+            add(sheet);
+    if (out.size() == first)
         return;
-    const size_t first = out.size();
-    add(*nearest);
 
     // Other sheets that the vertex stands in front of, each turned away from those before.
-    thread_local std::vector<SurfacePoint> sheets;
     mesh.surface().local_closest(x, radius, sheets, out[first].normal);
     for (const SurfacePoint& sheet : sheets) {
         if (out.size() - first == kMaxPlanes)
             break;
-        const Vec3 n = outward(sheet, x);
-        const bool is_distinct =
-            std::all_of(out.begin() + long(first), out.end(),
-                        [&](const ContactPair& kept) { return kept.normal.dot(n) < kDistinctCosine; });
-        if (sheet.signed_distance >= 0.0 && sheet.distance() < radius && is_distinct)
+        if (sheet.signed_distance >= 0.0 && sheet.distance() < radius && is_distinct(outward(sheet, x)))
             add(sheet);
     }
 }

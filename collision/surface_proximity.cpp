@@ -278,6 +278,28 @@ std::optional<SurfacePoint> SurfaceProximity::closest(const Vec3& p, double max_
     return surface_->surface_point(best, p);
 }
 
+SurfacePoint SurfaceProximity::closest_from(const Vec3& p, int triangle) const
+{
+    NearTriangle best{triangle, surface_->closest_on(triangle, p)};
+    for (int last = -1; last != best.triangle;) {
+        last = best.triangle;
+        const auto try_triangle = [&](int t) {
+            const ClosestOnTriangle candidate = surface_->closest_on(t, p);
+            if (candidate.distance2 < best.closest.distance2)
+                best = {t, candidate};
+        };
+        // Only triangles at the closest point can be nearer.
+        const TriangleFeature feature = best.closest.feature;
+        if (const int k = edge_of(feature); k >= 0)
+            for (const int t : surface_->edges.triangles.of(surface_->edges.triangle_edge[last][k]))
+                try_triangle(t);
+        else if (const int c = vertex_of(feature); c >= 0)
+            for (const int corner : surface_->edges.corners_of_vertex.of(surface_->triangles[last][c]))
+                try_triangle(corner / 3);
+    }
+    return surface_->surface_point(best, p);
+}
+
 void SurfaceProximity::local_closest(const Vec3& p, double radius, std::vector<SurfacePoint>& out,
                                      const Vec3& unlike) const
 {

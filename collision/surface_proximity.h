@@ -57,6 +57,10 @@ public:
                                         double max_distance = std::numeric_limits<double>::infinity(),
                                         int hint = -1) const;
 
+    /// The local minimum of the distance from p that a walk over the surface comes to: from triangle to
+    /// touching triangle, always nearer. Other sheets, however near, are not seen.
+    SurfacePoint closest_from(const Vec3& p, int triangle) const;
+
     /// Every local minimum of the distance from p to the surface within `radius` [m], nearest first, then by
     /// triangle: one for each sheet of the surface that passes by. Replaces the content of out.
     /// @param unlike  a unit vector: skips triangles whose face normal lies within kUnlikeCosine of it, which

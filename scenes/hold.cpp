@@ -108,7 +108,7 @@ void Hold::tie(const Obstacle& obstacle)
         return;
     for (const Vec3& x : start_) {
         const SurfacePoint at = *obstacle.partner().mesh->surface().closest(x);
-        const Mat3 frame = frame_of(obstacle.body().surface(), at.triangle);
+        const Mat3 frame = frame_of(obstacle.body().contact_surface(), at.triangle);
         Vec3 offset = frame.transpose() * (x - at.point);
         if (at.signed_distance < kLeastHeight) // starts inside: held on the skin, not under it
             offset = kLeastHeight * Vec3::UnitZ();
@@ -124,8 +124,8 @@ Vec3 Hold::target(int k, double t, const std::vector<Obstacle>& obstacles) const
     if (ties_.empty())
         return body.pose() * (shape_from_world_ * start_[k]);
     const SurfaceTie& tie = ties_[k];
-    return interpolate(body.surface(), tie.triangle, tie.barycentric) +
-           frame_of(body.surface(), tie.triangle) * tie.offset;
+    return interpolate(body.contact_surface(), tie.triangle, tie.barycentric) +
+           frame_of(body.contact_surface(), tie.triangle) * tie.offset;
 }
 
 } // namespace toile

@@ -11,7 +11,7 @@ Obstacle::Obstacle(const scene::Avatar& settings, double default_friction)
         shape_collider_ = std::make_unique<ShapeCollider>(*body_.shape(), body_.pose(), settings.name);
         return;
     }
-    const TriangleMesh& surface = body_.surface();
+    const TriangleMesh& surface = body_.contact_surface();
     mesh_ = {surface.triangles, surface.positions, surface.positions};
     mesh_collider_ = std::make_unique<MeshCollider>(mesh_);
 }
@@ -29,7 +29,7 @@ void Obstacle::advance_to(double t_t1)
         return;
     }
     mesh_.x_t0.swap(mesh_.x_t1);
-    mesh_.x_t1 = body_.surface().positions;
+    mesh_.x_t1 = body_.contact_surface().positions;
     mesh_collider_->move(mesh_);
 }
 

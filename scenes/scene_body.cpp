@@ -73,8 +73,19 @@ SceneBody::SceneBody(const scene::Avatar& settings)
         figure_ = make_figure(settings);
         surface_.triangles = figure_->mesh().triangles;
         start_surface_ = figure_->mesh().x_t1;
+        exclude_bones();
     }
     place();
+}
+
+void SceneBody::exclude_bones()
+{
+    if (settings_.exclude_bones.empty())
+        return;
+    const std::string user = "avatar \"" + settings_.name + "\": exclude_bones";
+    const std::vector<unsigned char> excluded =
+        figure_->avatar().faces_on_bones(settings_.exclude_bones, user);
+    contact_.emplace(surface_.triangles, excluded, int(start_surface_.size()), user);
 }
 
 bool SceneBody::advance_to(double t)
@@ -99,6 +110,8 @@ void SceneBody::place()
     surface_.positions.resize(start.size());
     for (size_t i = 0; i < start.size(); ++i)
         surface_.positions[i] = world_from_start * start[i];
+    if (contact_)
+        contact_->move(surface_.positions);
 }
 
 std::vector<SceneBody> make_bodies(const Scene& scene)

@@ -8,6 +8,7 @@
 
 #include "avatars/moving_avatar.h"
 #include "collision/shapes.h"
+#include "scenes/contact_surface.h"
 #include "scenes/format/scene.h"
 #include "scenes/rigid_motion.h"
 
@@ -17,7 +18,7 @@ namespace toile {
 class SceneBody {
 public:
     /// Loads the avatar and shows it at t = 0.
-    /// @throws InvalidInput for files and clips that do not work.
+    /// @throws InvalidInput for files, clips and bones that do not work.
     explicit SceneBody(const scene::Avatar& settings);
 
     const scene::Avatar& settings() const { return settings_; }
@@ -35,7 +36,17 @@ public:
     /// The surface at the time shown: of a shape a tessellation for pictures.
     const TriangleMesh& surface() const { return surface_; }
 
+    /// What cloth touches of it: all, but for faces of excluded bones (ContactSurface).
+    const TriangleMesh& contact_surface() const { return contact_ ? contact_->mesh() : surface_; }
+
+    /// The surface's number of a face of the contact surface, -1 where that is a lid over a cut.
+    int face_of(int contact_triangle) const
+    {
+        return contact_ ? contact_->face_of(contact_triangle) : contact_triangle;
+    }
+
 private:
+    void exclude_bones();
     void place();
 
     scene::Avatar settings_;
@@ -46,6 +57,7 @@ private:
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
     std::vector<Vec3> start_surface_; ///< [vertices] in the shape's own frame, or as the figure stands [m]
     TriangleMesh surface_;
+    std::optional<ContactSurface> contact_; ///< none: all of surface_
     double time_ = 0.0;
 };
 

@@ -31,7 +31,7 @@ AvatarCrossings find_avatar_crossings(const ScenePenetration& avatars, View<cons
         const PenetrationMeter* meter = avatars.meter(b);
         if (meter == nullptr)
             continue;
-        const TriangleMesh& surface = avatars.bodies()[size_t(b)].surface();
+        const TriangleMesh& surface = avatars.bodies()[size_t(b)].contact_surface();
         const std::vector<Crossing> crossings =
             find_crossings(triangles, x, surface.triangles, surface.positions);
         if (crossings.empty())

@@ -99,6 +99,7 @@ std::string to_json(const Certificate& certificate)
         {"version", TOILE_VERSION},
         {"cloths", cloths},
         {"cloths_left_out", certificate.left_out},
+        {"avatar_bones_left_out", certificate.excluded_bones},
         {"holds", certificate.holds()},
         {"frames", certificate.frames},
         {"frames_left_out", certificate.frames_left_out},
@@ -131,7 +132,11 @@ std::string summary_of(const Certificate& certificate)
     std::snprintf(text, sizeof text,
                   "certificate holds for %d frames: no crossings, %.3g mm deep at most, strain %.3g %%",
                   certificate.frames, 1e3 * certificate.worst.penetration, 1e2 * certificate.worst.strain);
-    return text;
+    std::string left_out;
+    for (const auto& [avatar, bones] : certificate.excluded_bones)
+        left_out += "; " + std::to_string(bones.size()) + (bones.size() == 1 ? " bone of " : " bones of ") +
+                    avatar + " left out";
+    return text + left_out;
 }
 
 } // namespace toile

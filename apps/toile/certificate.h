@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ struct FrameFindings {
     /// One of two triangles that cross.
     struct Side {
         std::string name; ///< of the cloth or avatar
-        int triangle;
+        int triangle;     ///< -1: a lid over faces of an avatar that are left out
     };
     struct Place {
         int frame;
@@ -57,6 +58,9 @@ struct Certificate {
     CertificateLimits limits;
     std::vector<Cloth> cloths;
     std::vector<std::string> left_out; ///< cloths of the scene whose caches were not given
+
+    /// By avatar: the bones whose faces nothing was measured against. Only avatars that have such bones.
+    std::map<std::string, std::vector<std::string>> excluded_bones;
 
     int frames = 0;
     int frames_left_out = 0; ///< of the longest cache, because a shorter one has none

@@ -137,8 +137,8 @@ void Examiner::find_all_avatar_crossings(int frame, FrameFindings& found) const
     if (crossings.clean.empty() || found.crossing)
         return;
     const auto& [body, first] = crossings.clean.front();
-    const std::string& name = avatars_.bodies()[size_t(body)].settings().name;
-    found.crossing = {frame, side(first.a), {name, first.b}, first.point};
+    const SceneBody& crossed = avatars_.bodies()[size_t(body)];
+    found.crossing = {frame, side(first.a), {crossed.settings().name, crossed.face_of(first.b)}, first.point};
 }
 
 /// The cloth that a triangle of the soup belongs to.
@@ -169,6 +169,10 @@ std::optional<Certificate> certify(const Scene& scene, const std::vector<CachedC
         if (std::none_of(cloths.begin(), cloths.end(),
                          [&](const CachedCloth& cached) { return cached.cloth->name == name; }))
             certificate.left_out.push_back(name);
+
+    for (const scene::Avatar& avatar : scene.avatars)
+        if (!avatar.exclude_bones.empty())
+            certificate.excluded_bones[avatar.name] = avatar.exclude_bones;
 
     for (int frame = 0; frame < examiner.frame_count(); ++frame) {
         certificate.add(examiner.examine(frame, frame * scene.frame_duration()));

@@ -25,16 +25,17 @@ double deepest_in(const SceneBody& solid, View<const Vec3> x, View<const Triangl
 ScenePenetration::ScenePenetration(const Scene& scene) : bodies_(make_bodies(scene))
 {
     for (const SceneBody& body : bodies_)
-        meters_.push_back(body.shape() != nullptr ? nullptr
-                                                  : std::make_unique<PenetrationMeter>(
-                                                        body.surface().triangles, body.surface().positions));
+        meters_.push_back(body.shape() != nullptr
+                              ? nullptr
+                              : std::make_unique<PenetrationMeter>(body.contact_surface().triangles,
+                                                                   body.contact_surface().positions));
 }
 
 void ScenePenetration::advance_to(double t)
 {
     for (size_t b = 0; b < bodies_.size(); ++b)
         if (bodies_[b].advance_to(t) && meters_[b])
-            meters_[b]->move(bodies_[b].surface().positions);
+            meters_[b]->move(bodies_[b].contact_surface().positions);
 }
 
 ScenePenetration::Depth ScenePenetration::measure(View<const Vec3> x, View<const Triangle> triangles,

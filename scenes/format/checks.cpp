@@ -112,6 +112,8 @@ void check_avatar_motion(const Document& document, const std::string& place, con
         document.refuse(below(place, "keyframes"),
                         "an animated figure is not moved by keyframes; remove them " +
                             std::string("or the clip"));
+    if (!avatar.exclude_bones.empty() && !is_figure)
+        document.refuse(below(place, "exclude_bones"), "a shape has no bones");
     if (avatar.unit && !from_file)
         document.refuse(below(place, "unit"), "only a file has a unit; lengths here are in metres");
 }

@@ -104,6 +104,8 @@ void describe(V& v, Avatar& a)
     v.field("start", a.start, kTime, "Time in the clip at which it begins.");
     v.field("preroll", a.preroll, "How the figure comes from rest into its clip.");
     v.field("keyframes", a.keyframes, "Moves a shape or a body without animation.");
+    v.field("exclude_bones", a.exclude_bones,
+            "Cloth passes through what follows these bones of the figure, or bones below them; it is drawn.");
     v.field("friction", a.friction, between(0.0, 10.0), "Coulomb coefficient; absent: contact.friction.");
     v.field("color", a.color, kColor, "Red, green, blue in pictures.");
 }

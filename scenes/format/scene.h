@@ -94,8 +94,9 @@ struct Avatar {
     double start = 0.0;           ///< [s] of the clip at which it begins
     Preroll preroll;
     std::vector<Keyframe> keyframes;
-    std::optional<double> friction;      ///< [-] Coulomb coefficient; absent: Contact::friction
-    Vec3 color = Vec3(0.78, 0.72, 0.66); ///< [-] sRGB
+    std::vector<std::string> exclude_bones; ///< cloth passes through what follows these
+    std::optional<double> friction;         ///< [-] Coulomb coefficient; absent: Contact::friction
+    Vec3 color = Vec3(0.78, 0.72, 0.66);    ///< [-] sRGB
 };
 
 // --- cloths ---------------------------------------------------------------------------------------------

@@ -77,5 +77,27 @@ TEST(AvatarCrossings, BuriedTrianglesAreNot)
     EXPECT_EQ(found.elsewhere, 1);
 }
 
+TEST(AvatarCrossings, FacesOfExcludedBonesAreNotThere)
+{
+    // The column's tip begins at y = 0.5, where a lid closes the base.
+    const std::string file = std::string(TOILE_SOURCE_DIR) + "/tests/avatars/bending_column.gltf";
+    const auto crossings = [&](const std::string& bones, const Vec3& place) {
+        const Scene scene = parse_scene(R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "disc": {}}],
+            "avatars": [{"name": "b", "file": ")" +
+                                            file + R"(", "exclude_bones": )" + bones + "}]}",
+                                        "column.json");
+        const std::vector<Vec3> x{place + Vec3(-0.01, 0.01, 0.0), place + Vec3(0.01, 0.01, 0.001),
+                                  place + Vec3(0.0003, -0.01, 0.0)};
+        return find_avatar_crossings(ScenePenetration(scene), std::vector<Triangle>{Triangle(0, 1, 2)}, x)
+            .clean.size();
+    };
+    const Vec3 tip(0.1, 0.8, 0.02), base(0.1, 0.2, 0.03), lid(0.02, 0.5, 0.03);
+    EXPECT_EQ(crossings("[]", tip), 1u);
+    EXPECT_EQ(crossings("[\"tip\"]", tip), 0u);
+    EXPECT_EQ(crossings("[\"tip\"]", base), 1u);
+    EXPECT_EQ(crossings("[]", lid), 0u);
+    EXPECT_EQ(crossings("[\"tip\"]", lid), 1u);
+}
+
 } // namespace
 } // namespace toile

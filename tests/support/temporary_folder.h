@@ -57,7 +57,7 @@ private:
 };
 
 /// A test with a folder of its own.
-class FileTest : public testing::Test {
+class FileTest : public ::testing::Test {
 protected:
     std::filesystem::path file(const std::string& name) const { return folder_ / name; }
 

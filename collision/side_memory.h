@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collision/colliders.h"
+
+namespace toile {
+
+/// Which sheets of moving meshes each cloth vertex is in front of. Where body parts close on cloth until they
+/// overlap, the vertex is behind several sheets at once and the nearest surface says nothing about where it
+/// belongs: what it was in front of before does.
+class SideMemory {
+public:
+    /// A vertex can be caught by no more: as many as planes in a corner.
+    static constexpr int kMostSides = 3;
+
+    /// A sheet is remembered once it is this near [m]. Parts that close faster than this in a step pass
+    /// unseen.
+    static constexpr double kReach = 0.02;
+
+    /// Deeper behind a sheet [m] than this it is forgotten: the walk along the surface has lost its place.
+    static constexpr double kDeepest = 0.1;
+
+    explicit SideMemory(int vertex_count) : sides_(size_t(vertex_count)) {}
+
+    void forget() { std::fill(sides_.begin(), sides_.end(), Sides{}); }
+
+    /// Learns at the end of a step. A sheet that the vertex is behind by now is kept; new ones are those it
+    /// is in front of. O(vertices) queries; none for a mesh that never moved.
+    /// @param x         [vertices] cloth at t1 [m]
+    /// @param collider  number of the mesh
+    void learn(View<const Vec3> x, const MeshCollider& mesh, int collider);
+
+    /// The places of the remembered sheets of a mesh at t1 that x, vertex v of the cloth, is behind, but for
+    /// sheets that moved faster than `farthest` [m] in the step: those were replaced. Replaces the content of
+    /// out.
+    void find_behind(int v, const Vec3& x, const MeshCollider& mesh, int collider, double farthest,
+                     std::vector<SurfacePoint>& out) const;
+
+private:
+    struct Side {
+        int collider = -1; ///< -1: none
+        int triangle = -1; ///< where the sheet was nearest
+    };
+    using Sides = std::array<Side, kMostSides>;
+
+    Sides learnt(int v, const Vec3& x, const MeshCollider& mesh, int collider) const;
+
+    std::vector<Sides> sides_; ///< [vertices]
+};
+
+} // namespace toile

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+
+namespace toile {
+
+/// What cloth touches of a body some of whose faces are left out: the other faces, and over every hole that
+/// leaving out has cut a flat lid, so that a solid stays a solid with an inside.
+///
+///        ___________              ________
+///     __/ arm  hand \     ->   __/ arm   |  lid: a fan around the mean of the hole's border
+///       \___________/            \_______|
+///
+/// Borders that the body had before stay open.
+class ContactSurface {
+public:
+    /// @param triangles     [triangles x 3] of the whole body
+    /// @param excluded      [triangles] 1 for faces that are left out
+    /// @param vertex_count  of the whole body
+    /// @param user          named in errors
+    /// @throws InvalidInput when no face is left
+    ContactSurface(View<const Triangle> triangles, View<const unsigned char> excluded, int vertex_count,
+                   const std::string& user);
+
+    /// Follows the body. O(vertices)
+    /// @param x  [vertices] of the whole body [m]
+    void move(View<const Vec3> x);
+
+    /// Remaining faces in their order, then those of the lids. Vertices are those of the whole body, then the
+    /// lids' middles.
+    const TriangleMesh& mesh() const { return mesh_; }
+
+    /// The whole body's number of a face of mesh(), -1 for one of a lid.
+    int face_of(int triangle) const { return triangle < int(face_.size()) ? face_[size_t(triangle)] : -1; }
+
+private:
+    using Edge = std::array<int, 2>;
+
+    void close_holes(const std::vector<Edge>& border, int vertex_count);
+
+    TriangleMesh mesh_;
+    std::vector<int> face_;              ///< [remaining faces]
+    std::vector<std::vector<int>> rims_; ///< [lids] vertices around each, ascending
+};
+
+} // namespace toile
