@@ -67,8 +67,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std
                  std::vector<ContactPartner> partners, const Settings& settings)
     : cloths_(std::move(cloths)), rigid_(rigid_bodies_of(cloths_)), partners_(std::move(partners)),
       settings_(settings), detector_(triangles, positions), carried_(positions.size()),
-      detected_at_(positions.size()), nearest_(positions.size()),
-      sides_(positions.size()),
+      detected_at_(positions.size()), nearest_(positions.size()), sides_(positions.size()),
       altitude_(shortest_altitudes(triangles, positions))
 {
     for (int c = 0; c < int(cloths_.size()); ++c) {

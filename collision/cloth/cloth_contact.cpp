@@ -15,10 +15,14 @@ namespace {
 constexpr double kMoreThanBefore = 1.5;
 constexpr double kShrinking = 0.8;
 
-/// Bounds of that, of the mean edge [-]: cloth that strays farther is looked at again, which costs less than
-/// ever more pairs for all.
-constexpr double kMostSlack = 0.1;
-constexpr double kLeastSlack = 0.03;
+/// Bounds of that, of the mean edge and of the largest thickness [-], the smaller of both: cloth that strays
+/// farther is looked at again, which costs less than ever more pairs for all. In a stack of layers a slack of
+/// many thicknesses makes pairs of every layer with as many others.
+constexpr double kMostSlack = 0.1, kMostLayers = 1.0;
+constexpr double kLeastSlack = 0.03, kLeastLayers = 0.25;
+
+/// Missing distance, of the mean edge [-], up to which cloth in a pinch gives way.
+constexpr double kMostDeflection = 0.1;
 
 /// Distance that cloth is held back by, of the mean edge [-], for which it is not looked again.
 constexpr double kHeldAside = 0.02;
@@ -47,7 +51,7 @@ double mean_edge(View<const Triangle> triangles, View<const Vec3> x, const std::
 SafeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double edge)
 {
     SafeStep::Settings settings;
-    settings.most_deflection = kMostSlack * edge;
+    settings.most_deflection = kMostDeflection * edge;
     settings.thickness = std::numeric_limits<double>::max();
     for (const ContactCloth& cloth : cloths)
         settings.thickness = std::min(settings.thickness, cloth.thickness);
@@ -80,8 +84,7 @@ ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> posi
       near_(triangles, positions, rigid_bodies_of(cloths)),
       exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
       safe_(near_, exempt_, settings_for(cloths, edge_), rigid_ways_of(cloths)),
-      slack_(positions.size(), kLeastSlack * edge_), deviation_(positions.size(), Vec3::Zero()),
-      motion_(positions.size())
+      deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())
 {
     for (const ContactCloth& cloth : cloths) {
         thickest_ = std::max(thickest_, cloth.thickness);
@@ -91,6 +94,9 @@ ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> posi
         for (last += cloths[c].vertex_count; v < last; ++v)
             if (!cloths[c].is_rigid)
                 half_thickness_[v] = std::min(half_thickness_[v], 0.25 * altitude[v]);
+    least_slack_ = std::min(kLeastSlack * edge_, kLeastLayers * thickest_);
+    most_slack_ = std::min(kMostSlack * edge_, kMostLayers * thickest_);
+    slack_.assign(positions.size(), least_slack_);
 }
 
 void ClothContact::begin_step(View<const Vec3> x, View<const Vec3> prediction,
@@ -213,13 +219,13 @@ void ClothContact::end_step(View<const Vec3> x)
 
 double ClothContact::bounded_slack(double slack) const
 {
-    return std::clamp(slack, kLeastSlack * edge_, kMostSlack * edge_);
+    return std::clamp(slack, least_slack_, most_slack_);
 }
 
 void ClothContact::forget()
 {
     std::fill(deviation_.begin(), deviation_.end(), Vec3::Zero());
-    std::fill(slack_.begin(), slack_.end(), kLeastSlack * edge_);
+    std::fill(slack_.begin(), slack_.end(), least_slack_);
 }
 
 } // namespace toile

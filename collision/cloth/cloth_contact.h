@@ -59,7 +59,8 @@ private:
     bool has_slid(View<const Vec3> x) const;
     double bounded_slack(double slack) const;
 
-    double edge_; ///< [m] mean
+    double edge_;                                 ///< [m] mean
+    double least_slack_ = 0.0, most_slack_ = 0.0; ///< [m]
     NearPairs near_;
     ExemptPairs exempt_;
     SafeStep safe_;

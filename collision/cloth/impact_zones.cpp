@@ -36,9 +36,12 @@ void ImpactZones::join(int a, int b)
     parent_[child] = root;
     Sum& sum = sum_[root];
     const Sum& other = sum_[child];
-    if (other.is_held && !sum.is_held)
+    if (sum.is_held && other.is_held) {
+        if (other.way.squaredNorm() < sum.way.squaredNorm())
+            sum = other;
+    } else if (other.is_held) {
         sum = other;
-    else if (other.is_held == sum.is_held) {
+    } else if (!sum.is_held) {
         sum.way += other.way;
         sum.weight += other.weight;
     }

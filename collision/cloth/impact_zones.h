@@ -17,8 +17,8 @@ class ImpactZones {
 public:
     /// Every vertex by itself, with all of its way.
     /// @param ways  [vertices] [m]; borrowed
-    /// @param held  [vertices] 1 where the way is prescribed: a zone goes where its held vertices do;
-    /// borrowed
+    /// @param held  [vertices] 1 where the way is prescribed: a zone goes where its held vertices do,
+    /// with the slowest where they disagree; borrowed
     void reset(View<const Vec3> ways, View<const unsigned char> held);
 
     /// @param way     of all of a body whose first vertex is v [m]
@@ -38,7 +38,7 @@ public:
     Vec3 motion(int v); ///< of v, a vertex of cloth [m]
 
 private:
-    /// Weighted sum of the ways of a zone: of its held vertices, where it has any, else of all.
+    /// Weighted sum of the ways of a zone; the way of its slowest held vertex where it has any.
     struct Sum {
         Vec3 way;
         double weight;
