@@ -4,8 +4,9 @@
 
 namespace toile {
 
-void ImpactZones::reset(View<const Vec3> ways, View<const unsigned char> held)
+void ImpactZones::reset(View<const Vec3> ways, View<const unsigned char> held, double slow)
 {
+    slow_ = slow;
     ways_ = ways;
     held_ = held;
     share_.assign(ways.size(), 1.0);
@@ -50,7 +51,8 @@ void ImpactZones::join(int a, int b)
 Vec3 ImpactZones::common(int v)
 {
     const Sum& sum = sum_[zone(v)];
-    return sum.way / sum.weight;
+    const Vec3 common = sum.way / sum.weight;
+    return common.norm() < slow_ ? Vec3(Vec3::Zero()) : common;
 }
 
 Vec3 ImpactZones::motion(int v)

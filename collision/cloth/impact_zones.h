@@ -19,7 +19,8 @@ public:
     /// @param ways  [vertices] [m]; borrowed
     /// @param held  [vertices] 1 where the way is prescribed: a zone goes where its held vertices do,
     /// with the slowest where they disagree; borrowed
-    void reset(View<const Vec3> ways, View<const unsigned char> held);
+    /// @param slow  [m] zones that would go less far stay: cloth at rest would creep
+    void reset(View<const Vec3> ways, View<const unsigned char> held, double slow);
 
     /// @param way     of all of a body whose first vertex is v [m]
     /// @param weight  against that of a vertex of cloth [-]
@@ -47,6 +48,7 @@ private:
 
     int zone(int v);
 
+    double slow_ = 0.0; ///< [m]
     View<const Vec3> ways_;
     View<const unsigned char> held_;
     std::vector<double> share_, next_share_; ///< [vertices]

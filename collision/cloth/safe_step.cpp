@@ -24,8 +24,8 @@ constexpr int kDeflections = 4;
 constexpr int kSweeps = 3;
 constexpr double kMoreThanLeast = 1.1;
 
-/// Ways, of the largest deflection [-], below which cloth may as well be stopped: giving way, cloth at rest
-/// would creep.
+/// Ways, of the largest deflection [-], below which cloth may as well be stopped: giving way or taken along by
+/// its zone, cloth at rest would creep.
 constexpr double kSlow = 0.5;
 
 /// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way
@@ -183,7 +183,7 @@ double SafeStep::mobility_of(const NearPair& pair, bool is_first_side) const
 /// motion_ of all vertices, from pair_share_.
 void SafeStep::find_shares()
 {
-    zones_.reset(way_, fixed_);
+    zones_.reset(way_, fixed_, kSlow * settings_.most_deflection);
     bodies_.begin(base_, way_);
     for (int body = 0; body < bodies_.count(); ++body)
         zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));

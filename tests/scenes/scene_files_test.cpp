@@ -92,14 +92,14 @@ int read_all(const std::filesystem::path& folder)
 TEST(SceneFiles, ReadsTheDemoScenes)
 {
     EXPECT_EQ(read_all(kSource / "scenes/demo"), 2);
-    EXPECT_EQ(read_all(kSource / "scenes/contact"), 3);
+    EXPECT_EQ(read_all(kSource / "scenes/contact"), 7);
 }
 
 TEST(SceneFiles, ReadsTheScenesOfRealData)
 {
     if (!std::filesystem::is_directory(TOILE_DATA_DIR))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no data";
-    EXPECT_EQ(read_all(kSource / "scenes/data"), 8);
+    EXPECT_EQ(read_all(kSource / "scenes/data"), 9);
 }
 
 TEST(SceneFiles, TheRoundTableIsClosedAndStandsOnTheFloor)
