@@ -24,8 +24,8 @@ constexpr int kDeflections = 4;
 constexpr int kSweeps = 3;
 constexpr double kMoreThanLeast = 1.1;
 
-/// Ways, of the largest deflection [-], below which cloth may as well be stopped: giving way or taken along by
-/// its zone, cloth at rest would creep.
+/// Ways, of the largest deflection [-], below which cloth may as well be stopped: giving way or taken along
+/// by its zone, cloth at rest would creep.
 constexpr double kSlow = 0.5;
 
 /// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way

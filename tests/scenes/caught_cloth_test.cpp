@@ -115,8 +115,8 @@ void record(const Outcome& outcome)
     ::testing::Test::RecordProperty("strain", std::to_string(outcome.strain_caught));
 }
 
-/// Out of the body, hardly faster than recovery (1 m/s) alone makes it (it falls too), and never torn: cotton's limit is
-/// .06.
+/// Out of the body, hardly faster than recovery (1 m/s) alone makes it (it falls too), and never torn:
+/// cotton's limit is .06.
 void expect_free(const Outcome& outcome)
 {
     record(outcome);
