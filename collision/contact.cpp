@@ -160,15 +160,6 @@ void Contact::find_colliders(View<const Vec3> at, double radius, std::vector<Con
     }
 }
 
-bool Contact::make_feasible(View<Vec3> x) const
-{
-    bool moved = false;
-    for (int i = 0; i < int(energy_.terms().size()); ++i)
-        if (const double depth = -energy_.gap(i, x) - energy_.terms()[i].give; depth > 0.0)
-            moved = push(energy_.terms()[i].pair, depth * energy_.terms()[i].pair.normal, x) || moved;
-    return moved;
-}
-
 double Contact::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
 {
     return energy_.terms().empty() ? 0.0 : energy_.add_gradient(x, gradient);
@@ -258,15 +249,6 @@ void Contact::end_step(View<const Vec3> x)
             sides_.learn(x, *partners_[c].mesh, c);
     if (between_)
         between_->end_step(x);
-}
-
-double Contact::deepest(View<const Vec3> x) const
-{
-    double depth = 0.0;
-    for (int i = 0; i < int(energy_.terms().size()); ++i)
-        if (!energy_.terms()[i].pair.is_between_cloths())
-            depth = std::max(depth, -energy_.gap(i, x) - energy_.terms()[i].give);
-    return depth;
 }
 
 /// Looks where the cloth has come to and moves it out of what is still inside there. This correction does not

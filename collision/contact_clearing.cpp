@@ -55,6 +55,24 @@ bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) 
     return true;
 }
 
+bool Contact::make_feasible(View<Vec3> x) const
+{
+    bool moved = false;
+    for (int i = 0; i < int(energy_.terms().size()); ++i)
+        if (const double depth = -energy_.gap(i, x) - energy_.terms()[i].give; depth > 0.0)
+            moved = push(energy_.terms()[i].pair, depth * energy_.terms()[i].pair.normal, x) || moved;
+    return moved;
+}
+
+double Contact::deepest(View<const Vec3> x) const
+{
+    double depth = 0.0;
+    for (int i = 0; i < int(energy_.terms().size()); ++i)
+        if (!energy_.terms()[i].pair.is_between_cloths())
+            depth = std::max(depth, -energy_.gap(i, x) - energy_.terms()[i].give);
+    return depth;
+}
+
 /// Takes back what slips, as far as friction holds it, and pushes out at once: pairs that share a vertex
 /// share its depth. Velocities obey the same law by themselves: a method of many substeps ends faster than it
 /// has moved.
