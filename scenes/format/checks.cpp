@@ -10,6 +10,7 @@
 
 #include "garment/fabric/fabric.h"
 #include "scenes/format/field.h"
+#include "scenes/format/names.h"
 #include "scenes/format/scene_fabric.h"
 
 namespace toile::scene_format {
@@ -20,51 +21,6 @@ using namespace scene;
 
 /// Vertices of one generated cloth above which a typing error is more likely than patience.
 constexpr double kMostVertices = 5e6;
-
-template <typename Object>
-std::vector<std::string> names_of(const std::vector<Object>& objects)
-{
-    std::vector<std::string> names;
-    names.reserve(objects.size());
-    for (const Object& object : objects)
-        names.push_back(object.name);
-    return names;
-}
-
-bool holds(const std::vector<std::string>& names, const std::string& name)
-{
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// "no cloth is named "skrit"; did you mean "skirt"?"
-void require_known(const Document& document, const std::string& place, const std::string& kind,
-                   const std::string& name, const std::vector<std::string>& names)
-{
-    if (holds(names, name))
-        return;
-    const std::string near = did_you_mean(name, names);
-    const std::string known =
-        names.empty() ? "; the scene has none" : "; known are " + enumerate(names, "and");
-    document.refuse(place, "no " + kind + " is named " + as_written(name) + (near.empty() ? known : near));
-}
-
-/// Names go into messages and file names: letters, digits, _ and -; unique within their list.
-template <typename Object>
-void check_names(const Document& document, const std::string& list, const std::vector<Object>& objects)
-{
-    std::set<std::string> seen;
-    for (size_t i = 0; i < objects.size(); ++i) {
-        const std::string& name = objects[i].name;
-        const std::string place = below(below(list, i), "name");
-        const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
-            return std::isalnum(c) != 0 || c == '_' || c == '-';
-        });
-        if (name.empty() || !plain)
-            document.refuse(place, as_written(name) + " can't name a file; use letters, digits, _ and -");
-        if (!seen.insert(name).second)
-            document.refuse(place, as_written(name) + " is taken by an earlier entry; choose another name");
-    }
-}
 
 void check_keyframes(const Document& document, const std::string& place, const std::vector<Keyframe>& frames)
 {
@@ -120,7 +76,7 @@ void check_avatar_motion(const Document& document, const std::string& place, con
 
 void check_avatars(const Document& document, const Scene& scene)
 {
-    check_names(document, "avatars", scene.avatars);
+    check_names(document, "avatars", names_of(scene.avatars));
     for (size_t i = 0; i < scene.avatars.size(); ++i) {
         const Avatar& avatar = scene.avatars[i];
         const std::string place = below("avatars", i);
@@ -165,7 +121,7 @@ void check_cloths(const Document& document, const Scene& scene)
 {
     if (scene.cloths.empty() && scene.solids.empty())
         document.refuse("cloths", "the list is empty; add a cloth");
-    check_names(document, "cloths", scene.cloths);
+    check_names(document, "cloths", names_of(scene.cloths));
     for (size_t i = 0; i < scene.cloths.size(); ++i) {
         const Cloth& cloth = scene.cloths[i];
         const std::string place = below("cloths", i);
@@ -186,7 +142,7 @@ void check_cloths(const Document& document, const Scene& scene)
 /// Their names are those of caches and of friction pairs, so no cloth or avatar has them.
 void check_solids(const Document& document, const Scene& scene)
 {
-    check_names(document, "solids", scene.solids);
+    check_names(document, "solids", names_of(scene.solids));
     const std::vector<std::string> cloths = names_of(scene.cloths), avatars = names_of(scene.avatars);
     for (size_t i = 0; i < scene.solids.size(); ++i) {
         const Solid& solid = scene.solids[i];

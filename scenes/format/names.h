@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenes/format/document.h"
+
+/// Names within a scene: what its objects are called, and whether what is referred to exists.
+namespace toile::scene_format {
+
+/// Of objects with a name, in their order.
+template <typename Object>
+std::vector<std::string> names_of(const std::vector<Object>& objects)
+{
+    std::vector<std::string> names;
+    names.reserve(objects.size());
+    for (const Object& object : objects)
+        names.push_back(object.name);
+    return names;
+}
+
+bool holds(const std::vector<std::string>& names, const std::string& name);
+
+/// @throws InvalidInput when `name` is not in `names`: no cloth is named "skrit"; did you mean "skirt"?
+void require_known(const Document& document, const std::string& place, const std::string& kind,
+                   const std::string& name, const std::vector<std::string>& names);
+
+/// Names go into messages and file names: letters, digits, _ and -; unique within their list.
+/// @throws InvalidInput for the first name that is not.
+void check_names(const Document& document, const std::string& list, const std::vector<std::string>& names);
+
+} // namespace toile::scene_format
