@@ -38,6 +38,7 @@ std::vector<Rubbing> rubbing_of(const Scene& scene, const std::vector<SceneCloth
                                 const SceneSolids* solids)
 {
     std::vector<Rubbing> all;
+    all.reserve(cloths.size() + (solids ? solids->count() : 0));
     for (const SceneCloth& cloth : cloths)
         all.push_back({cloth_named(scene, cloth.state().name).fabric, std::nullopt});
     for (int i = 0; solids && i < solids->count(); ++i)

@@ -114,6 +114,7 @@ private:
     void read(const Json& json, const std::string& place, E& value)
     {
         std::vector<std::string> words;
+        words.reserve(std::size(Words<E>::kAll));
         for (const auto& entry : Words<E>::kAll)
             words.emplace_back(entry.first);
         value = Words<E>::kAll[read_word(document_, json, place, words)].second;
