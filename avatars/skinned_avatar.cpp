@@ -47,6 +47,13 @@ int require_bone(const Skeleton& skeleton, const std::string& name, const std::s
     throw InvalidInput(user + ": " + source + " has no bone '" + name + "'; " + suggestion(name, names));
 }
 
+[[noreturn]] void refuse_bare_bone(const std::string& name, const std::string& source,
+                                   const std::string& user)
+{
+    throw InvalidInput(user + ": no face of " + source + " follows bone '" + name +
+                       "' or one below it; name a bone that moves skin, or remove it");
+}
+
 /// The joint and all below it. [joints]
 std::vector<unsigned char> branch_of(const Skeleton& skeleton, int root)
 {
@@ -129,8 +136,7 @@ std::vector<unsigned char> SkinnedAvatar::faces_on_bones(const std::vector<std::
         const std::vector<unsigned char> is_in =
             branch_of(model_.skeleton, require_bone(model_.skeleton, name, source(), user));
         if (std::none_of(joint_of.begin(), joint_of.end(), [&](int joint) { return is_in[joint] != 0; }))
-            throw InvalidInput(user + ": no face of " + source() + " follows bone '" + name +
-                               "' or one below it; name a bone that moves skin, or remove it");
+            refuse_bare_bone(name, source(), user);
         for (size_t t = 0; t < marked.size(); ++t)
             if (is_in[joint_of[t]] != 0)
                 marked[t] = 1;

@@ -1,15 +1,10 @@
 #include "scenes/cloth_group.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "collision/crossings/find_crossings.h"
-#include "core/linear/block_diagonal_solver.h"
 #include "core/linear/field.h"
-#include "core/pd/body.h"
-#include "core/pd/sliced_energy.h"
 #include "scenes/contact_setup.h"
-#include "scenes/method_choice.h"
 
 namespace toile {
 
@@ -19,103 +14,7 @@ namespace {
 /// turning point.
 constexpr double kSleepDelay = 0.5;
 
-/// The options as one cloth's solver sees them.
-TableSource source_of_tables(const WorldOptions& options, const std::string& cloth)
-{
-    TableSource source;
-    if (options.tables)
-        source.store = options.tables;
-    if (options.building)
-        source.listener.progress = [building = options.building, cloth](double share) {
-            return building(cloth, share);
-        };
-    source.listener.warn = options.warn;
-    return source;
-}
-
 } // namespace
-
-ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
-                       std::unique_ptr<SceneSolids> solids, const std::vector<Obstacle>& obstacles,
-                       const WorldOptions& options)
-    : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), solids_(std::move(solids)), first_{0}
-{
-    for (const SceneCloth& cloth : cloths_)
-        first_.push_back(first_.back() + cloth.vertex_count());
-    for (size_t i = 0; i < cloths_.size(); ++i)
-        for (const Triangle& t : cloths_[i].state().triangles)
-            triangles_.push_back(t + Triangle::Constant(first_[i]));
-    if (solids_)
-        solids_->append_triangles(first_.back(), triangles_);
-    body_ = is_rival(scene.solver.method) ? make_rival(scene.solver, positions(), cloths_.front().model())
-                                          : make_body(scene, options);
-    contact_ = make_contact(scene, obstacles);
-    if (solids_)
-        rigid_contact_ = std::make_unique<RigidActiveSet>(*contact_, solids_->bodies(), first_.back());
-    std::vector<JointProjection::Part> limits;
-    for (size_t i = 0; i < cloths_.size(); ++i)
-        limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
-    limits_ = std::make_unique<JointProjection>(std::move(limits));
-    const size_t unknowns = body_->positions().size();
-    fixed_.assign(unknowns, 0);
-    targets_.assign(unknowns, Vec3::Zero());
-    acceleration_.assign(unknowns, Vec3::Zero());
-    if (solids_)
-        for (int i = 0; i < solids_->count(); ++i)
-            acceleration_[first_.back() + 2 * i] = scene.gravity;
-}
-
-/// Projective dynamics: every term is an energy, every cloth keeps its own solver.
-std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const WorldOptions& options)
-{
-    std::vector<double> masses;
-    std::vector<std::shared_ptr<Energy>> energies;
-    std::vector<BlockDiagonalSolver::Block> blocks;
-    for (size_t i = 0; i < cloths_.size(); ++i) {
-        SceneCloth& cloth = cloths_[i];
-        masses.insert(masses.end(), cloth.masses().begin(), cloth.masses().end());
-        for (auto& energy : cloth.make_energies())
-            energies.push_back(cloths_.size() == 1 && !solids_
-                                   ? energy
-                                   : std::make_shared<SlicedEnergy>(energy, first_[i], cloth.vertex_count()));
-        const ClothState& state = cloth.state();
-        blocks.push_back(
-            {cloth.vertex_count(),
-             make_global_solver(scene.solver.method, cloth.rest_shape(), {state.positions, state.triangles},
-                                cloth.source(), source_of_tables(options, state.name))});
-    }
-    std::vector<Vec3> unknowns = positions();
-    if (solids_) {
-        const std::vector<double> own = solids_->bodies().masses();
-        masses.insert(masses.end(), own.begin(), own.end());
-        unknowns.resize(masses.size(), Vec3::Zero()); // begin_solids() fills them in
-        blocks.push_back({int(own.size()), std::make_unique<DirectSolver>()});
-    }
-    std::unique_ptr<GlobalSolver> solver;
-    if (blocks.size() == 1)
-        solver = std::move(blocks.front().solver);
-    else
-        solver = std::make_unique<BlockDiagonalSolver>(std::move(blocks));
-
-    Body::Settings settings;
-    settings.tolerance = scene.solver.tolerance;
-    settings.max_iterations = scene.solver.max_iterations;
-    settings.outer = scene.solver.outer;
-    settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
-    return std::make_unique<Body>(
-        std::move(unknowns),
-        std::make_unique<System>(std::move(masses), std::move(energies), std::move(solver)), settings);
-}
-
-std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles)
-{
-    const Contact::Settings settings = contact_settings(scene);
-    if (obstacles.empty() && !settings.cloth_with_cloth)
-        return nullptr;
-    return std::make_unique<Contact>(triangles_, surfaces(),
-                                     contact_cloths(scene, cloths_, solids_.get(), obstacles),
-                                     contact_partners(obstacles), settings);
-}
 
 std::vector<Vec3> ClothGroup::positions() const
 {
