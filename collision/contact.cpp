@@ -23,6 +23,9 @@ constexpr double kTrust = 0.007;
 constexpr double kEndTrust = 0.002;
 constexpr double kLeftOver = 1e-4;
 
+/// Distance on top of the gap, of the gap [-], up to which cloth counts as lying on a collider.
+constexpr double kLeaning = 0.25;
+
 /// Margin [m] of a second look within a step, on top of the gap.
 constexpr double kRevisionMargin = 0.003;
 
@@ -177,7 +180,7 @@ bool Contact::revise(View<Vec3> x)
     if (energy_.terms().empty() && !between_)
         return false;
     const bool friction_changed = update_normal_forces(x);
-    const bool has_new_pairs = between_ && between_->advance(x);
+    const bool has_new_pairs = between_ && between_->advance(x, leaning(x));
     if (has_new_pairs || slid_away(x, kTrust)) {
         remember_start();
         detect(x, largest_gap_ + kRevisionMargin);
@@ -265,13 +268,26 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
     push_out(x);
 }
 
+/// Cloth that lies on a collider, or is in it: 1 for each such vertex.
+std::vector<unsigned char> Contact::leaning(View<const Vec3> x) const
+{
+    std::vector<unsigned char> leans(x.size(), 0);
+    for (int i = 0; i < int(energy_.terms().size()); ++i) {
+        const ContactPair& pair = energy_.terms()[i].pair;
+        if (!pair.is_between_cloths() && energy_.gap(i, x) <= kLeaning * gap_of(pair))
+            for (int k = 0; k < pair.count(); ++k)
+                leans[pair.vertex[k]] = 1;
+    }
+    return leans;
+}
+
 /// What would have crossed stops: it loses the velocity that it was to have got there.
 void Contact::keep_apart(View<Vec3> x, View<Vec3> v)
 {
     if (!between_)
         return;
     const std::vector<Vec3> wanted(x.begin(), x.end());
-    if (!between_->hold_back(x))
+    if (!between_->hold_back(x, leaning(x)))
         return;
     for (int i = 0; i < x.size(); ++i)
         v[i] += (x[i] - wanted[i]) / start_.dt;

@@ -91,6 +91,7 @@ private:
     };
 
     void carry_with_colliders();
+    std::vector<unsigned char> leaning(View<const Vec3> x) const;
     void detect(View<const Vec3> at, double radius);
     void find_colliders(View<const Vec3> at, double radius, std::vector<ContactPair>& pairs);
     void make_terms(const std::vector<ContactPair>& pairs);

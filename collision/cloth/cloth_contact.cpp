@@ -175,10 +175,10 @@ std::optional<ContactPair> ClothContact::pressing_pair(const NearPair& now) cons
     return pair;
 }
 
-bool ClothContact::advance(View<Vec3> x)
+bool ClothContact::advance(View<Vec3> x, View<const unsigned char> leans)
 {
     const std::vector<Vec3> wanted(x.begin(), x.end());
-    const double held = safe_.limit(x);
+    const double held = safe_.limit(x, leans);
     if (held <= kHeldAside * edge_ && !has_slid(x))
         return false;
     for (int v = 0; v < x.size(); ++v) {
@@ -189,7 +189,10 @@ bool ClothContact::advance(View<Vec3> x)
     return true;
 }
 
-bool ClothContact::hold_back(View<Vec3> x) { return safe_.limit(x) > 0.0; }
+bool ClothContact::hold_back(View<Vec3> x, View<const unsigned char> leans)
+{
+    return safe_.limit(x, leans) > 0.0;
+}
 
 /// True when a pair that presses at x has slid away from the place that its normal was expected at.
 bool ClothContact::has_slid(View<const Vec3> x) const

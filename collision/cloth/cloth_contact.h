@@ -35,10 +35,11 @@ public:
 
     /// Brings x back where cloth would cross, and looks again from there where that leaves much undone or
     /// where pairs that press have slid away. True when there are new pairs.
-    bool advance(View<Vec3> x);
+    /// @param leans  see SafeStep::limit
+    bool advance(View<Vec3> x, View<const unsigned char> leans);
 
     /// Brings x back where cloth would cross; what is undone stays undone. True when anything moved.
-    bool hold_back(View<Vec3> x);
+    bool hold_back(View<Vec3> x, View<const unsigned char> leans);
 
     /// See ExemptPairs.
     void set_crossing(View<const unsigned char> crosses) { exempt_.set_crossing(crosses); }

@@ -4,18 +4,17 @@
 
 namespace toile {
 
-void ImpactZones::reset(View<const Vec3> ways, View<const unsigned char> held, double slow)
+void ImpactZones::reset(View<const Vec3> ways, View<const Hold> hold, double slow)
 {
     slow_ = slow;
     ways_ = ways;
-    held_ = held;
     share_.assign(ways.size(), 1.0);
     next_share_ = share_;
     parent_.resize(ways.size());
     sum_.resize(ways.size());
     for (int v = 0; v < ways.size(); ++v) {
         parent_[v] = v;
-        sum_[v] = {ways[v], 1.0, held[v] != 0};
+        sum_[v] = {ways[v], 1.0, hold[v]};
     }
 }
 
@@ -37,12 +36,12 @@ void ImpactZones::join(int a, int b)
     parent_[child] = root;
     Sum& sum = sum_[root];
     const Sum& other = sum_[child];
-    if (sum.is_held && other.is_held) {
+    if (other.hold > sum.hold) {
+        sum = other;
+    } else if (other.hold == sum.hold && sum.hold == Hold::kIsHeld) {
         if (other.way.squaredNorm() < sum.way.squaredNorm())
             sum = other;
-    } else if (other.is_held) {
-        sum = other;
-    } else if (!sum.is_held) {
+    } else if (other.hold == sum.hold) {
         sum.way += other.way;
         sum.weight += other.weight;
     }

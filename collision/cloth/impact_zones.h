@@ -15,16 +15,19 @@ namespace toile {
 /// zones]. Deviation: theirs are rigid at once; here by as much as is needed.
 class ImpactZones {
 public:
+    /// What holds a vertex: cloth that lies on a body goes where that lets it, held cloth where it is led.
+    enum class Hold : unsigned char { kNone, kLeans, kIsHeld };
+
     /// Every vertex by itself, with all of its way.
     /// @param ways  [vertices] [m]; borrowed
-    /// @param held  [vertices] 1 where the way is prescribed: a zone goes where its held vertices do,
-    /// with the slowest where they disagree; borrowed
+    /// @param hold  [vertices] where a zone goes is settled by its vertices of the greatest hold; borrowed
+    ///              during the call
     /// @param slow  [m] zones that would go less far stay: cloth at rest would creep
-    void reset(View<const Vec3> ways, View<const unsigned char> held, double slow);
+    void reset(View<const Vec3> ways, View<const Hold> hold, double slow);
 
     /// @param way     of all of a body whose first vertex is v [m]
     /// @param weight  against that of a vertex of cloth [-]
-    void set_body(int v, const Vec3& way, double weight) { sum_[v] = {weight * way, weight, false}; }
+    void set_body(int v, const Vec3& way, double weight) { sum_[v] = {weight * way, weight, Hold::kNone}; }
 
     /// Makes the zones of two vertices one.
     void join(int a, int b);
@@ -39,18 +42,17 @@ public:
     Vec3 motion(int v); ///< of v, a vertex of cloth [m]
 
 private:
-    /// Weighted sum of the ways of a zone; the way of its slowest held vertex where it has any.
+    /// Weighted sum of the ways of a zone's vertices of the greatest hold; of held ones the slowest.
     struct Sum {
         Vec3 way;
         double weight;
-        bool is_held;
+        Hold hold;
     };
 
     int zone(int v);
 
     double slow_ = 0.0; ///< [m]
     View<const Vec3> ways_;
-    View<const unsigned char> held_;
     std::vector<double> share_, next_share_; ///< [vertices]
     std::vector<int> parent_;                ///< [vertices] a forest; roots name zones
     std::vector<Sum> sum_;                   ///< [vertices] of roots

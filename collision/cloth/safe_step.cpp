@@ -54,7 +54,7 @@ void SafeStep::begin(View<const Vec3> x, View<const Vec3> expected, View<const d
     expected_pairs_ = pairs;
 }
 
-double SafeStep::limit(View<Vec3> x)
+double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
 {
     const StageScope stage("collision/safe_step");
     way_.resize(x.size());
@@ -73,7 +73,7 @@ double SafeStep::limit(View<Vec3> x)
     if (pair_count() == 0)
         return 0.0;
     deflect();
-    find_shares();
+    find_shares(leans);
 
     double farthest = 0.0;
     for (int v = 0; v < x.size(); ++v) {
@@ -181,9 +181,14 @@ double SafeStep::mobility_of(const NearPair& pair, bool is_first_side) const
 }
 
 /// motion_ of all vertices, from pair_share_.
-void SafeStep::find_shares()
+void SafeStep::find_shares(View<const unsigned char> leans)
 {
-    zones_.reset(way_, fixed_, kSlow * settings_.most_deflection);
+    std::vector<ImpactZones::Hold> hold(way_.size());
+    for (int v = 0; v < int(way_.size()); ++v)
+        hold[v] = fixed_[v]                    ? ImpactZones::Hold::kIsHeld
+                  : !leans.empty() && leans[v] ? ImpactZones::Hold::kLeans
+                                               : ImpactZones::Hold::kNone;
+    zones_.reset(way_, hold, kSlow * settings_.most_deflection);
     bodies_.begin(base_, way_);
     for (int body = 0; body < bodies_.count(); ++body)
         zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));

@@ -55,8 +55,9 @@ public:
                View<const unsigned char> fixed, View<const NearPair> pairs);
 
     /// Changes x [vertices] where needed.
+    /// @param leans  [vertices] 1 where cloth lies on a body that takes it along; empty: nowhere
     /// @return the farthest that a vertex was moved [m]; 0 when x was left as it is, to the bit
-    double limit(View<Vec3> x);
+    double limit(View<Vec3> x, View<const unsigned char> leans = {});
 
     View<const Vec3> base() const { return base_; } ///< [vertices] the pose of begin() [m]
 
@@ -75,7 +76,7 @@ private:
     double mobility_of(const NearPair& pair, bool is_first_side) const;
     bool may_give_way(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
     bool shorten(bool for_good);
-    void find_shares();
+    void find_shares(View<const unsigned char> leans);
     void follow_zones();
 
     NearPairs& near_;

@@ -131,9 +131,9 @@ TEST(RigidContact, ClothGivesWayToABody)
 TEST(RigidContact, ZonesWeighABodyByItsMass)
 {
     const std::vector<Vec3> ways{Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)};
-    const std::vector<unsigned char> held(3, 0);
+    const std::vector<ImpactZones::Hold> hold(3, ImpactZones::Hold::kNone);
     ImpactZones zones;
-    zones.reset(ways, held, 0.0);
+    zones.reset(ways, hold, 0.0);
     zones.set_body(1, Vec3(0, 0, 0.5), 3.0); // of vertices 1 and 2
     zones.join(0, 1);
     zones.bring_back(0, 0.0);
