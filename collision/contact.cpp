@@ -23,9 +23,6 @@ constexpr double kTrust = 0.007;
 constexpr double kEndTrust = 0.002;
 constexpr double kLeftOver = 1e-4;
 
-/// Distance on top of the gap, of the gap [-], up to which cloth counts as lying on a collider.
-constexpr double kLeaning = 0.25;
-
 /// Margin [m] of a second look within a step, on top of the gap.
 constexpr double kRevisionMargin = 0.003;
 
@@ -266,19 +263,6 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
     const StageScope stage("collision/clear");
     stop_at_surfaces(x, v);
     push_out(x);
-}
-
-/// Cloth that lies on a collider, or is in it: 1 for each such vertex.
-std::vector<unsigned char> Contact::leaning(View<const Vec3> x) const
-{
-    std::vector<unsigned char> leans(x.size(), 0);
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        const ContactPair& pair = energy_.terms()[i].pair;
-        if (!pair.is_between_cloths() && energy_.gap(i, x) <= kLeaning * gap_of(pair))
-            for (int k = 0; k < pair.count(); ++k)
-                leans[pair.vertex[k]] = 1;
-    }
-    return leans;
 }
 
 /// What would have crossed stops: it loses the velocity that it was to have got there.

@@ -23,6 +23,9 @@ constexpr double kThinnest = 5e-5;
 /// deals with it.
 constexpr double kMinLeverage = 0.1;
 
+/// Distance on top of the gap, of the gap [-], up to which cloth counts as lying on a collider.
+constexpr double kLeaning = 0.25;
+
 } // namespace
 
 /// Vertices that no pair moves by itself.
@@ -141,6 +144,19 @@ double Contact::clearance_of(const ContactPair& pair) const
             largest = std::max(largest, pair.weight[k]);
     }
     return largest > 0.0 ? kClearance * shortest * leverage_of(pair) / largest : 0.0;
+}
+
+/// Cloth that lies on a collider, or is in it: 1 for each such vertex.
+std::vector<unsigned char> Contact::leaning(View<const Vec3> x) const
+{
+    std::vector<unsigned char> leans(x.size(), 0);
+    for (int i = 0; i < int(energy_.terms().size()); ++i) {
+        const ContactPair& pair = energy_.terms()[i].pair;
+        if (!pair.is_between_cloths() && energy_.gap(i, x) <= kLeaning * gap_of(pair))
+            for (int k = 0; k < pair.count(); ++k)
+                leans[pair.vertex[k]] = 1;
+    }
+    return leans;
 }
 
 } // namespace toile

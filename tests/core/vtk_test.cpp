@@ -18,7 +18,7 @@ class VtkTest : public testing::Test {
 protected:
     std::filesystem::path file_of(const std::string& text)
     {
-        const std::filesystem::path file = folder.path() / "mesh.vtk";
+        std::filesystem::path file = folder.path() / "mesh.vtk";
         std::ofstream(file) << text;
         return file;
     }

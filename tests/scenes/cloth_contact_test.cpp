@@ -136,18 +136,28 @@ TEST(ClothContact, CostsNothingWhereItIsSwitchedOffOrUnknown)
     EXPECT_EQ(world.stages().calls("pd/pcg"), 0);
 }
 
+/// Two sheets that fall onto the floor.
+World two_layers(const std::string& more = "")
+{
+    return world_of(R"({"toile": 1, "frames": 3, )" + kFloor + more + R"(, "cloths": [)" +
+                    sheet("low", 0.1, "[0, 0.002, 0]") + "," + sheet("high", 0.1, "[0.003, 0.003, 0.002]") +
+                    "]}");
+}
+
+World preconditioned_by(const std::string& word)
+{
+    return two_layers(R"(, "solver": {"contact_preconditioner": ")" + word + R"("})");
+}
+
 TEST(ClothContact, IsInvertedAsTheSceneSays)
 {
-    const std::string cloths = R"("cloths": [)" + sheet("low", 0.1, "[0, 0.002, 0]") + "," +
-                               sheet("high", 0.1, "[0.003, 0.003, 0.002]") + "]}";
     for (const auto& [word, stage] :
          {std::pair("exact", "pd/contact_factor"), std::pair("sherman-morrison", "pd/nested_contacts"),
           std::pair("chebyshev", "pd/nested_chebyshev"), std::pair("paper", "pd/paper_projection")}) {
-        World world = world_of(R"({"toile": 1, "frames": 3, )" + kFloor +
-                               R"(, "solver": {"contact_preconditioner": ")" + word + R"("}, )" + cloths);
+        World world = preconditioned_by(word);
         (void)world.advance_frame();
         EXPECT_GT(world.stages().calls(stage), 0) << word;
-        World usual = world_of(R"({"toile": 1, "frames": 3, )" + kFloor + ", " + cloths);
+        World usual = two_layers();
         (void)usual.advance_frame();
         EXPECT_GT(usual.stages().calls("pd/nested_blocks"), 0);
         EXPECT_EQ(usual.stages().calls(stage), 0) << word;
