@@ -45,15 +45,16 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
     hint = nearest->triangle;
     thread_local std::vector<SurfacePoint> sheets;
     sheets.clear();
-    if (search.sides != nullptr)
+    const bool is_behind = nearest->signed_distance < 0.0;
+    if (search.sides != nullptr && is_behind)
         search.sides->find_behind(v, x, mesh, search.collider, search.settings.farthest_motion, sheets);
     const bool is_caught = !sheets.empty();
-    const bool is_behind = nearest->signed_distance < 0.0;
     if (is_behind ? !is_caught && nearest->distance() < search.settings.max_depth
                   : nearest->distance() < radius)
         add(*nearest);
 
-    // Sheets that it has come behind.
+    // Sheets that it has come behind, of a body that it is inside of: outside, the place on a remembered
+    // sheet may face away from cloth that has gone round it.
     for (const SurfacePoint& sheet : sheets)
         if (out.size() - first < kMaxPlanes && is_distinct(outward(sheet, x)))
             add(sheet);
