@@ -43,7 +43,7 @@ def main():
     lines = ["# Funnel, metres, Y up. Written by make_funnel.py."]
     lines += ["v %.6g %.6g %.6g" % v for v in vertices]
     lines += ["f %d %d %d" % tuple(i + 1 for i in t) for t in triangles]
-    Path("funnel.obj").write_text("\n".join(lines) + "\n")
+    Path(__file__).with_name("funnel.obj").write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -4,13 +4,13 @@
 /// kind.
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
 #include <utility>
 
+#include "benchmarks/best_time.h"
 #include "benchmarks/contact_solver/cases.h"
 #include "benchmarks/text_table.h"
 #include "core/backend/parallel.h"
@@ -38,24 +38,6 @@ constexpr std::pair<Kind, const char*> kKinds[] = {{Kind::Floor, "floor"},
                                                    {Kind::Disjoint, "disjoint"},
                                                    {Kind::Stack, "stack"},
                                                    {Kind::Sticking, "stack sticking"}};
-
-/// Shortest time of work() [ms] in so many seconds of repetitions, at least one.
-template <typename Work>
-double best_ms(double seconds, const Work& work)
-{
-    using Clock = std::chrono::steady_clock;
-    const auto ms_since = [](Clock::time_point start) {
-        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    };
-    const Clock::time_point begin = Clock::now();
-    double best = 1e300;
-    do {
-        const Clock::time_point start = Clock::now();
-        work();
-        best = std::min(best, ms_since(start));
-    } while (ms_since(begin) < 1e3 * seconds);
-    return best;
-}
 
 /// A variant at work on a case.
 struct Measurement {

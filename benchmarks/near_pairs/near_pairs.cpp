@@ -1,12 +1,11 @@
 /// near_pairs [THREADS]: NearPairs against one query of Embree's tree per primitive, as CSV on stdout. Times
 /// are the best of several, on one thread if not told otherwise.
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 
+#include "benchmarks/best_time.h"
 #include "benchmarks/near_pairs/by_point_queries.h"
 #include "benchmarks/near_pairs/cases.h"
 #include "benchmarks/text_table.h"
@@ -20,34 +19,16 @@ namespace {
 constexpr double kMargin = 0.004;    // [m]
 constexpr double kSecondsEach = 1.0; // [s] of repetitions
 
-/// Shortest time of work() [ms].
-template <typename Work>
-double best_ms(const Work& work)
-{
-    using Clock = std::chrono::steady_clock;
-    const auto ms_since = [](Clock::time_point start) {
-        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    };
-    const Clock::time_point begin = Clock::now();
-    double best = 1e300;
-    do {
-        const Clock::time_point start = Clock::now();
-        work();
-        best = std::min(best, ms_since(start));
-    } while (ms_since(begin) < 1e3 * kSecondsEach);
-    return best;
-}
-
 Row measure(const Case& cloth)
 {
     std::vector<NearPair> pairs;
     NearPairs near(cloth.triangles, cloth.x);
-    const double tree_ms = best_ms([&] { near.find(cloth.x, {}, kMargin, pairs); });
+    const double tree_ms = best_ms(kSecondsEach, [&] { near.find(cloth.x, {}, kMargin, pairs); });
 
     ByPointQueries queries(cloth.triangles, cloth.x);
     size_t count = 0;
-    const double query_ms = best_ms([&] { count = queries.find(cloth.x, kMargin); });
-    const double build_ms = best_ms([&] { NearPairs(cloth.triangles, cloth.x); });
+    const double query_ms = best_ms(kSecondsEach, [&] { count = queries.find(cloth.x, kMargin); });
+    const double build_ms = best_ms(kSecondsEach, [&] { NearPairs(cloth.triangles, cloth.x); });
 
     const auto facing =
         std::count_if(pairs.begin(), pairs.end(), [](const NearPair& p) { return p.is_facing; });

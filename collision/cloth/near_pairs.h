@@ -52,8 +52,7 @@ public:
     /// @param triangles  [triangles x 3] indices into positions; any list: collapsed, non-manifold
     /// @param positions  [vertices x 3] [m] the first pose
     /// @param rigid      [vertices] number of the rigid body, -1 for none: no pairs within one body. Empty:
-    /// no
-    ///                   such bodies
+    ///                   none at all
     NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {});
     ~NearPairs();
     NearPairs(NearPairs&&) noexcept;
