@@ -33,12 +33,11 @@ MeshCollider::MeshCollider(const MovingMesh& mesh)
 
 void MeshCollider::update_owned_edges()
 {
-    parallel_for(kCpu, "collision/ridges", int(owned_edges_.size()), [this](int i) {
+    parallel_for(kCpu, "collision/owned_edges", int(owned_edges_.size()), [this](int i) {
         OwnedEdge& owned = owned_edges_[i];
         const std::array<int, 2>& end = surface_.edges().vertex[owned.edge];
         owned.a = surface_.positions()[end[0]];
         owned.b = surface_.positions()[end[1]];
-        owned.is_ridge = is_ridge(owned.edge);
     });
 }
 
@@ -46,10 +45,12 @@ void MeshCollider::move(const MovingMesh& mesh)
 {
     TOILE_ASSERT(int(mesh.x_t1.size()) == surface_.positions().size());
     x_t0_ = mesh.x_t0;
-    if (std::equal(mesh.x_t1.begin(), mesh.x_t1.end(), surface_.positions().begin()))
+    is_moving_ = !std::equal(mesh.x_t1.begin(), mesh.x_t1.end(), surface_.positions().begin());
+    if (!is_moving_)
         return;
     const StageScope stage("collision/refit");
-    has_ever_moved_ = true;
+    ++move_count_;
+    last_motion_.build(surface_.triangles(), surface_.positions(), mesh.x_t1);
     surface_.update(mesh.x_t1);
     bounds_ = toile::bounds(mesh.x_t1);
     update_owned_edges();

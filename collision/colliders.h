@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "collision/motion_bounds.h"
 #include "collision/shapes.h"
 #include "collision/surface_proximity.h"
 #include "core/mesh/triangle_mesh.h"
@@ -25,8 +26,10 @@ public:
     const SurfaceProximity& surface() const { return surface_; } ///< at t1
     const Bounds& bounds() const { return bounds_; }             ///< at t1
 
-    /// False until the first step in which it moves.
-    bool has_ever_moved() const { return has_ever_moved_; }
+    /// Steps in which it has moved so far, and how it did in the last of them.
+    int move_count() const { return move_count_; }
+    const MotionBounds& last_motion() const { return last_motion_; }
+    bool is_moving() const { return is_moving_; } ///< in the current step
 
     /// Displacement of a vertex from t0 to t1 [m].
     Vec3 motion(int vertex) const { return surface_.positions()[vertex] - x_t0_[vertex]; }
@@ -38,10 +41,11 @@ public:
     struct OwnedEdge {
         Vec3 a, b; ///< [m]
         int edge;
-        /// True when cloth can rest on it: a ridge of at least 1 degree between its faces, or a border. Flat
-        /// edges add nothing to their faces; in a valley cloth touches the faces first.
-        bool is_ridge;
     };
+
+    /// True when cloth can rest on an edge: a ridge of at least 1 degree between its faces, or a border. Flat
+    /// edges add nothing to their faces; in a valley cloth touches the faces first.
+    bool is_ridge(int edge) const;
 
     /// Edges whose lowest triangle is this one: every edge belongs to exactly one triangle.
     View<const OwnedEdge> owned_edges(int triangle) const
@@ -52,14 +56,15 @@ public:
 
 private:
     void update_owned_edges();
-    bool is_ridge(int edge) const;
 
     SurfaceProximity surface_;
     std::vector<Vec3> x_t0_;
     std::vector<int> first_owned_;       ///< [triangles + 1] into owned_edges_
     std::vector<OwnedEdge> owned_edges_; ///< [edges]
     Bounds bounds_;
-    bool has_ever_moved_ = false;
+    int move_count_ = 0;
+    bool is_moving_ = false;
+    MotionBounds last_motion_;
 };
 
 /// An analytic solid that moves rigidly during the step.
@@ -88,6 +93,13 @@ private:
     Shape shape_;
     Eigen::Isometry3d pose_t0_;
     Eigen::Isometry3d pose_t1_;
+};
+
+/// What cloth may touch: exactly one of mesh and shape is set. Borrowed; moved by their owner before each
+/// step.
+struct ContactPartner {
+    const MeshCollider* mesh = nullptr;
+    const ShapeCollider* shape = nullptr;
 };
 
 } // namespace toile

@@ -11,9 +11,6 @@ namespace toile {
 
 namespace {
 
-/// Largest query radius [m]. Cloth that moves further relative to a collider in one step may pass it.
-constexpr double kMaxRadius = 0.06;
-
 /// Distance [m] that cloth may move from where its active pairs were found: beyond, a curved surface has left
 /// its tangent plane by more than about half a millimetre (radius of curvature 5 cm).
 constexpr double kTrust = 0.007;
@@ -23,17 +20,9 @@ constexpr double kTrust = 0.007;
 constexpr double kEndTrust = 0.002;
 constexpr double kLeftOver = 1e-4;
 
-/// Margin [m] of a second look within a step, on top of the gap.
-constexpr double kRevisionMargin = 0.003;
-
 /// Relative change of the friction limits that calls for another minimisation [-]: cloth that lands. At 0.1 a
 /// walking skirt was minimised three times a step for nothing that could be measured.
 constexpr double kFrictionChange = 0.5;
-
-bool is_vertex_pair(const ContactPair& pair)
-{
-    return pair.kind == ContactKind::kVertexFace || pair.kind == ContactKind::kVertexShape;
-}
 
 /// Of the triangles around each vertex [m].
 std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<const Vec3> x)
@@ -48,6 +37,14 @@ std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<cons
             shortest[v] = std::min(shortest[v], altitude);
     }
     return shortest;
+}
+
+double largest_gap(const std::vector<ContactCloth>& cloths)
+{
+    double largest = 0.0;
+    for (const ContactCloth& cloth : cloths)
+        largest = std::max(largest, cloth.gap);
+    return largest;
 }
 
 } // namespace
@@ -65,15 +62,13 @@ std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths)
 
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
                  std::vector<ContactPartner> partners, const Settings& settings)
-    : cloths_(std::move(cloths)), rigid_(rigid_bodies_of(cloths_)), partners_(std::move(partners)),
-      settings_(settings), detector_(triangles, positions), carried_(positions.size()),
-      detected_at_(positions.size()), nearest_(positions.size()), sides_(positions.size()),
+    : cloths_(std::move(cloths)), rigid_(rigid_bodies_of(cloths_)), settings_(settings),
+      colliders_(triangles, positions, std::move(partners),
+                 {largest_gap(cloths_), settings.face_vertex, settings.edge_edge}),
       altitude_(shortest_altitudes(triangles, positions))
 {
-    for (int c = 0; c < int(cloths_.size()); ++c) {
+    for (int c = 0; c < int(cloths_.size()); ++c)
         cloth_of_.insert(cloth_of_.end(), cloths_[c].vertex_count, c);
-        largest_gap_ = std::max(largest_gap_, cloths_[c].gap);
-    }
     TOILE_ASSERT(int(cloth_of_.size()) == positions.size());
     if (settings_.cloth_with_cloth)
         between_.emplace(triangles, positions, cloths_, altitude_);
@@ -83,81 +78,18 @@ void Contact::begin_step(const StepStart& start)
 {
     start_ = start;
     has_cleared_ = false;
-    carry_with_colliders();
-
-    // Everything that the prediction could reach from the carried start, relative to the moved surfaces.
-    double farthest = 0.0;
-    for (int v = 0; v < start.x.size(); ++v)
-        farthest = std::max(farthest, (start.prediction[v] - carried_[v]).norm());
     if (between_)
         between_->begin_step(start.x, start.prediction, start.fixed);
-    detect(carried_, std::min(largest_gap_ + farthest, kMaxRadius));
+    colliders_.find(start);
+    make_terms();
 }
 
 void Contact::forget()
 {
     memory_.forget();
-    std::fill(nearest_.begin(), nearest_.end(), Nearest{});
-    sides_.forget();
+    colliders_.forget();
     if (between_)
         between_->forget();
-}
-
-/// Moves every vertex that was near a surface along with it, so that it is still on the right side of the
-/// surface at t1.
-void Contact::carry_with_colliders()
-{
-    parallel_for(kCpu, "contact/carry", start_.x.size(), [&](int v) {
-        const Nearest& last = nearest_[v];
-        Vec3 motion = Vec3::Zero();
-        if (last.collider >= 0) {
-            const ContactPartner& partner = partners_[last.collider];
-            motion = partner.mesh ? partner.mesh->motion(last.feature, Vec3::Constant(1.0 / 3.0))
-                                  : partner.shape->motion_from(last.point);
-        }
-        carried_[v] = start_.x[v];
-        if (is_carried(motion))
-            carried_[v] += motion;
-    });
-}
-
-void Contact::detect(View<const Vec3> at, double radius)
-{
-    std::vector<ContactPair> pairs;
-    if (!partners_.empty())
-        find_colliders(at, radius, pairs);
-    if (between_)
-        between_->append_pairs(pairs);
-    make_terms(pairs);
-}
-
-/// Appends the pairs with colliders, and learns which of them is nearest to each vertex.
-void Contact::find_colliders(View<const Vec3> at, double radius, std::vector<ContactPair>& pairs)
-{
-    const StageScope stage("collision/detect");
-    detected_at_.assign(at.begin(), at.end());
-    DetectSettings settings;
-    settings.radius = radius;
-    settings.farthest_motion = kMaxCarrySpeed * start_.dt;
-    settings.face_vertex = settings_.face_vertex;
-    settings.edge_edge = settings_.edge_edge;
-    detector_.move(detected_at_);
-    for (int c = 0; c < int(partners_.size()); ++c) {
-        if (partners_[c].mesh)
-            detector_.detect(*partners_[c].mesh, c, settings, pairs, &sides_);
-        else
-            detector_.detect(*partners_[c].shape, c, settings, pairs);
-    }
-
-    std::fill(nearest_.begin(), nearest_.end(), Nearest{});
-    for (const ContactPair& pair : pairs) {
-        if (!is_vertex_pair(pair))
-            continue;
-        const double gap = pair.gap(at);
-        Nearest& nearest = nearest_[pair.vertex[0]];
-        if (nearest.collider < 0 || gap < nearest.gap)
-            nearest = {pair.collider, pair.feature, gap, pair.point};
-    }
 }
 
 double Contact::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
@@ -178,9 +110,9 @@ bool Contact::revise(View<Vec3> x)
         return false;
     const bool friction_changed = update_normal_forces(x);
     const bool has_new_pairs = between_ && between_->advance(x, leaning(x));
-    if (has_new_pairs || slid_away(x, kTrust)) {
+    if (has_left(x, kTrust) || has_new_pairs) {
         remember_start();
-        detect(x, largest_gap_ + kRevisionMargin);
+        find_again(x);
         return true;
     }
     return friction_changed;
@@ -195,18 +127,38 @@ void Contact::remember_start()
     });
 }
 
-/// True when a vertex of a pair that presses moved further than `trust` [m] from where it was found.
-bool Contact::slid_away(View<const Vec3> x, double trust) const
+/// True when cloth has left the places that its pairs with colliders are good for: strays_ are marked.
+bool Contact::has_left(View<const Vec3> x, double trust)
 {
+    strays_.assign(x.size(), 0);
+    const bool slid = mark_slid(x, trust);
+    return colliders_.mark_unseen(x, strays_) || slid;
+}
+
+/// Those of a pair that presses of which one has gone farther than `trust` [m] from where it was found.
+bool Contact::mark_slid(View<const Vec3> x, double trust)
+{
+    const View<const Vec3> found_at = colliders_.found_at();
+    bool any = false;
     for (int i = 0; i < int(energy_.terms().size()); ++i) {
         const ContactPair& pair = energy_.terms()[i].pair;
         if (pair.is_between_cloths() || energy_.gap(i, x) > 0.5 * gap_of(pair))
             continue;
+        bool has_slid = false;
         for (int k = 0; k < pair.count(); ++k)
-            if ((x[pair.vertex[k]] - detected_at_[pair.vertex[k]]).squaredNorm() > trust * trust)
-                return true;
+            has_slid = has_slid || (x[pair.vertex[k]] - found_at[pair.vertex[k]]).norm() > trust;
+        for (int k = 0; k < pair.count() && has_slid; ++k)
+            strays_[pair.vertex[k]] = 1;
+        any = any || has_slid;
     }
-    return false;
+    return any;
+}
+
+/// The pairs of strays_.
+void Contact::find_again(View<const Vec3> x)
+{
+    colliders_.find_again(x, strays_);
+    make_terms();
 }
 
 /// Refreshes the lagged normal forces; true when friction limits changed noticeably.
@@ -244,9 +196,7 @@ void Contact::end_step(View<const Vec3> x)
         const double gap = energy_.terms()[i].pair.gap(x);
         min_gap_ = i == 0 ? gap : std::min(min_gap_, gap);
     }
-    for (int c = 0; c < int(partners_.size()); ++c)
-        if (partners_[c].mesh)
-            sides_.learn(x, *partners_[c].mesh, c);
+    colliders_.learn_sides(x);
     if (between_)
         between_->end_step(x);
 }
@@ -255,11 +205,11 @@ void Contact::end_step(View<const Vec3> x)
 /// become velocity, or it would throw the cloth.
 void Contact::clear(View<Vec3> x, View<Vec3> v)
 {
-    if (deepest(x) <= kLeftOver && !slid_away(x, kEndTrust))
+    if (!has_left(x, kEndTrust) && deepest(x) <= kLeftOver)
         return;
     remember([&](int i) { return energy_.slip(i, x); });
     has_cleared_ = true;
-    detect(x, largest_gap_ + kRevisionMargin);
+    find_again(x);
     const StageScope stage("collision/clear");
     stop_at_surfaces(x, v);
     push_out(x);
@@ -281,8 +231,8 @@ void Contact::keep_apart(View<Vec3> x, View<Vec3> v)
 /// of a stick stays for the next step: friction has undone it.
 void Contact::resolve(View<Vec3> x, View<Vec3> v)
 {
-    if (slid_away(x, kEndTrust))
-        detect(x, largest_gap_ + kRevisionMargin);
+    if (has_left(x, kEndTrust))
+        find_again(x);
     const StageScope stage("collision/resolve");
     update_normal_forces(x);
     remember([](int) { return Vec3(Vec3::Zero()); });

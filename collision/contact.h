@@ -4,20 +4,12 @@
 #include <vector>
 
 #include "collision/cloth/cloth_contact.h"
+#include "collision/collider_pairs.h"
 #include "collision/contact_cloth.h"
 #include "collision/contact_memory.h"
-#include "collision/detect.h"
-#include "collision/side_memory.h"
 #include "core/pd/active_set_energy.h"
 
 namespace toile {
-
-/// What cloth may touch: exactly one of mesh and shape is set. Borrowed; moved by their owner before each
-/// step.
-struct ContactPartner {
-    const MeshCollider* mesh = nullptr;
-    const ShapeCollider* shape = nullptr;
-};
 
 /// Contact of cloths with avatars, shapes and each other during a step: finds pairs, keeps their energy,
 /// looks again when the cloth has slid away from where they were found, and remembers friction from step to
@@ -25,10 +17,6 @@ struct ContactPartner {
 /// this, but for what moves vertices one by one: only the energy moves them, and SafeStep as a whole.
 class Contact : public ActiveSetEnergy {
 public:
-    /// Fastest surface that cloth is carried along with [m/s]. A body that jumps further in a step has been
-    /// replaced, not moved: taking cloth along would shoot it away.
-    static constexpr double kMaxCarrySpeed = 20.0;
-
     struct Settings {
         /// [-] Stiffness of a pair relative to diag(H) at its vertices. Above 25 PCG slows down; at 1 a
         /// resting vertex sinks by micrometres, far less than the gap.
@@ -82,19 +70,9 @@ public:
     double min_gap() const { return min_gap_; }        ///< [m] smallest distance of a pair, after end_step()
 
 private:
-    /// The surface point nearest to a cloth vertex.
-    struct Nearest {
-        int collider = -1; ///< -1: none near
-        int feature = -1;
-        double gap = 0.0;          ///< [m]
-        Vec3 point = Vec3::Zero(); ///< [m]
-    };
-
-    void carry_with_colliders();
     std::vector<unsigned char> leaning(View<const Vec3> x) const;
-    void detect(View<const Vec3> at, double radius);
-    void find_colliders(View<const Vec3> at, double radius, std::vector<ContactPair>& pairs);
-    void make_terms(const std::vector<ContactPair>& pairs);
+    void find_again(View<const Vec3> x);
+    void make_terms();
     std::vector<double> room_of(const std::vector<ContactPair>& pairs) const;
     ContactTerm make_term(const ContactPair& pair, double room) const;
     double gap_of(const ContactPair& pair) const;
@@ -105,7 +83,8 @@ private:
     template <typename Slip>
     void remember(const Slip& slip);
     bool update_normal_forces(View<const Vec3> x);
-    bool slid_away(View<const Vec3> x, double trust) const;
+    bool mark_slid(View<const Vec3> x, double trust);
+    bool has_left(View<const Vec3> x, double trust);
     double deepest(View<const Vec3> x) const;
     bool is_held(int vertex) const;
     double leverage_of(const ContactPair& pair) const;
@@ -120,17 +99,12 @@ private:
     std::vector<ContactCloth> cloths_;
     std::vector<int> cloth_of_; ///< [vertices]
     std::vector<int> rigid_;    ///< [vertices] see rigid_bodies_of
-    double largest_gap_ = 0.0;  ///< [m] of the cloths
-    std::vector<ContactPartner> partners_;
     Settings settings_;
-    ContactDetector detector_;
+    ColliderPairs colliders_;
     ContactEnergy energy_;
     StepStart start_;
-    std::vector<Vec3> carried_;     ///< [vertices] start positions moved along with the surface nearby [m]
-    std::vector<Vec3> detected_at_; ///< [vertices] where the pairs were found [m]
-    std::vector<Nearest> nearest_;  ///< [vertices] last step's
-    SideMemory sides_;              ///< of moving meshes
-    std::vector<double> altitude_;  ///< [vertices] the shortest of the triangles around, at the start [m]
+    std::vector<unsigned char> strays_; ///< [vertices] 1 where pairs with colliders are to be found again
+    std::vector<double> altitude_;      ///< [vertices] the shortest of the triangles around, at the start [m]
     std::optional<ClothContact> between_; ///< cloth and cloth; none where that is switched off
     ContactMemory memory_;
     bool has_cleared_ = false; ///< in this step: memory_ is the minimiser's, the pairs are new

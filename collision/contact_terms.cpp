@@ -41,7 +41,8 @@ std::vector<double> Contact::room_of(const std::vector<ContactPair>& pairs) cons
             const int j = planes[b].second;
             if (pairs[i].normal.dot(pairs[j].normal) > kOpposing)
                 continue;
-            const double half = 0.5 * (pairs[i].gap(detected_at_) + pairs[j].gap(detected_at_));
+            const double half =
+                0.5 * (pairs[i].gap(colliders_.found_at()) + pairs[j].gap(colliders_.found_at()));
             room[i] = std::min(room[i], half);
             room[j] = std::min(room[j], half);
             if (half < 0.0)
@@ -58,8 +59,11 @@ std::vector<double> Contact::room_of(const std::vector<ContactPair>& pairs) cons
 
 /// The pairs that can move at all become terms of the energy. Faces and edges with a caught vertex are left
 /// to the planes of their vertices.
-void Contact::make_terms(const std::vector<ContactPair>& pairs)
+void Contact::make_terms()
 {
+    std::vector<ContactPair> pairs = colliders_.all();
+    if (between_)
+        between_->append_pairs(pairs);
     const std::vector<double> room = room_of(pairs);
     std::vector<ContactTerm> terms;
     for (size_t i = 0; i < pairs.size(); ++i) {
@@ -107,7 +111,10 @@ Vec3 Contact::at_start(const ContactPair& pair) const
     return is_carried(pair.motion) ? Vec3(start + pair.motion) : start;
 }
 
-bool Contact::is_carried(const Vec3& motion) const { return motion.norm() <= kMaxCarrySpeed * start_.dt; }
+bool Contact::is_carried(const Vec3& motion) const
+{
+    return motion.norm() <= ColliderPairs::kMaxCarrySpeed * start_.dt;
+}
 
 /// @param room  half the room between this plane and an opposing one [m]
 ContactTerm Contact::make_term(const ContactPair& pair, double room) const

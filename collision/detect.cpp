@@ -21,9 +21,10 @@ ContactDetector::ContactDetector(View<const Triangle> triangles, View<const Vec3
     move(positions);
 }
 
-void ContactDetector::move(View<const Vec3> x)
+void ContactDetector::move(View<const Vec3> x, View<const double> reach)
 {
     x_ = x;
+    reach_ = reach;
     bounds_ = bounds(x);
     tree_is_stale_ = true;
 }
@@ -38,12 +39,20 @@ const SurfaceProximity& ContactDetector::cloth_surface()
     return cloth_;
 }
 
+Clearance& ContactDetector::clearance_of(const MeshCollider& mesh, int collider)
+{
+    while (int(clearance_.size()) <= collider)
+        clearance_.emplace_back(x_.size());
+    clearance_[collider].follow(x_, mesh);
+    return clearance_[collider];
+}
+
 void ContactDetector::detect(const MeshCollider& mesh, int collider, const DetectSettings& settings,
                              std::vector<ContactPair>& out, const SideMemory* sides)
 {
     if (are_apart(bounds_, mesh.bounds(), std::max(settings.radius, settings.max_depth)))
         return;
-    const PairSearch search{x_, bounds_, mesh, collider, settings, sides};
+    const PairSearch search{x_, reach_, mesh, collider, settings, sides, clearance_of(mesh, collider)};
     find_vertex_face(search, out);
     if (settings.face_vertex)
         find_face_vertex(search, cloth_surface(), out);

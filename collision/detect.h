@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "collision/colliders.h"
+#include "collision/clearance.h"
 #include "collision/contact_pair.h"
 #include "collision/side_memory.h"
 
@@ -36,7 +36,10 @@ public:
     ContactDetector(View<const Triangle> triangles, View<const Vec3> positions);
 
     /// Cloth positions to detect at: the guess for t1 [vertices x 3] [m]. Borrowed until the next move().
-    void move(View<const Vec3> x);
+    /// @param reach  [vertices] largest distance of a pair with a mesh, where less than
+    /// DetectSettings::radius
+    ///               [m]; empty: nowhere. Borrowed likewise
+    void move(View<const Vec3> x, View<const double> reach = {});
 
     /// Appends the pairs against one collider, by kind, cloth vertices, collider feature:
     ///   kVertexFace  up to three planes a vertex: the closest point, then the next local minima of the
@@ -60,12 +63,18 @@ public:
     void detect(const ShapeCollider& shape, int collider, const DetectSettings& settings,
                 std::vector<ContactPair>& out);
 
+    /// How far in front of a mesh every vertex is at the positions of the last move(), at least.
+    /// @param collider  the mesh's number: always the same one
+    Clearance& clearance_of(const MeshCollider& mesh, int collider);
+
 private:
     /// The cloth's tree at the current positions, refitted when first asked for after a move().
     const SurfaceProximity& cloth_surface();
 
     SurfaceProximity cloth_;
     View<const Vec3> x_;
+    View<const double> reach_;
+    std::vector<Clearance> clearance_; ///< by collider
     Bounds bounds_;
     bool tree_is_stale_ = true;
 };

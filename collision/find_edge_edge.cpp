@@ -13,8 +13,6 @@ constexpr double kConeCosine = 0.5;
 std::optional<ClosestOnSegments> crossing(const Vec3& a0, const Vec3& a1,
                                           const MeshCollider::OwnedEdge& ridge)
 {
-    if (!ridge.is_ridge)
-        return std::nullopt;
     const Vec3 da = a1 - a0, db = ridge.b - ridge.a, gap = a0 - ridge.a;
     const double aa = da.squaredNorm(), bb = db.squaredNorm(), ab = da.dot(db);
     const double ga = da.dot(gap), gb = db.dot(gap);
@@ -71,8 +69,11 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
 {
     const Vec3 &a = search.x[cloth_edge[0]], &b = search.x[cloth_edge[1]];
     const Vec3 middle = 0.5 * (a + b);
-    const double reach = 0.5 * (b - a).norm() + search.settings.radius;
-    const double radius2 = search.settings.radius * search.settings.radius;
+    const double radius = search.radius_of(cloth_edge[0], cloth_edge[1]);
+    if (search.clearance.of_edge(cloth_edge[0], cloth_edge[1]) > radius)
+        return;
+    const double reach = 0.5 * (b - a).norm() + radius;
+    const double radius2 = radius * radius;
     if (!is_near(search.mesh.bounds(), middle, reach))
         return;
 
@@ -83,7 +84,8 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
     const size_t first = out.size();
     for (const int t : triangles)
         for (const MeshCollider::OwnedEdge& ridge : search.mesh.owned_edges(t))
-            if (const auto closest = crossing(a, b, ridge); closest && closest->distance2 < radius2)
+            if (const auto closest = crossing(a, b, ridge);
+                closest && closest->distance2 < radius2 && search.mesh.is_ridge(ridge.edge))
                 add_pair(search, cloth_edge, ridge, *closest, out);
     std::sort(out.begin() + long(first), out.end(),
               [](const ContactPair& p, const ContactPair& q) { return p.feature < q.feature; });

@@ -19,11 +19,19 @@ inline constexpr double kDistinctCosine = 0.7071;
 /// What the stages share.
 struct PairSearch {
     View<const Vec3> x;       // [vertices] cloth positions [m]
-    Bounds cloth_bounds;      // of x
+    View<const double> reach; // [vertices] see ContactDetector::move
     const MeshCollider& mesh; // what the cloth is near to
     int collider;             // its number
     DetectSettings settings;
-    const SideMemory* sides = nullptr; // where each vertex belongs; null: not known
+    const SideMemory* sides; // where each vertex belongs; null: not known
+    Clearance& clearance;    // of the cloth above the mesh; the search for vertices learns it
+
+    /// Largest distance of a pair of these vertices [m].
+    template <typename... Vertices>
+    double radius_of(Vertices... v) const
+    {
+        return reach.empty() ? settings.radius : std::min(settings.radius, std::max({reach[v]...}));
+    }
 };
 
 /// Appends to `out`, sorted by cloth vertex, then by distance.

@@ -37,9 +37,10 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
     };
 
     // The closest point: in front within the radius, behind down to the depth.
-    const double radius = search.settings.radius;
+    const double radius = search.radius_of(v);
     const double reach = std::max(radius, search.settings.max_depth);
     const std::optional<SurfacePoint> nearest = mesh.surface().closest(x, reach, hint);
+    search.clearance.learn(v, nearest ? std::max(nearest->signed_distance, 0.0) : reach);
     if (!nearest)
         return;
     hint = nearest->triangle;
@@ -81,7 +82,8 @@ void find_vertex_face(const PairSearch& search, std::vector<ContactPair>& out)
         [&](int begin, int end, std::vector<ContactPair>& pairs) {
             int hint = -1;
             for (int v = begin; v < end; ++v)
-                if (is_near(search.mesh.bounds(), search.x[v], reach))
+                if (search.clearance.of(v) <= search.radius_of(v) &&
+                    is_near(search.mesh.bounds(), search.x[v], reach))
                     find_planes(search, v, hint, pairs);
         },
         out);

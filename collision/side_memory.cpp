@@ -7,14 +7,14 @@
 
 namespace toile {
 
-void SideMemory::learn(View<const Vec3> x, const MeshCollider& mesh, int collider)
+void SideMemory::learn(View<const Vec3> x, const MeshCollider& mesh, int collider, const Clearance& clearance)
 {
-    if (!mesh.has_ever_moved())
+    if (mesh.move_count() == 0)
         return;
     parallel_for(kCpu, "collision/learn_sides", x.size(), [&](int v) {
         const bool is_known = std::any_of(sides_[v].begin(), sides_[v].end(),
                                           [&](const Side& side) { return side.collider == collider; });
-        if (is_known || is_near(mesh.bounds(), x[v], kReach))
+        if (is_known || (clearance.of(v) <= kReach && is_near(mesh.bounds(), x[v], kReach)))
             sides_[v] = learnt(v, x[v], mesh, collider);
     });
 }

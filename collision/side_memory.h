@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collision/colliders.h"
+#include "collision/clearance.h"
 
 namespace toile {
 
@@ -27,10 +27,11 @@ public:
     void forget() { std::fill(sides_.begin(), sides_.end(), Sides{}); }
 
     /// Learns at the end of a step. A sheet that the vertex is behind by now is kept; new ones are those it
-    /// is in front of. O(vertices) queries; none for a mesh that never moved.
-    /// @param x         [vertices] cloth at t1 [m]
-    /// @param collider  number of the mesh
-    void learn(View<const Vec3> x, const MeshCollider& mesh, int collider);
+    /// is in front of. A query or two for each vertex near the mesh; none for a mesh that never moved.
+    /// @param x          [vertices] cloth at t1 [m]
+    /// @param collider   number of the mesh
+    /// @param clearance  of x above it
+    void learn(View<const Vec3> x, const MeshCollider& mesh, int collider, const Clearance& clearance);
 
     /// The places of the remembered sheets of a mesh at t1 that x, vertex v of the cloth, is behind, but for
     /// sheets that moved faster than `farthest` [m] in the step: those were replaced. Replaces the content of

@@ -22,6 +22,8 @@ void move(MeshCollider& collider, MovingMesh& mesh, const Vec3& by)
 
 class Sides : public ::testing::Test {
 protected:
+    void learn() { sides_.learn(above_, collider_, 0, Clearance(1)); }
+
     MovingMesh mesh_{box().triangles, box().positions, box().positions};
     MeshCollider collider_{mesh_};
     SideMemory sides_{1};
@@ -31,7 +33,7 @@ protected:
 
 TEST_F(Sides, OfAMeshThatNeverMovedAreNotLearnt)
 {
-    sides_.learn(above_, collider_, 0);
+    learn();
     sides_.find_behind(0, Vec3(0.013, -0.01, 0.007), collider_, 0, 1.0, found_);
     EXPECT_TRUE(found_.empty());
 }
@@ -39,7 +41,7 @@ TEST_F(Sides, OfAMeshThatNeverMovedAreNotLearnt)
 TEST_F(Sides, LeadBackThroughTheFaceThatCameThrough)
 {
     move(collider_, mesh_, Vec3(0.0, 1e-4, 0.0));
-    sides_.learn(above_, collider_, 0);
+    learn();
     move(collider_, mesh_, Vec3(0.0, 0.035, 0.0)); // 3 cm deep: the far side is nearer
     sides_.find_behind(0, above_[0], collider_, 0, 1.0, found_);
     ASSERT_EQ(found_.size(), 1u);
@@ -54,7 +56,7 @@ TEST_F(Sides, LeadBackThroughTheFaceThatCameThrough)
     }
 
     // Still known after the step, unless the mesh was put elsewhere in it.
-    sides_.learn(above_, collider_, 0);
+    learn();
     sides_.find_behind(0, above_[0], collider_, 0, 1.0, found_);
     EXPECT_EQ(found_.size(), 1u);
     sides_.find_behind(0, above_[0], collider_, 0, 0.01, found_);
@@ -73,7 +75,7 @@ TEST_F(Sides, FollowClothAroundAnEdge)
         x[0] += step < 10 ? Vec3(0.001, 0.0, 0.0) : Vec3(0.0, -0.002, 0.0);
         sides_.find_behind(0, x[0], collider_, 0, 1.0, found_);
         EXPECT_TRUE(found_.empty()) << step;
-        sides_.learn(x, collider_, 0);
+        sides_.learn(x, collider_, 0, Clearance(1));
     }
 }
 

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/mesh/triangle_mesh.h"
+
+namespace toile {
+
+/// Equal cubes over a box, numbered.
+class CellGrid {
+public:
+    using Cell = std::array<int, 3>;
+
+    CellGrid() = default;
+
+    /// @param size  of a cell [m]; larger where the longest side would have more than 64
+    CellGrid(const Bounds& box, double size)
+        : origin_(box.lower), size_(std::max(size, (box.upper - box.lower).maxCoeff() / kMostCells))
+    {
+        for (int k = 0; k < 3; ++k)
+            count_[k] = 1 + int((box.upper[k] - box.lower[k]) / size_);
+    }
+
+    int cell_count() const { return count_[0] * count_[1] * count_[2]; }
+    int number_of(const Cell& cell) const { return (cell[2] * count_[1] + cell[1]) * count_[0] + cell[0]; }
+
+    /// May lie outside the grid, by at most two cells.
+    Cell cell_of(const Vec3& x) const
+    {
+        Cell cell;
+        for (int k = 0; k < 3; ++k)
+            cell[k] = int(std::clamp(std::floor((x[k] - origin_[k]) / size_), -2.0, count_[k] + 1.0));
+        return cell;
+    }
+
+    /// The number of the cell that is nearest to x, or -1 where x is farther than `beside` cells outside.
+    int nearest_to(const Vec3& x, int beside) const
+    {
+        Cell cell = cell_of(x);
+        for (int k = 0; k < 3; ++k) {
+            if (cell[k] < -beside || cell[k] >= count_[k] + beside)
+                return -1;
+            cell[k] = std::clamp(cell[k], 0, count_[k] - 1);
+        }
+        return number_of(cell);
+    }
+
+    /// Calls visit(number) for those cells from `first` to `last`, along each axis, that are in the grid.
+    template <typename Visit>
+    void for_cells(const Cell& first, const Cell& last, const Visit& visit) const
+    {
+        for (int z = std::max(first[2], 0); z <= std::min(last[2], count_[2] - 1); ++z)
+            for (int y = std::max(first[1], 0); y <= std::min(last[1], count_[1] - 1); ++y)
+                for (int x = std::max(first[0], 0); x <= std::min(last[0], count_[0] - 1); ++x)
+                    visit(number_of({x, y, z}));
+    }
+
+    /// Calls visit(cell) for all cells.
+    template <typename Visit>
+    void for_all(const Visit& visit) const
+    {
+        for (int z = 0; z < count_[2]; ++z)
+            for (int y = 0; y < count_[1]; ++y)
+                for (int x = 0; x < count_[0]; ++x)
+                    visit(Cell{x, y, z});
+    }
+
+private:
+    static constexpr int kMostCells = 64;
+
+    Vec3 origin_ = Vec3::Zero(); ///< [m]
+    double size_ = 1.0;          ///< [m] of a cell
+    Cell count_{0, 0, 0};
+};
+
+} // namespace toile

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/colliders.h"
+
+namespace toile {
+
+/// How far each cloth vertex is in front of a mesh, at least: what an earlier search has found, less what
+/// both have moved since. While that is more than a search looks for, the search can be left out.
+class Clearance {
+public:
+    explicit Clearance(int vertex_count) : x_(vertex_count, Vec3::Zero()), bound_(vertex_count, 0.0) {}
+
+    /// To the present positions of cloth [vertices] [m] and mesh. O(vertices).
+    void follow(View<const Vec3> x, const MeshCollider& mesh);
+
+    /// [m] No surface is nearer, and the vertex is not inside; 0 where that is not known.
+    double of(int vertex) const { return bound_[vertex]; }
+
+    /// The same of every point of an edge [m]; 0 or less where it is not known.
+    double of_edge(int a, int b) const { return 0.5 * (bound_[a] + bound_[b] - (x_[a] - x_[b]).norm()); }
+
+    /// A search has found the vertex this far in front [m]; 0: inside.
+    void learn(int vertex, double distance);
+
+private:
+    std::vector<Vec3> x_;       ///< [vertices] that the bounds are for [m]
+    std::vector<double> bound_; ///< [vertices] [m]
+    int move_count_ = -2;       ///< of the mesh, likewise; -2: of none
+};
+
+} // namespace toile
