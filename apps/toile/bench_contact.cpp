@@ -14,8 +14,9 @@ namespace toile {
 
 namespace {
 
+/// A group that did not run leaves the table of an earlier run as it is.
 const std::vector<std::string> kTables{"contact_stress.csv", "contact_scaling.csv", "contact_exponents.csv",
-                                       "contact_dressed.csv", "contact.md"};
+                                       "contact_dressed.csv", "contact_tables.md"};
 
 /// Frames after the first of a dressed scene.
 constexpr int kDressedFrames = 60, kQuickDressedFrames = 6;
@@ -68,6 +69,21 @@ std::vector<Scene> load(const std::vector<std::filesystem::path>& files, int fra
         }
     }
     return scenes;
+}
+
+std::vector<TableFile> files(const contact::Results& results, const std::string& tables)
+{
+    std::vector<TableFile> files;
+    if (!results.stress.empty())
+        files.push_back({kTables[0], csv_of_stress(results.stress)});
+    if (!results.scaling.empty()) {
+        files.push_back({kTables[1], csv_of_scaling(results.scaling)});
+        files.push_back({kTables[2], csv_of_exponents(results.scaling)});
+    }
+    if (!results.dressed.empty())
+        files.push_back({kTables[3], csv_of_dressed(results.dressed)});
+    files.push_back({kTables[4], tables});
+    return files;
 }
 
 /// Runs a plan with one progress for all of it.
@@ -127,9 +143,11 @@ private:
     bool run_scaling(std::vector<contact::ScalingResult>& results)
     {
         for (const contact::ScalingCase& trial : plan_.scaling) {
-            results.push_back(contact::run(trial, options_.threads, follow(trial.vertices, trial.name)));
+            contact::ScalingResult result =
+                contact::run(trial, options_.threads, follow(trial.vertices, trial.name));
             if (interrupt_.requested())
                 return false;
+            results.push_back(std::move(result));
         }
         return true;
     }
@@ -137,9 +155,11 @@ private:
     bool run_dressed(std::vector<contact::DressedResult>& results)
     {
         for (const Scene& scene : scenes_) {
-            results.push_back(contact::run(scene, options_.threads, follow(kDressedWork, scene.name)));
+            contact::DressedResult result =
+                contact::run(scene, options_.threads, follow(kDressedWork, scene.name));
             if (interrupt_.requested())
                 return false;
+            results.push_back(std::move(result));
         }
         return true;
     }
@@ -160,21 +180,17 @@ int bench_contact(const BenchOptions& options)
         require_place(options.output, kTables);
     const Plan plan = choose(options);
     contact::Results results;
-    {
-        Runner runner(plan, load(plan.dressed, options.quick ? kQuickDressedFrames : kDressedFrames),
-                      options);
-        if (!runner.run(results)) {
-            std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
-            return kExitFailure;
-        }
-    }
+    const bool is_complete =
+        Runner(plan, load(plan.dressed, options.quick ? kQuickDressedFrames : kDressedFrames), options)
+            .run(results);
     const std::string tables = markdown_tables(results);
     std::cout << tables;
-    write_tables(options.output, {{kTables[0], csv_of_stress(results.stress)},
-                                  {kTables[1], csv_of_scaling(results.scaling)},
-                                  {kTables[2], csv_of_exponents(results.scaling)},
-                                  {kTables[3], csv_of_dressed(results.dressed)},
-                                  {kTables[4], tables}});
+    if (!is_complete) {
+        std::cerr << "toile: error: interrupted; cases that were finished are printed, nothing was written"
+                  << std::endl;
+        return kExitFailure;
+    }
+    write_tables(options.output, files(results, tables));
     return std::all_of(results.stress.begin(), results.stress.end(),
                        [](const contact::StressResult& result) { return result.worst.holds; })
                ? kExitOk

@@ -24,8 +24,8 @@ struct ScalingCase {
     Series series = Series::Vertices;
     int vertices = 1024; ///< wanted, of all sheets; each is square
     int layers = 4;
-    int warm_up = 16; ///< steps that are not counted: layers come to lie on each other
-    int steps = 24;   ///< counted: half a period of the shaking
+    int warm_up = 12; ///< steps that are not counted: layers come to lie on each other
+    int steps = 16;   ///< counted
 };
 
 std::vector<ScalingCase> scaling_cases(Size size);

@@ -29,10 +29,10 @@ std::string number(double value)
     return text;
 }
 
-constexpr double kCornerSide = 0.08; ///< [m]
+constexpr double kCornerSide = 0.06; ///< [m]
 
 /// Sheets of a hundred layers are smaller, or a case would take an hour.
-double side_of(int layers) { return layers >= 100 ? 0.06 : layers >= 20 ? 0.1 : 0.14; }
+double side_of(int layers) { return layers >= 100 ? 0.04 : layers >= 20 ? 0.08 : 0.14; }
 
 struct Extreme {
     Target target = Target::HeldSheet;
@@ -185,7 +185,7 @@ std::vector<StressCase> stress_cases(Size size)
     if (size == Size::Quick)
         for (StressCase& trial : cases) {
             trial.seeds = 1;
-            trial.side = trial.layers >= 100 ? 0.02 : trial.layers >= 20 ? 0.03 : 0.06;
+            trial.side = trial.layers >= 100 ? 0.02 : trial.layers >= 20 ? 0.03 : 0.5 * trial.side;
             trial.duration = 0.1;
         }
     return cases;
