@@ -157,6 +157,7 @@ std::vector<ScalingFit> fit(const std::vector<ScalingResult>& results)
         }
         for (const std::string& what : fitted_names()) {
             std::vector<double> values;
+            values.reserve(members.size());
             for (const ScalingResult& member : members)
                 values.push_back(value_of(member, what));
             const PowerFit by_vertices =

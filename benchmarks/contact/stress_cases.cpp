@@ -90,11 +90,13 @@ public:
             hold_by_corners(add_sheet(scene_, trial_.side, Vec3::Zero(), 0.0));
             throw_stack(trial_.layers - 1, spacing + distance, -way);
             break;
-        case Target::Stack:
-            throw_stack(trial_.layers / 2, -0.5 * (distance + spacing) - (trial_.layers / 2 - 1) * spacing,
-                        0.5 * way);
-            throw_stack(trial_.layers - trial_.layers / 2, 0.5 * (distance + spacing), -0.5 * way);
+        case Target::Stack: {
+            const int lower = trial_.layers / 2, upper = trial_.layers - lower;
+            const double top = -0.5 * (distance + spacing);
+            throw_stack(lower, top - (lower - 1) * spacing, 0.5 * way);
+            throw_stack(upper, -top, -0.5 * way);
             break;
+        }
         case Target::Ball:
             add_ball();
             throw_stack(trial_.layers, 2.0 * kBallRadius + 2.0 * scene_.contact.gap + spacing + distance,
