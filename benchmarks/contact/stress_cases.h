@@ -28,7 +28,7 @@ struct StressCase {
     double speed = 2.0;      ///< [m/s] at which they approach each other
     int layers = 5;          ///< with the held one
     double side = 0.14;      ///< [m]
-    double duration = 0.25;  ///< [s] after the throw
+    double duration = 0.2;   ///< [s] after the throw
     int seeds = 5;           ///< runs with seeds 1 to this
 
     int steps() const; ///< time steps with the one that throws
