@@ -20,6 +20,8 @@ struct Benchmark {
 };
 
 constexpr Benchmark kBenchmarks[] = {
+    {"contact", "cloth on cloth: crossings under stress, cost by part against size, with and without it",
+     bench_contact},
     {"sheet", "a hanging sheet of 10 000 vertices: milliseconds per step against the error", bench_sheet},
     {"solvers", "the same steps by every global solver, XPBD and VBD: milliseconds against the error",
      bench_solvers},
@@ -45,6 +47,8 @@ int bench(const BenchOptions& options)
         throw InvalidInput("bench " + options.name + ": takes no --solver; only stress does");
     if (options.name != "solvers" && !options.mesh.empty())
         throw InvalidInput("bench " + options.name + ": takes no --mesh; only solvers does");
+    if (options.name != "contact" && options.threads != 0)
+        throw InvalidInput("bench " + options.name + ": takes no --threads; only contact does");
     std::vector<std::string> names;
     for (const Benchmark& benchmark : kBenchmarks) {
         if (options.name == benchmark.name)
@@ -73,6 +77,8 @@ Command add_bench(CLI::App& program)
     add.add_option("--solver", options->solver, "solver.method of all cases; only for stress")
         ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
     add.add_option("--repeats", options->repeats, "Runs of everything that is timed; the fastest counts [3]")
+        ->check(CLI::PositiveNumber);
+    add.add_option("--threads", options->threads, "Threads of every run; only for contact [all]")
         ->check(CLI::PositiveNumber);
     add.add_flag("--times-only", options->times_only, "Without references and errors; only for sheet");
     add.add_flag("--quick", options->quick, "Smaller and shorter cases");

@@ -16,7 +16,8 @@ class Stages {
 public:
     struct Entry {
         long calls = 0;
-        double seconds = 0.0; ///< [s] wall time, nested stages included
+        double seconds = 0.0;     ///< [s] wall time, nested stages included
+        double own_seconds = 0.0; ///< [s] without them: these add up to the time of the outermost stages
     };
 
     /// Makes `stages` the recorder of this thread until the end of the scope.
@@ -34,7 +35,8 @@ public:
     /// The recorder active on this thread, or null.
     static Stages* active();
 
-    void add(std::string_view name, double seconds);
+    /// @param own_seconds  of `seconds`, those outside of nested stages
+    void add(std::string_view name, double seconds, double own_seconds);
 
     /// Calls of a stage so far; 0 for one that never ran.
     long calls(std::string_view name) const;
@@ -49,7 +51,7 @@ private:
 /// Counts and times the enclosing block as one call of the stage `name`.
 class StageScope {
 public:
-    explicit StageScope(std::string_view name) : name_(name), start_(Clock::now()) {}
+    explicit StageScope(std::string_view name);
     ~StageScope();
     StageScope(const StageScope&) = delete;
     StageScope& operator=(const StageScope&) = delete;
@@ -57,6 +59,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     std::string_view name_;
+    double nested_before_; ///< [s] of the enclosing scope's nested stages, before this one
     Clock::time_point start_;
 };
 

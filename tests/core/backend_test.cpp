@@ -218,6 +218,30 @@ TEST(Stages, TimeOfTheOuterStageIncludesTheInner)
     EXPECT_GE(stages.seconds("test/outer"), stages.seconds("test/inner"));
 }
 
+TEST(Stages, OwnTimesAddUpToTheOutermostStage)
+{
+    Stages stages;
+    const Stages::Activate activate(stages);
+    const auto wait = [](int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); };
+    {
+        const StageScope outer("test/outer");
+        {
+            const StageScope middle("test/middle");
+            const StageScope inner("test/inner");
+            wait(4);
+        }
+        const StageScope inner("test/inner");
+        wait(2);
+    }
+    double own = 0.0;
+    for (const auto& [name, entry] : stages.entries())
+        own += entry.own_seconds;
+    EXPECT_NEAR(own, stages.seconds("test/outer"), 1e-9);
+    EXPECT_EQ(stages.entries().at("test/inner").own_seconds, stages.seconds("test/inner"));
+    EXPECT_LT(stages.entries().at("test/middle").own_seconds, 0.5 * stages.seconds("test/middle"));
+    EXPECT_LT(stages.entries().at("test/outer").own_seconds, 0.5 * stages.seconds("test/outer"));
+}
+
 TEST(Stages, RecordNothingWithoutActivation)
 {
     Stages stages;
