@@ -12,7 +12,8 @@
 #include "tests/garment/sheets.h"
 
 /// Euler's capstan: a strip over a fixed cylinder holds while the pull at one end is at most exp(mu phi)
-/// times the pull at the other, phi the angle between them.
+/// times the pull at the other, phi the angle between them. The cylinder is a collider, or a cloth held in its
+/// place.
 namespace toile::test {
 namespace {
 
@@ -57,15 +58,25 @@ MeshCollider faceted_cylinder()
 /// Direction of a strip that has turned by `angle` from +x over the top of a cylinder along z.
 Vec3 tangent(double angle) { return Vec3(std::cos(angle), -std::sin(angle), 0.0); }
 
+/// Between cloths: the middle surface of a held one lies by its gap deeper than the strip's, as the surface of
+/// a collider does.
+constexpr double kThickness = kGap;
+
 /// A strip without weight and bending stiffness over a cylinder, pulled along its tangents at both ends.
 class Capstan {
 public:
-    /// @param cylinder  borrowed; its axis is z
-    Capstan(double wrap, const ContactPartner& cylinder, double friction) : wrap_(wrap), sheet_(strip(wrap))
+    /// @param cylinder  borrowed; its axis is z. None: a held cloth
+    Capstan(double wrap, const std::optional<ContactPartner>& cylinder, double friction)
+        : wrap_(wrap), sheet_(strip(wrap))
     {
         std::vector<Vec3> x;
         for (const Vec2& p : sheet_.uv)
             x.push_back(wrapped(p));
+        const int strip_count = int(x.size());
+        std::vector<Triangle> triangles = sheet_.triangles;
+        std::vector<double> masses = masses_of(*sheet_.rest(), 0.2);
+        if (!cylinder)
+            add_sleeve(x, triangles, masses);
         std::vector<Springs::Spring> springs;
         for (const int column : {0, sheet_.columns})
             for (const int row : {0, 1}) {
