@@ -39,7 +39,7 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
     x_t1_ = prediction_;
     if (active) {
         active->begin_step(start_of(dt));
-        active->make_feasible(x_t1_);
+        active->guess(x_t1_);
     }
     minimise(dt, active, report);
     if (report.status == StepReport::Status::NonFinite)
@@ -62,7 +62,7 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
 
 StepStart Body::start_of(double dt) const
 {
-    return {x_, prediction_, system_->diagonal(), system_->fixed(), dt};
+    return {x_, prediction_, system_->diagonal(), system_->masses(), system_->fixed(), dt};
 }
 
 /// Far enough below what moves in this step.
