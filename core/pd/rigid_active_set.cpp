@@ -67,6 +67,7 @@ void RigidActiveSet::begin_step(const StepStart& start)
     surface_.begin_step({start_, prediction_, diagonal_, masses_, fixed_, start.dt});
 }
 
+/// Of the free points only: pushed out one by one, the vertices of a body would come apart.
 void RigidActiveSet::guess(View<Vec3> q) const
 {
     to_surface(q, x_);
@@ -74,7 +75,7 @@ void RigidActiveSet::guess(View<Vec3> q) const
     take_free(x_, q);
 }
 
-/// Of the start guess the free points only: pushed out one by one, the vertices of a body would come apart.
+/// Of the free points only, as guess().
 bool RigidActiveSet::make_feasible(View<Vec3> q) const
 {
     to_surface(q, x_);

@@ -86,6 +86,22 @@ TEST(ClothFriction, SlidesAtCoulombsAcceleration)
     expect_exact({0.6, 0.5}, 0.03);
 }
 
+TEST(ClothFriction, SlidesAtCoulombsAccelerationAtTheDefaultTolerance)
+{
+    // Which does not see how deep cloth sinks into a pair: the start guess has to know.
+    for (const int substeps : {16, 64}) {
+        SCOPED_TRACE(substeps);
+        for (const Slide& slide : {Slide{0.3, 0.1}, Slide{0.6, 0.4}})
+            expect_exact({slide.slope, slide.friction, substeps, R"("tolerance": 1e-3)"}, 0.08);
+    }
+}
+
+TEST(ClothFriction, LandsWithoutAPushAlongTheSlope)
+{
+    // At 8 ms a step the sheet is expected on the far side of the other one, beside its border.
+    expect_exact({0.3, 0.1, 4, R"("tolerance": 1e-6, "max_iterations": 100)"}, 0.03);
+}
+
 TEST(ClothFriction, LetsClothSlideFivePerCentAboveTheFrictionAngle)
 {
     const Slide slide{0.3, 0.3 / 1.05};
