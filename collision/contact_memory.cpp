@@ -1,5 +1,7 @@
 #include "collision/contact_memory.h"
 
+#include <algorithm>
+
 namespace toile {
 
 namespace {
@@ -9,6 +11,14 @@ constexpr double kSameContact = 0.7;
 
 } // namespace
 
+ContactMemory::Key ContactMemory::key_of(const ContactPair& pair)
+{
+    std::array<int, 4> vertex = pair.vertex;
+    if (pair.kind == ContactKind::kClothVertexFace)
+        std::fill(vertex.begin() + 1, vertex.end(), -1);
+    return {pair.kind, pair.collider, vertex};
+}
+
 void ContactMemory::keep(const ContactTerm& term, const Vec3& slip)
 {
     const double force = term.normal_force;
@@ -17,14 +27,13 @@ void ContactMemory::keep(const ContactTerm& term, const Vec3& slip)
     Vec3 stick = slip;
     if (const double pull = term.stiffness * stick.norm(); pull > term.friction * force)
         stick *= term.friction * force / pull;
-    known_.emplace(Key{term.pair.kind, term.pair.collider, term.pair.vertex},
-                   Entry{term.pair.normal, force, stick});
+    known_.emplace(key_of(term.pair), Entry{term.pair.normal, force, stick});
 }
 
 void ContactMemory::hand_on(ContactTerm& term) const
 {
     const Vec3& normal = term.pair.normal;
-    const auto [first, last] = known_.equal_range(Key{term.pair.kind, term.pair.collider, term.pair.vertex});
+    const auto [first, last] = known_.equal_range(key_of(term.pair));
     for (auto known = first; known != last; ++known) {
         const Entry& entry = known->second;
         if (entry.normal.dot(normal) < kSameContact)

@@ -25,6 +25,9 @@ public:
 private:
     using Key = std::tuple<ContactKind, int, std::array<int, 4>>;
 
+    /// Cloth's vertex on cloth is the same contact on whichever triangle it has come to.
+    static Key key_of(const ContactPair& pair);
+
     struct Entry {
         Vec3 normal;         ///< unit
         double normal_force; ///< [N]

@@ -165,6 +165,9 @@ std::optional<ContactPair> ClothContact::pressing_pair(const NearPair& now) cons
     const bool passes =
         safe_share(now.is_edge_edge, x, way, std::min(kPassing * thickness, 0.5 * now.distance)) < 1.0;
     const NearPair near = passes ? now : near_.at(expected_, now);
+    // Around a border to the other side only goes what nothing has stopped yet: other pairs do.
+    if (!passes && near.normal.dot(now.normal) < 0.0)
+        return std::nullopt;
     if (!near.is_facing || (!passes && near.distance > thickness + 2.0 * slack))
         return std::nullopt;
     ContactPair pair;
