@@ -34,6 +34,7 @@ public:
     Search(View<const Triangle> triangle_list, View<const Vec3> positions, std::vector<int> rigid);
 
     void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
+    const SurfaceEdges& edges() const { return edges_; }
 
     NearPair at(View<const Vec3> x, int first, int second, bool is_edge_edge) const;
 
@@ -216,6 +217,8 @@ NearPair NearPairs::at(View<const Vec3> x, const NearPair& pair) const
 {
     return search_->at(x, pair.first, pair.second, pair.is_edge_edge);
 }
+
+const SurfaceEdges& NearPairs::edges() const { return search_->edges(); }
 
 void NearPairs::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "collision/surface_edges.h"
 #include "core/backend/types.h"
 
 namespace toile {
@@ -67,6 +68,8 @@ public:
     /// @param margin  [m] >= 0
     /// @param slack   [vertices] [m] >= 0 how far from the expected place a vertex may end
     void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
+
+    const SurfaceEdges& edges() const; ///< of the triangles
 
     /// A pair as it is at other positions [vertices x 3] [m].
     NearPair at(View<const Vec3> x, const NearPair& pair) const;

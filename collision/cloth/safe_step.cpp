@@ -28,8 +28,11 @@ constexpr double kMoreThanLeast = 1.1;
 /// by its zone, cloth at rest would creep.
 constexpr double kSlow = 0.5;
 
-/// Rounds in which the vertices of a pair are brought back in proportion. Those that are still in the way
-/// then go where their zone does.
+/// How much longer than wanted an edge may get where one end is brought back, of the largest deflection [-].
+constexpr double kTethered = 0.2;
+
+/// Rounds in which the vertices of a pair or edge are brought back in proportion. Those that are still in the
+/// way then go where their zone does.
 constexpr int kRounds = 16;
 
 /// True where the direction that separates the pair at first shows that it may go all of its way.
@@ -42,7 +45,22 @@ bool stays_apart(const NearPair& pair, const std::array<Vec3, 4>& x, const std::
     return pair.distance >= least && gap_along(pair.normal, pair.is_edge_edge, end) >= least;
 }
 
+/// Those of cloth.
+std::vector<Tethers::Edge> flexible_edges(const SurfaceEdges& edges, const RigidWays& bodies)
+{
+    std::vector<Tethers::Edge> flexible;
+    std::copy_if(edges.vertex.begin(), edges.vertex.end(), std::back_inserter(flexible),
+                 [&](const Tethers::Edge& edge) { return !bodies.is_rigid(edge[0]); });
+    return flexible;
+}
+
 } // namespace
+
+SafeStep::SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings, RigidWays bodies)
+    : near_(near), exempt_(exempt), settings_(settings), bodies_(std::move(bodies)),
+      tethers_(flexible_edges(near.edges(), bodies_))
+{
+}
 
 void SafeStep::begin(View<const Vec3> x, View<const Vec3> expected, View<const double> slack,
                      View<const unsigned char> fixed, View<const NearPair> pairs)
@@ -192,8 +210,12 @@ void SafeStep::find_shares(View<const unsigned char> leans)
     bodies_.begin(base_, way_);
     for (int body = 0; body < bodies_.count(); ++body)
         zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));
+    tethers_.begin(base_, way_, kTethered * settings_.most_deflection);
     for (int round = 0; shorten(round >= kRounds); ++round) {
+        std::fill(is_stale_.begin(), is_stale_.end(), 0);
         follow_zones();
+        for (int sweep = 0; hold_together(sweep >= kRounds); ++sweep)
+            follow_zones();
         if (mark_strays())
             look_around_marked();
         look_at_pairs();
@@ -254,7 +276,24 @@ void SafeStep::follow_zones()
             bodies_.go(body, common + share * (bodies_.move(body) - common), share, motion_);
     }
     for (size_t v = 0; v < motion_.size(); ++v)
-        is_stale_[v] = motion_[v] != before[v];
+        is_stale_[v] = is_stale_[v] || motion_[v] != before[v];
+}
+
+/// Brings the ends of torn edges together. False when there are none.
+bool SafeStep::hold_together(bool for_good)
+{
+    bool any = false;
+    for (int e = 0; e < int(tethers_.edges().size()); ++e) {
+        const auto [a, b] = tethers_.edges()[e];
+        if ((!is_stale_[a] && !is_stale_[b]) || !tethers_.is_torn(e, motion_))
+            continue;
+        any = true;
+        const double share = for_good ? 0.0 : kTaken * tethers_.share(e, motion_);
+        zones_.join(a, b);
+        zones_.bring_back(a, share);
+        zones_.bring_back(b, share);
+    }
+    return any;
 }
 
 } // namespace toile

@@ -7,6 +7,7 @@
 #include "collision/cloth/impact_zones.h"
 #include "collision/cloth/near_pairs.h"
 #include "collision/cloth/rigid_ways.h"
+#include "collision/cloth/tethers.h"
 
 namespace toile {
 
@@ -17,8 +18,9 @@ namespace toile {
 ///   1. Deflect. Both sides of a pair that would come a little nearer than its least distance give way along
 ///      its normal, a few times over: cloth in a pinch goes on moving along with what pinches it.
 ///   2. Bring back what is still in the way: the four vertices of a pair join in a zone (ImpactZones), and
-///      safe_share() shortens what their ways differ from its. Zones only grow and shares only shrink, and
-///      where all move alike nobody meets, so this ends.
+///      safe_share() shortens what their ways differ from its. An edge of cloth that this would tear takes
+///      its other end along (Tethers). Zones only grow and shares only shrink, and where all move alike
+///      nobody meets and nothing tears, so this ends.
 ///
 /// Rigid bodies never give way; in a zone they turn by less and move as a whole, rigid to rounding
 /// (RigidWays).
@@ -39,10 +41,7 @@ public:
 
     /// @param near    of all the vertices; used again by limit()
     /// @param exempt  pairs that may do as they like
-    SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings, RigidWays bodies = {})
-        : near_(near), exempt_(exempt), settings_(settings), bodies_(std::move(bodies))
-    {
-    }
+    SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings, RigidWays bodies = {});
 
     /// All arguments but x are borrowed until the next begin().
     /// @param x         [vertices] the pose [m]
@@ -78,11 +77,13 @@ private:
     bool shorten(bool for_good);
     void find_shares(View<const unsigned char> leans);
     void follow_zones();
+    bool hold_together(bool for_good);
 
     NearPairs& near_;
     const ExemptPairs& exempt_;
     Settings settings_;
     RigidWays bodies_;
+    Tethers tethers_; ///< edges of cloth
     View<const Vec3> expected_;
     View<const double> slack_;
     View<const unsigned char> fixed_;
