@@ -35,6 +35,8 @@ ColliderPairs::ColliderPairs(View<const Triangle> triangles, View<const Vec3> po
 
 void ColliderPairs::find(const StepStart& start)
 {
+    if (empty())
+        return;
     farthest_motion_ = kMaxCarrySpeed * start.dt;
     carry(start.x);
     for (int v = 0; v < start.x.size(); ++v) {
@@ -71,7 +73,7 @@ Vec3 ColliderPairs::carrying_motion(const Vec3& x, const Nearest& last) const
 
 void ColliderPairs::find_again(View<const Vec3> x, View<const unsigned char> strays)
 {
-    if (std::find(strays.begin(), strays.end(), 1) == strays.end())
+    if (empty() || std::find(strays.begin(), strays.end(), 1) == strays.end())
         return;
     for (int v = 0; v < x.size(); ++v) {
         wanted_[v] = kNowhere;
@@ -94,8 +96,6 @@ void ColliderPairs::find_again(View<const Vec3> x, View<const unsigned char> str
 /// Adds the pairs that are wanted.
 void ColliderPairs::look(View<const Vec3> x)
 {
-    if (empty())
-        return;
     const StageScope stage("collision/detect");
     DetectSettings settings;
     settings.radius = *std::max_element(wanted_.begin(), wanted_.end());
@@ -128,6 +128,8 @@ void ColliderPairs::take_nearest()
 bool ColliderPairs::mark_unseen(View<const Vec3> x, View<unsigned char> strays)
 {
     bool any = false;
+    if (empty())
+        return any;
     detector_.move(x);
     for (int c = 0; c < int(partners_.size()); ++c) {
         if (!partners_[c].mesh)
@@ -144,6 +146,8 @@ bool ColliderPairs::mark_unseen(View<const Vec3> x, View<unsigned char> strays)
 
 void ColliderPairs::learn_sides(View<const Vec3> x)
 {
+    if (empty())
+        return;
     detector_.move(x);
     for (int c = 0; c < int(partners_.size()); ++c)
         if (const MeshCollider* mesh = partners_[c].mesh)

@@ -36,7 +36,8 @@ public:
     void bring_back(int v, double factor) { next_share_[v] = std::min(next_share_[v], factor * share_[v]); }
     void close_round() { share_ = next_share_; }
 
-    double share(int v) const { return share_[v]; } ///< [-]
+    double share(int v) const { return share_[v]; }                  ///< [-]
+    bool leans(int v) { return sum_[zone(v)].hold == Hold::kLeans; } ///< the zone of v goes with a body
 
     Vec3 common(int v); ///< where the zone of v goes [m]
     Vec3 motion(int v); ///< of v, a vertex of cloth [m]
