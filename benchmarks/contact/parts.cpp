@@ -17,6 +17,8 @@ constexpr Rule kRules[] = {
     {"collision/look_again", Part::ClothPairs},
     {"collision/cloth_", Part::ClothPairs}, // the tree, its boxes, pairs, order, facing, terms
     {"collision/safe_", Part::BringBack},
+    {"collision/tethers", Part::BringBack},
+    {"collision/clearance", Part::AvatarPairs},
     {"collision/clear", Part::Rest},
     {"collision/resolve", Part::Rest},
     {"collision/", Part::AvatarPairs},

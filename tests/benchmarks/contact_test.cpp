@@ -195,7 +195,7 @@ TEST(ContactScaling, MeasuresPilesInContactAndFitsThem)
          {small_pile(150, 3, Series::Vertices), small_pile(600, 3, Series::Vertices)}) {
         results.push_back(run(trial, 0, go_on));
         EXPECT_NEAR(results.back().vertices, trial.vertices, 0.1 * trial.vertices);
-        EXPECT_GT(results.back().contacts, 10.0);
+        EXPECT_GT(results.back().contacts, 5.0);
         EXPECT_GT(seconds_of(results.back().parts, Part::ClothPairs), 0.0);
         EXPECT_EQ(seconds_of(results.back().parts, Part::AvatarPairs), 0.0) << "there is none";
     }
@@ -205,7 +205,7 @@ TEST(ContactScaling, MeasuresPilesInContactAndFitsThem)
         std::find_if(fits.begin(), fits.end(), [](const ScalingFit& of) { return of.what == "contacts"; });
     ASSERT_NE(contacts, fits.end());
     EXPECT_EQ(contacts->by_vertices.points, 2);
-    EXPECT_NEAR(contacts->by_vertices.exponent, 1.0, 0.4);
+    EXPECT_NEAR(contacts->by_vertices.exponent, 1.0, 0.5);
     EXPECT_TRUE(fit({results[0]}).empty()) << "one size has no exponent";
 }
 
