@@ -57,7 +57,7 @@ OWNERS = {
     r"(cuda|cublas|cusparse|cusolver|cooperative_groups|nvtx)|(cub|thrust|nv)/": ["core/backend"],
     r"(tbb|oneapi|experimental)/": ["core/backend"],
     r"xxhash\.h": ["core/backend"],
-    r"embree[34]/": ["collision"],
+    r"embree[34]/": ["collision", "benchmarks/near_pairs"],  # the benchmark times Embree against collision
     r"assimp/": ["avatars"],
     r"CGAL/": ["collision/crossings", "garment/pattern"],
     r"(libpng/)?png\.h": ["apps/render"],
