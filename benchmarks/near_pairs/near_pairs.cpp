@@ -1,11 +1,14 @@
-/// near_pairs [THREADS]: NearPairs against one query of Embree's tree per primitive, as CSV on stdout. Times
-/// are the best of several, on one thread if not told otherwise.
+/// near_pairs [THREADS]: NearPairs against one query of Embree's tree per primitive, and against rtcCollide,
+/// as CSV on stdout. Times are the best of several, on one thread if not told otherwise. Ends with 1 where
+/// they do not find the same number of pairs.
 
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
 
 #include "benchmarks/best_time.h"
+#include "benchmarks/near_pairs/by_collide.h"
 #include "benchmarks/near_pairs/by_point_queries.h"
 #include "benchmarks/near_pairs/cases.h"
 #include "benchmarks/text_table.h"
@@ -28,8 +31,18 @@ Row measure(const Case& cloth)
     ByPointQueries queries(cloth.triangles, cloth.x);
     size_t count = 0;
     const double query_ms = best_ms(kSecondsEach, [&] { count = queries.find(cloth.x, kMargin); });
+
+    ByCollide collide(cloth.triangles, cloth.x);
+    size_t collide_count = 0, candidates = 0;
+    const double collide_ms = best_ms(kSecondsEach, [&] { collide_count = collide.find(cloth.x, kMargin); });
+    const double candidates_ms =
+        best_ms(kSecondsEach, [&] { candidates = collide.find_candidates(cloth.x, kMargin); });
     const double build_ms = best_ms(kSecondsEach, [&] { NearPairs(cloth.triangles, cloth.x); });
 
+    if (pairs.size() != count || pairs.size() != collide_count)
+        throw std::runtime_error(cloth.name + ": " + std::to_string(pairs.size()) + " pairs by NearPairs, " +
+                                 std::to_string(count) + " by point queries, " +
+                                 std::to_string(collide_count) + " by rtcCollide");
     const auto facing =
         std::count_if(pairs.begin(), pairs.end(), [](const NearPair& p) { return p.is_facing; });
     return {cloth.name,
@@ -37,10 +50,14 @@ Row measure(const Case& cloth)
             std::to_string(cloth.triangles.size()),
             std::to_string(pairs.size()),
             std::to_string(count),
+            std::to_string(collide_count),
             std::to_string(facing),
+            std::to_string(candidates),
             format("%.2f", build_ms),
             format("%.2f", tree_ms),
-            format("%.2f", query_ms)};
+            format("%.2f", query_ms),
+            format("%.2f", collide_ms),
+            format("%.2f", candidates_ms)};
 }
 
 } // namespace
@@ -61,10 +78,14 @@ int main(int argc, char** argv)
                          "triangles",
                          "pairs",
                          "pairs_by_queries",
+                         "pairs_by_collide",
                          "facing",
+                         "collide_candidates",
                          "build_edges_and_tree_ms",
                          "find_ms",
-                         "point_queries_ms"};
+                         "point_queries_ms",
+                         "collide_ms",
+                         "collide_candidates_ms"};
         std::fputs(csv(header, rows).c_str(), stdout);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "near_pairs: %s\n", error.what());
