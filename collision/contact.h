@@ -17,11 +17,6 @@ namespace toile {
 /// this, but for what moves vertices one by one: only the energy moves them, and SafeStep as a whole.
 class Contact : public ActiveSetEnergy {
 public:
-    /// Least sum of squared weights of a pair's free vertices for which the pair is cleared by moving them
-    /// [-]. Where fixed vertices carry nearly all of the pair, the free one would have to be thrown far; the
-    /// energy deals with it.
-    static constexpr double kMinLeverage = 0.1;
-
     struct Settings {
         /// [-] Stiffness of a pair relative to diag(H) at its vertices. Above 25 PCG slows down; at 1 a
         /// resting vertex sinks by micrometres, far less than the gap.
@@ -44,7 +39,6 @@ public:
             std::vector<ContactPartner> partners, const Settings& settings);
 
     void begin_step(const StepStart& start) override;
-    void guess(View<Vec3> x) const override;
     bool make_feasible(View<Vec3> x) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
@@ -76,8 +70,6 @@ public:
     double min_gap() const { return min_gap_; }        ///< [m] smallest distance of a pair, after end_step()
 
 private:
-    struct Push;
-
     std::vector<unsigned char> leaning(View<const Vec3> x) const;
     void find_again(View<const Vec3> x);
     void make_terms();
@@ -98,7 +90,6 @@ private:
     double leverage_of(const ContactPair& pair) const;
     bool push(const ContactPair& pair, const Vec3& move, View<Vec3> field) const;
     double clearance_of(const ContactPair& pair) const;
-    void press(int term, Push& push, View<Vec3> x) const;
     Vec3 surface_velocity(const ContactPair& pair) const;
     void stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const;
     void rub(View<Vec3> x, View<Vec3> v) const;

@@ -18,6 +18,11 @@ constexpr double kClearance = 0.5;
 /// Clearance [m] below which velocities are left alone too: one vertex of a sliver stopped, the others not.
 constexpr double kThinnest = 5e-5;
 
+/// Least sum of squared weights of a pair's free vertices for which the pair is cleared by moving them [-].
+/// Where fixed vertices carry nearly all of the pair, the free one would have to be thrown far; the energy
+/// deals with it.
+constexpr double kMinLeverage = 0.1;
+
 /// Distance on top of the gap, of the gap [-], up to which cloth counts as lying on a collider.
 constexpr double kLeaning = 0.25;
 

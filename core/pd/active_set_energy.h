@@ -9,7 +9,6 @@ struct StepStart {
     View<const Vec3> x;              ///< [vertices] positions at t0 [m]
     View<const Vec3> prediction;     ///< [vertices] q* = x + dt v + dt^2 f/m [m]
     View<const double> diagonal;     ///< [vertices] of H [N/m]: the scale that penalty stiffnesses refer to
-    View<const double> masses;       ///< [vertices] [kg]
     View<const unsigned char> fixed; ///< [vertices] 1 where the position is prescribed
     double dt = 0.0;                 ///< [s]
 };
@@ -21,11 +20,7 @@ public:
     /// Finds the candidates of this step.
     virtual void begin_step(const StepStart& start) = 0;
 
-    /// Moves a start guess, in place of the minimiser, to where this energy and inertia alone would take it.
-    /// Tolerances do not see such small moves, so that a step that ends at its guess has no other answer.
-    virtual void guess(View<Vec3> x) const = 0;
-
-    /// Moves positions out of the candidates' forbidden half-spaces where that is a local matter. True
+    /// Moves a start guess out of the candidates' forbidden half-spaces where that is a local matter. True
     /// when anything moved.
     virtual bool make_feasible(View<Vec3> x) const = 0;
 

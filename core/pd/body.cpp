@@ -39,7 +39,7 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
     x_t1_ = prediction_;
     if (active) {
         active->begin_step(start_of(dt));
-        guess_contact(*active);
+        active->make_feasible(x_t1_);
     }
     minimise(dt, active, report);
     if (report.status == StepReport::Status::NonFinite)
@@ -60,23 +60,9 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
     return report;
 }
 
-/// Begins where contact and inertia alone lead, unless the minimiser sees the way there from where it is
-/// merely pushed out: in long steps single vertices go so far that the cloth is torn at.
-void Body::guess_contact(ActiveSetEnergy& active)
-{
-    guess_ = x_t1_;
-    active.guess(guess_);
-    active.make_feasible(x_t1_);
-    double farthest = 0.0;
-    for (size_t i = 0; i < x_.size(); ++i)
-        farthest = std::max(farthest, (guess_[i] - x_t1_[i]).norm());
-    if (farthest <= settings_.tolerance)
-        x_t1_.swap(guess_);
-}
-
 StepStart Body::start_of(double dt) const
 {
-    return {x_, prediction_, system_->diagonal(), system_->masses(), system_->fixed(), dt};
+    return {x_, prediction_, system_->diagonal(), system_->fixed(), dt};
 }
 
 /// Far enough below what moves in this step.

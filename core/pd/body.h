@@ -34,7 +34,6 @@ public:
 
 private:
     StepStart start_of(double dt) const;
-    void guess_contact(ActiveSetEnergy& active);
     double tolerance() const;
     OuterLoop::Outcome no_worse_than_standing(double dt, StepObjective& objective,
                                               OuterLoop::Settings settings, const OuterLoop::Outcome& found);
@@ -43,7 +42,7 @@ private:
     std::unique_ptr<System> system_;
     Settings settings_;
     std::unique_ptr<OuterLoop> outer_;
-    std::vector<Vec3> prediction_, guess_, standing_, gradient_;
+    std::vector<Vec3> prediction_, standing_, gradient_;
 };
 
 } // namespace toile

@@ -20,7 +20,6 @@ RigidActiveSet::RigidActiveSet(ActiveSetEnergy& surface, const RigidBodies& bodi
     start_.resize(vertices);
     prediction_.resize(vertices);
     diagonal_.resize(vertices);
-    masses_.resize(vertices);
     fixed_.assign(vertices, 0);
     x_.resize(vertices);
     field_.resize(vertices);
@@ -58,24 +57,13 @@ void RigidActiveSet::begin_step(const StepStart& start)
     std::copy(bodies_.surface().begin(), bodies_.surface().end(), start_.begin() + free_count_);
     to_surface(start.prediction, prediction_);
     std::copy_n(start.diagonal.begin(), free_count_, diagonal_.begin());
-    std::copy_n(start.masses.begin(), free_count_, masses_.begin());
     std::copy_n(start.fixed.begin(), free_count_, fixed_.begin());
     for (int v = 0; v < bodies_.vertex_count(); ++v)
         diagonal_[free_count_ + v] = kStiffening * bodies_.inertia(v, start.dt);
-    for (int v = 0; v < bodies_.vertex_count(); ++v)
-        masses_[free_count_ + v] = bodies_.inertia(v, 1.0);
-    surface_.begin_step({start_, prediction_, diagonal_, masses_, fixed_, start.dt});
+    surface_.begin_step({start_, prediction_, diagonal_, fixed_, start.dt});
 }
 
-/// Of the free points only: pushed out one by one, the vertices of a body would come apart.
-void RigidActiveSet::guess(View<Vec3> q) const
-{
-    to_surface(q, x_);
-    surface_.guess(x_);
-    take_free(x_, q);
-}
-
-/// Of the free points only, as guess().
+/// Of the start guess the free points only: pushed out one by one, the vertices of a body would come apart.
 bool RigidActiveSet::make_feasible(View<Vec3> q) const
 {
     to_surface(q, x_);

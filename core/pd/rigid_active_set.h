@@ -22,7 +22,6 @@ public:
     RigidActiveSet(ActiveSetEnergy& surface, const RigidBodies& bodies, int free_count);
 
     void begin_step(const StepStart& start) override;
-    void guess(View<Vec3> q) const override;
     bool make_feasible(View<Vec3> q) const override;
     double add_gradient(View<const Vec3> q, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> q) override;
@@ -55,7 +54,6 @@ private:
     double dt_ = 0.0;
     std::vector<Vec3> start_, prediction_; ///< [vertices]
     std::vector<double> diagonal_;         ///< [vertices]
-    std::vector<double> masses_;           ///< [vertices]
     std::vector<unsigned char> fixed_;     ///< [vertices]
     RigidBodies::Tangent frozen_;
     std::vector<Mat3> blocks_;             ///< [free points, unknowns]

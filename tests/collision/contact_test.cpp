@@ -119,7 +119,7 @@ TEST(Contact, DoesNotThrowAVertexThatHardlyCarriesThePair)
     Contact contact(triangles, start, {one_cloth(3)}, {{&collider, nullptr}}, Contact::Settings{});
     const std::vector<double> diagonal(3, 100.0);
     const std::vector<unsigned char> fixed{1, 1, 0};
-    contact.begin_step({start, start, diagonal, diagonal, fixed, 1.0 / 120.0});
+    contact.begin_step({start, start, diagonal, fixed, 1.0 / 120.0});
     ASSERT_FALSE(contact.energy().terms().empty());
     std::vector<Vec3> x = start;
     contact.make_feasible(x);
@@ -142,7 +142,7 @@ struct RisingPlate {
     explicit RisingPlate(double height = 0.02) : rise(height)
     {
         plate.move(Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(0.0, rise, 0.0)));
-        contact.begin_step({start, start, diagonal, diagonal, fixed, kDt});
+        contact.begin_step({start, start, diagonal, fixed, kDt});
     }
 };
 
@@ -180,7 +180,7 @@ TEST(Contact, ClearsASliverByItsOwnMeasureOnly)
     const std::vector<double> diagonal(3, 100.0);
     const std::vector<unsigned char> fixed(3, 0);
     Contact contact(triangles, start, {one_cloth(3)}, {{nullptr, &plate}}, Contact::Settings{});
-    contact.begin_step({start, start, diagonal, diagonal, fixed, 0.1});
+    contact.begin_step({start, start, diagonal, fixed, 0.1});
     std::vector<Vec3> x = start, v(3, Vec3::Zero());
     contact.clear(x, v);
     EXPECT_GT(x[0].y(), start[0].y());

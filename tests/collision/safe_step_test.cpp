@@ -158,6 +158,30 @@ TEST(SafeStep, TakesAlongOnlyThoseNearby)
 }
 
 /// Two sheets meet; what is left of their velocities is their common one, wherever the world's rest is.
+TEST(SafeStep, DoesNotTearClothThatIsStoppedInPart)
+{
+    // The upper sheet falls with one half beside the lower one, which only the other half meets.
+    Layers layers(2, 9, 0.002);
+    for (size_t v = layers.x.size() / 2; v < layers.x.size(); ++v)
+        layers.x[v].x() += 4 * kEdge;
+    const std::vector<Vec3>& from = layers.x;
+    std::vector<Vec3> wanted = from;
+    for (size_t v = from.size() / 2; v < from.size(); ++v)
+        wanted[v].y() -= 0.05;
+    Stepper stepper(layers);
+    const std::vector<Vec3> to = stepper.step(from, wanted, wanted);
+    EXPECT_GT(stepper.held(), 0.01);
+    stepper.expect_free(from, to);
+
+    const double slack = 0.2 * SafeStep::Settings{}.most_deflection;
+    for (const Triangle& corner : layers.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const int a = corner[k], b = corner[(k + 1) % 3];
+            const double before = (from[a] - from[b]).norm();
+            ASSERT_LE((to[a] - to[b]).norm(), before + slack + 1e-12) << a << " " << b;
+        }
+}
+
 TEST(SafeStep, IsTheSameInEveryFrameThatMoves)
 {
     const Layers layers(2, 6, 0.002);

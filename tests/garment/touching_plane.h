@@ -43,7 +43,6 @@ public:
     }
 
     void begin_step(const StepStart&) override {}
-    void guess(View<Vec3>) const override {}
     bool make_feasible(View<Vec3>) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
     {

@@ -86,16 +86,6 @@ TEST(ClothFriction, SlidesAtCoulombsAcceleration)
     expect_exact({0.6, 0.5}, 0.03);
 }
 
-TEST(ClothFriction, SlidesAtCoulombsAccelerationAtTheDefaultTolerance)
-{
-    // Which does not see how deep cloth sinks into a pair: the start guess has to know.
-    for (const int substeps : {16, 64}) {
-        SCOPED_TRACE(substeps);
-        for (const Slide& slide : {Slide{0.3, 0.1}, Slide{0.6, 0.4}})
-            expect_exact({slide.slope, slide.friction, substeps, R"("tolerance": 1e-3)"}, 0.08);
-    }
-}
-
 TEST(ClothFriction, LandsWithoutAPushAlongTheSlope)
 {
     // At 8 ms a step the sheet is expected on the far side of the other one, beside its border.
