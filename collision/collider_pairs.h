@@ -35,7 +35,8 @@ public:
     /// @param strays  [vertices] set to 1
     bool mark_unseen(View<const Vec3> x, View<unsigned char> strays);
 
-    /// The pairs of marked vertices again, at the same time, from x [vertices] [m].
+    /// The pairs of marked vertices with meshes again, and all with shapes, at the same time, from x
+    /// [vertices] [m].
     void find_again(View<const Vec3> x, View<const unsigned char> strays);
 
     /// Remembers which sides of moving meshes the cloth is on at the end of a step.
