@@ -70,7 +70,8 @@ scene::Avatar ball()
 double energy_of_jump(double speed, const Scene& scene)
 {
     const Fabric fabric = fabric_of(scene, scene.cloths[0]);
-    const double fastest = speed <= ColliderPairs::kMaxCarrySpeed ? speed : Contact::Settings{}.recovery_speed;
+    const double fastest =
+        speed <= ColliderPairs::kMaxCarrySpeed ? speed : Contact::Settings{}.recovery_speed;
     const double stretch = fabric.stretch_warp * fabric.strain_limit * fabric.strain_limit;
     return 0.5 * fastest * fastest + scene.gravity.norm() * 2.0 * kBallRadius +
            stretch / fabric.areal_density;
