@@ -73,7 +73,7 @@ Vec3 ColliderPairs::carrying_motion(const Vec3& x, const Nearest& last) const
 
 void ColliderPairs::find_again(View<const Vec3> x, View<const unsigned char> strays)
 {
-    if (empty())
+    if (empty() || std::find(strays.begin(), strays.end(), 1) == strays.end())
         return;
     for (int v = 0; v < x.size(); ++v) {
         wanted_[v] = kNowhere;
@@ -97,18 +97,17 @@ void ColliderPairs::find_again(View<const Vec3> x, View<const unsigned char> str
 void ColliderPairs::look(View<const Vec3> x)
 {
     const StageScope stage("collision/detect");
-    const double farthest = *std::max_element(wanted_.begin(), wanted_.end());
     DetectSettings settings;
-    settings.radius = std::max(farthest, settings_.gap + kMargin);
+    settings.radius = *std::max_element(wanted_.begin(), wanted_.end());
     settings.farthest_motion = farthest_motion_;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;
     detector_.move(x, wanted_);
     for (int c = 0; c < int(partners_.size()); ++c) {
-        if (partners_[c].shape)
-            detector_.detect(*partners_[c].shape, c, settings, pairs_);
-        else if (farthest > kNowhere)
+        if (partners_[c].mesh)
             detector_.detect(*partners_[c].mesh, c, settings, pairs_, &sides_);
+        else
+            detector_.detect(*partners_[c].shape, c, settings, pairs_);
     }
     take_nearest();
 }

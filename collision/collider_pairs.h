@@ -36,7 +36,7 @@ public:
     bool mark_unseen(View<const Vec3> x, View<unsigned char> strays);
 
     /// The pairs of marked vertices with meshes again, and all with shapes, at the same time, from x
-    /// [vertices] [m].
+    /// [vertices] [m]. Where nothing is marked all stay as they are.
     void find_again(View<const Vec3> x, View<const unsigned char> strays);
 
     /// Remembers which sides of moving meshes the cloth is on at the end of a step.
