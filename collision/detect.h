@@ -36,9 +36,8 @@ public:
     ContactDetector(View<const Triangle> triangles, View<const Vec3> positions);
 
     /// Cloth positions to detect at: the guess for t1 [vertices x 3] [m]. Borrowed until the next move().
-    /// @param reach  [vertices] largest distance of a pair with a mesh, where less than
-    /// DetectSettings::radius
-    ///               [m]; empty: nowhere. Borrowed likewise
+    /// @param reach  [vertices] largest distance of a pair with a mesh [m], where that is less than the
+    ///               radius of detect(); empty: nowhere. Borrowed likewise
     void move(View<const Vec3> x, View<const double> reach = {});
 
     /// Appends the pairs against one collider, by kind, cloth vertices, collider feature:

@@ -210,8 +210,9 @@ void SafeStep::find_shares(View<const unsigned char> leans)
     bodies_.begin(base_, way_);
     for (int body = 0; body < bodies_.count(); ++body)
         zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));
-    tethers_.begin(base_, way_, kTethered * settings_.most_deflection);
     for (int round = 0; shorten(round >= kRounds); ++round) {
+        if (round == 0)
+            tethers_.begin(base_, way_, kTethered * settings_.most_deflection);
         std::fill(is_stale_.begin(), is_stale_.end(), 0);
         follow_zones();
         for (int sweep = 0; hold_together(sweep >= kRounds); ++sweep)

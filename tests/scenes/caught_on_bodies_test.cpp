@@ -161,6 +161,22 @@ Vec3 middle_of(const std::string& bone, const Case& c, const Outcome& outcome)
     return sum / std::max(count, 1);
 }
 
+/// At least so much caught, at most so much room, speed [m/s] and strain.
+struct Limits {
+    int caught;
+    double least_room, fastest, strain;
+};
+
+void expect_caught(const Outcome& outcome, const Limits& limits)
+{
+    record(outcome);
+    EXPECT_GE(outcome.caught, limits.caught);
+    EXPECT_LT(outcome.least_room, limits.least_room);
+    EXPECT_LT(outcome.fastest, limits.fastest);
+    EXPECT_LT(outcome.strain, limits.strain);
+    expect_free(outcome);
+}
+
 /// A man begins to walk; his right arm passes along his side twice. Measured: 2.80 m/s, when the skin around
 /// has up to 2.85; strain .125; 9 vertices caught, where the overlap is 4.5 mm.
 TEST(CaughtOnBodies, UnderAnArmThatSwings)
@@ -175,12 +191,7 @@ TEST(CaughtOnBodies, UnderAnArmThatSwings)
     if (!file_of(c.avatar))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no avatars/" << c.avatar;
     const Outcome outcome = run(c);
-    record(outcome);
-    EXPECT_GE(outcome.caught, 5);
-    EXPECT_LT(outcome.least_room, -0.002);
-    EXPECT_LT(outcome.fastest, 3.4);
-    EXPECT_LT(outcome.strain, 0.16);
-    expect_free(outcome);
+    expect_caught(outcome, {.caught = 5, .least_room = -0.002, .fastest = 3.4, .strain = 0.16});
 }
 
 /// A dancer turns; her thighs press on the sheet between them. Measured: 1.64 m/s, when the skin around has
@@ -197,12 +208,7 @@ TEST(CaughtOnBodies, BetweenTheThighsOfADancer)
     if (!file_of(c.avatar))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no avatars/" << c.avatar;
     const Outcome outcome = run(c);
-    record(outcome);
-    EXPECT_GE(outcome.caught, 15);
-    EXPECT_LT(outcome.least_room, -0.015);
-    EXPECT_LT(outcome.fastest, 2.0);
-    EXPECT_LT(outcome.strain, 0.08);
-    expect_free(outcome);
+    expect_caught(outcome, {.caught = 15, .least_room = -0.015, .fastest = 2.0, .strain = 0.08});
 
     // Between the legs again: beside the middle of neither.
     const Vec3 left = middle_of("LeftUpLeg", c, outcome), right = middle_of("RightUpLeg", c, outcome);
