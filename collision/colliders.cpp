@@ -27,18 +27,7 @@ MeshCollider::MeshCollider(const MovingMesh& mesh)
     owned_edges_.resize(edges.vertex.size());
     std::vector<int> next(first_owned_.begin(), first_owned_.end() - 1);
     for (int e = 0; e < edges.edge_count(); ++e)
-        owned_edges_[next[edges.triangles.of(e)[0]]++].edge = e;
-    update_owned_edges();
-}
-
-void MeshCollider::update_owned_edges()
-{
-    parallel_for(kCpu, "collision/owned_edges", int(owned_edges_.size()), [this](int i) {
-        OwnedEdge& owned = owned_edges_[i];
-        const std::array<int, 2>& end = surface_.edges().vertex[owned.edge];
-        owned.a = surface_.positions()[end[0]];
-        owned.b = surface_.positions()[end[1]];
-    });
+        owned_edges_[next[edges.triangles.of(e)[0]]++] = {e, edges.vertex[e]};
 }
 
 void MeshCollider::move(const MovingMesh& mesh)
@@ -53,7 +42,6 @@ void MeshCollider::move(const MovingMesh& mesh)
     last_motion_.build(surface_.triangles(), surface_.positions(), mesh.x_t1);
     surface_.update(mesh.x_t1);
     bounds_ = toile::bounds(mesh.x_t1);
-    update_owned_edges();
 }
 
 Vec3 MeshCollider::motion(int triangle, const Vec3& barycentric) const
@@ -68,8 +56,8 @@ bool MeshCollider::is_ridge(int edge) const
     const View<const int> sides = surface_.edges().triangles.of(edge);
     if (sides.size() != 2)
         return true;
-    const Vec3& n0 = surface_.face_normals()[sides[0]];
-    if (n0.dot(surface_.face_normals()[sides[1]]) > kRidgeCosine)
+    const Vec3 n0 = surface_.face_normal(sides[0]);
+    if (n0.dot(surface_.face_normal(sides[1])) > kRidgeCosine)
         return false;
 
     // Ridge: the other face's third corner lies below this face.

@@ -37,10 +37,9 @@ public:
     /// Displacement of a point of a triangle from t0 to t1 [m].
     Vec3 motion(int triangle, const Vec3& barycentric) const;
 
-    /// An edge at t1, its ends side by side for the cache.
     struct OwnedEdge {
-        Vec3 a, b; ///< [m]
         int edge;
+        std::array<int, 2> vertex;
     };
 
     /// True when cloth can rest on an edge: a ridge of at least 1 degree between its faces, or a border. Flat
@@ -55,8 +54,6 @@ public:
     }
 
 private:
-    void update_owned_edges();
-
     SurfaceProximity surface_;
     std::vector<Vec3> x_t0_;
     std::vector<int> first_owned_;       ///< [triangles + 1] into owned_edges_

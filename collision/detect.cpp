@@ -55,7 +55,8 @@ void ContactDetector::detect(const MeshCollider& mesh, int collider, const Detec
     const PairSearch search{x_, reach_, mesh, collider, settings, sides, clearance_of(mesh, collider)};
     find_vertex_face(search, out);
     if (settings.face_vertex)
-        find_face_vertex(search, cloth_surface(), out);
+        if (const auto vertices = find_reaching_vertices(search, cloth_.triangles()); !vertices.empty())
+            find_face_vertex(search, vertices, cloth_surface(), out);
     if (settings.edge_edge)
         find_edge_edge(search, cloth_.edges(), out);
 }

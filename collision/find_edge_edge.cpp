@@ -8,12 +8,11 @@ namespace {
 /// the closest points lie on the faces beside the ridge.
 constexpr double kConeCosine = 0.5;
 
-/// The closest points of segment a and a ridge when both lie strictly inside; nothing otherwise. Cheaper than
+/// The closest points of segment a and ridge b when both lie strictly inside; nothing otherwise. Cheaper than
 /// closest_on_segments: most candidates leave without a division.
-std::optional<ClosestOnSegments> crossing(const Vec3& a0, const Vec3& a1,
-                                          const MeshCollider::OwnedEdge& ridge)
+std::optional<ClosestOnSegments> crossing(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1)
 {
-    const Vec3 da = a1 - a0, db = ridge.b - ridge.a, gap = a0 - ridge.a;
+    const Vec3 da = a1 - a0, db = b1 - b0, gap = a0 - b0;
     const double aa = da.squaredNorm(), bb = db.squaredNorm(), ab = da.dot(db);
     const double ga = da.dot(gap), gb = db.dot(gap);
     const double determinant = aa * bb - ab * ab;
@@ -23,7 +22,7 @@ std::optional<ClosestOnSegments> crossing(const Vec3& a0, const Vec3& a1,
         return std::nullopt;
     if (!(determinant > kParallelSine2 * aa * bb))
         return std::nullopt;
-    return at_parameters(a0, a1, ridge.a, ridge.b, s / determinant, t / determinant);
+    return at_parameters(a0, a1, b0, b1, s / determinant, t / determinant);
 }
 
 /// Adds the pair of a cloth edge and a ridge whose closest points are given, when the ridge can push there.
@@ -32,6 +31,7 @@ void add_pair(const PairSearch& search, const std::array<int, 2>& cloth_edge,
               std::vector<ContactPair>& out)
 {
     const SurfaceProximity& surface = search.mesh.surface();
+    const Vec3 &b0 = surface.positions()[ridge.vertex[0]], &b1 = surface.positions()[ridge.vertex[1]];
     const Vec3 pseudo_normal = surface.edge_normal(ridge.edge);
     if (pseudo_normal.isZero(0.0))
         return;
@@ -40,7 +40,7 @@ void add_pair(const PairSearch& search, const std::array<int, 2>& cloth_edge,
     // ridge's own normal.
     const double s = closest.s, t = closest.t;
     const Vec3 on_cloth = (1.0 - s) * search.x[cloth_edge[0]] + s * search.x[cloth_edge[1]];
-    const Vec3 on_ridge = (1.0 - t) * ridge.a + t * ridge.b;
+    const Vec3 on_ridge = (1.0 - t) * b0 + t * b1;
     const double distance = std::sqrt(closest.distance2);
     Vec3 normal = pseudo_normal;
     if (distance > kTouching) {
@@ -53,15 +53,15 @@ void add_pair(const PairSearch& search, const std::array<int, 2>& cloth_edge,
         if (ahead > 0.0)
             normal = direction;
     }
-    const std::array<int, 2>& end = surface.edges().vertex[ridge.edge];
-    out.push_back({.vertex = contact_vertices(cloth_edge[0], cloth_edge[1]),
-                   .weight = {1.0 - s, s},
-                   .normal = normal,
-                   .point = on_ridge,
-                   .motion = (1.0 - t) * search.mesh.motion(end[0]) + t * search.mesh.motion(end[1]),
-                   .collider = search.collider,
-                   .kind = ContactKind::kEdgeEdge,
-                   .feature = ridge.edge});
+    out.push_back(
+        {.vertex = contact_vertices(cloth_edge[0], cloth_edge[1]),
+         .weight = {1.0 - s, s},
+         .normal = normal,
+         .point = on_ridge,
+         .motion = (1.0 - t) * search.mesh.motion(ridge.vertex[0]) + t * search.mesh.motion(ridge.vertex[1]),
+         .collider = search.collider,
+         .kind = ContactKind::kEdgeEdge,
+         .feature = ridge.edge});
 }
 
 void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
@@ -77,14 +77,15 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
     if (!is_near(search.mesh.bounds(), middle, reach))
         return;
 
-    // A ridge within the radius has all its triangles, so its owner too, within reach of the middle. The
-    // candidates' order does not matter: every pair is tested by itself and the pairs are sorted.
+    // A ridge within the radius has its owner there too. The candidates' order does not matter: every pair is
+    // tested by itself and the pairs are sorted.
+    const View<const Vec3> body = search.mesh.surface().positions();
     thread_local std::vector<int> triangles;
-    search.mesh.surface().triangles_maybe_within(middle, reach, triangles);
+    search.mesh.surface().triangles_maybe_around(a, b, radius, triangles);
     const size_t first = out.size();
     for (const int t : triangles)
         for (const MeshCollider::OwnedEdge& ridge : search.mesh.owned_edges(t))
-            if (const auto closest = crossing(a, b, ridge);
+            if (const auto closest = crossing(a, b, body[ridge.vertex[0]], body[ridge.vertex[1]]);
                 closest && closest->distance2 < radius2 && search.mesh.is_ridge(ridge.edge))
                 add_pair(search, cloth_edge, ridge, *closest, out);
     std::sort(out.begin() + long(first), out.end(),

@@ -13,13 +13,14 @@ constexpr double kPiercedRadii = 1.0;
 /// sideways is the business of its own vertices and edges.
 constexpr double kAheadCosine = 0.7071;
 
-void find_sheets(const PairSearch& search, const SurfaceProximity& cloth, int v,
+void find_sheets(const PairSearch& search, const SurfaceProximity& cloth, const ReachingVertex& reaching,
                  std::vector<ContactPair>& out)
 {
+    const int v = reaching.vertex;
     const SurfaceProximity& surface = search.mesh.surface();
     const Vec3& x = surface.positions()[v];
     thread_local std::vector<SurfacePoint> sheets;
-    cloth.local_closest(x, kPiercedRadii * search.settings.radius, sheets);
+    cloth.local_closest(x, reaching.reach, sheets);
     if (sheets.empty())
         return;
     const Vec3 n = surface.vertex_normal(v);
@@ -51,52 +52,61 @@ void find_sheets(const PairSearch& search, const SurfaceProximity& cloth, int v,
 /// Cells [m] in which cloth may be near the mesh: smaller ones cull more, larger ones are faster to fill.
 constexpr double kCell = 0.03;
 
-/// Where a vertex of the mesh may be near cloth that is wanted.
+/// Where a vertex of the mesh may be near cloth that is wanted, and how far that is at most.
 class NearCells {
 public:
-    NearCells(const PairSearch& search, const SurfaceProximity& cloth)
+    NearCells(const PairSearch& search, View<const Triangle> cloth)
     {
-        std::vector<Bounds> boxes;
-        for (const Triangle& corner : cloth.triangles())
-            if (const std::optional<Bounds> box = box_of(search, corner)) {
-                boxes.push_back(*box);
+        struct Place {
+            Bounds box;
+            double reach;
+        };
+        std::vector<Place> places;
+        for (const Triangle& corner : cloth) {
+            const double reach = kPiercedRadii * search.radius_of(corner[0], corner[1], corner[2]);
+            if (const std::optional<Bounds> box = box_of(search, corner, reach)) {
+                places.push_back({*box, reach});
                 all_.extend(box->lower);
                 all_.extend(box->upper);
             }
-        if (boxes.empty())
+        }
+        if (places.empty())
             return;
         grid_ = CellGrid(all_, kCell);
-        is_near_.assign(grid_.cell_count(), 0);
-        for (const Bounds& box : boxes)
-            grid_.for_cells(grid_.cell_of(box.lower), grid_.cell_of(box.upper),
-                            [&](int cell) { is_near_[cell] = 1; });
+        reach_.assign(grid_.cell_count(), kNowhere);
+        for (const Place& place : places)
+            grid_.for_cells(grid_.cell_of(place.box.lower), grid_.cell_of(place.box.upper),
+                            [&](int cell) { reach_[cell] = std::max(reach_[cell], place.reach); });
     }
 
-    bool empty() const { return is_near_.empty(); }
-    bool hold(const Vec3& x) const
+    bool empty() const { return reach_.empty(); }
+
+    /// [m] Cloth farther from x is not wanted; negative where none is near.
+    double reach_from(const Vec3& x) const
     {
-        const int cell = grid_.nearest_to(x, 0);
-        return cell >= 0 && is_near_[cell];
+        const int cell = is_near(all_, x, 0.0) ? grid_.nearest_to(x, 0) : -1;
+        return cell < 0 ? kNowhere : reach_[cell];
     }
 
 private:
+    static constexpr double kNowhere = -1.0;
+
     /// Around a triangle, as far as pairs are wanted; nothing where all of it is clear of the mesh.
-    static std::optional<Bounds> box_of(const PairSearch& search, const Triangle& corner)
+    static std::optional<Bounds> box_of(const PairSearch& search, const Triangle& corner, double reach)
     {
-        const double radius = search.radius_of(corner[0], corner[1], corner[2]);
         Bounds box;
         for (const int v : corner)
             box.extend(search.x[v]);
-        if (radius < 0.0 || search.clearance.of(corner[0]) > radius + box.diagonal())
+        if (reach < 0.0 || search.clearance.of(corner[0]) > reach + box.diagonal())
             return std::nullopt;
-        box.lower.array() -= kPiercedRadii * radius;
-        box.upper.array() += kPiercedRadii * radius;
+        box.lower.array() -= reach;
+        box.upper.array() += reach;
         return box;
     }
 
     Bounds all_;
     CellGrid grid_;
-    std::vector<unsigned char> is_near_; ///< [cells]
+    std::vector<double> reach_; ///< [cells] [m]
 };
 
 } // namespace
@@ -108,18 +118,33 @@ bool is_inside_below(const MeshCollider& mesh, const Vec3& c, double reach, cons
     return nearest && nearest->signed_distance < 0.0 && nearest->normal.dot(n) > 0.0;
 }
 
-void find_face_vertex(const PairSearch& search, const SurfaceProximity& cloth, std::vector<ContactPair>& out)
+std::vector<ReachingVertex> find_reaching_vertices(const PairSearch& search, View<const Triangle> triangles)
 {
-    const NearCells cells(search, cloth);
+    std::vector<ReachingVertex> near;
+    const NearCells cells(search, triangles);
     if (cells.empty())
-        return;
+        return near;
+    const View<const Vec3> body = search.mesh.surface().positions();
+    parallel_append(
+        kCpu, "collision/near_vertices", body.size(),
+        [&](int begin, int end, std::vector<ReachingVertex>& found) {
+            for (int v = begin; v < end; ++v)
+                if (const double reach = cells.reach_from(body[v]); reach >= 0.0)
+                    found.push_back({v, reach});
+        },
+        near);
+    return near;
+}
+
+void find_face_vertex(const PairSearch& search, View<const ReachingVertex> vertices,
+                      const SurfaceProximity& cloth, std::vector<ContactPair>& out)
+{
     const size_t first = out.size();
     parallel_append(
-        kCpu, "collision/face_vertex", search.mesh.surface().positions().size(),
+        kCpu, "collision/face_vertex", vertices.size(),
         [&](int begin, int end, std::vector<ContactPair>& pairs) {
-            for (int v = begin; v < end; ++v)
-                if (cells.hold(search.mesh.surface().positions()[v]))
-                    find_sheets(search, cloth, v, pairs);
+            for (const ReachingVertex& v : vertices.subview(begin, end - begin))
+                find_sheets(search, cloth, v, pairs);
         },
         out);
     std::sort(out.begin() + long(first), out.end(), [](const ContactPair& a, const ContactPair& b) {

@@ -37,8 +37,18 @@ struct PairSearch {
 /// Appends to `out`, sorted by cloth vertex, then by distance.
 void find_vertex_face(const PairSearch& search, std::vector<ContactPair>& out);
 
+/// A vertex of the mesh that may be near cloth that is wanted.
+struct ReachingVertex {
+    int vertex;
+    double reach; ///< [m] cloth farther away is not wanted
+};
+
+/// Those of the mesh, by number.
+std::vector<ReachingVertex> find_reaching_vertices(const PairSearch& search, View<const Triangle> cloth);
+
 /// Appends to `out`, sorted by cloth vertices, then by collider vertex. `cloth` is the tree at search.x.
-void find_face_vertex(const PairSearch& search, const SurfaceProximity& cloth, std::vector<ContactPair>& out);
+void find_face_vertex(const PairSearch& search, View<const ReachingVertex> vertices,
+                      const SurfaceProximity& cloth, std::vector<ContactPair>& out);
 
 /// Appends to `out`, sorted by cloth edge, then by collider edge.
 void find_edge_edge(const PairSearch& search, const SurfaceEdges& cloth, std::vector<ContactPair>& out);

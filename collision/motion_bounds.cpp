@@ -1,5 +1,9 @@
 #include "collision/motion_bounds.h"
 
+#include <algorithm>
+
+#include "core/backend/parallel.h"
+
 namespace toile {
 
 namespace {
@@ -19,15 +23,23 @@ void extend(Bounds& box, const Bounds& other)
 void MotionBounds::build(View<const Triangle> triangles, View<const Vec3> before, View<const Vec3> now)
 {
     grid_ = CellGrid(bounds(now), kReach);
+    std::vector<CellGrid::Cell> cell_of(now.size());
+    parallel_for(kCpu, "collision/motion_cells", now.size(),
+                 [&](int v) { cell_of[v] = grid_.cell_of(now[v]); });
+
+    // Cells are in the order of coordinates: those of the box around a triangle are those of its corners.
     std::vector<Bounds> own(grid_.cell_count());
     for (const Triangle& corner : triangles) {
-        Bounds place, motion;
+        CellGrid::Cell first = cell_of[corner[0]], last = first;
+        Bounds motion;
         for (const int v : corner) {
-            place.extend(now[v]);
+            for (int k = 0; k < 3; ++k) {
+                first[k] = std::min(first[k], cell_of[v][k]);
+                last[k] = std::max(last[k], cell_of[v][k]);
+            }
             motion.extend(now[v] - before[v]);
         }
-        grid_.for_cells(grid_.cell_of(place.lower), grid_.cell_of(place.upper),
-                        [&](int cell) { extend(own[cell], motion); });
+        grid_.for_cells(first, last, [&](int number) { extend(own[number], motion); });
     }
 
     motion_.assign(own.size(), Bounds{});

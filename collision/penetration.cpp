@@ -166,7 +166,7 @@ bool PenetrationMeter::is_buried(int triangle) const
     Vec3 centroid = Vec3::Zero();
     for (const int v : corner)
         centroid += surface_.positions()[v] / 3.0;
-    const Vec3 outwards = kProbe * surface_.face_normals()[triangle];
+    const Vec3 outwards = kProbe * surface_.face_normal(triangle);
     if (rays_.winding_number(centroid + outwards) > 0)
         return true;
     return std::any_of(corner.begin(), corner.end(), [&](int v) {

@@ -31,8 +31,8 @@ struct SurfacePoint {
 
 /// Closest-point queries on a triangle surface that moves without changing its triangles.
 ///
-/// Embree's tree (single precision, padded radii) only proposes triangles; distances are computed in double,
-/// and ties go to the lowest triangle, so answers do not depend on the tree or on the number of threads.
+/// A tree (TriangleTree) only proposes triangles; distances are computed in double, and ties go to the lowest
+/// triangle, so answers do not depend on the tree or on the number of threads.
 /// Any triangle list will do: self-intersecting, collapsed, non-manifold. Where a feature has no normal
 /// (all its triangles collapsed) the direction to the query point stands in, with a positive sign.
 /// Queries may run on any number of threads at once, update() on one.
@@ -71,15 +71,16 @@ public:
     /// Triangles whose distance from p is at most radius [m], ascending. Replaces the content of out.
     void triangles_within(const Vec3& p, double radius, std::vector<int>& out) const;
 
-    /// A superset of triangles_within in any order, without distances: for callers that test exactly
-    /// themselves and whose result does not depend on the order. Replaces the content of out.
-    void triangles_maybe_within(const Vec3& p, double radius, std::vector<int>& out) const;
+    /// Triangles within `radius` [m] of the segment ab and others near it, in any order, without distances:
+    /// for callers that test exactly themselves and whose result does not depend on the order. Replaces the
+    /// content of out.
+    void triangles_maybe_around(const Vec3& a, const Vec3& b, double radius, std::vector<int>& out) const;
 
     View<const Triangle> triangles() const;
     View<const Vec3> positions() const;
-    View<const Vec3> face_normals() const; ///< [triangles] unit, or zero for a triangle of no area
-    Vec3 edge_normal(int edge) const;      ///< unit, or zero where all its triangles have no area
-    Vec3 vertex_normal(int vertex) const;  ///< angle-weighted; unit or zero likewise
+    Vec3 face_normal(int triangle) const; ///< unit, or zero for a triangle of no area
+    Vec3 edge_normal(int edge) const;     ///< unit, or zero where all its triangles have no area
+    Vec3 vertex_normal(int vertex) const; ///< angle-weighted; unit or zero likewise
     const SurfaceEdges& edges() const;
 
 private:

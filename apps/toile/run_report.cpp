@@ -84,7 +84,8 @@ void RunReport::write(const std::filesystem::path& file, const std::string& outc
     json["seconds"] = seconds;
     Json& stage_table = json["stages"] = Json::object();
     for (const auto& [name, entry] : stages.entries())
-        stage_table[name] = {{"calls", entry.calls}, {"seconds", entry.seconds}};
+        stage_table[name] = {
+            {"calls", entry.calls}, {"seconds", entry.seconds}, {"own_seconds", entry.own_seconds}};
     write_atomically(file, json.dump(2) + "\n");
 }
 

@@ -13,7 +13,7 @@ void ByPointQueries::find_triangles(int v, double margin, std::vector<Found>& ou
 {
     thread_local std::vector<int> near;
     const View<const Vec3> x = surface_.positions();
-    surface_.triangles_maybe_within(x[v], margin, near);
+    surface_.triangles_maybe_around(x[v], x[v], margin, near);
     for (const int t : near) {
         const Triangle& c = surface_.triangles()[t];
         if (c[0] == v || c[1] == v || c[2] == v)
@@ -29,8 +29,7 @@ void ByPointQueries::find_edges(int e, double margin, std::vector<Found>& out) c
     const SurfaceEdges& edges = surface_.edges();
     const View<const Vec3> x = surface_.positions();
     const auto& a = edges.vertex[e];
-    const Vec3 half = 0.5 * (x[a[1]] - x[a[0]]);
-    surface_.triangles_maybe_within(x[a[0]] + half, margin + half.norm(), near);
+    surface_.triangles_maybe_around(x[a[0]], x[a[1]], margin, near);
     for (const int t : near)
         for (const int f : edges.triangle_edge[t]) {
             const auto& b = edges.vertex[f];

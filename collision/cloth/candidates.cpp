@@ -76,28 +76,31 @@ void Candidates::set_points(View<const Vec3> x, const Ways& ways, double margin)
 
 void Candidates::fill_leaf(int leaf)
 {
-    const auto fill = [&](PrimitiveBoxes::Kind& kind, const auto& box_of) {
-        for (int b = kind.first_block[leaf]; b < kind.first_block[leaf + 1]; ++b)
-            for (int lane = 0; lane < BoxBlock::kCount; ++lane)
-                if (const int item = kind.item_of(b, lane); item >= 0)
-                    kind.block[b].set(lane, box_of(item));
+    bool is_leaf_wanted = false;
+    const auto fill = [&](PrimitiveBoxes::Kind& kind, const auto& vertices_of) {
+        for (int b = kind.first_block[leaf]; b < kind.first_block[leaf + 1]; ++b) {
+            kind.wanted[b] = 0;
+            for (int lane = 0; lane < BoxBlock::kCount; ++lane) {
+                const int item = kind.item_of(b, lane);
+                if (item < 0)
+                    continue;
+                const auto vertices = vertices_of(item);
+                kind.block[b].set(lane, box_of(vertices));
+                if (is_wanted(vertices))
+                    kind.wanted[b] |= std::uint8_t(1 << lane);
+            }
+            is_leaf_wanted = is_leaf_wanted || kind.wanted[b] != 0;
+        }
     };
-    fill(boxes_.edges, [&](int e) {
-        const auto& v = edges_.vertex[e];
-        return box_around(box_margin_, points_[v[0]], points_[v[1]]);
-    });
-    fill(boxes_.vertices, [&](int v) { return box_around(box_margin_, points_[v]); });
+    fill(boxes_.edges, [&](int e) { return edges_.vertex[e]; });
+    fill(boxes_.vertices, [&](int v) { return std::array<int, 1>{v}; });
+    fill(boxes_.triangles, [&](int t) { return triangles_[t]; });
+    leaf_is_wanted_[leaf] = is_leaf_wanted;
+
     Box all;
-    bool is_wanted = false;
-    fill(boxes_.triangles, [&](int t) {
-        const Triangle& v = triangles_[t];
-        const Box box = box_around(box_margin_, points_[v[0]], points_[v[1]], points_[v[2]]);
-        all.add(box);
-        is_wanted = is_wanted || around_.empty() || around_[v[0]] || around_[v[1]] || around_[v[2]];
-        return box;
-    });
+    for (int b = boxes_.triangles.first_block[leaf]; b < boxes_.triangles.first_block[leaf + 1]; ++b)
+        all.add(boxes_.triangles.block[b].around());
     leaf_boxes_[leaf] = all;
-    leaf_is_wanted_[leaf] = is_wanted;
 }
 
 void Candidates::refit()

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "collision/cloth/box_tree.h"
+#include "collision/box_tree.h"
 #include "collision/cloth/near_pairs.h"
 #include "collision/cloth/primitive_boxes.h"
 #include "collision/surface_edges.h"
@@ -24,7 +24,8 @@ public:
     int task_count() const { return int(tasks_.size()); }
 
     /// Calls try_edges(e, f) and try_triangle(v, t) for the task's candidates, primitives with common
-    /// vertices among them. Over all tasks each pair comes at most once.
+    /// vertices among them; only for those with a vertex of Ways::around, where that says so. Over all tasks
+    /// each pair comes at most once.
     template <typename TryEdges, typename TryTriangle>
     void visit(int task, const TryEdges& try_edges, const TryTriangle& try_triangle) const
     {
@@ -38,6 +39,21 @@ public:
 
 private:
     void set_points(View<const Vec3> x, const Ways& ways, double margin);
+    Box box_of(const std::array<int, 1>& v) const { return box_around(box_margin_, points_[v[0]]); }
+    Box box_of(const std::array<int, 2>& v) const
+    {
+        return box_around(box_margin_, points_[v[0]], points_[v[1]]);
+    }
+    Box box_of(const Triangle& v) const
+    {
+        return box_around(box_margin_, points_[v[0]], points_[v[1]], points_[v[2]]);
+    }
+    template <typename Vertices>
+    bool is_wanted(const Vertices& vertices) const
+    {
+        return around_.empty() ||
+               std::any_of(vertices.begin(), vertices.end(), [&](int v) { return around_[v] != 0; });
+    }
     void fill_leaf(int leaf);
     void refit();
     void rebuild();
@@ -70,12 +86,14 @@ void Candidates::meet_edges(const BoxTree::Node& a, const BoxTree::Node& b, cons
     for (int i = edges.first_block[a.leaf]; i < edges.first_block[a.leaf + 1]; ++i)
         for_each_lane(edges.block[i].overlaps(b.box), [&](int lane) {
             const Box box = edges.block[i].get(lane);
+            const bool is_wanted = edges.is_wanted(i, lane);
             const int e = edges.item_of(i, lane);
             for (int j = is_same ? i : edges.first_block[b.leaf]; j < edges.first_block[b.leaf + 1]; ++j)
-                for_each_lane(edges.block[j].overlaps(box), [&](int other) {
-                    if (!is_same || j > i || other > lane)
-                        try_edges(e, edges.item_of(j, other));
-                });
+                if (is_wanted || edges.wanted[j] != 0)
+                    for_each_lane(edges.block[j].overlaps(box), [&](int other) {
+                        if ((!is_same || j > i || other > lane) && (is_wanted || edges.is_wanted(j, other)))
+                            try_edges(e, edges.item_of(j, other));
+                    });
         });
 }
 
@@ -87,10 +105,14 @@ void Candidates::meet_vertices(const BoxTree::Node& a, const BoxTree::Node& b,
     for (int i = vertices.first_block[a.leaf]; i < vertices.first_block[a.leaf + 1]; ++i)
         for_each_lane(vertices.block[i].overlaps(b.box), [&](int lane) {
             const Box box = vertices.block[i].get(lane);
+            const bool is_wanted = vertices.is_wanted(i, lane);
             const int v = vertices.item_of(i, lane);
             for (int j = triangles.first_block[b.leaf]; j < triangles.first_block[b.leaf + 1]; ++j)
-                for_each_lane(triangles.block[j].overlaps(box),
-                              [&](int other) { try_triangle(v, triangles.item_of(j, other)); });
+                if (is_wanted || triangles.wanted[j] != 0)
+                    for_each_lane(triangles.block[j].overlaps(box), [&](int other) {
+                        if (is_wanted || triangles.is_wanted(j, other))
+                            try_triangle(v, triangles.item_of(j, other));
+                    });
         });
 }
 

@@ -22,6 +22,7 @@ void close_leaf(PrimitiveBoxes::Kind& kind)
 void make_blocks(PrimitiveBoxes::Kind& kind)
 {
     kind.block.resize(kind.item.size() / BoxBlock::kCount);
+    kind.wanted.assign(kind.block.size(), 0);
     for (BoxBlock& block : kind.block)
         for (int lane = 0; lane < BoxBlock::kCount; ++lane)
             block.set(lane, Box());

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
-#include "collision/cloth/box.h"
-#include "collision/cloth/box_tree.h"
+#include "collision/box.h"
+#include "collision/box_tree.h"
 #include "collision/surface_edges.h"
 
 namespace toile {
@@ -18,7 +19,9 @@ public:
         std::vector<int> first_block; ///< [leaves + 1]
         std::vector<int> item;        ///< [8 blocks] -1: lane not used
         std::vector<BoxBlock> block;
+        std::vector<std::uint8_t> wanted; ///< [blocks] a bit for each lane
 
+        bool is_wanted(int b, int lane) const { return (wanted[b] >> lane & 1) != 0; }
         int item_of(int b, int lane) const { return item[size_t(b) * BoxBlock::kCount + lane]; }
     };
     Kind triangles, edges, vertices;

@@ -66,26 +66,25 @@ void SafeStep::begin(View<const Vec3> x, View<const Vec3> expected, View<const d
                      View<const unsigned char> fixed, View<const NearPair> pairs)
 {
     base_.assign(x.begin(), x.end());
-    expected_ = expected;
     slack_ = slack;
     fixed_ = fixed;
     expected_pairs_ = pairs;
+    more_pairs_.clear();
+    known_radius_.assign(slack.begin(), slack.end());
+    known_motion_.resize(x.size());
+    for (int v = 0; v < x.size(); ++v)
+        known_motion_[v] = expected[v] - x[v];
 }
 
 double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
 {
     const StageScope stage("collision/safe_step");
     way_.resize(x.size());
-    known_motion_.resize(x.size());
-    for (int v = 0; v < x.size(); ++v) {
+    for (int v = 0; v < x.size(); ++v)
         way_[v] = x[v] - base_[v];
-        known_motion_[v] = expected_[v] - base_[v];
-    }
     motion_ = way_;
-    known_radius_.assign(slack_.begin(), slack_.end());
     is_stale_.assign(x.size(), 1);
     is_deflected_.assign(x.size(), 0);
-    more_pairs_.clear();
     if (mark_strays())
         look_around_marked();
     if (pair_count() == 0)

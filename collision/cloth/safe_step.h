@@ -25,8 +25,9 @@ namespace toile {
 /// Rigid bodies never give way; in a zone they turn by less and move as a whole, rigid to rounding
 /// (RigidWays).
 ///
-/// Pairs are looked for again only where the list of begin() may miss one: for vertices that end farther
-/// than their slack from where they were expected, whatever has taken them there.
+/// Pairs are looked for again only where the lists may miss one: for vertices that end farther than their
+/// slack from where they were expected, whatever has taken them there. What is found serves every limit()
+/// until the next begin(): most ask for nearly the same pose again.
 ///
 /// A local form of displacement bounds [Chen et al. 2025, Offset Geometric Contact]: theirs are spheres,
 /// which stop two layers that move along together; here pairs are asked.
@@ -43,7 +44,7 @@ public:
     /// @param exempt  pairs that may do as they like
     SafeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings, RigidWays bodies = {});
 
-    /// All arguments but x are borrowed until the next begin().
+    /// x and expected are read, the others borrowed until the next begin().
     /// @param x         [vertices] the pose [m]
     /// @param expected  [vertices] where they are expected to end [m]
     /// @param slack     [vertices] beside it [m]
@@ -84,19 +85,20 @@ private:
     Settings settings_;
     RigidWays bodies_;
     Tethers tethers_; ///< edges of cloth
-    View<const Vec3> expected_;
     View<const double> slack_;
     View<const unsigned char> fixed_;
     View<const NearPair> expected_pairs_;
     std::vector<Vec3> base_;
 
+    // Of all limit() since begin().
+    std::vector<NearPair> more_pairs_; ///< that the list of begin() does not have
+    std::vector<Vec3> known_motion_;   ///< [vertices] that the lists are complete for [m]
+    std::vector<double> known_radius_; ///< [vertices] around it [m]
+
     // Of one limit().
-    std::vector<NearPair> more_pairs_;        ///< that the list of begin() does not have
     std::vector<NearPair> found_pairs_;       ///< by the last look
     std::vector<Vec3> way_;                   ///< [vertices] from base_ to where they want to go [m]
     std::vector<Vec3> motion_;                ///< [vertices] from base_ to where they may go [m]
-    std::vector<Vec3> known_motion_;          ///< [vertices] that the lists are complete for [m]
-    std::vector<double> known_radius_;        ///< [vertices] around it [m]
     std::vector<double> pair_share_;          ///< [pairs] that one allows
     std::vector<unsigned char> is_deflected_; ///< [vertices] way_ is not the one that was asked for
     std::vector<unsigned char> is_marked_;    ///< [vertices] for look_around_marked()

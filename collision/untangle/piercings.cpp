@@ -62,7 +62,7 @@ std::vector<Piercing> find_piercings(const JoinedCloths& cloths, View<const Vec3
         for (int e = begin; e < end; ++e) {
             const std::array<int, 2>& edge = cloths.edges.vertex[e];
             const Vec3 &p = x[edge[0]], &q = x[edge[1]];
-            surface.triangles_maybe_within(0.5 * (p + q), 0.5 * (p - q).norm(), near);
+            surface.triangles_maybe_around(p, q, 0.0, near);
             std::sort(near.begin(), near.end());
             for (const int t : near) {
                 const Triangle& corner = cloths.triangles[t];

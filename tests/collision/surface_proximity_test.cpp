@@ -92,7 +92,7 @@ TEST(SurfaceProximity, ListsTheTrianglesWithinARadiusAscending)
                     expected.push_back(t);
             surface.triangles_within(p, radius, found);
             EXPECT_EQ(found, expected);
-            surface.triangles_maybe_within(p, radius, superset);
+            surface.triangles_maybe_around(p, p, radius, superset);
             std::sort(superset.begin(), superset.end());
             EXPECT_TRUE(std::includes(superset.begin(), superset.end(), expected.begin(), expected.end()));
         }

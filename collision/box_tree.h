@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collision/cloth/box.h"
+#include "collision/box.h"
 #include "core/backend/types.h"
 #include "core/mesh/topology.h"
 

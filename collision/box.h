@@ -62,6 +62,16 @@ struct alignas(32) BoxBlock {
         return {{lower[0][lane], lower[1][lane], lower[2][lane]},
                 {upper[0][lane], upper[1][lane], upper[2][lane]}};
     }
+    /// The box around all.
+    Box around() const
+    {
+        Box all;
+        for (int k = 0; k < 3; ++k) {
+            all.lower[k] = hmin(load(lower[k].data()));
+            all.upper[k] = hmax(load(upper[k].data()));
+        }
+        return all;
+    }
     /// Lanes whose boxes overlap `box`.
     FloatLanes::mask_type overlaps(const Box& box) const
     {

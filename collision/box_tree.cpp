@@ -1,4 +1,4 @@
-#include "collision/cloth/box_tree.h"
+#include "collision/box_tree.h"
 
 #include <numeric>
 
