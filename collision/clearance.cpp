@@ -39,8 +39,9 @@ void Clearance::follow(View<const Vec3> x, const MeshCollider& mesh)
     });
 }
 
-void Clearance::learn(int vertex, double distance)
+void Clearance::learn(int vertex, double distance, int triangle)
 {
+    nearest_[vertex] = triangle;
     bound_[vertex] = std::min(distance, MotionBounds::kReach);
 }
 

@@ -10,7 +10,10 @@ namespace toile {
 /// both have moved since. While that is more than a search looks for, the search can be left out.
 class Clearance {
 public:
-    explicit Clearance(int vertex_count) : x_(vertex_count, Vec3::Zero()), bound_(vertex_count, 0.0) {}
+    explicit Clearance(int vertex_count)
+        : x_(vertex_count, Vec3::Zero()), bound_(vertex_count, 0.0), nearest_(vertex_count, -1)
+    {
+    }
 
     /// To the present positions of cloth [vertices] [m] and mesh. O(vertices).
     void follow(View<const Vec3> x, const MeshCollider& mesh);
@@ -21,12 +24,17 @@ public:
     /// The same of every point of an edge [m]; 0 or less where it is not known.
     double of_edge(int a, int b) const { return 0.5 * (bound_[a] + bound_[b] - (x_[a] - x_[b]).norm()); }
 
+    /// The triangle that the last search found nearest, or -1: a hint for the next.
+    int nearest(int vertex) const { return nearest_[vertex]; }
+
     /// A search has found the vertex this far in front [m]; 0: inside.
-    void learn(int vertex, double distance);
+    /// @param triangle  the nearest; -1: none
+    void learn(int vertex, double distance, int triangle);
 
 private:
     std::vector<Vec3> x_;       ///< [vertices] that the bounds are for [m]
     std::vector<double> bound_; ///< [vertices] [m]
+    std::vector<int> nearest_;  ///< [vertices] triangle
     int move_count_ = -2;       ///< of the mesh, likewise; -2: of none
 };
 

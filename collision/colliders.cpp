@@ -39,9 +39,9 @@ void MeshCollider::move(const MovingMesh& mesh)
         return;
     const StageScope stage("collision/refit");
     ++move_count_;
-    last_motion_.build(surface_.triangles(), surface_.positions(), mesh.x_t1);
-    surface_.update(mesh.x_t1);
     bounds_ = toile::bounds(mesh.x_t1);
+    last_motion_.build(surface_.triangles(), surface_.positions(), mesh.x_t1, bounds_);
+    surface_.update(mesh.x_t1);
 }
 
 Vec3 MeshCollider::motion(int triangle, const Vec3& barycentric) const

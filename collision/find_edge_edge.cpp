@@ -1,4 +1,5 @@
 #include "collision/find_pairs.h"
+#include "core/backend/lanes.h"
 
 namespace toile {
 
@@ -23,6 +24,42 @@ std::optional<ClosestOnSegments> crossing(const Vec3& a0, const Vec3& a1, const 
     if (!(determinant > kParallelSine2 * aa * bb))
         return std::nullopt;
     return at_parameters(a0, a1, b0, b1, s / determinant, t / determinant);
+}
+
+/// Eight edges of the mesh side by side.
+struct EdgeBlock {
+    static constexpr int kCount = kLanes;
+    std::array<const MeshCollider::OwnedEdge*, kCount> edge;
+    int count = 0;
+
+    /// Lanes whose lines come nearest to the segment's inside both, and some more: by cosine and sine nearly.
+    Lanes::mask_type may_cross(const Vec3& a0, const Vec3& a1, View<const Vec3> x) const;
+};
+
+/// The tests of crossing(), with slack for its rounding being another.
+Lanes::mask_type EdgeBlock::may_cross(const Vec3& a0, const Vec3& a1, View<const Vec3> x) const
+{
+    constexpr double kSlack = 1e-9; // [-]
+    Vec3Of<Lanes> b0, b1;
+    for (int k = 0; k < 3; ++k) {
+        b0[k] = gather(0, count, [&](int i) { return x[edge[i]->vertex[0]][k]; });
+        b1[k] = gather(0, count, [&](int i) { return x[edge[i]->vertex[1]][k]; });
+    }
+    Lanes aa = 0.0, bb = 0.0, ab = 0.0, ga = 0.0, gb = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        const double da = a1[k] - a0[k];
+        const Lanes db = b1[k] - b0[k], gap = a0[k] - b0[k];
+        aa += da * da;
+        bb += db * db;
+        ab += da * db;
+        ga += da * gap;
+        gb += db * gap;
+    }
+    const Lanes determinant = aa * bb - ab * ab;
+    const Lanes s = ab * gb - bb * ga;
+    const Lanes t = aa * gb - ab * ga;
+    const Lanes slack = kSlack * (aa * bb + bb * abs(ga) + aa * abs(gb));
+    return s > -slack && s < determinant + slack && t > -slack && t < determinant + slack;
 }
 
 /// Adds the pair of a cloth edge and a ridge whose closest points are given, when the ridge can push there.
@@ -70,7 +107,7 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
     const Vec3 &a = search.x[cloth_edge[0]], &b = search.x[cloth_edge[1]];
     const Vec3 middle = 0.5 * (a + b);
     const double radius = search.radius_of(cloth_edge[0], cloth_edge[1]);
-    if (search.clearance.of_edge(cloth_edge[0], cloth_edge[1]) > radius)
+    if (radius < 0.0 || search.clearance.of_edge(cloth_edge[0], cloth_edge[1]) > radius)
         return;
     const double reach = 0.5 * (b - a).norm() + radius;
     const double radius2 = radius * radius;
@@ -83,11 +120,27 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
     thread_local std::vector<int> triangles;
     search.mesh.surface().triangles_maybe_around(a, b, radius, triangles);
     const size_t first = out.size();
-    for (const int t : triangles)
-        for (const MeshCollider::OwnedEdge& ridge : search.mesh.owned_edges(t))
+    EdgeBlock block;
+    const auto test_block = [&] {
+        const Lanes::mask_type may_cross = block.may_cross(a, b, body);
+        for (int i = 0; i < block.count; ++i) {
+            if (!may_cross[i])
+                continue;
+            const MeshCollider::OwnedEdge& ridge = *block.edge[i];
             if (const auto closest = crossing(a, b, body[ridge.vertex[0]], body[ridge.vertex[1]]);
                 closest && closest->distance2 < radius2 && search.mesh.is_ridge(ridge.edge))
                 add_pair(search, cloth_edge, ridge, *closest, out);
+        }
+        block.count = 0;
+    };
+    for (const int t : triangles)
+        for (const MeshCollider::OwnedEdge& ridge : search.mesh.owned_edges(t)) {
+            block.edge[block.count++] = &ridge;
+            if (block.count == EdgeBlock::kCount)
+                test_block();
+        }
+    if (block.count > 0)
+        test_block();
     std::sort(out.begin() + long(first), out.end(),
               [](const ContactPair& p, const ContactPair& q) { return p.feature < q.feature; });
 }

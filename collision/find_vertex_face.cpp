@@ -14,7 +14,8 @@ Vec3 outward(const SurfacePoint& surface, const Vec3& x)
                                           : surface.normal;
 }
 
-/// The pairs of one cloth vertex. `hint` carries the last triangle found from vertex to vertex.
+/// The pairs of one cloth vertex. `hint` carries the last triangle found from vertex to vertex, for those
+/// that have not been looked for yet.
 void find_planes(const PairSearch& search, int v, int& hint, std::vector<ContactPair>& out)
 {
     const MeshCollider& mesh = search.mesh;
@@ -39,8 +40,10 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
     // The closest point: in front within the radius, behind down to the depth.
     const double radius = search.radius_of(v);
     const double reach = std::max(radius, search.settings.max_depth);
-    const std::optional<SurfacePoint> nearest = mesh.surface().closest(x, reach, hint);
-    search.clearance.learn(v, nearest ? std::max(nearest->signed_distance, 0.0) : reach);
+    const int last = search.clearance.nearest(v);
+    const std::optional<SurfacePoint> nearest = mesh.surface().closest(x, reach, last >= 0 ? last : hint);
+    search.clearance.learn(v, nearest ? std::max(nearest->signed_distance, 0.0) : reach,
+                           nearest ? nearest->triangle : -1);
     if (!nearest)
         return;
     hint = nearest->triangle;

@@ -10,6 +10,16 @@ namespace {
 
 const Bounds kNothing;
 
+/// Vertices and triangles in parts, each of which one task looks at with a grid of its own.
+struct Parts {
+    static constexpr int kSize = 8192;
+
+    explicit Parts(int items) : count((items + kSize - 1) / kSize) {}
+    int begin(int part) const { return part * kSize; }
+
+    int count;
+};
+
 void extend(Bounds& box, const Bounds& other)
 {
     if (other.empty())
@@ -20,27 +30,47 @@ void extend(Bounds& box, const Bounds& other)
 
 } // namespace
 
-void MotionBounds::build(View<const Triangle> triangles, View<const Vec3> before, View<const Vec3> now)
+void MotionBounds::build(View<const Triangle> triangles, View<const Vec3> before, View<const Vec3> now,
+                         const Bounds& box)
 {
-    grid_ = CellGrid(bounds(now), kReach);
-    std::vector<CellGrid::Cell> cell_of(now.size());
-    parallel_for(kCpu, "collision/motion_cells", now.size(),
-                 [&](int v) { cell_of[v] = grid_.cell_of(now[v]); });
+    grid_ = CellGrid(box, kReach);
+    const Parts parts(std::max(triangles.size(), now.size()));
+    std::vector<std::vector<Bounds>> own_of(parts.count, std::vector<Bounds>(grid_.cell_count()));
 
-    // Cells are in the order of coordinates: those of the box around a triangle are those of its corners.
-    std::vector<Bounds> own(grid_.cell_count());
-    for (const Triangle& corner : triangles) {
-        CellGrid::Cell first = cell_of[corner[0]], last = first;
-        Bounds motion;
-        for (const int v : corner) {
-            for (int k = 0; k < 3; ++k) {
-                first[k] = std::min(first[k], cell_of[v][k]);
-                last[k] = std::max(last[k], cell_of[v][k]);
+    // Vertices. They stand for all triangles that are in one cell, which are most.
+    std::vector<int> cell_of(now.size());
+    parallel_for(
+        kCpu, "collision/vertex_motion", parts.count,
+        [&](int part) {
+            for (int v = parts.begin(part); v < std::min(parts.begin(part + 1), now.size()); ++v) {
+                cell_of[v] = grid_.number_of(grid_.cell_of(now[v]));
+                own_of[part][cell_of[v]].extend(now[v] - before[v]);
             }
-            motion.extend(now[v] - before[v]);
-        }
-        grid_.for_cells(first, last, [&](int number) { extend(own[number], motion); });
-    }
+        },
+        1);
+
+    // Triangles between cells.
+    parallel_for(
+        kCpu, "collision/triangle_motion", parts.count,
+        [&](int part) {
+            for (int t = parts.begin(part); t < std::min(parts.begin(part + 1), triangles.size()); ++t) {
+                const Triangle& corner = triangles[t];
+                if (cell_of[corner[0]] == cell_of[corner[1]] && cell_of[corner[0]] == cell_of[corner[2]])
+                    continue;
+                Bounds place, motion;
+                for (const int v : corner) {
+                    place.extend(now[v]);
+                    motion.extend(now[v] - before[v]);
+                }
+                grid_.for_cells(grid_.cell_of(place.lower), grid_.cell_of(place.upper),
+                                [&](int cell) { extend(own_of[part][cell], motion); });
+            }
+        },
+        1);
+    std::vector<Bounds> own(grid_.cell_count());
+    for (const std::vector<Bounds>& others : own_of)
+        for (size_t cell = 0; cell < own.size(); ++cell)
+            extend(own[cell], others[cell]);
 
     motion_.assign(own.size(), Bounds{});
     grid_.for_all([&](const CellGrid::Cell& cell) {

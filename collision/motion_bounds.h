@@ -17,7 +17,9 @@ public:
     /// @param triangles  [triangles]
     /// @param before     [vertices] where they were [m]
     /// @param now        [vertices] where they are [m]
-    void build(View<const Triangle> triangles, View<const Vec3> before, View<const Vec3> now);
+    /// @param box        around now [m]
+    void build(View<const Triangle> triangles, View<const Vec3> before, View<const Vec3> now,
+               const Bounds& box);
 
     /// The displacements [m] of all surface points that are within kReach of x now; empty where there are
     /// none.

@@ -15,12 +15,14 @@ void SideMemory::learn(View<const Vec3> x, const MeshCollider& mesh, int collide
         const bool is_known = std::any_of(sides_[v].begin(), sides_[v].end(),
                                           [&](const Side& side) { return side.collider == collider; });
         if (is_known || (clearance.of(v) <= kReach && is_near(mesh.bounds(), x[v], kReach)))
-            sides_[v] = learnt(v, x[v], mesh, collider);
+            sides_[v] = learnt(v, x[v], mesh, collider, clearance.nearest(v));
     });
 }
 
 /// The sides of a vertex with those of one mesh renewed.
-SideMemory::Sides SideMemory::learnt(int v, const Vec3& x, const MeshCollider& mesh, int collider) const
+/// @param hint  see SurfaceProximity::closest
+SideMemory::Sides SideMemory::learnt(int v, const Vec3& x, const MeshCollider& mesh, int collider,
+                                     int hint) const
 {
     Sides sides;
     int count = 0;
@@ -35,7 +37,6 @@ SideMemory::Sides SideMemory::learnt(int v, const Vec3& x, const MeshCollider& m
     };
 
     // What it was in front of before, however it stands to it now.
-    int hint = -1;
     for (const Side& side : sides_[v]) {
         if (side.collider != collider)
             continue;

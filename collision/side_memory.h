@@ -46,7 +46,7 @@ private:
     };
     using Sides = std::array<Side, kMostSides>;
 
-    Sides learnt(int v, const Vec3& x, const MeshCollider& mesh, int collider) const;
+    Sides learnt(int v, const Vec3& x, const MeshCollider& mesh, int collider, int hint) const;
 
     std::vector<Sides> sides_; ///< [vertices]
 };

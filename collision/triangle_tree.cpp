@@ -140,14 +140,18 @@ int TriangleTree::add_block()
 
 void TriangleTree::refit(View<const Vec3> positions)
 {
-    largest_coordinate_ = 0.0;
-    for (const Vec3& x : positions)
-        largest_coordinate_ = std::max(largest_coordinate_, x.cwiseAbs().maxCoeff());
     parallel_for(
         kCpu, "collision/fit_leaves", int(leaves_.size()), [&](int leaf) { fit_leaf(leaf, positions); },
         kLeafGrain);
     for (int block = first_leaf_ - 1; block > 0; --block)
         pass_up(block);
+
+    largest_coordinate_ = 0.0;
+    if (blocks_.empty())
+        return;
+    const Box all = blocks_[0].box.around();
+    for (int k = 0; k < 3; ++k)
+        largest_coordinate_ = std::max({largest_coordinate_, -double(all.lower[k]), double(all.upper[k])});
 }
 
 void TriangleTree::fit_leaf(int leaf, View<const Vec3> positions)

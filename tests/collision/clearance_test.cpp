@@ -31,7 +31,7 @@ protected:
     void search()
     {
         for (int v = 0; v < kCount; ++v)
-            clearance_.learn(v, std::max(distance_of(v), 0.0));
+            clearance_.learn(v, std::max(distance_of(v), 0.0), -1);
     }
 
     void move_mesh(const Vec3& common, double scatter)
