@@ -21,8 +21,13 @@ public:
     /// [m] No surface is nearer, and the vertex is not inside; 0 where that is not known.
     double of(int vertex) const { return bound_[vertex]; }
 
-    /// The same of every point of an edge [m]; 0 or less where it is not known.
-    double of_edge(int a, int b) const { return 0.5 * (bound_[a] + bound_[b] - (x_[a] - x_[b]).norm()); }
+    /// True where no surface is within `radius` [m] of any point of an edge: its ends are clear by more than
+    /// the radius and half of it.
+    bool is_edge_clear(int a, int b, double radius) const
+    {
+        const double most = bound_[a] + bound_[b] - 2.0 * radius;
+        return most > 0.0 && most * most > (x_[a] - x_[b]).squaredNorm();
+    }
 
     /// The triangle that the last search found nearest, or -1: a hint for the next.
     int nearest(int vertex) const { return nearest_[vertex]; }

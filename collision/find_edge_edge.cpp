@@ -32,11 +32,12 @@ struct EdgeBlock {
     std::array<const MeshCollider::OwnedEdge*, kCount> edge;
     int count = 0;
 
-    /// Lanes whose lines come nearest to the segment's inside both, and some more: by cosine and sine nearly.
+    /// Lanes whose closest points with the segment may lie inside both: those for which crossing() has any,
+    /// and a few more.
     Lanes::mask_type may_cross(const Vec3& a0, const Vec3& a1, View<const Vec3> x) const;
 };
 
-/// The tests of crossing(), with slack for its rounding being another.
+/// The tests of crossing() on parameters, with slack for its rounding being another.
 Lanes::mask_type EdgeBlock::may_cross(const Vec3& a0, const Vec3& a1, View<const Vec3> x) const
 {
     constexpr double kSlack = 1e-9; // [-]
@@ -107,7 +108,7 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
     const Vec3 &a = search.x[cloth_edge[0]], &b = search.x[cloth_edge[1]];
     const Vec3 middle = 0.5 * (a + b);
     const double radius = search.radius_of(cloth_edge[0], cloth_edge[1]);
-    if (radius < 0.0 || search.clearance.of_edge(cloth_edge[0], cloth_edge[1]) > radius)
+    if (radius < 0.0 || search.clearance.is_edge_clear(cloth_edge[0], cloth_edge[1], radius))
         return;
     const double reach = 0.5 * (b - a).norm() + radius;
     const double radius2 = radius * radius;

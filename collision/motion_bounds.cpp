@@ -38,32 +38,35 @@ void MotionBounds::build(View<const Triangle> triangles, View<const Vec3> before
     std::vector<std::vector<Bounds>> own_of(parts.count, std::vector<Bounds>(grid_.cell_count()));
 
     // Vertices. They stand for all triangles that are in one cell, which are most.
-    std::vector<int> cell_of(now.size());
+    std::vector<CellGrid::Cell> cell_of(now.size());
     parallel_for(
         kCpu, "collision/vertex_motion", parts.count,
         [&](int part) {
             for (int v = parts.begin(part); v < std::min(parts.begin(part + 1), now.size()); ++v) {
-                cell_of[v] = grid_.number_of(grid_.cell_of(now[v]));
-                own_of[part][cell_of[v]].extend(now[v] - before[v]);
+                cell_of[v] = grid_.cell_of(now[v]);
+                own_of[part][grid_.number_of(cell_of[v])].extend(now[v] - before[v]);
             }
         },
         1);
 
-    // Triangles between cells.
+    // Triangles between cells: in those around their corners'.
     parallel_for(
         kCpu, "collision/triangle_motion", parts.count,
         [&](int part) {
             for (int t = parts.begin(part); t < std::min(parts.begin(part + 1), triangles.size()); ++t) {
                 const Triangle& corner = triangles[t];
-                if (cell_of[corner[0]] == cell_of[corner[1]] && cell_of[corner[0]] == cell_of[corner[2]])
+                CellGrid::Cell first = cell_of[corner[0]], last = first;
+                for (const int v : {corner[1], corner[2]})
+                    for (int k = 0; k < 3; ++k) {
+                        first[k] = std::min(first[k], cell_of[v][k]);
+                        last[k] = std::max(last[k], cell_of[v][k]);
+                    }
+                if (first == last)
                     continue;
-                Bounds place, motion;
-                for (const int v : corner) {
-                    place.extend(now[v]);
+                Bounds motion;
+                for (const int v : corner)
                     motion.extend(now[v] - before[v]);
-                }
-                grid_.for_cells(grid_.cell_of(place.lower), grid_.cell_of(place.upper),
-                                [&](int cell) { extend(own_of[part][cell], motion); });
+                grid_.for_cells(first, last, [&](int cell) { extend(own_of[part][cell], motion); });
             }
         },
         1);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/crossings/find_crossings.h"
+#include "core/backend/stages.h"
 #include "tests/collision/pair_cases.h"
 
 namespace toile {
@@ -58,6 +59,13 @@ public:
         return x;
     }
 
+    /// The same from where the last step began.
+    std::vector<Vec3> again(std::vector<Vec3> x)
+    {
+        safe_.limit(x);
+        return x;
+    }
+
     double held() const { return held_; }
 
     /// Nothing crosses at any time of the way.
@@ -101,6 +109,28 @@ TEST(SafeStep, NeverCrossesWhereverVerticesWantToGo)
             x = reached;
         }
     }
+}
+
+TEST(SafeStep, LooksAgainOnceForAPoseThatIsAskedForTwice)
+{
+    const Layers layers(2, 8, 0.002);
+    Stepper stepper(layers);
+    std::vector<Vec3> wanted = layers.x;
+    for (size_t v = wanted.size() / 2; v < wanted.size(); ++v)
+        wanted[v] += Vec3(0.01, 0.001, 0.0); // along the lower one, unexpected
+    Stages stages;
+    const Stages::Activate record(stages);
+    EXPECT_EQ(stepper.step(layers.x, wanted, layers.x), wanted);
+    EXPECT_EQ(stages.calls("collision/look_again"), 1);
+    EXPECT_EQ(stepper.again(wanted), wanted);
+    EXPECT_EQ(stages.calls("collision/look_again"), 1);
+
+    // What was found for that pose does not stand for another one.
+    for (size_t v = wanted.size() / 2; v < wanted.size(); ++v)
+        wanted[v] -= Vec3(0.01, 0.01, 0.0);
+    const std::vector<Vec3> x = stepper.again(wanted);
+    EXPECT_GT(stages.calls("collision/look_again"), 1);
+    stepper.expect_free(layers.x, x);
 }
 
 TEST(SafeStep, LeavesFreeStepsAloneToTheBit)
