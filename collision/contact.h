@@ -85,6 +85,8 @@ private:
     bool update_normal_forces(View<const Vec3> x);
     bool mark_slid(View<const Vec3> x, double trust);
     bool has_left(View<const Vec3> x, double trust);
+    double mobility_of(const ContactPair& pair) const;
+    void accelerate(const ContactPair& pair, double force, View<Vec3> x) const;
     double deepest(View<const Vec3> x) const;
     bool is_held(int vertex) const;
     double leverage_of(const ContactPair& pair) const;

@@ -35,14 +35,14 @@ bool Contact::is_held(int vertex) const
 }
 
 /// Sum of squared weights of the pair's free vertices [-]: how far its cloth point goes when each of them
-/// moves by its weight.
+/// moves by its weight. 0 where fixed vertices carry nearly all of the pair.
 double Contact::leverage_of(const ContactPair& pair) const
 {
     double squares = 0.0;
     for (int k = 0; k < pair.count(); ++k)
         if (!is_held(pair.vertex[k]))
             squares += pair.weight[k] * pair.weight[k];
-    return squares;
+    return squares < kMinLeverage ? 0.0 : squares;
 }
 
 /// Adds to the field at the pair's free vertices so that its cloth point moves by `move`. False where fixed
@@ -50,21 +50,12 @@ double Contact::leverage_of(const ContactPair& pair) const
 bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) const
 {
     const double leverage = leverage_of(pair);
-    if (leverage < kMinLeverage)
+    if (leverage == 0.0)
         return false;
     for (int k = 0; k < pair.count(); ++k)
         if (!is_held(pair.vertex[k]))
             field[pair.vertex[k]] += pair.weight[k] / leverage * move;
     return true;
-}
-
-bool Contact::make_feasible(View<Vec3> x) const
-{
-    bool moved = false;
-    for (int i = 0; i < int(energy_.terms().size()); ++i)
-        if (const double depth = -energy_.gap(i, x) - energy_.terms()[i].give; depth > 0.0)
-            moved = push(energy_.terms()[i].pair, depth * energy_.terms()[i].pair.normal, x) || moved;
-    return moved;
 }
 
 double Contact::deepest(View<const Vec3> x) const

@@ -110,7 +110,7 @@ void Case::press(Kind kind, double stiffness)
         partners.push_back({nullptr, &floor_});
     contact_ = std::make_unique<Contact>(triangles_, x_, std::vector<ContactCloth>(count, cloth),
                                          std::move(partners), settings);
-    contact_->begin_step({x_, pressed_, system_->diagonal(), system_->fixed(), kDt});
+    contact_->begin_step({x_, pressed_, system_->diagonal(), system_->fixed(), system_->masses(), kDt});
 
     // Friction is limited by the normal forces of the last look.
     std::vector<Vec3> looked = pressed_;

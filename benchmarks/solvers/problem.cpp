@@ -211,7 +211,7 @@ std::vector<SampledStep> sample_steps(const Problem& problem, int count, int str
 
 StepStart step_start(const Problem& problem, const System& system, const SampledStep& step)
 {
-    return {step.x, step.prediction, system.diagonal(), system.fixed(), problem.dt};
+    return {step.x, step.prediction, system.diagonal(), system.fixed(), system.masses(), problem.dt};
 }
 
 double objective(const Problem& problem, const System& system, const SampledStep& step,

@@ -10,6 +10,7 @@ struct StepStart {
     View<const Vec3> prediction;     ///< [vertices] q* = x + dt v + dt^2 f/m [m]
     View<const double> diagonal;     ///< [vertices] of H [N/m]: the scale that penalty stiffnesses refer to
     View<const unsigned char> fixed; ///< [vertices] 1 where the position is prescribed
+    View<const double> masses;       ///< [vertices] [kg]; of unknowns that are no vertices: unspecified
     double dt = 0.0;                 ///< [s]
 };
 
@@ -20,8 +21,8 @@ public:
     /// Finds the candidates of this step.
     virtual void begin_step(const StepStart& start) = 0;
 
-    /// Moves a start guess out of the candidates' forbidden half-spaces where that is a local matter. True
-    /// when anything moved.
+    /// Moves a start guess out of the candidates' forbidden half-spaces as contact without anything else
+    /// would. True when anything moved.
     virtual bool make_feasible(View<Vec3> x) const = 0;
 
     /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.

@@ -62,7 +62,7 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
 
 StepStart Body::start_of(double dt) const
 {
-    return {x_, prediction_, system_->diagonal(), system_->fixed(), dt};
+    return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(), dt};
 }
 
 /// Far enough below what moves in this step.

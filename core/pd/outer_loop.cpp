@@ -15,6 +15,9 @@ constexpr double kSufficientDecrease = 1e-4;
 /// Rounding noise of an objective value relative to its size [-]: differences below it prove nothing.
 constexpr double kValueNoise = 1e-14;
 
+/// Share of the tolerance [-] below which a last move is not worth looking where it leads.
+constexpr double kNothing = 1e-4;
+
 /// Halvings (or stronger cuts) before a direction is given up.
 constexpr int kMaxBacktracks = 12;
 
@@ -32,25 +35,28 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
     outcome.value = objective.evaluate(x, gradient_);
     objective.accept(x);
     while (std::isfinite(outcome.value) && outcome.iterations < settings.max_iterations) {
-        // Stop on a full move that nobody would see: rest and free flight need none at all.
         find_direction(objective, {x, gradient_, trial_gradient_}, direction_);
         outcome.displacement = max_norm(direction_);
         outcome.converged = outcome.displacement <= settings.tolerance &&
                             objective.is_minimiser(gradient_, direction_, settings.tolerance);
-        if (outcome.converged)
+        if (outcome.converged && outcome.displacement <= kNothing * settings.tolerance)
             break;
 
+        // The last move is known and is made too. Below the tolerance, it is the momentum of small lasting
+        // forces, such as friction's: dropped in every step, they would never act.
         const double step = line_search(objective, x, outcome.value);
         if (step == 0.0) {
-            if (!fall_back())
+            if (outcome.converged || !fall_back())
                 break;
             continue;
         }
-        ++outcome.iterations;
-        outcome.displacement *= step;
-        learn({step, direction_, gradient_, trial_gradient_});
         gradient_.swap(trial_gradient_);
         objective.accept(x);
+        if (outcome.converged)
+            break;
+        ++outcome.iterations;
+        outcome.displacement *= step;
+        learn({step, direction_, trial_gradient_, gradient_});
     }
     outcome.linear_iterations = linear_iterations();
     outcome.gradient_norm = max_norm(gradient_);

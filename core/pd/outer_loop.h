@@ -14,7 +14,8 @@ namespace toile {
 class OuterLoop {
 public:
     struct Settings {
-        /// [m] Stop when no vertex would move further in an iteration and the objective agrees.
+        /// [m] Stop when no vertex would move further in an iteration and the objective agrees. That move is
+        /// still made; it does not count as an iteration.
         double tolerance = 1e-5;
         int max_iterations = 50;
     };

@@ -60,7 +60,7 @@ void RigidActiveSet::begin_step(const StepStart& start)
     std::copy_n(start.fixed.begin(), free_count_, fixed_.begin());
     for (int v = 0; v < bodies_.vertex_count(); ++v)
         diagonal_[free_count_ + v] = kStiffening * bodies_.inertia(v, start.dt);
-    surface_.begin_step({start_, prediction_, diagonal_, fixed_, start.dt});
+    surface_.begin_step({start_, prediction_, diagonal_, fixed_, start.masses, start.dt});
 }
 
 /// Of the start guess the free points only: pushed out one by one, the vertices of a body would come apart.

@@ -39,7 +39,7 @@ void Rival::begin_contact(double dt, View<const Vec3> acceleration, View<const u
     diagonal_ = cloth_.masses;
     for (double& inertia : diagonal_)
         inertia /= dt * dt;
-    active.begin_step({x_, reach_, diagonal_, fixed, dt});
+    active.begin_step({x_, reach_, diagonal_, fixed, cloth_.masses, dt});
 }
 
 } // namespace toile

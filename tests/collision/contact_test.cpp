@@ -117,9 +117,9 @@ TEST(Contact, DoesNotThrowAVertexThatHardlyCarriesThePair)
     const std::vector<Triangle> triangles{{0, 2, 1}};
     const std::vector<Vec3> start{Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0.05, 0, 0.1)};
     Contact contact(triangles, start, {one_cloth(3)}, {{&collider, nullptr}}, Contact::Settings{});
-    const std::vector<double> diagonal(3, 100.0);
+    const std::vector<double> diagonal(3, 100.0), masses(3, 1e-3);
     const std::vector<unsigned char> fixed{1, 1, 0};
-    contact.begin_step({start, start, diagonal, fixed, 1.0 / 120.0});
+    contact.begin_step({start, start, diagonal, fixed, masses, 1.0 / 120.0});
     ASSERT_FALSE(contact.energy().terms().empty());
     std::vector<Vec3> x = start;
     contact.make_feasible(x);
@@ -135,6 +135,7 @@ struct RisingPlate {
     std::vector<Triangle> triangles{{0, 1, 2}};
     std::vector<Vec3> start{Vec3(0.0, 0.005, 0.0), Vec3(0.1, 0.5, 0.0), Vec3(0.0, 0.5, 0.1)};
     std::vector<double> diagonal = std::vector<double>(3, 100.0);
+    std::vector<double> masses = std::vector<double>(3, 1e-3);
     std::vector<unsigned char> fixed = std::vector<unsigned char>(3, 0);
     Contact::Settings settings;
     Contact contact{triangles, start, {one_cloth(3)}, {{nullptr, &plate}}, settings};
@@ -142,7 +143,7 @@ struct RisingPlate {
     explicit RisingPlate(double height = 0.02) : rise(height)
     {
         plate.move(Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(0.0, rise, 0.0)));
-        contact.begin_step({start, start, diagonal, fixed, kDt});
+        contact.begin_step({start, start, diagonal, fixed, masses, kDt});
     }
 };
 
@@ -177,10 +178,10 @@ TEST(Contact, ClearsASliverByItsOwnMeasureOnly)
     const ShapeCollider plate(PlaneShape{}, Eigen::Isometry3d::Identity(), "plate");
     const std::vector<Triangle> triangles{{0, 1, 2}};
     const std::vector<Vec3> start{Vec3(0.0, -0.01, 0.0), Vec3(0.1, 0.5, 0.0), Vec3(0.05, 0.245, 1e-4)};
-    const std::vector<double> diagonal(3, 100.0);
+    const std::vector<double> diagonal(3, 100.0), masses(3, 1e-3);
     const std::vector<unsigned char> fixed(3, 0);
     Contact contact(triangles, start, {one_cloth(3)}, {{nullptr, &plate}}, Contact::Settings{});
-    contact.begin_step({start, start, diagonal, fixed, 0.1});
+    contact.begin_step({start, start, diagonal, fixed, masses, 0.1});
     std::vector<Vec3> x = start, v(3, Vec3::Zero());
     contact.clear(x, v);
     EXPECT_GT(x[0].y(), start[0].y());

@@ -138,7 +138,8 @@ struct OneStep {
         System system(masses, energies);
         system.prepare(dt, fixed);
         const std::vector<Vec3> prediction = predicted();
-        StepObjective objective(system, {x, prediction, system.diagonal(), system.fixed(), dt}, nullptr);
+        StepObjective objective(
+            system, {x, prediction, system.diagonal(), system.fixed(), system.masses(), dt}, nullptr);
         std::vector<Vec3> solution = prediction;
         NewtonDirect newton;
         const OuterLoop::Outcome outcome = newton.minimise(objective, solution, {1e-11, 100});

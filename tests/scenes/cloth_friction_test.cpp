@@ -92,6 +92,16 @@ TEST(ClothFriction, LandsWithoutAPushAlongTheSlope)
     expect_exact({0.3, 0.1, 4, R"("tolerance": 1e-6, "max_iterations": 100)"}, 0.03);
 }
 
+TEST(ClothFriction, IsCoulombsAtTheDefaultTolerance)
+{
+    // The move of friction in a step, 1 to 200 micrometres, is below what such a step is solved to.
+    for (const int substeps : {4, 16, 64})
+        for (const auto& [slope, friction] : {std::pair(0.3, 0.1), {0.3, 0.2}, {0.6, 0.4}}) {
+            SCOPED_TRACE(substeps);
+            expect_exact({slope, friction, substeps, R"("tolerance": 1e-3)"}, 0.1);
+        }
+}
+
 TEST(ClothFriction, LetsClothSlideFivePerCentAboveTheFrictionAngle)
 {
     const Slide slide{0.3, 0.3 / 1.05};
