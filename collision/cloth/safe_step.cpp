@@ -28,7 +28,8 @@ constexpr double kMoreThanLeast = 1.1;
 /// by its zone, cloth at rest would creep.
 constexpr double kSlow = 0.5;
 
-/// How much longer than wanted an edge may get where one end is brought back, of the largest deflection [-].
+/// How much longer than wanted an edge may get where one end is brought back or gives way, of the largest
+/// deflection [-].
 constexpr double kTethered = 0.2;
 
 /// Rounds in which the vertices of a pair or edge are brought back in proportion. Those that are still in the
@@ -87,8 +88,10 @@ double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
     is_deflected_.assign(x.size(), 0);
     if (mark_strays())
         look_around_marked();
-    if (pair_count() == 0)
+    look_at_pairs();
+    if (std::all_of(pair_share_.begin(), pair_share_.end(), [](double share) { return share >= 1.0; }))
         return 0.0;
+    tethers_.begin(base_, way_, kTethered * settings_.most_deflection);
     deflect();
     find_shares(leans);
 
@@ -138,10 +141,9 @@ void SafeStep::look_around_marked()
                  [&](const NearPair& pair) { return !exempt_.is_exempt(pair); });
 }
 
-/// Ends with pair_share_ of the ways as they then are.
+/// Begins and ends with pair_share_ of the ways as they then are.
 void SafeStep::deflect()
 {
-    look_at_pairs();
     for (int round = 0; round < kDeflections && give_way(); ++round) {
         motion_ = way_;
         if (mark_strays())
@@ -209,17 +211,24 @@ void SafeStep::find_shares(View<const unsigned char> leans)
     bodies_.begin(base_, way_);
     for (int body = 0; body < bodies_.count(); ++body)
         zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));
+    // Those that gave way take others along too, before it is asked who is in the way still.
+    is_stale_ = is_deflected_;
+    take_along();
     for (int round = 0; shorten(round >= kRounds); ++round) {
-        if (round == 0)
-            tethers_.begin(base_, way_, kTethered * settings_.most_deflection);
         std::fill(is_stale_.begin(), is_stale_.end(), 0);
         follow_zones();
-        for (int sweep = 0; hold_together(sweep >= kRounds); ++sweep)
-            follow_zones();
-        if (mark_strays())
-            look_around_marked();
-        look_at_pairs();
+        take_along();
     }
+}
+
+/// Brings the ends of torn edges together until none is torn, and looks at the pairs of what has changed.
+void SafeStep::take_along()
+{
+    for (int sweep = 0; hold_together(sweep >= kRounds); ++sweep)
+        follow_zones();
+    if (mark_strays())
+        look_around_marked();
+    look_at_pairs();
 }
 
 void SafeStep::look_at_pairs()

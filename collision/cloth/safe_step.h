@@ -77,6 +77,7 @@ private:
     bool may_give_way(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
     bool shorten(bool for_good);
     void find_shares(View<const unsigned char> leans);
+    void take_along();
     void follow_zones();
     bool hold_together(bool for_good);
 

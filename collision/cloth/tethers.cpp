@@ -7,6 +7,13 @@
 
 namespace toile {
 
+namespace {
+
+/// Slack of an edge at most, of its length [-].
+constexpr double kMostStretch = 0.02;
+
+} // namespace
+
 void Tethers::begin(View<const Vec3> base, View<const Vec3> ways, double slack)
 {
     base_ = base;
@@ -14,7 +21,8 @@ void Tethers::begin(View<const Vec3> base, View<const Vec3> ways, double slack)
     parallel_for(kCpu, "collision/tethers", int(edges_.size()), [&](int e) {
         const auto [a, b] = edges_[e];
         const Vec3 before = base[b] - base[a];
-        const double longest = std::max(before.norm(), (before + ways[b] - ways[a]).norm()) + slack;
+        const double wanted = std::max(before.norm(), (before + ways[b] - ways[a]).norm());
+        const double longest = wanted + std::min(slack, kMostStretch * wanted);
         longest2_[e] = longest * longest;
     });
 }

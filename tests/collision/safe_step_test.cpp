@@ -212,6 +212,45 @@ TEST(SafeStep, DoesNotTearClothThatIsStoppedInPart)
         }
 }
 
+/// Two sheets with columns of needles, edges of 4 micrometres, one of which stands across the border of the
+/// sheet below: one end meets it, the other passes.
+Layers needle_sheets()
+{
+    constexpr double kNeedle = 4e-6;
+    Layers layers(2, 8, 0.002);
+    for (size_t v = 0; v < layers.x.size(); ++v) {
+        const bool is_upper = v >= layers.x.size() / 2;
+        const int column = int(v) % 8;
+        // Columns 0, 2, 4 and 6 keep their place, the odd ones stand beside them.
+        layers.x[v].x() = column / 2 * kEdge + column % 2 * kNeedle;
+        if (is_upper)
+            layers.x[v] += Vec3(2 * kEdge + 0.5 * kNeedle, 0.0, 0.0);
+    }
+    return layers;
+}
+
+/// By pairs that are stopped and by pairs that give way.
+TEST(SafeStep, DoesNotTearNeedles)
+{
+    const Layers layers = needle_sheets();
+    const std::vector<Vec3>& from = layers.x;
+    Stepper stepper(layers);
+    for (const double fall : {0.0022, 0.0026, 0.05}) {
+        std::vector<Vec3> wanted = from;
+        for (size_t v = from.size() / 2; v < from.size(); ++v)
+            wanted[v].y() -= fall;
+        const std::vector<Vec3> to = stepper.step(from, wanted, wanted);
+        EXPECT_GT(stepper.held(), 1e-4);
+        stepper.expect_free(from, to);
+        for (const Triangle& corner : layers.triangles)
+            for (int k = 0; k < 3; ++k) {
+                const int a = corner[k], b = corner[(k + 1) % 3];
+                const double before = (from[a] - from[b]).norm();
+                ASSERT_LE((to[a] - to[b]).norm(), 1.02 * before + 1e-12) << a << " " << b << " by " << fall;
+            }
+    }
+}
+
 TEST(SafeStep, IsTheSameInEveryFrameThatMoves)
 {
     const Layers layers(2, 6, 0.002);
