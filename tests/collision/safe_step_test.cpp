@@ -220,9 +220,9 @@ Layers needle_sheets()
     Layers layers(2, 8, 0.002);
     for (size_t v = 0; v < layers.x.size(); ++v) {
         const bool is_upper = v >= layers.x.size() / 2;
-        const int column = int(v) % 8;
+        const int column = int(v) % 8, pair = column / 2;
         // Columns 0, 2, 4 and 6 keep their place, the odd ones stand beside them.
-        layers.x[v].x() = column / 2 * kEdge + column % 2 * kNeedle;
+        layers.x[v].x() = pair * kEdge + column % 2 * kNeedle;
         if (is_upper)
             layers.x[v] += Vec3(2 * kEdge + 0.5 * kNeedle, 0.0, 0.0);
     }
