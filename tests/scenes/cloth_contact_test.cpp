@@ -75,7 +75,7 @@ TEST(ClothContact, ASheetDroppedOnItsEdgeNeverCrossesItself)
 TEST(ClothContact, HeldClothThatWouldCrossIsHeldBack)
 {
     // The upper sheet's border is led through the lower one, which is held itself.
-    World world = world_of(R"({"toile": 1, "frames": 20, "cloths": [)" + sheet("low", 0.2, "[0, 0, 0]") +
+    World world = world_of(R"({"toile": 1, "frames": 20, "cloths": [)" + sheet("low", 0.3, "[0, 0, 0]") +
                            "," + sheet("high", 0.12, "[0.007, 0.01, 0.003]") +
                            R"(], "attachments": [
         {"cloth": "low", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}}},
