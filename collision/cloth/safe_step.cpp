@@ -289,14 +289,15 @@ void SafeStep::follow_zones()
 }
 
 /// Brings the ends of torn edges together. False when there are none. Cloth on bodies takes nothing along and
-/// is not taken: zones that reach from one leg to the other would draw it through both.
+/// is not taken, slivers apart: zones that reach from one leg to the other would draw it through both.
 bool SafeStep::hold_together(bool for_good)
 {
     bool any = false;
     for (int e = 0; e < int(tethers_.edges().size()); ++e) {
         const auto [a, b] = tethers_.edges()[e];
-        if ((!is_stale_[a] && !is_stale_[b]) || !tethers_.is_torn(e, motion_) || zones_.leans(a) ||
-            zones_.leans(b))
+        if ((!is_stale_[a] && !is_stale_[b]) || !tethers_.is_torn(e, motion_))
+            continue;
+        if (!tethers_.is_sliver(e) && (zones_.leans(a) || zones_.leans(b)))
             continue;
         any = true;
         const double share = for_good ? 0.0 : kTaken * tethers_.share(e, motion_);

@@ -17,6 +17,7 @@ constexpr double kMostStretch = 0.02;
 void Tethers::begin(View<const Vec3> base, View<const Vec3> ways, double slack)
 {
     base_ = base;
+    slack_ = slack;
     longest2_.resize(edges_.size());
     parallel_for(kCpu, "collision/tethers", int(edges_.size()), [&](int e) {
         const auto [a, b] = edges_[e];
@@ -25,6 +26,12 @@ void Tethers::begin(View<const Vec3> base, View<const Vec3> ways, double slack)
         const double longest = wanted + std::min(slack, kMostStretch * wanted);
         longest2_[e] = longest * longest;
     });
+}
+
+bool Tethers::is_sliver(int edge) const
+{
+    const auto [a, b] = edges_[edge];
+    return (base_[b] - base_[a]).squaredNorm() < slack_ * slack_;
 }
 
 bool Tethers::is_torn(int edge, View<const Vec3> motion) const

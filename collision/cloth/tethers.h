@@ -23,6 +23,9 @@ public:
 
     const std::vector<Edge>& edges() const { return edges_; }
 
+    /// True for an edge shorter than the slack: its ends are one point to all that is as coarse.
+    bool is_sliver(int edge) const;
+
     /// True when an edge is too long where its ends go by `motion` [vertices] [m].
     bool is_torn(int edge, View<const Vec3> motion) const;
 
@@ -32,6 +35,7 @@ public:
 private:
     std::vector<Edge> edges_;
     View<const Vec3> base_;
+    double slack_ = 0.0;           ///< [m]
     std::vector<double> longest2_; ///< [edges] square of the length allowed [m^2]
 };
 
