@@ -28,8 +28,7 @@ constexpr double kMoreThanLeast = 1.1;
 /// by its zone, cloth at rest would creep.
 constexpr double kSlow = 0.5;
 
-/// How much longer than wanted an edge may get where one end is brought back or gives way, of the largest
-/// deflection [-].
+/// How much longer than wanted an edge may get where one end is brought back, of the largest deflection [-].
 constexpr double kTethered = 0.2;
 
 /// Rounds in which the vertices of a pair or edge are brought back in proportion. Those that are still in the
@@ -91,7 +90,6 @@ double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
     look_at_pairs();
     if (std::all_of(pair_share_.begin(), pair_share_.end(), [](double share) { return share >= 1.0; }))
         return 0.0;
-    tethers_.begin(base_, way_, kTethered * settings_.most_deflection);
     deflect();
     find_shares(leans);
 
@@ -211,7 +209,8 @@ void SafeStep::find_shares(View<const unsigned char> leans)
     bodies_.begin(base_, way_);
     for (int body = 0; body < bodies_.count(); ++body)
         zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));
-    // Those that gave way take others along too, before it is asked who is in the way still.
+    tethers_.begin(base_, way_, kTethered * settings_.most_deflection);
+    // What gave way takes the other ends of its slivers along, before it is asked who is in the way still.
     is_stale_ = is_deflected_;
     take_along();
     for (int round = 0; shorten(round >= kRounds); ++round) {

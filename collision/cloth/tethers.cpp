@@ -9,8 +9,8 @@ namespace toile {
 
 namespace {
 
-/// Slack of an edge at most, of its length [-].
-constexpr double kMostStretch = 0.02;
+/// Slack of a sliver, of its length [-].
+constexpr double kStretch = 0.02;
 
 } // namespace
 
@@ -22,8 +22,9 @@ void Tethers::begin(View<const Vec3> base, View<const Vec3> ways, double slack)
     parallel_for(kCpu, "collision/tethers", int(edges_.size()), [&](int e) {
         const auto [a, b] = edges_[e];
         const Vec3 before = base[b] - base[a];
-        const double wanted = std::max(before.norm(), (before + ways[b] - ways[a]).norm());
-        const double longest = wanted + std::min(slack, kMostStretch * wanted);
+        const double length = before.norm();
+        const double longest = is_sliver(e) ? (1.0 + kStretch) * length
+                                            : std::max(length, (before + ways[b] - ways[a]).norm()) + slack;
         longest2_[e] = longest * longest;
     });
 }

@@ -7,8 +7,9 @@
 
 namespace toile {
 
-/// Edges of cloth that take their other end along where one is stopped or pushed: none gets longer than it
-/// was or was to get, whichever is more, and a slack.
+/// Edges of cloth that take their other end along where one is stopped: none gets longer than it was or was
+/// to get, whichever is more, and a slack. Slivers keep their length, or they would be stretched a
+/// hundredfold.
 class Tethers {
 public:
     using Edge = std::array<int, 2>;
@@ -17,8 +18,7 @@ public:
 
     /// @param base   [vertices] a pose [m]; borrowed until the next begin()
     /// @param ways   [vertices] from there to where they want to go [m]
-    /// @param slack  [m] at most; short edges have less, a share of their length: those of slivers would be
-    ///               stretched a hundredfold
+    /// @param slack  [m]
     void begin(View<const Vec3> base, View<const Vec3> ways, double slack);
 
     const std::vector<Edge>& edges() const { return edges_; }
