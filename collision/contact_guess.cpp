@@ -7,9 +7,9 @@ namespace toile {
 
 namespace {
 
-/// Sweeps over the pairs. With one a sheet of many pairs is thrown back up by half of its fall, the normal
-/// forces of the first minimisation are three times too large, and friction stops what should slide; with
-/// eight nothing changes (docs/collision/contact.md).
+/// Sweeps over the pairs. With one the normal forces of the first minimisation are too large where many pairs
+/// share vertices, and friction stops what should slide; with eight nothing changes
+/// (docs/collision/contact.md).
 constexpr int kSweeps = 4;
 
 } // namespace
