@@ -207,7 +207,8 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
 {
     if (!has_left(x, kEndTrust) && deepest(x) <= kLeftOver)
         return;
-    remember([&](int i) { return energy_.slip(i, x); });
+    if (!has_cleared_)
+        remember([&](int i) { return energy_.slip(i, x); });
     has_cleared_ = true;
     find_again(x);
     const StageScope stage("collision/clear");
@@ -216,15 +217,15 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
 }
 
 /// What would have crossed stops: it loses the velocity that it was to have got there.
-void Contact::keep_apart(View<Vec3> x, View<Vec3> v)
+bool Contact::keep_apart(View<Vec3> x, View<Vec3> v)
 {
     if (!between_)
-        return;
+        return false;
     const std::vector<Vec3> wanted(x.begin(), x.end());
-    if (!between_->hold_back(x, leaning(x)))
-        return;
+    const bool is_far = between_->hold_back(x, leaning(x));
     for (int i = 0; i < x.size(); ++i)
         v[i] += (x[i] - wanted[i]) / start_.dt;
+    return is_far;
 }
 
 /// Coulomb's law with the distance pushed out for the normal impulse [Macklin et al. 2014, eq. 24]. Nothing

@@ -48,7 +48,7 @@ public:
     bool revise(View<Vec3> x) override;
     void clear(View<Vec3> x, View<Vec3> v) override;
     void resolve(View<Vec3> x, View<Vec3> v) override;
-    void keep_apart(View<Vec3> x, View<Vec3> v) override;
+    bool keep_apart(View<Vec3> x, View<Vec3> v) override;
     void end_step(View<const Vec3> x) override;
 
     bool keeps_cloth_apart() const { return between_.has_value(); }

@@ -184,17 +184,27 @@ bool ClothContact::advance(View<Vec3> x, View<const unsigned char> leans)
     const double held = safe_.limit(x, leans);
     if (held <= kHeldAside * edge_ && !has_slid(x))
         return false;
-    for (int v = 0; v < x.size(); ++v) {
-        motion_[v] = wanted[v] - x[v];
-        slack_[v] = std::max(slack_[v], bounded_slack(motion_[v].norm()));
-    }
-    look(x);
+    look_on(x, wanted);
     return true;
 }
 
 bool ClothContact::hold_back(View<Vec3> x, View<const unsigned char> leans)
 {
-    return safe_.limit(x, leans) > 0.0;
+    const std::vector<Vec3> wanted(x.begin(), x.end());
+    if (safe_.limit(x, leans) <= kHeldAside * edge_)
+        return false;
+    look_on(x, wanted);
+    return true;
+}
+
+/// From where cloth was brought back to, for the rest of its way or less.
+void ClothContact::look_on(View<const Vec3> x, View<const Vec3> wanted)
+{
+    for (int v = 0; v < x.size(); ++v) {
+        motion_[v] = wanted[v] - x[v];
+        slack_[v] = std::max(slack_[v], bounded_slack(motion_[v].norm()));
+    }
+    look(x);
 }
 
 /// True when a pair that presses at x has slid away from the place that its normal was expected at.

@@ -38,7 +38,8 @@ public:
     /// @param leans  see SafeStep::limit
     bool advance(View<Vec3> x, View<const unsigned char> leans);
 
-    /// Brings x back where cloth would cross; what is undone stays undone. True when anything moved.
+    /// Brings x back where cloth would cross. True when that was far: x may go on from there, and be brought
+    /// back again.
     bool hold_back(View<Vec3> x, View<const unsigned char> leans);
 
     /// See ExemptPairs.
@@ -56,6 +57,7 @@ public:
 private:
     double thickness_of(const std::array<int, 4>& vertex, int first_count) const;
     void look(View<const Vec3> x);
+    void look_on(View<const Vec3> x, View<const Vec3> wanted);
     std::optional<ContactPair> pressing_pair(const NearPair& now) const;
     bool has_slid(View<const Vec3> x) const;
     double bounded_slack(double slack) const;

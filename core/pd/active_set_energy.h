@@ -46,8 +46,9 @@ public:
     virtual void resolve(View<Vec3> x, View<Vec3> v) { clear(x, v); }
 
     /// The last word on positions x and velocities v [vertices], after all that has moved them: brings back
-    /// what would break an invariant, such as cloth that would have passed through cloth.
-    virtual void keep_apart(View<Vec3> x, View<Vec3> v) = 0;
+    /// what would break an invariant, such as cloth that would have passed through cloth. True when that was
+    /// far: what moved x may go on from there, and ask again.
+    virtual bool keep_apart(View<Vec3> x, View<Vec3> v) = 0;
 
     /// Remembers what the next step builds on. x [vertices] are the final positions.
     virtual void end_step(View<const Vec3> x) = 0;

@@ -38,6 +38,7 @@ private:
     OuterLoop::Outcome no_worse_than_standing(double dt, StepObjective& objective,
                                               OuterLoop::Settings settings, const OuterLoop::Outcome& found);
     void minimise(double dt, ActiveSetEnergy* active, StepReport& report);
+    void satisfy_all(double dt, ActiveSetEnergy* active, StepProjection* projection);
 
     std::unique_ptr<System> system_;
     Settings settings_;

@@ -147,16 +147,17 @@ void RigidActiveSet::clear(View<Vec3> q, View<Vec3> v)
     take_free(velocity, v);
 }
 
-void RigidActiveSet::keep_apart(View<Vec3> q, View<Vec3> v)
+bool RigidActiveSet::keep_apart(View<Vec3> q, View<Vec3> v)
 {
     to_surface(q, x_);
     const std::vector<Vec3> before = x_, wanted(q.begin(), q.end());
     std::copy_n(v.begin(), free_count_, field_.begin());
-    surface_.keep_apart(x_, field_);
+    const bool is_far = surface_.keep_apart(x_, field_);
     take_free(field_, v);
     take_moved(before, x_, q);
     for (int i = free_count_; i < q.size(); ++i)
         v[i] += (q[i] - wanted[i]) / dt_;
+    return is_far;
 }
 
 /// After keep_apart(), whose surfaces count.

@@ -34,7 +34,7 @@ public:
 
     bool revise(View<Vec3> q) override;
     void clear(View<Vec3> q, View<Vec3> v) override;
-    void keep_apart(View<Vec3> q, View<Vec3> v) override;
+    bool keep_apart(View<Vec3> q, View<Vec3> v) override;
     void end_step(View<const Vec3> q) override;
 
 private:

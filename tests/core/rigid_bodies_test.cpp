@@ -187,7 +187,7 @@ public:
     void append_terms(std::vector<FrozenTerm>& terms) const override { terms = terms_; }
     bool revise(View<Vec3>) override { return false; }
     void clear(View<Vec3>, View<Vec3>) override {}
-    void keep_apart(View<Vec3>, View<Vec3>) override {}
+    bool keep_apart(View<Vec3>, View<Vec3>) override { return false; }
     void end_step(View<const Vec3>) override {}
 
     std::vector<Vec3> anchor_;

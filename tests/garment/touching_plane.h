@@ -57,7 +57,7 @@ public:
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     bool revise(View<Vec3>) override { return false; }
     void clear(View<Vec3>, View<Vec3>) override {}
-    void keep_apart(View<Vec3>, View<Vec3>) override {}
+    bool keep_apart(View<Vec3>, View<Vec3>) override { return false; }
     void end_step(View<const Vec3>) override {}
 
     /// Vertices that press on the plane at x.
