@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "core/backend/error.h"
+#include "garment/energy/membrane.h"
 #include "garment/energy/principal_stretch.h"
 #include "tests/garment/sheets.h"
+#include "tests/garment/touching_plane.h"
 
 namespace toile::test {
 namespace {
@@ -167,6 +169,50 @@ TEST(StrainLimit, SurvivesClothCollapsedToALine)
         p = Vec3(1.1 * p.x(), 0.0, 0.0);
     heavy.patient.project(x, inverse_of(heavy.masses), nullptr);
     EXPECT_LE(heavy.limit.max_strain(x), kLimit + kTolerance);
+}
+
+/// Brings the first columns of vertices back to where they were, once in a step, and counts how often it is
+/// asked.
+class BringsBackOnce : public TouchingPlane {
+public:
+    BringsBackOnce(std::vector<Vec3> start, double up_to)
+        : TouchingPlane({}, int(start.size())), start_(std::move(start)), up_to_(up_to)
+    {
+    }
+    bool keep_apart(View<Vec3> x, View<Vec3>) override
+    {
+        if (asked_++ > 0)
+            return false;
+        for (int v = 0; v < x.size(); ++v)
+            if (start_[v].x() < up_to_)
+                x[v] = start_[v];
+        return true;
+    }
+    int asked() const { return asked_; }
+
+private:
+    std::vector<Vec3> start_;
+    double up_to_; ///< [m]
+    int asked_ = 0;
+};
+
+TEST(StrainLimit, DrawsOnWhatWasBroughtBackFromTheRest)
+{
+    HeavySheet heavy;
+    const std::vector<Vec3> flat = heavy.sheet.flat();
+    std::vector<std::shared_ptr<Energy>> energies{
+        std::make_shared<Membrane>(heavy.rest, Membrane::Settings{300.0, 300.0, 100.0}, "sheet")};
+    Body body(flat, std::make_unique<System>(heavy.masses, energies), {});
+    body.set_velocities(std::vector<Vec3>(flat.size(), Vec3::UnitX()));
+    BringsBackOnce active(flat, 0.02);
+    const double dt = 0.02;
+    body.step(dt, std::vector<Vec3>(flat.size(), Vec3::Zero()), std::vector<unsigned char>(flat.size(), 0),
+              flat, &active, &heavy.patient);
+
+    EXPECT_EQ(active.asked(), 2);
+    EXPECT_LT(heavy.limit.max_strain(body.positions()), kLimit + kTolerance);
+    const int border = heavy.sheet.at(0, 4);
+    EXPECT_GT(body.positions()[border].x() - flat[border].x(), 0.5 * dt);
 }
 
 TEST(StrainLimit, RefusesALimitThatIsNotPositive)
