@@ -202,13 +202,13 @@ void Contact::end_step(View<const Vec3> x)
 }
 
 /// Looks where the cloth has come to and moves it out of what is still inside there. This correction does not
-/// become velocity, or it would throw the cloth.
+/// become velocity, or it would throw the cloth. Again in the same step, it forgets pairs that it has parted:
+/// friction there would drag cloth that is caught.
 void Contact::clear(View<Vec3> x, View<Vec3> v)
 {
     if (!has_left(x, kEndTrust) && deepest(x) <= kLeftOver)
         return;
-    if (!has_cleared_)
-        remember([&](int i) { return energy_.slip(i, x); });
+    remember([&](int i) { return energy_.slip(i, x); });
     has_cleared_ = true;
     find_again(x);
     const StageScope stage("collision/clear");

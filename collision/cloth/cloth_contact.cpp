@@ -184,6 +184,8 @@ bool ClothContact::advance(View<Vec3> x, View<const unsigned char> leans)
     const double held = safe_.limit(x, leans);
     if (held <= kHeldAside * edge_ && !has_slid(x))
         return false;
+    for (int v = 0; v < x.size(); ++v)
+        motion_[v] = wanted[v] - x[v];
     look_on(x, wanted);
     return true;
 }
@@ -193,17 +195,16 @@ bool ClothContact::hold_back(View<Vec3> x, View<const unsigned char> leans)
     const std::vector<Vec3> wanted(x.begin(), x.end());
     if (safe_.limit(x, leans) <= kHeldAside * edge_)
         return false;
+    std::fill(motion_.begin(), motion_.end(), Vec3::Zero());
     look_on(x, wanted);
     return true;
 }
 
-/// From where cloth was brought back to, for the rest of its way or less.
+/// From where cloth was brought back to, as far around its expected motion as it had wanted to go.
 void ClothContact::look_on(View<const Vec3> x, View<const Vec3> wanted)
 {
-    for (int v = 0; v < x.size(); ++v) {
-        motion_[v] = wanted[v] - x[v];
-        slack_[v] = std::max(slack_[v], bounded_slack(motion_[v].norm()));
-    }
+    for (int v = 0; v < x.size(); ++v)
+        slack_[v] = std::max(slack_[v], bounded_slack((wanted[v] - x[v]).norm()));
     look(x);
 }
 

@@ -21,7 +21,7 @@ constexpr double kMinTolerance = 0.002;
 constexpr double kStandingTolerance = 0.1;
 
 /// How often the end of a step is satisfied at most, where cloth is brought back far again and again. A
-/// walking skirt asks for up to five (docs/collision/cloth.md).
+/// walking skirt asks for more than four and at most seven (docs/collision/cloth.md).
 constexpr int kEndRounds = 8;
 
 } // namespace
