@@ -17,7 +17,8 @@ struct KernelView {
     View<const float> far_weights;  ///< [far_cluster][rank][kTargets] [m/N]
 };
 
-/// What one of several adds up of a leaf: these targets, every `groups`-th entry of the lists from `group` on.
+/// What one of several adds up of a leaf: these targets, every `groups`-th entry of the lists from `group`
+/// on.
 struct LeafPart {
     int first_target = 0;
     int group = 0;

@@ -10,8 +10,8 @@ template <typename Number>
 struct BasisView {
     static constexpr int kMaxLevels = 32;
 
-    int rank = 0;                         ///< functions of a cluster
-    int first_of_level[kMaxLevels] = {};  ///< first cluster of a level
+    int rank = 0;                        ///< functions of a cluster
+    int first_of_level[kMaxLevels] = {}; ///< first cluster of a level
     int leaf_count = 0;
     View<const Number> leaves;    ///< [leaves][kLeaf][rank]
     View<const Number> transfers; ///< [clusters][rank][rank]

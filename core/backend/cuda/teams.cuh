@@ -78,8 +78,8 @@ void parallel_for_teams(const CudaSpace& space, std::string_view name, int count
 }
 
 /// Launches kernel(level, c, k) for k in [0, width) at every node c of an implicit tree, children
-/// before parents: a block climbs from kSubtreeNodes nodes to one, then a single one to the root. Item (level,
-/// c, k) may write slot k of its node and read all slots of the children.
+/// before parents: a block climbs from kSubtreeNodes nodes to one, then a single one to the root. Item
+/// (level, c, k) may write slot k of its node and read all slots of the children.
 /// @param lowest  nodes of level 0
 template <typename Kernel>
 void parallel_climb(const CudaSpace& space, std::string_view name, int lowest, [[maybe_unused]] int width,
@@ -96,7 +96,7 @@ void parallel_climb(const CudaSpace& space, std::string_view name, int lowest, [
 #ifdef __CUDACC__
     const int below = std::min(levels, kSubtreeLevels + 1);
     climb<<<block_count(lowest, kSubtreeNodes), 128, 0, space.stream()>>>(lowest, 0, below, kSubtreeLevels,
-                                                                         width, kernel);
+                                                                          width, kernel);
     if (levels > below)
         climb<<<1, 512, 0, space.stream()>>>(lowest, below, levels, levels - 1, width, kernel);
 #endif
