@@ -83,12 +83,15 @@ void CudaSpace::launched(std::string_view name, const std::source_location& wher
         synchronise(where);
 }
 
-void CudaSpace::require(cuda::Status status, const std::string& what) const
+void CudaSpace::require(cuda::Status status, std::string_view what, std::string_view name) const
 {
     if (status == cuda::Status::Good)
         return;
-    const std::string before = launch_count_ > 0 ? "; before it: " + pending_kernels() : "";
-    throw DeviceError(what + " on " + described() + ": " + cuda::reason_of(status) + before);
+    std::string message(what);
+    if (!name.empty())
+        message += " '" + std::string(name) + "'";
+    message += " on " + described() + ": " + cuda::reason_of(status);
+    throw DeviceError(message + (launch_count_ > 0 ? "; before it: " + pending_kernels() : ""));
 }
 
 std::string CudaSpace::described() const

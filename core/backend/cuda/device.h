@@ -67,8 +67,8 @@ private:
 
     /// Remembers a launch and throws if it was refused.
     void launched(std::string_view name, const std::source_location& where) const;
-    /// @throws DeviceError "WHAT on CUDA device 0 (NAME): REASON" unless the status is good.
-    void require(cuda::Status status, const std::string& what) const;
+    /// @throws DeviceError "WHAT 'NAME' on CUDA device 0 (...): REASON" unless the status is good.
+    void require(cuda::Status status, std::string_view what, std::string_view name = {}) const;
     /// "CUDA device 0 (NVIDIA H200)"
     std::string described() const;
     /// "kernel 'a' (file.cu:7)", or the last of several.

@@ -6,6 +6,11 @@
 /// In a build without CUDA the same .cu files are compiled as C++. Nothing here runs then, since no CudaSpace
 /// can be made.
 
+#if !defined(__CUDACC__) && !defined(TOILE_CU_AS_CXX)
+#error                                                                                                       \
+    "kernels are launched in .cu files, listed under CUDA in CMakeLists.txt; a .cpp file would launch nothing"
+#endif
+
 #include <algorithm>
 #include <source_location>
 #include <string_view>
@@ -13,6 +18,7 @@
 #include "core/backend/cuda/array.h"
 #include "core/backend/cuda/device.h"
 #include "core/backend/cuda/layout.h"
+#include "core/backend/cuda/sum_scratch.h"
 #include "core/backend/stages.h"
 #include "core/backend/types.h"
 
@@ -93,8 +99,8 @@ void parallel_for(const CudaSpace& space, std::string_view name, int count,
 
 /// One launch of sum_blocks().
 template <typename T, typename Term>
-void launch_sum(const CudaSpace& space, std::string_view name, int count, [[maybe_unused]] int items,
-                [[maybe_unused]] const T& zero, [[maybe_unused]] const Term& term,
+void launch_sum(const CudaSpace& space, std::string_view name, [[maybe_unused]] int count,
+                [[maybe_unused]] int items, [[maybe_unused]] const T& zero, [[maybe_unused]] const Term& term,
                 [[maybe_unused]] View<T> sums, const std::source_location& where)
 {
     const CudaLaunch launch(space, name, where);
@@ -134,19 +140,6 @@ void parallel_sum(const CudaSpace& space, std::string_view name, int count, cons
     launch_sum(space, name, count, kSumItems, zero, term, sums, where);
     launch_sum(space, name, blocks, blocks, zero, ItemOf<T>{sums}, slot, where);
 }
-
-/// What a sum that is read back needs; kept between sums so that none asks for memory.
-template <typename T>
-struct SumScratch {
-    explicit SumScratch(const CudaSpace& space)
-        : block_sums(space, "sum/blocks"), total(space, "sum/total", 1), value(space, "sum/value", 1)
-    {
-    }
-
-    DeviceArray<T> block_sums;
-    DeviceArray<T> total;
-    PinnedArray<T> value;
-};
 
 /// The same sum, waited for and read back. An empty range launches nothing.
 template <typename T, typename Term>
