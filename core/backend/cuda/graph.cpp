@@ -62,7 +62,7 @@ void CudaGraph::forget()
     program_ = nullptr;
 }
 
-void CudaGraph::launch(const std::source_location& where)
+void CudaGraph::launch(CallSite where)
 {
     const StageScope stage(name_);
     if (program_ == nullptr)

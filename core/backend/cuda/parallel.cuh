@@ -12,7 +12,6 @@
 #endif
 
 #include <algorithm>
-#include <source_location>
 #include <string_view>
 
 #include "core/backend/cuda/array.h"
@@ -85,7 +84,7 @@ __global__ void __launch_bounds__(kSumThreads)
 template <typename Kernel>
 void parallel_for(const CudaSpace& space, std::string_view name, int count,
                   [[maybe_unused]] const Kernel& kernel, [[maybe_unused]] int block = 256,
-                  const std::source_location& where = std::source_location::current())
+                  CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     if (count <= 0)
@@ -101,7 +100,7 @@ void parallel_for(const CudaSpace& space, std::string_view name, int count,
 template <typename T, typename Term>
 void launch_sum(const CudaSpace& space, std::string_view name, [[maybe_unused]] int count,
                 [[maybe_unused]] int items, [[maybe_unused]] const T& zero, [[maybe_unused]] const Term& term,
-                [[maybe_unused]] View<T> sums, const std::source_location& where)
+                [[maybe_unused]] View<T> sums, CallSite where)
 {
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
@@ -127,8 +126,7 @@ struct ItemOf {
 /// @param block_sums  scratch; grows to one item per block
 template <typename T, typename Term>
 void parallel_sum(const CudaSpace& space, std::string_view name, int count, const T& zero, const Term& term,
-                  View<T> slot, DeviceArray<T>& block_sums,
-                  const std::source_location& where = std::source_location::current())
+                  View<T> slot, DeviceArray<T>& block_sums, CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     const int blocks = block_count(std::max(count, 0), kSumItems);
@@ -144,7 +142,7 @@ void parallel_sum(const CudaSpace& space, std::string_view name, int count, cons
 /// The same sum, waited for and read back. An empty range launches nothing.
 template <typename T, typename Term>
 T parallel_sum(const CudaSpace& space, std::string_view name, int count, const T& zero, const Term& term,
-               SumScratch<T>& scratch, const std::source_location& where = std::source_location::current())
+               SumScratch<T>& scratch, CallSite where = CallSite::here())
 {
     if (count <= 0)
         return zero;
