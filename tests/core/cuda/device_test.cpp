@@ -42,12 +42,12 @@ TEST(CudaSpaceErrors, NameTheDeviceThatIsNotThere)
 {
     for (const int index : {99, -1}) {
         const std::string message = message_of<DeviceError>([&] { const CudaSpace space(index); });
-        const std::string start = "CUDA device " + std::to_string(index) + ": ";
+        std::string start = "CUDA device " + std::to_string(index) + ": ";
         const std::string reason = why_no_cuda_device();
         if (reason.empty())
             EXPECT_TRUE(message.starts_with(start + "there is no such device; choose one of 0 (")) << message;
         else
-            EXPECT_EQ(message, start + "there is none, because " + reason);
+            EXPECT_EQ(message, start.append("there is none, because ").append(reason));
     }
 }
 
