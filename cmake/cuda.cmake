@@ -81,7 +81,7 @@ endif()
 # compiler with the C++ flags.
 function(toile_cuda_sources target files libraries)
     if(NOT TOILE_WITH_CUDA)
-        set_source_files_properties(${files} PROPERTIES LANGUAGE CXX)
+        set_source_files_properties(${files} PROPERTIES LANGUAGE CXX COMPILE_DEFINITIONS TOILE_CU_AS_CXX)
         target_sources(${target} PRIVATE ${files})
         return()
     endif()

@@ -62,7 +62,7 @@ void CudaBuffer::reserve(std::size_t bytes, std::size_t kept)
         release(); // waits for the copy
         data_ = data;
         capacity_ = capacity;
-        space_->require(copied, "growing '" + name_ + "'");
+        space_->require(copied, "growing", name_);
     }
     data_ = data;
     capacity_ = capacity;
@@ -82,7 +82,7 @@ void* CudaBuffer::allocate(std::size_t bytes) const
 #ifdef TOILE_CHECKED
     // NaN in every number that is read before it is written.
     if (where_ == Where::Device)
-        space_->require(cuda::fill(device, space_->stream(), data, 0xff, bytes), "filling '" + name_ + "'");
+        space_->require(cuda::fill(device, space_->stream(), data, 0xff, bytes), "filling", name_);
 #endif
     return data;
 }
@@ -120,7 +120,7 @@ void CudaBuffer::upload(const void* from, std::size_t bytes)
     if (bytes > 0)
         space_->require(cuda::copy(space_->device().index, space_->stream(), cuda::Direction::HostToDevice,
                                    data_, from, bytes),
-                        "upload into '" + name_ + "'");
+                        "upload into", name_);
 }
 
 void CudaBuffer::download(void* to, std::size_t bytes) const
@@ -128,14 +128,14 @@ void CudaBuffer::download(void* to, std::size_t bytes) const
     if (bytes > 0)
         space_->require(cuda::copy(space_->device().index, space_->stream(), cuda::Direction::DeviceToHost,
                                    to, data_, bytes),
-                        "download of '" + name_ + "'");
+                        "download of", name_);
 }
 
 void CudaBuffer::fill_zero(std::size_t bytes)
 {
     if (bytes > 0)
-        space_->require(cuda::fill(space_->device().index, space_->stream(), data_, 0, bytes),
-                        "zeroing '" + name_ + "'");
+        space_->require(cuda::fill(space_->device().index, space_->stream(), data_, 0, bytes), "zeroing",
+                        name_);
 }
 
 } // namespace toile

@@ -30,10 +30,7 @@ CudaDevice require_device(int index)
     throw DeviceError(place + "there is no such device; choose one of " + list);
 }
 
-std::string at(const std::source_location& where)
-{
-    return std::string(where.file_name()) + ":" + std::to_string(where.line());
-}
+std::string at(CallSite where) { return std::string(where.file) + ":" + std::to_string(where.line); }
 
 } // namespace
 
@@ -54,7 +51,7 @@ CudaSpace::~CudaSpace()
     static_cast<void>(cuda::close_stream(device_.index, stream_));
 }
 
-void CudaSpace::synchronise(std::source_location where) const
+void CudaSpace::synchronise(CallSite where) const
 {
     if (is_recording())
         throw DeviceError(at(where) + ": nothing can be waited for while a graph is recorded on " +
@@ -66,7 +63,7 @@ void CudaSpace::synchronise(std::source_location where) const
     launch_count_ = 0;
 }
 
-void CudaSpace::launched(std::string_view name, const std::source_location& where) const
+void CudaSpace::launched(std::string_view name, CallSite where) const
 {
     const cuda::Status status = cuda::take_launch_error();
     if (status != cuda::Status::Good) {
@@ -83,12 +80,15 @@ void CudaSpace::launched(std::string_view name, const std::source_location& wher
         synchronise(where);
 }
 
-void CudaSpace::require(cuda::Status status, const std::string& what) const
+void CudaSpace::require(cuda::Status status, std::string_view what, std::string_view name) const
 {
     if (status == cuda::Status::Good)
         return;
-    const std::string before = launch_count_ > 0 ? "; before it: " + pending_kernels() : "";
-    throw DeviceError(what + " on " + described() + ": " + cuda::reason_of(status) + before);
+    std::string message(what);
+    if (!name.empty())
+        message += " '" + std::string(name) + "'";
+    message += " on " + described() + ": " + cuda::reason_of(status);
+    throw DeviceError(message + (launch_count_ > 0 ? "; before it: " + pending_kernels() : ""));
 }
 
 std::string CudaSpace::described() const

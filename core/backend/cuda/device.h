@@ -1,11 +1,11 @@
 #pragma once
 
 #include <array>
-#include <source_location>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/backend/call_site.h"
 #include "core/backend/cuda/runtime.h"
 
 namespace toile {
@@ -40,7 +40,7 @@ public:
     /// Waits until all that the stream was given is done.
     /// @throws DeviceError naming the kernels launched since the last wait with file and line, and what CUDA
     ///         said, when one of them failed. The device is of no use to this process from then on.
-    void synchronise(std::source_location where = std::source_location::current()) const;
+    void synchronise(CallSite where = CallSite::here()) const;
 
     /// True while a CudaGraph records: what the stream is given is kept, not run.
     bool is_recording() const { return cuda::is_recording(stream_); }
@@ -62,13 +62,13 @@ private:
 
     struct Launch {
         std::string_view name;
-        std::source_location where;
+        CallSite where;
     };
 
     /// Remembers a launch and throws if it was refused.
-    void launched(std::string_view name, const std::source_location& where) const;
-    /// @throws DeviceError "WHAT on CUDA device 0 (NAME): REASON" unless the status is good.
-    void require(cuda::Status status, const std::string& what) const;
+    void launched(std::string_view name, CallSite where) const;
+    /// @throws DeviceError "WHAT 'NAME' on CUDA device 0 (...): REASON" unless the status is good.
+    void require(cuda::Status status, std::string_view what, std::string_view name = {}) const;
     /// "CUDA device 0 (NVIDIA H200)"
     std::string described() const;
     /// "kernel 'a' (file.cu:7)", or the last of several.
@@ -88,7 +88,7 @@ private:
 class CudaLaunch {
 public:
     /// @param name  a literal, as of stages: the space keeps a view of it
-    CudaLaunch(const CudaSpace& space, std::string_view name, const std::source_location& where)
+    CudaLaunch(const CudaSpace& space, std::string_view name, CallSite where)
         : space_(space), name_(name), where_(where)
     {
         space.require(cuda::use_device(space.device().index), "choosing the device");
@@ -99,7 +99,7 @@ public:
 private:
     const CudaSpace& space_;
     std::string_view name_;
-    const std::source_location& where_;
+    CallSite where_;
 };
 
 } // namespace toile

@@ -14,8 +14,8 @@ void CudaGraph::begin()
     if (space_->is_recording())
         throw DeviceError("graph '" + std::string(name_) + "' can't be recorded while another is on " +
                           space_->described());
-    space_->require(cuda::begin_recording(space_->device().index, space_->stream()),
-                    "recording graph '" + std::string(name_) + "'");
+    space_->require(cuda::begin_recording(space_->device().index, space_->stream()), "recording graph",
+                    name_);
 }
 
 void CudaGraph::abandon()
@@ -30,8 +30,8 @@ void CudaGraph::abandon()
 void CudaGraph::finish()
 {
     CUgraph_st* graph = nullptr;
-    space_->require(cuda::end_recording(space_->device().index, space_->stream(), graph),
-                    "recording graph '" + std::string(name_) + "'");
+    space_->require(cuda::end_recording(space_->device().index, space_->stream(), graph), "recording graph",
+                    name_);
     try {
         if (program_ != nullptr && cuda::update(space_->device().index, program_, graph) == Status::Good)
             ++updates_;
@@ -48,8 +48,7 @@ void CudaGraph::finish()
 void CudaGraph::instantiate(CUgraph_st* graph)
 {
     forget();
-    space_->require(cuda::instantiate(space_->device().index, graph, program_),
-                    "instantiating graph '" + std::string(name_) + "'");
+    space_->require(cuda::instantiate(space_->device().index, graph, program_), "instantiating graph", name_);
     ++instantiations_;
 }
 
@@ -63,13 +62,13 @@ void CudaGraph::forget()
     program_ = nullptr;
 }
 
-void CudaGraph::launch(const std::source_location& where)
+void CudaGraph::launch(CallSite where)
 {
     const StageScope stage(name_);
     if (program_ == nullptr)
         return;
-    space_->require(cuda::launch(space_->device().index, program_, space_->stream()),
-                    "launching graph '" + std::string(name_) + "'");
+    space_->require(cuda::launch(space_->device().index, program_, space_->stream()), "launching graph",
+                    name_);
     space_->launched(name_, where);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <source_location>
 #include <string_view>
 
 #include "core/backend/cuda/device.h"
@@ -38,7 +37,7 @@ public:
     }
 
     /// Runs what was recorded, in the stream's turn; nothing where nothing was. One call of stage `name`.
-    void launch(const std::source_location& where = std::source_location::current());
+    void launch(CallSite where = CallSite::here());
 
     int node_count() const { return node_count_; } ///< kernels, copies and fills recorded
     int instantiations() const { return instantiations_; }

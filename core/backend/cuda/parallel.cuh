@@ -6,13 +6,18 @@
 /// In a build without CUDA the same .cu files are compiled as C++. Nothing here runs then, since no CudaSpace
 /// can be made.
 
+#if !defined(__CUDACC__) && !defined(TOILE_CU_AS_CXX)
+#error                                                                                                       \
+    "kernels are launched in .cu files, listed under CUDA in CMakeLists.txt; a .cpp file would launch nothing"
+#endif
+
 #include <algorithm>
-#include <source_location>
 #include <string_view>
 
 #include "core/backend/cuda/array.h"
 #include "core/backend/cuda/device.h"
 #include "core/backend/cuda/layout.h"
+#include "core/backend/cuda/sum_scratch.h"
 #include "core/backend/stages.h"
 #include "core/backend/types.h"
 
@@ -79,7 +84,7 @@ __global__ void __launch_bounds__(kSumThreads)
 template <typename Kernel>
 void parallel_for(const CudaSpace& space, std::string_view name, int count,
                   [[maybe_unused]] const Kernel& kernel, [[maybe_unused]] int block = 256,
-                  const std::source_location& where = std::source_location::current())
+                  CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     if (count <= 0)
@@ -93,9 +98,9 @@ void parallel_for(const CudaSpace& space, std::string_view name, int count,
 
 /// One launch of sum_blocks().
 template <typename T, typename Term>
-void launch_sum(const CudaSpace& space, std::string_view name, int count, [[maybe_unused]] int items,
-                [[maybe_unused]] const T& zero, [[maybe_unused]] const Term& term,
-                [[maybe_unused]] View<T> sums, const std::source_location& where)
+void launch_sum(const CudaSpace& space, std::string_view name, [[maybe_unused]] int count,
+                [[maybe_unused]] int items, [[maybe_unused]] const T& zero, [[maybe_unused]] const Term& term,
+                [[maybe_unused]] View<T> sums, CallSite where)
 {
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
@@ -121,8 +126,7 @@ struct ItemOf {
 /// @param block_sums  scratch; grows to one item per block
 template <typename T, typename Term>
 void parallel_sum(const CudaSpace& space, std::string_view name, int count, const T& zero, const Term& term,
-                  View<T> slot, DeviceArray<T>& block_sums,
-                  const std::source_location& where = std::source_location::current())
+                  View<T> slot, DeviceArray<T>& block_sums, CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     const int blocks = block_count(std::max(count, 0), kSumItems);
@@ -135,23 +139,10 @@ void parallel_sum(const CudaSpace& space, std::string_view name, int count, cons
     launch_sum(space, name, blocks, blocks, zero, ItemOf<T>{sums}, slot, where);
 }
 
-/// What a sum that is read back needs; kept between sums so that none asks for memory.
-template <typename T>
-struct SumScratch {
-    explicit SumScratch(const CudaSpace& space)
-        : block_sums(space, "sum/blocks"), total(space, "sum/total", 1), value(space, "sum/value", 1)
-    {
-    }
-
-    DeviceArray<T> block_sums;
-    DeviceArray<T> total;
-    PinnedArray<T> value;
-};
-
 /// The same sum, waited for and read back. An empty range launches nothing.
 template <typename T, typename Term>
 T parallel_sum(const CudaSpace& space, std::string_view name, int count, const T& zero, const Term& term,
-               SumScratch<T>& scratch, const std::source_location& where = std::source_location::current())
+               SumScratch<T>& scratch, CallSite where = CallSite::here())
 {
     if (count <= 0)
         return zero;

@@ -8,16 +8,21 @@ namespace {
 
 Status status_of(cudaError_t error) { return Status(int(error)); }
 
-/// Runs call() on a device and forgets the error that CUDA keeps of it for later.
-template <typename Call>
-Status on_device(int device, const Call& call)
+/// What a call answered. Takes away the note that CUDA keeps of a failure, which would otherwise count
+/// against the next launch.
+Status answer(cudaError_t error)
 {
-    cudaError_t error = cudaSetDevice(device);
-    if (error == cudaSuccess)
-        error = call();
     if (error != cudaSuccess)
         cudaGetLastError();
     return status_of(error);
+}
+
+/// Runs call() on a device.
+template <typename Call>
+Status on_device(int device, const Call& call)
+{
+    const cudaError_t error = cudaSetDevice(device);
+    return answer(error == cudaSuccess ? call() : error);
 }
 
 /// "13.0" of CUDA's 13000.
@@ -70,7 +75,7 @@ FoundDevices find_devices()
     return found;
 }
 
-Status use_device(int device) { return status_of(cudaSetDevice(device)); }
+Status use_device(int device) { return answer(cudaSetDevice(device)); }
 
 Status open_stream(int device, CUstream_st*& stream)
 {
@@ -137,7 +142,8 @@ Status fill(int device, CUstream_st* stream, void* data, unsigned char byte, std
 bool is_recording(CUstream_st* stream)
 {
     cudaStreamCaptureStatus state = cudaStreamCaptureStatusNone;
-    return cudaStreamIsCapturing(stream, &state) == cudaSuccess && state != cudaStreamCaptureStatusNone;
+    return answer(cudaStreamIsCapturing(stream, &state)) == Status::Good &&
+           state != cudaStreamCaptureStatusNone;
 }
 
 Status begin_recording(int device, CUstream_st* stream)
@@ -173,18 +179,18 @@ Status node_count(CUgraph_st* graph, int& count)
     std::size_t nodes = 0;
     const cudaError_t error = cudaGraphGetNodes(graph, nullptr, &nodes);
     count = int(nodes);
-    return status_of(error);
+    return answer(error);
 }
 
-Status destroy(CUgraph_st* graph) { return status_of(cudaGraphDestroy(graph)); }
-Status destroy(CUgraphExec_st* program) { return status_of(cudaGraphExecDestroy(program)); }
+Status destroy(CUgraph_st* graph) { return answer(cudaGraphDestroy(graph)); }
+Status destroy(CUgraphExec_st* program) { return answer(cudaGraphExecDestroy(program)); }
 
 Status make_event(int device, CUevent_st*& event)
 {
     return on_device(device, [&] { return cudaEventCreate(&event); });
 }
 
-Status destroy(CUevent_st* event) { return status_of(cudaEventDestroy(event)); }
+Status destroy(CUevent_st* event) { return answer(cudaEventDestroy(event)); }
 
 Status record(int device, CUevent_st* event, CUstream_st* stream)
 {
@@ -198,7 +204,7 @@ Status wait_for(int device, CUevent_st* event)
 
 Status elapsed_ms(CUevent_st* from, CUevent_st* to, float& ms)
 {
-    return status_of(cudaEventElapsedTime(&ms, from, to));
+    return answer(cudaEventElapsedTime(&ms, from, to));
 }
 
 } // namespace toile::cuda
