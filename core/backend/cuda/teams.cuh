@@ -3,7 +3,6 @@
 /// Launches on a GPU in which threads work together: on one item, or level by level on a tree. Included by
 /// .cu files, as parallel.cuh.
 
-#include <source_location>
 #include <string_view>
 
 #include "core/backend/cuda/parallel.cuh"
@@ -65,7 +64,7 @@ __global__ void climb(int lowest, int begin, int end, int shift, int width, cons
 template <typename Kernel>
 void parallel_for_teams(const CudaSpace& space, std::string_view name, int count,
                         [[maybe_unused]] const Kernel& kernel, [[maybe_unused]] int block = 128,
-                        const std::source_location& where = std::source_location::current())
+                        CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     if (count <= 0)
@@ -84,7 +83,7 @@ void parallel_for_teams(const CudaSpace& space, std::string_view name, int count
 template <typename Kernel>
 void parallel_climb(const CudaSpace& space, std::string_view name, int lowest, [[maybe_unused]] int width,
                     [[maybe_unused]] const Kernel& kernel,
-                    const std::source_location& where = std::source_location::current())
+                    CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     if (lowest <= 0)
