@@ -8,8 +8,9 @@ namespace toile {
 
 namespace {
 
-/// Targets that a thread adds up at once: one load of 8 bytes of weights.
-constexpr int kWidth = 2;
+/// Targets that a thread adds up at once: one load of 16 bytes of weights. With one or two, 10 000 vertices
+/// take a fifth to two fifths longer; 50 000 take the same, for their tables come from memory.
+constexpr int kWidth = 4;
 
 std::vector<float> single(View<const double> values) { return {values.begin(), values.end()}; }
 
