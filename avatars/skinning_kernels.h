@@ -4,6 +4,8 @@
 
 namespace toile {
 
+class CudaSpace;
+
 /// One bone's share in a vertex.
 struct Influence {
     int bone = -1;
@@ -48,5 +50,11 @@ struct PlaceVertices {
         x[v] = moved;
     }
 };
+
+/// The same on a GPU, enqueued (skinning.cu): the views are of its memory. Stages "avatars/skin" and
+/// "avatars/place".
+/// @throws DeviceError when the launch is refused.
+void launch(const CudaSpace& space, const SkinVertices& kernel);
+void launch(const CudaSpace& space, const PlaceVertices& kernel);
 
 } // namespace toile

@@ -22,9 +22,17 @@ option(TOILE_NATIVE "Compile for this machine's instruction set (vector width de
 add_library(toile_options INTERFACE)
 # GCC 12 warns about its own vector intrinsics and std::string; clang-tidy finds the real cases.
 target_compile_options(toile_options INTERFACE
-    -Wall -Wextra -Wshadow -Wno-uninitialized -Wno-maybe-uninitialized -Wno-restrict)
+    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -Wno-uninitialized -Wno-maybe-uninitialized -Wno-restrict>)
+# nvcc: every warning is an error, above all host functions called by a kernel. 20012 are defaulted functions of
+# Eigen with a marker, which has no effect on them. Eigen calls constexpr functions of the standard library.
+target_compile_options(toile_options INTERFACE
+    "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-diag-suppress=20012>"
+    "$<$<COMPILE_LANGUAGE:CUDA>:SHELL:-Werror cross-execution-space-call -Werror all-warnings>"
+    "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-Wno-unknown-pragmas>")
+# The instruction set decides Eigen's alignment, so the host's part of .cu files must be told the same.
 if(TOILE_NATIVE)
-    target_compile_options(toile_options INTERFACE -march=native)
+    target_compile_options(toile_options INTERFACE
+        $<$<COMPILE_LANGUAGE:CXX>:-march=native> $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-march=native>)
 endif()
 # Contraction into fused multiply-adds stays on: results are the same for every thread count, not for every
 # processor.

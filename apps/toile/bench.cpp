@@ -22,6 +22,7 @@ struct Benchmark {
 constexpr Benchmark kBenchmarks[] = {
     {"contact", "cloth on cloth: crossings under stress, cost by part against size, with and without it",
      bench_contact},
+    {"gpu", "one GPU: the global solve by pass, beside the CPU and the card's bandwidth", bench_gpu},
     {"sheet", "a hanging sheet of 10 000 vertices: milliseconds per step against the error", bench_sheet},
     {"solvers", "the same steps by every global solver, XPBD and VBD: milliseconds against the error",
      bench_solvers},

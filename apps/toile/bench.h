@@ -25,6 +25,7 @@ struct BenchOptions {
 
 // One file each, named bench_NAME.cpp. They return an ExitCode and throw InvalidInput for bad options.
 int bench_contact(const BenchOptions& options);
+int bench_gpu(const BenchOptions& options);
 int bench_sheet(const BenchOptions& options);
 int bench_solvers(const BenchOptions& options);
 int bench_stages(const BenchOptions& options);

@@ -27,6 +27,40 @@ using Mat3Of = Eigen::Matrix<T, 3, 3>;
 TOILE_HD inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 TOILE_HD inline double square_root(double x) { return std::sqrt(x); }
 
+/// What a thread of a GPU has of FloatLanes: as many numbers as it loads at once.
+template <int Count>
+struct alignas(Count * sizeof(float)) Floats {
+    float value[Count];
+
+    Floats() = default;
+    TOILE_HD explicit Floats(float all)
+    {
+        for (float& number : value)
+            number = all;
+    }
+    TOILE_HD float operator[](int k) const { return value[k]; }
+    TOILE_HD Floats& operator+=(const Floats& other)
+    {
+        for (int k = 0; k < Count; ++k)
+            value[k] += other.value[k];
+        return *this;
+    }
+    friend TOILE_HD Floats operator*(Floats a, float factor)
+    {
+        for (float& number : a.value)
+            number *= factor;
+        return a;
+    }
+    friend TOILE_HD Floats operator*(float factor, const Floats& a) { return a * factor; }
+};
+
+/// Numbers from memory that is aligned as T.
+template <typename T>
+TOILE_HD T load_as(const float* numbers)
+{
+    return *reinterpret_cast<const T*>(numbers);
+}
+
 #ifndef __CUDACC__
 
 inline constexpr int kLanes = 8;
@@ -37,6 +71,11 @@ using FloatLanes = std::experimental::fixed_size_simd<float, kLanes>;
 inline FloatLanes load(const float* numbers)
 {
     return FloatLanes(numbers, std::experimental::element_aligned);
+}
+template <>
+inline FloatLanes load_as<FloatLanes>(const float* numbers)
+{
+    return load(numbers);
 }
 
 /// Lane by lane: condition ? yes : no

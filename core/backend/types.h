@@ -29,7 +29,7 @@ using Triangle = Eigen::Vector3i; ///< vertex indices, counter-clockwise seen fr
 template <typename T>
 class View {
 public:
-    TOILE_HD View() = default;
+    View() = default;
     TOILE_HD View(T* data, int size) : data_(data), size_(size) {}
 
     /// Borrows a vector; a View<const T> also borrows a vector of T.

@@ -74,6 +74,12 @@ ClusterBasis::ClusterBasis(const ClusterTree& tree, View<const Place> places)
         fill<rank_of(Extent::Surface)>(places);
     else
         fill<rank_of(Extent::Volume)>(places);
+    view_.rank = rank_;
+    view_.leaf_count = tree.leaf_count();
+    for (int level = 0; level < tree.level_count(); ++level)
+        view_.first_of_level[level] = tree.first_of_level(level);
+    view_.leaves = leaves_;
+    view_.transfers = transfers_;
 }
 
 template <int Rank>

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/quadrature/cluster_tree.h"
+#include "core/quadrature/moments.h"
 
 namespace toile {
 
@@ -15,6 +16,8 @@ public:
     /// @param tree    borrowed; its extent decides the rank
     /// @param places  [n] as the tree's
     ClusterBasis(const ClusterTree& tree, View<const Place> places);
+    ClusterBasis(const ClusterBasis&) = delete; // the view is of its own arrays
+    ClusterBasis& operator=(const ClusterBasis&) = delete;
 
     const ClusterTree& tree() const { return tree_; }
 
@@ -27,6 +30,9 @@ public:
     /// [clusters][rank][rank] entry (s, r): share of a cluster's function s in its parent's function r.
     View<const double> transfers() const { return transfers_; }
 
+    /// The same for kernels.
+    const BasisView<double>& view() const { return view_; }
+
     /// Moments P_C^T f of one cluster, from its nodes or its children.
     /// @param zero     of type T, which has += and multiplication by a double on the left
     /// @param value    value(slot) of the field
@@ -35,36 +41,18 @@ public:
     void gather(int level, int c, const T& zero, const Value& value, View<T> moments) const
     {
         const int id = tree_.first_of_level(level) + c;
-        for (int r = 0; r < rank_; ++r) {
-            T sum = zero;
-            if (level == 0)
-                for (int i = 0; i < ClusterTree::kLeaf; ++i)
-                    sum += leaf_function(id, i, r) * value(id * ClusterTree::kLeaf + i);
-            else
-                for (int which = 0; which < 2; ++which)
-                    if (const int child = tree_.child(level, c, which); child >= 0)
-                        for (int s = 0; s < rank_; ++s)
-                            sum += transfer(child, s, r) * moments[rank_ * child + s];
-            moments[rank_ * id + r] = sum;
-        }
+        for (int r = 0; r < rank_; ++r)
+            moments[rank_ * id + r] = view_.moment(level, c, r, zero, value, moments);
     }
 
 private:
     template <int Rank>
     void fill(View<const Place> places);
 
-    double leaf_function(int leaf, int i, int r) const
-    {
-        return leaves_[size_t(leaf * ClusterTree::kLeaf + i) * rank_ + r];
-    }
-    double transfer(int cluster, int s, int r) const
-    {
-        return transfers_[size_t(cluster * rank_ + s) * rank_ + r];
-    }
-
     const ClusterTree& tree_;
     int rank_;
     std::vector<double> leaves_, transfers_;
+    BasisView<double> view_;
 };
 
 } // namespace toile

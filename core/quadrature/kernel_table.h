@@ -6,6 +6,7 @@
 
 #include "core/linear/supernodal_factor.h"
 #include "core/quadrature/cluster_basis.h"
+#include "core/quadrature/leaf_sum.h"
 
 namespace toile {
 
@@ -17,7 +18,7 @@ namespace toile {
 ///
 /// [Barnes & Hut 1986 applied to eq. 7 of the paper]. The eight targets of a leaf share their lists.
 struct KernelTable {
-    static constexpr int kTargets = ClusterTree::kLeaf;
+    static constexpr int kTargets = KernelView::kTargets;
     static constexpr int kNearWeights = ClusterTree::kLeaf * kTargets; ///< [source node][target]
 
     struct Settings {
@@ -37,6 +38,11 @@ struct KernelTable {
     std::vector<int> far_first;      ///< [leaves + 1] into far_cluster
     std::vector<int> far_cluster;    ///< source clusters
     std::vector<float> far_weights;  ///< [far_cluster][rank][kTargets] [m/N]
+
+    KernelView view() const
+    {
+        return {near_first, near_leaf, near_weights, far_first, far_cluster, far_weights};
+    }
 
     /// Entries that a target reads, averaged over the leaves.
     double gathers_per_node() const;

@@ -54,7 +54,7 @@ void QuadratureOperator::apply(View<const Vec3> b, View<Vec3> x) const
 template <int Rank>
 void QuadratureOperator::gather(View<const Vec3f> sources, View<const Vec3f> moments, View<Vec3> x) const
 {
-    const GatherLeaf<Rank> kernel{tables_->kernel, sources, moments, tables_->tree.nodes(), x};
+    const GatherLeaf<Rank> kernel{tables_->kernel.view(), sources, moments, tables_->tree.nodes(), x};
     parallel_for(kCpu, "quadrature/gather", tables_->tree.leaf_count(), kernel, kLeafGrain);
 }
 

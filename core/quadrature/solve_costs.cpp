@@ -91,7 +91,7 @@ double expected_quadrature_seconds(int n)
     for (int slot = 0; slot < int(slots); ++slot)
         nodes[slot] = slot < n ? slot : -1;
     std::vector<Vec3> x(n);
-    const GatherLeaf<kRank> gather{table, sources, moments, nodes, x};
+    const GatherLeaf<kRank> gather{table.view(), sources, moments, nodes, x};
     const double seconds =
         least_seconds_of([&] { parallel_for(kCpu, "quadrature/gather", leaves, gather, kLeafGrain); });
     return kMoments * seconds * all_leaves / leaves;

@@ -6,6 +6,8 @@
 
 namespace toile {
 
+class CudaSpace;
+
 /// det(C + d I) at or below which a triangle counts as collapsed [-]; 4 at rest. Raising it freezes thin
 /// triangles; lowering it lets rounding noise choose their direction.
 constexpr double kCollapsed = 1e-24;
@@ -79,6 +81,29 @@ TOILE_HD MembraneResponse<T> project_membrane(const Mat32Of<T>& F, const Mat2Of<
     return response;
 }
 
+/// project_membrane() triangle by triangle, as a GPU runs it; the CPU takes eight at a time
+/// (membrane_lanes.h).
+struct ProjectMembraneTriangle {
+    View<const Vec3> x;        ///< [vertices] positions [m]
+    View<const Triangle> tri;  ///< [triangles] vertex indices
+    View<const Mat2> rest_inv; ///< [triangles] inverse rest edge matrices [1/m]
+    View<const double> area;   ///< [triangles] rest areas [m^2]
+    MembraneWeights weights;
+    View<Mat32> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
+    View<double> energy;         ///< [triangles] out: [J]
+
+    TOILE_HD void operator()(int t) const
+    {
+        Mat32 edges;
+        edges.col(0) = x[tri[t][1]] - x[tri[t][0]];
+        edges.col(1) = x[tri[t][2]] - x[tri[t][0]];
+        const Mat32 F = edges.lazyProduct(rest_inv[t]);
+        const MembraneResponse<double> response = project_membrane<double>(F, rest_inv[t], area[t], weights);
+        energy[t] = response.energy;
+        corner_gradient[t] = response.corner_gradient;
+    }
+};
+
 /// Sums the corner gradients of vertex v.
 struct GatherCorners {
     View<const int> first;             ///< [vertices + 1]
@@ -100,5 +125,11 @@ struct GatherCorners {
         gradient[v] += sum;
     }
 };
+
+/// The same on a GPU, enqueued (membrane.cu): the views are of its memory. Stages "membrane/project" and
+/// "membrane/gather".
+/// @throws DeviceError when the launch is refused.
+void launch(const CudaSpace& space, const ProjectMembraneTriangle& kernel);
+void launch(const CudaSpace& space, const GatherCorners& kernel);
 
 } // namespace toile

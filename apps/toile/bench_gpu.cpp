@@ -1,0 +1,57 @@
+#include <iostream>
+
+#include "apps/toile/bench.h"
+#include "apps/toile/bench_tables.h"
+#include "apps/toile/command_line.h"
+#include "apps/toile/interrupt.h"
+#include "apps/toile/progress.h"
+#include "benchmarks/gpu/table.h"
+#include "core/backend/error.h"
+
+namespace toile {
+
+namespace {
+
+const std::vector<std::string> kTables{"gpu_apply.csv", "gpu.md"};
+
+/// Sizes of the sheet [vertices]; tables of the largest take minutes to build on a few cores.
+const std::vector<int> kSizes{10'000, 50'000};
+const std::vector<int> kQuickSizes{2'000};
+
+/// As the paper's Cloth scene.
+constexpr double kStiffness = 1e4; ///< [N/m]
+constexpr double kTimeStep = 1.0 / 120.0;
+
+/// Copies that fit no cache, and such that fit the L2 cache twice [MB].
+constexpr int kLargeCopy = 1000, kSmallCopy = 8;
+
+} // namespace
+
+int bench_gpu(const BenchOptions& options)
+{
+    if (!options.output.empty())
+        require_place(options.output, kTables);
+    if (const std::string reason = why_no_cuda_device(); !reason.empty())
+        throw DeviceError("bench gpu: no CUDA device: " + reason);
+    const CudaSpace space(0);
+    const InterruptGuard interrupt;
+    gpu::Report report{
+        space.device(), gpu::copy_bandwidth(space, kLargeCopy), gpu::copy_bandwidth(space, kSmallCopy), {}};
+    const std::vector<int>& sizes = options.quick ? kQuickSizes : kSizes;
+    Progress progress("size", int(sizes.size()), options.quiet);
+    for (int k = 0; k < int(sizes.size()) && !interrupt.requested(); ++k) {
+        report.applies.push_back(gpu::measure_apply(space, sizes[k], kStiffness, kTimeStep));
+        progress.update(k + 1, std::to_string(sizes[k]) + " vertices");
+    }
+
+    std::cout << gpu::markdown_tables(report);
+    if (report.applies.size() < sizes.size()) {
+        std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
+        return kExitFailure;
+    }
+    write_tables(options.output,
+                 {{kTables[0], gpu::csv_of_applies(report)}, {kTables[1], gpu::markdown_tables(report)}});
+    return kExitOk;
+}
+
+} // namespace toile

@@ -1,0 +1,118 @@
+#include "benchmarks/gpu/apply.h"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "benchmarks/best_time.h"
+#include "benchmarks/gpu/copy.h"
+#include "benchmarks/solvers/problem.h"
+#include "core/backend/cuda/graph.h"
+#include "core/backend/cuda/timer.h"
+#include "core/quadrature/device_quadrature.h"
+#include "core/quadrature/quadrature_operator.h"
+#include "quadrature2d/geodesic_places.h"
+
+namespace toile::gpu {
+
+namespace {
+
+constexpr double kMega = 1e6;
+
+/// Repetitions in a graph, so that its launch is no part of the time, and launches of which the median
+/// counts.
+constexpr int kRepeats = 20;
+constexpr int kLaunches = 15;
+
+/// Median time of work() on the device [us].
+template <typename Work>
+double median_us(const CudaSpace& space, const Work& work)
+{
+    CudaGraph graph(space, "benchmarks/repeats");
+    graph.record([&] {
+        for (int k = 0; k < kRepeats; ++k)
+            work();
+    });
+    graph.launch();
+    DeviceTimer timer(space);
+    std::vector<double> times;
+    for (int k = 0; k < kLaunches; ++k) {
+        timer.start();
+        graph.launch();
+        timer.stop();
+        times.push_back(1e3 * timer.elapsed_ms() / kRepeats);
+    }
+    std::nth_element(times.begin(), times.begin() + kLaunches / 2, times.end());
+    return times[kLaunches / 2];
+}
+
+/// A load of all wavelengths.
+std::vector<Vec3> rough_load(int count)
+{
+    std::vector<Vec3> load(count);
+    for (int i = 0; i < count; ++i)
+        load[i] = Vec3(std::sin(1.7 * i), std::cos(0.011 * i), std::sin(0.3 * i + 0.5));
+    return load;
+}
+
+double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
+{
+    double difference = 0.0, largest = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        difference = std::max(difference, (a[i] - b[i]).cwiseAbs().maxCoeff());
+        largest = std::max(largest, b[i].cwiseAbs().maxCoeff());
+    }
+    return difference / largest;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace
+
+Apply measure_apply(const CudaSpace& space, int vertices, double stiffness, double dt)
+{
+    const solvers::Problem problem = solvers::Problem::sheet(vertices, stiffness, dt);
+    const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
+    system->prepare(dt, problem.fixed);
+    const RestShape& rest = *problem.cloth.rest;
+    const std::vector<Place> places =
+        geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology));
+
+    Apply result;
+    result.vertices = problem.vertex_count();
+    const auto start = std::chrono::steady_clock::now();
+    const std::shared_ptr<const QuadratureTables> tables =
+        build_tables({system->matrix(), problem.fixed, places, {}}, {});
+    result.build_s = seconds_since(start);
+    result.gathers = tables->kernel.gathers_per_node();
+
+    const std::vector<Vec3> load = rough_load(result.vertices);
+    std::vector<Vec3> on_cpu(load.size());
+    const QuadratureOperator cpu(tables);
+    result.cpu_us = 1e3 * best_ms(0.2, [&] { cpu.solve(load, on_cpu); });
+
+    DeviceQuadrature device(space, *tables, result.vertices);
+    result.table_mb = double(device.table_bytes()) / kMega;
+    DeviceArray<Vec3> b(space, "benchmarks/b"), x(space, "benchmarks/x", result.vertices);
+    b.upload(load);
+    device.solve(b.view(), x.view());
+    result.difference = largest_difference(x.downloaded(), on_cpu);
+    result.moments_us = median_us(space, [&] { device.gather_moments(b.view()); });
+    result.gather_us = median_us(space, [&] { device.gather(b.view(), x.view()); });
+    result.solve_us = median_us(space, [&] { device.solve(b.view(), x.view()); });
+    return result;
+}
+
+double copy_bandwidth(const CudaSpace& space, int megabytes)
+{
+    const int items = int(megabytes * kMega / sizeof(Floats<4>));
+    DeviceArray<Floats<4>> from(space, "benchmarks/from", items), to(space, "benchmarks/to", items);
+    from.fill_zero();
+    const double us = median_us(space, [&] { launch(space, CopyItems{from.view(), to.view()}); });
+    return 2.0 * megabytes * kMega / us * 1e-3;
+}
+
+} // namespace toile::gpu

@@ -1,0 +1,39 @@
+#include "benchmarks/gpu/table.h"
+
+#include "benchmarks/text_table.h"
+
+namespace toile::gpu {
+
+namespace {
+
+std::vector<Row> rows_of(const Report& report)
+{
+    std::vector<Row> rows;
+    for (const Apply& a : report.applies)
+        rows.push_back({std::to_string(a.vertices), format("%.0f", a.gathers), format("%.1f", a.table_mb),
+                        format("%.1f", a.moments_us), format("%.1f", a.gather_us), format("%.1f", a.solve_us),
+                        format("%.0f", 1e3 * a.table_mb / a.gather_us), format("%.0f", a.cpu_us),
+                        format("%.1f", a.cpu_us / a.solve_us), format("%.1e", a.difference),
+                        format("%.1f", a.build_s)});
+    return rows;
+}
+
+} // namespace
+
+std::string markdown_tables(const Report& report)
+{
+    return report.device.name + ", copies " + format("%.0f", report.copy_gbs) + " GB/s, " +
+           format("%.0f", report.small_copy_gbs) + " GB/s inside the L2 cache\n\n" +
+           markdown({"vertices", "gathers", "table MB", "moments us", "sums us", "solve us", "sums GB/s",
+                     "CPU us", "CPU / GPU", "difference", "tables s"},
+                    rows_of(report));
+}
+
+std::string csv_of_applies(const Report& report)
+{
+    return csv({"vertices", "gathers", "table_mb", "moments_us", "sums_us", "solve_us", "sums_gbs", "cpu_us",
+                "cpu_over_gpu", "difference", "tables_s"},
+               rows_of(report));
+}
+
+} // namespace toile::gpu

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/backend/call_site.h"
+#include "core/backend/cuda/runtime.h"
+
+namespace toile {
+
+/// The GPUs that this process can use; none in a build without CUDA or on a machine without a driver.
+std::vector<CudaDevice> cuda_devices();
+
+/// Why cuda_devices() lists none, e.g. "no driver is installed"; empty where it lists some.
+std::string why_no_cuda_device();
+
+/// One stream of one GPU: what it is given runs in that order, beside the host. The counterpart of CpuSpace
+/// in the kernels' launches (parallel.cuh).
+///
+/// Used by one thread at a time. It must outlive the arrays, graphs and timers made on it.
+class CudaSpace {
+public:
+    /// When an error inside a kernel is noticed. Waiting after every launch names the kernel exactly, but
+    /// host and device no longer overlap.
+    enum class Checks { WhenSynchronised, EveryLaunch };
+
+    /// Checks every launch in Debug and RelWithDebInfo, as TOILE_ASSERT does.
+    /// @throws DeviceError in one sentence: no such device, or why there is none.
+    explicit CudaSpace(int device);
+    CudaSpace(int device, Checks checks);
+    ~CudaSpace();
+    CudaSpace(const CudaSpace&) = delete;
+    CudaSpace& operator=(const CudaSpace&) = delete;
+
+    const CudaDevice& device() const { return device_; }
+    CUstream_st* stream() const { return stream_; }
+
+    /// Waits until all that the stream was given is done.
+    /// @throws DeviceError naming the kernels launched since the last wait with file and line, and what CUDA
+    ///         said, when one of them failed. The device is of no use to this process from then on.
+    void synchronise(CallSite where = CallSite::here()) const;
+
+    /// True while a CudaGraph records: what the stream is given is kept, not run.
+    bool is_recording() const { return cuda::is_recording(stream_); }
+
+    /// Memory that arrays of this space have asked for since it was made. Steps after the first should leave
+    /// `allocations` as it is.
+    struct Memory {
+        long allocations = 0;         ///< calls of the device's allocator so far
+        std::size_t device_bytes = 0; ///< held now on the device [bytes]
+        std::size_t pinned_bytes = 0; ///< held now on the host, unswappable [bytes]
+    };
+    const Memory& memory() const { return memory_; }
+
+private:
+    friend class CudaBuffer;
+    friend class CudaGraph;
+    friend class DeviceTimer;
+    friend class CudaLaunch;
+
+    struct Launch {
+        std::string_view name;
+        CallSite where;
+    };
+
+    /// Remembers a launch and throws if it was refused.
+    void launched(std::string_view name, CallSite where) const;
+    /// @throws DeviceError "WHAT 'NAME' on CUDA device 0 (...): REASON" unless the status is good.
+    void require(cuda::Status status, std::string_view what, std::string_view name = {}) const;
+    /// "CUDA device 0 (NVIDIA H200)"
+    std::string described() const;
+    /// "kernel 'a' (file.cu:7)", or the last of several.
+    std::string pending_kernels() const;
+
+    CudaDevice device_;
+    Checks checks_;
+    CUstream_st* stream_ = nullptr;
+    mutable Memory memory_;
+
+    // Kernels since the last wait: how many, and the last of them in a ring.
+    mutable std::array<Launch, 4> launches_;
+    mutable long launch_count_ = 0;
+};
+
+/// The launch of one kernel (parallel.cuh): makes the space's device that of this thread; done() checks.
+class CudaLaunch {
+public:
+    /// @param name  a literal, as of stages: the space keeps a view of it
+    CudaLaunch(const CudaSpace& space, std::string_view name, CallSite where)
+        : space_(space), name_(name), where_(where)
+    {
+        space.require(cuda::use_device(space.device().index), "choosing the device");
+    }
+    /// @throws DeviceError naming kernel, file and line when the launch was refused.
+    void done() const { space_.launched(name_, where_); }
+
+private:
+    const CudaSpace& space_;
+    std::string_view name_;
+    CallSite where_;
+};
+
+} // namespace toile

@@ -1,0 +1,46 @@
+#include "core/backend/cuda/runtime.h"
+
+// Nothing below but find_devices() and reason_of() is ever called: CudaSpace, which all else needs, refuses
+// to be made.
+
+namespace toile::cuda {
+
+namespace {
+constexpr const char* kReason = "this build is without CUDA";
+}
+
+std::string reason_of(Status) { return kReason; }
+FoundDevices find_devices() { return {{}, kReason}; }
+
+Status use_device(int) { return Status::NotBuilt; }
+Status open_stream(int, CUstream_st*&) { return Status::NotBuilt; }
+Status close_stream(int, CUstream_st*) { return Status::NotBuilt; }
+Status wait_for(int, CUstream_st*) { return Status::NotBuilt; }
+Status take_launch_error() { return Status::NotBuilt; }
+
+Status allocate(int, std::size_t, void*&) { return Status::NotBuilt; }
+Status release(int, void*) { return Status::NotBuilt; }
+Status allocate_pinned(int, std::size_t, void*&) { return Status::NotBuilt; }
+Status release_pinned(int, void*) { return Status::NotBuilt; }
+bool is_out_of_memory(Status) { return false; }
+Status memory_left(int, std::size_t&, std::size_t&) { return Status::NotBuilt; }
+Status copy(int, CUstream_st*, Direction, void*, const void*, std::size_t) { return Status::NotBuilt; }
+Status fill(int, CUstream_st*, void*, unsigned char, std::size_t) { return Status::NotBuilt; }
+
+bool is_recording(CUstream_st*) { return false; }
+Status begin_recording(int, CUstream_st*) { return Status::NotBuilt; }
+Status end_recording(int, CUstream_st*, CUgraph_st*&) { return Status::NotBuilt; }
+Status instantiate(int, CUgraph_st*, CUgraphExec_st*&) { return Status::NotBuilt; }
+Status update(int, CUgraphExec_st*, CUgraph_st*) { return Status::NotBuilt; }
+Status launch(int, CUgraphExec_st*, CUstream_st*) { return Status::NotBuilt; }
+Status node_count(CUgraph_st*, int&) { return Status::NotBuilt; }
+Status destroy(CUgraph_st*) { return Status::NotBuilt; }
+Status destroy(CUgraphExec_st*) { return Status::NotBuilt; }
+
+Status make_event(int, CUevent_st*&) { return Status::NotBuilt; }
+Status destroy(CUevent_st*) { return Status::NotBuilt; }
+Status record(int, CUevent_st*, CUstream_st*) { return Status::NotBuilt; }
+Status wait_for(int, CUevent_st*) { return Status::NotBuilt; }
+Status elapsed_ms(CUevent_st*, CUevent_st*, float&) { return Status::NotBuilt; }
+
+} // namespace toile::cuda

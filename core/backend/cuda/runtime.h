@@ -1,0 +1,83 @@
+#pragma once
+
+/// The calls of the CUDA runtime that core/backend makes, and nothing else. runtime.cpp makes them;
+/// no_runtime.cpp stands in for it in a build without CUDA and refuses each. Whoever is not in core/backend
+/// takes device.h, array.h, graph.h, timer.h and parallel.cuh instead.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+// CUDA's own types behind cudaStream_t, cudaEvent_t, cudaGraph_t and cudaGraphExec_t.
+struct CUstream_st;
+struct CUevent_st;
+struct CUgraph_st;
+struct CUgraphExec_st;
+
+namespace toile {
+
+/// One GPU as the driver lists it.
+struct CudaDevice {
+    int index = -1;
+    std::string name;
+    std::size_t memory = 0; ///< [bytes] all of it
+    int multiprocessors = 0;
+    int capability_major = 0, capability_minor = 0; ///< "compute capability" 9.0 is Hopper
+};
+
+namespace cuda {
+
+/// What the runtime answered: 0 is good, other numbers are CUDA's own (cudaError_t), -1 a build without CUDA.
+enum class Status : int { Good = 0, NotBuilt = -1 };
+
+/// CUDA's words for a status.
+std::string reason_of(Status status);
+
+struct FoundDevices {
+    std::vector<CudaDevice> devices;
+    std::string why_none; ///< empty where there is one
+};
+FoundDevices find_devices();
+
+/// Makes a device that of this thread; every call below that takes one does so.
+Status use_device(int device);
+Status open_stream(int device, CUstream_st*& stream);
+Status close_stream(int device, CUstream_st* stream);
+Status wait_for(int device, CUstream_st* stream);
+
+/// What is wrong with the latest launch of this thread, and forgets it.
+Status take_launch_error();
+
+Status allocate(int device, std::size_t bytes, void*& data);
+Status release(int device, void* data);
+Status allocate_pinned(int device, std::size_t bytes, void*& data);
+Status release_pinned(int device, void* data);
+bool is_out_of_memory(Status status);
+Status memory_left(int device, std::size_t& free, std::size_t& total);
+
+enum class Direction { HostToDevice, DeviceToHost, DeviceToDevice };
+Status copy(int device, CUstream_st* stream, Direction direction, void* to, const void* from,
+            std::size_t bytes);
+Status fill(int device, CUstream_st* stream, void* data, unsigned char byte, std::size_t bytes);
+
+/// Recording: what a stream is given is not run but kept as a graph.
+bool is_recording(CUstream_st* stream);
+Status begin_recording(int device, CUstream_st* stream);
+Status end_recording(int device, CUstream_st* stream, CUgraph_st*& graph);
+Status instantiate(int device, CUgraph_st* graph, CUgraphExec_st*& program);
+/// Gives a program the graph's arguments. Not good where the shape differs: the program is then of no more
+/// use.
+Status update(int device, CUgraphExec_st* program, CUgraph_st* graph);
+Status launch(int device, CUgraphExec_st* program, CUstream_st* stream);
+Status node_count(CUgraph_st* graph, int& count);
+Status destroy(CUgraph_st* graph);
+Status destroy(CUgraphExec_st* program);
+
+Status make_event(int device, CUevent_st*& event);
+Status destroy(CUevent_st* event);
+Status record(int device, CUevent_st* event, CUstream_st* stream);
+Status wait_for(int device, CUevent_st* event);
+Status elapsed_ms(CUevent_st* from, CUevent_st* to, float& ms);
+
+} // namespace cuda
+} // namespace toile

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+
+#include "core/backend/cuda/array.h"
+#include "core/quadrature/device_kernels.h"
+#include "core/quadrature/quadrature_tables.h"
+
+namespace toile {
+
+/// QuadratureOperator on a GPU: the same tables and sums, in single precision throughout and in another
+/// order; the same bits in every run. Its tables stay on the device.
+class DeviceQuadrature {
+public:
+    /// @param space   borrowed, as what the tables are copied to
+    /// @param tables  of n nodes, not needed afterwards
+    /// @throws DeviceError where the device has not the memory
+    DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count);
+
+    /// Enqueues x = H^-1 b, nearly; as it is for fixed nodes.
+    /// @param b, x  [n] on the device; not the same array
+    void solve(View<const Vec3> b, View<Vec3> x);
+
+    /// Its two passes, for whoever times them: moments of b, then the sums of every leaf.
+    void gather_moments(View<const Vec3> b);
+    void gather(View<const Vec3> b, View<Vec3> x);
+
+    /// What solve() must read of the tables [bytes].
+    std::size_t table_bytes() const;
+
+private:
+    template <int Rank>
+    void gather_leaves(View<Vec3> x);
+    KernelView kernel() const;
+
+    const CudaSpace& space_;
+    BasisView<float> basis_;
+    DeviceArray<float> leaves_, transfers_;
+    DeviceArray<int> nodes_, others_, near_first_, near_leaf_, far_first_, far_cluster_;
+    DeviceArray<float> near_weights_, far_weights_;
+    DeviceArray<PaddedVec3> sources_, moments_;
+};
+
+} // namespace toile

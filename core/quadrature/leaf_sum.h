@@ -1,0 +1,65 @@
+#pragma once
+
+#include "core/backend/lanes.h"
+#include "core/quadrature/cluster_tree.h"
+
+namespace toile {
+
+/// A KernelTable as kernels read it, on the CPU or on a GPU.
+struct KernelView {
+    static constexpr int kTargets = ClusterTree::kLeaf;
+
+    View<const int> near_first;     ///< [leaves + 1] into near_leaf
+    View<const int> near_leaf;      ///< source leaves
+    View<const float> near_weights; ///< [near_leaf][source node][kTargets] [m/N]
+    View<const int> far_first;      ///< [leaves + 1] into far_cluster
+    View<const int> far_cluster;    ///< source clusters
+    View<const float> far_weights;  ///< [far_cluster][rank][kTargets] [m/N]
+};
+
+/// What one of several adds up of a leaf: these targets, every `groups`-th entry of the lists from `group`
+/// on.
+struct LeafPart {
+    int first_target = 0;
+    int group = 0;
+    int groups = 1;
+};
+
+/// Second pass of quadrature for the targets of one leaf: q_i = sum_near G_ij r_j + sum_far w_iC . m_C
+///
+/// Targets: a few of the eight, side by side: FloatLanes in the CPU's vector registers, Floats<2> in a thread
+/// of a GPU. Rank: the table's, known to the compiler so that the inner loop is unrolled.
+template <int Rank, typename Targets>
+struct LeafSum {
+    Targets axis[3] = {Targets(0.0F), Targets(0.0F), Targets(0.0F)}; ///< x, y and z of the targets
+
+    /// @param sources  [slots] r
+    /// @param moments  [Rank * clusters] m
+    template <typename Vector>
+    TOILE_HD void add(const KernelView& table, View<const Vector> sources, View<const Vector> moments,
+                      int leaf, const LeafPart& part)
+    {
+        for (int e = table.near_first[leaf] + part.group; e < table.near_first[leaf + 1]; e += part.groups)
+            add_entry<ClusterTree::kLeaf>(table.near_weights, e, part.first_target,
+                                          &sources[table.near_leaf[e] * ClusterTree::kLeaf]);
+        for (int e = table.far_first[leaf] + part.group; e < table.far_first[leaf + 1]; e += part.groups)
+            add_entry<Rank>(table.far_weights, e, part.first_target, &moments[table.far_cluster[e] * Rank]);
+    }
+
+private:
+    /// Weights [Count][kTargets] times values [Count].
+    template <int Count, typename Vector>
+    TOILE_HD void add_entry(View<const float> weights, int entry, int first_target, const Vector* values)
+    {
+        const float* const first =
+            weights.data() + std::size_t(entry) * Count * KernelView::kTargets + first_target;
+        for (int k = 0; k < Count; ++k) {
+            const Targets weight = load_as<Targets>(first + k * KernelView::kTargets);
+            const Vector value = values[k];
+            for (int a = 0; a < 3; ++a)
+                axis[a] += weight * value[a];
+        }
+    }
+};
+
+} // namespace toile

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/backend/implicit_tree.h"
+#include "core/quadrature/cluster_tree.h"
+
+namespace toile {
+
+/// A ClusterBasis as kernels read it, on the CPU or on a GPU, and the tree that it stands on.
+template <typename Number>
+struct BasisView {
+    static constexpr int kMaxLevels = 32;
+
+    int rank = 0;                        ///< functions of a cluster
+    int first_of_level[kMaxLevels] = {}; ///< first cluster of a level
+    int leaf_count = 0;
+    View<const Number> leaves;    ///< [leaves][kLeaf][rank]
+    View<const Number> transfers; ///< [clusters][rank][rank]
+
+    /// Function r of the moments P_C^T f of one cluster, from its nodes or its children.
+    /// @param zero     of type T, which has += and multiplication by a Number on the left
+    /// @param value    value(slot) of the field
+    /// @param moments  [rank * clusters], of which those of children are read
+    template <typename T, typename Value>
+    TOILE_HD T moment(int level, int c, int r, const T& zero, const Value& value, View<T> moments) const
+    {
+        const int id = first_of_level[level] + c;
+        T sum = zero;
+        if (level == 0) {
+            const int slot = id * ClusterTree::kLeaf;
+            for (int i = 0; i < ClusterTree::kLeaf; ++i)
+                sum += leaves[(slot + i) * rank + r] * value(slot + i);
+            return sum;
+        }
+        for (int k = 2 * c; k < 2 * c + 2 && k < level_size(leaf_count, level - 1); ++k) {
+            const int child = first_of_level[level - 1] + k;
+            for (int s = 0; s < rank; ++s)
+                sum += transfers[(child * rank + s) * rank + r] * moments[rank * child + s];
+        }
+        return sum;
+    }
+};
+
+} // namespace toile

@@ -1,0 +1,52 @@
+#include "core/backend/cuda/parallel.cuh"
+#include "tests/core/cuda/kernels.h"
+
+namespace toile::test {
+
+void launch(const CudaSpace& space, const CountVisits& kernel, int block)
+{
+    parallel_for(space, "test/visit", kernel.visits.size(), kernel, block);
+}
+
+void launch(const CudaSpace& space, const CountEndVisits& kernel)
+{
+    parallel_for(space, "test/visit_ends", kernel.count, kernel);
+}
+
+void launch(const CudaSpace& space, const AddScaled& kernel)
+{
+    parallel_for(space, "test/add_scaled", kernel.sum.size(), kernel);
+}
+
+void launch(const CudaSpace& space, const ScaleBySlot& kernel)
+{
+    parallel_for(space, "test/scale", kernel.items.size(), kernel);
+}
+
+void launch(const CudaSpace& space, const WriteWild& kernel)
+{
+    parallel_for(space, "test/wild", kernel.nowhere.size(), kernel);
+}
+
+void launch(const CudaSpace& space, const WriteLayout& kernel)
+{
+    parallel_for(space, "test/layout", 1, kernel);
+}
+
+void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,
+              DeviceArray<double>& block_sums)
+{
+    parallel_sum(space, "test/sum", numbers.size(), 0.0, NumberAt{numbers}, slot, block_sums);
+}
+
+double sum_of(const CudaSpace& space, View<const double> numbers, SumScratch<double>& scratch)
+{
+    return parallel_sum(space, "test/sum", numbers.size(), 0.0, NumberAt{numbers}, scratch);
+}
+
+Vec3 sum_of(const CudaSpace& space, const WeightedPoint& term, SumScratch<Vec3>& scratch)
+{
+    return parallel_sum(space, "test/vector_sum", term.weight.size(), Vec3(0.0, 0.0, 0.0), term, scratch);
+}
+
+} // namespace toile::test

@@ -1,0 +1,102 @@
+#pragma once
+
+#include "core/backend/cuda/sum_scratch.h"
+#include "core/backend/types.h"
+
+namespace toile::test {
+
+/// Counts the visits of item i.
+struct CountVisits {
+    View<int> visits;
+    TOILE_HD void operator()(int i) const { ++visits[i]; }
+};
+
+/// Counts the visits of the first and the last of many items.
+struct CountEndVisits {
+    int count;
+    View<int> visits; // [2]
+    TOILE_HD void operator()(int i) const
+    {
+        if (i == 0)
+            ++visits[0];
+        if (i == count - 1)
+            ++visits[1];
+    }
+};
+
+/// sum_i += factor * term_i
+struct AddScaled {
+    View<const double> term;
+    double factor;
+    View<double> sum;
+    TOILE_HD void operator()(int i) const { sum[i] += factor * term[i]; }
+};
+
+/// Multiplies all items by what slot[0] holds.
+struct ScaleBySlot {
+    View<const double> slot; // [1]
+    View<double> items;
+    TOILE_HD void operator()(int i) const { items[i] *= slot[0]; }
+};
+
+/// Writes item i where it is told to: the test says, nowhere.
+struct WriteWild {
+    View<int> nowhere;
+    TOILE_HD void operator()(int i) const { nowhere[i] = i; }
+};
+
+/// Alignment and size of types that host and device exchange, as the compiler that runs this sees them.
+struct WriteLayout {
+    static constexpr int kNumbers = 16;
+    View<int> out; // [kNumbers]
+    TOILE_HD void operator()(int) const
+    {
+        const int numbers[kNumbers] = {EIGEN_MAX_STATIC_ALIGN_BYTES,
+                                       alignof(Vec2),
+                                       sizeof(Vec2),
+                                       alignof(Vec3),
+                                       sizeof(Vec3),
+                                       alignof(Mat2),
+                                       sizeof(Mat2),
+                                       alignof(Mat3),
+                                       sizeof(Mat3),
+                                       alignof(Mat32),
+                                       sizeof(Mat32),
+                                       alignof(Eigen::Matrix<double, 3, 4>),
+                                       sizeof(Eigen::Matrix<double, 3, 4>),
+                                       alignof(Eigen::Matrix4d),
+                                       sizeof(Eigen::Matrix4d),
+                                       sizeof(View<const Mat2>)};
+        for (int k = 0; k < kNumbers; ++k)
+            out[k] = numbers[k];
+    }
+};
+
+/// The term w_i p_i of a vector sum.
+struct WeightedPoint {
+    View<const double> weight;
+    View<const Vec3> point;
+    TOILE_HD Vec3 operator()(int i) const { return weight[i] * point[i]; }
+};
+
+/// Item i as a term.
+struct NumberAt {
+    View<const double> numbers;
+    TOILE_HD double operator()(int i) const { return numbers[i]; }
+};
+
+// The launches; stage names and blocks are theirs where none is given.
+void launch(const CudaSpace& space, const CountVisits& kernel, int block = 256);
+void launch(const CudaSpace& space, const CountEndVisits& kernel);
+void launch(const CudaSpace& space, const AddScaled& kernel);
+void launch(const CudaSpace& space, const ScaleBySlot& kernel);
+void launch(const CudaSpace& space, const WriteWild& kernel);
+void launch(const CudaSpace& space, const WriteLayout& kernel);
+
+/// The sum of numbers in a slot of the device, and read back.
+void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,
+              DeviceArray<double>& block_sums);
+double sum_of(const CudaSpace& space, View<const double> numbers, SumScratch<double>& scratch);
+Vec3 sum_of(const CudaSpace& space, const WeightedPoint& term, SumScratch<Vec3>& scratch);
+
+} // namespace toile::test

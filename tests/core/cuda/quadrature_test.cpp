@@ -1,0 +1,122 @@
+#include "core/quadrature/device_quadrature.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "core/backend/cuda/graph.h"
+#include "core/quadrature/quadrature_operator.h"
+#include "tests/core/cuda/on_device.h"
+#include "tests/core/quadrature_problems.h"
+
+namespace toile::test {
+namespace {
+
+/// Largest difference, of the largest number of the CPU's result [-]: single precision, in another order.
+constexpr double kTolerance = 2e-6;
+
+double largest(const std::vector<Vec3>& field)
+{
+    double most = 0.0;
+    for (const Vec3& v : field)
+        most = std::max(most, v.cwiseAbs().maxCoeff());
+    return most;
+}
+
+double difference(std::vector<Vec3> a, const std::vector<Vec3>& b)
+{
+    for (size_t i = 0; i < a.size(); ++i)
+        a[i] -= b[i];
+    return largest(a) / largest(b);
+}
+
+class DeviceQuadratureTest : public OnDevice {
+protected:
+    void build(const SparseMatrix& H, const std::vector<unsigned char>& fixed,
+               const std::vector<Place>& places, const QuadratureTables::Settings& settings = {})
+    {
+        tables_ = build_tables({H, fixed, places, settings}, {});
+        load_ = random_field(int(H.rows()), 3);
+        b_ = std::make_unique<DeviceArray<Vec3>>(space(), "test/b");
+        x_ = std::make_unique<DeviceArray<Vec3>>(space(), "test/x", int(H.rows()));
+        b_->upload(load_);
+        device_ = std::make_unique<DeviceQuadrature>(space(), *tables_, int(H.rows()));
+    }
+    std::vector<Vec3> by_device()
+    {
+        x_->fill_zero();
+        device_->solve(b_->view(), x_->view());
+        return x_->downloaded();
+    }
+    std::vector<Vec3> by_cpu() const
+    {
+        std::vector<Vec3> x(load_.size());
+        QuadratureOperator(tables_).solve(load_, x);
+        return x;
+    }
+    DeviceQuadrature& device() { return *device_; }
+    View<const Vec3> b() { return b_->view(); }
+    DeviceArray<Vec3>& x() { return *x_; }
+
+private:
+    std::shared_ptr<const QuadratureTables> tables_;
+    std::vector<Vec3> load_;
+    std::unique_ptr<DeviceArray<Vec3>> b_, x_;
+    std::unique_ptr<DeviceQuadrature> device_;
+};
+
+TEST_F(DeviceQuadratureTest, GivesWhatTheCpuGives)
+{
+    const Grid grid;
+    for (const double shift : {1e-1, 1e-4}) {
+        build(grid.matrix(shift), grid.fixed, grid.places);
+        EXPECT_LT(difference(by_device(), by_cpu()), kTolerance) << shift;
+    }
+}
+
+TEST_F(DeviceQuadratureTest, LeavesFixedNodesAsTheyAre)
+{
+    Grid grid;
+    for (int v = 0; v < Grid::kColumns; ++v)
+        grid.fixed[v] = 1;
+    SparseMatrix H = grid.matrix(1e-2);
+    for (int column = 0; column < H.cols(); ++column)
+        for (SparseMatrix::InnerIterator entry(H, column); entry; ++entry)
+            if (grid.fixed[entry.row()] || grid.fixed[entry.col()])
+                entry.valueRef() = entry.row() == entry.col() ? 1.0 : 0.0;
+    build(H, grid.fixed, grid.places);
+    EXPECT_LT(difference(by_device(), by_cpu()), kTolerance);
+    EXPECT_EQ(by_device()[3], by_cpu()[3]);
+}
+
+TEST_F(DeviceQuadratureTest, KnowsVolumesAndTreesOfAnyHeight)
+{
+    const std::vector<Place> cube = grid_places(10, 10, 10);
+    build(grid_laplacian(10, 100, 1e-1), std::vector<unsigned char>(1000, 0), cube, {{0.07}, Extent::Volume});
+    EXPECT_LT(difference(by_device(), by_cpu()), kTolerance);
+    for (const int columns : {1, 8, 9, 16, 255, 256, 257, 300}) {
+        build(grid_laplacian(columns, 1, 1e-2), std::vector<unsigned char>(columns, 0),
+              grid_places(columns, 1));
+        EXPECT_LT(difference(by_device(), by_cpu()), kTolerance) << columns;
+    }
+}
+
+TEST_F(DeviceQuadratureTest, GivesTheSameBitsAlsoFromAGraphAndAsksForNoMemory)
+{
+    const Grid grid;
+    build(grid.matrix(1e-3), grid.fixed, grid.places);
+    const std::vector<Vec3> first = by_device();
+    const long allocations = allocations_of([&] {
+        CudaGraph graph(space(), "test/graph");
+        graph.record([&] { device().solve(b(), x().view()); });
+        for (int k = 0; k < 3; ++k) {
+            x().fill_zero();
+            graph.launch();
+            EXPECT_EQ(x().downloaded(), first);
+        }
+    });
+    EXPECT_EQ(allocations, 0);
+}
+
+} // namespace
+} // namespace toile::test

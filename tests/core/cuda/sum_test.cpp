@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <random>
+
+#include "core/backend/stages.h"
+#include "tests/core/cuda/kernels.h"
+#include "tests/core/cuda/on_device.h"
+
+namespace toile::test {
+namespace {
+
+using CudaParallelSum = OnDevice;
+
+/// Numbers of very different size and both signs, so that every order of summation rounds differently.
+std::vector<double> rough_numbers(int count)
+{
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> mantissa(-1.0, 1.0);
+    std::uniform_int_distribution<int> exponent(-20, 20);
+    std::vector<double> numbers(count);
+    for (double& number : numbers)
+        number = std::ldexp(mantissa(random), exponent(random));
+    return numbers;
+}
+
+uint64_t bits(double value)
+{
+    uint64_t pattern = 0;
+    std::memcpy(&pattern, &value, sizeof value);
+    return pattern;
+}
+
+/// Additions that a term goes through at most: of its thread, of the tree, and both again for block sums.
+double depth(int count)
+{
+    const double blocks = std::ceil(count / 2048.0);
+    return 8.0 + 8.0 + std::ceil(blocks / 256.0) + 8.0;
+}
+
+TEST_F(CudaParallelSum, EqualsTheLongDoubleSumWithinRounding)
+{
+    SumScratch<double> scratch(space());
+    for (const int count : {0, 1, 7, 255, 256, 257, 2047, 2048, 2049, 4096, 1000000, 3000001}) {
+        const std::vector<double> numbers = rough_numbers(count);
+        DeviceArray<double> there(space(), "test/numbers");
+        there.upload(numbers);
+        long double exact = 0.0, magnitude = 0.0;
+        for (const double number : numbers) {
+            exact += number;
+            magnitude += std::abs(number);
+        }
+        const double sum = sum_of(space(), there.view(), scratch);
+        EXPECT_LE(std::abs(sum - exact), depth(count) * 0x1p-53 * magnitude) << count;
+    }
+}
+
+/// One block of 256 threads over the numbers, as parallel.cuh draws the tree.
+double block_sum(View<const double> numbers)
+{
+    std::vector<double> partial(256, 0.0);
+    for (int i = 0; i < numbers.size(); ++i)
+        partial[i % 256] += numbers[i];
+    for (int width = 128; width > 0; width /= 2)
+        for (int k = 0; k < width; ++k)
+            partial[k] += partial[k + width];
+    return partial[0];
+}
+
+double tree_sum(View<const double> numbers)
+{
+    std::vector<double> sums;
+    for (int first = 0; first < numbers.size(); first += 2048)
+        sums.push_back(block_sum(numbers.subview(first, std::min(2048, numbers.size() - first))));
+    return sums.size() == 1 ? sums[0] : block_sum(sums);
+}
+
+TEST_F(CudaParallelSum, HasTheBitsOfItsTreeEveryTime)
+{
+    const CudaSpace other(0);
+    SumScratch<double> scratch(space()), scratch_there(other);
+    for (const int count : {1, 300, 2048, 2049, 1000000}) {
+        const std::vector<double> numbers = rough_numbers(count);
+        const uint64_t expected = bits(tree_sum(numbers));
+        DeviceArray<double> here(space(), "test/here"), there(other, "test/there");
+        here.upload(numbers);
+        there.upload(numbers);
+        for (int i = 0; i < 20; ++i)
+            ASSERT_EQ(bits(sum_of(space(), here.view(), scratch)), expected) << count << ", run " << i;
+        EXPECT_EQ(bits(sum_of(other, there.view(), scratch_there)), expected) << count;
+    }
+}
+
+TEST_F(CudaParallelSum, StaysOnTheDeviceForTheNextKernel)
+{
+    const std::vector<double> numbers = rough_numbers(50000);
+    DeviceArray<double> there(space(), "test/numbers"), slot(space(), "test/slot", 1);
+    DeviceArray<double> items(space(), "test/items"), block_sums(space(), "test/block_sums");
+    there.upload(numbers);
+    items.upload(std::vector<double>(3, 2.0));
+    sum_into(space(), there.view(), slot.view(), block_sums);
+    launch(space(), ScaleBySlot{slot.view(), items.view()});
+    SumScratch<double> scratch(space());
+    const double sum = sum_of(space(), there.view(), scratch);
+    EXPECT_EQ(items.downloaded(), std::vector<double>(3, 2.0 * sum));
+    EXPECT_EQ(slot.downloaded(), std::vector<double>(1, sum));
+}
+
+TEST_F(CudaParallelSum, GivesZeroForNothing)
+{
+    DeviceArray<double> slot(space(), "test/slot"), block_sums(space(), "test/block_sums");
+    slot.upload(std::vector<double>(1, 5.0));
+    sum_into(space(), View<const double>(), slot.view(), block_sums);
+    EXPECT_EQ(slot.downloaded(), std::vector<double>(1, 0.0));
+    SumScratch<double> scratch(space());
+    EXPECT_EQ(sum_of(space(), View<const double>(), scratch), 0.0);
+}
+
+TEST_F(CudaParallelSum, AddsVectors)
+{
+    constexpr int kCount = 10000;
+    std::vector<double> weight(kCount);
+    std::vector<Vec3> point(kCount);
+    Vec3 expected = Vec3::Zero();
+    for (int i = 0; i < kCount; ++i) {
+        weight[i] = 1 + i % 3;
+        point[i] = Vec3(i, -2 * i, 1.0);
+        expected += weight[i] * point[i]; // whole numbers: exact in any order
+    }
+    DeviceArray<double> weight_there(space(), "test/weight");
+    DeviceArray<Vec3> point_there(space(), "test/point");
+    weight_there.upload(weight);
+    point_there.upload(point);
+    SumScratch<Vec3> scratch(space());
+    EXPECT_EQ(sum_of(space(), WeightedPoint{weight_there.view(), point_there.view()}, scratch), expected);
+}
+
+TEST_F(CudaParallelSum, AsksForNoMemoryOnceWarm)
+{
+    DeviceArray<double> numbers(space(), "test/numbers", 100000);
+    numbers.fill_zero();
+    SumScratch<double> scratch(space());
+    sum_of(space(), numbers.view(), scratch);
+    EXPECT_EQ(allocations_of([&] {
+                  for (int i = 0; i < 10; ++i)
+                      sum_of(space(), numbers.view(), scratch);
+              }),
+              0);
+}
+
+} // namespace
+} // namespace toile::test
