@@ -18,7 +18,7 @@ build: packages build/build.ninja ## Build into build/
 	@cmake --build --preset default -j $(JOBS)
 
 format: lint-packages ## Rewrite the sources in the project's format
-	@git ls-files -co --exclude-standard '*.cpp' '*.h' '*.cu' | xargs -r clang-format -i
+	@git ls-files -co --exclude-standard '*.cpp' '*.h' '*.cu' '*.cuh' | xargs -r clang-format -i
 
 lint: packages lint-packages build/build.ninja ## Check format and clang-tidy on what changed (LINT_BASE=ref)
 	@cmake/setup/lint.sh build

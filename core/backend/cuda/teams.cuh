@@ -82,8 +82,7 @@ void parallel_for_teams(const CudaSpace& space, std::string_view name, int count
 /// @param lowest  nodes of level 0
 template <typename Kernel>
 void parallel_climb(const CudaSpace& space, std::string_view name, int lowest, [[maybe_unused]] int width,
-                    [[maybe_unused]] const Kernel& kernel,
-                    CallSite where = CallSite::here())
+                    [[maybe_unused]] const Kernel& kernel, CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     if (lowest <= 0)
