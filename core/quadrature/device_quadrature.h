@@ -35,7 +35,9 @@ public:
 
 private:
     template <int Rank>
-    void gather_leaves(View<Vec3> x);
+    void climb(View<const Vec3> b);
+    template <int Rank>
+    void gather_leaves(View<const Vec3> b, View<Vec3> x);
     KernelView kernel() const;
 
     const CudaSpace& space_;
