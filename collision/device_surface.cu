@@ -77,20 +77,24 @@ void DeviceSurface::move(View<const Vec3> x, const Ways& ways, double margin)
     parallel_sum(space_, "collision/device_points", x.size(), Largest(),
                  PlacePoint{x, ways, extent_.view(), points_.view()}, largest_.view(), largest_sums_);
     boxes_ = {points_.view(), ways.around, largest_.view(), margin};
-    parallel_climb(space_, "collision/device_refit", triangle_shape_.count, 1,
-                   RefitBoxes<Triangle>{triangle_shape_, triangle_order_.view(), triangles_.view(), boxes_,
-                                        triangle_nodes_.view()},
-                   kFourByFour);
-    parallel_climb(space_, "collision/device_refit", edge_shape_.count, 1,
-                   RefitBoxes<std::array<int, 2>>{edge_shape_, edge_order_.view(), edge_vertex_.view(),
-                                                  boxes_, edge_nodes_.view()},
-                   kFourByFour);
+    refit<Triangle>(triangle_shape_, triangle_order_.view(), triangles_.view(), triangle_nodes_.view());
+    refit<std::array<int, 2>>(edge_shape_, edge_order_.view(), edge_vertex_.view(), edge_nodes_.view());
 
     const int items = triangle_shape_.first[1];
     const View<const BoxNode> inner =
         triangle_tree().nodes.subview(items, triangle_shape_.node_count() - items);
     parallel_sum(space_, "collision/device_surface", inner.size(), 0.0, SurfaceOfNode{inner, boxes_},
                  surface_.view(), surface_sums_);
+}
+
+template <typename Primitive>
+void DeviceSurface::refit(const ImplicitShape& shape, View<const int> order, View<const Primitive> primitives,
+                          View<BoxNode> nodes)
+{
+    const int fours = shape.size_of(1);
+    parallel_for(space_, "collision/device_refit", fours,
+                 RefitItems<Primitive>{shape, order, primitives, boxes_, nodes}, 64);
+    parallel_climb(space_, "collision/device_climb", fours, 1, RefitNodes{shape, nodes}, kFourByFour);
 }
 
 void DeviceSurface::reorder(View<const Vec3> x)

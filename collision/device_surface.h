@@ -40,6 +40,9 @@ public:
 private:
     template <typename Primitive>
     void order_along_curve(View<const Primitive> primitives, View<const Vec3> x, DeviceArray<int>& order);
+    template <typename Primitive>
+    void refit(const ImplicitShape& shape, View<const int> order, View<const Primitive> primitives,
+               View<BoxNode> nodes);
     void measure(View<const Vec3> x, View<const Vec3> motion);
 
     const CudaSpace& space_;

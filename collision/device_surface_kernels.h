@@ -92,28 +92,46 @@ struct BoxesAtPoints {
     TOILE_HD BoxNode node(int number, Vertex... v) const
     {
         const bool is_wanted = around.empty() || ((around[v] != 0) || ...);
-        return BoxNode::of_item(box_around(grown_by(), points[v]...), number, is_wanted);
+        return BoxNode::of_item(box_around(grown_by(), MovingPoint(points[v])...), number, is_wanted);
     }
     TOILE_HD BoxNode node(int number, const std::array<int, 2>& v) const { return node(number, v[0], v[1]); }
     TOILE_HD BoxNode node(int number, const Triangle& v) const { return node(number, v[0], v[1], v[2]); }
 };
 
-/// Boxes of a tree's items, then of what holds them.
+/// Boxes of four items of a tree and the box around them.
 template <typename Primitive>
-struct RefitBoxes {
+struct RefitItems {
     ImplicitShape shape;
     View<const int> order;            ///< [items] primitives in the tree's order
     View<const Primitive> primitives; ///< their vertices
     BoxesAtPoints boxes;
-    View<BoxNode> nodes; ///< out
+    View<BoxNode> nodes; ///< out: levels 0 and 1
 
-    TOILE_HD void operator()(int level, int c, int /*k*/) const
+    TOILE_HD void operator()(int c) const
     {
-        if (level == 0) {
-            nodes[c] = boxes.node(order[c], primitives[order[c]]);
-            return;
+        BoxNode around;
+        for (int k = 0; k < ImplicitShape::kFan; ++k) {
+            const int item = ImplicitShape::kFan * c + k;
+            if (item >= shape.count)
+                break;
+            const BoxNode node = boxes.node(order[item], primitives[order[item]]);
+            nodes[item] = node;
+            around.add(node);
         }
-        const int child = shape.first[level - 1] + ImplicitShape::kFan * c;
+        nodes[shape.first[1] + c] = around;
+    }
+};
+
+/// Boxes around boxes: climbs from level 1 of a tree, which counts as 0.
+struct RefitNodes {
+    ImplicitShape shape;
+    View<BoxNode> nodes; ///< out: levels above 1
+
+    TOILE_HD void operator()(int above_first, int c, int /*k*/) const
+    {
+        if (above_first == 0)
+            return;
+        const int level = above_first + 1, child = shape.first[level - 1] + ImplicitShape::kFan * c;
         BoxNode around = nodes[child];
         for (int k = 1; k < ImplicitShape::kFan; ++k)
             around.add(nodes[child + k]);

@@ -18,11 +18,13 @@ constexpr double kEdge = 0.01;          ///< [m]
 constexpr double kMargin = 0.5 * kEdge; ///< [m]
 constexpr int kLayers = 5;
 constexpr double kWithin = 0.05, kAcross = 0.2; ///< [edges] a vertex is moved along the sheet and off it
+constexpr double kWays = 0.1;                   ///< [edges] that a vertex goes along each axis, at most
 constexpr double kCpuSeconds = 0.5;             ///< of repetitions
 
 struct Folded {
     std::vector<Triangle> triangles;
     std::vector<Vec3> flat, x; ///< [m]
+    std::vector<Vec3> motion;  ///< [m] of moving cloth: a fall, and every vertex its own way besides
 };
 
 /// @param gap  between the layers [edges]
@@ -40,6 +42,8 @@ Folded folded_sheet(int vertices, double gap)
             sheet.flat.emplace_back(kEdge * Vec3(i, 0, j));
             const double dx = kWithin * random(), dz = kWithin * random(), dy = kAcross * random();
             sheet.x.emplace_back(kEdge * Vec3(column + dx, gap * layer + dy, j + dz));
+            const double ux = random(), uy = random(), uz = random();
+            sheet.motion.emplace_back(kEdge * (kWays * Vec3(ux, uy, uz) - Vec3(0, 1, 0)));
         }
     for (int j = 0; j + 1 < side; ++j)
         for (int i = 0; i + 1 < side; ++i) {
@@ -59,33 +63,36 @@ int count_differences(const std::vector<NearPair>& cpu, const std::vector<NearPa
     return different;
 }
 
-NearSearch measure(const CudaSpace& space, const Folded& sheet, const std::vector<Vec3>& order_pose)
+NearSearch measure(const CudaSpace& space, const Folded& sheet, const std::vector<Vec3>& order_pose,
+                   const std::vector<Vec3>& motion)
 {
     NearSearch search;
     search.vertices = int(sheet.x.size());
     search.triangles = int(sheet.triangles.size());
     std::vector<NearPair> expected;
     NearPairs cpu(sheet.triangles, order_pose);
-    search.cpu_us = 1e3 * best_ms(kCpuSeconds, [&] { cpu.find(sheet.x, {}, kMargin, expected); });
+    search.cpu_us = 1e3 * best_ms(kCpuSeconds, [&] { cpu.find(sheet.x, {motion}, kMargin, expected); });
 
-    DeviceArray<Vec3> positions(space, "benchmarks/x");
+    DeviceArray<Vec3> positions(space, "benchmarks/x"), motions(space, "benchmarks/motion");
     positions.upload(sheet.x);
+    motions.upload(motion);
     const View<const Vec3> x = positions.view();
+    const Ways ways{motions.view()};
     DeviceNearPairs near(space, sheet.triangles, order_pose);
     DeviceArray<NearPair> found(space, "benchmarks/pairs");
-    found.upload(near.find(x, {}, kMargin));
+    found.upload(near.find(x, ways, kMargin));
     const std::vector<NearPair> pairs = found.downloaded();
     search.pairs = int(pairs.size());
     search.facing =
         int(std::count_if(pairs.begin(), pairs.end(), [](const NearPair& p) { return p.is_facing; }));
     search.different = count_differences(expected, pairs);
 
-    search.refit_us = median_us(space, [&] { near.refit(x, {}, kMargin); });
+    search.refit_us = median_us(space, [&] { near.refit(x, ways, kMargin); });
     search.triangles_us = median_us(space, [&] { near.count_triangles(); });
     search.edges_us = median_us(space, [&] { near.count_edges(); });
-    search.records_us = median_us(space, [&] { near.report(x, {}, kMargin); });
-    search.total_us = median_us(space, [&] { near.search(x, {}, kMargin); });
-    search.find_us = 1e3 * best_ms(0.1, [&] { near.find(x, {}, kMargin); });
+    search.records_us = median_us(space, [&] { near.report(x, ways, kMargin); });
+    search.total_us = median_us(space, [&] { near.search(x, ways, kMargin); });
+    search.find_us = 1e3 * best_ms(0.1, [&] { near.find(x, ways, kMargin); });
     return search;
 }
 
@@ -108,11 +115,15 @@ void measure_near_pairs(const CudaSpace& space, int vertices, std::vector<NearSe
 {
     for (const double gap : {1.0, 0.7}) {
         const Folded sheet = folded_sheet(vertices, gap);
-        for (const bool is_flat : {false, true}) {
-            out.push_back(measure(space, sheet, is_flat ? sheet.flat : sheet.x));
-            out.back().scene = format("%.1f", gap) + " edges apart";
-            out.back().order = is_flat ? "flat" : "folded";
-        }
+        const auto add = [&](const char* moves, const char* order, const std::vector<Vec3>& pose,
+                             const std::vector<Vec3>& motion) {
+            out.push_back(measure(space, sheet, pose, motion));
+            out.back().scene = format("%.1f", gap) + " edges apart, " + moves;
+            out.back().order = order;
+        };
+        add("at rest", "folded", sheet.x, {});
+        add("at rest", "flat", sheet.flat, {});
+        add("moving", "folded", sheet.x, sheet.motion);
     }
 }
 

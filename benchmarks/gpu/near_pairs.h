@@ -24,7 +24,8 @@ struct NearSearch {
 };
 
 /// Appends a square sheet of about so many vertices, folded in five layers one edge and 0.7 edges apart,
-/// every vertex moved at random; margin half an edge, at rest.
+/// every vertex displaced at random; margin half an edge; at rest, and falling with every vertex on a way of
+/// its own.
 void measure_near_pairs(const CudaSpace& space, int vertices, std::vector<NearSearch>& out);
 
 std::string markdown_of(const std::vector<NearSearch>& searches);

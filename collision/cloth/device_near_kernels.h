@@ -56,8 +56,9 @@ struct EdgeQueries {
     }
 };
 
-/// Candidates that a query keeps when they are counted; who has more looks for them again.
-inline constexpr int kKeptCandidates = 16;
+/// Candidates that a query keeps when they are counted; who has more looks for them again, and so do the
+/// threads beside it. Layers that lie close have up to 30.
+inline constexpr int kKeptCandidates = 32;
 
 /// Counts the candidates of query i and keeps the first.
 template <typename Queries>

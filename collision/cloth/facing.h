@@ -49,6 +49,8 @@ TOILE_HD inline bool stands_out(const SurfaceEdgesView& edges, View<const Triang
         const Vec3 arm = x[apex] - x[low];
         const Vec3 into_face = arm - along.dot(arm) * along;
         const double ahead = direction.dot(into_face), length = into_face.norm();
+        if (!(length * length > kFlatTriangle2 * arm.squaredNorm()))
+            continue; // collapsed: it lies along the edge, and only rounding would say where it goes
         if (ahead > kIntoFace * length)
             return false;
         falls_back = falls_back || ahead < -kFlat * length;

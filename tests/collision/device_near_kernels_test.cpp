@@ -60,10 +60,11 @@ private:
         shape = ImplicitShape(primitives.size());
         nodes.assign(shape.node_count(), BoxNode());
         const std::vector<int> order = order_of<Primitive>(primitives);
-        const RefitBoxes<Primitive> refit{shape, order, primitives, boxes_, nodes};
-        for (int level = 0; level <= shape.top; ++level)
+        parallel_for(kCpu, "test/refit", shape.size_of(1),
+                     RefitItems<Primitive>{shape, order, primitives, boxes_, nodes});
+        for (int level = 1; level <= shape.top; ++level)
             for (int c = 0; c < shape.size_of(level); ++c)
-                refit(level, c, 0);
+                RefitNodes{shape, nodes}(level - 1, c, 0);
     }
 
     template <typename Queries>

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "collision/cloth/device_near_pairs.h"
+#include "collision/surface_proximity.h"
 #include "core/backend/cuda/graph.h"
 #include "core/backend/stages.h"
 #include "core/mesh/obj.h"
@@ -18,6 +19,16 @@ namespace {
 /// Largest differences between CPU and GPU: of distances [m], of weights and normals [-].
 constexpr double kDistanceTolerance = 1e-13;
 constexpr double kTolerance = 1e-9;
+
+/// Weight of a vertex in a pair [-]: that of all corners which are this vertex. On a collapsed triangle the
+/// closest point lies on two sides at once, and rounding says which of its corners bears the weight.
+double weight_of(const NearPair& pair, int vertex)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 4; ++k)
+        sum += pair.vertex[k] == vertex ? pair.weight[k] : 0.0;
+    return sum;
+}
 
 /// Pairs that are not the same but for rounding; counts, so that one line tells.
 struct Differences {
@@ -32,7 +43,7 @@ struct Differences {
         distance = std::max(distance, std::abs(a.distance - b.distance));
         rest = std::max(rest, (a.normal - b.normal).norm());
         for (int k = 0; k < 4; ++k)
-            rest = std::max(rest, std::abs(a.weight[k] - b.weight[k]));
+            rest = std::max(rest, std::abs(weight_of(a, a.vertex[k]) - weight_of(b, a.vertex[k])));
     }
 };
 
@@ -163,6 +174,44 @@ TEST_F(DeviceNearPairsTest, AreNotWithinOneRigidBody)
         rigid[v] = int(v / 24) % 3 - 1; // rows of the sheet; some belong to none
     compare(soup, 0.003, "rigid", rigid);
     EXPECT_GT(count(), 100u);
+}
+
+/// A collider is a rigid body of the soup, and only pairs around its vertices are asked for: what is left are
+/// pairs of cloth and collider.
+TEST_F(DeviceNearPairsTest, OfAColliderInTheSoupAreItsPairsWithTheCloth)
+{
+    Random random(39);
+    Soup soup;
+    add_sheet(soup, 20, 0.01, 0.0);
+    const int cloth_vertices = int(soup.x.size()), cloth_triangles = int(soup.triangles.size());
+    add_sheet(soup, 15, 0.013, 0.004);
+    for (Vec3& x : soup.x)
+        x += 2e-3 * random.point();
+    std::vector<int> rigid(soup.x.size(), -1);
+    std::vector<unsigned char> around(soup.x.size(), 0);
+    std::fill(rigid.begin() + cloth_vertices, rigid.end(), 0);
+    std::fill(around.begin() + cloth_vertices, around.end(), 1);
+    constexpr double kRadius = 0.005;
+    compare(soup, kRadius, "collider", rigid, around);
+
+    // Vertices of either against triangles of the other, as the tree over the avatars' triangles finds them.
+    DeviceNearPairs device(space(), soup.triangles, soup.x, rigid);
+    std::vector<std::pair<int, int>> found, expected;
+    for (const NearPair& pair : found_by(device, soup, kRadius, around))
+        if (!pair.is_edge_edge)
+            found.emplace_back(pair.first, pair.second);
+    const std::vector<Triangle> cloth(soup.triangles.begin(), soup.triangles.begin() + cloth_triangles);
+    const std::vector<Triangle> collider(soup.triangles.begin() + cloth_triangles, soup.triangles.end());
+    const SurfaceProximity cloth_surface(cloth, soup.x), collider_surface(collider, soup.x);
+    std::vector<int> within;
+    for (int v = 0; v < int(soup.x.size()); ++v) {
+        const bool is_cloth = v < cloth_vertices;
+        (is_cloth ? collider_surface : cloth_surface).triangles_within(soup.x[v], kRadius, within);
+        for (const int t : within)
+            expected.emplace_back(v, t + (is_cloth ? cloth_triangles : 0));
+    }
+    EXPECT_EQ(found, expected);
+    EXPECT_GT(found.size(), 500u);
 }
 
 TEST_F(DeviceNearPairsTest, OfFewTrianglesAreThoseOfTheCpu)
