@@ -115,10 +115,9 @@ struct ListCandidates {
     }
 };
 
-/// Candidates by number: vertices with their triangles, then edges with theirs.
+/// Candidates of all queries: vertices with their triangles, then edges with theirs.
 struct CandidateList {
     View<const Record> candidates; ///< first: a vertex, or vertex_count plus an edge
-    View<const long> first;        ///< [vertices + edges + 1] where those of a number begin
     int vertex_count;
 
     TOILE_HD bool is_edge_edge(const Record& candidate) const { return candidate.first >= vertex_count; }
@@ -128,42 +127,36 @@ struct CandidateList {
     }
 };
 
-/// Sorts candidate i among those of its query and tests it.
+/// Marks the pairs among the candidates.
 struct TestCandidate {
     CandidateList list;
+    View<const long> count; ///< [1] of candidates, whether there was room or not
     PairCorners corners;
     View<const Vec3> x;
     Ways ways;
     double margin;
     View<const SoupExtent> extent; ///< [1]
-    View<Record> sorted;           ///< out
-    View<unsigned char> may_meet;  ///< out: 0 or 1
+    View<unsigned char> is_pair;   ///< out: 0 or 1
 
     TOILE_HD void operator()(int i) const
     {
-        const int room = list.candidates.size();
-        const long count = list.first[list.first.size() - 1];
-        const Record candidate = i < count ? list.candidates[i] : Record{0, 0};
-        if (i >= count || list.first[candidate.first + 1] > room) {
-            may_meet[i] = 0; // beyond the list, or in the part that has no room
-            return;
-        }
-        int place = int(list.first[candidate.first]);
-        for (int k = place, end = int(list.first[candidate.first + 1]); k < end; ++k)
-            place += int(list.candidates[k].second < candidate.second);
-        sorted[place] = candidate;
+        is_pair[i] = (unsigned char)(i < count[0] && may_meet(list.candidates[i]) ? 1 : 0);
+    }
+
+private:
+    TOILE_HD bool may_meet(const Record& candidate) const
+    {
         const bool is_edge_edge = list.is_edge_edge(candidate);
-        const std::array<int, 4> v = corners(list.first_of(candidate), candidate.second, is_edge_edge);
-        may_meet[place] =
-            (unsigned char)(MayMeet{x, ways, margin, extent[0].moving != 0}(v, is_edge_edge) ? 1 : 0);
+        return MayMeet{x, ways, margin, extent[0].moving != 0}(
+            corners(list.first_of(candidate), candidate.second, is_edge_edge), is_edge_edge);
     }
 };
 
-/// Pair i in full.
+/// Pair i in full, in its place among those of its query.
 struct ReportPair {
-    CandidateList list;     ///< sorted
-    View<const int> places; ///< of the pairs in it
-    View<const int> count;  ///< [1] of pairs
+    CandidateList list;
+    View<const int> pairs_in_list; ///< where the pairs are
+    View<const int> count;         ///< [1] of pairs
     View<const Triangle> triangles;
     SurfaceEdgesView edges;
     View<const Vec3> x;
@@ -173,9 +166,25 @@ struct ReportPair {
     {
         if (i >= count[0])
             return;
-        const Record& record = list.candidates[places[i]];
-        pairs[i] = near_pair_at(triangles, edges, x, list.first_of(record), record.second,
-                                list.is_edge_edge(record));
+        const Record record = at(i);
+        const int place = place_of(record, i);
+        if (place < pairs.size())
+            pairs[place] = near_pair_at(triangles, edges, x, list.first_of(record), record.second,
+                                        list.is_edge_edge(record));
+    }
+
+private:
+    TOILE_HD Record at(int i) const { return list.candidates[pairs_in_list[i]]; }
+
+    /// Candidates come by query, but within one as the tree has them.
+    TOILE_HD int place_of(const Record& record, int i) const
+    {
+        int place = i;
+        for (int k = i - 1; k >= 0 && at(k).first == record.first; --k)
+            place -= int(at(k).second > record.second);
+        for (int k = i + 1; k < count[0] && at(k).first == record.first; ++k)
+            place += int(at(k).second < record.second);
+        return place;
     }
 };
 

@@ -39,11 +39,10 @@ DeviceNearPairs::DeviceNearPairs(const CudaSpace& space, View<const Triangle> tr
       kept_for_vertices_(space, "near_pairs/kept_for_vertices",
                          kKeptCandidates * surface_.vertex_order().size()),
       kept_for_edges_(space, "near_pairs/kept_for_edges", kKeptCandidates * surface_.edges().vertex.size()),
-      candidates_(space, "near_pairs/candidates"), sorted_(space, "near_pairs/sorted"),
-      may_meet_(space, "near_pairs/may_meet"), places_(space, "near_pairs/places"),
-      count_(space, "near_pairs/count", 1), pairs_(space, "near_pairs/pairs"),
-      numbers_(space, "near_pairs/numbers", 1), read_(space, "near_pairs/read", 1),
-      scratch_(space, "near_pairs/scratch")
+      candidates_(space, "near_pairs/candidates"), is_pair_(space, "near_pairs/is_pair"),
+      pairs_in_list_(space, "near_pairs/pairs_in_list"), count_(space, "near_pairs/count", 1),
+      pairs_(space, "near_pairs/pairs"), numbers_(space, "near_pairs/numbers", 1),
+      read_(space, "near_pairs/read", 1), scratch_(space, "near_pairs/scratch")
 {
     rigid_.upload(rigid);
     counts_.fill_zero();
@@ -56,9 +55,8 @@ void DeviceNearPairs::make_room(long candidates, long pairs)
     if (candidates > candidates_.size()) {
         const int size = with_headroom(candidates);
         candidates_.resize(size);
-        sorted_.resize(size);
-        may_meet_.resize(size);
-        places_.resize(size);
+        is_pair_.resize(size);
+        pairs_in_list_.resize(size);
     }
     if (pairs > pairs_.size())
         pairs_.resize(with_headroom(pairs));
@@ -155,17 +153,17 @@ void DeviceNearPairs::list_candidates()
 void DeviceNearPairs::report(View<const Vec3> x, const Ways& ways, double margin)
 {
     list_candidates();
-    const CandidateList found{candidates_.view(), first_.view(), surface_.vertex_count()};
-    parallel_for(
-        space_, "collision/device_test_candidates", found.candidates.size(),
-        TestCandidate{found, corners(), x, ways, margin, surface_.extent(), sorted_.view(), may_meet_.view()},
-        128);
-    list_flagged(space_, "collision/device_list_pairs", may_meet_.view(), places_.view(), count_.view(),
+    const CandidateList list{candidates_.view(), surface_.vertex_count()};
+    const View<const long> count = first_.view();
+    parallel_for(space_, "collision/device_test_candidates", candidates_.size(),
+                 TestCandidate{list, count.subview(count.size() - 1, 1), corners(), x, ways, margin,
+                               surface_.extent(), is_pair_.view()},
+                 128);
+    list_flagged(space_, "collision/device_list_pairs", is_pair_.view(), pairs_in_list_.view(), count_.view(),
                  scratch_);
-    const CandidateList sorted{sorted_.view(), first_.view(), surface_.vertex_count()};
     parallel_for(space_, "collision/device_report_pairs", pairs_.size(),
-                 ReportPair{sorted, places_.view(), count_.view(), surface_.triangles(), surface_.edges(), x,
-                            pairs_.view()},
+                 ReportPair{list, pairs_in_list_.view(), count_.view(), surface_.triangles(),
+                            surface_.edges(), x, pairs_.view()},
                  128);
     parallel_for(space_, "collision/device_numbers", 1,
                  CollectNumbers{first_.view(), count_.view(), surface_.surface(), numbers_.view()});

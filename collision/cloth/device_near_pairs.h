@@ -60,10 +60,9 @@ private:
     DeviceArray<int> counts_; ///< [vertices + edges + 1] candidates; the last stays 0
     DeviceArray<long> first_; ///< [vertices + edges + 1] their sums
     DeviceArray<int> kept_for_vertices_, kept_for_edges_;
-    DeviceArray<Record> candidates_, sorted_;
-    DeviceArray<unsigned char> may_meet_;
-    DeviceArray<int> places_; ///< of pairs among the candidates
-    DeviceArray<int> count_;  ///< [1]
+    DeviceArray<Record> candidates_;
+    DeviceArray<unsigned char> is_pair_;
+    DeviceArray<int> pairs_in_list_, count_; ///< [candidates], [1]
     DeviceArray<NearPair> pairs_;
     DeviceArray<SearchNumbers> numbers_; ///< [1]
     PinnedArray<SearchNumbers> read_;    ///< [1]

@@ -92,31 +92,21 @@ private:
         list(EdgeQueries{View<const BoxNode>(edge_nodes_).subview(0, edge_shape_.count), corners, {}},
              {edge_shape_, edge_nodes_}, vertex_count(), edges_.edge_count());
 
-        std::vector<Record> sorted(candidates_.size());
-        std::vector<unsigned char> may_meet(candidates_.size());
-        parallel_for(kCpu, "test/test", int(candidates_.size()),
-                     TestCandidate{{candidates_, first_, vertex_count()},
-                                   corners,
-                                   soup_.x,
-                                   soup_.ways(),
-                                   margin,
-                                   extent_,
-                                   sorted,
-                                   may_meet});
-        std::vector<int> places;
-        for (int i = 0; i < int(may_meet.size()); ++i)
-            if (may_meet[i] != 0)
-                places.push_back(i);
-        const std::vector<int> count{int(places.size())};
-        pairs_.resize(places.size());
-        parallel_for(kCpu, "test/report", int(places.size()),
-                     ReportPair{{sorted, first_, vertex_count()},
-                                places,
-                                count,
-                                soup_.triangles,
-                                view_of(edges_),
-                                soup_.x,
-                                pairs_});
+        const CandidateList list{candidates_, vertex_count()};
+        const std::vector<long> candidate_count{first_.back()};
+        std::vector<unsigned char> is_pair(candidates_.size());
+        parallel_for(
+            kCpu, "test/test", int(candidates_.size()),
+            TestCandidate{list, candidate_count, corners, soup_.x, soup_.ways(), margin, extent_, is_pair});
+        std::vector<int> pairs_in_list;
+        for (int i = 0; i < int(is_pair.size()); ++i)
+            if (is_pair[i] != 0)
+                pairs_in_list.push_back(i);
+        const std::vector<int> count{int(pairs_in_list.size())};
+        pairs_.resize(pairs_in_list.size());
+        parallel_for(
+            kCpu, "test/report", count[0],
+            ReportPair{list, pairs_in_list, count, soup_.triangles, view_of(edges_), soup_.x, pairs_});
     }
 
     const Soup& soup_;
