@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "core/backend/cuda/teams.cuh"
+#include "core/backend/cuda/climb.cuh"
 
 namespace toile {
 
 namespace {
 
-constexpr Climb kFourByFour{ImplicitShape::kFanBits, 4};
+static_assert(ImplicitShape::kFanBits == Climb::kFanBits);
 
 std::vector<std::array<int, 1>> list_used(const Incidence& corners_of_vertex, int vertex_count)
 {
@@ -94,7 +94,7 @@ void DeviceSurface::refit(const ImplicitShape& shape, View<const int> order, Vie
     const int fours = shape.size_of(1);
     parallel_for(space_, "collision/device_refit", fours,
                  RefitItems<Primitive>{shape, order, primitives, boxes_, nodes}, 64);
-    parallel_climb(space_, "collision/device_climb", fours, 1, RefitNodes{shape, nodes}, kFourByFour);
+    parallel_climb(space_, "collision/device_climb", fours, RefitNodes{shape, nodes});
 }
 
 void DeviceSurface::reorder(View<const Vec3> x)

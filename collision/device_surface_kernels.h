@@ -127,10 +127,8 @@ struct RefitNodes {
     ImplicitShape shape;
     View<BoxNode> nodes; ///< out: levels above 1
 
-    TOILE_HD void operator()(int above_first, int c, int /*k*/) const
+    TOILE_HD void operator()(int above_first, int c) const
     {
-        if (above_first == 0)
-            return;
         const int level = above_first + 1, child = shape.first[level - 1] + ImplicitShape::kFan * c;
         BoxNode around = nodes[child];
         for (int k = 1; k < ImplicitShape::kFan; ++k)

@@ -62,9 +62,9 @@ private:
         const std::vector<int> order = order_of<Primitive>(primitives);
         parallel_for(kCpu, "test/refit", shape.size_of(1),
                      RefitItems<Primitive>{shape, order, primitives, boxes_, nodes});
-        for (int level = 1; level <= shape.top; ++level)
+        for (int level = 2; level <= shape.top; ++level)
             for (int c = 0; c < shape.size_of(level); ++c)
-                RefitNodes{shape, nodes}(level - 1, c, 0);
+                RefitNodes{shape, nodes}(level - 1, c);
     }
 
     template <typename Queries>

@@ -28,16 +28,10 @@ struct Team {
     }
 };
 
-/// How an implicit tree is climbed.
-struct Climb {
-    int fan_bits = 1; ///< a node has 2^fan_bits children
-    /// Levels above the lowest that one block climbs, until one node is left of its own.
-    int subtree_levels = 5;
-
-    TOILE_HD int nodes(int lowest, int level) const { return level_size(lowest, fan_bits * level); }
-    /// Nodes that are below one so many levels higher.
-    TOILE_HD int nodes_below(int levels) const { return 1 << fan_bits * levels; }
-};
+/// Nodes of the lowest level whose subtree one block climbs.
+inline constexpr int kSubtreeNodes = 32;
+inline constexpr int kSubtreeLevels = 5; ///< above the lowest, until one node is left of them
+static_assert(kSubtreeNodes == 1 << kSubtreeLevels);
 
 #ifdef __CUDACC__
 
@@ -49,15 +43,13 @@ __global__ void run_teams(int count, const Kernel kernel)
         kernel(item, Team{int(threadIdx.x) % Team::kThreads});
 }
 
-/// Levels [begin, end) of the nodes below node b of level `summit`, b this block.
+/// Levels [begin, end) of the nodes above lowest nodes [b << shift, (b + 1) << shift), b this block.
 template <typename Kernel>
-__global__ void climb(const Climb tree, int lowest, int begin, int end, int summit, int width,
-                      const Kernel kernel)
+__global__ void climb(int lowest, int begin, int end, int shift, int width, const Kernel kernel)
 {
     for (int level = begin; level < end; ++level) {
-        const int count = tree.nodes_below(summit - level);
-        const int first = int(blockIdx.x) * count;
-        const int last = min(first + count, tree.nodes(lowest, level));
+        const int first = int(blockIdx.x) << (shift - level);
+        const int last = min(first + (1 << (shift - level)), level_size(lowest, level));
         for (int k = int(threadIdx.x); k < (last - first) * width; k += int(blockDim.x))
             kernel(level, first + k / width, k % width);
         __syncthreads();
@@ -85,27 +77,26 @@ void parallel_for_teams(const CudaSpace& space, std::string_view name, int count
 }
 
 /// Launches kernel(level, c, k) for k in [0, width) at every node c of an implicit tree, children
-/// before parents: a block climbs to one node `tree.subtree_levels` up, then a single one to the root. Item
+/// before parents: a block climbs from kSubtreeNodes nodes to one, then a single one to the root. Item
 /// (level, c, k) may write slot k of its node and read all slots of the children.
 /// @param lowest  nodes of level 0
 template <typename Kernel>
 void parallel_climb(const CudaSpace& space, std::string_view name, int lowest, [[maybe_unused]] int width,
-                    [[maybe_unused]] const Kernel& kernel, const Climb& tree = {},
-                    CallSite where = CallSite::here())
+                    [[maybe_unused]] const Kernel& kernel, CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     if (lowest <= 0)
         return;
     int levels = 1;
-    while (tree.nodes(lowest, levels - 1) > 1)
+    while (level_size(lowest, levels - 1) > 1)
         ++levels;
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-    const int subtree = tree.subtree_levels, below = std::min(levels, subtree + 1);
-    climb<<<block_count(lowest, tree.nodes_below(subtree)), 128, 0, space.stream()>>>(tree, lowest, 0, below,
-                                                                                      subtree, width, kernel);
+    const int below = std::min(levels, kSubtreeLevels + 1);
+    climb<<<block_count(lowest, kSubtreeNodes), 128, 0, space.stream()>>>(lowest, 0, below, kSubtreeLevels,
+                                                                          width, kernel);
     if (levels > below)
-        climb<<<1, 512, 0, space.stream()>>>(tree, lowest, below, levels, levels - 1, width, kernel);
+        climb<<<1, 512, 0, space.stream()>>>(lowest, below, levels, levels - 1, width, kernel);
 #endif
     launch.done();
 }
