@@ -5,7 +5,6 @@
 #include "apps/toile/command_line.h"
 #include "apps/toile/interrupt.h"
 #include "apps/toile/progress.h"
-#include "benchmarks/gpu/near_pairs.h"
 #include "benchmarks/gpu/table.h"
 #include "core/backend/error.h"
 
@@ -13,18 +12,22 @@ namespace toile {
 
 namespace {
 
-const std::vector<std::string> kTables{"gpu_apply.csv", "gpu.md", "gpu_near_pairs.csv"};
+const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu_near_pairs.csv", "gpu.md"};
 
 /// Sizes of the sheet [vertices]; tables of the largest take minutes to build on a few cores.
 const std::vector<int> kSizes{10'000, 50'000};
 const std::vector<int> kQuickSizes{2'000};
 
-/// Sizes of the folded sheet in which near pairs are looked for [vertices].
-const std::vector<int> kFoldedSizes{50'000, 240'000};
+/// Steps: as the paper's Cloth scene, the same number of vertices in one sheet, and as its Runway scene.
+const std::vector<gpu::StepCase> kSteps{{5, 10'000}, {1, 50'000}, {1, 240'000}};
+const std::vector<gpu::StepCase> kQuickSteps{{2, 1'000}};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
 constexpr double kTimeStep = 1.0 / 120.0;
+
+/// Sizes of the folded sheet in which near pairs are looked for [vertices].
+const std::vector<int> kFoldedSizes{50'000, 240'000};
 
 /// Copies that fit no cache, and such that fit the L2 cache twice [MB].
 constexpr int kLargeCopy = 1000, kSmallCopy = 8;
@@ -39,29 +42,44 @@ int bench_gpu(const BenchOptions& options)
         throw DeviceError("bench gpu: no CUDA device: " + reason);
     const CudaSpace space(0);
     const InterruptGuard interrupt;
-    gpu::Report report{
-        space.device(), gpu::copy_bandwidth(space, kLargeCopy), gpu::copy_bandwidth(space, kSmallCopy), {}};
+    gpu::Report report{space.device(),
+                       gpu::copy_bandwidth(space, kLargeCopy),
+                       gpu::copy_bandwidth(space, kSmallCopy),
+                       {},
+                       {},
+                       {}};
     const std::vector<int>& sizes = options.quick ? kQuickSizes : kSizes;
-    Progress progress("size", int(sizes.size()), options.quiet);
-    for (int k = 0; k < int(sizes.size()) && !interrupt.requested(); ++k) {
+    const std::vector<gpu::StepCase>& steps = options.quick ? kQuickSteps : kSteps;
+    const std::vector<int>& folded = options.quick ? kQuickSizes : kFoldedSizes;
+    const size_t cases = sizes.size() + steps.size() + folded.size();
+    Progress progress("case", int(cases), options.quiet);
+    int done = 0;
+    for (size_t k = 0; k < sizes.size() && !interrupt.requested(); ++k) {
         report.applies.push_back(gpu::measure_apply(space, sizes[k], kStiffness, kTimeStep));
-        progress.update(k + 1, std::to_string(sizes[k]) + " vertices");
+        progress.update(++done, "solves of " + std::to_string(sizes[k]) + " vertices");
+    }
+    for (size_t k = 0; k < steps.size() && !interrupt.requested(); ++k) {
+        gpu::StepCase what = steps[k];
+        what.stiffness = kStiffness;
+        what.dt = kTimeStep;
+        report.steps.push_back(gpu::measure_step(space, what));
+        progress.update(++done, "steps of " + std::to_string(what.cloths) + " x " +
+                                    std::to_string(what.vertices) + " vertices");
+    }
+    for (size_t k = 0; k < folded.size() && !interrupt.requested(); ++k) {
+        gpu::measure_near_pairs(space, folded[k], report.searches);
+        progress.update(++done, "near pairs of " + std::to_string(folded[k]) + " vertices");
     }
 
-    std::vector<gpu::NearSearch> searches;
-    for (const int vertices : options.quick ? kQuickSizes : kFoldedSizes)
-        if (!interrupt.requested())
-            gpu::measure_near_pairs(space, vertices, searches);
-
-    const std::string tables = gpu::markdown_tables(report) + "\n" + gpu::markdown_of(searches);
-    std::cout << tables;
-    if (interrupt.requested()) {
+    std::cout << gpu::markdown_tables(report);
+    if (done < int(cases)) {
         std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
         return kExitFailure;
     }
     write_tables(options.output, {{kTables[0], gpu::csv_of_applies(report)},
-                                  {kTables[1], tables},
-                                  {kTables[2], gpu::csv_of(searches)}});
+                                  {kTables[1], gpu::csv_of_steps(report)},
+                                  {kTables[2], gpu::csv_of(report.searches)},
+                                  {kTables[3], gpu::markdown_tables(report)}});
     return kExitOk;
 }
 

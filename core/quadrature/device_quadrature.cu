@@ -30,18 +30,22 @@ std::vector<int> others_of(View<const int> slots, int node_count)
 
 } // namespace
 
-DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count)
+DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
+                                   const std::vector<int>& first)
     : space_(space), leaves_(space, "quadrature/leaves"), transfers_(space, "quadrature/transfers"),
       nodes_(space, "quadrature/nodes"), others_(space, "quadrature/others"),
-      near_first_(space, "quadrature/near_first"), near_leaf_(space, "quadrature/near_leaf"),
-      far_first_(space, "quadrature/far_first"), far_cluster_(space, "quadrature/far_cluster"),
-      near_weights_(space, "quadrature/near_weights"), far_weights_(space, "quadrature/far_weights"),
-      sources_(space, "quadrature/sources", tables.tree.nodes().size()),
-      moments_(space, "quadrature/moments", tables.basis.rank() * tables.tree.cluster_count())
+      first_(space, "quadrature/first"), near_first_(space, "quadrature/near_first"),
+      near_leaf_(space, "quadrature/near_leaf"), far_first_(space, "quadrature/far_first"),
+      far_cluster_(space, "quadrature/far_cluster"), near_weights_(space, "quadrature/near_weights"),
+      far_weights_(space, "quadrature/far_weights"),
+      sources_(space, "quadrature/sources", int(first.size()) * tables.tree.nodes().size()),
+      moments_(space, "quadrature/moments",
+               int(first.size()) * tables.basis.rank() * tables.tree.cluster_count())
 {
     leaves_.upload(single(tables.basis.leaves()));
     transfers_.upload(single(tables.basis.transfers()));
     nodes_.upload(tables.tree.nodes());
+    first_.upload(first);
     others_.upload(others_of(tables.tree.nodes(), node_count));
     near_first_.upload(tables.kernel.near_first);
     near_leaf_.upload(tables.kernel.near_leaf);
@@ -82,9 +86,12 @@ void DeviceQuadrature::solve(View<const Vec3> b, View<Vec3> x)
 
 void DeviceQuadrature::gather_moments(View<const Vec3> b)
 {
-    parallel_for(space_, "quadrature/sort", nodes_.size(), SortIntoSlots{nodes_.view(), b, sources_.view()});
-    parallel_climb(space_, "quadrature/moments", basis_.leaf_count, basis_.rank,
-                   ClimbMoments{basis_, sources_.view(), moments_.view()});
+    const int bodies = first_.size();
+    parallel_for(space_, "quadrature/sort", sources_.size(),
+                 SortIntoSlots{nodes_.view(), first_.view(), b, sources_.view()});
+    parallel_climb(space_, "quadrature/moments", bodies, basis_.leaf_count, basis_.rank,
+                   ClimbMoments{basis_, sources_.view(), moments_.view(), nodes_.size(),
+                                moments_.size() / (bodies * basis_.rank)});
 }
 
 void DeviceQuadrature::gather(View<const Vec3> b, View<Vec3> x)
@@ -93,15 +100,16 @@ void DeviceQuadrature::gather(View<const Vec3> b, View<Vec3> x)
         gather_leaves<rank_of(Extent::Surface)>(x);
     else
         gather_leaves<rank_of(Extent::Volume)>(x);
-    parallel_for(space_, "quadrature/others", others_.size(), CopyOthers{others_.view(), b, x});
+    parallel_for(space_, "quadrature/others", first_.size() * others_.size(),
+                 CopyOthers{others_.view(), first_.view(), b, x});
 }
 
 template <int Rank>
 void DeviceQuadrature::gather_leaves(View<Vec3> x)
 {
-    parallel_for_teams(
-        space_, "quadrature/gather", basis_.leaf_count,
-        GatherLeafByTeam<Rank, kWidth>{kernel(), sources_.view(), moments_.view(), nodes_.view(), x});
+    parallel_for_teams(space_, "quadrature/gather", first_.size() * basis_.leaf_count,
+                       GatherLeafByTeam<Rank, kWidth>{kernel(), sources_.view(), moments_.view(),
+                                                      nodes_.view(), first_.view(), x});
 }
 
 } // namespace toile

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/backend/cuda/array.h"
 #include "core/quadrature/device_kernels.h"
@@ -9,16 +10,20 @@
 namespace toile {
 
 /// QuadratureOperator on a GPU: the same tables and sums, in single precision throughout and in another
-/// order; the same bits in every run. Its tables stay on the device.
+/// order; the same bits in every run. Its tables stay on the device and serve any number of equal bodies at
+/// once.
 class DeviceQuadrature {
 public:
     /// @param space   borrowed, as what the tables are copied to
-    /// @param tables  of n nodes, not needed afterwards
+    /// @param tables  of one body, not needed afterwards
+    /// @param node_count  of one body
+    /// @param first   [bodies] where the nodes of each begin among those of all
     /// @throws DeviceError where the device has not the memory
-    DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count);
+    DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
+                     const std::vector<int>& first = {0});
 
-    /// Enqueues x = H^-1 b, nearly; as it is for fixed nodes.
-    /// @param b, x  [n] on the device; not the same array
+    /// Enqueues x = H^-1 b, nearly, for every body; as it is for fixed nodes.
+    /// @param b, x  [nodes of all] on the device; not the same array
     void solve(View<const Vec3> b, View<Vec3> x);
 
     /// Its two passes, for whoever times them: moments of b, then the sums of every leaf.
@@ -36,7 +41,7 @@ private:
     const CudaSpace& space_;
     BasisView<float> basis_;
     DeviceArray<float> leaves_, transfers_;
-    DeviceArray<int> nodes_, others_, near_first_, near_leaf_, far_first_, far_cluster_;
+    DeviceArray<int> nodes_, others_, first_, near_first_, near_leaf_, far_first_, far_cluster_;
     DeviceArray<float> near_weights_, far_weights_;
     DeviceArray<PaddedVec3> sources_, moments_;
 };
