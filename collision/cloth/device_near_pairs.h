@@ -31,7 +31,8 @@ public:
     /// find() in two parts, of which the first can be recorded in a graph: enqueues a search with the room
     /// that there is.
     void search(View<const Vec3> x, const Ways& ways, double margin);
-    /// Waits. False where there was not enough room: it has grown, and the same search finds all pairs.
+    /// Waits. False where there was not enough room: it has grown, and the same search, recorded anew, finds
+    /// all pairs.
     bool settle();
     /// What search() leaves, for kernels after it: pairs [room] and their number [1], where that is not above
     /// the room.
