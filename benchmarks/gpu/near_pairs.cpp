@@ -99,6 +99,7 @@ NearSearch measure(const CudaSpace& space, const Folded& sheet, const std::vecto
 std::vector<Row> rows_of(const std::vector<NearSearch>& searches)
 {
     std::vector<Row> rows;
+    rows.reserve(searches.size());
     for (const NearSearch& s : searches)
         rows.push_back({s.scene, s.order, std::to_string(s.vertices), std::to_string(s.triangles),
                         std::to_string(s.pairs), std::to_string(s.facing), format("%.1f", s.refit_us),

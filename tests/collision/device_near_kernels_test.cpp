@@ -8,6 +8,7 @@
 
 #include "collision/cloth/near_pairs.h"
 #include "core/backend/parallel.h"
+#include "tests/collision/same_pairs.h"
 #include "tests/collision/soups.h"
 
 namespace toile {
@@ -125,25 +126,11 @@ private:
     std::vector<NearPair> pairs_;
 };
 
-/// Every bit, but for the last ones that another order of multiplications in the same body may leave.
-void expect_same(const std::vector<NearPair>& a, const std::vector<NearPair>& b)
-{
-    ASSERT_EQ(a.size(), b.size());
-    for (size_t i = 0; i < a.size(); ++i) {
-        ASSERT_EQ(std::tie(a[i].vertex, a[i].first, a[i].second, a[i].is_edge_edge, a[i].is_facing),
-                  std::tie(b[i].vertex, b[i].first, b[i].second, b[i].is_edge_edge, b[i].is_facing));
-        EXPECT_NEAR(a[i].distance, b[i].distance, 1e-14);
-        EXPECT_LT((a[i].normal - b[i].normal).norm(), 1e-9);
-        for (int k = 0; k < 4; ++k)
-            EXPECT_NEAR(a[i].weight[k], b[i].weight[k], 1e-9);
-    }
-}
-
 void expect_those_of_near_pairs(const Soup& soup, double margin, size_t least)
 {
     std::vector<NearPair> expected;
     NearPairs(soup.triangles, soup.x).find(soup.x, soup.ways(), margin, expected);
-    expect_same(expected, SearchOnCpu(soup, margin).pairs());
+    test::expect_same(expected, SearchOnCpu(soup, margin).pairs(), "on the CPU");
     EXPECT_GE(expected.size(), least);
 }
 
