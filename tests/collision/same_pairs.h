@@ -30,7 +30,7 @@ inline double weight_of(const NearPair& pair, int vertex)
 
 /// Pairs that are not the same but for rounding; counts, so that one line tells.
 struct Differences {
-    int keys = 0, facing = 0;
+    int keys = 0, facing = 0, not_finite = 0;
     double distance = 0.0, rest = 0.0;
 
     void add(const NearPair& a, const NearPair& b)
@@ -38,6 +38,8 @@ struct Differences {
         keys += int(std::tie(a.is_edge_edge, a.first, a.second, a.vertex) !=
                     std::tie(b.is_edge_edge, b.first, b.second, b.vertex));
         facing += int(a.is_facing != b.is_facing);
+        not_finite += int(!std::isfinite(b.distance + b.normal.sum() + b.weight[0] + b.weight[1] +
+                                         b.weight[2] + b.weight[3]));
         distance = std::max(distance, std::abs(a.distance - b.distance));
         rest = std::max(rest, (a.normal - b.normal).norm());
         for (int k = 0; k < 4; ++k)
@@ -55,6 +57,7 @@ inline void expect_same(const std::vector<NearPair>& cpu, const std::vector<Near
         differences.add(cpu[i], gpu[i]);
     EXPECT_EQ(differences.keys, 0) << what;
     EXPECT_EQ(differences.facing, 0) << what;
+    EXPECT_EQ(differences.not_finite, 0) << what;
     EXPECT_LT(differences.distance, kDistanceTolerance) << what;
     EXPECT_LT(differences.rest, kPairTolerance) << what;
 }
