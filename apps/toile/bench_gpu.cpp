@@ -13,7 +13,7 @@ namespace toile {
 
 namespace {
 
-const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu.md"};
+const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu_near_pairs.csv", "gpu.md"};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -28,6 +28,9 @@ const std::vector<gpu::StepCase> kSteps{{5, 10'000, kStiffness, kTimeStep},
                                         {1, 50'000, kStiffness, kTimeStep},
                                         {1, 240'000, kStiffness, kTimeStep}};
 const std::vector<gpu::StepCase> kQuickSteps{{2, 1'000, kStiffness, kTimeStep}};
+
+/// Sizes of the folded sheet in which near pairs are looked for [vertices].
+const std::vector<int> kFoldedSizes{50'000, 240'000};
 
 /// Copies that fit no cache, and such that fit the L2 cache twice [MB].
 constexpr int kLargeCopy = 1000, kSmallCopy = 8;
@@ -51,6 +54,11 @@ std::vector<Case> cases_of(const BenchOptions& options)
                          [what = step](const CudaSpace& space, gpu::Report& report) {
                              report.steps.push_back(gpu::measure_step(space, what));
                          }});
+    for (const int vertices : options.quick ? kQuickSizes : kFoldedSizes)
+        cases.push_back(
+            {"near_pairs " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
+                 gpu::measure_near_pairs(space, vertices, report.searches);
+             }});
     std::erase_if(cases, [&](const Case& c) { return c.name.find(options.only) == std::string::npos; });
     if (cases.empty())
         throw InvalidInput("bench gpu: --only \"" + options.only + "\" leaves no case");
@@ -87,7 +95,8 @@ int bench_gpu(const BenchOptions& options)
     }
     write_tables(options.output, {{kTables[0], gpu::csv_of_applies(report)},
                                   {kTables[1], gpu::csv_of_steps(report)},
-                                  {kTables[2], gpu::markdown_tables(report)}});
+                                  {kTables[2], gpu::csv_of(report.searches)},
+                                  {kTables[3], gpu::markdown_tables(report)}});
     return kExitOk;
 }
 

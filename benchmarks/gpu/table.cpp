@@ -41,7 +41,8 @@ std::string markdown_tables(const Report& report)
            "\nSteps without contact\n\n" +
            markdown({"cloths", "vertices of each", "iterations", "step ms", "iteration us", "CPU ms",
                      "CPU / GPU", "difference m"},
-                    step_rows_of(report));
+                    step_rows_of(report)) +
+           "\n" + markdown_of(report.searches);
 }
 
 std::string csv_of_steps(const Report& report)

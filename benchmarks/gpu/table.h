@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "benchmarks/gpu/apply.h"
+#include "benchmarks/gpu/near_pairs.h"
 #include "benchmarks/gpu/step.h"
 
 namespace toile::gpu {
@@ -15,6 +16,7 @@ struct Report {
     double small_copy_gbs = 0.0; ///< of arrays that the L2 cache holds
     std::vector<Apply> applies;
     std::vector<Step> steps;
+    std::vector<NearSearch> searches;
 };
 
 std::string markdown_tables(const Report& report);
