@@ -119,7 +119,7 @@ void measure_near_pairs(const CudaSpace& space, int vertices, std::vector<NearSe
         const auto add = [&](const char* moves, const char* order, const std::vector<Vec3>& pose,
                              const std::vector<Vec3>& motion) {
             out.push_back(measure(space, sheet, pose, motion));
-            out.back().scene = format("%.1f", gap) + " edges apart, " + moves;
+            out.back().scene = format("%.1f", gap) + " edges apart " + moves;
             out.back().order = order;
         };
         add("at rest", "folded", sheet.x, {});
