@@ -42,12 +42,13 @@ struct AddBending {
     TOILE_HD void operator()(int i, const Team& team, bool is_own) const
     {
         Vec3 sum = bend.gradient(i, team.thread, Team::kThreads);
+        const double own = team.sum(1, bend.energy(i, sum)); // where digits cancel, before they are dropped
         for (int a = 0; a < 3; ++a)
-            sum[a] = team.sum(1, sum[a]);
+            sum[a] = double(team.sum(1, float(sum[a])));
         if (team.thread > 0 || !is_own)
             return;
         gradient[i] += sum;
-        energy[i] += bend.energy(i, sum);
+        energy[i] += own;
     }
 };
 

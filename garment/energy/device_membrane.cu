@@ -8,7 +8,7 @@ namespace toile {
 namespace {
 
 /// Threads of a vertex, which has some six corners.
-constexpr int kCorners = 8;
+constexpr int kCorners = 4;
 
 } // namespace
 
@@ -16,7 +16,7 @@ DeviceMembrane::DeviceMembrane(const CudaSpace& space)
     : space_(space), triangles_(space, "membrane/triangles"), rest_inv_(space, "membrane/rest_inv"),
       area_(space, "membrane/area"), fabric_(space, "membrane/fabric"), weights_(space, "membrane/weights"),
       first_corner_(space, "membrane/first_corner"), corners_(space, "membrane/corners"),
-      corner_gradient_(space, "membrane/corner_gradient"), energy_(space, "membrane/energy")
+      corner_gradient_(space, "membrane/corner_gradient")
 {
 }
 
@@ -50,7 +50,6 @@ void DeviceMembrane::upload()
     first_corner_.upload(host_.first_corner);
     corners_.upload(host_.corners);
     corner_gradient_.resize(triangles_.size());
-    energy_.resize(triangles_.size());
 }
 
 void DeviceMembrane::add_gradient(const DeviceEvaluation& at)
@@ -58,11 +57,10 @@ void DeviceMembrane::add_gradient(const DeviceEvaluation& at)
     parallel_for(space_, "membrane/project", triangles_.size(),
                  ProjectMembraneTriangle<CornerPair>{at.x, triangles_.view(), rest_inv_.view(), area_.view(),
                                                      fabric_.view(), weights_.view(), corner_gradient_.view(),
-                                                     energy_.view()});
+                                                     at.own});
     const GatherCorners<CornerPair> corners{first_corner_.view(), corners_.view(), corner_gradient_.view(),
                                             at.gradient};
-    parallel_for_teams<kCorners>(space_, "membrane/gather", first_corner_.size() - 1,
-                                 GatherTriangles{corners, energy_.view(), at.energy});
+    parallel_for_teams<kCorners>(space_, "membrane/gather", first_corner_.size() - 1, GatherByTeam{corners});
 }
 
 } // namespace toile

@@ -18,6 +18,7 @@ public:
     /// @param first_vertex  of the cloth among the body's
     void add(const RestShape& rest, const MembraneWeights& weights, int first_vertex);
 
+    int share_count() const override { return triangles_.size(); }
     void add_gradient(const DeviceEvaluation& at) override;
 
 private:
@@ -41,7 +42,6 @@ private:
     DeviceArray<MembraneWeights> weights_;
     DeviceArray<int> first_corner_, corners_;
     DeviceArray<CornerPair> corner_gradient_; ///< [triangles] [N]
-    DeviceArray<double> energy_;              ///< [triangles] [J]
 };
 
 } // namespace toile

@@ -1,34 +1,30 @@
 #pragma once
 
+#include "core/backend/unroll.h"
 #include "garment/energy/membrane_kernels.h"
 
 namespace toile {
 
-/// Sums the gradients of the corners at vertex v, as GatherCorners, and the energy of the triangles whose
-/// corner 0 it is, by a team with a corner per thread.
-struct GatherTriangles {
+/// Sums the gradients of the corners at vertex v, as GatherCorners, by a team of threads and in the single
+/// precision that they come in.
+struct GatherByTeam {
     GatherCorners<CornerPair> corners;
-    View<const double> triangle_energy; ///< [triangles] [J]
-    View<double> energy;                ///< [vertices] added to [J]
 
     template <typename Team>
     TOILE_HD void operator()(int v, const Team& team, bool is_own) const
     {
-        Vec3 force(0.0, 0.0, 0.0);
-        double own = 0.0;
+        PaddedVec3 sum(0.0F);
+        TOILE_UNROLL(2)
         for (int k = corners.first[v] + team.thread; k < corners.first[v + 1]; k += Team::kThreads) {
-            const int t = corners.corners[k] / 3, corner = corners.corners[k] % 3;
-            const CornerPair g = corners.corner_gradient[t];
-            force += corner == 0 ? Vec3(-g.col(0) - g.col(1)) : g.col(corner - 1);
-            own += corner == 0 ? triangle_energy[t] : 0.0;
+            const int corner = corners.corners[k] % 3;
+            const CornerPair g = corners.corner_gradient[corners.corners[k] / 3];
+            sum += corner == 0 ? -1.0F * g.column[0] : g.column[corner - 1];
+            sum += corner == 0 ? -1.0F * g.column[1] : PaddedVec3(0.0F);
         }
         for (int a = 0; a < 3; ++a)
-            force[a] = team.sum(1, force[a]);
-        own = team.sum(1, own);
-        if (team.thread > 0 || !is_own)
-            return;
-        corners.gradient[v] += force;
-        energy[v] += own;
+            sum.value[a] = team.sum(1, sum[a]);
+        if (team.thread == 0 && is_own)
+            corners.gradient[v] += unpadded(sum);
     }
 };
 

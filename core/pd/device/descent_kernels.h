@@ -14,7 +14,7 @@ struct DescentFields {
     };
 
     Point here, trial;
-    View<double> energy;        ///< [vertices] shares of the objective at the trial point [J]
+    View<double> energy;        ///< [vertices and more] shares of the objective at the trial point [J]
     View<PaddedVec3> direction; ///< [vertices] [m]
     View<PaddedVec3> s, y, w;   ///< [kHistory * vertices] the pairs, slot after slot; finite from the start
     View<const double> masses;  ///< [vertices] [kg]
@@ -27,6 +27,15 @@ struct DescentFields {
     TOILE_HD Vec3 free_part(const View<Vec3>& field, int i) const
     {
         return fixed[i] ? Vec3(0.0, 0.0, 0.0) : field[i];
+    }
+
+    /// Vertex i sums every n-th share, n vertices.
+    TOILE_HD double shares_of(int i) const
+    {
+        double sum = 0.0;
+        for (int k = i; k < energy.size(); k += direction.size())
+            sum += energy[k];
+        return sum;
     }
 
     /// Writes gradient and energy of inertia where the trial point now is: what others add to.
@@ -54,7 +63,7 @@ struct MeasureTrial {
         }
 
         TrialSums sums;
-        sums.value = fields.energy[i];
+        sums.value = fields.shares_of(i);
         if (descent.action == Descent::Action::Start || descent.is_over)
             return sums;
         sums.slope = gradient.dot(d);

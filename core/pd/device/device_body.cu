@@ -17,12 +17,22 @@ DeviceSolver* device_solver_of(System& system)
     return solver;
 }
 
+DeviceEnergies energies_of(const CudaSpace& space, const System& system)
+{
+    DeviceEnergies energies(space);
+    for (const auto& energy : system.energies())
+        if (!energy->add_to(energies, 0))
+            throw InvalidInput(std::string(energy->name()) + " does not run on a GPU");
+    return energies;
+}
+
 } // namespace
 
 DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& positions,
                        std::unique_ptr<System> system, Settings settings)
     : space_(space), system_(std::move(system)), solver_(device_solver_of(*system_)), settings_(settings),
-      energies_(space), x_(space, "body/x"), v_(space, "body/v", int(positions.size())),
+      energies_(energies_of(space, *system_)), x_(space, "body/x"),
+      v_(space, "body/v", int(positions.size())),
       acceleration_(space, "body/acceleration", int(positions.size())),
       targets_(space, "body/targets", int(positions.size())),
       prediction_(space, "body/prediction", int(positions.size())),
@@ -31,11 +41,8 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       begin_sums_(space, "body/begin_sums", block_count(int(positions.size()), kSumItems)),
       finish_sums_(space, "body/finish_sums", block_count(int(positions.size()), kSumItems)),
       finish_(space, "body/finish", 1), finish_on_host_(space, "body/finish_on_host", 1),
-      descent_(space, int(positions.size()))
+      descent_(space, int(positions.size()), energies_.share_count())
 {
-    for (const auto& energy : system_->energies())
-        if (!energy->add_to(energies_, 0))
-            throw InvalidInput(std::string(energy->name()) + " does not run on a GPU");
     x_.upload(positions);
     masses_.upload(system_->masses());
     for (DeviceArray<Vec3>* field : {&v_, &acceleration_, &targets_})
@@ -58,10 +65,7 @@ void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
 
 DeviceDescent::Problem DeviceBody::problem()
 {
-    return {[this](const DeviceEvaluation& at) {
-                for (const auto& energy : energies_.all())
-                    energy->add_gradient(at);
-            },
+    return {[this](const DeviceEvaluation& at) { energies_.add_gradient(at); },
             [this](View<const Vec3> g, View<Vec3> z) { solver_->solve_there(g, z); },
             masses_.view(),
             fixed_.view(),

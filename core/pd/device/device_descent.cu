@@ -14,11 +14,12 @@ constexpr int kTurnsAtOnce = 4;
 
 } // namespace
 
-DeviceDescent::DeviceDescent(const CudaSpace& space, int vertex_count)
+DeviceDescent::DeviceDescent(const CudaSpace& space, int vertex_count, int share_count)
     : space_(space), x_(space, "descent/x", vertex_count), gradient_(space, "descent/gradient", vertex_count),
       z_(space, "descent/z", vertex_count), trial_x_(space, "descent/trial_x", vertex_count),
       trial_gradient_(space, "descent/trial_gradient", vertex_count),
-      trial_z_(space, "descent/trial_z", vertex_count), energy_(space, "descent/energy", vertex_count),
+      trial_z_(space, "descent/trial_z", vertex_count),
+      energy_(space, "descent/energy", vertex_count + share_count),
       direction_(space, "descent/direction", vertex_count), s_(space, "descent/s", kHistory * vertex_count),
       y_(space, "descent/y", kHistory * vertex_count), w_(space, "descent/w", kHistory * vertex_count),
       descent_(space, "descent/state"),
@@ -49,7 +50,9 @@ DescentFields DeviceDescent::fields(const Problem& problem)
 
 void DeviceDescent::enqueue_turn(const Problem& problem)
 {
-    problem.add_gradient({trial_x_.view(), trial_gradient_.view(), energy_.view()});
+    const int n = x_.size();
+    problem.add_gradient({trial_x_.view(), trial_gradient_.view(), energy_.view().subview(0, n),
+                          energy_.view().subview(n, energy_.size() - n)});
     problem.precondition(trial_gradient_.view(), trial_z_.view());
     const DescentFields all = fields(problem);
     parallel_sum_then(space_, "descent/decide", x_.size(), TrialSums{}, MeasureTrial{all},

@@ -14,7 +14,7 @@ class DeviceDescent {
 public:
     /// What is minimised: inertia and more. Functions enqueue; what they launch is recorded.
     struct Problem {
-        /// Adds to shares of the value, and to the gradient.
+        /// Adds to shares of the value, writes those of no vertex, and adds to the gradient.
         std::function<void(const DeviceEvaluation&)> add_gradient;
         /// z = B g
         std::function<void(View<const Vec3> g, View<Vec3> z)> precondition;
@@ -25,7 +25,8 @@ public:
         double dt = 0.0;                 ///< [s]
     };
 
-    DeviceDescent(const CudaSpace& space, int vertex_count);
+    /// @param share_count  shares of the value that belong to no vertex
+    DeviceDescent(const CudaSpace& space, int vertex_count, int share_count);
 
     /// Takes another problem.
     void record(const Problem& problem);

@@ -14,6 +14,7 @@ struct DeviceEvaluation {
     View<const Vec3> x;  ///< [vertices] [m]
     View<Vec3> gradient; ///< [vertices] added to [N]
     View<double> energy; ///< [vertices] added to: shares of the value, whose sum counts [J]
+    View<double> own;    ///< [share_count()] overwritten: more shares, of this energy alone [J]
 };
 
 /// Terms of one kind of all cloths of a body, on a GPU: what Energy is on the CPU.
@@ -23,6 +24,9 @@ public:
 
     /// Called before every step: takes what the host has changed since. Enqueued.
     virtual void begin_step() {}
+
+    /// Shares of the value that belong to no vertex.
+    virtual int share_count() const { return 0; }
 
     /// Enqueues adding value and gradient. What it launches is recorded once and repeated, so it may depend
     /// on arrays of the device only.
@@ -51,6 +55,27 @@ public:
     }
 
     const std::vector<std::unique_ptr<DeviceEnergy>>& all() const { return all_; }
+
+    /// Shares of the value that belong to no vertex, of all.
+    int share_count() const
+    {
+        int count = 0;
+        for (const auto& energy : all_)
+            count += energy->share_count();
+        return count;
+    }
+
+    /// Enqueues adding all of them.
+    /// @param at  its `own` holds the shares of all
+    void add_gradient(const DeviceEvaluation& at) const
+    {
+        int first = 0;
+        for (const auto& energy : all_) {
+            energy->add_gradient(
+                {at.x, at.gradient, at.energy, at.own.subview(first, energy->share_count())});
+            first += energy->share_count();
+        }
+    }
 
 private:
     const CudaSpace& space_;
