@@ -1,8 +1,7 @@
 #pragma once
 
-#include <memory>
-
 #include "core/backend/cuda/array.h"
+#include "core/quadrature/device_kernel_table.h"
 #include "core/quadrature/device_kernels.h"
 #include "core/quadrature/quadrature_tables.h"
 
@@ -16,6 +15,11 @@ public:
     /// @param tables  of n nodes, not needed afterwards
     /// @throws DeviceError where the device has not the memory
     DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count);
+
+    /// The same from a table that was built on the device.
+    /// @param basis  that the table was built with, not needed afterwards
+    DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis, DeviceKernelTable kernel,
+                     int node_count);
 
     /// Enqueues x = H^-1 b, nearly; as it is for fixed nodes.
     /// @param b, x  [n] on the device; not the same array
@@ -31,13 +35,12 @@ public:
 private:
     template <int Rank>
     void gather_leaves(View<Vec3> x);
-    KernelView kernel() const;
 
     const CudaSpace& space_;
     BasisView<float> basis_;
+    DeviceKernelTable kernel_;
     DeviceArray<float> leaves_, transfers_;
-    DeviceArray<int> nodes_, others_, near_first_, near_leaf_, far_first_, far_cluster_;
-    DeviceArray<float> near_weights_, far_weights_;
+    DeviceArray<int> nodes_, others_;
     DeviceArray<PaddedVec3> sources_, moments_;
 };
 

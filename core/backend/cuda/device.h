@@ -54,6 +54,13 @@ public:
     };
     const Memory& memory() const { return memory_; }
 
+    /// What the device has left [bytes].
+    std::size_t free_memory() const;
+
+    /// @throws DeviceError where the device has less than `bytes` left: "... is out of memory: WHAT N MiB,
+    /// ..."
+    void require_memory(std::size_t bytes, std::string_view what) const;
+
 private:
     friend class CudaBuffer;
     friend class CudaGraph;
@@ -93,6 +100,8 @@ public:
     {
         space.require(cuda::use_device(space.device().index), "choosing the device");
     }
+    /// @throws DeviceError when a library that launches kernels of its own answered that it could not.
+    void require(cuda::Status status) const { space_.require(status, "launching the kernels of", name_); }
     /// @throws DeviceError naming kernel, file and line when the launch was refused.
     void done() const { space_.launched(name_, where_); }
 
