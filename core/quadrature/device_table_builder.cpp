@@ -49,7 +49,7 @@ std::size_t column_bytes(const InvertedFactor& factor, const ClusterBasis& basis
     const std::size_t clusters = (basis.rank() + 1) * std::size_t(basis.tree().cluster_count());
     const std::size_t found = std::size_t(basis.tree().leaf_count() + FoundEntries::kMost) / kLeaf;
     return DeviceInverseColumns::column_bytes(factor, most_front_rows(factor, basis.tree(), columns)) +
-           clusters * sizeof(double) + 2 * found * sizeof(int);
+           clusters * sizeof(double) + 3 * found * sizeof(int);
 }
 
 /// As many columns as are asked for, there is memory for, and whose numbers an int counts.
@@ -97,8 +97,8 @@ DeviceTableBuilder::DeviceTableBuilder(const CudaSpace& space, const InvertedFac
       row_of_slot_(space, "tables/row_of_slot"), moments_(space, "tables/moments"),
       squares_(space, "tables/squares"), found_(space, "tables/found"),
       near_counts_(space, "tables/near_counts"), far_counts_(space, "tables/far_counts"),
-      near_sums_(space, "tables/near_sums"), far_sums_(space, "tables/far_sums"),
-      totals_(space, "tables/totals", 2), scratch_(space, "tables/scratch"),
+      totals_(space, "tables/totals", 2), near_sums_(space, "tables/near_sums"),
+      far_sums_(space, "tables/far_sums"), scratch_(space, "tables/scratch"),
       totals_on_host_(space, "tables/totals", 2)
 {
     const ClusterTree& tree = basis.tree();
@@ -111,8 +111,10 @@ DeviceTableBuilder::DeviceTableBuilder(const CudaSpace& space, const InvertedFac
     block_.parts = tree.level_size(block_.part_level);
     const int parts = columns_ / kLeaf * block_.parts;
     found_.resize(parts * FoundEntries::kMost);
-    for (DeviceArray<int>* numbers : {&near_counts_, &far_counts_, &near_sums_, &far_sums_})
-        numbers->resize(parts + 1);
+    for (DeviceArray<int>* counts : {&near_counts_, &far_counts_})
+        counts->resize(parts + 1);
+    for (DeviceArray<long>* sums : {&near_sums_, &far_sums_})
+        sums->resize(parts + 1);
 }
 
 void DeviceTableBuilder::upload_tree(View<const double> diagonal, double tolerance)

@@ -1,7 +1,6 @@
 #include "core/quadrature/device_table_builder.h"
 
 #include "core/backend/cuda/parallel.cuh"
-#include "core/backend/cuda/scan.h"
 
 namespace toile {
 
@@ -23,9 +22,9 @@ void DeviceTableBuilder::find_entries()
 void DeviceTableBuilder::count_entries()
 {
     const int count = parts() + 1;
-    exclusive_sums(space_, "tables/near_sums", near_counts_.view().subview(0, count),
+    exclusive_scan(space_, "tables/near_sums", near_counts_.view().subview(0, count),
                    near_sums_.view().subview(0, count), scratch_);
-    exclusive_sums(space_, "tables/far_sums", far_counts_.view().subview(0, count),
+    exclusive_scan(space_, "tables/far_sums", far_counts_.view().subview(0, count),
                    far_sums_.view().subview(0, count), scratch_);
     parallel_for(space_, "tables/count", totals_.size(), CountEntries{offsets(), totals_.view()});
     totals_.download(totals_on_host_.view());

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/backend/cuda/scan.h"
 #include "core/linear/device_inverse_columns.h"
 #include "core/quadrature/cluster_basis.h"
 #include "core/quadrature/device_kernel_table.h"
@@ -63,8 +64,9 @@ private:
     DeviceArray<double> leaves_, transfers_, diagonal_, limits_;
     DeviceArray<int> nodes_, row_of_slot_;
     DeviceArray<double> moments_, squares_;
-    DeviceArray<int> found_, near_counts_, far_counts_, near_sums_, far_sums_, totals_;
-    DeviceArray<unsigned char> scratch_;
+    DeviceArray<int> found_, near_counts_, far_counts_, totals_;
+    DeviceArray<long> near_sums_, far_sums_;
+    DeviceScratch scratch_;
     PinnedArray<int> totals_on_host_;
 };
 

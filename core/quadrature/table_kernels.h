@@ -147,7 +147,7 @@ private:
 
 /// Where the parts' entries go in the table: those of earlier parts come before them.
 struct EntryOffsets {
-    View<const int> near, far; ///< [parts + 1] exclusive sums, all in the last
+    View<const long> near, far; ///< [parts + 1] exclusive sums, all in the last
     int first_near = 0;        ///< entries of earlier blocks
     int first_far = 0;
 };
@@ -159,8 +159,8 @@ struct CountEntries {
 
     TOILE_HD void operator()(int i) const
     {
-        const View<const int>& sums = i == 0 ? offsets.near : offsets.far;
-        totals[i] = sums[sums.size() - 1];
+        const View<const long>& sums = i == 0 ? offsets.near : offsets.far;
+        totals[i] = int(sums[sums.size() - 1]);
     }
 };
 
@@ -172,8 +172,8 @@ struct WriteFirsts {
 
     TOILE_HD void operator()(int leaf) const
     {
-        near_first[block.first + leaf] = offsets.first_near + offsets.near[leaf * block.parts];
-        far_first[block.first + leaf] = offsets.first_far + offsets.far[leaf * block.parts];
+        near_first[block.first + leaf] = offsets.first_near + int(offsets.near[leaf * block.parts]);
+        far_first[block.first + leaf] = offsets.first_far + int(offsets.far[leaf * block.parts]);
     }
 };
 
@@ -185,10 +185,12 @@ struct WriteEntries {
 
     TOILE_HD void operator()(int part) const
     {
+        const int first_near = offsets.first_near + int(offsets.near[part]);
+        const int first_far = offsets.first_far + int(offsets.far[part]);
         for (int k = 0; k < entries.near_count[part]; ++k)
-            near_leaf[offsets.first_near + offsets.near[part] + k] = entries.near(part, k);
+            near_leaf[first_near + k] = entries.near(part, k);
         for (int k = 0; k < entries.far_count[part]; ++k)
-            far_cluster[offsets.first_far + offsets.far[part] + k] = entries.far(part, k);
+            far_cluster[first_far + k] = entries.far(part, k);
     }
 };
 

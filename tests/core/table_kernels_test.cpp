@@ -31,10 +31,10 @@ std::vector<double> slot_columns(const InverseColumns& inverse, View<const int> 
     return columns;
 }
 
-std::vector<int> exclusive_sums(const std::vector<int>& numbers)
+std::vector<long> exclusive_sums(const std::vector<int>& numbers)
 {
-    std::vector<int> sums(numbers.size());
-    std::exclusive_scan(numbers.begin(), numbers.end(), sums.begin(), 0);
+    std::vector<long> sums(numbers.size());
+    std::exclusive_scan(numbers.begin(), numbers.end(), sums.begin(), 0L);
     return sums;
 }
 
@@ -86,7 +86,7 @@ public:
 
 private:
     void write(const SlotColumns& slots, const ClusterColumns& clusters, const FoundEntries& entries,
-               const std::vector<int>& near_sums, const std::vector<int>& far_sums)
+               const std::vector<long>& near_sums, const std::vector<long>& far_sums)
     {
         const int first_near = int(table.near_leaf.size()), first_far = int(table.far_cluster.size());
         const EntryOffsets offsets{near_sums, far_sums, first_near, first_far};

@@ -100,8 +100,6 @@ public:
     {
         space.require(cuda::use_device(space.device().index), "choosing the device");
     }
-    /// @throws DeviceError when a library that launches kernels of its own answered that it could not.
-    void require(cuda::Status status) const { space_.require(status, "launching the kernels of", name_); }
     /// @throws DeviceError naming kernel, file and line when the launch was refused.
     void done() const { space_.launched(name_, where_); }
 

@@ -1,43 +1,48 @@
 #include "core/backend/cuda/scan.h"
 
-#ifdef __CUDACC__
-#include <cub/device/device_scan.cuh>
-#endif
-
 #include "core/backend/cuda/parallel.cuh"
+
+#ifdef __CUDACC__
+#include "core/backend/cuda/with_scratch.cuh"
+
+#include <cub/device/device_scan.cuh>
+#include <cub/device/device_select.cuh>
+#include <thrust/iterator/counting_iterator.h>
+#endif
 
 namespace toile {
 
-namespace {
-
-/// CUB's two calls: with no scratch it only says how many bytes it needs.
-cuda::Status scan([[maybe_unused]] void* scratch, [[maybe_unused]] std::size_t& bytes,
-                  [[maybe_unused]] View<const int> numbers, [[maybe_unused]] View<int> sums,
-                  [[maybe_unused]] CUstream_st* stream)
+void exclusive_scan(const CudaSpace& space, std::string_view name, View<const int> counts,
+                    [[maybe_unused]] View<long> first, [[maybe_unused]] DeviceScratch& scratch,
+                    CallSite where)
 {
-#ifdef __CUDACC__
-    return cuda::Status(int(
-        cub::DeviceScan::ExclusiveSum(scratch, bytes, numbers.data(), sums.data(), numbers.size(), stream)));
-#else
-    return cuda::Status::NotBuilt;
-#endif
-}
-
-} // namespace
-
-void exclusive_sums(const CudaSpace& space, std::string_view name, View<const int> numbers, View<int> sums,
-                    DeviceArray<unsigned char>& scratch, CallSite where)
-{
-    TOILE_ASSERT(numbers.size() == sums.size());
     const StageScope stage(name);
-    if (numbers.empty())
+    if (counts.empty())
         return;
     const CudaLaunch launch(space, name, where);
-    std::size_t bytes = 0;
-    launch.require(scan(nullptr, bytes, numbers, sums, space.stream()));
-    if (std::size_t(scratch.size()) < bytes)
-        scratch.resize(int(bytes));
-    launch.require(scan(scratch.view().data(), bytes, numbers, sums, space.stream()));
+#ifdef __CUDACC__
+    with_scratch(scratch, [&](void* memory, std::size_t& bytes) {
+        return cub::DeviceScan::ExclusiveScan(memory, bytes, counts.data(), first.data(), ::cuda::std::plus<>(),
+                                              0L, counts.size(), space.stream());
+    });
+#endif
+    launch.done();
+}
+
+void list_flagged(const CudaSpace& space, std::string_view name, View<const unsigned char> flags,
+                  [[maybe_unused]] View<int> places, [[maybe_unused]] View<int> count,
+                  [[maybe_unused]] DeviceScratch& scratch, CallSite where)
+{
+    const StageScope stage(name);
+    if (flags.empty())
+        return;
+    const CudaLaunch launch(space, name, where);
+#ifdef __CUDACC__
+    with_scratch(scratch, [&](void* memory, std::size_t& bytes) {
+        return cub::DeviceSelect::Flagged(memory, bytes, thrust::counting_iterator<int>(0), flags.data(),
+                                          places.data(), count.data(), flags.size(), space.stream());
+    });
+#endif
     launch.done();
 }
 
