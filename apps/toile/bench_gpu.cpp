@@ -5,6 +5,7 @@
 #include "apps/toile/command_line.h"
 #include "apps/toile/interrupt.h"
 #include "apps/toile/progress.h"
+#include "benchmarks/gpu/build_tables.h"
 #include "benchmarks/gpu/table.h"
 #include "core/backend/error.h"
 
@@ -12,11 +13,16 @@ namespace toile {
 
 namespace {
 
-const std::vector<std::string> kTables{"gpu_apply.csv", "gpu.md"};
+const std::vector<std::string> kTables{"gpu_apply.csv", "gpu.md", "gpu_tables.csv"};
 
 /// Sizes of the sheet [vertices]; tables of the largest take minutes to build on a few cores.
 const std::vector<int> kSizes{10'000, 50'000};
 const std::vector<int> kQuickSizes{2'000};
+
+/// Sizes whose tables are built on the device, and up to which the CPU builds them too: more takes it a
+/// minute [vertices].
+const std::vector<int> kBuildSizes{10'000, 50'000, 240'000};
+constexpr int kMostCompared = 60'000;
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -44,13 +50,21 @@ int bench_gpu(const BenchOptions& options)
         progress.update(k + 1, std::to_string(sizes[k]) + " vertices");
     }
 
-    std::cout << gpu::markdown_tables(report);
-    if (report.applies.size() < sizes.size()) {
+    std::vector<gpu::TableBuild> builds;
+    for (const int vertices : options.quick ? kQuickSizes : kBuildSizes)
+        if (!interrupt.requested())
+            builds.push_back(
+                gpu::measure_build(space, vertices, kStiffness, kTimeStep, vertices <= kMostCompared));
+
+    const std::string tables = gpu::markdown_tables(report) + "\n" + gpu::markdown_of(builds);
+    std::cout << tables;
+    if (interrupt.requested()) {
         std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
         return kExitFailure;
     }
-    write_tables(options.output,
-                 {{kTables[0], gpu::csv_of_applies(report)}, {kTables[1], gpu::markdown_tables(report)}});
+    write_tables(
+        options.output,
+        {{kTables[0], gpu::csv_of_applies(report)}, {kTables[1], tables}, {kTables[2], gpu::csv_of(builds)}});
     return kExitOk;
 }
 

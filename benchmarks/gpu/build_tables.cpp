@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "benchmarks/solvers/problem.h"
+#include "benchmarks/text_table.h"
 #include "core/linear/cholesky.h"
 #include "core/quadrature/device_table_builder.h"
 #include "quadrature2d/geodesic_places.h"
@@ -35,8 +36,8 @@ struct Input {
     ClusterTree tree;
     ClusterBasis basis;
 
-    Input(SparseMatrix matrix, const std::vector<Place>& places, std::vector<int> nodes)
-        : H(std::move(matrix)), diagonal(H.diagonal()), tree(places, std::move(nodes)), basis(tree, places)
+    Input(const SparseMatrix& matrix, const std::vector<Place>& places, std::vector<int> nodes)
+        : H(matrix), diagonal(H.diagonal()), tree(places, std::move(nodes)), basis(tree, places)
     {
     }
     View<const double> diagonal_view() const { return {diagonal.data(), int(diagonal.size())}; }
@@ -81,40 +82,75 @@ void measure_parts(const CudaSpace& space, const InvertedFactor& factor, const I
         timed(result.moments_s, [&] { builder.gather_moments(); });
         timed(result.lists_s, [&] { builder.append_lists(); });
     }
-    result.peak_mb = double(space.memory().device_bytes) / kMega;
+    result.held_mb = double(space.memory().device_bytes) / kMega;
+}
+
+/// A leaf's part of a table: near entries or far ones.
+struct LeafEntries {
+    const int* entries;
+    const float* weights;
+    int count;
+};
+
+/// @param weights_of_entry  of an entry
+LeafEntries part_of(const std::vector<int>& first, const std::vector<int>& entries,
+                    const std::vector<float>& weights, int weights_of_entry, int leaf)
+{
+    return {entries.data() + first[leaf], weights.data() + std::size_t(first[leaf]) * weights_of_entry,
+            first[leaf + 1] - first[leaf]};
+}
+
+bool have_equal_entries(const LeafEntries& a, const LeafEntries& b)
+{
+    return std::equal(a.entries, a.entries + a.count, b.entries, b.entries + b.count);
+}
+
+double largest_difference(const LeafEntries& a, const LeafEntries& b, int weights_of_entry)
+{
+    double largest = 0.0;
+    for (int k = 0; k < a.count * weights_of_entry; ++k)
+        largest = std::max(largest, std::abs(double(a.weights[k]) - double(b.weights[k])));
+    return largest;
 }
 
 /// Compares leaf by leaf: where lists differ, weights can't be compared.
-void compare(const KernelTable& table, const KernelTable& cpu, TableBuild::OnCpu& result)
+void compare(const KernelTable& table, const KernelTable& cpu, CpuBuild& result)
 {
+    constexpr int kNear = KernelTable::kNearWeights;
+    const int far_weights = cpu.rank * KernelTable::kTargets;
     double largest = 0.0;
     for (const float weight : cpu.near_weights)
         largest = std::max(largest, std::abs(double(weight)));
-    const auto same = [](const std::vector<int>& a, int a_first, int a_last, const std::vector<int>& b,
-                         int b_first, int b_last) {
-        return std::equal(a.begin() + a_first, a.begin() + a_last, b.begin() + b_first, b.begin() + b_last);
-    };
-    const auto differ = [&](const std::vector<float>& a, const std::vector<float>& b, long a_first,
-                            long b_first, long count) {
-        for (long k = 0; k < count; ++k)
-            result.difference =
-                std::max(result.difference, std::abs(double(a[a_first + k]) - b[b_first + k]) / largest);
-    };
-    const long near = KernelTable::kNearWeights, far = long(cpu.rank) * KernelTable::kTargets;
-    for (size_t leaf = 0; leaf + 1 < cpu.near_first.size(); ++leaf) {
-        const int a = table.near_first[leaf], b = cpu.near_first[leaf], c = table.far_first[leaf],
-                  d = cpu.far_first[leaf];
-        if (!same(table.near_leaf, a, table.near_first[leaf + 1], cpu.near_leaf, b,
-                  cpu.near_first[leaf + 1]) ||
-            !same(table.far_cluster, c, table.far_first[leaf + 1], cpu.far_cluster, d,
-                  cpu.far_first[leaf + 1])) {
+    for (int leaf = 0; leaf + 1 < int(cpu.near_first.size()); ++leaf) {
+        const LeafEntries near = part_of(table.near_first, table.near_leaf, table.near_weights, kNear, leaf);
+        const LeafEntries cpu_near = part_of(cpu.near_first, cpu.near_leaf, cpu.near_weights, kNear, leaf);
+        const LeafEntries far =
+            part_of(table.far_first, table.far_cluster, table.far_weights, far_weights, leaf);
+        const LeafEntries cpu_far =
+            part_of(cpu.far_first, cpu.far_cluster, cpu.far_weights, far_weights, leaf);
+        if (!have_equal_entries(near, cpu_near) || !have_equal_entries(far, cpu_far)) {
             ++result.different_leaves;
             continue;
         }
-        differ(table.near_weights, cpu.near_weights, a * near, b * near,
-               (cpu.near_first[leaf + 1] - b) * near);
-        differ(table.far_weights, cpu.far_weights, c * far, d * far, (cpu.far_first[leaf + 1] - d) * far);
+        result.difference = std::max({result.difference, largest_difference(near, cpu_near, kNear) / largest,
+                                      largest_difference(far, cpu_far, far_weights) / largest});
     }
+}
+
+std::vector<Row> rows_of(const std::vector<TableBuild>& builds)
+{
+    std::vector<Row> rows;
+    for (const TableBuild& b : builds) {
+        const auto of_cpu = [&](const char* form, double value) { return b.cpu ? format(form, value) : "-"; };
+        const CpuBuild cpu = b.cpu.value_or(CpuBuild{});
+        rows.push_back({std::to_string(b.vertices), format("%.2f", b.factor_s), of_cpu("%.2f", cpu.seconds),
+                        format("%.3f", b.gpu_s), format("%.3f", b.invert_s), format("%.3f", b.solve_s),
+                        format("%.3f", b.moments_s), format("%.3f", b.lists_s),
+                        of_cpu("%.1f", cpu.seconds / b.gpu_s), format("%.0f", b.table_mb),
+                        format("%.0f", b.held_mb), of_cpu("%.0f", cpu.different_leaves),
+                        of_cpu("%.1e", cpu.difference)});
+    }
+    return rows;
 }
 
 } // namespace
@@ -146,12 +182,25 @@ TableBuild measure_build(const CudaSpace& space, int vertices, double stiffness,
     if (is_compared) {
         std::optional<KernelTable> on_cpu;
         result.cpu.emplace();
-        result.cpu->seconds = seconds_of([&] {
-            on_cpu = build_kernel_table(factor, input.diagonal_view(), input.basis, {}, {});
-        });
+        result.cpu->seconds = seconds_of(
+            [&] { on_cpu = build_kernel_table(factor, input.diagonal_view(), input.basis, {}, {}); });
         compare(table->downloaded(), *on_cpu, *result.cpu);
     }
     return result;
+}
+
+std::string markdown_of(const std::vector<TableBuild>& builds)
+{
+    return markdown({"vertices", "factor s", "CPU s", "GPU s", "invert s", "solve s", "moments s", "lists s",
+                     "CPU / GPU", "table MB", "held MB", "other lists", "difference"},
+                    rows_of(builds));
+}
+
+std::string csv_of(const std::vector<TableBuild>& builds)
+{
+    return csv({"vertices", "factor_s", "cpu_s", "gpu_s", "invert_s", "solve_s", "moments_s", "lists_s",
+                "cpu_over_gpu", "table_mb", "held_mb", "other_lists", "difference"},
+               rows_of(builds));
 }
 
 } // namespace toile::gpu

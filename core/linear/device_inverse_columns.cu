@@ -36,11 +36,13 @@ std::size_t DeviceInverseColumns::column_bytes(const InvertedFactor& factor, int
     return (std::size_t(factor.size()) + 2 * std::size_t(front_rows)) * sizeof(double);
 }
 
-void DeviceInverseColumns::reserve(int columns)
+void DeviceInverseColumns::reserve(int columns, int front_rows)
 {
     TOILE_ASSERT(columns % kColumnMultiple == 0);
     stride_ = columns;
     x_.resize(factor_.size() * stride_);
+    fronts_.resize(front_rows * stride_);
+    solved_.resize(front_rows * stride_);
 }
 
 void DeviceInverseColumns::solve(View<const int> targets)
@@ -62,13 +64,10 @@ void DeviceInverseColumns::upload_plan(View<const int> targets)
         if (targets[c] >= 0)
             unit_row_host_[c] = row_of_[targets[c]];
     plan_ = plan_forward(factor_, unit_row_host_);
+    TOILE_ASSERT(plan_.front_rows * stride_ <= fronts_.size());
     unit_row_.upload(unit_row_host_);
     front_of_.upload(plan_.front_of);
     front_tiles_.upload(plan_.tiles.tiles);
-    if (fronts_.size() < plan_.front_rows * stride_) {
-        fronts_.resize(plan_.front_rows * stride_);
-        solved_.resize(plan_.front_rows * stride_);
-    }
 }
 
 void DeviceInverseColumns::eliminate(int level, int columns)

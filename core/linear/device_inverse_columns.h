@@ -20,7 +20,8 @@ public:
     DeviceInverseColumns(const CudaSpace& space, const InvertedFactor& factor);
 
     /// Makes room for blocks of up to `columns` columns, a multiple of kColumnMultiple.
-    void reserve(int columns);
+    /// @param front_rows  most rows of a block's fronts (plan_forward)
+    void reserve(int columns, int front_rows);
 
     /// Enqueues columns of A^-1.
     /// @param targets  indices of the columns, -1 for a column of zeros; at most as many as reserved

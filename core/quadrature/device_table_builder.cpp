@@ -44,32 +44,12 @@ int most_front_rows(const InvertedFactor& factor, const ClusterTree& tree, int c
 }
 
 /// What a column takes of the device's memory [bytes].
-std::size_t column_bytes(const InvertedFactor& factor, const ClusterBasis& basis, int columns)
+std::size_t column_bytes(const InvertedFactor& factor, const ClusterBasis& basis, int front_rows)
 {
     const std::size_t clusters = (basis.rank() + 1) * std::size_t(basis.tree().cluster_count());
     const std::size_t found = std::size_t(basis.tree().leaf_count() + FoundEntries::kMost) / kLeaf;
-    return DeviceInverseColumns::column_bytes(factor, most_front_rows(factor, basis.tree(), columns)) +
-           clusters * sizeof(double) + 3 * found * sizeof(int);
-}
-
-/// As many columns as are asked for, there is memory for, and whose numbers an int counts.
-int choose_columns(const CudaSpace& space, const InvertedFactor& factor, const ClusterBasis& basis, int most)
-{
-    TOILE_ASSERT(most > 0 && most % kMultiple == 0);
-    const int n = factor.size(), slots = basis.tree().nodes().size();
-    const int countable = kMostNumbers / std::max(n, basis.rank() * basis.tree().cluster_count() + 1);
-    if (countable < kMultiple)
-        throw InvalidInput("quadrature tables of " + std::to_string(n) + " nodes are too large for a GPU");
-    const int wanted =
-        std::min({most, (slots / kMultiple + 1) * kMultiple, countable / kMultiple * kMultiple});
-
-    const std::size_t of_column = column_bytes(factor, basis, wanted);
-    const double table = kTableReserve * sizeof(float) * n * expected_gathers(std::max(n, 1));
-    const std::size_t fixed = DeviceInverseColumns::fixed_bytes(factor) + std::size_t(table);
-    space.require_memory(fixed + kMultiple * of_column,
-                         "quadrature tables of " + std::to_string(n) + " nodes need about");
-    const double left = kBlockShare * double(space.free_memory() - fixed) / double(of_column);
-    return std::clamp(int(std::min(left, double(wanted))) / kMultiple * kMultiple, kMultiple, wanted);
+    return DeviceInverseColumns::column_bytes(factor, front_rows) + clusters * sizeof(double) +
+           3 * found * sizeof(int);
 }
 
 /// Grows to `needed` items, or more where the finished share of the table lets expect more.
@@ -87,10 +67,34 @@ void grow(DeviceArray<T>& array, std::size_t needed, double share)
 
 } // namespace
 
+/// As many columns as are asked for, there is memory for, and whose numbers an int counts.
+DeviceTableBuilder::BlockSize DeviceTableBuilder::choose_block(const CudaSpace& space,
+                                                               const InvertedFactor& factor,
+                                                               const ClusterBasis& basis, int most_columns)
+{
+    TOILE_ASSERT(most_columns > 0 && most_columns % kMultiple == 0);
+    const int n = factor.size(), slots = basis.tree().nodes().size();
+    const std::string who = "quadrature tables of " + std::to_string(n) + " nodes";
+    const int wanted = std::min(most_columns, (slots / kMultiple + 1) * kMultiple);
+    const int front_rows = most_front_rows(factor, basis.tree(), wanted);
+    const int most_rows = std::max({n, front_rows, basis.rank() * basis.tree().cluster_count(), 1});
+    const int countable = kMostNumbers / most_rows / kMultiple * kMultiple;
+    if (countable == 0)
+        throw InvalidInput(who + " are too large for a GPU");
+
+    const std::size_t of_column = column_bytes(factor, basis, front_rows);
+    const double table = kTableReserve * sizeof(float) * n * expected_gathers(std::max(n, 1));
+    const std::size_t fixed = DeviceInverseColumns::fixed_bytes(factor) + std::size_t(table);
+    space.require_memory(fixed + kMultiple * of_column, who + " need about");
+    const double left = kBlockShare * double(space.free_memory() - fixed) / double(of_column);
+    const int fitting = int(std::min(left, double(wanted))) / kMultiple * kMultiple;
+    return {std::max(std::min(fitting, countable), kMultiple), front_rows};
+}
+
 DeviceTableBuilder::DeviceTableBuilder(const CudaSpace& space, const InvertedFactor& factor,
                                        View<const double> diagonal, const ClusterBasis& basis,
                                        const KernelTable::Settings& settings, int most_columns)
-    : space_(space), basis_(basis), columns_(choose_columns(space, factor, basis, most_columns)),
+    : space_(space), basis_(basis), size_(choose_block(space, factor, basis, most_columns)),
       inverse_(space, factor), tree_(basis.view()), table_(space, basis.rank(), basis.tree().leaf_count()),
       leaves_(space, "tables/leaves"), transfers_(space, "tables/transfers"),
       diagonal_(space, "tables/diagonal"), limits_(space, "tables/limits"), nodes_(space, "tables/nodes"),
@@ -102,14 +106,14 @@ DeviceTableBuilder::DeviceTableBuilder(const CudaSpace& space, const InvertedFac
       totals_on_host_(space, "tables/totals", 2)
 {
     const ClusterTree& tree = basis.tree();
-    inverse_.reserve(columns_);
+    inverse_.reserve(size_.columns, size_.front_rows);
     upload_tree(diagonal, settings.tolerance);
-    moments_.resize(basis.rank() * tree.cluster_count() * columns_);
-    squares_.resize(tree.cluster_count() * columns_);
+    moments_.resize(basis.rank() * tree.cluster_count() * size_.columns);
+    squares_.resize(tree.cluster_count() * size_.columns);
 
     block_.part_level = std::min(FoundEntries::kLevel, tree.level_count() - 1);
     block_.parts = tree.level_size(block_.part_level);
-    const int parts = columns_ / kLeaf * block_.parts;
+    const int parts = size_.columns / kLeaf * block_.parts;
     found_.resize(parts * FoundEntries::kMost);
     for (DeviceArray<int>* counts : {&near_counts_, &far_counts_})
         counts->resize(parts + 1);
@@ -135,7 +139,7 @@ void DeviceTableBuilder::upload_tree(View<const double> diagonal, double toleran
 
 int DeviceTableBuilder::block_count() const
 {
-    return (basis_.tree().nodes().size() + columns_ - 1) / columns_;
+    return (basis_.tree().nodes().size() + size_.columns - 1) / size_.columns;
 }
 
 View<const int> DeviceTableBuilder::targets() const
@@ -145,8 +149,8 @@ View<const int> DeviceTableBuilder::targets() const
 
 void DeviceTableBuilder::solve(int block)
 {
-    block_.first = block * (columns_ / kLeaf);
-    block_.count = std::min(columns_ / kLeaf, basis_.tree().leaf_count() - block_.first);
+    block_.first = block * (size_.columns / kLeaf);
+    block_.count = std::min(size_.columns / kLeaf, basis_.tree().leaf_count() - block_.first);
     inverse_.solve(targets());
 }
 
@@ -184,7 +188,7 @@ DeviceKernelTable DeviceTableBuilder::take()
 
 ClusterColumns DeviceTableBuilder::clusters()
 {
-    return {basis_.rank(), {moments_.view().data(), columns_}, {squares_.view().data(), columns_}};
+    return {basis_.rank(), {moments_.view().data(), size_.columns}, {squares_.view().data(), size_.columns}};
 }
 
 SlotColumns DeviceTableBuilder::slots() { return {row_of_slot_.view(), inverse_.rows()}; }

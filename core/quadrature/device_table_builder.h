@@ -17,7 +17,7 @@ class DeviceTableBuilder {
 public:
     /// Targets of a block where the device has the memory. Fewer: more launches, and the top of the
     /// elimination tree does not fill the device.
-    static constexpr int kMostColumns = 512;
+    static constexpr int kMostColumns = 1024;
 
     /// @param space, basis  borrowed
     /// @param factor        of H, borrowed
@@ -41,6 +41,13 @@ public:
     DeviceKernelTable take();
 
 private:
+    struct BlockSize {
+        int columns = 0;    ///< of a full block
+        int front_rows = 0; ///< of its fronts, at most
+    };
+
+    static BlockSize choose_block(const CudaSpace& space, const InvertedFactor& factor,
+                                  const ClusterBasis& basis, int most_columns);
     View<const int> targets() const;
     void upload_tree(View<const double> diagonal, double tolerance);
     void find_entries();
@@ -55,7 +62,7 @@ private:
 
     const CudaSpace& space_;
     const ClusterBasis& basis_;
-    int columns_; ///< of a full block
+    BlockSize size_;
     DeviceInverseColumns inverse_;
     BasisView<double> tree_; ///< on the device
     LeafBlock block_;

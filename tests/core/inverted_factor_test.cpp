@@ -60,9 +60,9 @@ double difference(const SparseMatrix& A, const std::vector<int>& targets)
     const Cholesky cholesky(A);
     const InvertedFactor factor(cholesky.factor());
     const InverseColumns cpu(cholesky.factor());
-    std::vector<int> rows;
-    for (const int target : targets)
-        rows.push_back(target >= 0 ? cpu.row_of(target) : -1);
+    std::vector<int> rows(targets.size());
+    std::transform(targets.begin(), targets.end(), rows.begin(),
+                   [&](int target) { return target >= 0 ? cpu.row_of(target) : -1; });
     const int stride =
         int(rows.size() + ProductTile::kColumns - 1) / ProductTile::kColumns * ProductTile::kColumns;
     const std::vector<double> x = columns_by_kernels(factor, rows, stride);

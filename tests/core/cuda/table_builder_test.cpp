@@ -22,8 +22,8 @@ struct Problem {
     std::vector<unsigned char> fixed;
     QuadratureTables::Settings settings;
 
-    Problem(SparseMatrix matrix, std::vector<Place> where, const QuadratureTables::Settings& how = {})
-        : H(std::move(matrix)), places(std::move(where)), fixed(places.size(), 0), settings(how)
+    Problem(const SparseMatrix& matrix, std::vector<Place> where, const QuadratureTables::Settings& how = {})
+        : H(matrix), places(std::move(where)), fixed(places.size(), 0), settings(how)
     {
     }
     void fix(int v)
@@ -175,18 +175,40 @@ TEST_F(DeviceTableBuilderTest, SolvesWithoutADetourOverTheHost)
     EXPECT_LT(difference, 3e-6 * largest);
 }
 
+/// Leaves so many bytes free, or a little more.
+std::vector<DeviceArray<double>> take_all_but(std::size_t bytes, const CudaSpace& space)
+{
+    std::vector<DeviceArray<double>> taken;
+    for (std::size_t chunk = std::size_t(1) << 33; chunk >= std::size_t(1) << 22; chunk /= 2)
+        while (space.free_memory() > chunk + bytes)
+            taken.emplace_back(space, "test/taken", int(chunk / sizeof(double)));
+    return taken;
+}
+
+TEST_F(DeviceTableBuilderTest, TakesSmallerBlocksWhereMemoryIsShort)
+{
+    const Problem problem = grid(150, 150, 1e-3);
+    const std::shared_ptr<const QuadratureTables> tables = build_tables(problem.input(), {});
+    const KernelTable table = built(problem, tables->basis)->downloaded();
+    const auto taken = take_all_but(std::size_t(200) << 20, space());
+    int calls = 0;
+    const std::optional<DeviceKernelTable> again = built(problem, tables->basis, [&](double) {
+        ++calls;
+        return true;
+    });
+    EXPECT_GT(calls, 22500 / DeviceTableBuilder::kMostColumns + 1);
+    expect_equal_tables(again->downloaded(), tables->kernel);
+    EXPECT_EQ(again->far_weights.downloaded(), table.far_weights);
+}
+
 TEST_F(DeviceTableBuilderTest, SaysBeforehandWhenTheMemoryIsTooLittle)
 {
-    // All but a sixteenth of a gigabyte is taken.
-    std::vector<DeviceArray<double>> taken;
-    for (std::size_t chunk = std::size_t(1) << 33; chunk >= std::size_t(1) << 25; chunk /= 2)
-        while (space().free_memory() > chunk + (std::size_t(1) << 26))
-            taken.emplace_back(space(), "test/taken", int(chunk / sizeof(double)));
-    const Problem problem = grid(300, 300, 1e-3);
+    const auto taken = take_all_but(std::size_t(64) << 20, space());
+    const Problem problem = grid(150, 150, 1e-3);
     const std::shared_ptr<const QuadratureTables> tables = begin_tables(problem.input());
     const std::string message = message_of<DeviceError>([&] { built(problem, tables->basis); });
     EXPECT_TRUE(holds_in_order(message, "CUDA device 0 (",
-                               ") is out of memory: quadrature tables of 90000 nodes", " MiB, ",
+                               ") is out of memory: quadrature tables of 22500 nodes", " MiB, ",
                                " MiB are free"))
         << message;
 }
