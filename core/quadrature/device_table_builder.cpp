@@ -115,8 +115,10 @@ DeviceTableBuilder::DeviceTableBuilder(const CudaSpace& space, const InvertedFac
     block_.parts = tree.level_size(block_.part_level);
     const int parts = size_.columns / kLeaf * block_.parts;
     found_.resize(parts * FoundEntries::kMost);
-    for (DeviceArray<int>* counts : {&near_counts_, &far_counts_})
+    for (DeviceArray<int>* counts : {&near_counts_, &far_counts_}) {
         counts->resize(parts + 1);
+        counts->fill_zero(); // the sums' last item stands for none
+    }
     for (DeviceArray<long>* sums : {&near_sums_, &far_sums_})
         sums->resize(parts + 1);
 }
