@@ -148,7 +148,7 @@ private:
 /// Where the parts' entries go in the table: those of earlier parts come before them.
 struct EntryOffsets {
     View<const long> near, far; ///< [parts + 1] exclusive sums, all in the last
-    int first_near = 0;        ///< entries of earlier blocks
+    int first_near = 0;         ///< entries of earlier blocks
     int first_far = 0;
 };
 
