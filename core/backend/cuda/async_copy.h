@@ -2,10 +2,6 @@
 
 #include "core/backend/types.h"
 
-#ifdef __CUDACC__
-#include <cuda_pipeline.h>
-#endif
-
 namespace toile {
 
 /// Copies T, of 8 or 16 bytes and aligned to them, from a device's memory to the memory that a block of
@@ -16,10 +12,27 @@ TOILE_HD void copy_async(T* to, const T* from, bool is_outside)
 {
     static_assert(sizeof(T) == 8 || sizeof(T) == 16);
 #ifdef __CUDA_ARCH__
-    __pipeline_memcpy_async(to, from, sizeof(T), is_outside ? sizeof(T) : 0);
+    const auto shared = unsigned(__cvta_generic_to_shared(to));
+    asm volatile("cp.async.ca.shared.global [%0], [%1], %2, %3;" ::"r"(shared), "l"(from), "n"(sizeof(T)),
+                 "r"(is_outside ? 0U : unsigned(sizeof(T)))
+                 : "memory");
 #else
     *to = is_outside ? T{} : *from;
 #endif
 }
+
+#ifdef __CUDACC__
+
+/// Closes a group of this thread's copies, which may be empty.
+__device__ inline void commit_copies() { asm volatile("cp.async.commit_group;" ::: "memory"); }
+
+/// Waits until at most `Pending` of this thread's groups are still on their way.
+template <int Pending>
+__device__ void wait_for_copies()
+{
+    asm volatile("cp.async.wait_group %0;" ::"n"(Pending) : "memory");
+}
+
+#endif
 
 } // namespace toile

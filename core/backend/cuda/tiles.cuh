@@ -26,17 +26,17 @@ __global__ void __launch_bounds__(Kernel::kThreads, kTileBlocks)
     for (int step = 0; step < kTileStages - 1; ++step) {
         if (step < steps)
             work.load(step, stages[step]);
-        __pipeline_commit();
+        commit_copies();
     }
     typename Kernel::Sums sums{};
     for (int step = 0; step < steps; ++step) {
         // The stage of this step has come, and all threads are done with the one that is loaded next.
-        __pipeline_wait_prior(kTileStages - 2);
+        wait_for_copies<kTileStages - 2>();
         __syncthreads();
         const int next = step + kTileStages - 1;
         if (next < steps)
             work.load(next, stages[next % kTileStages]);
-        __pipeline_commit();
+        commit_copies();
         work.add(stages[step % kTileStages], sums);
     }
     work.store(sums);
