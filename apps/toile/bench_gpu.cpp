@@ -13,7 +13,7 @@ namespace toile {
 
 namespace {
 
-const std::vector<std::string> kTables{"gpu_apply.csv", "gpu.md", "gpu_tables.csv"};
+const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu.md", "gpu_tables.csv"};
 
 /// Sizes of the sheet [vertices]; tables of the largest take minutes to build on a few cores.
 const std::vector<int> kSizes{10'000, 50'000};
@@ -23,6 +23,10 @@ const std::vector<int> kQuickSizes{2'000};
 /// minute [vertices].
 const std::vector<int> kBuildSizes{10'000, 50'000, 240'000};
 constexpr int kMostCompared = 60'000;
+
+/// Steps: as the paper's Cloth scene, the same number of vertices in one sheet, and as its Runway scene.
+const std::vector<gpu::StepCase> kSteps{{5, 10'000}, {1, 50'000}, {1, 240'000}};
+const std::vector<gpu::StepCase> kQuickSteps{{2, 1'000}};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -41,13 +45,26 @@ int bench_gpu(const BenchOptions& options)
         throw DeviceError("bench gpu: no CUDA device: " + reason);
     const CudaSpace space(0);
     const InterruptGuard interrupt;
-    gpu::Report report{
-        space.device(), gpu::copy_bandwidth(space, kLargeCopy), gpu::copy_bandwidth(space, kSmallCopy), {}};
+    gpu::Report report{space.device(),
+                       gpu::copy_bandwidth(space, kLargeCopy),
+                       gpu::copy_bandwidth(space, kSmallCopy),
+                       {},
+                       {}};
     const std::vector<int>& sizes = options.quick ? kQuickSizes : kSizes;
-    Progress progress("size", int(sizes.size()), options.quiet);
-    for (int k = 0; k < int(sizes.size()) && !interrupt.requested(); ++k) {
+    const std::vector<gpu::StepCase>& steps = options.quick ? kQuickSteps : kSteps;
+    Progress progress("case", int(sizes.size() + steps.size()), options.quiet);
+    int done = 0;
+    for (size_t k = 0; k < sizes.size() && !interrupt.requested(); ++k) {
         report.applies.push_back(gpu::measure_apply(space, sizes[k], kStiffness, kTimeStep));
-        progress.update(k + 1, std::to_string(sizes[k]) + " vertices");
+        progress.update(++done, "solves of " + std::to_string(sizes[k]) + " vertices");
+    }
+    for (size_t k = 0; k < steps.size() && !interrupt.requested(); ++k) {
+        gpu::StepCase what = steps[k];
+        what.stiffness = kStiffness;
+        what.dt = kTimeStep;
+        report.steps.push_back(gpu::measure_step(space, what));
+        progress.update(++done, "steps of " + std::to_string(what.cloths) + " x " +
+                                    std::to_string(what.vertices) + " vertices");
     }
 
     std::vector<gpu::TableBuild> builds;
@@ -62,9 +79,10 @@ int bench_gpu(const BenchOptions& options)
         std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
         return kExitFailure;
     }
-    write_tables(
-        options.output,
-        {{kTables[0], gpu::csv_of_applies(report)}, {kTables[1], tables}, {kTables[2], gpu::csv_of(builds)}});
+    write_tables(options.output, {{kTables[0], gpu::csv_of_applies(report)},
+                                  {kTables[1], gpu::csv_of_steps(report)},
+                                  {kTables[2], tables},
+                                  {kTables[3], gpu::csv_of(builds)}});
     return kExitOk;
 }
 

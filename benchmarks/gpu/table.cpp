@@ -18,6 +18,17 @@ std::vector<Row> rows_of(const Report& report)
     return rows;
 }
 
+std::vector<Row> step_rows_of(const Report& report)
+{
+    std::vector<Row> rows;
+    for (const Step& s : report.steps)
+        rows.push_back({std::to_string(s.cloths), std::to_string(s.vertices), std::to_string(s.iterations),
+                        format("%.2f", s.device_ms), format("%.1f", 1e3 * s.device_ms / s.iterations),
+                        format("%.1f", s.cpu_ms), format("%.1f", s.cpu_ms / s.device_ms),
+                        format("%.1e", s.difference)});
+    return rows;
+}
+
 } // namespace
 
 std::string markdown_tables(const Report& report)
@@ -26,7 +37,18 @@ std::string markdown_tables(const Report& report)
            format("%.0f", report.small_copy_gbs) + " GB/s inside the L2 cache\n\n" +
            markdown({"vertices", "gathers", "table MB", "moments us", "sums us", "solve us", "sums GB/s",
                      "CPU us", "CPU / GPU", "difference", "tables s"},
-                    rows_of(report));
+                    rows_of(report)) +
+           "\nSteps without contact\n\n" +
+           markdown({"cloths", "vertices of each", "iterations", "step ms", "iteration us", "CPU ms",
+                     "CPU / GPU", "difference m"},
+                    step_rows_of(report));
+}
+
+std::string csv_of_steps(const Report& report)
+{
+    return csv({"cloths", "vertices", "iterations", "step_ms", "iteration_us", "cpu_ms", "cpu_over_gpu",
+                "difference_m"},
+               step_rows_of(report));
 }
 
 std::string csv_of_applies(const Report& report)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "benchmarks/gpu/apply.h"
+#include "benchmarks/gpu/step.h"
 
 namespace toile::gpu {
 
@@ -13,9 +14,11 @@ struct Report {
     double copy_gbs = 0.0;       ///< [GB/s] read and written, of arrays that no cache holds
     double small_copy_gbs = 0.0; ///< of arrays that the L2 cache holds
     std::vector<Apply> applies;
+    std::vector<Step> steps;
 };
 
 std::string markdown_tables(const Report& report);
 std::string csv_of_applies(const Report& report);
+std::string csv_of_steps(const Report& report);
 
 } // namespace toile::gpu

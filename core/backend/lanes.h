@@ -54,6 +54,18 @@ struct alignas(Count * sizeof(float)) Floats {
     friend TOILE_HD Floats operator*(float factor, const Floats& a) { return a * factor; }
 };
 
+/// A vector and a hole: one load of 16 bytes on a GPU.
+using PaddedVec3 = Floats<4>;
+
+TOILE_HD inline PaddedVec3 padded(const Vec3& v)
+{
+    PaddedVec3 result(0.0F);
+    for (int a = 0; a < 3; ++a)
+        result.value[a] = float(v[a]);
+    return result;
+}
+TOILE_HD inline Vec3 unpadded(const PaddedVec3& v) { return Vec3(double(v[0]), double(v[1]), double(v[2])); }
+
 /// Numbers from memory that is aligned as T.
 template <typename T>
 TOILE_HD T load_as(const float* numbers)

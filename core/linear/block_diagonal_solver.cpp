@@ -2,34 +2,9 @@
 
 #include <algorithm>
 
-#include "core/backend/error.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
-
-namespace {
-
-/// Rows and columns [first, first + size) of H.
-SparseMatrix block_of(const SparseMatrix& H, int first, int size)
-{
-    Eigen::VectorXi counts(size);
-    for (int i = 0; i < size; ++i)
-        counts[i] = H.outerIndexPtr()[first + i + 1] - H.outerIndexPtr()[first + i];
-    SparseMatrix block(size, size);
-    block.reserve(counts);
-    for (int i = 0; i < size; ++i)
-        for (SparseMatrix::InnerIterator entry(H, first + i); entry; ++entry) {
-            const int column = int(entry.col()) - first;
-            if (column < 0 || column >= size)
-                throw InvalidInput("row " + std::to_string(first + i) + " of H is coupled to row " +
-                                   std::to_string(entry.col()) + " of another block");
-            block.insert(i, column) = entry.value();
-        }
-    block.makeCompressed();
-    return block;
-}
-
-} // namespace
 
 BlockDiagonalSolver::BlockDiagonalSolver(std::vector<Block> blocks)
 {
@@ -43,7 +18,7 @@ BlockDiagonalSolver::BlockDiagonalSolver(std::vector<Block> blocks)
 void BlockDiagonalSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
 {
     for (const Part& part : parts_)
-        part.solver->update(block_of(H, part.first, part.size), fixed.subview(part.first, part.size));
+        part.solver->update(diagonal_block(H, part.first, part.size), fixed.subview(part.first, part.size));
 }
 
 void BlockDiagonalSolver::begin_step()

@@ -33,4 +33,8 @@ inline Vec3 row_times(const SparseMatrix& A, int row, View<const Vec3> x)
     return row_times<Vec3>(A, row, x);
 }
 
+/// Rows and columns [first, first + size) of H.
+/// @throws InvalidInput where an entry of these rows lies outside the block
+SparseMatrix diagonal_block(const SparseMatrix& H, int first, int size);
+
 } // namespace toile

@@ -5,20 +5,11 @@
 #include <utility>
 
 #include "core/linear/field.h"
+#include "core/pd/step_tolerance.h"
 
 namespace toile {
 
 namespace {
-
-/// Bounds of the tolerance by the farthest predicted move of a step [-]: at small steps cloth that begins to
-/// fall moves less than the tolerance, and would be left hanging in the air. Never less than kMinTolerance of
-/// the tolerance asked for: without forces nothing moves at all.
-constexpr double kTolerancePerMove = 0.1;
-constexpr double kMinTolerance = 0.002;
-
-/// Share of the tolerance [-] for a minimisation that begins where the cloth is. Cloth at rest takes no
-/// iteration there; larger lets stiff cloth rest before it has found its shape.
-constexpr double kStandingTolerance = 0.1;
 
 /// How often the end of a step is satisfied at most, where cloth is brought back far again and again. A
 /// walking skirt asks for more than four and at most seven (docs/collision/cloth.md).
@@ -78,13 +69,12 @@ StepStart Body::start_of(double dt) const
     return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(), dt};
 }
 
-/// Far enough below what moves in this step.
 double Body::tolerance() const
 {
     double farthest = 0.0;
     for (size_t i = 0; i < x_.size(); ++i)
         farthest = std::max(farthest, (prediction_[i] - x_[i]).norm());
-    return std::clamp(kTolerancePerMove * farthest, kMinTolerance * settings_.tolerance, settings_.tolerance);
+    return StepTolerance{settings_.tolerance}.of_step(farthest);
 }
 
 /// Begins again at the positions of t0 where standing still is better than what was found from the
@@ -112,7 +102,7 @@ OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& object
         return found;
 
     x_t1_ = standing_;
-    settings.tolerance *= kStandingTolerance;
+    settings.tolerance *= StepTolerance::kStanding;
     OuterLoop::Outcome outcome = outer_->minimise(objective, x_t1_, settings);
     outcome.iterations += found.iterations;
     outcome.linear_iterations += found.linear_iterations;

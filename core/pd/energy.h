@@ -9,6 +9,8 @@
 
 namespace toile {
 
+class DeviceEnergies;
+
 /// What becomes of directions in which an energy bends downwards.
 enum class Definiteness {
     Exact,     ///< the Hessian as it is
@@ -48,6 +50,10 @@ public:
 
     /// Adds the part that depends on x [vertices]. Same bits for every thread count.
     virtual void add_curvature(View<const Vec3>, Definiteness, BlockWindow) {}
+
+    /// Adds itself to the terms of a body on a GPU, its vertex 0 being the body's `first_vertex`. False where
+    /// it has no such form.
+    virtual bool add_to(DeviceEnergies&, [[maybe_unused]] int first_vertex) { return false; }
 };
 
 /// Diagonal of an energy's part of H [vertices] [N/m].

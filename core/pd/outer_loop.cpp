@@ -4,26 +4,11 @@
 #include <cmath>
 
 #include "core/linear/field.h"
+#include "core/pd/line_search.h"
 
 namespace toile {
 
-namespace {
-
-/// Share of the predicted decrease that a step must reach [-] (Armijo).
-constexpr double kSufficientDecrease = 1e-4;
-
-/// Rounding noise of an objective value relative to its size [-]: differences below it prove nothing.
-constexpr double kValueNoise = 1e-14;
-
-/// Share of the tolerance [-] below which a last move is not worth looking where it leads.
-constexpr double kNothing = 1e-4;
-
-/// Halvings (or stronger cuts) before a direction is given up.
-constexpr int kMaxBacktracks = 12;
-
-} // namespace
-
-int OuterLoop::max_trials() const { return kMaxBacktracks; }
+int OuterLoop::max_trials() const { return LineSearch::kMaxTrials; }
 
 OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const Settings& settings)
 {
@@ -39,7 +24,7 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
         outcome.displacement = max_norm(direction_);
         outcome.converged = outcome.displacement <= settings.tolerance &&
                             objective.is_minimiser(gradient_, direction_, settings.tolerance);
-        if (outcome.converged && outcome.displacement <= kNothing * settings.tolerance)
+        if (outcome.converged && outcome.displacement <= kNegligibleMove * settings.tolerance)
             break;
 
         // The last move is known and is made too. Below the tolerance, it is the momentum of small lasting
@@ -67,25 +52,21 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
 /// @return the accepted step length, 0 when there is none
 double OuterLoop::line_search(Objective& objective, View<Vec3> x, double& value)
 {
-    const double slope = dot(gradient_, direction_);
-    if (!(slope < 0.0))
+    LineSearch search{value, dot(gradient_, direction_)};
+    if (!(search.slope < 0.0))
         return 0.0;
 
-    double step = 1.0;
     for (int attempt = 0; attempt < max_trials(); ++attempt) {
         parallel_for(
-            kCpu, "outer/trial", x.size(), [&](int i) { trial_[i] = x[i] + step * direction_[i]; },
+            kCpu, "outer/trial", x.size(), [&](int i) { trial_[i] = x[i] + search.step * direction_[i]; },
             kFieldGrain);
         const double trial_value = objective.evaluate(trial_, trial_gradient_);
-        if (trial_value <= value + kSufficientDecrease * step * slope + kValueNoise * std::abs(value)) {
+        if (search.accepts(trial_value)) {
             std::copy(trial_.begin(), trial_.end(), x.begin());
             value = trial_value;
-            return step;
+            return search.step;
         }
-        // Minimum of the parabola through value, slope and trial value, kept away from both ends.
-        const double excess = trial_value - value - step * slope;
-        const double parabola = std::isfinite(excess) ? -0.5 * slope * step * step / excess : 0.0;
-        step = std::clamp(parabola, 0.1 * step, 0.5 * step);
+        search.shorten(trial_value);
     }
     return 0.0;
 }

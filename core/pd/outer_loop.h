@@ -6,6 +6,9 @@
 
 namespace toile {
 
+/// Share of the tolerance [-] below which a last move is not worth looking where it leads.
+inline constexpr double kNegligibleMove = 1e-4;
+
 /// Descent that every method of the outer loop shares: a direction from the method, Armijo backtracking along
 /// it [Nocedal & Wright 2006, alg. 3.1], and one rule for when to stop. The value never rises.
 ///

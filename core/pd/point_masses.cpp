@@ -1,15 +1,15 @@
 #include "core/pd/point_masses.h"
 
 #include "core/backend/parallel.h"
+#include "core/pd/step_kernels.h"
 
 namespace toile {
 
 void PointMasses::predict(double dt, View<const Vec3> acceleration, View<const unsigned char> fixed,
                           View<const Vec3> targets, View<Vec3> prediction) const
 {
-    parallel_for(kCpu, "pd/predict", int(x_.size()), [&](int i) {
-        prediction[i] = fixed[i] ? targets[i] : Vec3(x_[i] + dt * (v_[i] + dt * acceleration[i]));
-    });
+    parallel_for(kCpu, "pd/predict", int(x_.size()),
+                 PredictVertex{x_, v_, acceleration, fixed, targets, dt, prediction});
 }
 
 /// What the constraint moves becomes velocity: it is a force like any other.

@@ -19,6 +19,10 @@ public:
     void add_constant_curvature(Triplets& S) const override;
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
+    bool add_to(DeviceEnergies& energies, int first_vertex) override
+    {
+        return energy_->add_to(energies, first_ + first_vertex);
+    }
 
 private:
     std::shared_ptr<Energy> energy_;

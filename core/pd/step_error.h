@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/backend/types.h"
 
 namespace toile {
@@ -12,6 +14,33 @@ namespace toile {
 /// the true error within a factor of two or so over four decades (docs/core/pd.md).
 class StepError {
 public:
+    /// What it takes of all vertices.
+    struct Sums {
+        double mass = 0.0;     ///< [kg]
+        double move = 0.0;     ///< |move|^2_M
+        double force = 0.0;    ///< |M^-1 g|^2_M
+        double driving = 0.0;  ///< |q* - x0|^2_M
+        double opposing = 0.0; ///< g . (q* - x0)
+
+        TOILE_HD Sums& operator+=(const Sums& other)
+        {
+            mass += other.mass;
+            move += other.move;
+            force += other.force;
+            driving += other.driving;
+            opposing += other.opposing;
+            return *this;
+        }
+
+        /// StepError::is_within().
+        TOILE_HD bool are_within(double tolerance, double dt2) const
+        {
+            const double least = std::sqrt(move), most = dt2 * std::sqrt(force);
+            return least * most <= tolerance * tolerance * mass &&
+                   dt2 * std::fabs(opposing) <= kMostUnanswered * driving;
+        }
+    };
+
     /// @param masses      [vertices] [kg]
     /// @param fixed       [vertices] 1: left out
     /// @param start       [vertices] positions at t0 [m]
@@ -27,7 +56,9 @@ public:
     bool is_within(double tolerance, View<const Vec3> gradient, View<const Vec3> move) const;
 
 private:
-    struct Sums;
+    /// Share [-] of what drives a step, M (q* - x0) / dt^2, that may be left in the gradient.
+    static constexpr double kMostUnanswered = 0.3;
+
     Sums sums(View<const Vec3> gradient, View<const Vec3> move) const;
 
     View<const double> masses_;

@@ -2,6 +2,7 @@
 
 #include "core/linear/field.h"
 #include "core/pd/step_error.h"
+#include "core/pd/step_kernels.h"
 
 namespace toile {
 
@@ -13,13 +14,9 @@ StepObjective::StepObjective(const System& system, const StepStart& start, Activ
 
 double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
 {
-    const double inverse_dt2 = 1.0 / (start_.dt * start_.dt);
-    const View<const double> masses = system_.masses();
-    double value = parallel_sum(kCpu, x.size(), 0.0, [&](int i) {
-        const Vec3 away = x[i] - start_.prediction[i];
-        gradient[i] = masses[i] * inverse_dt2 * away;
-        return 0.5 * gradient[i].dot(away);
-    });
+    double value = parallel_sum(
+        kCpu, x.size(), 0.0,
+        InertiaOfVertex{system_.masses(), start_.prediction, 1.0 / (start_.dt * start_.dt), x, gradient});
     value += system_.add_gradient(x, gradient);
     if (active_)
         value += active_->add_gradient(x, gradient);

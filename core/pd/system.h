@@ -34,6 +34,8 @@ public:
     View<const double> diagonal() const { return diagonal_; }
     const SparseMatrix& matrix() const { return H_; }
     const GlobalSolver& solver() const { return *solver_; }
+    GlobalSolver& solver() { return *solver_; }
+    const std::vector<std::shared_ptr<Energy>>& energies() const { return energies_; }
 
     /// Energies at x [J]; adds their gradients [N].
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const;

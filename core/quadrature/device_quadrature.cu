@@ -30,21 +30,24 @@ std::vector<int> others_of(View<const int> slots, int node_count)
 
 } // namespace
 
-DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count)
-    : DeviceQuadrature(space, tables.basis, DeviceKernelTable(space, tables.kernel), node_count)
+DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
+                                   const std::vector<int>& first)
+    : DeviceQuadrature(space, tables.basis, DeviceKernelTable(space, tables.kernel), node_count, first)
 {
 }
 
 DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis,
-                                   DeviceKernelTable kernel, int node_count)
+                                   DeviceKernelTable kernel, int node_count, const std::vector<int>& first)
     : space_(space), kernel_(std::move(kernel)), leaves_(space, "quadrature/leaves"),
       transfers_(space, "quadrature/transfers"), nodes_(space, "quadrature/nodes"),
-      others_(space, "quadrature/others"), sources_(space, "quadrature/sources", basis.tree().nodes().size()),
-      moments_(space, "quadrature/moments", basis.rank() * basis.tree().cluster_count())
+      others_(space, "quadrature/others"), first_(space, "quadrature/first"),
+      sources_(space, "quadrature/sources", int(first.size()) * basis.tree().nodes().size()),
+      moments_(space, "quadrature/moments", int(first.size()) * basis.rank() * basis.tree().cluster_count())
 {
     leaves_.upload(single(basis.leaves()));
     transfers_.upload(single(basis.transfers()));
     nodes_.upload(basis.tree().nodes());
+    first_.upload(first);
     others_.upload(others_of(basis.tree().nodes(), node_count));
 
     const BasisView<double>& view = basis.view();
@@ -70,9 +73,12 @@ void DeviceQuadrature::solve(View<const Vec3> b, View<Vec3> x)
 
 void DeviceQuadrature::gather_moments(View<const Vec3> b)
 {
-    parallel_for(space_, "quadrature/sort", nodes_.size(), SortIntoSlots{nodes_.view(), b, sources_.view()});
-    parallel_climb(space_, "quadrature/moments", basis_.leaf_count, basis_.rank,
-                   ClimbMoments{basis_, sources_.view(), moments_.view()});
+    const int bodies = first_.size();
+    parallel_for(space_, "quadrature/sort", sources_.size(),
+                 SortIntoSlots{nodes_.view(), first_.view(), b, sources_.view()});
+    parallel_climb(space_, "quadrature/moments", bodies, basis_.leaf_count, basis_.rank,
+                   ClimbMoments{basis_, sources_.view(), moments_.view(), nodes_.size(),
+                                moments_.size() / (bodies * basis_.rank)});
 }
 
 void DeviceQuadrature::gather(View<const Vec3> b, View<Vec3> x)
@@ -81,15 +87,16 @@ void DeviceQuadrature::gather(View<const Vec3> b, View<Vec3> x)
         gather_leaves<rank_of(Extent::Surface)>(x);
     else
         gather_leaves<rank_of(Extent::Volume)>(x);
-    parallel_for(space_, "quadrature/others", others_.size(), CopyOthers{others_.view(), b, x});
+    parallel_for(space_, "quadrature/others", first_.size() * others_.size(),
+                 CopyOthers{others_.view(), first_.view(), b, x});
 }
 
 template <int Rank>
 void DeviceQuadrature::gather_leaves(View<Vec3> x)
 {
-    parallel_for_teams(
-        space_, "quadrature/gather", basis_.leaf_count,
-        GatherLeafByTeam<Rank, kWidth>{kernel_.view(), sources_.view(), moments_.view(), nodes_.view(), x});
+    parallel_for_teams(space_, "quadrature/gather", first_.size() * basis_.leaf_count,
+                       GatherLeafByTeam<Rank, kWidth>{kernel_.view(), sources_.view(), moments_.view(),
+                                                      nodes_.view(), first_.view(), x});
 }
 
 } // namespace toile

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/backend/cuda/array.h"
 #include "core/quadrature/device_kernel_table.h"
 #include "core/quadrature/device_kernels.h"
@@ -8,21 +10,25 @@
 namespace toile {
 
 /// QuadratureOperator on a GPU: the same tables and sums, in single precision throughout and in another
-/// order; the same bits in every run. Its tables stay on the device.
+/// order; the same bits in every run. Its tables stay on the device and serve any number of equal bodies at
+/// once.
 class DeviceQuadrature {
 public:
     /// @param space   borrowed, as what the tables are copied to
-    /// @param tables  of n nodes, not needed afterwards
+    /// @param tables  of one body, not needed afterwards
+    /// @param node_count  of one body
+    /// @param first   [bodies] where the nodes of each begin among those of all
     /// @throws DeviceError where the device has not the memory
-    DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count);
+    DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
+                     const std::vector<int>& first = {0});
 
     /// The same from a table that was built on the device.
     /// @param basis  that the table was built with, not needed afterwards
     DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis, DeviceKernelTable kernel,
-                     int node_count);
+                     int node_count, const std::vector<int>& first = {0});
 
-    /// Enqueues x = H^-1 b, nearly; as it is for fixed nodes.
-    /// @param b, x  [n] on the device; not the same array
+    /// Enqueues x = H^-1 b, nearly, for every body; as it is for fixed nodes.
+    /// @param b, x  [nodes of all] on the device; not the same array
     void solve(View<const Vec3> b, View<Vec3> x);
 
     /// Its two passes, for whoever times them: moments of b, then the sums of every leaf.
@@ -40,7 +46,7 @@ private:
     BasisView<float> basis_;
     DeviceKernelTable kernel_;
     DeviceArray<float> leaves_, transfers_;
-    DeviceArray<int> nodes_, others_;
+    DeviceArray<int> nodes_, others_, first_;
     DeviceArray<PaddedVec3> sources_, moments_;
 };
 

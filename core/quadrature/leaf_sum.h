@@ -39,11 +39,14 @@ struct LeafSum {
     TOILE_HD void add(const KernelView& table, View<const Vector> sources, View<const Vector> moments,
                       int leaf, const LeafPart& part)
     {
+        LeafSum sum = *this; // in registers: in memory it might be among the weights
         for (int e = table.near_first[leaf] + part.group; e < table.near_first[leaf + 1]; e += part.groups)
-            add_entry<ClusterTree::kLeaf>(table.near_weights, e, part.first_target,
-                                          &sources[table.near_leaf[e] * ClusterTree::kLeaf]);
+            sum.template add_entry<ClusterTree::kLeaf>(table.near_weights, e, part.first_target,
+                                                       &sources[table.near_leaf[e] * ClusterTree::kLeaf]);
         for (int e = table.far_first[leaf] + part.group; e < table.far_first[leaf + 1]; e += part.groups)
-            add_entry<Rank>(table.far_weights, e, part.first_target, &moments[table.far_cluster[e] * Rank]);
+            sum.template add_entry<Rank>(table.far_weights, e, part.first_target,
+                                         &moments[table.far_cluster[e] * Rank]);
+        *this = sum;
     }
 
 private:

@@ -5,6 +5,8 @@
 
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
+#include "garment/energy/bending_kernels.h"
+#include "garment/energy/device_bending.h"
 
 namespace toile {
 
@@ -103,20 +105,18 @@ void Bending::add_constant_curvature(Triplets& S) const
 
 double Bending::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
-    // Rows of K sum to zero, so differences to the own vertex replace positions: no rounding far from the
-    // origin.
-    parallel_for(kCpu, "bending/multiply", x.size(), [&](int i) {
-        Vec3 force = Vec3::Zero();
-        double energy = 0.0;
-        for (SparseMatrix::InnerIterator entry(K_, i); entry; ++entry) {
-            const Vec3 difference = x[int(entry.col())] - x[i];
-            force += entry.value() * difference;
-            energy -= 0.25 * entry.value() * difference.squaredNorm();
-        }
-        gradient[i] += force;
-        vertex_energy_[i] = energy;
-    });
+    const int n = int(K_.rows());
+    const BendVertex bend{View<const int>(K_.outerIndexPtr(), n + 1),
+                          View<const int>(K_.innerIndexPtr(), int(K_.nonZeros())),
+                          View<const double>(K_.valuePtr(), int(K_.nonZeros())), x, gradient};
+    parallel_for(kCpu, "bending/multiply", n, [&](int i) { vertex_energy_[i] = bend(i); });
     return parallel_sum(kCpu, x.size(), 0.0, [&](int i) { return vertex_energy_[i]; });
+}
+
+bool Bending::add_to(DeviceEnergies& energies, int first_vertex)
+{
+    energies.of_kind<DeviceBending>().add(K_, first_vertex);
+    return true;
 }
 
 } // namespace toile

@@ -39,6 +39,7 @@ public:
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets& S) const override; ///< K, in H or not
+    bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
     /// K [vertices x vertices] [N/m]: W = 1/2 x^T K x for x, y and z alike; rows sum to zero.
     const SparseMatrix& matrix() const { return K_; }

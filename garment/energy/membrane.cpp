@@ -6,6 +6,7 @@
 
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
+#include "garment/energy/device_membrane.h"
 #include "garment/energy/membrane_lanes.h"
 
 namespace toile {
@@ -94,6 +95,12 @@ void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, Bloc
                            corners.items[k] % 3, K);
         }
     });
+}
+
+bool Membrane::add_to(DeviceEnergies& energies, int first_vertex)
+{
+    energies.of_kind<DeviceMembrane>().add(*rest_, weights_, first_vertex);
+    return true;
 }
 
 } // namespace toile

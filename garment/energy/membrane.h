@@ -35,6 +35,7 @@ public:
     void add_constant_curvature(Triplets&) const override {}
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
+    bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
     /// Weights of the three terms above [N/m].
     const MembraneWeights& weights() const { return weights_; }

@@ -6,8 +6,6 @@
 
 namespace toile {
 
-class CudaSpace;
-
 /// det(C + d I) at or below which a triangle counts as collapsed [-]; 4 at rest. Raising it freezes thin
 /// triangles; lowering it lets rounding noise choose their direction.
 constexpr double kCollapsed = 1e-24;
@@ -88,7 +86,8 @@ struct ProjectMembraneTriangle {
     View<const Triangle> tri;  ///< [triangles] vertex indices
     View<const Mat2> rest_inv; ///< [triangles] inverse rest edge matrices [1/m]
     View<const double> area;   ///< [triangles] rest areas [m^2]
-    MembraneWeights weights;
+    View<const int> fabric;    ///< [triangles] into weights
+    View<const MembraneWeights> weights;
     View<Mat32> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
     View<double> energy;         ///< [triangles] out: [J]
 
@@ -98,7 +97,8 @@ struct ProjectMembraneTriangle {
         edges.col(0) = x[tri[t][1]] - x[tri[t][0]];
         edges.col(1) = x[tri[t][2]] - x[tri[t][0]];
         const Mat32 F = edges.lazyProduct(rest_inv[t]);
-        const MembraneResponse<double> response = project_membrane<double>(F, rest_inv[t], area[t], weights);
+        const MembraneResponse<double> response =
+            project_membrane<double>(F, rest_inv[t], area[t], weights[fabric[t]]);
         energy[t] = response.energy;
         corner_gradient[t] = response.corner_gradient;
     }
@@ -126,10 +126,20 @@ struct GatherCorners {
     }
 };
 
-/// The same on a GPU, enqueued (membrane.cu): the views are of its memory. Stages "membrane/project" and
-/// "membrane/gather".
-/// @throws DeviceError when the launch is refused.
-void launch(const CudaSpace& space, const ProjectMembraneTriangle& kernel);
-void launch(const CudaSpace& space, const GatherCorners& kernel);
+/// GatherCorners, and shares of the energy: a third of every triangle around v.
+struct GatherTriangles {
+    GatherCorners corners;
+    View<const double> triangle_energy; ///< [triangles] [J]
+    View<double> energy;                ///< [vertices] added to [J]
+
+    TOILE_HD void operator()(int v) const
+    {
+        corners(v);
+        double sum = 0.0;
+        for (int k = corners.first[v]; k < corners.first[v + 1]; ++k)
+            sum += triangle_energy[corners.corners[k] / 3];
+        energy[v] += sum / 3.0;
+    }
+};
 
 } // namespace toile

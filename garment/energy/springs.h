@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/pd/energy.h"
+#include "garment/energy/springs_kernels.h"
 
 namespace toile {
 
@@ -17,23 +18,26 @@ public:
         double stiffness = 0.0; ///< [N/m] k; positive
     };
 
-    explicit Springs(std::vector<Spring> springs);
+    explicit Springs(const std::vector<Spring>& springs);
 
     std::string_view name() const override { return "garment/springs"; }
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets&) const override {} ///< springs are released
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
+    bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
     /// Moves the far ends [springs] [m].
-    void set_target(int spring, const Vec3& target) { targets_[spring] = target; }
+    void set_target(int spring, const Vec3& target) { springs_[spring].target = target; }
 
     /// Lets go of a vertex. H keeps the spring's share, which is still a valid bound.
     void release(int spring) { springs_[spring].stiffness = 0.0; }
 
+    /// As they are now; stiffness 0 where released.
+    const std::vector<PlacedSpring>& placed() const { return springs_; }
+
 private:
-    std::vector<Spring> springs_;
-    std::vector<Vec3> targets_;
+    std::vector<PlacedSpring> springs_;
 };
 
 } // namespace toile

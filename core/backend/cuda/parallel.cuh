@@ -26,9 +26,11 @@ namespace toile {
 /// Holds every .cu file to the layout of the .cpp files (layout.h).
 [[gnu::used]] static void (*const kEigenLayoutAgrees)() = &OurEigenLayout::agreed;
 
-/// Threads of a block and items of a block in a sum. They decide how it rounds, whatever the device.
+/// Threads of a block and items of a block in a sum. They decide how it rounds, whatever the device. Few
+/// items a block: sums stand between other kernels, where time is that of the longest chain of additions.
 inline constexpr int kSumThreads = 256;
-inline constexpr int kSumItems = 2048;
+inline constexpr int kSumItems = 512;
+inline constexpr int kWarp = 32;
 
 /// Blocks of `size` items that hold `count` items.
 inline int block_count(int count, int size) { return count / size + (count % size != 0 ? 1 : 0); }
@@ -43,16 +45,32 @@ __global__ void run_each(int count, const Kernel kernel)
         kernel(int(i));
 }
 
-/// Block b writes to sums[b] the terms of items [b * items, (b + 1) * items): every thread its share in
-/// order, then the threads' sums in a tree.
-template <typename T, typename Term>
+/// The value of the thread whose number differs in the bits of `mask`.
+template <typename T>
+__device__ T value_across(const T& value, int mask)
+{
+    static_assert(sizeof(T) % sizeof(unsigned) == 0);
+    constexpr int kWords = sizeof(T) / sizeof(unsigned);
+    unsigned words[kWords];
+    memcpy(words, &value, sizeof(T));
+#pragma unroll
+    for (int w = 0; w < kWords; ++w)
+        words[w] = __shfl_xor_sync(0xffffffffU, words[w], mask);
+    T across = value;
+    memcpy(static_cast<void*>(&across), words, sizeof(T));
+    return across;
+}
+
+/// Block b gives to then(b, sum) the terms of items [b * items, (b + 1) * items): every thread its share in
+/// order, then the threads of a warp in a tree, then the warps in a tree.
+template <typename T, typename Term, typename Then>
 __global__ void __launch_bounds__(kSumThreads)
-    sum_blocks(int count, int items, const T zero, const Term term, const View<T> sums)
+    sum_blocks(int count, int items, const T zero, const Term term, const Then then)
 {
     // Raw bytes: shared memory may not have constructors.
-    static_assert(sizeof(T) * kSumThreads <= 48 * 1024, "a block has 48 KiB of shared memory");
-    alignas(T) __shared__ unsigned char memory[kSumThreads * sizeof(T)];
-    T* const partial = reinterpret_cast<T*>(memory);
+    constexpr int kWarps = kSumThreads / kWarp;
+    alignas(T) __shared__ unsigned char memory[kWarps * sizeof(T)];
+    T* const of_warp = reinterpret_cast<T*>(memory);
 
     const int thread = int(threadIdx.x);
     const long first = long(blockIdx.x) * items;
@@ -60,16 +78,19 @@ __global__ void __launch_bounds__(kSumThreads)
     T sum = zero;
     for (long i = first + thread; i < end; i += kSumThreads)
         sum += term(int(i));
-    partial[thread] = sum;
+    for (int width = kWarp / 2; width > 0; width /= 2)
+        sum += value_across(sum, width);
+    if (thread % kWarp == 0)
+        of_warp[thread / kWarp] = sum;
     __syncthreads();
 
-    for (int width = kSumThreads / 2; width > 0; width /= 2) {
-        if (thread < width)
-            partial[thread] += partial[thread + width];
-        __syncthreads();
-    }
+    if (thread >= kWarp)
+        return;
+    sum = of_warp[thread % kWarps];
+    for (int width = kWarps / 2; width > 0; width /= 2)
+        sum += value_across(sum, width);
     if (thread == 0)
-        sums[int(blockIdx.x)] = partial[0];
+        then(int(blockIdx.x), sum);
 }
 
 #endif
@@ -97,15 +118,15 @@ void parallel_for(const CudaSpace& space, std::string_view name, int count,
 }
 
 /// One launch of sum_blocks().
-template <typename T, typename Term>
+template <typename T, typename Term, typename Then>
 void launch_sum(const CudaSpace& space, std::string_view name, [[maybe_unused]] int count,
                 [[maybe_unused]] int items, [[maybe_unused]] const T& zero, [[maybe_unused]] const Term& term,
-                [[maybe_unused]] View<T> sums, CallSite where)
+                [[maybe_unused]] const Then& then, CallSite where)
 {
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
     sum_blocks<<<std::max(block_count(count, items), 1), kSumThreads, 0, space.stream()>>>(count, items, zero,
-                                                                                           term, sums);
+                                                                                           term, then);
 #endif
     launch.done();
 }
@@ -117,26 +138,60 @@ struct ItemOf {
     TOILE_HD const T& operator()(int i) const { return items[i]; }
 };
 
-/// Writes the sum of term(i) over [0, count) to slot[0] on the device, in the stream's turn; nothing is read
-/// back. Blocks of kSumItems items in trees, then the block sums by one block: two kernels, one where a block
-/// holds all. The same bits in every run and on every device, but not those of the CPU's parallel_sum, which
-/// adds in another order. An empty range gives `zero`.
+/// Where a sum goes.
+template <typename T>
+struct KeepSum {
+    View<T> sums;
+    TOILE_HD void operator()(int k, const T& sum) const { sums[k] = sum; }
+};
+
+/// What the last block does with the sum of all.
+template <typename Then>
+struct WithTotal {
+    Then then;
+    template <typename T>
+    TOILE_HD void operator()(int, const T& sum) const
+    {
+        then(sum);
+    }
+};
+
+/// Sums term(i) over [0, count) and calls then(sum) on the device, once, by one thread, in the stream's turn;
+/// nothing is read back. Blocks of kSumItems items in trees, then the block sums by one block: two kernels,
+/// one where a block holds all. The same bits in every run and on every device, but not those of the CPU's
+/// parallel_sum, which adds in another order. An empty range gives `zero`.
 /// @param zero        what changes no sum
-/// @param slot        [1]
+/// @param term        may also write slot i of arrays
 /// @param block_sums  scratch; grows to one item per block
-template <typename T, typename Term>
-void parallel_sum(const CudaSpace& space, std::string_view name, int count, const T& zero, const Term& term,
-                  View<T> slot, DeviceArray<T>& block_sums, CallSite where = CallSite::here())
+template <typename T, typename Term, typename Then>
+void parallel_sum_then(const CudaSpace& space, std::string_view name, int count, const T& zero,
+                       const Term& term, const Then& then, DeviceArray<T>& block_sums,
+                       CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     const int blocks = block_count(std::max(count, 0), kSumItems);
     if (blocks <= 1)
-        return launch_sum(space, name, count, kSumItems, zero, term, slot, where);
+        return launch_sum(space, name, count, kSumItems, zero, term, WithTotal<Then>{then}, where);
     if (block_sums.size() < blocks)
         block_sums.resize(blocks);
     const View<T> sums = block_sums.view();
-    launch_sum(space, name, count, kSumItems, zero, term, sums, where);
-    launch_sum(space, name, blocks, blocks, zero, ItemOf<T>{sums}, slot, where);
+    launch_sum(space, name, count, kSumItems, zero, term, KeepSum<T>{sums}, where);
+    launch_sum(space, name, blocks, blocks, zero, ItemOf<T>{sums}, WithTotal<Then>{then}, where);
+}
+
+/// Writes a sum where the next kernels find it.
+template <typename T>
+struct KeepTotal {
+    View<T> slot; ///< [1]
+    TOILE_HD void operator()(const T& sum) const { slot[0] = sum; }
+};
+
+/// The same sum, to slot[0] on the device.
+template <typename T, typename Term>
+void parallel_sum(const CudaSpace& space, std::string_view name, int count, const T& zero, const Term& term,
+                  View<T> slot, DeviceArray<T>& block_sums, CallSite where = CallSite::here())
+{
+    parallel_sum_then(space, name, count, zero, term, KeepTotal<T>{slot}, block_sums, where);
 }
 
 /// The same sum, waited for and read back. An empty range launches nothing.

@@ -43,7 +43,8 @@ __global__ void run_teams(int count, const Kernel kernel)
         kernel(item, Team{int(threadIdx.x) % Team::kThreads});
 }
 
-/// Levels [begin, end) of the nodes above lowest nodes [b << shift, (b + 1) << shift), b this block.
+/// Levels [begin, end) of the nodes above lowest nodes [b << shift, (b + 1) << shift), b this block of tree
+/// blockIdx.y.
 template <typename Kernel>
 __global__ void climb(int lowest, int begin, int end, int shift, int width, const Kernel kernel)
 {
@@ -51,7 +52,7 @@ __global__ void climb(int lowest, int begin, int end, int shift, int width, cons
         const int first = int(blockIdx.x) << (shift - level);
         const int last = min(first + (1 << (shift - level)), level_size(lowest, level));
         for (int k = int(threadIdx.x); k < (last - first) * width; k += int(blockDim.x))
-            kernel(level, first + k / width, k % width);
+            kernel(int(blockIdx.y), level, first + k / width, k % width);
         __syncthreads();
     }
 }
@@ -76,16 +77,18 @@ void parallel_for_teams(const CudaSpace& space, std::string_view name, int count
     launch.done();
 }
 
-/// Launches kernel(level, c, k) for k in [0, width) at every node c of an implicit tree, children
-/// before parents: a block climbs from kSubtreeNodes nodes to one, then a single one to the root. Item
-/// (level, c, k) may write slot k of its node and read all slots of the children.
+/// Launches kernel(tree, level, c, k) for k in [0, width) at every node c of some equal implicit trees,
+/// children before parents: a block climbs from kSubtreeNodes nodes to one, then a single one to the root.
+/// Item (tree, level, c, k) may write slot k of its node and read all slots of the children.
+/// @param trees   at most 65 535
 /// @param lowest  nodes of level 0
 template <typename Kernel>
-void parallel_climb(const CudaSpace& space, std::string_view name, int lowest, [[maybe_unused]] int width,
-                    [[maybe_unused]] const Kernel& kernel, CallSite where = CallSite::here())
+void parallel_climb(const CudaSpace& space, std::string_view name, [[maybe_unused]] int trees, int lowest,
+                    [[maybe_unused]] int width, [[maybe_unused]] const Kernel& kernel,
+                    CallSite where = CallSite::here())
 {
     const StageScope stage(name);
-    if (lowest <= 0)
+    if (lowest <= 0 || trees <= 0)
         return;
     int levels = 1;
     while (level_size(lowest, levels - 1) > 1)
@@ -93,10 +96,10 @@ void parallel_climb(const CudaSpace& space, std::string_view name, int lowest, [
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
     const int below = std::min(levels, kSubtreeLevels + 1);
-    climb<<<block_count(lowest, kSubtreeNodes), 128, 0, space.stream()>>>(lowest, 0, below, kSubtreeLevels,
-                                                                          width, kernel);
+    climb<<<dim3(block_count(lowest, kSubtreeNodes), trees), 128, 0, space.stream()>>>(
+        lowest, 0, below, kSubtreeLevels, width, kernel);
     if (levels > below)
-        climb<<<1, 512, 0, space.stream()>>>(lowest, below, levels, levels - 1, width, kernel);
+        climb<<<dim3(1, trees), 512, 0, space.stream()>>>(lowest, below, levels, levels - 1, width, kernel);
 #endif
     launch.done();
 }

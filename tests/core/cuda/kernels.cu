@@ -33,6 +33,16 @@ void launch(const CudaSpace& space, const WriteLayout& kernel)
     parallel_for(space, "test/layout", 1, kernel);
 }
 
+void launch(const CudaSpace& space, const ProjectMembraneTriangle& kernel)
+{
+    parallel_for(space, "test/project", kernel.tri.size(), kernel);
+}
+
+void launch(const CudaSpace& space, const GatherCorners& kernel)
+{
+    parallel_for(space, "test/gather", kernel.gradient.size(), kernel);
+}
+
 void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,
               DeviceArray<double>& block_sums)
 {

@@ -26,6 +26,8 @@ struct TriangleSoup {
     std::vector<Mat2> rest_inv;
     std::vector<double> area;
     MembraneWeights weights{120.0, 80.0, 60.0};
+    std::vector<int> fabric = std::vector<int>(kTriangles, 1);
+    std::vector<MembraneWeights> all_weights{{}, weights};
 
     TriangleSoup()
     {
@@ -83,8 +85,14 @@ Response in_lanes(const TriangleSoup& soup)
 Response one_by_one(const TriangleSoup& soup)
 {
     Response response;
-    const ProjectMembraneTriangle kernel{
-        soup.x, soup.tri, soup.rest_inv, soup.area, soup.weights, response.corner_gradient, response.energy};
+    const ProjectMembraneTriangle kernel{soup.x,
+                                         soup.tri,
+                                         soup.rest_inv,
+                                         soup.area,
+                                         soup.fabric,
+                                         soup.all_weights,
+                                         response.corner_gradient,
+                                         response.energy};
     for (int t = 0; t < kTriangles; ++t)
         kernel(t);
     return response;
@@ -159,8 +167,13 @@ protected:
         tri.upload(soup.tri);
         rest_inv.upload(soup.rest_inv);
         area.upload(soup.area);
-        launch(space(), ProjectMembraneTriangle{x.view(), tri.view(), rest_inv.view(), area.view(),
-                                                soup.weights, corner_gradient.view(), energy.view()});
+        DeviceArray<int> fabric(space(), "test/fabric");
+        DeviceArray<MembraneWeights> weights(space(), "test/weights");
+        fabric.upload(soup.fabric);
+        weights.upload(soup.all_weights);
+        launch(space(),
+               ProjectMembraneTriangle{x.view(), tri.view(), rest_inv.view(), area.view(), fabric.view(),
+                                       weights.view(), corner_gradient.view(), energy.view()});
         return {corner_gradient.downloaded(), energy.downloaded()};
     }
 };

@@ -35,14 +35,14 @@ uint64_t bits(double value)
 /// Additions that a term goes through at most: of its thread, of the tree, and both again for block sums.
 double depth(int count)
 {
-    const double blocks = std::ceil(count / 2048.0);
-    return 8.0 + 8.0 + std::ceil(blocks / 256.0) + 8.0;
+    const double blocks = std::ceil(count / 512.0);
+    return 2.0 + 8.0 + std::ceil(blocks / 256.0) + 8.0;
 }
 
 TEST_F(CudaParallelSum, EqualsTheLongDoubleSumWithinRounding)
 {
     SumScratch<double> scratch(space());
-    for (const int count : {0, 1, 7, 255, 256, 257, 2047, 2048, 2049, 4096, 1000000, 3000001}) {
+    for (const int count : {0, 1, 7, 255, 256, 257, 511, 512, 513, 4096, 1000000, 3000001}) {
         const std::vector<double> numbers = rough_numbers(count);
         DeviceArray<double> there(space(), "test/numbers");
         there.upload(numbers);
@@ -56,23 +56,34 @@ TEST_F(CudaParallelSum, EqualsTheLongDoubleSumWithinRounding)
     }
 }
 
-/// One block of 256 threads over the numbers, as parallel.cuh draws the tree.
-double block_sum(View<const double> numbers)
+/// Pairs `width` apart, then half as far.
+double tree_of(std::vector<double> partial)
 {
-    std::vector<double> partial(256, 0.0);
-    for (int i = 0; i < numbers.size(); ++i)
-        partial[i % 256] += numbers[i];
-    for (int width = 128; width > 0; width /= 2)
-        for (int k = 0; k < width; ++k)
+    for (size_t width = partial.size() / 2; width > 0; width /= 2)
+        for (size_t k = 0; k < width; ++k)
             partial[k] += partial[k + width];
     return partial[0];
+}
+
+/// One block of 256 threads over the numbers, as parallel.cuh draws the trees.
+double block_sum(View<const double> numbers)
+{
+    std::vector<double> of_warp;
+    for (int warp = 0; warp < 8; ++warp) {
+        std::vector<double> partial(32, 0.0);
+        for (int i = 0; i < numbers.size(); ++i)
+            if (i % 256 / 32 == warp)
+                partial[i % 32] += numbers[i];
+        of_warp.push_back(tree_of(partial));
+    }
+    return tree_of(of_warp);
 }
 
 double tree_sum(View<const double> numbers)
 {
     std::vector<double> sums;
-    for (int first = 0; first < numbers.size(); first += 2048)
-        sums.push_back(block_sum(numbers.subview(first, std::min(2048, numbers.size() - first))));
+    for (int first = 0; first < numbers.size(); first += 512)
+        sums.push_back(block_sum(numbers.subview(first, std::min(512, numbers.size() - first))));
     return sums.size() == 1 ? sums[0] : block_sum(sums);
 }
 
@@ -80,7 +91,7 @@ TEST_F(CudaParallelSum, HasTheBitsOfItsTreeEveryTime)
 {
     const CudaSpace other(0);
     SumScratch<double> scratch(space()), scratch_there(other);
-    for (const int count : {1, 300, 2048, 2049, 1000000}) {
+    for (const int count : {1, 300, 512, 513, 2049, 1000000}) {
         const std::vector<double> numbers = rough_numbers(count);
         const uint64_t expected = bits(tree_sum(numbers));
         DeviceArray<double> here(space(), "test/here"), there(other, "test/there");

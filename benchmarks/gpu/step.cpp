@@ -1,0 +1,138 @@
+#include "benchmarks/gpu/step.h"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "benchmarks/solvers/problem.h"
+#include "core/linear/block_diagonal_solver.h"
+#include "core/pd/body.h"
+#include "core/pd/device/device_body.h"
+#include "core/pd/sliced_energy.h"
+#include "core/quadrature/device_quadrature_solver.h"
+#include "core/quadrature/quadrature_solver.h"
+#include "quadrature2d/geodesic_places.h"
+
+namespace toile::gpu {
+
+namespace {
+
+/// Steps of which the median counts, after some that warm up and set the cloth swinging.
+constexpr int kWarmUp = 5, kSteps = 25, kCpuSteps = 3;
+
+/// Equal sheets beside each other, as one body.
+class Cloths {
+public:
+    explicit Cloths(const StepCase& what)
+        : what_(what), one_(solvers::Problem::sheet(what.vertices, what.stiffness, what.dt))
+    {
+        for (int k = 0; k < what.cloths; ++k)
+            for (int v = 0; v < one_.vertex_count(); ++v) {
+                start.push_back(one_.start.positions[v] + Vec3(2.0 * k, 0.0, 0.0));
+                fixed.push_back(one_.fixed[v]);
+            }
+    }
+
+    std::unique_ptr<System> system(std::unique_ptr<GlobalSolver> solver) const
+    {
+        const std::unique_ptr<System> own = one_.make_system(std::make_unique<DirectSolver>());
+        std::vector<double> masses;
+        std::vector<std::shared_ptr<Energy>> energies;
+        for (int k = 0; k < what_.cloths; ++k) {
+            masses.insert(masses.end(), own->masses().begin(), own->masses().end());
+            for (const auto& energy : own->energies())
+                energies.push_back(
+                    std::make_shared<SlicedEnergy>(energy, k * one_.vertex_count(), one_.vertex_count()));
+        }
+        return std::make_unique<System>(std::move(masses), std::move(energies), std::move(solver));
+    }
+
+    std::unique_ptr<GlobalSolver> cpu_solver() const
+    {
+        std::vector<BlockDiagonalSolver::Block> blocks;
+        for (int k = 0; k < what_.cloths; ++k)
+            blocks.push_back({one_.vertex_count(), std::make_unique<QuadratureSolver>(
+                                                       places(), QuadratureSolver::Settings{}, one_.tables)});
+        return std::make_unique<BlockDiagonalSolver>(std::move(blocks));
+    }
+    std::unique_ptr<GlobalSolver> device_solver(const CudaSpace& space) const
+    {
+        return std::make_unique<DeviceQuadratureSolver>(
+            space, std::vector<DeviceQuadratureSolver::Part>(what_.cloths, {places(), {}}),
+            QuadratureTables::Settings{}, one_.tables);
+    }
+
+    std::vector<Vec3> start;
+    std::vector<unsigned char> fixed;
+
+private:
+    std::vector<Place> places() const
+    {
+        const RestShape& rest = *one_.cloth.rest;
+        return geodesic_places(rest.vertex_count(),
+                               surface_metric(rest.triangles, rest.edges, rest.topology));
+    }
+
+    StepCase what_;
+    solvers::Problem one_;
+};
+
+/// Median over `count` calls [ms].
+template <typename Work>
+double median_ms(int count, const Work& work)
+{
+    std::vector<double> times;
+    for (int k = 0; k < count; ++k) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        times.push_back(
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+    std::nth_element(times.begin(), times.begin() + count / 2, times.end());
+    return times[count / 2];
+}
+
+double largest_difference(const std::vector<Vec3>& a, View<const Vec3> b)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < a.size(); ++i)
+        largest = std::max(largest, (a[i] - b[int(i)]).norm());
+    return largest;
+}
+
+} // namespace
+
+Step measure_step(const CudaSpace& space, const StepCase& what)
+{
+    const Cloths cloths(what);
+    const std::vector<Vec3> gravity(cloths.start.size(), Vec3(0.0, -9.81, 0.0));
+
+    // No move is below a tolerance of nothing: every step takes all its iterations.
+    Body::Settings settings;
+    settings.tolerance = 0.0;
+    settings.max_iterations = what.iterations;
+    Body cpu(cloths.start, cloths.system(cloths.cpu_solver()), settings);
+    const auto step_cpu = [&] {
+        (void)cpu.step(what.dt, gravity, cloths.fixed, cloths.start, nullptr, nullptr);
+    };
+    step_cpu(); // the tables are built here, once for both
+
+    DeviceBody device(space, cloths.start, cloths.system(cloths.device_solver(space)),
+                      {settings.tolerance, settings.max_iterations});
+    device.acceleration().upload(gravity);
+    device.targets().upload(cloths.start);
+    (void)device.step(what.dt, cloths.fixed);
+
+    Step result{what.cloths, int(cloths.start.size()) / what.cloths};
+    result.difference = largest_difference(device.positions().downloaded(), cpu.positions());
+    for (int k = 0; k < kWarmUp; ++k)
+        (void)device.step(what.dt, cloths.fixed);
+    int iterations = 0;
+    result.device_ms =
+        median_ms(kSteps, [&] { iterations += device.step(what.dt, cloths.fixed).iterations; });
+    result.iterations = iterations / kSteps;
+    result.cpu_ms = median_ms(kCpuSteps, step_cpu);
+    return result;
+}
+
+} // namespace toile::gpu

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/linear/global_solver.h"
+
+namespace toile {
+
+/// A global solver whose operator lives on a GPU.
+class DeviceSolver : public GlobalSolver {
+public:
+    /// Enqueues x = H^-1 b, or close to it. What it launches may be recorded, and is valid until the next
+    /// update().
+    /// @param b, x  [n] on the device; not the same array
+    virtual void solve_there(View<const Vec3> b, View<Vec3> x) = 0;
+};
+
+} // namespace toile

@@ -1,0 +1,134 @@
+#pragma once
+
+#include "core/pd/device/descent.h"
+#include "core/pd/step_kernels.h"
+#include "core/pd/step_tolerance.h"
+
+namespace toile {
+
+/// What a step asks of all vertices before it begins.
+struct StepSums {
+    double farthest_square = 0.0; ///< [m^2] of the predicted moves: a maximum, not a sum
+    double mass = 0.0;            ///< [kg] of the free vertices
+    double driving = 0.0;         ///< StepError::Sums::driving
+
+    TOILE_HD StepSums& operator+=(const StepSums& other)
+    {
+        farthest_square = std::fmax(farthest_square, other.farthest_square);
+        mass += other.mass;
+        driving += other.driving;
+        return *this;
+    }
+};
+
+/// Predicts vertex i, where the descent begins too.
+struct BeginVertex {
+    PredictVertex predict;
+    View<const double> masses;
+    View<Vec3> drive; ///< [vertices] out: q* - x0 [m]
+    View<Vec3> trial; ///< [vertices] out: q*
+
+    TOILE_HD StepSums operator()(int i) const
+    {
+        predict(i);
+        trial[i] = predict.prediction[i];
+        const Vec3 move = predict.prediction[i] - predict.x[i];
+        drive[i] = move;
+        StepSums sums;
+        sums.farthest_square = move.squaredNorm();
+        if (predict.fixed[i])
+            return sums;
+        sums.mass = masses[i];
+        sums.driving = masses[i] * sums.farthest_square;
+        return sums;
+    }
+};
+
+/// Tells the descent what is asked of it.
+struct BeginDescent {
+    View<Descent> descent; ///< [1]
+    StepTolerance tolerance;
+    int max_iterations;
+    double dt;
+
+    TOILE_HD void operator()(const StepSums& sums) const
+    {
+        Descent& task = descent[0];
+        task.tolerance = tolerance.of_step(std::sqrt(sums.farthest_square));
+        task.max_iterations = max_iterations;
+        task.dt2 = dt * dt;
+        task.mass = sums.mass;
+        task.driving = sums.driving;
+        task.begin();
+    }
+};
+
+/// Where vertex i was, and what is held where it belongs: the second place that a descent may begin at.
+struct StandStill {
+    View<const Vec3> x, prediction;
+    View<const unsigned char> fixed;
+    View<Vec3> trial; ///< out
+
+    TOILE_HD void operator()(int i) const { trial[i] = fixed[i] ? prediction[i] : x[i]; }
+};
+
+struct CopyPositions {
+    View<const Vec3> from;
+    View<Vec3> to;
+    TOILE_HD void operator()(int i) const { to[i] = from[i]; }
+};
+
+/// Begins the descent of the same step again.
+struct BeginAgain {
+    View<Descent> descent; ///< [1]
+    double tolerance;      ///< [m]
+
+    TOILE_HD void operator()(int) const
+    {
+        descent[0].tolerance = tolerance;
+        descent[0].begin();
+    }
+};
+
+/// Inertia at vertex i; what other energies add to comes after it.
+struct BeginGradient {
+    InertiaOfVertex inertia;
+    View<double> energy; ///< [vertices] overwritten [J]
+
+    TOILE_HD void operator()(int i) const { energy[i] = inertia(i); }
+};
+
+/// No gradient at fixed vertices.
+struct HoldFixed {
+    View<const int> vertices;
+    View<Vec3> gradient;
+
+    TOILE_HD void operator()(int k) const { gradient[vertices[k]] = Vec3(0.0, 0.0, 0.0); }
+};
+
+/// What a step reports of all vertices: largest values.
+struct FinishSums {
+    double gradient_square = 0.0; ///< [N^2]
+
+    TOILE_HD FinishSums& operator+=(const FinishSums& other)
+    {
+        gradient_square = std::fmax(gradient_square, other.gradient_square);
+        return *this;
+    }
+};
+
+/// The end of the step at vertex i.
+struct FinishVertex {
+    View<const Vec3> x_t1, gradient;
+    double dt;
+    View<Vec3> x, v; ///< at t0, then at t1
+
+    TOILE_HD FinishSums operator()(int i) const
+    {
+        v[i] = (x_t1[i] - x[i]) / dt;
+        x[i] = x_t1[i];
+        return {gradient[i].squaredNorm()};
+    }
+};
+
+} // namespace toile

@@ -1,0 +1,92 @@
+#include "core/pd/device/device_descent.h"
+
+#include <algorithm>
+
+#include "core/backend/cuda/parallel.cuh"
+
+namespace toile {
+
+namespace {
+
+/// Turns of the graph. The host asks between graphs whether the descent is over, which costs about as much as
+/// half a turn; turns after its end cost as much as others.
+constexpr int kTurnsAtOnce = 4;
+
+} // namespace
+
+DeviceDescent::DeviceDescent(const CudaSpace& space, int vertex_count)
+    : space_(space), x_(space, "descent/x", vertex_count), gradient_(space, "descent/gradient", vertex_count),
+      z_(space, "descent/z", vertex_count), trial_x_(space, "descent/trial_x", vertex_count),
+      trial_gradient_(space, "descent/trial_gradient", vertex_count),
+      trial_z_(space, "descent/trial_z", vertex_count), energy_(space, "descent/energy", vertex_count),
+      direction_(space, "descent/direction", vertex_count), s_(space, "descent/s", kHistory * vertex_count),
+      y_(space, "descent/y", kHistory * vertex_count), w_(space, "descent/w", kHistory * vertex_count),
+      descent_(space, "descent/state"),
+      block_sums_(space, "descent/block_sums", block_count(vertex_count, kSumItems)),
+      on_host_(space, "descent/on_host", 1), turns_(space, "descent/turns"), expected_turns_(kTurnsAtOnce)
+{
+    descent_.upload(std::vector<Descent>(1));
+}
+
+DescentFields DeviceDescent::fields(const Problem& problem)
+{
+    return {{x_.view(), gradient_.view(), z_.view()},
+            {trial_x_.view(), trial_gradient_.view(), trial_z_.view()},
+            energy_.view(),
+            direction_.view(),
+            s_.view(),
+            y_.view(),
+            w_.view(),
+            problem.masses,
+            problem.drive,
+            descent_.view()};
+}
+
+void DeviceDescent::enqueue_turn(const Problem& problem)
+{
+    problem.evaluate({trial_x_.view(), trial_gradient_.view(), energy_.view()});
+    problem.precondition(trial_gradient_.view(), trial_z_.view());
+    const DescentFields all = fields(problem);
+    parallel_sum_then(space_, "descent/decide", x_.size(), TrialSums{}, MeasureTrial{all},
+                      DecideOnTrial{descent_.view()}, block_sums_);
+    parallel_for(space_, "descent/take", x_.size(), TakeTrial{all});
+}
+
+void DeviceDescent::record(const Problem& problem)
+{
+    turns_.record([&] {
+        for (int turn = 0; turn < kTurnsAtOnce; ++turn)
+            enqueue_turn(problem);
+    });
+}
+
+const Descent& DeviceDescent::read_back()
+{
+    descent_.download(on_host_.view());
+    space_.synchronise();
+    return on_host_[0];
+}
+
+Descent DeviceDescent::run_briefly()
+{
+    turns_.launch();
+    return read_back();
+}
+
+Descent DeviceDescent::run()
+{
+    const StageScope stage("descent/run");
+    int turns = 0;
+    for (bool is_over = false; !is_over;) {
+        do {
+            turns_.launch();
+            turns += kTurnsAtOnce;
+        } while (turns < expected_turns_);
+        is_over = read_back().is_over;
+    }
+    const Descent& found = on_host_[0];
+    expected_turns_ = found.turns;
+    return found;
+}
+
+} // namespace toile

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+
+#include "core/backend/cuda/array.h"
+#include "core/backend/cuda/graph.h"
+#include "core/pd/device/descent_kernels.h"
+#include "core/pd/device/device_energy.h"
+
+namespace toile {
+
+/// Runs a Descent: its fields, and its turns as a graph.
+class DeviceDescent {
+public:
+    /// What is minimised. Functions enqueue; what they launch is recorded.
+    struct Problem {
+        /// Writes shares of the value, and the gradient.
+        std::function<void(const DeviceEvaluation&)> evaluate;
+        /// z = B g
+        std::function<void(View<const Vec3> g, View<Vec3> z)> precondition;
+        View<const double> masses; ///< [vertices] [kg]
+        View<const Vec3> drive;    ///< [vertices] q* - x0 [m]
+    };
+
+    DeviceDescent(const CudaSpace& space, int vertex_count);
+
+    /// Takes another problem.
+    void record(const Problem& problem);
+
+    /// Where the caller puts the point to begin at, [vertices] [m], and what is asked, [1], before run().
+    View<Vec3> start() { return trial_x_.view(); }
+    View<Descent> descent() { return descent_.view(); }
+
+    /// Enqueues turns until the descent is over, reading back now and then whether it is. As many turns as
+    /// the run before took go at once.
+    Descent run();
+
+    /// Enqueues the fewest turns that can be, which tell the value where it begins, and reads back.
+    Descent run_briefly();
+
+    /// The point that run() found, and the objective's gradient there.
+    View<Vec3> x() { return x_.view(); }
+    View<const Vec3> gradient() const { return gradient_.view(); }
+
+private:
+    DescentFields fields(const Problem& problem);
+    void enqueue_turn(const Problem& problem);
+    const Descent& read_back();
+
+    const CudaSpace& space_;
+    DeviceArray<Vec3> x_, gradient_, z_, trial_x_, trial_gradient_, trial_z_;
+    DeviceArray<double> energy_;
+    DeviceArray<PaddedVec3> direction_, s_, y_, w_;
+    DeviceArray<Descent> descent_;
+    DeviceArray<TrialSums> block_sums_;
+    PinnedArray<Descent> on_host_;
+    CudaGraph turns_;
+    int expected_turns_;
+};
+
+} // namespace toile

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// Backtracking along a direction [Nocedal & Wright 2006, alg. 3.1], for whoever evaluates on the CPU or on a
+/// GPU.
+struct LineSearch {
+    /// Share of the predicted decrease that a step must reach [-] (Armijo).
+    static constexpr double kSufficientDecrease = 1e-4;
+
+    /// Rounding noise of an objective value relative to its size [-]: differences below it prove nothing.
+    static constexpr double kValueNoise = 1e-14;
+
+    /// Halvings (or stronger cuts) before a direction is given up.
+    static constexpr int kMaxTrials = 12;
+
+    double value = 0.0; ///< [J] where the direction begins
+    double slope = 0.0; ///< [J] along it, negative
+    double step = 1.0;  ///< [-] of the direction, to be tried next
+
+    TOILE_HD bool accepts(double trial_value) const
+    {
+        return trial_value <= value + kSufficientDecrease * step * slope + kValueNoise * std::fabs(value);
+    }
+
+    /// Minimum of the parabola through value, slope and trial value, kept away from both ends.
+    TOILE_HD void shorten(double trial_value)
+    {
+        const double excess = trial_value - value - step * slope;
+        const bool is_finite = excess - excess == 0.0;
+        const double parabola = is_finite ? -0.5 * slope * step * step / excess : 0.0;
+        step = std::fmin(std::fmax(parabola, 0.1 * step), 0.5 * step);
+    }
+};
+
+} // namespace toile

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/linear/device_solver.h"
+#include "core/quadrature/device_quadrature.h"
+#include "core/quadrature/table_store.h"
+
+namespace toile {
+
+/// QuadratureSolver on a GPU, for one body or several whose H is block-diagonal. Equal bodies share tables
+/// and are solved at once.
+class DeviceQuadratureSolver : public DeviceSolver {
+public:
+    /// Rows of H that belong together, in ascending order.
+    struct Part {
+        std::vector<Place> places; ///< of its nodes
+        TableListener listener;    ///< hears of tables that update() prepares
+    };
+
+    /// @param space  borrowed
+    /// @param store  where tables come from
+    DeviceQuadratureSolver(const CudaSpace& space, std::vector<Part> parts,
+                           QuadratureTables::Settings settings = {},
+                           std::shared_ptr<TableStore> store = TableStore::of_process());
+
+    /// As QuadratureSolver::update(), and copies the tables.
+    void update(const SparseMatrix& H, View<const unsigned char> fixed) override;
+
+    /// Copies there and back.
+    void solve(View<const Vec3> b, View<Vec3> x) const override;
+    void solve_there(View<const Vec3> b, View<Vec3> x) override;
+    bool is_symmetric() const override { return false; }
+
+private:
+    const CudaSpace& space_;
+    std::vector<Part> parts_;
+    QuadratureTables::Settings settings_;
+    std::shared_ptr<TableStore> store_;
+    std::vector<std::unique_ptr<DeviceQuadrature>> groups_; ///< of equal bodies
+    mutable DeviceArray<Vec3> b_, x_;                       ///< of solve()
+};
+
+} // namespace toile

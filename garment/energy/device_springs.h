@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "core/backend/cuda/array.h"
+#include "core/pd/device/device_energy.h"
+#include "garment/energy/springs.h"
+
+namespace toile {
+
+/// Springs of all cloths of a body on a GPU. Targets and released springs are taken from the host before
+/// every step.
+class DeviceSprings : public DeviceEnergy {
+public:
+    explicit DeviceSprings(const CudaSpace& space);
+
+    /// Adds the springs of a cloth.
+    /// @param springs       borrowed
+    /// @param first_vertex  of the cloth among the body's
+    void add(const Springs& springs, int first_vertex);
+
+    void begin_step() override;
+    void add_gradient(const DeviceEvaluation& at) override;
+
+private:
+    struct Part {
+        const Springs* springs;
+        int first_vertex;
+    };
+
+    const CudaSpace& space_;
+    std::vector<Part> parts_;
+    std::vector<PlacedSpring> host_; ///< ascending by vertex
+    DeviceArray<PlacedSpring> placed_;
+    DeviceArray<int> first_; ///< [held vertices + 1] into placed_
+};
+
+} // namespace toile

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// A spring of zero rest length and where it pulls to.
+struct PlacedSpring {
+    int vertex = 0;
+    double stiffness = 0.0;            ///< [N/m]
+    Vec3 target = Vec3(0.0, 0.0, 0.0); ///< [m]
+
+    /// Adds its gradient [N]; returns its energy [J].
+    TOILE_HD double pull(View<const Vec3> x, View<Vec3> gradient) const
+    {
+        const Vec3 stretch = x[vertex] - target;
+        gradient[vertex] += stiffness * stretch;
+        return 0.5 * stiffness * stretch.squaredNorm();
+    }
+};
+
+/// The springs of the k-th held vertex.
+struct PullHeldVertex {
+    View<const PlacedSpring> springs; ///< ascending by vertex
+    View<const int> first;            ///< [held vertices + 1]
+    View<const Vec3> x;
+    View<Vec3> gradient;
+    View<double> energy;
+
+    TOILE_HD void operator()(int k) const
+    {
+        for (int j = first[k]; j < first[k + 1]; ++j)
+            energy[springs[j].vertex] += springs[j].pull(x, gradient);
+    }
+};
+
+} // namespace toile

@@ -1,0 +1,209 @@
+#include "core/pd/device/device_body.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "core/backend/error.h"
+#include "core/linear/block_diagonal_solver.h"
+#include "core/pd/body.h"
+#include "core/pd/sliced_energy.h"
+#include "core/quadrature/device_quadrature_solver.h"
+#include "core/quadrature/quadrature_solver.h"
+#include "garment/energy/bending.h"
+#include "garment/energy/membrane.h"
+#include "garment/energy/springs.h"
+#include "quadrature2d/geodesic_places.h"
+#include "tests/core/cuda/on_device.h"
+#include "tests/garment/sheets.h"
+
+/// Whole steps on a GPU against the same steps on the CPU, both with quadrature.
+namespace toile::test {
+namespace {
+
+constexpr double kDt = 1.0 / 60.0;
+
+/// A sheet that swings: two corners held, one pulled by a spring.
+struct Swing {
+    Sheet sheet = make_sheet(Vec2(0.6, 0.4), 24, 16, Pattern::Irregular);
+    std::shared_ptr<const RestShape> rest = sheet.rest();
+    std::vector<unsigned char> fixed = std::vector<unsigned char>(sheet.uv.size(), 0);
+    double bending = 1e-6;
+
+    Swing()
+    {
+        fixed[sheet.at(0, 0)] = 1;
+        fixed[sheet.at(24, 0)] = 1;
+    }
+    std::vector<std::shared_ptr<Energy>> energies(const Vec3& pull) const
+    {
+        const auto springs = std::make_shared<Springs>(
+            std::vector<Springs::Spring>{{sheet.at(0, 16), 4.0}, {sheet.at(0, 16), 2.0}});
+        springs->set_target(0, pull);
+        springs->set_target(1, 2.0 * pull);
+        return {std::make_shared<Membrane>(rest, Membrane::Settings{300.0, 120.0, 20.0}, "sheet"),
+                std::make_shared<Bending>(rest, Bending::Settings{bending, 0.5 * bending}, "sheet"), springs};
+    }
+    std::vector<Place> places() const
+    {
+        return geodesic_places(rest->vertex_count(),
+                               surface_metric(rest->triangles, rest->edges, rest->topology));
+    }
+};
+
+/// Some equal sheets side by side, in one body.
+class Swings {
+public:
+    explicit Swings(int count) : count_(count)
+    {
+        for (int k = 0; k < count; ++k)
+            for (const Vec3& p : swing_.sheet.flat()) {
+                x_.push_back(p + Vec3(k, 0.0, 0.0));
+                fixed_.push_back(swing_.fixed[x_.size() - 1 - size_t(k) * swing_.fixed.size()]);
+            }
+    }
+
+    std::unique_ptr<System> system(std::unique_ptr<GlobalSolver> solver) const
+    {
+        std::vector<std::shared_ptr<Energy>> all;
+        std::vector<double> masses;
+        const int n = int(swing_.fixed.size());
+        for (int k = 0; k < count_; ++k) {
+            for (const auto& energy : swing_.energies(Vec3(0.1 + k, 0.3, 0.5)))
+                all.push_back(std::make_shared<SlicedEnergy>(energy, k * n, n));
+            const std::vector<double> own = masses_of(*swing_.rest, 0.2);
+            masses.insert(masses.end(), own.begin(), own.end());
+        }
+        return std::make_unique<System>(masses, all, std::move(solver));
+    }
+    std::unique_ptr<GlobalSolver> solver() const
+    {
+        std::vector<BlockDiagonalSolver::Block> blocks;
+        for (int k = 0; k < count_; ++k)
+            blocks.push_back({int(swing_.fixed.size()), std::make_unique<QuadratureSolver>(
+                                                            swing_.places(), QuadratureSolver::Settings{})});
+        return std::make_unique<BlockDiagonalSolver>(std::move(blocks));
+    }
+    std::unique_ptr<GlobalSolver> solver(const CudaSpace& space) const
+    {
+        return std::make_unique<DeviceQuadratureSolver>(
+            space, std::vector<DeviceQuadratureSolver::Part>(count_, {swing_.places(), {}}));
+    }
+
+    const std::vector<Vec3>& start() const { return x_; }
+    const std::vector<unsigned char>& fixed() const { return fixed_; }
+    std::vector<Vec3> gravity() const { return std::vector<Vec3>(x_.size(), Vec3(0.0, -9.81, 0.3)); }
+
+private:
+    Swing swing_;
+    int count_;
+    std::vector<Vec3> x_;
+    std::vector<unsigned char> fixed_;
+};
+
+Body::Settings exact()
+{
+    Body::Settings settings;
+    settings.tolerance = 1e-6;
+    settings.max_iterations = 200;
+    return settings;
+}
+
+double farthest_apart(const std::vector<Vec3>& a, View<const Vec3> b)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < a.size(); ++i)
+        most = std::max(most, (a[i] - b[int(i)]).norm());
+    return most;
+}
+
+class DeviceBodyTest : public OnDevice {
+protected:
+    std::unique_ptr<DeviceBody> make_body(const Swings& swings, DeviceBody::Settings settings) const
+    {
+        auto body = std::make_unique<DeviceBody>(space(), swings.start(),
+                                                 swings.system(swings.solver(space())), settings);
+        body->acceleration().upload(swings.gravity());
+        body->targets().upload(swings.start());
+        return body;
+    }
+};
+
+TEST_F(DeviceBodyTest, MovesAsOnTheCpu)
+{
+    for (const int count : {1, 3}) {
+        const Swings swings(count);
+        Body here(swings.start(), swings.system(swings.solver()), exact());
+        const auto there = make_body(swings, {1e-6, 200});
+        for (int step = 0; step < 20; ++step) {
+            const StepReport expected =
+                here.step(kDt, swings.gravity(), swings.fixed(), swings.start(), nullptr, nullptr);
+            const StepReport report = there->step(kDt, swings.fixed());
+            ASSERT_EQ(report.status, StepReport::Status::Converged) << step;
+            EXPECT_NEAR(report.iterations, expected.iterations, 5 + 0.3 * expected.iterations) << step;
+            EXPECT_NEAR(report.energy, expected.energy, 1e-5 * std::abs(expected.energy)) << step;
+            EXPECT_LT(farthest_apart(there->positions().downloaded(), here.positions()), 2e-5 * (step + 1))
+                << count << " sheets, step " << step;
+        }
+        EXPECT_LT(farthest_apart(there->velocities().downloaded(), here.velocities()), 2e-2);
+    }
+}
+
+TEST_F(DeviceBodyTest, HasTheSameBitsEveryTimeAndAsksForNoMemoryOnceWarm)
+{
+    const Swings swings(2);
+    const auto first = make_body(swings, {1e-5, 30}), second = make_body(swings, {1e-5, 30});
+    (void)first->step(kDt, swings.fixed());
+    EXPECT_EQ(allocations_of([&] {
+                  for (int step = 0; step < 5; ++step)
+                      (void)first->step(kDt, swings.fixed());
+              }),
+              0);
+    for (int step = 0; step < 6; ++step)
+        (void)second->step(kDt, swings.fixed());
+    EXPECT_EQ(first->positions().downloaded(), second->positions().downloaded());
+    EXPECT_EQ(first->velocities().downloaded(), second->velocities().downloaded());
+}
+
+TEST_F(DeviceBodyTest, LetsGoAndMovesWhatIsHeld)
+{
+    const Swings swings(1);
+    Body here(swings.start(), swings.system(swings.solver()), exact());
+    const auto there = make_body(swings, {1e-6, 200});
+    std::vector<unsigned char> fixed = swings.fixed();
+    std::vector<Vec3> targets = swings.start();
+    for (int step = 0; step < 8; ++step) {
+        if (step == 4)
+            fixed[0] = 0;
+        for (Vec3& target : targets)
+            target.y() += 1e-3;
+        there->targets().upload(targets);
+        (void)here.step(kDt, swings.gravity(), fixed, targets, nullptr, nullptr);
+        ASSERT_EQ(there->step(kDt, fixed).status, StepReport::Status::Converged);
+    }
+    EXPECT_LT(farthest_apart(there->positions().downloaded(), here.positions()), 2e-4);
+    EXPECT_EQ(there->positions().downloaded()[24], targets[24]);
+}
+
+TEST_F(DeviceBodyTest, ReportsAnEnergyThatIsNotFinite)
+{
+    const Swings swings(1);
+    const auto body = make_body(swings, {1e-5, 30});
+    std::vector<Vec3> x = swings.start();
+    x[100].y() = std::numeric_limits<double>::quiet_NaN();
+    body->positions().upload(x);
+    const StepReport report = body->step(kDt, swings.fixed());
+    EXPECT_EQ(report.status, StepReport::Status::NonFinite);
+    EXPECT_NE(report.message.find("not finite"), std::string::npos);
+}
+
+TEST_F(DeviceBodyTest, RefusesSolversAndEnergiesOfTheCpu)
+{
+    const Swings swings(1);
+    EXPECT_NE(message_of<InvalidInput>([&] {
+                  DeviceBody(space(), swings.start(), swings.system(swings.solver()), {});
+              }).find("does not run on a GPU"),
+              std::string::npos);
+}
+
+} // namespace
+} // namespace toile::test

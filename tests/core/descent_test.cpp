@@ -1,0 +1,191 @@
+#include "core/pd/device/descent_kernels.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/pd/lbfgs.h"
+#include "tests/core/objectives.h"
+
+/// The descent of a GPU, its kernels called one by one on the CPU, against the CPU's own loop. No GPU is
+/// needed.
+namespace toile::test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class DescentOnHost {
+public:
+    explicit DescentOnHost(int n)
+        : here_{Fields(n)}, trial_{Fields(n)}, energy_(n), direction_(n), s_(kHistory * n), y_(kHistory * n),
+          w_(kHistory * n), masses_(n, 1.0), drive_(n, Vec3(0.0, 1e30, 0.0)), descent_(1)
+    {
+    }
+
+    /// Minimises from x, in place; what StepError asks of a step does not bind.
+    Descent minimise(Objective& objective, std::vector<Vec3>& x, const OuterLoop::Settings& settings)
+    {
+        const int n = int(x.size());
+        trial_.x = x;
+        Descent& descent = descent_[0];
+        descent.tolerance = settings.tolerance;
+        descent.max_iterations = settings.max_iterations;
+        descent.dt2 = 1e-30;
+        descent.mass = descent.driving = 1e30;
+        descent.begin();
+        const DescentFields fields = this->fields();
+        while (!descent.is_over) {
+            energy_[0] = objective.evaluate(trial_.x, trial_.gradient);
+            objective.precondition(trial_.gradient, trial_.z);
+            TrialSums sums;
+            for (int i = 0; i < n; ++i)
+                sums += MeasureTrial{fields}(i);
+            DecideOnTrial{descent_}(sums);
+            for (int i = 0; i < n; ++i)
+                TakeTrial{fields}(i);
+        }
+        x = here_.x;
+        return descent;
+    }
+
+private:
+    struct Fields {
+        explicit Fields(int n) : x(n), gradient(n), z(n) {}
+        std::vector<Vec3> x, gradient, z;
+    };
+    DescentFields fields()
+    {
+        return {{here_.x, here_.gradient, here_.z},
+                {trial_.x, trial_.gradient, trial_.z},
+                energy_,
+                direction_,
+                s_,
+                y_,
+                w_,
+                masses_,
+                drive_,
+                descent_};
+    }
+
+    Fields here_, trial_;
+    std::vector<double> energy_;
+    std::vector<PaddedVec3> direction_, s_, y_, w_;
+    std::vector<double> masses_;
+    std::vector<Vec3> drive_;
+    std::vector<Descent> descent_;
+};
+
+/// Both loops from the same point.
+struct Both {
+    Both(Objective& objective, const std::vector<Vec3>& start, const OuterLoop::Settings& settings)
+        : x(start), x_there(start)
+    {
+        Lbfgs lbfgs(kHistory);
+        here = lbfgs.minimise(objective, x, settings);
+        there = DescentOnHost(int(start.size())).minimise(objective, x_there, settings);
+    }
+
+    std::vector<Vec3> x, x_there;
+    OuterLoop::Outcome here;
+    Descent there;
+};
+
+/// A quadratic whose inverse is neither good nor symmetric, as quadrature's.
+class Unsymmetric : public Quadratic {
+public:
+    void precondition(View<const Vec3> g, View<Vec3> z) override
+    {
+        for (int i = 0; i < g.size(); ++i)
+            z[i] = 0.2 * g[i] + 0.05 * g[(i + 1) % g.size()];
+    }
+};
+
+TEST(Descent, TakesTheStepsOfTheTwoLoopRecursion)
+{
+    // Pairs are kept in single precision, so steps differ in the eighth digit and then more.
+    Unsymmetric objective;
+    for (const int iterations : {1, 2, 3, 6, 12}) {
+        const Both both(objective, random_field(100, 3), {0.0, iterations});
+        EXPECT_EQ(both.there.iterations, iterations);
+        EXPECT_FALSE(both.there.converged);
+        EXPECT_LT(farthest(both.x_there, both.x), 1e-5) << iterations;
+        EXPECT_NEAR(both.there.displacement, both.here.displacement, 1e-3 * both.here.displacement);
+        EXPECT_NEAR(both.there.search.value, both.here.value, 1e-4 * both.here.value);
+    }
+}
+
+TEST(Descent, SolvesAQuadraticInOneIterationWithTheExactInverse)
+{
+    Quadratic objective;
+    const Both both(objective, random_field(100, 2), {1e-5, 50});
+    EXPECT_TRUE(both.there.converged);
+    EXPECT_EQ(both.there.iterations, both.here.iterations);
+    EXPECT_LT(farthest(both.x_there, objective.center), 1e-10) << "the last move is made";
+}
+
+TEST(Descent, FollowsACurvedValleyToItsEnd)
+{
+    Valley objective;
+    const Both both(objective, {Vec3(-1.2, 1.0, 1.0), Vec3(0.0, 0.0, 0.0), Vec3(1.3, 1.5, 2.0)},
+                    {1e-10, 1000});
+    EXPECT_TRUE(both.there.converged);
+    EXPECT_LT(both.there.iterations, 2 * both.here.iterations);
+    EXPECT_LT(farthest(both.x_there, std::vector<Vec3>(3, Vec3::Ones())), 1e-7);
+}
+
+TEST(Descent, StopsAtTheIterationLimit)
+{
+    Unsymmetric objective;
+    const std::vector<Vec3> start = random_field(100, 4);
+    const Both none(objective, start, {1e-9, 0});
+    EXPECT_EQ(none.x_there, start);
+    EXPECT_EQ(none.there.turns, 1);
+    const Both seven(objective, start, {1e-9, 7});
+    EXPECT_FALSE(seven.there.converged);
+    EXPECT_EQ(seven.there.turns, 8) << "the start and seven trials";
+}
+
+TEST(Descent, GivesUpWhereNoStepLowersTheValue)
+{
+    for (const int open : {1, 2}) {
+        Wall here(open), there(open);
+        std::vector<Vec3> x{Vec3(1, 2, 2)}, x_there = x;
+        Lbfgs lbfgs;
+        const OuterLoop::Outcome expected = lbfgs.minimise(here, x, {1e-9, 50});
+        const Descent found = DescentOnHost(1).minimise(there, x_there, {1e-9, 50});
+        EXPECT_FALSE(found.converged);
+        EXPECT_EQ(found.iterations, expected.iterations);
+        EXPECT_EQ(there.evaluated, here.evaluated);
+        EXPECT_LT(farthest(x_there, x), 1e-7);
+        EXPECT_NEAR(found.search.value, expected.value, 1e-6);
+    }
+}
+
+TEST(Descent, LeavesAloneWhatIsNotFinite)
+{
+    Quadratic objective;
+    std::vector<Vec3> x = random_field(100, 2);
+    x[50].z() = kNaN;
+    const Descent start = DescentOnHost(100).minimise(objective, x, {1e-10, 50});
+    EXPECT_FALSE(start.converged);
+    EXPECT_FALSE(std::isfinite(start.start_value));
+    EXPECT_EQ(start.iterations, 0);
+
+    class Broken : public Counting {
+    public:
+        double evaluate(View<const Vec3>, View<Vec3> gradient) override
+        {
+            gradient[0] = Vec3(kNaN, 0.0, 0.0);
+            return 1.0;
+        }
+    };
+    Broken broken;
+    x = {Vec3(1, 2, 2)};
+    const Descent outcome = DescentOnHost(1).minimise(broken, x, {1e-9, 50});
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_EQ(outcome.iterations, 0);
+    EXPECT_EQ(x[0], Vec3(1, 2, 2));
+}
+
+} // namespace
+} // namespace toile::test
