@@ -22,6 +22,31 @@ struct SurfaceEdges {
     bool is_closed = false;
 };
 
+/// Borrowed lists of items per owner: what kernels take of an Incidence.
+struct IncidenceView {
+    View<const int> first, items;
+
+    TOILE_HD View<const int> of(int owner) const
+    {
+        return items.subview(first[owner], first[owner + 1] - first[owner]);
+    }
+};
+
+/// Borrowed SurfaceEdges, of the host or on a GPU.
+struct SurfaceEdgesView {
+    View<const std::array<int, 2>> vertex;
+    IncidenceView triangles;
+    View<const std::array<int, 3>> triangle_edge;
+    IncidenceView corners_of_vertex;
+};
+inline SurfaceEdgesView view_of(const SurfaceEdges& edges)
+{
+    return {edges.vertex,
+            {edges.triangles.first, edges.triangles.items},
+            edges.triangle_edge,
+            {edges.corners_of_vertex.first, edges.corners_of_vertex.items}};
+}
+
 /// O(n log n).
 SurfaceEdges build_surface_edges(View<const Triangle> triangles, int vertex_count);
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collision/box.h"
+#include "collision/box_block.h"
 #include "core/backend/types.h"
 #include "core/mesh/topology.h"
 

@@ -1,3 +1,4 @@
+#include <functional>
 #include <iostream>
 
 #include "apps/toile/bench.h"
@@ -5,7 +6,6 @@
 #include "apps/toile/command_line.h"
 #include "apps/toile/interrupt.h"
 #include "apps/toile/progress.h"
-#include "benchmarks/gpu/build_tables.h"
 #include "benchmarks/gpu/table.h"
 #include "core/backend/error.h"
 
@@ -13,7 +13,12 @@ namespace toile {
 
 namespace {
 
-const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu.md", "gpu_tables.csv"};
+const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu_near_pairs.csv",
+                                       "gpu_tables.csv", "gpu.md"};
+
+/// As the paper's Cloth scene.
+constexpr double kStiffness = 1e4; ///< [N/m]
+constexpr double kTimeStep = 1.0 / 120.0;
 
 /// Sizes of the sheet [vertices]; tables of the largest take minutes to build on a few cores.
 const std::vector<int> kSizes{10'000, 50'000};
@@ -25,15 +30,52 @@ const std::vector<int> kBuildSizes{10'000, 50'000, 240'000};
 constexpr int kMostCompared = 60'000;
 
 /// Steps: as the paper's Cloth scene, the same number of vertices in one sheet, and as its Runway scene.
-const std::vector<gpu::StepCase> kSteps{{5, 10'000}, {1, 50'000}, {1, 240'000}};
-const std::vector<gpu::StepCase> kQuickSteps{{2, 1'000}};
+const std::vector<gpu::StepCase> kSteps{{5, 10'000, kStiffness, kTimeStep},
+                                        {1, 50'000, kStiffness, kTimeStep},
+                                        {1, 240'000, kStiffness, kTimeStep}};
+const std::vector<gpu::StepCase> kQuickSteps{{2, 1'000, kStiffness, kTimeStep}};
 
-/// As the paper's Cloth scene.
-constexpr double kStiffness = 1e4; ///< [N/m]
-constexpr double kTimeStep = 1.0 / 120.0;
+/// Sizes of the folded sheet in which near pairs are looked for [vertices].
+const std::vector<int> kFoldedSizes{50'000, 240'000};
 
 /// Copies that fit no cache, and such that fit the L2 cache twice [MB].
 constexpr int kLargeCopy = 1000, kSmallCopy = 8;
+
+/// What is measured, by name.
+struct Case {
+    std::string name;
+    std::function<void(const CudaSpace&, gpu::Report&)> measure;
+};
+
+std::vector<Case> cases_of(const BenchOptions& options)
+{
+    std::vector<Case> cases;
+    for (const int vertices : options.quick ? kQuickSizes : kSizes)
+        cases.push_back(
+            {"solve " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
+                 report.applies.push_back(gpu::measure_apply(space, vertices, kStiffness, kTimeStep));
+             }});
+    for (const int vertices : options.quick ? kQuickSizes : kBuildSizes)
+        cases.push_back(
+            {"tables " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
+                 report.builds.push_back(
+                     gpu::measure_build(space, vertices, kStiffness, kTimeStep, vertices <= kMostCompared));
+             }});
+    for (const gpu::StepCase& step : options.quick ? kQuickSteps : kSteps)
+        cases.push_back({"step " + std::to_string(step.cloths) + "x" + std::to_string(step.vertices),
+                         [what = step](const CudaSpace& space, gpu::Report& report) {
+                             report.steps.push_back(gpu::measure_step(space, what));
+                         }});
+    for (const int vertices : options.quick ? kQuickSizes : kFoldedSizes)
+        cases.push_back(
+            {"near_pairs " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
+                 gpu::measure_near_pairs(space, vertices, report.searches);
+             }});
+    std::erase_if(cases, [&](const Case& c) { return c.name.find(options.only) == std::string::npos; });
+    if (cases.empty())
+        throw InvalidInput("bench gpu: --only \"" + options.only + "\" leaves no case");
+    return cases;
+}
 
 } // namespace
 
@@ -41,48 +83,33 @@ int bench_gpu(const BenchOptions& options)
 {
     if (!options.output.empty())
         require_place(options.output, kTables);
+    const std::vector<Case> cases = cases_of(options);
     if (const std::string reason = why_no_cuda_device(); !reason.empty())
         throw DeviceError("bench gpu: no CUDA device: " + reason);
     const CudaSpace space(0);
     const InterruptGuard interrupt;
-    gpu::Report report{space.device(),
-                       gpu::copy_bandwidth(space, kLargeCopy),
-                       gpu::copy_bandwidth(space, kSmallCopy),
-                       {},
-                       {}};
-    const std::vector<int>& sizes = options.quick ? kQuickSizes : kSizes;
-    const std::vector<gpu::StepCase>& steps = options.quick ? kQuickSteps : kSteps;
-    Progress progress("case", int(sizes.size() + steps.size()), options.quiet);
-    int done = 0;
-    for (size_t k = 0; k < sizes.size() && !interrupt.requested(); ++k) {
-        report.applies.push_back(gpu::measure_apply(space, sizes[k], kStiffness, kTimeStep));
-        progress.update(++done, "solves of " + std::to_string(sizes[k]) + " vertices");
-    }
-    for (size_t k = 0; k < steps.size() && !interrupt.requested(); ++k) {
-        gpu::StepCase what = steps[k];
-        what.stiffness = kStiffness;
-        what.dt = kTimeStep;
-        report.steps.push_back(gpu::measure_step(space, what));
-        progress.update(++done, "steps of " + std::to_string(what.cloths) + " x " +
-                                    std::to_string(what.vertices) + " vertices");
+    gpu::Report report;
+    report.device = space.device();
+    report.copy_gbs = gpu::copy_bandwidth(space, kLargeCopy);
+    report.small_copy_gbs = gpu::copy_bandwidth(space, kSmallCopy);
+    Progress progress("case", int(cases.size()), options.quiet);
+    size_t done = 0;
+    while (done < cases.size() && !interrupt.requested()) {
+        cases[done].measure(space, report);
+        progress.update(int(done) + 1, cases[done].name);
+        ++done;
     }
 
-    std::vector<gpu::TableBuild> builds;
-    for (const int vertices : options.quick ? kQuickSizes : kBuildSizes)
-        if (!interrupt.requested())
-            builds.push_back(
-                gpu::measure_build(space, vertices, kStiffness, kTimeStep, vertices <= kMostCompared));
-
-    const std::string tables = gpu::markdown_tables(report) + "\n" + gpu::markdown_of(builds);
-    std::cout << tables;
-    if (interrupt.requested()) {
+    std::cout << gpu::markdown_tables(report);
+    if (done < cases.size()) {
         std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
         return kExitFailure;
     }
     write_tables(options.output, {{kTables[0], gpu::csv_of_applies(report)},
                                   {kTables[1], gpu::csv_of_steps(report)},
-                                  {kTables[2], tables},
-                                  {kTables[3], gpu::csv_of(builds)}});
+                                  {kTables[2], gpu::csv_of(report.searches)},
+                                  {kTables[3], gpu::csv_of(report.builds)},
+                                  {kTables[4], gpu::markdown_tables(report)}});
     return kExitOk;
 }
 

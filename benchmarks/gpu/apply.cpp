@@ -6,9 +6,8 @@
 
 #include "benchmarks/best_time.h"
 #include "benchmarks/gpu/copy.h"
+#include "benchmarks/gpu/median_time.h"
 #include "benchmarks/solvers/problem.h"
-#include "core/backend/cuda/graph.h"
-#include "core/backend/cuda/timer.h"
 #include "core/quadrature/device_quadrature.h"
 #include "core/quadrature/quadrature_operator.h"
 #include "quadrature2d/geodesic_places.h"
@@ -18,33 +17,6 @@ namespace toile::gpu {
 namespace {
 
 constexpr double kMega = 1e6;
-
-/// Repetitions in a graph, so that its launch is no part of the time, and launches of which the median
-/// counts.
-constexpr int kRepeats = 20;
-constexpr int kLaunches = 15;
-
-/// Median time of work() on the device [us].
-template <typename Work>
-double median_us(const CudaSpace& space, const Work& work)
-{
-    CudaGraph graph(space, "benchmarks/repeats");
-    graph.record([&] {
-        for (int k = 0; k < kRepeats; ++k)
-            work();
-    });
-    graph.launch();
-    DeviceTimer timer(space);
-    std::vector<double> times;
-    for (int k = 0; k < kLaunches; ++k) {
-        timer.start();
-        graph.launch();
-        timer.stop();
-        times.push_back(1e3 * timer.elapsed_ms() / kRepeats);
-    }
-    std::nth_element(times.begin(), times.begin() + kLaunches / 2, times.end());
-    return times[kLaunches / 2];
-}
 
 /// A load of all wavelengths.
 std::vector<Vec3> rough_load(int count)

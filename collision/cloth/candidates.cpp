@@ -13,10 +13,6 @@ constexpr int kTasks = 512;
 /// axis-parallel sheet over costs up to 2.3 by itself.
 constexpr double kWornOut = 2.5;
 
-/// Single-precision slack of boxes, relative to the largest number in them [-]: several times the rounding of
-/// a coordinate and of growing it (2^-24 each), so that no pair is missed.
-constexpr double kFloatSlack = 1e-6;
-
 } // namespace
 
 Candidates::Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions)
@@ -46,32 +42,24 @@ void Candidates::set_points(View<const Vec3> x, const Ways& ways, double margin)
         lower = lower.cwiseMin(corner);
         upper = upper.cwiseMax(corner);
     }
-    const Vec3 center = 0.5 * (lower + upper);
 
-    // The frame that moves with the mean motion. Exactly equal motions make no pair's distance shrink.
+    MovingFrame frame;
+    frame.center = 0.5 * (lower + upper);
     const View<const Vec3> motion = ways.motion;
-    Vec3 mean = Vec3::Zero();
     is_moving_ = std::any_of(motion.begin(), motion.end(), [&](const Vec3& m) { return m != motion[0]; });
+    frame.is_moving = is_moving_;
     if (is_moving_)
-        mean = parallel_sum(kCpu, motion.size(), mean, [&](int v) { return motion[v]; }) / motion.size();
+        frame.mean =
+            parallel_sum(kCpu, motion.size(), frame.mean, [&](int v) { return motion[v]; }) / motion.size();
 
     parallel_for(kCpu, "collision/cloth_points", x.size(), [&](int v) {
-        const Vec3 from = x[v] - center;
-        Vec3 low = from, high = from;
-        if (is_moving_) {
-            low = low.cwiseMin(from + motion[v] - mean);
-            high = high.cwiseMax(from + motion[v] - mean);
-        }
-        Eigen::Map<Eigen::Vector3f>(points_[v].lower.data()) = low.cast<float>();
-        Eigen::Map<Eigen::Vector3f>(points_[v].upper.data()) = high.cast<float>();
-        points_[v].slack = ways.slack.empty() ? 0.0f : float(ways.slack[v]);
+        points_[v] =
+            frame.point(x[v], is_moving_ ? motion[v] : frame.mean, ways.slack.empty() ? 0.0 : ways.slack[v]);
     });
     double largest = 0.0;
     for (const MovingPoint& point : points_)
-        for (int k = 0; k < 3; ++k)
-            largest = std::max(largest, double(std::max(-point.lower[k], point.upper[k]) + point.slack));
-    largest += margin;
-    box_margin_ = float(0.5 * margin + kFloatSlack * largest);
+        largest = std::max(largest, point.largest());
+    box_margin_ = box_margin(margin, largest);
 }
 
 void Candidates::fill_leaf(int leaf)

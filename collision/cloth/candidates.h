@@ -3,6 +3,7 @@
 #include "collision/box_tree.h"
 #include "collision/cloth/near_pairs.h"
 #include "collision/cloth/primitive_boxes.h"
+#include "collision/moving_point.h"
 #include "collision/surface_edges.h"
 
 namespace toile {

@@ -1,33 +1,13 @@
 #include "collision/cloth/near_pairs.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "collision/cloth/candidates.h"
-#include "collision/cloth/facing.h"
 #include "collision/cloth/ordered_records.h"
-#include "collision/cloth/pair_geometry.h"
+#include "collision/cloth/pair_rules.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
-
-namespace {
-
-bool share_vertex(const std::array<int, 4>& v, int first_count)
-{
-    for (int a = 0; a < first_count; ++a)
-        for (int b = first_count; b < 4; ++b)
-            if (v[a] == v[b])
-                return true;
-    return false;
-}
-
-std::array<Vec3, 4> corners_of(const std::array<int, 4>& v, View<const Vec3> values)
-{
-    return {values[v[0]], values[v[1]], values[v[2]], values[v[3]]};
-}
-
-} // namespace
 
 class NearPairs::Search {
 public:
@@ -49,15 +29,7 @@ private:
     void try_edges(int e, int f, Found& found) const;
     void try_triangle(int v, int t, Found& found) const;
 
-    std::array<int, 4> edge_corners(int e, int f) const
-    {
-        const auto &a = edges_.vertex[e], &b = edges_.vertex[f];
-        return {a[0], a[1], b[0], b[1]};
-    }
-    std::array<int, 4> triangle_corners(int v, int t) const
-    {
-        return {v, triangles_[t][0], triangles_[t][1], triangles_[t][2]};
-    }
+    PairCorners corners() const { return {triangles_, edges_.vertex}; }
     bool is_wanted(const std::array<int, 4>& v) const
     {
         const View<const unsigned char>& around = ways_.around;
@@ -67,7 +39,10 @@ private:
     {
         return !rigid_.empty() && rigid_[a] >= 0 && rigid_[a] == rigid_[b];
     }
-    bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const;
+    bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const
+    {
+        return MayMeet{x_, ways_, margin_, candidates_.is_moving()}(v, is_edge_edge);
+    }
 
     std::vector<Triangle> triangles_;
     std::vector<int> rigid_; ///< [vertices], or empty
@@ -91,45 +66,13 @@ NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> p
 {
 }
 
-/// False only where the pair stays `margin` apart along the direction that separates it now: on a straight
-/// way that is true throughout when it is at the end.
-bool NearPairs::Search::may_meet(const std::array<int, 4>& v, bool is_edge_edge) const
-{
-    const int first = first_count(is_edge_edge);
-    double slack[2] = {0.0, 0.0};
-    if (!ways_.slack.empty())
-        for (int k = 0; k < 4; ++k) {
-            double& side = slack[k < first ? 0 : 1];
-            side = std::max(side, ways_.slack[v[k]]);
-        }
-    const double margin = margin_ + slack[0] + slack[1];
-
-    const std::array<Vec3, 4> x = corners_of(v, x_);
-    const Vec3 difference = closest_difference(closest_weights(is_edge_edge, x), x);
-    const double distance = difference.norm();
-    if (distance <= margin)
-        return true;
-    if (!candidates_.is_moving())
-        return false;
-    const Vec3 n = difference / distance;
-    double ahead = std::numeric_limits<double>::max(), behind = -ahead;
-    for (int k = 0; k < 4; ++k) {
-        const double height = n.dot(x[k] - x[3] + ways_.motion[v[k]]);
-        if (k < first)
-            ahead = std::min(ahead, height);
-        else
-            behind = std::max(behind, height);
-    }
-    return ahead - behind <= margin;
-}
-
 void NearPairs::Search::try_edges(int e, int f, Found& found) const
 {
     if (are_in_one_body(edges_.vertex[e][0], edges_.vertex[f][0]))
         return;
     const auto [low, high] = std::minmax(e, f);
-    const std::array<int, 4> v = edge_corners(low, high);
-    if (is_wanted(v) && !share_vertex(v, 2) && may_meet(v, true))
+    const std::array<int, 4> v = corners()(low, high, true);
+    if (is_wanted(v) && !share_vertex(v, true) && may_meet(v, true))
         found.edge_edge.push_back({low, high});
 }
 
@@ -137,26 +80,14 @@ void NearPairs::Search::try_triangle(int p, int t, Found& found) const
 {
     if (are_in_one_body(p, triangles_[t][0]))
         return;
-    const std::array<int, 4> v = triangle_corners(p, t);
-    if (is_wanted(v) && !share_vertex(v, 1) && may_meet(v, false))
+    const std::array<int, 4> v = corners()(p, t, false);
+    if (is_wanted(v) && !share_vertex(v, false) && may_meet(v, false))
         found.vertex_triangle.push_back({p, t});
 }
 
 NearPair NearPairs::Search::at(View<const Vec3> x, int first, int second, bool is_edge_edge) const
 {
-    NearPair pair{};
-    pair.first = first;
-    pair.second = second;
-    pair.is_edge_edge = is_edge_edge;
-    pair.vertex = is_edge_edge ? edge_corners(first, second) : triangle_corners(first, second);
-    const std::array<Vec3, 4> corner = corners_of(pair.vertex, x);
-    pair.weight = closest_weights(is_edge_edge, corner);
-    const Vec3 difference = closest_difference(pair.weight, corner);
-    pair.distance = difference.norm();
-    pair.normal = separating_direction(is_edge_edge, corner, pair.weight, difference);
-    pair.is_facing = is_edge_edge ? is_facing_edges(edges_, triangles_, x, pair, first, second)
-                                  : is_facing_triangle(edges_, triangles_, x, pair, second);
-    return pair;
+    return near_pair_at(triangles_, view_of(edges_), x, first, second, is_edge_edge);
 }
 
 void NearPairs::Search::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)

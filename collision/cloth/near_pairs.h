@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collision/surface_edges.h"
+#include "collision/ways.h"
 #include "core/backend/types.h"
 
 namespace toile {
@@ -21,15 +22,6 @@ struct NearPair {
     int first, second; ///< vertex and triangle, or two edges numbered as in build_surface_edges
     bool is_edge_edge;
     bool is_facing; ///< stands for a local minimum of the distance between two SURFACES (see below)
-};
-
-/// Where the vertices of a soup go, straight on and all in the same time [m]. A displacement common to all
-/// (free fall) costs nothing. Borrowed fields of one item per vertex, or empty ones.
-struct Ways {
-    View<const Vec3> motion = {};  ///< the displacement that is expected; empty: none
-    View<const double> slack = {}; ///< >= 0, and end this far beside; empty: 0
-    View<const unsigned char> around =
-        {}; ///< 1: only pairs with such a vertex are asked for; empty: all pairs
 };
 
 /// Finds the pairs of primitives that might meet while the vertices of one triangle soup move: every cloth

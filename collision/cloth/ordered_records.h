@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "collision/cloth/pair_rules.h"
 #include "core/backend/parallel.h"
 #include "core/backend/types.h"
 
 namespace toile {
-
-/// Numbers of two primitives.
-struct Record {
-    int first, second;
-};
 
 /// Collects the records of many tasks and sorts them by (first, second): the same list whoever found what.
 class OrderedRecords {

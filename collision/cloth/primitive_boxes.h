@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "collision/box.h"
+#include "collision/box_block.h"
 #include "collision/box_tree.h"
 #include "collision/surface_edges.h"
 
@@ -29,25 +29,5 @@ public:
     /// Primitives without their box: their place in the blocks.
     void assign(const BoxTree& tree, const SurfaceEdges& surface, View<const Triangle> corners);
 };
-
-/// The box around the straight way of a vertex, in single precision relative to a centre that moves along,
-/// and how far the vertex may end beside it.
-struct MovingPoint {
-    std::array<float, 3> lower, upper; ///< [m]
-    float slack;                       ///< [m]
-};
-
-/// Box around the ways of points, grown on all sides by `margin` [m] and the largest slack.
-template <typename... Point>
-Box box_around(float margin, const Point&... point)
-{
-    Box box;
-    const float grow = margin + std::max({point.slack...});
-    for (int k = 0; k < 3; ++k) {
-        box.lower[k] = std::min({point.lower[k]...}) - grow;
-        box.upper[k] = std::max({point.upper[k]...}) + grow;
-    }
-    return box;
-}
 
 } // namespace toile

@@ -1,46 +1,156 @@
 #pragma once
 
+#include "core/backend/cuda/team.h"
 #include "core/quadrature/leaf_sum.h"
 #include "core/quadrature/moments.h"
 
 namespace toile {
 
-/// The right-hand sides of all bodies in the order of the leaves' slots, zero where padded.
-struct SortIntoSlots {
-    View<const int> nodes; ///< [slots] of one body, -1 where padded
-    View<const int> first; ///< [bodies] where a body's nodes begin in b
-    View<const Vec3> b;
-    View<PaddedVec3> sources; ///< [bodies * slots]
+/// Moments of all bodies as the first pass writes them.
+template <int Rank>
+struct MomentsOfBodies {
+    BasisView<float> basis;
+    View<PaddedVec3> moments; ///< [bodies * clusters * Rank]
+    int clusters;             ///< of one body
 
-    TOILE_HD void operator()(int k) const
+    /// Of a cluster of a body, function after function.
+    TOILE_HD PaddedVec3* of(int body, int level, int c) const
     {
-        const int body = k / nodes.size(), v = nodes[k % nodes.size()];
-        sources[k] = v >= 0 ? padded(b[first[body] + v]) : PaddedVec3(0.0F);
+        return &moments[(body * clusters + basis.first_of_level[level] + c) * Rank];
+    }
+
+    /// Nodes of a level among `count` of a lower one, the last subtree of a level being smaller.
+    TOILE_HD int nodes_of(int level, int c, int most) const
+    {
+        const int left = level_size(basis.leaf_count, level) - c;
+        return left < most ? left : most;
+    }
+
+    /// Climbs `levels` levels from clusters [first, first + count) of `level`, whose moments are in
+    /// block.memory [count * Rank], to their common ancestors: children before parents, a thread for
+    /// every function of a cluster, so at most 2 kThreads / Rank clusters. What it takes of the basis is
+    /// loaded before the climb begins: level by level it would be waited for.
+    template <int Levels, typename Block>
+    TOILE_HD void climb(const Block& block, int body, int level, int first, int count, int levels) const
+    {
+        const int c = block.thread / Rank, r = block.thread % Rank;
+        float transfers[Levels][2 * Rank] = {};
+        for (int k = 0; k < Levels; ++k)
+            for (int child = 0; child < 2; ++child)
+                if (k < levels && 2 * c + child < level_size(count, k)) {
+                    const int id = basis.first_of_level[level + k] + (first >> k) + 2 * c + child;
+                    for (int s = 0; s < Rank; ++s)
+                        transfers[k][child * Rank + s] = basis.transfers[(id * Rank + s) * Rank + r];
+                }
+
+        auto* below = static_cast<PaddedVec3*>(block.memory);
+        for (int k = 0; k < Levels; ++k) {
+            if (k == levels)
+                return;
+            const int children = level_size(count, k), parents = level_size(count, k + 1);
+            PaddedVec3* const above = below + children * Rank;
+            if (c < parents) {
+                PaddedVec3 sum(0.0F);
+                for (int s = 0; s < 2 * Rank; ++s)
+                    if (2 * c + s / Rank < children)
+                        sum += transfers[k][s] * below[2 * c * Rank + s];
+                above[c * Rank + r] = sum;
+                of(body, level + k + 1, (first >> (k + 1)) + c)[r] = sum;
+            }
+            block.wait();
+            below = above;
+        }
     }
 };
 
-/// First pass: function r of the moments of cluster c of a body.
-struct ClimbMoments {
-    BasisView<float> basis;
-    View<const PaddedVec3> sources; ///< [bodies * slots]
-    View<PaddedVec3> moments;       ///< [bodies * clusters * rank]
-    int slots, clusters;            ///< of one body
+/// First pass from the leaves up: a block sorts the right-hand side of kLeaves leaves into slots, zero where
+/// padded, takes the moments of the leaves and climbs to their common ancestor. A thread for every slot.
+template <int Rank>
+struct ClimbFromLeaves {
+    static constexpr int kLevels = 5, kLeaves = 1 << kLevels;
+    static constexpr int kThreads = kLeaves * ClusterTree::kLeaf;
+    static constexpr std::size_t kSharedBytes = 2 * kLeaves * Rank * sizeof(PaddedVec3);
 
-    struct AtSlot {
-        View<const PaddedVec3> sources;
-        TOILE_HD PaddedVec3 operator()(int slot) const { return sources[slot]; }
-    };
+    MomentsOfBodies<Rank> moments;
+    View<const int> nodes; ///< [slots] of one body, -1 where padded
+    View<const int> first; ///< [bodies] where a body's nodes begin in b
+    View<const Vec3> b;
+    View<PaddedVec3> sources; ///< [bodies * slots] out
 
-    TOILE_HD void operator()(int body, int level, int c, int r) const
+    TOILE_HD int blocks_of_body() const { return (moments.basis.leaf_count + kLeaves - 1) / kLeaves; }
+
+    template <typename Block>
+    TOILE_HD void operator()(int k, const Block& block) const
     {
-        const View<PaddedVec3> own = moments.subview(body * clusters * basis.rank, clusters * basis.rank);
-        own[(basis.first_of_level[level] + c) * basis.rank + r] =
-            basis.moment(level, c, r, PaddedVec3(0.0F), AtSlot{sources.subview(body * slots, slots)}, own);
+        const int body = k / blocks_of_body(), first_leaf = k % blocks_of_body() * kLeaves;
+        const int leaves = moments.nodes_of(0, first_leaf, kLeaves);
+        const int slot = first_leaf * ClusterTree::kLeaf + block.thread;
+        const bool exists = block.thread < leaves * ClusterTree::kLeaf;
+        const int v = exists ? nodes[slot] : -1;
+        const PaddedVec3 source = v >= 0 ? padded(b[first[body] + v]) : PaddedVec3(0.0F);
+        if (exists)
+            sources[body * nodes.size() + slot] = source;
+        gather_leaf(block, body, first_leaf, slot, exists, source);
+        block.wait();
+        moments.template climb<kLevels>(block, body, 0, first_leaf, leaves, levels());
+    }
+
+    TOILE_HD int levels() const
+    {
+        int levels = 0;
+        while (levels < kLevels && level_size(moments.basis.leaf_count, levels) > 1)
+            ++levels;
+        return levels;
+    }
+
+private:
+    template <typename Block>
+    TOILE_HD void gather_leaf(const Block& block, int body, int first_leaf, int slot, bool exists,
+                              const PaddedVec3& source) const
+    {
+        const TeamOf<ClusterTree::kLeaf> team{block.thread % ClusterTree::kLeaf};
+        const int leaf = block.thread / ClusterTree::kLeaf;
+        auto* const of_leaves = static_cast<PaddedVec3*>(block.memory);
+        for (int r = 0; r < Rank; ++r) {
+            PaddedVec3 moment = (exists ? moments.basis.leaves[slot * Rank + r] : 0.0F) * source;
+            for (int a = 0; a < 3; ++a)
+                moment.value[a] = team.sum(1, moment[a]);
+            if (exists && team.thread == r) {
+                of_leaves[leaf * Rank + r] = moment;
+                moments.of(body, 0, first_leaf + leaf)[r] = moment;
+            }
+        }
+    }
+};
+
+/// First pass further up: a block climbs from up to kNodes clusters of a level.
+template <int Rank>
+struct ClimbFromLevel {
+    static constexpr int kLevels = 8, kNodes = 1 << kLevels;
+    static constexpr int kThreads = 128 * Rank;
+    static constexpr std::size_t kSharedBytes = 2 * (kNodes + 8) * Rank * sizeof(PaddedVec3);
+
+    MomentsOfBodies<Rank> moments;
+    int level;
+    int levels; ///< to climb: at most kLevels
+
+    TOILE_HD int blocks_of_body() const { return level_size(moments.basis.leaf_count, level + levels); }
+
+    template <typename Block>
+    TOILE_HD void operator()(int k, const Block& block) const
+    {
+        const int body = k / blocks_of_body(), first = k % blocks_of_body() << levels;
+        const int count = moments.nodes_of(level, first, 1 << levels);
+        auto* const lowest = static_cast<PaddedVec3*>(block.memory);
+        for (int item = block.thread; item < count * Rank; item += Block::kThreads)
+            lowest[item] = moments.of(body, level, first)[item];
+        block.wait();
+        moments.template climb<kLevels>(block, body, level, first, count, levels);
     }
 };
 
 /// Second pass by a team per leaf: a thread has Width of the eight targets and every so many-th entry of the
-/// lists.
+/// lists. Teams after those of the leaves copy x = b where the table knows nothing: at fixed nodes.
 template <int Rank, int Width>
 struct GatherLeafByTeam {
     static constexpr int kThreadsPerEntry = KernelView::kTargets / Width;
@@ -49,12 +159,25 @@ struct GatherLeafByTeam {
     View<const PaddedVec3> sources; ///< [bodies * slots]
     View<const PaddedVec3> moments; ///< [bodies * clusters * rank]
     View<const int> nodes;          ///< [slots]
-    View<const int> first;          ///< [bodies] where a body's nodes begin in x
-    View<Vec3> x;                   ///< out
+    View<const int> others;         ///< nodes in no leaf
+    View<const int> first;          ///< [bodies] where a body's nodes begin in b and x
+    View<const Vec3> b;
+    View<Vec3> x; ///< out
+
+    TOILE_HD int leaves_of_all() const { return first.size() * (nodes.size() / ClusterTree::kLeaf); }
+    TOILE_HD int teams(int team_size) const
+    {
+        return leaves_of_all() + (first.size() * others.size() + team_size - 1) / team_size;
+    }
 
     template <typename Team>
-    TOILE_HD void operator()(int k, const Team& team) const
+    TOILE_HD void operator()(int k, const Team& team, bool is_own) const
     {
+        if (k >= leaves_of_all()) {
+            if (is_own)
+                copy_others((k - leaves_of_all()) * Team::kThreads + team.thread);
+            return;
+        }
         const int leaves = nodes.size() / ClusterTree::kLeaf, body = k / leaves, leaf = k % leaves;
         const int clusters = moments.size() / first.size();
         const LeafPart part{Width * (team.thread % kThreadsPerEntry), team.thread / kThreadsPerEntry,
@@ -67,22 +190,17 @@ struct GatherLeafByTeam {
                 sum.axis[a].value[t] = team.sum(kThreadsPerEntry, sum.axis[a][t]);
 
         // All threads of a target hold its sums; the first group writes.
-        for (int t = 0; t < Width && part.group == 0; ++t)
+        for (int t = 0; t < Width && part.group == 0 && is_own; ++t)
             if (const int v = nodes[leaf * ClusterTree::kLeaf + part.first_target + t]; v >= 0)
                 x[first[body] + v] =
                     Vec3(double(sum.axis[0][t]), double(sum.axis[1][t]), double(sum.axis[2][t]));
     }
-};
 
-/// x = b where the table knows nothing: fixed nodes.
-struct CopyOthers {
-    View<const int> others; ///< of one body
-    View<const int> first;  ///< [bodies]
-    View<const Vec3> b;
-    View<Vec3> x;
-
-    TOILE_HD void operator()(int k) const
+private:
+    TOILE_HD void copy_others(int k) const
     {
+        if (k >= first.size() * others.size())
+            return;
         const int v = first[k / others.size()] + others[k % others.size()];
         x[v] = b[v];
     }

@@ -73,30 +73,53 @@ void DeviceQuadrature::solve(View<const Vec3> b, View<Vec3> x)
 
 void DeviceQuadrature::gather_moments(View<const Vec3> b)
 {
+    if (basis_.rank == rank_of(Extent::Surface))
+        climb<rank_of(Extent::Surface)>(b);
+    else
+        climb<rank_of(Extent::Volume)>(b);
+}
+
+template <int Rank>
+void DeviceQuadrature::climb(View<const Vec3> b)
+{
+    if (basis_.leaf_count == 0)
+        return;
+    using FromLeaves = ClimbFromLeaves<Rank>;
+    using FromLevel = ClimbFromLevel<Rank>;
     const int bodies = first_.size();
-    parallel_for(space_, "quadrature/sort", sources_.size(),
-                 SortIntoSlots{nodes_.view(), first_.view(), b, sources_.view()});
-    parallel_climb(space_, "quadrature/moments", bodies, basis_.leaf_count, basis_.rank,
-                   ClimbMoments{basis_, sources_.view(), moments_.view(), nodes_.size(),
-                                moments_.size() / (bodies * basis_.rank)});
+    const MomentsOfBodies<Rank> moments{basis_, moments_.view(), moments_.size() / (bodies * Rank)};
+    const FromLeaves from_leaves{moments, nodes_.view(), first_.view(), b, sources_.view()};
+    parallel_for_blocks<FromLeaves::kThreads>(space_, "quadrature/leaf_moments",
+                                              bodies * from_leaves.blocks_of_body(), FromLeaves::kSharedBytes,
+                                              from_leaves);
+
+    // A block each for as many clusters as it has threads, until one is left.
+    for (int level = from_leaves.levels(); level_size(basis_.leaf_count, level) > 1;) {
+        int levels = 0;
+        while (1 << levels < FromLevel::kNodes && level_size(basis_.leaf_count, level + levels) > 1)
+            ++levels;
+        const FromLevel from_level{moments, level, levels};
+        parallel_for_blocks<FromLevel::kThreads>(space_, "quadrature/moments",
+                                                 bodies * from_level.blocks_of_body(),
+                                                 FromLevel::kSharedBytes, from_level);
+        level += levels;
+    }
 }
 
 void DeviceQuadrature::gather(View<const Vec3> b, View<Vec3> x)
 {
     if (basis_.rank == rank_of(Extent::Surface))
-        gather_leaves<rank_of(Extent::Surface)>(x);
+        gather_leaves<rank_of(Extent::Surface)>(b, x);
     else
-        gather_leaves<rank_of(Extent::Volume)>(x);
-    parallel_for(space_, "quadrature/others", first_.size() * others_.size(),
-                 CopyOthers{others_.view(), first_.view(), b, x});
+        gather_leaves<rank_of(Extent::Volume)>(b, x);
 }
 
 template <int Rank>
-void DeviceQuadrature::gather_leaves(View<Vec3> x)
+void DeviceQuadrature::gather_leaves(View<const Vec3> b, View<Vec3> x)
 {
-    parallel_for_teams(space_, "quadrature/gather", first_.size() * basis_.leaf_count,
-                       GatherLeafByTeam<Rank, kWidth>{kernel_.view(), sources_.view(), moments_.view(),
-                                                      nodes_.view(), first_.view(), x});
+    const GatherLeafByTeam<Rank, kWidth> leaves{
+        kernel_.view(), sources_.view(), moments_.view(), nodes_.view(), others_.view(), first_.view(), b, x};
+    parallel_for_teams(space_, "quadrature/gather", leaves.teams(Team::kThreads), leaves);
 }
 
 } // namespace toile

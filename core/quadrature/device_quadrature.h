@@ -40,7 +40,9 @@ public:
 
 private:
     template <int Rank>
-    void gather_leaves(View<Vec3> x);
+    void climb(View<const Vec3> b);
+    template <int Rank>
+    void gather_leaves(View<const Vec3> b, View<Vec3> x);
 
     const CudaSpace& space_;
     BasisView<float> basis_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/backend/lanes.h"
+#include "core/backend/unroll.h"
 #include "core/quadrature/cluster_tree.h"
 
 namespace toile {
@@ -40,16 +41,24 @@ struct LeafSum {
                       int leaf, const LeafPart& part)
     {
         LeafSum sum = *this; // in registers: in memory it might be among the weights
-        for (int e = table.near_first[leaf] + part.group; e < table.near_first[leaf + 1]; e += part.groups)
-            sum.template add_entry<ClusterTree::kLeaf>(table.near_weights, e, part.first_target,
-                                                       &sources[table.near_leaf[e] * ClusterTree::kLeaf]);
-        for (int e = table.far_first[leaf] + part.group; e < table.far_first[leaf + 1]; e += part.groups)
-            sum.template add_entry<Rank>(table.far_weights, e, part.first_target,
-                                         &moments[table.far_cluster[e] * Rank]);
+        sum.template add_list<ClusterTree::kLeaf>(table.near_weights, table.near_leaf, sources,
+                                                  table.near_first[leaf], table.near_first[leaf + 1], part);
+        sum.template add_list<Rank>(table.far_weights, table.far_cluster, moments, table.far_first[leaf],
+                                    table.far_first[leaf + 1], part);
         *this = sum;
     }
 
 private:
+    /// Entries [begin, end) of a list.
+    template <int Count, typename Vector>
+    TOILE_HD void add_list(View<const float> weights, View<const int> source, View<const Vector> values,
+                           int begin, int end, const LeafPart& part)
+    {
+        TOILE_UNROLL(2)
+        for (int e = begin + part.group; e < end; e += part.groups)
+            add_entry<Count>(weights, e, part.first_target, &values[source[e] * Count]);
+    }
+
     /// Weights [Count][kTargets] times values [Count].
     template <int Count, typename Vector>
     TOILE_HD void add_entry(View<const float> weights, int entry, int first_target, const Vector* values)

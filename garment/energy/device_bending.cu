@@ -1,9 +1,16 @@
 #include "garment/energy/device_bending.h"
 
-#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/teams.cuh"
 #include "garment/energy/bending_kernels.h"
 
 namespace toile {
+
+namespace {
+
+/// Threads of a row, which has some 23 entries.
+constexpr int kTeam = 8;
+
+} // namespace
 
 DeviceBending::DeviceBending(const CudaSpace& space)
     : space_(space), first_(space, "bending/first"), column_(space, "bending/column"),
@@ -17,7 +24,7 @@ void DeviceBending::add(const SparseMatrix& K, int first_vertex)
     for (int row = 0; row < K.outerSize(); ++row) {
         for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry) {
             host_column_.push_back(first_vertex + int(entry.col()));
-            host_value_.push_back(entry.value());
+            host_value_.push_back(float(entry.value()));
         }
         host_first_.push_back(int(host_column_.size()));
     }
@@ -28,8 +35,9 @@ void DeviceBending::add(const SparseMatrix& K, int first_vertex)
 
 void DeviceBending::add_gradient(const DeviceEvaluation& at)
 {
-    const BendVertex bend{first_.view(), column_.view(), value_.view(), at.x, at.gradient};
-    parallel_for(space_, "bending/multiply", first_.size() - 1, AddBending{bend, at.energy});
+    const BendVertex<float> bend{first_.view(), column_.view(), value_.view(), at.x};
+    parallel_for_teams<kTeam>(space_, "bending/multiply", first_.size() - 1,
+                              AddBending{bend, at.gradient, at.energy});
 }
 
 } // namespace toile

@@ -23,9 +23,9 @@ public:
 private:
     const CudaSpace& space_;
     std::vector<int> host_first_{0}, host_column_;
-    std::vector<double> host_value_;
+    std::vector<float> host_value_;
     DeviceArray<int> first_, column_;
-    DeviceArray<double> value_;
+    DeviceArray<float> value_;
 };
 
 } // namespace toile

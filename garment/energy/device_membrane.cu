@@ -1,8 +1,16 @@
 #include "garment/energy/device_membrane.h"
 
-#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/teams.cuh"
+#include "garment/energy/gather_triangles.h"
 
 namespace toile {
+
+namespace {
+
+/// Threads of a vertex, which has some six corners.
+constexpr int kCorners = 8;
+
+} // namespace
 
 DeviceMembrane::DeviceMembrane(const CudaSpace& space)
     : space_(space), triangles_(space, "membrane/triangles"), rest_inv_(space, "membrane/rest_inv"),
@@ -48,12 +56,13 @@ void DeviceMembrane::upload()
 void DeviceMembrane::add_gradient(const DeviceEvaluation& at)
 {
     parallel_for(space_, "membrane/project", triangles_.size(),
-                 ProjectMembraneTriangle{at.x, triangles_.view(), rest_inv_.view(), area_.view(),
-                                         fabric_.view(), weights_.view(), corner_gradient_.view(),
-                                         energy_.view()});
-    const GatherCorners corners{first_corner_.view(), corners_.view(), corner_gradient_.view(), at.gradient};
-    parallel_for(space_, "membrane/gather", first_corner_.size() - 1,
-                 GatherTriangles{corners, energy_.view(), at.energy});
+                 ProjectMembraneTriangle<CornerPair>{at.x, triangles_.view(), rest_inv_.view(), area_.view(),
+                                                     fabric_.view(), weights_.view(), corner_gradient_.view(),
+                                                     energy_.view()});
+    const GatherCorners<CornerPair> corners{first_corner_.view(), corners_.view(), corner_gradient_.view(),
+                                            at.gradient};
+    parallel_for_teams<kCorners>(space_, "membrane/gather", first_corner_.size() - 1,
+                                 GatherTriangles{corners, energy_.view(), at.energy});
 }
 
 } // namespace toile

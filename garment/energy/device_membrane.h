@@ -40,8 +40,8 @@ private:
     DeviceArray<int> fabric_;
     DeviceArray<MembraneWeights> weights_;
     DeviceArray<int> first_corner_, corners_;
-    DeviceArray<Mat32> corner_gradient_; ///< [triangles] [N]
-    DeviceArray<double> energy_;         ///< [triangles] [J]
+    DeviceArray<CornerPair> corner_gradient_; ///< [triangles] [N]
+    DeviceArray<double> energy_;              ///< [triangles] [J]
 };
 
 } // namespace toile

@@ -79,8 +79,24 @@ TOILE_HD MembraneResponse<T> project_membrane(const Mat32Of<T>& F, const Mat2Of<
     return response;
 }
 
+/// The gradients at two corners of a triangle in single precision, a load of 32 bytes. Where forces of
+/// neighbours cancel, a vertex of cloth at 1e4 N/m keeps four digits of its weight.
+struct CornerPair {
+    PaddedVec3 column[2];
+
+    TOILE_HD CornerPair& operator=(const Mat32& gradients)
+    {
+        for (int k = 0; k < 2; ++k)
+            column[k] = padded(gradients.col(k));
+        return *this;
+    }
+    TOILE_HD Vec3 col(int k) const { return unpadded(column[k]); }
+};
+
 /// project_membrane() triangle by triangle, as a GPU runs it; the CPU takes eight at a time
 /// (membrane_lanes.h).
+/// @tparam Corners  of which corner_gradient is: Mat32 or CornerPair
+template <typename Corners>
 struct ProjectMembraneTriangle {
     View<const Vec3> x;        ///< [vertices] positions [m]
     View<const Triangle> tri;  ///< [triangles] vertex indices
@@ -88,8 +104,8 @@ struct ProjectMembraneTriangle {
     View<const double> area;   ///< [triangles] rest areas [m^2]
     View<const int> fabric;    ///< [triangles] into weights
     View<const MembraneWeights> weights;
-    View<Mat32> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
-    View<double> energy;         ///< [triangles] out: [J]
+    View<Corners> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
+    View<double> energy;           ///< [triangles] out: [J]
 
     TOILE_HD void operator()(int t) const
     {
@@ -105,17 +121,18 @@ struct ProjectMembraneTriangle {
 };
 
 /// Sums the corner gradients of vertex v.
+template <typename Corners>
 struct GatherCorners {
-    View<const int> first;             ///< [vertices + 1]
-    View<const int> corners;           ///< 3 * triangle + corner, ascending per vertex
-    View<const Mat32> corner_gradient; ///< [triangles]
-    View<Vec3> gradient;               ///< [vertices] added to [N]
+    View<const int> first;               ///< [vertices + 1]
+    View<const int> corners;             ///< 3 * triangle + corner, ascending per vertex
+    View<const Corners> corner_gradient; ///< [triangles]
+    View<Vec3> gradient;                 ///< [vertices] added to [N]
 
     TOILE_HD void operator()(int v) const
     {
         Vec3 sum = Vec3::Zero();
         for (int k = first[v]; k < first[v + 1]; ++k) {
-            const Mat32& g = corner_gradient[corners[k] / 3];
+            const Corners& g = corner_gradient[corners[k] / 3];
             const int corner = corners[k] % 3;
             if (corner == 0)
                 sum -= g.col(0) + g.col(1);
@@ -123,22 +140,6 @@ struct GatherCorners {
                 sum += g.col(corner - 1);
         }
         gradient[v] += sum;
-    }
-};
-
-/// GatherCorners, and shares of the energy: a third of every triangle around v.
-struct GatherTriangles {
-    GatherCorners corners;
-    View<const double> triangle_energy; ///< [triangles] [J]
-    View<double> energy;                ///< [vertices] added to [J]
-
-    TOILE_HD void operator()(int v) const
-    {
-        corners(v);
-        double sum = 0.0;
-        for (int k = corners.first[v]; k < corners.first[v + 1]; ++k)
-            sum += triangle_energy[corners.corners[k] / 3];
-        energy[v] += sum / 3.0;
     }
 };
 

@@ -17,8 +17,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 class DescentOnHost {
 public:
     explicit DescentOnHost(int n)
-        : here_{Fields(n)}, trial_{Fields(n)}, energy_(n), direction_(n), s_(kHistory * n), y_(kHistory * n),
-          w_(kHistory * n), masses_(n, 1.0), drive_(n, Vec3(0.0, 1e30, 0.0)), descent_(1)
+        : here_{Fields(n)}, trial_{Fields(n)}, energy_(n), direction_(n), s_(kHistory * n, PaddedVec3(0.0F)),
+          y_(s_), w_(s_), masses_(n, 1.0), fixed_(n, 0), drive_(n, Vec3(0.0, 1e30, 0.0)), descent_(1)
     {
     }
 
@@ -35,6 +35,7 @@ public:
         descent.begin();
         const DescentFields fields = this->fields();
         while (!descent.is_over) {
+            energy_.assign(n, 0.0); // inertia has its place in evaluate()
             energy_[0] = objective.evaluate(trial_.x, trial_.gradient);
             objective.precondition(trial_.gradient, trial_.z);
             TrialSums sums;
@@ -63,7 +64,9 @@ private:
                 y_,
                 w_,
                 masses_,
+                fixed_,
                 drive_,
+                {masses_, drive_, 0.0, trial_.x, trial_.gradient},
                 descent_};
     }
 
@@ -71,6 +74,7 @@ private:
     std::vector<double> energy_;
     std::vector<PaddedVec3> direction_, s_, y_, w_;
     std::vector<double> masses_;
+    std::vector<unsigned char> fixed_;
     std::vector<Vec3> drive_;
     std::vector<Descent> descent_;
 };

@@ -18,6 +18,7 @@
 #include "core/backend/cuda/device.h"
 #include "core/backend/cuda/layout.h"
 #include "core/backend/cuda/sum_scratch.h"
+#include "core/backend/cuda/team.h"
 #include "core/backend/stages.h"
 #include "core/backend/types.h"
 
@@ -29,8 +30,10 @@ namespace toile {
 /// Threads of a block and items of a block in a sum. They decide how it rounds, whatever the device. Few
 /// items a block: sums stand between other kernels, where time is that of the longest chain of additions.
 inline constexpr int kSumThreads = 256;
-inline constexpr int kSumItems = 512;
-inline constexpr int kWarp = 32;
+inline constexpr int kSumItems = 256;
+
+/// Blocks of a sum that a multiprocessor should hold at least: large terms get fewer registers.
+inline constexpr int kSumBlocksAtOnce = 2;
 
 /// Blocks of `size` items that hold `count` items.
 inline int block_count(int count, int size) { return count / size + (count % size != 0 ? 1 : 0); }
@@ -64,7 +67,7 @@ __device__ T value_across(const T& value, int mask)
 /// Block b gives to then(b, sum) the terms of items [b * items, (b + 1) * items): every thread its share in
 /// order, then the threads of a warp in a tree, then the warps in a tree.
 template <typename T, typename Term, typename Then>
-__global__ void __launch_bounds__(kSumThreads)
+__global__ void __launch_bounds__(kSumThreads, kSumBlocksAtOnce)
     sum_blocks(int count, int items, const T zero, const Term term, const Then then)
 {
     // Raw bytes: shared memory may not have constructors.
@@ -104,7 +107,7 @@ __global__ void __launch_bounds__(kSumThreads)
 /// @throws DeviceError naming kernel, file and line when the launch is refused.
 template <typename Kernel>
 void parallel_for(const CudaSpace& space, std::string_view name, int count,
-                  [[maybe_unused]] const Kernel& kernel, [[maybe_unused]] int block = 256,
+                  [[maybe_unused]] const Kernel& kernel, [[maybe_unused]] int block = 128,
                   CallSite where = CallSite::here())
 {
     const StageScope stage(name);

@@ -22,8 +22,8 @@ void exclusive_scan(const CudaSpace& space, std::string_view name, View<const in
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
     with_scratch(scratch, [&](void* memory, std::size_t& bytes) {
-        return cub::DeviceScan::ExclusiveScan(memory, bytes, counts.data(), first.data(), ::cuda::std::plus<>(),
-                                              0L, counts.size(), space.stream());
+        return cub::DeviceScan::ExclusiveScan(memory, bytes, counts.data(), first.data(),
+                                              ::cuda::std::plus<>(), 0L, counts.size(), space.stream());
     });
 #endif
     launch.done();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/pd/device/descent.h"
+#include "core/pd/device/descent_kernels.h"
 #include "core/pd/step_kernels.h"
 #include "core/pd/step_tolerance.h"
 
@@ -24,22 +24,22 @@ struct StepSums {
 /// Predicts vertex i, where the descent begins too.
 struct BeginVertex {
     PredictVertex predict;
-    View<const double> masses;
     View<Vec3> drive; ///< [vertices] out: q* - x0 [m]
-    View<Vec3> trial; ///< [vertices] out: q*
+    DescentFields fields;
 
     TOILE_HD StepSums operator()(int i) const
     {
         predict(i);
-        trial[i] = predict.prediction[i];
+        fields.trial.x[i] = predict.prediction[i];
+        fields.begin_trial(i);
         const Vec3 move = predict.prediction[i] - predict.x[i];
         drive[i] = move;
         StepSums sums;
         sums.farthest_square = move.squaredNorm();
         if (predict.fixed[i])
             return sums;
-        sums.mass = masses[i];
-        sums.driving = masses[i] * sums.farthest_square;
+        sums.mass = fields.masses[i];
+        sums.driving = sums.mass * sums.farthest_square;
         return sums;
     }
 };
@@ -66,10 +66,13 @@ struct BeginDescent {
 /// Where vertex i was, and what is held where it belongs: the second place that a descent may begin at.
 struct StandStill {
     View<const Vec3> x, prediction;
-    View<const unsigned char> fixed;
-    View<Vec3> trial; ///< out
+    DescentFields fields;
 
-    TOILE_HD void operator()(int i) const { trial[i] = fixed[i] ? prediction[i] : x[i]; }
+    TOILE_HD void operator()(int i) const
+    {
+        fields.trial.x[i] = fields.fixed[i] ? prediction[i] : x[i];
+        fields.begin_trial(i);
+    }
 };
 
 struct CopyPositions {
@@ -88,22 +91,6 @@ struct BeginAgain {
         descent[0].tolerance = tolerance;
         descent[0].begin();
     }
-};
-
-/// Inertia at vertex i; what other energies add to comes after it.
-struct BeginGradient {
-    InertiaOfVertex inertia;
-    View<double> energy; ///< [vertices] overwritten [J]
-
-    TOILE_HD void operator()(int i) const { energy[i] = inertia(i); }
-};
-
-/// No gradient at fixed vertices.
-struct HoldFixed {
-    View<const int> vertices;
-    View<Vec3> gradient;
-
-    TOILE_HD void operator()(int k) const { gradient[vertices[k]] = Vec3(0.0, 0.0, 0.0); }
 };
 
 /// What a step reports of all vertices: largest values.

@@ -2,10 +2,12 @@
 
 #include "core/backend/lanes.h"
 #include "core/pd/device/descent.h"
+#include "core/pd/step_kernels.h"
 
 namespace toile {
 
-/// The fields of a descent on a GPU. A point is a position, the objective's gradient g and z = B g there.
+/// The fields of a descent on a GPU. A point is a position, the objective's gradient g and z = B g there;
+/// neither counts at fixed vertices.
 struct DescentFields {
     struct Point {
         View<Vec3> x, gradient, z; ///< [vertices] [m], [N], [m]
@@ -14,12 +16,21 @@ struct DescentFields {
     Point here, trial;
     View<double> energy;        ///< [vertices] shares of the objective at the trial point [J]
     View<PaddedVec3> direction; ///< [vertices] [m]
-    View<PaddedVec3> s, y, w;   ///< [kHistory * vertices] the pairs, slot after slot
+    View<PaddedVec3> s, y, w;   ///< [kHistory * vertices] the pairs, slot after slot; finite from the start
     View<const double> masses;  ///< [vertices] [kg]
-    View<const Vec3> drive;     ///< [vertices] q* - x0 [m]
-    View<Descent> descent;      ///< [1]
+    View<const unsigned char> fixed; ///< [vertices]
+    View<const Vec3> drive;          ///< [vertices] q* - x0 [m]
+    InertiaOfVertex inertia;         ///< at the trial point
+    View<Descent> descent;           ///< [1]
 
     TOILE_HD int pair_of(int slot, int i) const { return slot * direction.size() + i; }
+    TOILE_HD Vec3 free_part(const View<Vec3>& field, int i) const
+    {
+        return fixed[i] ? Vec3(0.0, 0.0, 0.0) : field[i];
+    }
+
+    /// Writes gradient and energy of inertia where the trial point now is: what others add to.
+    TOILE_HD void begin_trial(int i) const { energy[i] = inertia(i); }
 };
 
 /// What vertex i adds to the sums of a turn.
@@ -28,34 +39,42 @@ struct MeasureTrial {
 
     TOILE_HD TrialSums operator()(int i) const
     {
+        // Everything is loaded before anything is waited for: pairs that are not in use too.
         const Descent& descent = fields.descent[0];
+        const Vec3 gradient = fields.here.gradient[i], z = fields.here.z[i];
+        const Vec3 new_gradient = fields.free_part(fields.trial.gradient, i);
+        const Vec3 new_z = fields.free_part(fields.trial.z, i);
+        const Vec3 d = unpadded(fields.direction[i]);
+        PaddedVec3 pairs[3][kHistory];
+        for (int j = 0; j < kHistory; ++j) {
+            const int pair = fields.pair_of(descent.pairs.slot_of(j), i);
+            pairs[0][j] = fields.s[pair];
+            pairs[1][j] = fields.w[pair];
+            pairs[2][j] = fields.y[pair];
+        }
+
         TrialSums sums;
         sums.value = fields.energy[i];
         if (descent.action == Descent::Action::Start || descent.is_over)
             return sums;
-        const Vec3 gradient = fields.here.gradient[i], d = unpadded(fields.direction[i]);
         sums.slope = gradient.dot(d);
         sums.largest_square = d.squaredNorm();
         sums.error.move = fields.masses[i] * sums.largest_square;
         sums.error.force = gradient.squaredNorm() / fields.masses[i];
         sums.error.opposing = gradient.dot(fields.drive[i]);
 
-        const Vec3 s = descent.search.step * d;
-        const Vec3 y = fields.trial.gradient[i] - gradient, w = fields.trial.z[i] - fields.here.z[i];
+        const Vec3 s = descent.search.step * d, y = new_gradient - gradient, w = new_z - z;
         PairProducts<kHistory>& products = sums.products;
         products.sy = s.dot(y);
         products.ss = s.squaredNorm();
         products.yy = y.squaredNorm();
         products.yw = y.dot(w);
-        products.sg = s.dot(fields.trial.gradient[i]);
-        products.yz = y.dot(fields.trial.z[i]);
+        products.sg = s.dot(new_gradient);
+        products.yz = y.dot(new_z);
         for (int j = 0; j < kHistory; ++j) {
-            if (j >= descent.pairs.count())
-                break;
-            const int pair = fields.pair_of(j, i);
-            products.s_y[j] = unpadded(fields.s[pair]).dot(y);
-            products.y_w[j] = unpadded(fields.w[pair]).dot(y);
-            products.w_y[j] = unpadded(fields.y[pair]).dot(w);
+            products.s_y[j] = unpadded(pairs[0][j]).dot(y);
+            products.y_w[j] = unpadded(pairs[1][j]).dot(y);
+            products.w_y[j] = unpadded(pairs[2][j]).dot(w);
         }
         return sums;
     }
@@ -64,10 +83,15 @@ struct MeasureTrial {
 /// What becomes of the sums of a turn.
 struct DecideOnTrial {
     View<Descent> descent; ///< [1]
-    TOILE_HD void operator()(const TrialSums& sums) const { descent[0].decide(sums); }
+    TOILE_HD void operator()(const TrialSums& sums) const
+    {
+        Descent next = descent[0]; // in registers: a single thread decides
+        next.decide(sums);
+        descent[0] = next;
+    }
 };
 
-/// Does at vertex i what was decided, and finds the next trial point.
+/// Does at vertex i what was decided, finds the next trial point, and begins its gradient.
 struct TakeTrial {
     DescentFields fields;
 
@@ -86,29 +110,43 @@ struct TakeTrial {
             take(descent, i);
         }
         fields.trial.x[i] = fields.here.x[i] + descent.search.step * unpadded(fields.direction[i]);
+        fields.begin_trial(i);
     }
 
 private:
     TOILE_HD void take(const Descent& descent, int i) const
     {
-        const Vec3 gradient = fields.trial.gradient[i], z = fields.trial.z[i];
+        const Vec3 x = fields.trial.x[i];
+        const Vec3 gradient = fields.free_part(fields.trial.gradient, i);
+        const Vec3 z = fields.free_part(fields.trial.z, i);
+        Vec3 d = direction(descent, i) - z;
         if (descent.kept_slot >= 0) {
-            const int pair = fields.pair_of(descent.kept_slot, i);
-            fields.s[pair] = padded(fields.trial.x[i] - fields.here.x[i]);
+            // The newest pair is not in memory yet.
+            const PaddedVec3 s = padded(x - fields.here.x[i]), w = padded(z - fields.here.z[i]);
+            const int pair = fields.pair_of(descent.kept_slot, i), newest = descent.pairs.count() - 1;
             fields.y[pair] = padded(gradient - fields.here.gradient[i]);
-            fields.w[pair] = padded(z - fields.here.z[i]);
+            fields.s[pair] = s;
+            fields.w[pair] = w;
+            d += descent.pairs.of_s(newest) * unpadded(s) - descent.pairs.of_w(newest) * unpadded(w);
         }
-        fields.here.x[i] = fields.trial.x[i];
+        fields.here.x[i] = x;
         fields.here.gradient[i] = gradient;
         fields.here.z[i] = z;
+        fields.direction[i] = padded(descent.is_over ? Vec3(0.0, 0.0, 0.0) : d);
+    }
 
-        Vec3 d = -z;
-        for (int j = 0; j < descent.pairs.count(); ++j) {
-            const int pair = fields.pair_of(j, i);
-            d += descent.pairs.of_s(j) * unpadded(fields.s[pair]) -
-                 descent.pairs.of_w(j) * unpadded(fields.w[pair]);
+    /// What the pairs in memory add to it; the coefficients of those not in use are 0.
+    TOILE_HD Vec3 direction(const Descent& descent, int i) const
+    {
+        Vec3 sum(0.0, 0.0, 0.0);
+        for (int j = 0; j < kHistory; ++j) {
+            const int slot = descent.pairs.slot_of(j), pair = fields.pair_of(slot, i);
+            const bool is_in_memory = slot != descent.kept_slot;
+            const PaddedVec3 s = fields.s[pair], w = fields.w[pair];
+            sum += (is_in_memory ? descent.pairs.of_s(j) : 0.0) * unpadded(s) -
+                   (is_in_memory ? descent.pairs.of_w(j) : 0.0) * unpadded(w);
         }
-        fields.direction[i] = padded(descent.is_over ? Vec3(Vec3::Zero()) : d);
+        return sum;
     }
 };
 

@@ -17,15 +17,6 @@ DeviceSolver* device_solver_of(System& system)
     return solver;
 }
 
-std::vector<int> fixed_vertices_of(const std::vector<unsigned char>& fixed)
-{
-    std::vector<int> vertices;
-    for (int v = 0; v < int(fixed.size()); ++v)
-        if (fixed[v])
-            vertices.push_back(v);
-    return vertices;
-}
-
 } // namespace
 
 DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& positions,
@@ -37,7 +28,6 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       prediction_(space, "body/prediction", int(positions.size())),
       drive_(space, "body/drive", int(positions.size())), found_(space, "body/found", int(positions.size())),
       masses_(space, "body/masses"), fixed_(space, "body/fixed"),
-      fixed_vertices_(space, "body/fixed_vertices"),
       begin_sums_(space, "body/begin_sums", block_count(int(positions.size()), kSumItems)),
       finish_sums_(space, "body/finish_sums", block_count(int(positions.size()), kSumItems)),
       finish_(space, "body/finish", 1), finish_on_host_(space, "body/finish_on_host", 1),
@@ -60,29 +50,24 @@ void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
     if (is_new) {
         host_fixed_ = fixed;
         fixed_.upload(fixed);
-        fixed_vertices_.upload(fixed_vertices_of(fixed));
     }
     dt_ = dt;
     if (is_new)
-        record();
+        descent_.record(problem());
 }
 
-void DeviceBody::record()
+DeviceDescent::Problem DeviceBody::problem()
 {
-    descent_.record({[this](const DeviceEvaluation& at) { evaluate(at); },
-                     [this](View<const Vec3> g, View<Vec3> z) { solver_->solve_there(g, z); }, masses_.view(),
-                     drive_.view()});
-}
-
-/// The objective of the step, and its gradient.
-void DeviceBody::evaluate(const DeviceEvaluation& at)
-{
-    const InertiaOfVertex inertia{masses_.view(), prediction_.view(), 1.0 / (dt_ * dt_), at.x, at.gradient};
-    parallel_for(space_, "pd/inertia", at.x.size(), BeginGradient{inertia, at.energy});
-    for (const auto& energy : energies_.all())
-        energy->add_gradient(at);
-    parallel_for(space_, "pd/hold_fixed", fixed_vertices_.size(),
-                 HoldFixed{fixed_vertices_.view(), at.gradient});
+    return {[this](const DeviceEvaluation& at) {
+                for (const auto& energy : energies_.all())
+                    energy->add_gradient(at);
+            },
+            [this](View<const Vec3> g, View<Vec3> z) { solver_->solve_there(g, z); },
+            masses_.view(),
+            fixed_.view(),
+            prediction_.view(),
+            drive_.view(),
+            dt_};
 }
 
 /// Predicts, and tells the descent what is asked.
@@ -90,10 +75,10 @@ void DeviceBody::begin()
 {
     const PredictVertex predict{x_.view(),       v_.view(), acceleration_.view(), fixed_.view(),
                                 targets_.view(), dt_,       prediction_.view()};
-    parallel_sum_then(space_, "pd/predict", x_.size(), StepSums{},
-                      BeginVertex{predict, masses_.view(), drive_.view(), descent_.start()},
-                      BeginDescent{descent_.descent(), {settings_.tolerance}, settings_.max_iterations, dt_},
-                      begin_sums_);
+    const DescentFields fields = descent_.fields(problem());
+    parallel_sum_then(
+        space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, drive_.view(), fields},
+        BeginDescent{fields.descent, {settings_.tolerance}, settings_.max_iterations, dt_}, begin_sums_);
 }
 
 StepReport DeviceBody::step(double dt, const std::vector<unsigned char>& fixed)
@@ -126,11 +111,11 @@ Descent DeviceBody::no_worse_than_standing(Descent found)
     const double inertia = 0.5 / found.dt2 * found.driving;
     if (!(found.search.value > inertia))
         return found;
+    const DescentFields fields = descent_.fields(problem());
     parallel_for(space_, "pd/keep_found", x_.size(), CopyPositions{descent_.x(), found_.view()});
-    parallel_for(space_, "pd/stand_still", x_.size(),
-                 StandStill{x_.view(), prediction_.view(), fixed_.view(), descent_.start()});
+    parallel_for(space_, "pd/stand_still", x_.size(), StandStill{x_.view(), prediction_.view(), fields});
     parallel_for(space_, "pd/begin_again", 1,
-                 BeginAgain{descent_.descent(), StepTolerance::kStanding * found.tolerance});
+                 BeginAgain{fields.descent, StepTolerance::kStanding * found.tolerance});
     Descent outcome = descent_.run_briefly();
     if (!(outcome.start_value < found.search.value)) {
         parallel_for(space_, "pd/take_found", x_.size(), CopyPositions{found_.view(), descent_.x()});

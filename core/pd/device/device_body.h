@@ -44,8 +44,7 @@ public:
     const System& system() const { return *system_; }
 
 private:
-    void record();
-    void evaluate(const DeviceEvaluation& at);
+    DeviceDescent::Problem problem();
     void begin();
     Descent no_worse_than_standing(Descent found);
     void finish(StepReport& report);
@@ -61,7 +60,6 @@ private:
     DeviceArray<Vec3> x_, v_, acceleration_, targets_, prediction_, drive_, found_;
     DeviceArray<double> masses_;
     DeviceArray<unsigned char> fixed_;
-    DeviceArray<int> fixed_vertices_;
     DeviceArray<StepSums> begin_sums_;
     DeviceArray<FinishSums> finish_sums_, finish_;
     PinnedArray<FinishSums> finish_on_host_;

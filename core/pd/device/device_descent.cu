@@ -26,6 +26,8 @@ DeviceDescent::DeviceDescent(const CudaSpace& space, int vertex_count)
       on_host_(space, "descent/on_host", 1), turns_(space, "descent/turns"), expected_turns_(kTurnsAtOnce)
 {
     descent_.upload(std::vector<Descent>(1));
+    for (DeviceArray<PaddedVec3>* pairs : {&s_, &y_, &w_})
+        pairs->fill_zero();
 }
 
 DescentFields DeviceDescent::fields(const Problem& problem)
@@ -38,13 +40,16 @@ DescentFields DeviceDescent::fields(const Problem& problem)
             y_.view(),
             w_.view(),
             problem.masses,
+            problem.fixed,
             problem.drive,
+            {problem.masses, problem.prediction, 1.0 / (problem.dt * problem.dt), trial_x_.view(),
+             trial_gradient_.view()},
             descent_.view()};
 }
 
 void DeviceDescent::enqueue_turn(const Problem& problem)
 {
-    problem.evaluate({trial_x_.view(), trial_gradient_.view(), energy_.view()});
+    problem.add_gradient({trial_x_.view(), trial_gradient_.view(), energy_.view()});
     problem.precondition(trial_gradient_.view(), trial_z_.view());
     const DescentFields all = fields(problem);
     parallel_sum_then(space_, "descent/decide", x_.size(), TrialSums{}, MeasureTrial{all},

@@ -12,14 +12,17 @@ namespace toile {
 /// Runs a Descent: its fields, and its turns as a graph.
 class DeviceDescent {
 public:
-    /// What is minimised. Functions enqueue; what they launch is recorded.
+    /// What is minimised: inertia and more. Functions enqueue; what they launch is recorded.
     struct Problem {
-        /// Writes shares of the value, and the gradient.
-        std::function<void(const DeviceEvaluation&)> evaluate;
+        /// Adds to shares of the value, and to the gradient.
+        std::function<void(const DeviceEvaluation&)> add_gradient;
         /// z = B g
         std::function<void(View<const Vec3> g, View<Vec3> z)> precondition;
-        View<const double> masses; ///< [vertices] [kg]
-        View<const Vec3> drive;    ///< [vertices] q* - x0 [m]
+        View<const double> masses;       ///< [vertices] [kg]
+        View<const unsigned char> fixed; ///< [vertices]
+        View<const Vec3> prediction;     ///< [vertices] q* [m]
+        View<const Vec3> drive;          ///< [vertices] q* - x0 [m]
+        double dt = 0.0;                 ///< [s]
     };
 
     DeviceDescent(const CudaSpace& space, int vertex_count);
@@ -27,9 +30,9 @@ public:
     /// Takes another problem.
     void record(const Problem& problem);
 
-    /// Where the caller puts the point to begin at, [vertices] [m], and what is asked, [1], before run().
-    View<Vec3> start() { return trial_x_.view(); }
-    View<Descent> descent() { return descent_.view(); }
+    /// Fields of the problem. Before run() the caller puts the point to begin at into trial.x, begins its
+    /// gradient (begin_trial()), and what is asked into descent.
+    DescentFields fields(const Problem& problem);
 
     /// Enqueues turns until the descent is over, reading back now and then whether it is. As many turns as
     /// the run before took go at once.
@@ -43,7 +46,6 @@ public:
     View<const Vec3> gradient() const { return gradient_.view(); }
 
 private:
-    DescentFields fields(const Problem& problem);
     void enqueue_turn(const Problem& problem);
     const Descent& read_back();
 

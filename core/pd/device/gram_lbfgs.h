@@ -7,7 +7,8 @@
 namespace toile {
 
 /// Dot products of a step just taken with the pairs of L-BFGS: all that a direction needs of the fields.
-/// s, y, w: change of x, of the gradient g, and of z = B g; numbered ones are of the pairs kept.
+/// s, y, w: change of x, of the gradient g, and of z = B g; numbered ones are of the pairs kept, the oldest
+/// first.
 template <int History>
 struct PairProducts {
     double sy = 0.0, ss = 0.0, yy = 0.0, yw = 0.0;
@@ -42,40 +43,53 @@ struct PairProducts {
 /// takes one reduction and one pass over the fields, and no application of B besides z. B need not be
 /// symmetric.
 ///
-/// It holds numbers only; fields of pair j are the caller's, in slot j of [0, History).
+/// It holds numbers only; fields of the pairs are the caller's, in slots [0, History). Pairs are numbered by
+/// age, the oldest first. All loops have a fixed length, so that the numbers stay in a GPU's registers.
 template <int History>
 class GramLbfgs {
 public:
     /// Pairs whose curvature s.y is below this share of |s||y| carry rounding, not curvature [-].
     static constexpr double kMinCurvature = 1e-10;
 
-    TOILE_HD int count() const { return count_; } ///< slots in use are [0, count())
-    TOILE_HD void clear() { count_ = next_ = 0; }
-    TOILE_HD double of_s(int slot) const { return of_s_[slot]; }
-    TOILE_HD double of_w(int slot) const { return of_w_[slot]; }
+    TOILE_HD int count() const { return count_; }
+    TOILE_HD void clear()
+    {
+        count_ = next_slot_ = 0;
+        for (int k = 0; k < History; ++k)
+            of_s_[k] = of_w_[k] = 0.0;
+    }
+
+    /// Where the fields of pair k are; of those from count() on, slots that are not in use.
+    TOILE_HD int slot_of(int k) const
+    {
+        const int slot = next_slot_ - count_ + k;
+        return slot < 0 ? slot + History : slot < History ? slot : slot - History;
+    }
+
+    // Coefficients of pair k in the direction; 0 from count() on.
+    TOILE_HD double of_s(int k) const { return of_s_[k]; }
+    TOILE_HD double of_w(int k) const { return of_w_[k]; }
 
     /// Learns of a step. The oldest pair goes where there is no room.
     /// @return the slot where the step's s, y and w belong; -1 where they are not kept
     TOILE_HD int add(const PairProducts<History>& step)
     {
-        for (int j = 0; j < count_; ++j) {
-            sg_[j] += step.s_y[j];
-            yz_[j] += step.w_y[j];
-        }
+        for (int j = 0; j < History; ++j)
+            if (j < count_) {
+                sg_[j] += step.s_y[j];
+                yz_[j] += step.w_y[j];
+            }
         if (!(step.sy > kMinCurvature * std::sqrt(step.ss * step.yy)))
             return -1;
-        const int slot = next_;
-        next_ = (next_ + 1) % History;
-        count_ = count_ < History ? count_ + 1 : History;
-        for (int j = 0; j < count_; ++j) {
-            sy_[j][slot] = step.s_y[j];
-            yw_[slot][j] = step.y_w[j];
-            yw_[j][slot] = step.w_y[j];
-        }
-        sy_[slot][slot] = step.sy;
-        yw_[slot][slot] = step.yw;
-        sg_[slot] = step.sg;
-        yz_[slot] = step.yz;
+        const bool is_full = count_ == History;
+        if (is_full)
+            drop_oldest();
+        const int slot = next_slot_;
+        next_slot_ = (next_slot_ + 1) % History;
+        for (int j = 0; j < History; ++j) // where it becomes pair j, the older ones are pairs 0 to j - 1
+            if (j == count_)
+                put(j, step, is_full ? 1 : 0);
+        ++count_;
         return slot;
     }
 
@@ -83,34 +97,62 @@ public:
     TOILE_HD void find_direction()
     {
         // First loop, newest to oldest: what becomes of -g.
-        for (int k = count_ - 1; k >= 0; --k) {
-            const int i = slot_of(k);
+        for (int i = History - 1; i >= 0; --i) {
             double product = -sg_[i];
-            for (int newer = k + 1; newer < count_; ++newer)
-                product -= of_w_[slot_of(newer)] * sy_[i][slot_of(newer)];
-            of_w_[i] = product / sy_[i][i];
+            for (int newer = i + 1; newer < History; ++newer)
+                product -= of_w_[newer] * sy_[i][newer];
+            of_w_[i] = i < count_ ? product * rho_[i] : 0.0;
         }
 
         // Second loop, oldest to newest, after B has been applied.
-        for (int k = 0; k < count_; ++k) {
-            const int i = slot_of(k);
+        for (int i = 0; i < History; ++i) {
             double product = -yz_[i];
-            for (int other = 0; other < count_; ++other)
-                product -= of_w_[slot_of(other)] * yw_[i][slot_of(other)];
-            for (int older = 0; older < k; ++older)
-                product += of_s_[slot_of(older)] * sy_[slot_of(older)][i];
-            of_s_[i] = of_w_[i] - product / sy_[i][i];
+            for (int other = 0; other < History; ++other)
+                product -= of_w_[other] * yw_[i][other];
+            for (int older = 0; older < i; ++older)
+                product += of_s_[older] * sy_[older][i];
+            of_s_[i] = i < count_ ? of_w_[i] - product * rho_[i] : 0.0;
         }
     }
 
 private:
-    /// Slot of the k-th pair, the oldest first.
-    TOILE_HD int slot_of(int k) const { return (next_ - count_ + k + History) % History; }
+    TOILE_HD void drop_oldest()
+    {
+        for (int i = 0; i + 1 < History; ++i) {
+            for (int j = 0; j + 1 < History; ++j) {
+                sy_[i][j] = sy_[i + 1][j + 1];
+                yw_[i][j] = yw_[i + 1][j + 1];
+            }
+            sg_[i] = sg_[i + 1];
+            yz_[i] = yz_[i + 1];
+            rho_[i] = rho_[i + 1];
+        }
+        --count_;
+    }
 
-    int count_ = 0, next_ = 0;
+    /// @param dropped  pairs that were dropped since the products were taken
+    TOILE_HD void put(int slot, const PairProducts<History>& step, int dropped)
+    {
+        for (int j = 0; j < History; ++j)
+            if (j < slot) {
+                const bool shift = dropped > 0;
+                const int from = j + 1 < History ? j + 1 : j;
+                sy_[j][slot] = shift ? step.s_y[from] : step.s_y[j];
+                yw_[slot][j] = shift ? step.y_w[from] : step.y_w[j];
+                yw_[j][slot] = shift ? step.w_y[from] : step.w_y[j];
+            }
+        sy_[slot][slot] = step.sy;
+        yw_[slot][slot] = step.yw;
+        sg_[slot] = step.sg;
+        yz_[slot] = step.yz;
+        rho_[slot] = 1.0 / step.sy;
+    }
+
+    int count_ = 0, next_slot_ = 0;
     double sy_[History][History] = {}; ///< s_i . y_j where j is not older than i
     double yw_[History][History] = {}; ///< y_i . w_j
     double sg_[History] = {}, yz_[History] = {};
+    double rho_[History] = {}; ///< 1 / (s . y)
     double of_s_[History] = {}, of_w_[History] = {};
 };
 

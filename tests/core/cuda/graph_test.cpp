@@ -89,7 +89,7 @@ TEST_F(CudaGraphTest, IsInstantiatedAnewWhereTheShapeChanges)
 TEST_F(CudaGraphTest, HoldsSumsAndCopies)
 {
     PinnedArray<double> value(space(), "test/value", 1);
-    DeviceArray<double> slot(space(), "test/slot", 1), block_sums(space(), "test/block_sums", 1);
+    DeviceArray<double> slot(space(), "test/slot", 1), block_sums(space(), "test/block_sums", 16);
     CudaGraph graph(space(), "test/graph");
     graph.record([&] {
         add(1.0);

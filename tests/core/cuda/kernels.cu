@@ -33,12 +33,12 @@ void launch(const CudaSpace& space, const WriteLayout& kernel)
     parallel_for(space, "test/layout", 1, kernel);
 }
 
-void launch(const CudaSpace& space, const ProjectMembraneTriangle& kernel)
+void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel)
 {
     parallel_for(space, "test/project", kernel.tri.size(), kernel);
 }
 
-void launch(const CudaSpace& space, const GatherCorners& kernel)
+void launch(const CudaSpace& space, const GatherCorners<Mat32>& kernel)
 {
     parallel_for(space, "test/gather", kernel.gradient.size(), kernel);
 }

@@ -93,8 +93,8 @@ void launch(const CudaSpace& space, const AddScaled& kernel);
 void launch(const CudaSpace& space, const ScaleBySlot& kernel);
 void launch(const CudaSpace& space, const WriteWild& kernel);
 void launch(const CudaSpace& space, const WriteLayout& kernel);
-void launch(const CudaSpace& space, const ProjectMembraneTriangle& kernel);
-void launch(const CudaSpace& space, const GatherCorners& kernel);
+void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel);
+void launch(const CudaSpace& space, const GatherCorners<Mat32>& kernel);
 
 /// The sum of numbers in a slot of the device, and read back.
 void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,

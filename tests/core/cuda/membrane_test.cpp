@@ -85,14 +85,14 @@ Response in_lanes(const TriangleSoup& soup)
 Response one_by_one(const TriangleSoup& soup)
 {
     Response response;
-    const ProjectMembraneTriangle kernel{soup.x,
-                                         soup.tri,
-                                         soup.rest_inv,
-                                         soup.area,
-                                         soup.fabric,
-                                         soup.all_weights,
-                                         response.corner_gradient,
-                                         response.energy};
+    const ProjectMembraneTriangle<Mat32> kernel{soup.x,
+                                                soup.tri,
+                                                soup.rest_inv,
+                                                soup.area,
+                                                soup.fabric,
+                                                soup.all_weights,
+                                                response.corner_gradient,
+                                                response.energy};
     for (int t = 0; t < kTriangles; ++t)
         kernel(t);
     return response;
@@ -171,9 +171,9 @@ protected:
         DeviceArray<MembraneWeights> weights(space(), "test/weights");
         fabric.upload(soup.fabric);
         weights.upload(soup.all_weights);
-        launch(space(),
-               ProjectMembraneTriangle{x.view(), tri.view(), rest_inv.view(), area.view(), fabric.view(),
-                                       weights.view(), corner_gradient.view(), energy.view()});
+        launch(space(), ProjectMembraneTriangle<Mat32>{x.view(), tri.view(), rest_inv.view(), area.view(),
+                                                       fabric.view(), weights.view(), corner_gradient.view(),
+                                                       energy.view()});
         return {corner_gradient.downloaded(), energy.downloaded()};
     }
 };
@@ -217,10 +217,10 @@ TEST_F(CudaMembrane, GathersToTheSameBits)
     corners_there.upload(corners);
     corner_gradient.upload(response.corner_gradient);
     gradient.upload(expected);
-    launch(space(),
-           GatherCorners{first_there.view(), corners_there.view(), corner_gradient.view(), gradient.view()});
+    launch(space(), GatherCorners<Mat32>{first_there.view(), corners_there.view(), corner_gradient.view(),
+                                         gradient.view()});
 
-    const GatherCorners on_host{first, corners, response.corner_gradient, expected};
+    const GatherCorners<Mat32> on_host{first, corners, response.corner_gradient, expected};
     for (int v = 0; v < kVertices; ++v)
         on_host(v);
     EXPECT_EQ(gradient.downloaded(), expected);

@@ -1,0 +1,117 @@
+#pragma once
+
+/// Which pairs of primitives are near pairs, and what there is to know about one. The same bodies on CPU and
+/// GPU.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "collision/cloth/facing.h"
+#include "collision/cloth/near_pairs.h"
+#include "collision/cloth/pair_geometry.h"
+
+namespace toile {
+
+/// Numbers of two primitives.
+struct Record {
+    int first, second;
+};
+
+TOILE_HD inline bool share_vertex(const std::array<int, 4>& v, bool is_edge_edge)
+{
+    const int first = first_count(is_edge_edge);
+    for (int a = 0; a < first; ++a)
+        for (int b = first; b < 4; ++b)
+            if (v[a] == v[b])
+                return true;
+    return false;
+}
+
+TOILE_HD inline std::array<Vec3, 4> corners_of(const std::array<int, 4>& v, View<const Vec3> values)
+{
+    return {values[v[0]], values[v[1]], values[v[2]], values[v[3]]};
+}
+
+/// The primitives of a soup by number.
+struct PairCorners {
+    View<const Triangle> triangles;
+    View<const std::array<int, 2>> edges; ///< SurfaceEdges::vertex
+
+    TOILE_HD std::array<int, 4> operator()(int first, int second, bool is_edge_edge) const
+    {
+        if (is_edge_edge) {
+            const std::array<int, 2>&a = edges[first], &b = edges[second];
+            return {a[0], a[1], b[0], b[1]};
+        }
+        const Triangle& t = triangles[second];
+        return {first, t[0], t[1], t[2]};
+    }
+};
+
+/// The last rule of NearPairs::find, for pairs whose boxes overlap.
+struct MayMeet {
+    View<const Vec3> x; ///< [m]
+    Ways ways;
+    double margin;  ///< [m]
+    bool is_moving; ///< MovingFrame::is_moving
+
+    /// False only where the pair stays `margin` apart along the direction that separates it now: on a
+    /// straight way that is true throughout when it is at the end.
+    TOILE_HD bool operator()(const std::array<int, 4>& v, bool is_edge_edge) const
+    {
+        const int first = first_count(is_edge_edge);
+        const double apart = margin + slack_of(v, first);
+        const std::array<Vec3, 4> at = corners_of(v, x);
+        const Vec3 difference = closest_difference(closest_weights(is_edge_edge, at), at);
+        const double distance = difference.norm();
+        if (distance <= apart)
+            return true;
+        if (!is_moving)
+            return false;
+        const Vec3 n = difference / distance;
+        double ahead = std::numeric_limits<double>::max(), behind = -ahead;
+        for (int k = 0; k < 4; ++k) {
+            const double height = n.dot(at[k] - at[3] + ways.motion[v[k]]);
+            if (k < first)
+                ahead = std::min(ahead, height);
+            else
+                behind = std::max(behind, height);
+        }
+        return ahead - behind <= apart;
+    }
+
+private:
+    /// The largest of either side, added.
+    TOILE_HD double slack_of(const std::array<int, 4>& v, int first) const
+    {
+        double slack[2] = {0.0, 0.0};
+        if (!ways.slack.empty())
+            for (int k = 0; k < 4; ++k) {
+                double& side = slack[k < first ? 0 : 1];
+                side = std::max(side, ways.slack[v[k]]);
+            }
+        return slack[0] + slack[1];
+    }
+};
+
+/// A pair as it is at positions x [vertices x 3] [m].
+TOILE_HD inline NearPair near_pair_at(View<const Triangle> triangles, const SurfaceEdgesView& edges,
+                                      View<const Vec3> x, int first, int second, bool is_edge_edge)
+{
+    NearPair pair{};
+    pair.first = first;
+    pair.second = second;
+    pair.is_edge_edge = is_edge_edge;
+    pair.vertex = PairCorners{triangles, edges.vertex}(first, second, is_edge_edge);
+    const std::array<Vec3, 4> corner = corners_of(pair.vertex, x);
+    pair.weight = closest_weights(is_edge_edge, corner);
+    const Vec3 difference = closest_difference(pair.weight, corner);
+    pair.distance = difference.norm();
+    pair.normal = separating_direction(is_edge_edge, corner, pair.weight, difference);
+    pair.is_facing = is_edge_edge ? is_facing_edges(edges, triangles, x, pair, first, second)
+                                  : is_facing_triangle(edges, triangles, x, pair, second);
+    return pair;
+}
+
+} // namespace toile

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "collision/box.h"
+#include "core/backend/bits.h"
+#include "core/backend/implicit_tree.h"
+
+namespace toile {
+
+/// A node of an ImplicitBoxTree: 32 bytes, two loads of a GPU. Contains nothing at first.
+struct alignas(16) BoxNode {
+    std::array<float, 3> lower{Box::kFar, Box::kFar, Box::kFar}; ///< [m]
+    int last = -1;                                               ///< largest number of an item below
+    std::array<float, 3> upper{-Box::kFar, -Box::kFar, -Box::kFar};
+    int is_wanted = 0; ///< 1: pairs of two nodes that are not are left out
+
+    TOILE_HD static BoxNode of_item(const Box& box, int number, bool is_wanted)
+    {
+        return {box.lower, number, box.upper, int(is_wanted)};
+    }
+    TOILE_HD Box box() const { return {lower, upper}; }
+
+    TOILE_HD void add(const BoxNode& other)
+    {
+        for (int k = 0; k < 3; ++k) {
+            lower[k] = std::min(lower[k], other.lower[k]);
+            upper[k] = std::max(upper[k], other.upper[k]);
+        }
+        last = std::max(last, other.last);
+        is_wanted |= other.is_wanted;
+    }
+};
+
+/// Where the nodes of a tree lie that has four children per node and no pointers: node c has the children
+/// 4c .. 4c + 3 of the level below, as far as they exist; level 0 are the items in the tree's order. Levels
+/// begin at multiples of four, so that four children are one line of a cache.
+struct ImplicitShape {
+    static constexpr int kFan = 4, kFanBits = 2;
+    static constexpr int kMaxLevels = 16; ///< 4^15 items
+
+    int count = 0;                           ///< items
+    int top = 0;                             ///< the root's level; at least 1
+    std::array<int, kMaxLevels + 1> first{}; ///< [top + 2] nodes before a level
+
+    explicit ImplicitShape(int items) : count(items)
+    {
+        do {
+            first[top + 1] = first[top] + (size_of(top) + kFan - 1) / kFan * kFan;
+            ++top;
+        } while (size_of(top) > 1);
+        first[top + 1] = first[top] + kFan;
+    }
+
+    /// Nodes of a level; 0 where there are no items.
+    TOILE_HD int size_of(int level) const { return level_size(count, kFanBits * level); }
+    int node_count() const { return first[top + 1]; }
+};
+
+/// Boxes over items that move, in an order that was chosen once: see ImplicitShape.
+struct ImplicitBoxTree {
+    ImplicitShape shape;
+    View<const BoxNode> nodes; ///< [ImplicitShape::node_count()] empty where there is no node
+
+    /// Calls visit(number) for the items whose boxes overlap the query's, in the tree's order, and whose
+    /// number is above `above`; where the query is not wanted, for wanted ones only.
+    template <typename Visit>
+    TOILE_HD void visit_overlapping(const BoxNode& query, int above, const Visit& visit) const
+    {
+        // Four bits per level: children that are still to be looked at, lower levels first.
+        int level = shape.top - 1, base = 0;
+        std::uint64_t open = overlaps(query, above, level, base);
+        open <<= ImplicitShape::kFan * level;
+        while (open != 0) {
+            const int bit = lowest_bit(open);
+            open &= open - 1;
+            const int above_last = bit / ImplicitShape::kFan - level;
+            base = base >> (ImplicitShape::kFanBits * above_last) & ~(ImplicitShape::kFan - 1);
+            level += above_last;
+            const int node = base + bit % ImplicitShape::kFan;
+            if (level == 0) {
+                visit(nodes[node].last);
+                continue;
+            }
+            --level;
+            base = node * ImplicitShape::kFan;
+            open |= std::uint64_t(overlaps(query, above, level, base)) << (ImplicitShape::kFan * level);
+        }
+    }
+
+private:
+    /// A bit for each of the four nodes from `base` on.
+    TOILE_HD unsigned overlaps(const BoxNode& query, int above, int level, int base) const
+    {
+        unsigned bits = 0;
+        for (int k = 0; k < ImplicitShape::kFan; ++k) {
+            const BoxNode node = nodes[shape.first[level] + base + k];
+            const bool is_open = (node.last > above) & ((node.is_wanted | query.is_wanted) != 0);
+            bits |= unsigned(is_open & node.box().overlaps(query.box())) << k;
+        }
+        return bits;
+    }
+};
+
+} // namespace toile

@@ -1,0 +1,10 @@
+#pragma once
+
+/// Before a loop: so many turns of it at once on a GPU, whose loads then don't wait for each other. Other
+/// compilers decide for themselves.
+#ifdef __CUDACC__
+#define TOILE_PRAGMA(words) _Pragma(#words)
+#define TOILE_UNROLL(count) TOILE_PRAGMA(unroll count)
+#else
+#define TOILE_UNROLL(count)
+#endif

@@ -1,0 +1,272 @@
+#include "collision/cloth/near_pairs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+#include "collision/cloth/device_near_pairs.h"
+#include "collision/surface_proximity.h"
+#include "core/backend/cuda/graph.h"
+#include "core/backend/stages.h"
+#include "core/mesh/obj.h"
+#include "tests/collision/same_pairs.h"
+#include "tests/collision/soups.h"
+#include "tests/core/cuda/on_device.h"
+
+namespace toile::test {
+namespace {
+
+class DeviceNearPairsTest : public OnDevice {
+protected:
+    /// A soup on the device, where nothing waits for anything of the host.
+    struct OnBoard {
+        OnBoard(const CudaSpace& space, const Soup& soup, const std::vector<unsigned char>& around = {})
+            : x(space, "test/x"), motion(space, "test/motion"), slack(space, "test/slack"),
+              around_(space, "test/around")
+        {
+            x.upload(soup.x);
+            motion.upload(soup.motion);
+            slack.upload(soup.slack);
+            around_.upload(around);
+        }
+        Ways ways() { return {motion.view(), slack.view(), around_.view()}; }
+
+        DeviceArray<Vec3> x, motion;
+        DeviceArray<double> slack;
+        DeviceArray<unsigned char> around_;
+    };
+
+    std::vector<NearPair> found_by(DeviceNearPairs& near, const Soup& soup, double margin,
+                                   const std::vector<unsigned char>& around = {})
+    {
+        OnBoard board(space(), soup, around);
+        const View<const NearPair> pairs = near.find(board.x.view(), board.ways(), margin);
+        return downloaded(near, pairs.size());
+    }
+    std::vector<NearPair> downloaded(const DeviceNearPairs& near, int count)
+    {
+        DeviceArray<NearPair> copy(space(), "test/pairs");
+        copy.upload(near.pairs().subview(0, count));
+        return copy.downloaded();
+    }
+
+    /// CPU and GPU, both from the start.
+    void compare(const Soup& soup, double margin, const std::string& what, std::vector<int> rigid = {},
+                 const std::vector<unsigned char>& around = {})
+    {
+        DeviceNearPairs device(space(), soup.triangles, soup.x, rigid);
+        NearPairs host(soup.triangles, soup.x, std::move(rigid));
+        std::vector<NearPair> expected;
+        host.find(soup.x, {soup.motion, soup.slack, around}, margin, expected);
+        expect_same(expected, found_by(device, soup, margin, around), what);
+        count_ += expected.size();
+    }
+    size_t count() const { return count_; } ///< of pairs compared
+
+private:
+    size_t count_ = 0;
+};
+
+TEST_F(DeviceNearPairsTest, AreThoseOfTheCpuInRandomSoups)
+{
+    Random random(31);
+    size_t total = 0;
+    for (int i = 0; i < 10; ++i) {
+        Soup soup = random_soup(random);
+        NearPairs host(soup.triangles, soup.x);
+        DeviceNearPairs device(space(), soup.triangles, soup.x);
+        std::vector<NearPair> expected;
+        for (const double margin : {0.0, 0.01, 0.1}) {
+            host.find(soup.x, soup.ways(), margin, expected);
+            expect_same(expected, found_by(device, soup, margin), "soup " + std::to_string(i));
+            total += expected.size();
+            for (Vec3& x : soup.x)
+                x += 0.3 * random.point() + Vec3(100, 0, 0);
+        }
+    }
+    EXPECT_GT(total, 5000u);
+}
+
+TEST_F(DeviceNearPairsTest, AreThoseOfTheCpuOnFoldedSheets)
+{
+    Random random(32);
+    for (int i = 0; i < 3; ++i) {
+        Soup soup = folded_sheet(random);
+        compare(soup, 0.002, "moving");
+        soup.stand_still();
+        compare(soup, 0.004, "at rest");
+    }
+    EXPECT_GT(count(), 5000u);
+}
+
+TEST_F(DeviceNearPairsTest, AreOnlyThoseAroundTheVerticesAskedFor)
+{
+    Random random(33);
+    const Soup soup = folded_sheet(random);
+    std::vector<unsigned char> around(soup.x.size());
+    for (int i = 0; i < 20; ++i)
+        around[random.below(int(around.size()))] = 1;
+    compare(soup, 0.003, "around", {}, around);
+    EXPECT_GT(count(), 100u);
+    compare(soup, 0.003, "around nothing", {}, std::vector<unsigned char>(soup.x.size()));
+}
+
+TEST_F(DeviceNearPairsTest, AreNotWithinOneRigidBody)
+{
+    Random random(34);
+    const Soup soup = folded_sheet(random);
+    std::vector<int> rigid(soup.x.size());
+    for (size_t v = 0; v < rigid.size(); ++v)
+        rigid[v] = int(v / 24) % 3 - 1; // rows of the sheet; some belong to none
+    compare(soup, 0.003, "rigid", rigid);
+    EXPECT_GT(count(), 100u);
+}
+
+/// A collider is a rigid body of the soup, and only pairs around its vertices are asked for: what is left are
+/// pairs of cloth and collider.
+TEST_F(DeviceNearPairsTest, OfAColliderInTheSoupAreItsPairsWithTheCloth)
+{
+    Random random(39);
+    Soup soup;
+    add_sheet(soup, 20, 0.01, 0.0);
+    const int cloth_vertices = int(soup.x.size()), cloth_triangles = int(soup.triangles.size());
+    add_sheet(soup, 15, 0.013, 0.004);
+    for (Vec3& x : soup.x)
+        x += 2e-3 * random.point();
+    std::vector<int> rigid(soup.x.size(), -1);
+    std::vector<unsigned char> around(soup.x.size(), 0);
+    std::fill(rigid.begin() + cloth_vertices, rigid.end(), 0);
+    std::fill(around.begin() + cloth_vertices, around.end(), 1);
+    constexpr double kRadius = 0.005;
+    compare(soup, kRadius, "collider", rigid, around);
+
+    // Vertices of either against triangles of the other, as the tree over the avatars' triangles finds them.
+    DeviceNearPairs device(space(), soup.triangles, soup.x, rigid);
+    std::vector<std::pair<int, int>> found, expected;
+    for (const NearPair& pair : found_by(device, soup, kRadius, around))
+        if (!pair.is_edge_edge)
+            found.emplace_back(pair.first, pair.second);
+    const std::vector<Triangle> cloth(soup.triangles.begin(), soup.triangles.begin() + cloth_triangles);
+    const std::vector<Triangle> collider(soup.triangles.begin() + cloth_triangles, soup.triangles.end());
+    const SurfaceProximity cloth_surface(cloth, soup.x), collider_surface(collider, soup.x);
+    std::vector<int> within;
+    for (int v = 0; v < int(soup.x.size()); ++v) {
+        const bool is_cloth = v < cloth_vertices;
+        (is_cloth ? collider_surface : cloth_surface).triangles_within(soup.x[v], kRadius, within);
+        for (const int t : within)
+            expected.emplace_back(v, t + (is_cloth ? cloth_triangles : 0));
+    }
+    EXPECT_EQ(found, expected);
+    EXPECT_GT(found.size(), 500u);
+}
+
+TEST_F(DeviceNearPairsTest, OfFewTrianglesAreThoseOfTheCpu)
+{
+    Soup soup;
+    compare(soup, 1.0, "nothing");
+    soup.x = {Vec3(0, 0, 0), Vec3(1, 0.1, 0), Vec3(0.2, 0, 1)};
+    soup.stand_still();
+    compare(soup, 1.0, "no triangle");
+    soup.triangles = {{0, 1, 2}};
+    compare(soup, 1.0, "one triangle");
+    EXPECT_EQ(count(), 0u);
+    for (const Vec3& x : {Vec3(0.3, 0.5, 0.1), Vec3(1.4, 0.6, 0), Vec3(0.4, 0.7, 1.1)})
+        soup.x.push_back(x);
+    soup.stand_still();
+    soup.triangles.emplace_back(3, 4, 5);
+    compare(soup, 1.0, "two triangles");
+    EXPECT_GT(count(), 5u);
+}
+
+TEST_F(DeviceNearPairsTest, GrowWithoutLosingPairsAndThenAskForNoMemory)
+{
+    Random random(35);
+    const Soup soup = folded_sheet(random);
+    std::vector<NearPair> expected;
+    NearPairs(soup.triangles, soup.x).find(soup.x, soup.ways(), 0.003, expected);
+    DeviceNearPairs device(space(), soup.triangles, soup.x, {}, 1);
+    expect_same(expected, found_by(device, soup, 0.003), "grown");
+
+    OnBoard board(space(), soup);
+    EXPECT_EQ(allocations_of([&] { device.find(board.x.view(), board.ways(), 0.003); }), 0);
+    expect_same(expected, downloaded(device, int(expected.size())), "grown before");
+}
+
+TEST_F(DeviceNearPairsTest, HaveTheSameBitsInEveryRunAlsoFromAGraph)
+{
+    Random random(36);
+    const Soup soup = folded_sheet(random);
+    DeviceNearPairs device(space(), soup.triangles, soup.x);
+    const std::vector<NearPair> first = found_by(device, soup, 0.003);
+    EXPECT_TRUE(are_same_bits(first, found_by(device, soup, 0.003)));
+    DeviceNearPairs other(space(), soup.triangles, soup.x, {}, 1);
+    EXPECT_TRUE(are_same_bits(first, found_by(other, soup, 0.003)));
+
+    OnBoard board(space(), soup);
+    CudaGraph graph(space(), "test/graph");
+    graph.record([&] { device.search(board.x.view(), board.ways(), 0.003); });
+    for (int k = 0; k < 2; ++k) {
+        graph.launch();
+        EXPECT_TRUE(device.settle());
+        EXPECT_TRUE(are_same_bits(first, downloaded(device, int(first.size()))));
+    }
+}
+
+TEST_F(DeviceNearPairsTest, OrderTheTreesAnewOnlyWhenTheyAreWornOut)
+{
+    Random random(37);
+    Soup soup;
+    for (int layer = 0; layer < 20; ++layer)
+        add_sheet(soup, 8, 0.01, 0.01 * layer);
+    for (Vec3& x : soup.x)
+        x += 1e-4 * random.point();
+    NearPairs host(soup.triangles, soup.x);
+    DeviceNearPairs device(space(), soup.triangles, soup.x);
+    Stages stages;
+    const Stages::Activate activate(stages);
+    const auto search = [&](const std::string& what) {
+        std::vector<NearPair> expected;
+        host.find(soup.x, soup.ways(), 0.004, expected);
+        expect_same(expected, found_by(device, soup, 0.004), what);
+        return stages.calls("collision/device_reorder");
+    };
+    EXPECT_EQ(search("at first"), 0);
+    for (Vec3& x : soup.x)
+        x = Vec3(x.y(), 10.0 - x.x(), x.z());
+    EXPECT_EQ(search("turned"), 0);
+    // Every vertex somewhere else: one search finds the order worn out, the next chooses it anew.
+    for (size_t v = 0; v < soup.x.size(); ++v)
+        soup.x[v] += Vec3(0.3 * double((7 * (v / 64)) % 20), 0.5 * double((3 * (v / 64)) % 5), 0);
+    EXPECT_EQ(search("scattered"), 0);
+    EXPECT_EQ(search("ordered"), 3);
+    EXPECT_EQ(search("afterwards"), 3);
+}
+
+TEST_F(DeviceNearPairsTest, AreThoseOfTheCpuOnAGarmentFoldedOntoItself)
+{
+    const std::filesystem::path file =
+        std::filesystem::path(TOILE_DATA_DIR) / "garments/mh_woman_female_elegantsuit01.obj";
+    if (!std::filesystem::exists(file))
+        GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no garments/mh_woman_female_elegantsuit01.obj";
+    const TriangleMesh garment = read_obj(file).triangulated();
+    Soup soup;
+    soup.triangles = garment.triangles;
+    soup.x = garment.positions;
+    soup.stand_still();
+    Random random(38);
+    for (Vec3& x : soup.x) {
+        // In zigzag along the height, every layer 2 mm behind the one before.
+        const double fold = x.y() / 0.1, layer = std::floor(fold), along = fold - layer;
+        x.y() = 0.1 * (int(layer) % 2 == 0 ? along : 1.0 - along);
+        x.z() = 0.3 * x.z() + 0.002 * layer;
+    }
+    compare(soup, 0.002, "at rest");
+    for (Vec3& motion : soup.motion)
+        motion = 1e-3 * random.point() + Vec3(0, -0.01, 0);
+    compare(soup, 0.001, "moving");
+    std::cout << "compared " << count() << " pairs of " << soup.x.size() << " vertices\n";
+    EXPECT_GT(count(), 10000u);
+}
+
+} // namespace
+} // namespace toile::test
