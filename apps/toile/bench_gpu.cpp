@@ -13,7 +13,8 @@ namespace toile {
 
 namespace {
 
-const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu_near_pairs.csv", "gpu.md"};
+const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu_near_pairs.csv",
+                                       "gpu_tables.csv", "gpu.md"};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -22,6 +23,11 @@ constexpr double kTimeStep = 1.0 / 120.0;
 /// Sizes of the sheet [vertices]; tables of the largest take minutes to build on a few cores.
 const std::vector<int> kSizes{10'000, 50'000};
 const std::vector<int> kQuickSizes{2'000};
+
+/// Sizes whose tables are built on the device, and up to which the CPU builds them too: more takes it a
+/// minute [vertices].
+const std::vector<int> kBuildSizes{10'000, 50'000, 240'000};
+constexpr int kMostCompared = 60'000;
 
 /// Steps: as the paper's Cloth scene, the same number of vertices in one sheet, and as its Runway scene.
 const std::vector<gpu::StepCase> kSteps{{5, 10'000, kStiffness, kTimeStep},
@@ -48,6 +54,12 @@ std::vector<Case> cases_of(const BenchOptions& options)
         cases.push_back(
             {"solve " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
                  report.applies.push_back(gpu::measure_apply(space, vertices, kStiffness, kTimeStep));
+             }});
+    for (const int vertices : options.quick ? kQuickSizes : kBuildSizes)
+        cases.push_back(
+            {"tables " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
+                 report.builds.push_back(
+                     gpu::measure_build(space, vertices, kStiffness, kTimeStep, vertices <= kMostCompared));
              }});
     for (const gpu::StepCase& step : options.quick ? kQuickSteps : kSteps)
         cases.push_back({"step " + std::to_string(step.cloths) + "x" + std::to_string(step.vertices),
@@ -96,7 +108,8 @@ int bench_gpu(const BenchOptions& options)
     write_tables(options.output, {{kTables[0], gpu::csv_of_applies(report)},
                                   {kTables[1], gpu::csv_of_steps(report)},
                                   {kTables[2], gpu::csv_of(report.searches)},
-                                  {kTables[3], gpu::markdown_tables(report)}});
+                                  {kTables[3], gpu::csv_of(report.builds)},
+                                  {kTables[4], gpu::markdown_tables(report)}});
     return kExitOk;
 }
 

@@ -38,7 +38,7 @@ std::string markdown_tables(const Report& report)
            markdown({"vertices", "gathers", "table MB", "moments us", "sums us", "solve us", "sums GB/s",
                      "CPU us", "CPU / GPU", "difference", "tables s"},
                     rows_of(report)) +
-           "\nSteps without contact\n\n" +
+           "\nBuilding the tables\n\n" + markdown_of(report.builds) + "\nSteps without contact\n\n" +
            markdown({"cloths", "vertices of each", "iterations", "step ms", "iteration us", "CPU ms",
                      "CPU / GPU", "difference m"},
                     step_rows_of(report)) +

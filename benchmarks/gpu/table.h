@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "benchmarks/gpu/apply.h"
+#include "benchmarks/gpu/build_tables.h"
 #include "benchmarks/gpu/near_pairs.h"
 #include "benchmarks/gpu/step.h"
 
@@ -15,6 +16,7 @@ struct Report {
     double copy_gbs = 0.0;       ///< [GB/s] read and written, of arrays that no cache holds
     double small_copy_gbs = 0.0; ///< of arrays that the L2 cache holds
     std::vector<Apply> applies;
+    std::vector<TableBuild> builds;
     std::vector<Step> steps;
     std::vector<NearSearch> searches;
 };

@@ -35,25 +35,6 @@ void subtract(const double* L, int width, const int* rows, const Row* own, Row* 
         y[rows[k]] -= sum[k];
 }
 
-void forward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Row* y)
-{
-    const int width = node.width;
-    Row* own = y + node.first_column;
-    for (int i = 0; i < width; ++i) {
-        const double* row = L + long(i) * width;
-        Row sum = own[i];
-        for (int j = 0; j < i; ++j)
-            sum -= row[j] * own[j];
-        own[i] = row[i] * sum;
-    }
-    const double* below = L + long(width) * width;
-    int r = 0;
-    for (; r + kTile <= node.row_count; r += kTile)
-        subtract<kTile>(below + long(r) * width, width, rows + r, own, y);
-    for (; r < node.row_count; ++r)
-        subtract<1>(below + long(r) * width, width, rows + r, own, y);
-}
-
 void backward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Row* y)
 {
     const int width = node.width;
@@ -73,6 +54,25 @@ void backward_node(const SupernodalFactor::Supernode& node, const int* rows, con
 }
 
 } // namespace
+
+void forward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Row* y)
+{
+    const int width = node.width;
+    Row* own = y + node.first_column;
+    for (int i = 0; i < width; ++i) {
+        const double* row = L + long(i) * width;
+        Row sum = own[i];
+        for (int j = 0; j < i; ++j)
+            sum -= row[j] * own[j];
+        own[i] = row[i] * sum;
+    }
+    const double* below = L + long(width) * width;
+    int r = 0;
+    for (; r + kTile <= node.row_count; r += kTile)
+        subtract<kTile>(below + long(r) * width, width, rows + r, own, y);
+    for (; r < node.row_count; ++r)
+        subtract<1>(below + long(r) * width, width, rows + r, own, y);
+}
 
 InverseColumns::InverseColumns(const SupernodalFactor& factor)
     : factor_(factor), row_of_(factor.permutation.size()), node_of_column_(factor.permutation.size())

@@ -71,4 +71,11 @@ private:
     std::vector<int> node_of_column_; ///< [n] supernode
 };
 
+/// Forward substitution with one supernode: y_own = L11^-1 y_own, y_below -= L21 y_own.
+/// @param rows  [row_count] where the rows below the diagonal block stand in y
+/// @param L     the supernode's block
+/// @param y     its own rows from first_column on
+void forward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L,
+                  InverseColumns::Row* y);
+
 } // namespace toile

@@ -32,49 +32,36 @@ std::vector<int> others_of(View<const int> slots, int node_count)
 
 DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
                                    const std::vector<int>& first)
-    : space_(space), leaves_(space, "quadrature/leaves"), transfers_(space, "quadrature/transfers"),
-      nodes_(space, "quadrature/nodes"), others_(space, "quadrature/others"),
-      first_(space, "quadrature/first"), near_first_(space, "quadrature/near_first"),
-      near_leaf_(space, "quadrature/near_leaf"), far_first_(space, "quadrature/far_first"),
-      far_cluster_(space, "quadrature/far_cluster"), near_weights_(space, "quadrature/near_weights"),
-      far_weights_(space, "quadrature/far_weights"),
-      sources_(space, "quadrature/sources", int(first.size()) * tables.tree.nodes().size()),
-      moments_(space, "quadrature/moments",
-               int(first.size()) * tables.basis.rank() * tables.tree.cluster_count())
+    : DeviceQuadrature(space, tables.basis, DeviceKernelTable(space, tables.kernel), node_count, first)
 {
-    leaves_.upload(single(tables.basis.leaves()));
-    transfers_.upload(single(tables.basis.transfers()));
-    nodes_.upload(tables.tree.nodes());
-    first_.upload(first);
-    others_.upload(others_of(tables.tree.nodes(), node_count));
-    near_first_.upload(tables.kernel.near_first);
-    near_leaf_.upload(tables.kernel.near_leaf);
-    near_weights_.upload(tables.kernel.near_weights);
-    far_first_.upload(tables.kernel.far_first);
-    far_cluster_.upload(tables.kernel.far_cluster);
-    far_weights_.upload(tables.kernel.far_weights);
+}
 
-    const BasisView<double>& basis = tables.basis.view();
-    basis_.rank = basis.rank;
-    basis_.leaf_count = basis.leaf_count;
-    std::copy(std::begin(basis.first_of_level), std::end(basis.first_of_level),
+DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis,
+                                   DeviceKernelTable kernel, int node_count, const std::vector<int>& first)
+    : space_(space), kernel_(std::move(kernel)), leaves_(space, "quadrature/leaves"),
+      transfers_(space, "quadrature/transfers"), nodes_(space, "quadrature/nodes"),
+      others_(space, "quadrature/others"), first_(space, "quadrature/first"),
+      sources_(space, "quadrature/sources", int(first.size()) * basis.tree().nodes().size()),
+      moments_(space, "quadrature/moments", int(first.size()) * basis.rank() * basis.tree().cluster_count())
+{
+    leaves_.upload(single(basis.leaves()));
+    transfers_.upload(single(basis.transfers()));
+    nodes_.upload(basis.tree().nodes());
+    first_.upload(first);
+    others_.upload(others_of(basis.tree().nodes(), node_count));
+
+    const BasisView<double>& view = basis.view();
+    basis_.rank = view.rank;
+    basis_.leaf_count = view.leaf_count;
+    std::copy(std::begin(view.first_of_level), std::end(view.first_of_level),
               std::begin(basis_.first_of_level));
     basis_.leaves = leaves_.view();
     basis_.transfers = transfers_.view();
 }
 
-KernelView DeviceQuadrature::kernel() const
-{
-    return {near_first_.view(), near_leaf_.view(),   near_weights_.view(),
-            far_first_.view(),  far_cluster_.view(), far_weights_.view()};
-}
-
 std::size_t DeviceQuadrature::table_bytes() const
 {
-    const std::size_t numbers = std::size_t(near_weights_.size()) + far_weights_.size() + leaves_.size() +
-                                transfers_.size() + near_leaf_.size() + far_cluster_.size() +
-                                near_first_.size() + far_first_.size();
-    return numbers * sizeof(float);
+    return kernel_.bytes() + (std::size_t(leaves_.size()) + transfers_.size()) * sizeof(float);
 }
 
 void DeviceQuadrature::solve(View<const Vec3> b, View<Vec3> x)
@@ -131,7 +118,7 @@ template <int Rank>
 void DeviceQuadrature::gather_leaves(View<const Vec3> b, View<Vec3> x)
 {
     const GatherLeafByTeam<Rank, kWidth> leaves{
-        kernel(), sources_.view(), moments_.view(), nodes_.view(), others_.view(), first_.view(), b, x};
+        kernel_.view(), sources_.view(), moments_.view(), nodes_.view(), others_.view(), first_.view(), b, x};
     parallel_for_teams(space_, "quadrature/gather", leaves.teams(Team::kThreads), leaves);
 }
 

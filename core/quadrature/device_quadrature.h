@@ -1,9 +1,9 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "core/backend/cuda/array.h"
+#include "core/quadrature/device_kernel_table.h"
 #include "core/quadrature/device_kernels.h"
 #include "core/quadrature/quadrature_tables.h"
 
@@ -22,6 +22,11 @@ public:
     DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
                      const std::vector<int>& first = {0});
 
+    /// The same from a table that was built on the device.
+    /// @param basis  that the table was built with, not needed afterwards
+    DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis, DeviceKernelTable kernel,
+                     int node_count, const std::vector<int>& first = {0});
+
     /// Enqueues x = H^-1 b, nearly, for every body; as it is for fixed nodes.
     /// @param b, x  [nodes of all] on the device; not the same array
     void solve(View<const Vec3> b, View<Vec3> x);
@@ -38,13 +43,12 @@ private:
     void climb(View<const Vec3> b);
     template <int Rank>
     void gather_leaves(View<const Vec3> b, View<Vec3> x);
-    KernelView kernel() const;
 
     const CudaSpace& space_;
     BasisView<float> basis_;
+    DeviceKernelTable kernel_;
     DeviceArray<float> leaves_, transfers_;
-    DeviceArray<int> nodes_, others_, first_, near_first_, near_leaf_, far_first_, far_cluster_;
-    DeviceArray<float> near_weights_, far_weights_;
+    DeviceArray<int> nodes_, others_, first_;
     DeviceArray<PaddedVec3> sources_, moments_;
 };
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "core/backend/parallel.h"
 #include "core/linear/inverse_columns.h"
+#include "core/quadrature/far_clusters.h"
 
 namespace toile {
 
@@ -17,35 +17,6 @@ using Row = InverseColumns::Row;
 
 /// Target leaves that one block of columns serves.
 constexpr int kLeavesPerBlock = InverseColumns::kColumns / kLeaf;
-
-/// Growth of the squared error that is let pass from one level to the next, twice as many nodes [-]. What
-/// functions leave out is smooth inside a cluster and jumps at its rim: H weighs the jumps, and the rim grows
-/// with the square root of a surface's nodes. At 1 and at 2 the same contraction takes longer lists. A
-/// volume's rim grows faster, but with 2^(2/3) large blocks no longer contracted; from 1 to 2^(1/2) it makes
-/// no difference there.
-constexpr double kGrowth = 1.4142135623730951;
-
-/// Mean of a field over the nodes of every cluster.
-std::vector<double> cluster_means(const ClusterTree& tree, View<const double> field)
-{
-    std::vector<double> sums(tree.cluster_count(), 0.0);
-    std::vector<int> counts(tree.cluster_count(), 0);
-    for (int slot = 0; slot < tree.nodes().size(); ++slot)
-        if (const int v = tree.nodes()[slot]; v >= 0) {
-            sums[slot / kLeaf] += field[v];
-            ++counts[slot / kLeaf];
-        }
-    for (int level = 1; level < tree.level_count(); ++level)
-        for (int c = 0; c < tree.level_size(level); ++c)
-            for (int which = 0; which < 2; ++which)
-                if (const int child = tree.child(level, c, which); child >= 0) {
-                    sums[tree.first_of_level(level) + c] += sums[child];
-                    counts[tree.first_of_level(level) + c] += counts[child];
-                }
-    for (int id = 0; id < tree.cluster_count(); ++id)
-        sums[id] /= counts[id];
-    return sums;
-}
 
 /// Rows of the kernel for a few neighbouring leaves: what every cluster's functions carry of them, and how
 /// much they leave out.
@@ -67,9 +38,10 @@ public:
         columns_.solve(targets, rows_);
         for (int level = 0; level < tree.level_count(); ++level)
             for (int c = 0; c < tree.level_size(level); ++c) {
-                basis_.gather(
-                    level, c, Row{}, [&](int slot) { return at(slot); }, View<Row>(moments_));
-                sum_squares(level, c);
+                const auto value = [&](int slot) { return at(slot); };
+                basis_.gather(level, c, Row{}, value, View<Row>(moments_));
+                squares_[tree.first_of_level(level) + c] =
+                    basis_.view().square(level, c, Row{}, value, squares_);
             }
     }
 
@@ -85,31 +57,10 @@ public:
     {
         return moments_[size_t(rank()) * cluster + function];
     }
-
-    /// |G_iC - P_C P_C^T G_iC|^2 for one column
-    double squared_error(int cluster, int column) const
-    {
-        double rest = squares_[cluster][column];
-        for (int r = 0; r < rank(); ++r)
-            rest -= std::pow(moment(cluster, r)[column], 2);
-        return rest;
-    }
+    double moment(int cluster, int function, int column) const { return moment(cluster, function)[column]; }
+    double square(int cluster, int column) const { return squares_[cluster][column]; }
 
 private:
-    void sum_squares(int level, int c)
-    {
-        const ClusterTree& tree = basis_.tree();
-        const int id = tree.first_of_level(level) + c;
-        squares_[id] = Row{};
-        if (level == 0)
-            for (int slot = id * kLeaf; slot < (id + 1) * kLeaf; ++slot)
-                squares_[id] += squared(at(slot));
-        else
-            for (int which = 0; which < 2; ++which)
-                if (const int child = tree.child(level, c, which); child >= 0)
-                    squares_[id] += squares_[child];
-    }
-
     const InverseColumns& columns_;
     const ClusterBasis& basis_;
     InverseColumns::Block rows_;
@@ -123,55 +74,29 @@ struct LeafTable {
     std::vector<float> near_weights, far_weights;
 };
 
-/// Chooses the largest clusters that carry the rows of one leaf accurately enough.
-class LeafBuilder {
+/// Writes them down, as descend() finds them.
+class LeafLists {
 public:
-    LeafBuilder(const KernelRows& rows, const ClusterTree& tree, View<const double> diagonal,
-                View<const double> mean_diagonal, double tolerance)
-        : rows_(rows), tree_(tree), diagonal_(diagonal), mean_diagonal_(mean_diagonal), tolerance_(tolerance)
+    /// @param column  of the leaf's first target
+    LeafLists(const KernelRows& rows, int column, LeafTable& table)
+        : rows_(rows), column_(column), table_(table)
     {
     }
 
-    /// @param column  of the leaf's first target
-    LeafTable build(int leaf, int column)
+    void far(int cluster)
     {
-        target_ = leaf;
-        column_ = column;
-        LeafTable table;
-        descend(tree_.level_count() - 1, 0, table);
-        return table;
+        table_.far.push_back(cluster);
+        for (int r = 0; r < rows_.rank(); ++r)
+            append(rows_.moment(cluster, r), table_.far_weights);
+    }
+    void near(int leaf)
+    {
+        table_.near.push_back(leaf);
+        for (int j = 0; j < kLeaf; ++j)
+            append(rows_.at(leaf * kLeaf + j), table_.near_weights);
     }
 
 private:
-    void descend(int level, int c, LeafTable& table) const
-    {
-        const int id = tree_.first_of_level(level) + c;
-        if (is_accurate(level, id)) {
-            table.far.push_back(id);
-            for (int r = 0; r < rows_.rank(); ++r)
-                append(rows_.moment(id, r), table.far_weights);
-        } else if (level == 0) {
-            table.near.push_back(c);
-            for (int j = 0; j < kLeaf; ++j)
-                append(rows_.at(c * kLeaf + j), table.near_weights);
-        } else {
-            for (int which = 0; which < 2; ++which)
-                if (tree_.child(level, c, which) >= 0)
-                    descend(level - 1, 2 * c + which, table);
-        }
-    }
-
-    bool is_accurate(int level, int id) const
-    {
-        const double limit = tolerance_ * tolerance_ * std::pow(kGrowth, level) / mean_diagonal_[id];
-        for (int t = 0; t < kLeaf; ++t) {
-            const int v = tree_.nodes()[target_ * kLeaf + t];
-            if (v >= 0 && diagonal_[v] * rows_.squared_error(id, column_ + t) > limit)
-                return false;
-        }
-        return true;
-    }
-
     void append(const Row& row, std::vector<float>& out) const
     {
         for (int t = 0; t < kLeaf; ++t)
@@ -179,10 +104,8 @@ private:
     }
 
     const KernelRows& rows_;
-    const ClusterTree& tree_;
-    View<const double> diagonal_, mean_diagonal_;
-    double tolerance_;
-    int target_ = 0, column_ = 0;
+    int column_;
+    LeafTable& table_;
 };
 
 template <typename T>
@@ -224,7 +147,8 @@ std::optional<KernelTable> build_kernel_table(const SupernodalFactor& factor, Vi
 {
     const StageScope stage("quadrature/build");
     const ClusterTree& tree = basis.tree();
-    const std::vector<double> mean_diagonal = cluster_means(tree, diagonal);
+    const std::vector<double> limits = far_limits(tree, diagonal, settings.tolerance);
+    const FarTest is_far{tree.nodes(), diagonal, limits};
     const InverseColumns columns(factor);
     std::vector<LeafTable> leaves(tree.leaf_count());
     const int blocks = (tree.leaf_count() + kLeavesPerBlock - 1) / kLeavesPerBlock;
@@ -238,9 +162,13 @@ std::optional<KernelTable> build_kernel_table(const SupernodalFactor& factor, Vi
             const int first = block * kLeavesPerBlock;
             const int count = std::min(kLeavesPerBlock, tree.leaf_count() - first);
             rows.solve(first, count);
-            LeafBuilder builder(rows, tree, diagonal, mean_diagonal, settings.tolerance);
-            for (int leaf = first; leaf < first + count; ++leaf)
-                leaves[leaf] = builder.build(leaf, (leaf - first) * kLeaf);
+            for (int leaf = first; leaf < first + count; ++leaf) {
+                const int column = (leaf - first) * kLeaf;
+                LeafLists lists(rows, column, leaves[leaf]);
+                descend(
+                    basis.view(), tree.level_count() - 1, 0,
+                    [&](int cluster) { return is_far(rows, cluster, leaf, column); }, lists);
+            }
             if (progress && !progress(double(++finished) / blocks))
                 is_cancelled = true;
         });

@@ -5,6 +5,8 @@
 
 namespace toile {
 
+TOILE_HD inline double squared(double x) { return x * x; }
+
 /// A ClusterBasis as kernels read it, on the CPU or on a GPU, and the tree that it stands on.
 template <typename Number>
 struct BasisView {
@@ -19,9 +21,10 @@ struct BasisView {
     /// Function r of the moments P_C^T f of one cluster, from its nodes or its children.
     /// @param zero     of type T, which has += and multiplication by a Number on the left
     /// @param value    value(slot) of the field
-    /// @param moments  [rank * clusters], of which those of children are read
-    template <typename T, typename Value>
-    TOILE_HD T moment(int level, int c, int r, const T& zero, const Value& value, View<T> moments) const
+    /// @param moments  moments[rank * cluster + function], of which those of children are read
+    template <typename T, typename Value, typename Moments>
+    TOILE_HD T moment(int level, int c, int r, const T& zero, const Value& value,
+                      const Moments& moments) const
     {
         const int id = first_of_level[level] + c;
         T sum = zero;
@@ -36,6 +39,23 @@ struct BasisView {
             for (int s = 0; s < rank; ++s)
                 sum += transfers[(child * rank + s) * rank + r] * moments[rank * child + s];
         }
+        return sum;
+    }
+
+    /// |f|^2 on the nodes of one cluster, from its nodes or its children.
+    /// @param zero     of type T, which has += and squared()
+    /// @param value    value(slot) of the field
+    /// @param squares  squares[cluster], of which those of children are read
+    template <typename T, typename Value, typename Squares>
+    TOILE_HD T square(int level, int c, const T& zero, const Value& value, const Squares& squares) const
+    {
+        T sum = zero;
+        if (level == 0)
+            for (int i = 0; i < ClusterTree::kLeaf; ++i)
+                sum += squared(value(c * ClusterTree::kLeaf + i));
+        else
+            for (int k = 2 * c; k < 2 * c + 2 && k < level_size(leaf_count, level - 1); ++k)
+                sum += squares[first_of_level[level - 1] + k];
         return sum;
     }
 };

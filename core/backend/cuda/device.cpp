@@ -30,6 +30,8 @@ CudaDevice require_device(int index)
     throw DeviceError(place + "there is no such device; choose one of " + list);
 }
 
+std::string mebibytes(std::size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20); }
+
 std::string at(CallSite where) { return std::string(where.file) + ":" + std::to_string(where.line); }
 
 } // namespace
@@ -61,6 +63,20 @@ void CudaSpace::synchronise(CallSite where) const
         throw DeviceError(pending_kernels() + " failed on " + described() + ": " + cuda::reason_of(status) +
                           "; noticed at " + at(where));
     launch_count_ = 0;
+}
+
+std::size_t CudaSpace::free_memory() const
+{
+    std::size_t free = 0, total = 0;
+    require(cuda::memory_left(device_.index, free, total), "asking for the memory left");
+    return free;
+}
+
+void CudaSpace::require_memory(std::size_t bytes, std::string_view what) const
+{
+    if (const std::size_t free = free_memory(); bytes > free)
+        throw DeviceError(described() + " is out of memory: " + std::string(what) + " " + mebibytes(bytes) +
+                          " MiB, " + mebibytes(free) + " of " + mebibytes(device_.memory) + " MiB are free");
 }
 
 void CudaSpace::launched(std::string_view name, CallSite where) const

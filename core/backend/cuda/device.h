@@ -54,6 +54,13 @@ public:
     };
     const Memory& memory() const { return memory_; }
 
+    /// What the device has left [bytes].
+    std::size_t free_memory() const;
+
+    /// @throws DeviceError where the device has less than `bytes` left: "... is out of memory: WHAT N MiB,
+    /// ..."
+    void require_memory(std::size_t bytes, std::string_view what) const;
+
 private:
     friend class CudaBuffer;
     friend class CudaGraph;
