@@ -3,18 +3,21 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/backend/error.h"
+#include "core/linear/cholesky.h"
+#include "core/linear/shared_factor.h"
+#include "core/quadrature/device_table_builder.h"
+
 namespace toile {
 
-namespace {
-
-/// Bodies with the same tables.
-struct Equals {
-    std::shared_ptr<const QuadratureTables> tables;
-    int node_count = 0;
+/// Bodies whose tables are the same.
+struct DeviceQuadratureSolver::Group {
+    Hash128 key;
+    SparseMatrix H; ///< of one body
+    View<const unsigned char> fixed;
+    const Part* part; ///< the first of them
     std::vector<int> first;
 };
-
-} // namespace
 
 DeviceQuadratureSolver::DeviceQuadratureSolver(const CudaSpace& space, std::vector<Part> parts,
                                                QuadratureTables::Settings settings,
@@ -26,38 +29,59 @@ DeviceQuadratureSolver::DeviceQuadratureSolver(const CudaSpace& space, std::vect
 
 void DeviceQuadratureSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
 {
-    std::vector<Equals> equals;
+    std::vector<Group> groups;
     int first = 0;
     for (const Part& part : parts_) {
         const int size = int(part.places.size());
-        const SparseMatrix block = diagonal_block(H, first, size);
-        const auto tables =
-            store_->get({block, fixed.subview(first, size), part.places, settings_}, part.listener);
-        auto known = std::find_if(equals.begin(), equals.end(),
-                                  [&](const Equals& other) { return other.tables == tables; });
-        if (known == equals.end())
-            known = equals.insert(equals.end(), {tables, size, {}});
+        SparseMatrix block = diagonal_block(H, first, size);
+        const View<const unsigned char> own = fixed.subview(first, size);
+        const Hash128 key = table_key({block, own, part.places, settings_});
+        auto known =
+            std::find_if(groups.begin(), groups.end(), [&](const Group& group) { return group.key == key; });
+        if (known == groups.end())
+            known = groups.insert(groups.end(), {key, std::move(block), own, &part, {}});
         known->first.push_back(first);
         first += size;
     }
-    groups_.clear();
-    for (const Equals& bodies : equals)
-        groups_.push_back(
-            std::make_unique<DeviceQuadrature>(space_, *bodies.tables, bodies.node_count, bodies.first));
+    operators_.clear();
+    for (const Group& group : groups)
+        operators_.push_back(make_operator(group));
+}
+
+/// From tables at hand, in memory or on disk, else from tables built on the device. Those are not kept: they
+/// may differ from the CPU's in last bits.
+std::unique_ptr<DeviceQuadrature> DeviceQuadratureSolver::make_operator(const Group& group) const
+{
+    const Part& part = *group.part;
+    const TableInput input{group.H, group.fixed, part.places, settings_};
+    const int size = int(part.places.size());
+    if (const auto tables = store_->find(input, part.listener))
+        return std::make_unique<DeviceQuadrature>(space_, *tables, size, group.first);
+
+    const std::shared_ptr<const QuadratureTables> tables = begin_tables(input);
+    const std::shared_ptr<const SupernodalFactor> factor =
+        shared_factor(group.H, [&] { return Cholesky(group.H).shared_factor(); });
+    const Eigen::VectorXd diagonal = group.H.diagonal();
+    std::optional<DeviceKernelTable> kernel =
+        build_kernel_table(space_, *factor, {diagonal.data(), int(diagonal.size())}, tables->basis,
+                           settings_.kernel, part.listener.progress);
+    if (!kernel)
+        throw Cancelled("building the quadrature tables was cancelled");
+    return std::make_unique<DeviceQuadrature>(space_, tables->basis, std::move(*kernel), size, group.first);
 }
 
 void DeviceQuadratureSolver::solve_there(View<const Vec3> b, View<Vec3> x)
 {
-    for (const auto& group : groups_)
-        group->solve(b, x);
+    for (const auto& one : operators_)
+        one->solve(b, x);
 }
 
 void DeviceQuadratureSolver::solve(View<const Vec3> b, View<Vec3> x) const
 {
     b_.upload(b);
     x_.resize(x.size());
-    for (const auto& group : groups_)
-        group->solve(b_.view(), x_.view());
+    for (const auto& one : operators_)
+        one->solve(b_.view(), x_.view());
     x_.download(x);
     space_.synchronise();
 }

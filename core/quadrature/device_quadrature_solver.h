@@ -25,7 +25,9 @@ public:
                            QuadratureTables::Settings settings = {},
                            std::shared_ptr<TableStore> store = TableStore::of_process());
 
-    /// As QuadratureSolver::update(), and copies the tables.
+    /// Takes tables that the store has at hand; builds others on the device.
+    /// @throws Cancelled where a listener wanted no more; InvalidInput where H is not positive definite;
+    ///         DeviceError where the device has not the memory
     void update(const SparseMatrix& H, View<const unsigned char> fixed) override;
 
     /// Copies there and back.
@@ -34,12 +36,15 @@ public:
     bool is_symmetric() const override { return false; }
 
 private:
+    struct Group;
+    std::unique_ptr<DeviceQuadrature> make_operator(const Group& group) const;
+
     const CudaSpace& space_;
     std::vector<Part> parts_;
     QuadratureTables::Settings settings_;
     std::shared_ptr<TableStore> store_;
-    std::vector<std::unique_ptr<DeviceQuadrature>> groups_; ///< of equal bodies
-    mutable DeviceArray<Vec3> b_, x_;                       ///< of solve()
+    std::vector<std::unique_ptr<DeviceQuadrature>> operators_; ///< of equal bodies each
+    mutable DeviceArray<Vec3> b_, x_;                          ///< of solve()
 };
 
 } // namespace toile

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "core/backend/cuda/graph.h"
+#include "core/linear/block_diagonal_solver.h"
+#include "core/quadrature/device_quadrature_solver.h"
 #include "core/quadrature/quadrature_operator.h"
+#include "core/quadrature/quadrature_solver.h"
 #include "tests/core/cuda/on_device.h"
 #include "tests/core/quadrature_problems.h"
 
@@ -116,6 +119,49 @@ TEST_F(DeviceQuadratureTest, GivesTheSameBitsAlsoFromAGraphAndAsksForNoMemory)
         }
     });
     EXPECT_EQ(allocations, 0);
+}
+
+/// H of some grids side by side.
+SparseMatrix side_by_side(const std::vector<SparseMatrix>& blocks)
+{
+    Triplets entries;
+    int first = 0;
+    for (const SparseMatrix& block : blocks) {
+        for (int row = 0; row < block.rows(); ++row)
+            for (SparseMatrix::InnerIterator entry(block, row); entry; ++entry)
+                entries.emplace_back(first + row, first + int(entry.col()), entry.value());
+        first += int(block.rows());
+    }
+    SparseMatrix all(first, first);
+    all.setFromTriplets(entries.begin(), entries.end());
+    return all;
+}
+
+TEST_F(DeviceQuadratureTest, SolvesEqualAndOtherBodiesWithTablesOfEitherMaker)
+{
+    const Grid grid;
+    const SparseMatrix soft = grid.matrix(1e-1), stiff = grid.matrix(1e-4);
+    const SparseMatrix H = side_by_side({soft, stiff, soft});
+    const std::vector<unsigned char> fixed(H.rows(), 0);
+    const std::vector<Vec3> load = random_field(int(H.rows()), 5);
+
+    std::vector<BlockDiagonalSolver::Block> blocks;
+    for (int k = 0; k < 3; ++k)
+        blocks.push_back({int(soft.rows()),
+                          std::make_unique<QuadratureSolver>(grid.places, QuadratureSolver::Settings{})});
+    BlockDiagonalSolver cpu(std::move(blocks));
+    cpu.update(H, fixed);
+    std::vector<Vec3> expected(load.size()), found(load.size());
+    cpu.solve(load, expected);
+
+    // One store has the CPU's tables, the other has none.
+    for (const auto& store : {TableStore::of_process(), std::make_shared<TableStore>()}) {
+        DeviceQuadratureSolver there(space(), std::vector<DeviceQuadratureSolver::Part>(3, {grid.places, {}}),
+                                     {}, store);
+        there.update(H, fixed);
+        there.solve(load, found);
+        EXPECT_LT(difference(found, expected), kTolerance);
+    }
 }
 
 } // namespace
