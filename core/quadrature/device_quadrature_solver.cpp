@@ -38,8 +38,10 @@ void DeviceQuadratureSolver::update(const SparseMatrix& H, View<const unsigned c
         const Hash128 key = table_key({block, own, part.places, settings_});
         auto known =
             std::find_if(groups.begin(), groups.end(), [&](const Group& group) { return group.key == key; });
-        if (known == groups.end())
-            known = groups.insert(groups.end(), {key, std::move(block), own, &part, {}});
+        if (known == groups.end()) {
+            groups.push_back(Group{key, std::move(block), own, &part, {}});
+            known = groups.end() - 1;
+        }
         known->first.push_back(first);
         first += size;
     }

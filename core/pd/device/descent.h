@@ -96,11 +96,10 @@ struct Descent {
             if (is_over)
                 return;
         }
-        if (!(search.slope < 0.0))
-            give_up();
-        else if (search.accepts(sums.value))
+        const bool descends = search.slope < 0.0;
+        if (descends && search.accepts(sums.value))
             take(sums);
-        else if (++trials < LineSearch::kMaxTrials)
+        else if (descends && ++trials < LineSearch::kMaxTrials)
             shorten(sums.value);
         else
             give_up();

@@ -50,16 +50,16 @@ struct Swing {
     }
 };
 
-/// Some equal sheets side by side, in one body.
+/// Some equal sheets in one body; they pull to different places.
 class Swings {
 public:
     explicit Swings(int count) : count_(count)
     {
-        for (int k = 0; k < count; ++k)
-            for (const Vec3& p : swing_.sheet.flat()) {
-                x_.push_back(p + Vec3(k, 0.0, 0.0));
-                fixed_.push_back(swing_.fixed[x_.size() - 1 - size_t(k) * swing_.fixed.size()]);
-            }
+        for (int k = 0; k < count; ++k) {
+            const std::vector<Vec3> flat = swing_.sheet.flat();
+            x_.insert(x_.end(), flat.begin(), flat.end());
+            fixed_.insert(fixed_.end(), swing_.fixed.begin(), swing_.fixed.end());
+        }
     }
 
     std::unique_ptr<System> system(std::unique_ptr<GlobalSolver> solver) const
@@ -78,6 +78,7 @@ public:
     std::unique_ptr<GlobalSolver> solver() const
     {
         std::vector<BlockDiagonalSolver::Block> blocks;
+        blocks.reserve(count_);
         for (int k = 0; k < count_; ++k)
             blocks.push_back({int(swing_.fixed.size()), std::make_unique<QuadratureSolver>(
                                                             swing_.places(), QuadratureSolver::Settings{})});

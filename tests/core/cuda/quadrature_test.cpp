@@ -146,6 +146,7 @@ TEST_F(DeviceQuadratureTest, SolvesEqualAndOtherBodiesWithTablesOfEitherMaker)
     const std::vector<Vec3> load = random_field(int(H.rows()), 5);
 
     std::vector<BlockDiagonalSolver::Block> blocks;
+    blocks.reserve(3);
     for (int k = 0; k < 3; ++k)
         blocks.push_back({int(soft.rows()),
                           std::make_unique<QuadratureSolver>(grid.places, QuadratureSolver::Settings{})});
