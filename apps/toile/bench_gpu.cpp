@@ -14,7 +14,7 @@ namespace toile {
 namespace {
 
 const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu_near_pairs.csv",
-                                       "gpu_tables.csv", "gpu.md"};
+                                       "gpu_tables.csv", "gpu_tables.md"};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -81,8 +81,11 @@ std::vector<Case> cases_of(const BenchOptions& options)
 
 int bench_gpu(const BenchOptions& options)
 {
-    if (!options.output.empty())
+    if (!options.output.empty()) {
+        if (!options.only.empty())
+            throw InvalidInput("bench gpu: -o writes the tables of all cases; leave out --only");
         require_place(options.output, kTables);
+    }
     const std::vector<Case> cases = cases_of(options);
     if (const std::string reason = why_no_cuda_device(); !reason.empty())
         throw DeviceError("bench gpu: no CUDA device: " + reason);

@@ -16,9 +16,9 @@ struct StepCase {
 /// What whole steps without contact cost.
 struct Step {
     int cloths = 0, vertices = 0; ///< of each
-    int iterations = 0;           ///< a step, on average
+    double iterations = 0.0;      ///< of a step, on average
     double device_ms = 0.0;       ///< median, from the call to its return
-    double cpu_ms = 0.0;          ///< median, the same steps with quadrature on all threads of the host
+    double cpu_ms = 0.0;          ///< median of three steps with quadrature on all threads of the host
     double difference = 0.0;      ///< [m] largest between both after the first step
 };
 

@@ -22,7 +22,7 @@ std::vector<Row> step_rows_of(const Report& report)
 {
     std::vector<Row> rows;
     for (const Step& s : report.steps)
-        rows.push_back({std::to_string(s.cloths), std::to_string(s.vertices), std::to_string(s.iterations),
+        rows.push_back({std::to_string(s.cloths), std::to_string(s.vertices), format("%.0f", s.iterations),
                         format("%.2f", s.device_ms), format("%.1f", 1e3 * s.device_ms / s.iterations),
                         format("%.1f", s.cpu_ms), format("%.1f", s.cpu_ms / s.device_ms),
                         format("%.1e", s.difference)});

@@ -51,8 +51,8 @@ public:
     /// Adds the part that depends on x [vertices]. Same bits for every thread count.
     virtual void add_curvature(View<const Vec3>, Definiteness, BlockWindow) {}
 
-    /// Adds itself to the terms of a body on a GPU, its vertex 0 being the body's `first_vertex`. False where
-    /// it has no such form.
+    /// Adds itself to the terms of a body on a GPU, its vertex 0 being the body's `first_vertex`; of a kind,
+    /// one for every cloth, in the order of their vertices. False where it has no such form.
     virtual bool add_to(DeviceEnergies&, [[maybe_unused]] int first_vertex) { return false; }
 };
 

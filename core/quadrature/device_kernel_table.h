@@ -8,6 +8,7 @@ namespace toile {
 /// A KernelTable in a GPU's memory.
 struct DeviceKernelTable {
     int rank = 0; ///< functions of a cluster
+    // As KernelView's.
     DeviceArray<int> near_first, near_leaf;
     DeviceArray<float> near_weights;
     DeviceArray<int> far_first, far_cluster;

@@ -19,7 +19,7 @@ struct MomentsOfBodies {
         return &moments[(body * clusters + basis.first_of_level[level] + c) * Rank];
     }
 
-    /// Nodes of a level among `count` of a lower one, the last subtree of a level being smaller.
+    /// Clusters of a level from c on, at most so many.
     TOILE_HD int nodes_of(int level, int c, int most) const
     {
         const int left = level_size(basis.leaf_count, level) - c;
@@ -69,7 +69,8 @@ template <int Rank>
 struct ClimbFromLeaves {
     static constexpr int kLevels = 5, kLeaves = 1 << kLevels;
     static constexpr int kThreads = kLeaves * ClusterTree::kLeaf;
-    static constexpr std::size_t kSharedBytes = 2 * kLeaves * Rank * sizeof(PaddedVec3);
+    static constexpr std::size_t kSharedBytes = (2 * kLeaves + kLevels) * Rank * sizeof(PaddedVec3);
+    static_assert(Rank <= ClusterTree::kLeaf && kLeaves / 2 * Rank <= kThreads);
 
     MomentsOfBodies<Rank> moments;
     View<const int> nodes; ///< [slots] of one body, -1 where padded
@@ -127,8 +128,9 @@ private:
 template <int Rank>
 struct ClimbFromLevel {
     static constexpr int kLevels = 8, kNodes = 1 << kLevels;
-    static constexpr int kThreads = 128 * Rank;
-    static constexpr std::size_t kSharedBytes = 2 * (kNodes + 8) * Rank * sizeof(PaddedVec3);
+    static constexpr int kThreads = kNodes / 2 * Rank; ///< one for every function of a parent
+    /// Every level has half the clusters of the one below, rounded up.
+    static constexpr std::size_t kSharedBytes = (2 * kNodes + kLevels) * Rank * sizeof(PaddedVec3);
 
     MomentsOfBodies<Rank> moments;
     int level;

@@ -45,9 +45,12 @@ void DeviceQuadratureSolver::update(const SparseMatrix& H, View<const unsigned c
         known->first.push_back(first);
         first += size;
     }
-    operators_.clear();
+    TOILE_ASSERT(first == H.rows());
+    std::vector<std::unique_ptr<DeviceQuadrature>> operators;
+    operators.reserve(groups.size());
     for (const Group& group : groups)
-        operators_.push_back(make_operator(group));
+        operators.push_back(make_operator(group));
+    operators_ = std::move(operators);
 }
 
 /// From tables at hand, in memory or on disk, else from tables built on the device. Those are not kept: they
@@ -72,7 +75,7 @@ std::unique_ptr<DeviceQuadrature> DeviceQuadratureSolver::make_operator(const Gr
     return std::make_unique<DeviceQuadrature>(space_, tables->basis, std::move(*kernel), size, group.first);
 }
 
-void DeviceQuadratureSolver::solve_there(View<const Vec3> b, View<Vec3> x)
+void DeviceQuadratureSolver::apply(View<const Vec3> b, View<Vec3> x) const
 {
     for (const auto& one : operators_)
         one->solve(b, x);
@@ -82,8 +85,7 @@ void DeviceQuadratureSolver::solve(View<const Vec3> b, View<Vec3> x) const
 {
     b_.upload(b);
     x_.resize(x.size());
-    for (const auto& one : operators_)
-        one->solve(b_.view(), x_.view());
+    apply(b_.view(), x_.view());
     x_.download(x);
     space_.synchronise();
 }

@@ -32,12 +32,14 @@ public:
 
     /// Copies there and back.
     void solve(View<const Vec3> b, View<Vec3> x) const override;
-    void solve_there(View<const Vec3> b, View<Vec3> x) override;
+    void solve_there(View<const Vec3> b, View<Vec3> x) override { apply(b, x); }
+    const CudaSpace& space() const override { return space_; }
     bool is_symmetric() const override { return false; }
 
 private:
     struct Group;
     std::unique_ptr<DeviceQuadrature> make_operator(const Group& group) const;
+    void apply(View<const Vec3> b, View<Vec3> x) const;
 
     const CudaSpace& space_;
     std::vector<Part> parts_;

@@ -20,6 +20,7 @@ DeviceBending::DeviceBending(const CudaSpace& space)
 
 void DeviceBending::add(const SparseMatrix& K, int first_vertex)
 {
+    TOILE_ASSERT(first_vertex + 1 >= int(host_first_.size()));
     host_first_.resize(first_vertex + 1, int(host_column_.size()));
     for (int row = 0; row < K.outerSize(); ++row) {
         for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry) {

@@ -1,14 +1,14 @@
 #include "garment/energy/device_membrane.h"
 
 #include "core/backend/cuda/teams.cuh"
-#include "garment/energy/gather_triangles.h"
+#include "garment/energy/gather_corners.h"
 
 namespace toile {
 
 namespace {
 
 /// Threads of a vertex, which has some six corners.
-constexpr int kCorners = 4;
+constexpr int kTeam = 4;
 
 } // namespace
 
@@ -22,6 +22,7 @@ DeviceMembrane::DeviceMembrane(const CudaSpace& space)
 
 void DeviceMembrane::add(const RestShape& rest, const MembraneWeights& weights, int first_vertex)
 {
+    TOILE_ASSERT(first_vertex + 1 >= int(host_.first_corner.size()));
     // Vertices before this cloth that are no cloth's have no corners.
     host_.first_corner.resize(first_vertex + 1, int(host_.corners.size()));
     const int first_triangle = int(host_.triangles.size());
@@ -58,9 +59,9 @@ void DeviceMembrane::add_gradient(const DeviceEvaluation& at)
                  ProjectMembraneTriangle<CornerPair>{at.x, triangles_.view(), rest_inv_.view(), area_.view(),
                                                      fabric_.view(), weights_.view(), corner_gradient_.view(),
                                                      at.own});
-    const GatherCorners<CornerPair> corners{first_corner_.view(), corners_.view(), corner_gradient_.view(),
-                                            at.gradient};
-    parallel_for_teams<kCorners>(space_, "membrane/gather", first_corner_.size() - 1, GatherByTeam{corners});
+    parallel_for_teams<kTeam>(
+        space_, "membrane/gather", first_corner_.size() - 1,
+        GatherCornersByTeam{first_corner_.view(), corners_.view(), corner_gradient_.view(), at.gradient});
 }
 
 } // namespace toile

@@ -1,6 +1,7 @@
 #include "garment/energy/device_springs.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/backend/cuda/parallel.cuh"
 
@@ -14,25 +15,36 @@ DeviceSprings::DeviceSprings(const CudaSpace& space)
 void DeviceSprings::add(const Springs& springs, int first_vertex)
 {
     parts_.push_back({&springs, first_vertex});
-    begin_step();
+    std::vector<int> vertices;
+    for (const Part& part : parts_)
+        for (const PlacedSpring& spring : part.springs->placed())
+            vertices.push_back(part.first_vertex + spring.vertex);
+    std::vector<int> sorted(vertices.size());
+    std::iota(sorted.begin(), sorted.end(), 0);
+    std::stable_sort(sorted.begin(), sorted.end(), [&](int a, int b) { return vertices[a] < vertices[b]; });
+
+    order_.resize(sorted.size());
     std::vector<int> first;
-    for (int j = 0; j < int(host_.size()); ++j)
-        if (j == 0 || host_[j].vertex != host_[j - 1].vertex)
-            first.push_back(j);
-    first.push_back(int(host_.size()));
+    for (int k = 0; k < int(sorted.size()); ++k) {
+        order_[sorted[k]] = k;
+        if (k == 0 || vertices[sorted[k]] != vertices[sorted[k - 1]])
+            first.push_back(k);
+    }
+    first.push_back(int(sorted.size()));
     first_.upload(first);
+    host_.resize(sorted.size());
+    begin_step();
 }
 
 void DeviceSprings::begin_step()
 {
-    host_.clear();
+    int k = 0;
     for (const Part& part : parts_)
-        for (PlacedSpring spring : part.springs->placed()) {
-            spring.vertex += part.first_vertex;
-            host_.push_back(spring);
+        for (const PlacedSpring& spring : part.springs->placed()) {
+            PlacedSpring& placed = host_[order_[k++]];
+            placed = spring;
+            placed.vertex += part.first_vertex;
         }
-    std::stable_sort(host_.begin(), host_.end(),
-                     [](const PlacedSpring& a, const PlacedSpring& b) { return a.vertex < b.vertex; });
     placed_.upload(host_);
 }
 

@@ -14,7 +14,7 @@ class DeviceSprings : public DeviceEnergy {
 public:
     explicit DeviceSprings(const CudaSpace& space);
 
-    /// Adds the springs of a cloth.
+    /// Adds the springs of a cloth: all of them before the first step.
     /// @param springs       borrowed
     /// @param first_vertex  of the cloth among the body's
     void add(const Springs& springs, int first_vertex);
@@ -31,6 +31,7 @@ private:
     const CudaSpace& space_;
     std::vector<Part> parts_;
     std::vector<PlacedSpring> host_; ///< ascending by vertex
+    std::vector<int> order_;         ///< places in host_ of the springs, part after part
     DeviceArray<PlacedSpring> placed_;
     DeviceArray<int> first_; ///< [held vertices + 1] into placed_
 };

@@ -72,7 +72,7 @@ double Membrane::add_gradient(View<const Vec3> x, View<Vec3> gradient)
         ProjectMembrane{x, rest_->triangles, rest_inv_, area_, weights_, corner_gradient_, triangle_energy_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "membrane/gather", gradient.size(),
-                 GatherCorners<Mat32>{corners.first, corners.items, corner_gradient_, gradient});
+                 GatherCorners{corners.first, corners.items, corner_gradient_, gradient});
     return parallel_sum(kCpu, triangles, 0.0, [&](int t) { return triangle_energy_[t]; });
 }
 

@@ -23,9 +23,9 @@ struct PlacedSpring {
 struct PullHeldVertex {
     View<const PlacedSpring> springs; ///< ascending by vertex
     View<const int> first;            ///< [held vertices + 1]
-    View<const Vec3> x;
-    View<Vec3> gradient;
-    View<double> energy;
+    View<const Vec3> x;               ///< [vertices] [m]
+    View<Vec3> gradient;              ///< [vertices] added to [N]
+    View<double> energy;              ///< [vertices] added to [J]
 
     TOILE_HD void operator()(int k) const
     {

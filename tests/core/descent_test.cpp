@@ -22,6 +22,8 @@ public:
     {
     }
 
+    void hold(int vertex) { fixed_[vertex] = 1; }
+
     /// Minimises from x, in place; what StepError asks of a step does not bind.
     Descent minimise(Objective& objective, std::vector<Vec3>& x, const OuterLoop::Settings& settings)
     {
@@ -189,6 +191,46 @@ TEST(Descent, LeavesAloneWhatIsNotFinite)
     EXPECT_FALSE(outcome.converged);
     EXPECT_EQ(outcome.iterations, 0);
     EXPECT_EQ(x[0], Vec3(1, 2, 2));
+}
+
+TEST(Descent, LeavesFixedVerticesWhereTheyAreWhateverPullsAtThem)
+{
+    /// The quadratic, with no gradient at every third vertex where `holds` says so.
+    class Held : public Unsymmetric {
+    public:
+        double evaluate(View<const Vec3> x, View<Vec3> gradient) override
+        {
+            const double value = Unsymmetric::evaluate(x, gradient);
+            for (int i = 0; holds && i < x.size(); i += 3)
+                gradient[i].setZero();
+            return value;
+        }
+        bool holds = true;
+    };
+    Held objective;
+    const std::vector<Vec3> start = random_field(100, 6);
+    std::vector<Vec3> x = start, x_there = start;
+    class HeldMoves : public Held {
+    public:
+        void precondition(View<const Vec3> g, View<Vec3> z) override
+        {
+            Held::precondition(g, z);
+            for (int i = 0; i < z.size(); i += 3)
+                z[i].setZero();
+        }
+    };
+    HeldMoves here;
+    Lbfgs lbfgs(kHistory);
+    ASSERT_TRUE(lbfgs.minimise(here, x, {1e-7, 500}).converged);
+
+    objective.holds = false; // the descent itself must not listen to them
+    DescentOnHost there(100);
+    for (int i = 0; i < 100; i += 3)
+        there.hold(i);
+    EXPECT_TRUE(there.minimise(objective, x_there, {1e-7, 500}).converged);
+    for (int i = 0; i < 100; i += 3)
+        EXPECT_EQ(x_there[i], start[i]);
+    EXPECT_LT(farthest(x_there, x), 1e-5);
 }
 
 } // namespace

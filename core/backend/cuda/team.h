@@ -15,6 +15,7 @@ struct TeamOf {
 
     int thread; ///< [0, kThreads)
 
+    /// On a GPU only: a single thread of the CPU gets its own value back.
     /// Sum over the threads whose number leaves the same remainder by `stride`, a power of two; all of them
     /// get it. Pairs in a tree: the same bits in every run.
     template <typename Number>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/pd/device/descent_kernels.h"
 #include "core/pd/step_kernels.h"
 #include "core/pd/step_tolerance.h"
@@ -48,8 +50,8 @@ struct BeginVertex {
 struct BeginDescent {
     View<Descent> descent; ///< [1]
     StepTolerance tolerance;
-    int max_iterations;
-    double dt;
+    int max_iterations; ///< of a minimisation
+    double dt;          ///< [s]
 
     TOILE_HD void operator()(const StepSums& sums) const
     {
@@ -65,7 +67,7 @@ struct BeginDescent {
 
 /// Where vertex i was, and what is held where it belongs: the second place that a descent may begin at.
 struct StandStill {
-    View<const Vec3> x, prediction;
+    View<const Vec3> x, prediction; ///< [vertices] [m]
     DescentFields fields;
 
     TOILE_HD void operator()(int i) const
@@ -75,10 +77,16 @@ struct StandStill {
     }
 };
 
-struct CopyPositions {
-    View<const Vec3> from;
-    View<Vec3> to;
-    TOILE_HD void operator()(int i) const { to[i] = from[i]; }
+/// Keeps what a descent found, or brings it back: positions [m] and gradient [N], [vertices].
+struct CopyFound {
+    View<const Vec3> x, gradient;
+    View<Vec3> to_x, to_gradient;
+
+    TOILE_HD void operator()(int i) const
+    {
+        to_x[i] = x[i];
+        to_gradient[i] = gradient[i];
+    }
 };
 
 /// Begins the descent of the same step again.
@@ -106,9 +114,9 @@ struct FinishSums {
 
 /// The end of the step at vertex i.
 struct FinishVertex {
-    View<const Vec3> x_t1, gradient;
-    double dt;
-    View<Vec3> x, v; ///< at t0, then at t1
+    View<const Vec3> x_t1, gradient; ///< [vertices] [m], [N]
+    double dt;                       ///< [s]
+    View<Vec3> x, v;                 ///< [vertices] at t0, then at t1 [m], [m/s]
 
     TOILE_HD FinishSums operator()(int i) const
     {

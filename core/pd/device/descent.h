@@ -35,7 +35,7 @@ struct TrialSums {
 /// that turns can follow each other without the host. A turn evaluates a trial point and the inverse applied
 /// to its gradient, sums up, decides (decide()), and moves on (TakeTrial).
 ///
-/// The inverse is applied before it is known whether the trial will be taken: nineteen of twenty are.
+/// The inverse is applied before it is known whether the trial will be taken, as most are.
 struct Descent {
     enum class Action : int {
         Start,   ///< the trial point is where the descent begins
@@ -149,6 +149,7 @@ private:
     TOILE_HD void take(const TrialSums& sums)
     {
         search.value = sums.value;
+        kept_slot = -1;
         if (converged) {
             finish();
             return;

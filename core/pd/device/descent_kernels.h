@@ -144,16 +144,15 @@ private:
         fields.direction[i] = padded(descent.is_over ? Vec3(0.0, 0.0, 0.0) : d);
     }
 
-    /// What the pairs in memory add to it; the coefficients of those not in use are 0.
+    /// What the pairs in memory add to it.
     TOILE_HD Vec3 direction(const Descent& descent, int i) const
     {
         Vec3 sum(0.0, 0.0, 0.0);
         for (int j = 0; j < kHistory; ++j) {
             const int slot = descent.pairs.slot_of(j), pair = fields.pair_of(slot, i);
-            const bool is_in_memory = slot != descent.kept_slot;
             const PaddedVec3 s = fields.s[pair], w = fields.w[pair];
-            sum += (is_in_memory ? descent.pairs.of_s(j) : 0.0) * unpadded(s) -
-                   (is_in_memory ? descent.pairs.of_w(j) : 0.0) * unpadded(w);
+            if (j < descent.pairs.count() && slot != descent.kept_slot)
+                sum += descent.pairs.of_s(j) * unpadded(s) - descent.pairs.of_w(j) * unpadded(w);
         }
         return sum;
     }

@@ -19,22 +19,25 @@ public:
         int max_iterations = 50; ///< outer iterations per minimisation
     };
 
-    /// @param space      borrowed
+    /// @param space      borrowed; the solver's too
     /// @param positions  [vertices] [m]
     /// @param system     its energies are added to those of the device, and its solver is a DeviceSolver
-    /// @throws InvalidInput where an energy or the solver has no form for a GPU, DeviceError where memory is
-    ///         too little
+    /// @throws InvalidInput where an energy or the solver has no form for a GPU or the solver runs elsewhere,
+    ///         DeviceError where memory is too little
     DeviceBody(const CudaSpace& space, const std::vector<Vec3>& positions, std::unique_ptr<System> system,
                Settings settings);
 
-    /// For the caller to write before a step, [vertices]: external acceleration [m/s^2], and where fixed
-    /// vertices go [m].
-    DeviceArray<Vec3>& acceleration() { return acceleration_; }
-    DeviceArray<Vec3>& targets() { return targets_; }
+    // What a step takes, [vertices]; kept until set again.
+    void set_acceleration(View<const Vec3> acceleration); ///< [m/s^2] external; none at first
+    void set_targets(View<const Vec3> targets);           ///< [m] of fixed vertices; where they are at first
+    void set_positions(View<const Vec3> x);               ///< [m]
 
-    DeviceArray<Vec3>& positions() { return x_; }  ///< [vertices] [m]
-    DeviceArray<Vec3>& velocities() { return v_; } ///< [vertices] [m/s]
+    // Waited for and copied, [vertices].
+    std::vector<Vec3> positions() const { return x_.downloaded(); }  ///< [m]
+    std::vector<Vec3> velocities() const { return v_.downloaded(); } ///< [m/s]
 
+    /// Prepares for steps of dt [s] with these vertices fixed, which step() otherwise does: H, its inverse,
+    /// and the graph of a minimisation.
     void prepare(double dt, const std::vector<unsigned char>& fixed);
 
     /// Advances by dt [s]; waits for the end. Same bits in every run.
@@ -44,7 +47,7 @@ public:
     const System& system() const { return *system_; }
 
 private:
-    DeviceDescent::Problem problem();
+    DeviceDescent::Problem problem(double dt);
     void begin();
     Descent no_worse_than_standing(Descent found);
     void finish(StepReport& report);
@@ -57,7 +60,7 @@ private:
     double dt_ = 0.0;
     std::vector<unsigned char> host_fixed_;
 
-    DeviceArray<Vec3> x_, v_, acceleration_, targets_, prediction_, drive_, found_;
+    DeviceArray<Vec3> x_, v_, acceleration_, targets_, prediction_, drive_, found_, found_gradient_;
     DeviceArray<double> masses_;
     DeviceArray<unsigned char> fixed_;
     DeviceArray<StepSums> begin_sums_;

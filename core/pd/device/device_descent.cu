@@ -1,7 +1,5 @@
 #include "core/pd/device/device_descent.h"
 
-#include <algorithm>
-
 #include "core/backend/cuda/parallel.cuh"
 
 namespace toile {
@@ -84,6 +82,7 @@ Descent DeviceDescent::run_briefly()
 Descent DeviceDescent::run()
 {
     const StageScope stage("descent/run");
+    TOILE_ASSERT(turns_.node_count() > 0);
     int turns = 0;
     for (bool is_over = false; !is_over;) {
         do {

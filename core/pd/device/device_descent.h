@@ -44,7 +44,7 @@ public:
 
     /// The point that run() found, and the objective's gradient there.
     View<Vec3> x() { return x_.view(); }
-    View<const Vec3> gradient() const { return gradient_.view(); }
+    View<Vec3> gradient() { return gradient_.view(); }
 
 private:
     void enqueue_turn(const Problem& problem);

@@ -39,8 +39,6 @@ class DeviceEnergies {
 public:
     explicit DeviceEnergies(const CudaSpace& space) : space_(space) {}
 
-    const CudaSpace& space() const { return space_; }
-
     /// The one of this kind, made when it is first asked for.
     template <typename Kind>
     Kind& of_kind()

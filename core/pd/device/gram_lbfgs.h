@@ -44,7 +44,8 @@ struct PairProducts {
 /// symmetric.
 ///
 /// It holds numbers only; fields of the pairs are the caller's, in slots [0, History). Pairs are numbered by
-/// age, the oldest first. All loops have a fixed length, so that the numbers stay in a GPU's registers.
+/// age, the oldest first. All loops have a fixed length, so that the numbers stay in a GPU's registers; what
+/// belongs to no pair is left out, not multiplied by 0: it may be infinite.
 template <int History>
 class GramLbfgs {
 public:
@@ -100,7 +101,7 @@ public:
         for (int i = History - 1; i >= 0; --i) {
             double product = -sg_[i];
             for (int newer = i + 1; newer < History; ++newer)
-                product -= of_w_[newer] * sy_[i][newer];
+                product -= newer < count_ ? of_w_[newer] * sy_[i][newer] : 0.0;
             of_w_[i] = i < count_ ? product * rho_[i] : 0.0;
         }
 
@@ -108,7 +109,7 @@ public:
         for (int i = 0; i < History; ++i) {
             double product = -yz_[i];
             for (int other = 0; other < History; ++other)
-                product -= of_w_[other] * yw_[i][other];
+                product -= other < count_ ? of_w_[other] * yw_[i][other] : 0.0;
             for (int older = 0; older < i; ++older)
                 product += of_s_[older] * sy_[older][i];
             of_s_[i] = i < count_ ? of_w_[i] - product * rho_[i] : 0.0;

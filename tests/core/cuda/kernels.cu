@@ -38,7 +38,7 @@ void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel
     parallel_for(space, "test/project", kernel.tri.size(), kernel);
 }
 
-void launch(const CudaSpace& space, const GatherCorners<Mat32>& kernel)
+void launch(const CudaSpace& space, const GatherCorners& kernel)
 {
     parallel_for(space, "test/gather", kernel.gradient.size(), kernel);
 }

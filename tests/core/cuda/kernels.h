@@ -94,7 +94,7 @@ void launch(const CudaSpace& space, const ScaleBySlot& kernel);
 void launch(const CudaSpace& space, const WriteWild& kernel);
 void launch(const CudaSpace& space, const WriteLayout& kernel);
 void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel);
-void launch(const CudaSpace& space, const GatherCorners<Mat32>& kernel);
+void launch(const CudaSpace& space, const GatherCorners& kernel);
 
 /// The sum of numbers in a slot of the device, and read back.
 void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,

@@ -217,10 +217,10 @@ TEST_F(CudaMembrane, GathersToTheSameBits)
     corners_there.upload(corners);
     corner_gradient.upload(response.corner_gradient);
     gradient.upload(expected);
-    launch(space(), GatherCorners<Mat32>{first_there.view(), corners_there.view(), corner_gradient.view(),
-                                         gradient.view()});
+    launch(space(),
+           GatherCorners{first_there.view(), corners_there.view(), corner_gradient.view(), gradient.view()});
 
-    const GatherCorners<Mat32> on_host{first, corners, response.corner_gradient, expected};
+    const GatherCorners on_host{first, corners, response.corner_gradient, expected};
     for (int v = 0; v < kVertices; ++v)
         on_host(v);
     EXPECT_EQ(gradient.downloaded(), expected);
