@@ -30,8 +30,10 @@ public:
             start.insert(start.end(), one_.start.positions.begin(), one_.start.positions.end());
             fixed.insert(fixed.end(), one_.fixed.begin(), one_.fixed.end());
         }
-        for (int v = 0; v < int(start.size()); ++v)
-            start[v].x() += 2.0 * (v / one_.vertex_count());
+        for (int v = 0; v < int(start.size()); ++v) {
+            const int cloth = v / one_.vertex_count();
+            start[v].x() += 2.0 * cloth;
+        }
     }
 
     std::unique_ptr<System> system(std::unique_ptr<GlobalSolver> solver) const

@@ -39,8 +39,9 @@ void DeviceQuadratureSolver::update(const SparseMatrix& H, View<const unsigned c
         auto known =
             std::find_if(groups.begin(), groups.end(), [&](const Group& group) { return group.key == key; });
         if (known == groups.end()) {
-            groups.push_back(Group{key, std::move(block), own, &part, {}});
+            groups.push_back({key, {}, own, &part, {}});
             known = groups.end() - 1;
+            known->H.swap(block);
         }
         known->first.push_back(first);
         first += size;

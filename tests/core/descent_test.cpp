@@ -195,35 +195,41 @@ TEST(Descent, LeavesAloneWhatIsNotFinite)
 
 TEST(Descent, LeavesFixedVerticesWhereTheyAreWhateverPullsAtThem)
 {
-    /// The quadratic, with no gradient at every third vertex where `holds` says so.
+    /// The quadratic with an inverse that knows every third vertex to be fixed, as quadrature's does; the
+    /// gradient there is zero where `holds` says so.
     class Held : public Unsymmetric {
     public:
+        explicit Held(bool holds) : holds_(holds) {}
         double evaluate(View<const Vec3> x, View<Vec3> gradient) override
         {
             const double value = Unsymmetric::evaluate(x, gradient);
-            for (int i = 0; holds && i < x.size(); i += 3)
-                gradient[i].setZero();
+            if (holds_)
+                clear(gradient);
             return value;
         }
-        bool holds = true;
-    };
-    Held objective;
-    const std::vector<Vec3> start = random_field(100, 6);
-    std::vector<Vec3> x = start, x_there = start;
-    class HeldMoves : public Held {
-    public:
         void precondition(View<const Vec3> g, View<Vec3> z) override
         {
-            Held::precondition(g, z);
-            for (int i = 0; i < z.size(); i += 3)
-                z[i].setZero();
+            std::vector<Vec3> of_free(g.begin(), g.end());
+            clear(of_free);
+            Unsymmetric::precondition(of_free, z);
+            clear(z);
         }
+
+    private:
+        static void clear(View<Vec3> field)
+        {
+            for (int i = 0; i < field.size(); i += 3)
+                field[i].setZero();
+        }
+        bool holds_;
     };
-    HeldMoves here;
+    const std::vector<Vec3> start = random_field(100, 6);
+    std::vector<Vec3> x = start, x_there = start;
+    Held here(true);
     Lbfgs lbfgs(kHistory);
     ASSERT_TRUE(lbfgs.minimise(here, x, {1e-7, 500}).converged);
 
-    objective.holds = false; // the descent itself must not listen to them
+    Held objective(false); // the descent itself must not listen to them
     DescentOnHost there(100);
     for (int i = 0; i < 100; i += 3)
         there.hold(i);

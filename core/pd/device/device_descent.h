@@ -16,7 +16,7 @@ public:
     struct Problem {
         /// Adds to shares of the value, writes those of no vertex, and adds to the gradient.
         std::function<void(const DeviceEvaluation&)> add_gradient;
-        /// z = B g
+        /// z = B g, whatever g is at fixed vertices.
         std::function<void(View<const Vec3> g, View<Vec3> z)> precondition;
         View<const double> masses;       ///< [vertices] [kg]
         View<const unsigned char> fixed; ///< [vertices]
