@@ -10,7 +10,6 @@
 #include "benchmarks/solvers/problem.h"
 #include "core/quadrature/device_quadrature.h"
 #include "core/quadrature/quadrature_operator.h"
-#include "quadrature2d/geodesic_places.h"
 
 namespace toile::gpu {
 
@@ -49,9 +48,7 @@ Apply measure_apply(const CudaSpace& space, int vertices, double stiffness, doub
     const solvers::Problem problem = solvers::Problem::sheet(vertices, stiffness, dt);
     const std::unique_ptr<System> system = problem.make_system(std::make_unique<DirectSolver>());
     system->prepare(dt, problem.fixed);
-    const RestShape& rest = *problem.cloth.rest;
-    const std::vector<Place> places =
-        geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology));
+    const std::vector<Place> places = problem.places();
 
     Apply result;
     result.vertices = problem.vertex_count();

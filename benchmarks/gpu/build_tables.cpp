@@ -9,7 +9,6 @@
 #include "benchmarks/text_table.h"
 #include "core/linear/cholesky.h"
 #include "core/quadrature/device_table_builder.h"
-#include "quadrature2d/geodesic_places.h"
 
 namespace toile::gpu {
 
@@ -56,9 +55,7 @@ Input input_of(int vertices, double stiffness, double dt)
     const solvers::Problem problem = solvers::Problem::sheet(vertices, stiffness, dt);
     const std::unique_ptr<System> system = problem.make_system(std::make_unique<NoSolver>());
     system->prepare(dt, problem.fixed);
-    const RestShape& rest = *problem.cloth.rest;
-    const std::vector<Place> places =
-        geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology));
+    const std::vector<Place> places = problem.places();
     std::vector<int> nodes;
     for (int v = 0; v < problem.vertex_count(); ++v)
         if (!problem.fixed[v])

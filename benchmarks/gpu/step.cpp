@@ -11,7 +11,6 @@
 #include "core/pd/sliced_energy.h"
 #include "core/quadrature/device_quadrature_solver.h"
 #include "core/quadrature/quadrature_solver.h"
-#include "quadrature2d/geodesic_places.h"
 
 namespace toile::gpu {
 
@@ -55,14 +54,15 @@ public:
         std::vector<BlockDiagonalSolver::Block> blocks;
         blocks.reserve(what_.cloths);
         for (int k = 0; k < what_.cloths; ++k)
-            blocks.push_back({one_.vertex_count(), std::make_unique<QuadratureSolver>(
-                                                       places(), QuadratureSolver::Settings{}, one_.tables)});
+            blocks.push_back({one_.vertex_count(),
+                              std::make_unique<QuadratureSolver>(one_.places(), QuadratureSolver::Settings{},
+                                                                 one_.tables)});
         return std::make_unique<BlockDiagonalSolver>(std::move(blocks));
     }
     std::unique_ptr<GlobalSolver> device_solver(const CudaSpace& space) const
     {
         return std::make_unique<DeviceQuadratureSolver>(
-            space, std::vector<DeviceQuadratureSolver::Part>(what_.cloths, {places(), {}}),
+            space, std::vector<DeviceQuadratureSolver::Part>(what_.cloths, {one_.places(), {}}),
             QuadratureTables::Settings{}, one_.tables);
     }
 
@@ -70,13 +70,6 @@ public:
     std::vector<unsigned char> fixed;
 
 private:
-    std::vector<Place> places() const
-    {
-        const RestShape& rest = *one_.cloth.rest;
-        return geodesic_places(rest.vertex_count(),
-                               surface_metric(rest.triangles, rest.edges, rest.topology));
-    }
-
     StepCase what_;
     solvers::Problem one_;
 };

@@ -9,7 +9,6 @@
 #include "core/quadrature/quadrature_solver.h"
 #include "garment/rivals/vertex_block_descent.h"
 #include "garment/rivals/xpbd.h"
-#include "quadrature2d/geodesic_places.h"
 #include "quadrature2d/paper/paper_rule.h"
 
 namespace toile::solvers {
@@ -58,10 +57,7 @@ std::unique_ptr<GlobalSolver> make_plain(const Problem&)
 
 std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem)
 {
-    const RestShape& rest = *problem.cloth.rest;
-    return std::make_unique<QuadratureSolver>(
-        geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)),
-        QuadratureSolver::Settings{}, problem.tables);
+    return std::make_unique<QuadratureSolver>(problem.places(), QuadratureSolver::Settings{}, problem.tables);
 }
 
 /// On the sheet's own plane. The rule needs one flat chart, which a skirt does not have.

@@ -10,6 +10,7 @@
 #include "core/pd/newton_pcg.h"
 #include "core/pd/step_objective.h"
 #include "garment/pattern/shapes.h"
+#include "quadrature2d/geodesic_places.h"
 
 namespace toile::solvers {
 
@@ -126,6 +127,12 @@ std::unique_ptr<System> Problem::make_system(std::unique_ptr<GlobalSolver> solve
     if (ball)
         energies.push_back(std::make_shared<BallPenalty>(*ball, cloth.rest->vertex_areas()));
     return std::make_unique<System>(cloth.masses, std::move(energies), std::move(solver));
+}
+
+std::vector<Place> Problem::places() const
+{
+    const RestShape& rest = *cloth.rest;
+    return geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology));
 }
 
 std::vector<Vec3> Problem::acceleration() const

@@ -40,6 +40,7 @@ struct Problem {
     std::unique_ptr<System> make_system(std::unique_ptr<GlobalSolver> solver) const;
 
     std::vector<Vec3> acceleration() const; ///< [vertices] gravity [m/s^2]
+    std::vector<Place> places() const;      ///< [vertices] of quadrature
 };
 
 /// One implicit Euler step to be repeated by every method: from where it starts, and the exact end.
