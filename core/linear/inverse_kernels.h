@@ -123,6 +123,19 @@ struct ProductTile {
     }
 };
 
+/// The part of a thread in tile `item` of a level's products: tiles of rows, each with all tiles of columns.
+template <typename Kernel>
+TOILE_HD typename Kernel::Work tile_of_level(const Kernel& kernel, int item, int thread)
+{
+    const RowTile tile = kernel.tiles[item / kernel.column_tiles];
+    return {kernel,
+            kernel.factor.nodes[tile.node],
+            tile.first_row,
+            item % kernel.column_tiles * Kernel::kColumns,
+            kernel.front_of[tile.node],
+            thread};
+}
+
 /// Forward substitution with one level's nodes: y_own = L11^-1 c_own goes to `solved`, and to the rows below
 /// of the fronts is added -L21 y_own = (-L21 L11^-1) c_own.
 struct EliminateNodes : ProductTile {
@@ -179,16 +192,7 @@ struct EliminateNodes : ProductTile {
         }
     };
 
-    TOILE_HD Work work(int item, int thread) const
-    {
-        const RowTile tile = tiles[item / column_tiles];
-        return {*this,
-                factor.nodes[tile.node],
-                tile.first_row,
-                item % column_tiles * kColumns,
-                front_of[tile.node],
-                thread};
-    }
+    TOILE_HD Work work(int item, int thread) const { return tile_of_level(*this, item, thread); }
 };
 
 /// Back substitution with one level's nodes: x_own = L11^-T y_own + (-L21 L11^-1)^T x_below.
@@ -243,16 +247,7 @@ struct SubstituteBack : ProductTile {
         }
     };
 
-    TOILE_HD Work work(int item, int thread) const
-    {
-        const RowTile tile = tiles[item / column_tiles];
-        return {*this,
-                factor.nodes[tile.node],
-                tile.first_row,
-                item % column_tiles * kColumns,
-                front_of[tile.node],
-                thread};
-    }
+    TOILE_HD Work work(int item, int thread) const { return tile_of_level(*this, item, thread); }
 };
 
 } // namespace toile

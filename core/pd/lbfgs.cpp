@@ -8,13 +8,6 @@
 
 namespace toile {
 
-namespace {
-
-/// Pairs whose curvature s.y is below this share of |s||y| carry rounding, not curvature [-].
-constexpr double kMinCurvature = 1e-10;
-
-} // namespace
-
 Lbfgs::Lbfgs(int history) : history_(history) { TOILE_ASSERT(history > 0); }
 
 void Lbfgs::begin(int) { fall_back(); }

@@ -14,6 +14,9 @@ namespace toile {
 /// operator changes between iterations, as it does when contacts open and close.
 class Lbfgs : public OuterLoop {
 public:
+    /// Pairs whose curvature s.y is below this share of |s||y| carry rounding, not curvature [-].
+    static constexpr double kMinCurvature = 1e-10;
+
     /// @param history  pairs kept; more than 5 bought nothing in docs/core/pd.md's measurements. At least 1.
     explicit Lbfgs(int history = 5);
 

@@ -6,6 +6,9 @@
 
 namespace toile {
 
+/// As std::isfinite, for kernels too.
+TOILE_HD inline bool is_finite(double value) { return value - value == 0.0; }
+
 /// Backtracking along a direction [Nocedal & Wright 2006, alg. 3.1], for whoever evaluates on the CPU or on a
 /// GPU.
 struct LineSearch {
@@ -31,8 +34,7 @@ struct LineSearch {
     TOILE_HD void shorten(double trial_value)
     {
         const double excess = trial_value - value - step * slope;
-        const bool is_finite = excess - excess == 0.0;
-        const double parabola = is_finite ? -0.5 * slope * step * step / excess : 0.0;
+        const double parabola = is_finite(excess) ? -0.5 * slope * step * step / excess : 0.0;
         step = std::fmin(std::fmax(parabola, 0.1 * step), 0.5 * step);
     }
 };

@@ -109,7 +109,7 @@ private:
     TOILE_HD void start_here(double value)
     {
         start_value = search.value = value;
-        if (!(value - value == 0.0) || max_iterations == 0) // not finite, or nothing to do
+        if (!is_finite(value) || max_iterations == 0)
             finish();
         else
             turn_to_new_direction(Action::Take);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/backend/types.h"
+#include "core/pd/lbfgs.h"
 
 namespace toile {
 
@@ -49,16 +49,8 @@ struct PairProducts {
 template <int History>
 class GramLbfgs {
 public:
-    /// Pairs whose curvature s.y is below this share of |s||y| carry rounding, not curvature [-].
-    static constexpr double kMinCurvature = 1e-10;
-
     TOILE_HD int count() const { return count_; }
-    TOILE_HD void clear()
-    {
-        count_ = next_slot_ = 0;
-        for (int k = 0; k < History; ++k)
-            of_s_[k] = of_w_[k] = 0.0;
-    }
+    TOILE_HD void clear() { count_ = next_slot_ = 0; }
 
     /// Where the fields of pair k are; of those from count() on, slots that are not in use.
     TOILE_HD int slot_of(int k) const
@@ -67,7 +59,7 @@ public:
         return slot < 0 ? slot + History : slot < History ? slot : slot - History;
     }
 
-    // Coefficients of pair k in the direction; 0 from count() on.
+    // Coefficients of pair k in the direction.
     TOILE_HD double of_s(int k) const { return of_s_[k]; }
     TOILE_HD double of_w(int k) const { return of_w_[k]; }
 
@@ -80,7 +72,7 @@ public:
                 sg_[j] += step.s_y[j];
                 yz_[j] += step.w_y[j];
             }
-        if (!(step.sy > kMinCurvature * std::sqrt(step.ss * step.yy)))
+        if (!(step.sy > Lbfgs::kMinCurvature * std::sqrt(step.ss * step.yy)))
             return -1;
         const bool is_full = count_ == History;
         if (is_full)
@@ -89,7 +81,7 @@ public:
         next_slot_ = (next_slot_ + 1) % History;
         for (int j = 0; j < History; ++j) // where it becomes pair j, the older ones are pairs 0 to j - 1
             if (j == count_)
-                put(j, step, is_full ? 1 : 0);
+                put(j, step, is_full);
         ++count_;
         return slot;
     }
@@ -131,22 +123,22 @@ private:
         --count_;
     }
 
-    /// @param dropped  pairs that were dropped since the products were taken
-    TOILE_HD void put(int slot, const PairProducts<History>& step, int dropped)
+    /// Puts the step as pair k behind the others.
+    /// @param has_dropped  the oldest pair, since the products were taken
+    TOILE_HD void put(int k, const PairProducts<History>& step, bool has_dropped)
     {
         for (int j = 0; j < History; ++j)
-            if (j < slot) {
-                const bool shift = dropped > 0;
-                const int from = j + 1 < History ? j + 1 : j;
-                sy_[j][slot] = shift ? step.s_y[from] : step.s_y[j];
-                yw_[slot][j] = shift ? step.y_w[from] : step.y_w[j];
-                yw_[j][slot] = shift ? step.w_y[from] : step.w_y[j];
+            if (j < k) {
+                const int next = j + 1 < History ? j + 1 : j;
+                sy_[j][k] = has_dropped ? step.s_y[next] : step.s_y[j];
+                yw_[k][j] = has_dropped ? step.y_w[next] : step.y_w[j];
+                yw_[j][k] = has_dropped ? step.w_y[next] : step.w_y[j];
             }
-        sy_[slot][slot] = step.sy;
-        yw_[slot][slot] = step.yw;
-        sg_[slot] = step.sg;
-        yz_[slot] = step.yz;
-        rho_[slot] = 1.0 / step.sy;
+        sy_[k][k] = step.sy;
+        yw_[k][k] = step.yw;
+        sg_[k] = step.sg;
+        yz_[k] = step.yz;
+        rho_[k] = 1.0 / step.sy;
     }
 
     int count_ = 0, next_slot_ = 0;
