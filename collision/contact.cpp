@@ -104,6 +104,14 @@ void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
     energy_.add_hessian_product(p, out);
 }
 
+DeviceActiveSet* Contact::on_device(const CudaSpace& space)
+{
+    if (!there_)
+        there_ = std::make_unique<DeviceContactEnergy>(space);
+    there_->take(energy_, start_.x.size());
+    return there_.get();
+}
+
 bool Contact::revise(View<Vec3> x)
 {
     if (energy_.terms().empty() && !between_)

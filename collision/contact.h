@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "collision/collider_pairs.h"
 #include "collision/contact_cloth.h"
 #include "collision/contact_memory.h"
+#include "collision/device_contact_energy.h"
 #include "core/pd/active_set_energy.h"
 
 namespace toile {
@@ -45,6 +47,7 @@ public:
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
+    DeviceActiveSet* on_device(const CudaSpace& space) override;
     bool revise(View<Vec3> x) override;
     void clear(View<Vec3> x, View<Vec3> v) override;
     void resolve(View<Vec3> x, View<Vec3> v) override;
@@ -110,6 +113,7 @@ private:
     std::optional<ClothContact> between_; ///< cloth and cloth; none where that is switched off
     ContactMemory memory_;
     bool has_cleared_ = false; ///< in this step: memory_ is the minimiser's, the pairs are new
+    std::unique_ptr<DeviceContactEnergy> there_; ///< null before a GPU asks
     int active_count_ = 0;
     double min_gap_ = 0.0;
 };

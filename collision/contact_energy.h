@@ -2,21 +2,10 @@
 
 #include <vector>
 
-#include "collision/contact_pair.h"
+#include "collision/contact_kernels.h"
 #include "core/pd/frozen_hessian.h"
 
 namespace toile {
-
-/// A contact pair with everything its energy needs.
-struct ContactTerm {
-    ContactPair pair;
-    double offset = 0.0;        ///< [m] gap to keep between cloth and surface
-    double stiffness = 0.0;     ///< [N/m] w, of the normal spring and of sticking
-    double friction = 0.0;      ///< [-] Coulomb coefficient
-    Vec3 anchor = Vec3::Zero(); ///< [m] where the cloth point would stick, in space at t1
-    double give = 0.0;          ///< [m] below the offset where a step may end: cloth gripped from both sides
-    double normal_force = 0.0;  ///< [N] lagged, bounds friction
-};
 
 /// Contact and friction of cloth, with colliders and with cloth, as an energy of its positions.
 ///
@@ -51,13 +40,12 @@ public:
     View<const Mat3> diagonal_blocks() const { return blocks_; }
 
     /// Gap g of a term at x [m]; negative where it pushes.
-    double gap(int term, View<const Vec3> x) const;
+    double gap(int term, View<const Vec3> x) const { return terms_[term].gap(x); }
     /// Force of the normal spring at x [N].
     double pressing_force(int term, View<const Vec3> x) const;
     /// Part of anchor-to-cloth in the tangent plane, u above [m].
-    Vec3 slip(int term, View<const Vec3> x) const;
+    Vec3 slip(int term, View<const Vec3> x) const { return terms_[term].slip(x); }
 
-private:
     /// Who touches what: terms by vertex.
     struct Touches {
         std::vector<int> vertices; ///< touched ones, ascending
@@ -68,16 +56,17 @@ private:
         void add(int vertex, int entry); ///< in ascending order of vertices
         void close() { first.push_back(int(entries.size())); }
     };
+    const Touches& touches() const { return touches_; } ///< of all terms
 
+private:
     void find_active_touches();
-    template <typename PerTerm>
-    void gather(const Touches& touches, View<Vec3> out, const PerTerm& value) const;
+    void gather(const Touches& touches, View<Vec3> out) const;
 
     std::vector<ContactTerm> terms_;
     Touches touches_;                      ///< of all terms
     Touches active_touches_;               ///< of those that are frozen: usually far fewer
     std::vector<int> active_;              ///< terms that are frozen
-    std::vector<Mat3> frozen_;             ///< [terms] A_p
+    std::vector<FrozenContact> frozen_;    ///< [terms] A_p
     std::vector<Mat3> blocks_;             ///< [vertices]
     mutable std::vector<Vec3> term_force_; ///< [terms] scratch
     mutable std::vector<double> term_energy_;

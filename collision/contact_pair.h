@@ -44,7 +44,7 @@ struct ContactPair {
     int feature = -1;
 
     /// Cloth vertices in use.
-    int count() const
+    TOILE_HD int count() const
     {
         int used = 1;
         while (used < 4 && vertex[used] >= 0)
@@ -52,10 +52,10 @@ struct ContactPair {
         return used;
     }
 
-    bool is_between_cloths() const { return kind >= ContactKind::kClothVertexFace; }
+    TOILE_HD bool is_between_cloths() const { return kind >= ContactKind::kClothVertexFace; }
 
     /// sum_k weight_k x_k at cloth positions x [m].
-    Vec3 cloth_point(View<const Vec3> x) const
+    TOILE_HD Vec3 cloth_point(View<const Vec3> x) const
     {
         Vec3 sum = weight[0] * x[vertex[0]];
         for (int k = 1; k < 4 && vertex[k] >= 0; ++k)
@@ -64,7 +64,7 @@ struct ContactPair {
     }
 
     /// n . (sum_k weight_k x_k - point) at cloth positions x [m]: negative inside the collider.
-    double gap(View<const Vec3> x) const { return normal.dot(cloth_point(x) - point); }
+    TOILE_HD double gap(View<const Vec3> x) const { return normal.dot(cloth_point(x) - point); }
 };
 
 /// ContactPair::vertex of one to four vertices.

@@ -196,7 +196,7 @@ bool ClothGroup::sleeps(double t_t1, const std::vector<Obstacle>& obstacles)
 }
 
 std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstacle>& obstacles,
-                                    const WorldOptions& options)
+                                    const WorldOptions& options, const CudaSpace* space)
 {
     std::vector<SceneCloth> cloths;
     for (const scene::Cloth& cloth : scene.cloths)
@@ -216,7 +216,7 @@ std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstac
     std::vector<ClothGroup> groups;
     groups.reserve(members.size());
     for (auto& group : members)
-        groups.emplace_back(scene, std::move(group), std::move(solids), obstacles, options);
+        groups.emplace_back(scene, std::move(group), std::move(solids), obstacles, options, space);
     return groups;
 }
 

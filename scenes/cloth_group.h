@@ -18,8 +18,9 @@ class ClothGroup {
 public:
     /// @throws InvalidInput where the scene's method does not work on one of the cloths.
     /// @param solids  null: none
+    /// @param space   where steps are minimised, borrowed; null: on the CPU
     ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, std::unique_ptr<SceneSolids> solids,
-               const std::vector<Obstacle>& obstacles, const WorldOptions& options);
+               const std::vector<Obstacle>& obstacles, const WorldOptions& options, const CudaSpace* space);
 
     const std::vector<SceneCloth>& cloths() const { return cloths_; }
     const SceneSolids* solids() const { return solids_.get(); } ///< null: none
@@ -35,6 +36,10 @@ public:
 
 private:
     std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
+    std::unique_ptr<PointMasses> make_device_body(const Scene& scene, const WorldOptions& options,
+                                                  const CudaSpace& space);
+    std::vector<double> masses() const;
+    std::vector<std::shared_ptr<Energy>> make_energies();
     std::unique_ptr<Contact> make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles);
     std::vector<Vec3> positions() const;
     std::vector<Vec3> surfaces() const;
@@ -68,7 +73,8 @@ private:
 
 /// Sorts the cloths of a scene into groups: one of all where they may touch each other, else one each. Solids
 /// are in the one of all.
+/// @param space  as ClothGroup's
 std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstacle>& obstacles,
-                                    const WorldOptions& options);
+                                    const WorldOptions& options, const CudaSpace* space);
 
 } // namespace toile

@@ -1,6 +1,8 @@
 #include "core/linear/block_diagonal_solver.h"
 #include "core/pd/body.h"
+#include "core/pd/device/device_body.h"
 #include "core/pd/sliced_energy.h"
+#include "core/quadrature/device_quadrature_solver.h"
 #include "scenes/cloth_group.h"
 #include "scenes/contact_setup.h"
 #include "scenes/method_choice.h"
@@ -28,7 +30,7 @@ TableSource source_of_tables(const WorldOptions& options, const std::string& clo
 
 ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
                        std::unique_ptr<SceneSolids> solids, const std::vector<Obstacle>& obstacles,
-                       const WorldOptions& options)
+                       const WorldOptions& options, const CudaSpace* space)
     : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), solids_(std::move(solids)), first_{0}
 {
     for (const SceneCloth& cloth : cloths_)
@@ -38,8 +40,10 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
             triangles_.push_back(t + Triangle::Constant(first_[i]));
     if (solids_)
         solids_->append_triangles(first_.back(), triangles_);
-    body_ = is_rival(scene.solver.method) ? make_rival(scene.solver, positions(), cloths_.front().model())
-                                          : make_body(scene, options);
+    if (is_rival(scene.solver.method))
+        body_ = make_rival(scene.solver, positions(), cloths_.front().model());
+    else
+        body_ = space != nullptr ? make_device_body(scene, options, *space) : make_body(scene, options);
     contact_ = make_contact(scene, obstacles);
     if (solids_)
         rigid_contact_ = std::make_unique<RigidActiveSet>(*contact_, solids_->bodies(), first_.back());
@@ -56,19 +60,33 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
             acceleration_[first_.back() + 2 * i] = scene.gravity;
 }
 
-/// Projective dynamics: every term is an energy, every cloth keeps its own solver.
-std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const WorldOptions& options)
+std::vector<double> ClothGroup::masses() const
 {
     std::vector<double> masses;
-    std::vector<std::shared_ptr<Energy>> energies;
-    std::vector<BlockDiagonalSolver::Block> blocks;
-    for (size_t i = 0; i < cloths_.size(); ++i) {
-        SceneCloth& cloth = cloths_[i];
+    for (const SceneCloth& cloth : cloths_)
         masses.insert(masses.end(), cloth.masses().begin(), cloth.masses().end());
-        for (auto& energy : cloth.make_energies())
-            energies.push_back(cloths_.size() == 1 && !solids_
-                                   ? energy
-                                   : std::make_shared<SlicedEnergy>(energy, first_[i], cloth.vertex_count()));
+    return masses;
+}
+
+/// Every term of every cloth.
+std::vector<std::shared_ptr<Energy>> ClothGroup::make_energies()
+{
+    std::vector<std::shared_ptr<Energy>> energies;
+    for (size_t i = 0; i < cloths_.size(); ++i)
+        for (auto& energy : cloths_[i].make_energies())
+            energies.push_back(
+                cloths_.size() == 1 && !solids_
+                    ? energy
+                    : std::make_shared<SlicedEnergy>(energy, first_[i], cloths_[i].vertex_count()));
+    return energies;
+}
+
+/// Projective dynamics: every cloth keeps its own solver.
+std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const WorldOptions& options)
+{
+    std::vector<double> masses = this->masses();
+    std::vector<BlockDiagonalSolver::Block> blocks;
+    for (const SceneCloth& cloth : cloths_) {
         const ClothState& state = cloth.state();
         blocks.push_back(
             {cloth.vertex_count(),
@@ -95,7 +113,27 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
     return std::make_unique<Body>(
         std::move(unknowns),
-        std::make_unique<System>(std::move(masses), std::move(energies), std::move(solver)), settings);
+        std::make_unique<System>(std::move(masses), make_energies(), std::move(solver)), settings);
+}
+
+/// The same with the fields on a GPU. Equal cloths share their tables.
+std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, const WorldOptions& options,
+                                                          const CudaSpace& space)
+{
+    std::vector<DeviceQuadratureSolver::Part> parts;
+    for (const SceneCloth& cloth : cloths_)
+        parts.push_back(
+            {places_of(*cloth.rest_shape()), source_of_tables(options, cloth.state().name).listener});
+    DeviceBody::Settings settings;
+    settings.tolerance = scene.solver.tolerance;
+    settings.max_iterations = scene.solver.max_iterations;
+    return std::make_unique<DeviceBody>(
+        space, positions(),
+        std::make_unique<System>(masses(), make_energies(),
+                                 std::make_unique<DeviceQuadratureSolver>(
+                                     space, std::move(parts), QuadratureTables::Settings{},
+                                     source_of_tables(options, "").store)),
+        settings);
 }
 
 std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles)

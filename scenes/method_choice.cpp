@@ -38,11 +38,6 @@ std::string methods_that(const Condition& holds)
     return list;
 }
 
-std::vector<Place> places_of(const RestShape& rest)
-{
-    return geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology));
-}
-
 std::unique_ptr<GlobalSolver> make_paper_rule(const TriangleMesh& start, const std::string& source)
 {
     const auto chart = flat_chart(start);
@@ -54,6 +49,11 @@ std::unique_ptr<GlobalSolver> make_paper_rule(const TriangleMesh& start, const s
 }
 
 } // namespace
+
+std::vector<Place> places_of(const RestShape& rest)
+{
+    return geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology));
+}
 
 std::unique_ptr<GlobalSolver> make_global_solver(SolverMethod method, std::shared_ptr<const RestShape> rest,
                                                  const TriangleMesh& start, const std::string& source,

@@ -28,6 +28,9 @@ std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method,
                                                  const TriangleMesh& start, const std::string& source,
                                                  const TableSource& tables);
 
+/// Where quadrature sees the vertices of a cloth.
+std::vector<Place> places_of(const RestShape& rest);
+
 /// True for methods that replace Body altogether.
 bool is_rival(scene::SolverMethod method);
 

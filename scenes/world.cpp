@@ -11,6 +11,7 @@ namespace toile {
 
 struct World::Parts {
     Scene scene;
+    std::shared_ptr<const CudaSpace> space; ///< null: the CPU
     std::vector<Obstacle> obstacles;
     std::vector<ClothGroup> groups;
     std::vector<ClothState> states;
@@ -60,7 +61,8 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     parts_->scene = scene;
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->obstacles.emplace_back(avatar, scene.contact.friction);
-    parts_->groups = make_groups(scene, parts_->obstacles, options);
+    parts_->space = open_backend(options.backend, scene, options.warn);
+    parts_->groups = make_groups(scene, parts_->obstacles, options, parts_->space.get());
 
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);
@@ -119,6 +121,7 @@ View<const ClothState> World::cloths() const
     return surfaces().subview(0, int(parts_->scene.cloths.size()));
 }
 const StartReport& World::start() const { return parts_->start; }
+const CudaDevice* World::device() const { return parts_->space ? &parts_->space->device() : nullptr; }
 const Stages& World::stages() const { return parts_->stages; }
 
 } // namespace toile

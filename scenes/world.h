@@ -10,6 +10,7 @@
 #include "core/mesh/obj.h"
 #include "core/pd/step_report.h"
 #include "garment/fabric/fabric.h"
+#include "scenes/backend.h"
 #include "scenes/format/scene.h"
 
 namespace toile {
@@ -29,6 +30,8 @@ struct ClothState {
 
 /// How a World prepares its global solvers, beyond what the scene says.
 struct WorldOptions {
+    Backend backend = Backend::Cpu;
+
     /// Where quadrature tables come from; null: TableStore::of_process(), which keeps them on disk.
     std::shared_ptr<TableStore> tables = nullptr;
 
@@ -49,7 +52,7 @@ class World {
 public:
     /// Loads everything and places it, and repairs a start pose with cloth inside avatars or through cloth
     /// (docs/collision/start_repair.md); nothing is simulated or factored yet.
-    /// @throws InvalidInput for files, materials and selections that do not work.
+    /// @throws InvalidInput for files, materials and selections that do not work; as open_backend().
     explicit World(const Scene& scene, const WorldOptions& options = {});
     ~World();
     World(World&&) noexcept;
@@ -81,6 +84,9 @@ public:
     /// What the start pose had inside avatars and through cloth, and what its repair left. Cloths and bodies
     /// are numbered as in Scene::cloths and Scene::avatars.
     const StartReport& start() const;
+
+    /// The GPU that it runs on; null: the CPU.
+    const CudaDevice* device() const;
 
     /// Calls and seconds of every stage so far.
     const Stages& stages() const;

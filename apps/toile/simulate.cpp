@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "apps/toile/certify.h"
@@ -25,6 +26,9 @@ namespace toile {
 
 namespace {
 
+const std::map<std::string, Backend> kBackends{
+    {"cpu", Backend::Cpu}, {"cuda", Backend::Cuda}, {"auto", Backend::Auto}};
+
 struct SimulateOptions {
     std::filesystem::path scene;
     std::filesystem::path output; ///< folder; empty: out/<name of the scene file>
@@ -32,6 +36,7 @@ struct SimulateOptions {
     std::optional<int> threads;
     std::string solver;
     std::string outer;
+    Backend backend = Backend::Cpu;
     std::filesystem::path report;
     bool no_cache = false;
     bool no_check = false;
@@ -248,6 +253,7 @@ int simulate(const SimulateOptions& options)
     TableProgress tables(options.quiet);
     std::optional<InterruptGuard> interrupt;
     WorldOptions world_options;
+    world_options.backend = options.backend;
     if (options.no_cache)
         world_options.tables = std::make_shared<TableStore>();
     world_options.building = [&](const std::string& cloth, double share) {
@@ -287,6 +293,9 @@ Command add_simulate(CLI::App& program)
         ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
     add.add_option("--outer", options->outer, "Minimisation of a step, instead of the scene's")
         ->check(CLI::IsMember(scene_format::words_of<OuterMethod>()));
+    add.add_option("--backend", options->backend,
+                   "Where steps are minimised [cpu]; auto: on a GPU where there is one and the scene can")
+        ->transform(CLI::CheckedTransformer(kBackends, CLI::ignore_case));
     add.add_option("--report", options->report, "Write stages, frames and settings to this JSON file");
     add.add_flag("--no-cache", options->no_cache, "Neither read nor keep quadrature tables on disk");
     add.add_flag("--no-check", options->no_check, "Write no certificate of the caches");

@@ -89,11 +89,11 @@ double median_ms(int count, const Work& work)
     return times[count / 2];
 }
 
-double largest_difference(const std::vector<Vec3>& a, View<const Vec3> b)
+double largest_difference(View<const Vec3> a, View<const Vec3> b)
 {
     double largest = 0.0;
-    for (size_t i = 0; i < a.size(); ++i)
-        largest = std::max(largest, (a[i] - b[int(i)]).norm());
+    for (int i = 0; i < a.size(); ++i)
+        largest = std::max(largest, (a[i] - b[i]).norm());
     return largest;
 }
 
@@ -109,27 +109,25 @@ Step measure_step(const CudaSpace& space, const StepCase& what)
     settings.tolerance = 0.0;
     settings.max_iterations = what.iterations;
     Body cpu(cloths.start, cloths.system(cloths.cpu_solver()), settings);
-    const auto step_cpu = [&] {
-        (void)cpu.step(what.dt, gravity, cloths.fixed, cloths.start, nullptr, nullptr);
+    const auto step = [&](PointMasses& body) {
+        return body.step(what.dt, gravity, cloths.fixed, cloths.start, nullptr, nullptr).iterations;
     };
-    step_cpu(); // the tables are built here, once for both
+    step(cpu); // the tables are built here, once for both
 
     DeviceBody device(space, cloths.start, cloths.system(cloths.device_solver(space)),
                       {settings.tolerance, settings.max_iterations});
-    device.set_acceleration(gravity);
-    (void)device.step(what.dt, cloths.fixed);
+    step(device);
 
     Step result;
     result.cloths = what.cloths;
     result.vertices = int(cloths.start.size()) / what.cloths;
     result.difference = largest_difference(device.positions(), cpu.positions());
     for (int k = 0; k < kWarmUp; ++k)
-        (void)device.step(what.dt, cloths.fixed);
+        step(device);
     int iterations = 0;
-    result.device_ms =
-        median_ms(kSteps, [&] { iterations += device.step(what.dt, cloths.fixed).iterations; });
+    result.device_ms = median_ms(kSteps, [&] { iterations += step(device); });
     result.iterations = double(iterations) / kSteps;
-    result.cpu_ms = median_ms(kCpuSteps, step_cpu);
+    result.cpu_ms = median_ms(kCpuSteps, [&] { step(cpu); });
     return result;
 }
 

@@ -4,6 +4,9 @@
 
 namespace toile {
 
+class CudaSpace;
+class DeviceActiveSet;
+
 /// State of a body at the start of a step, as an energy with an active set needs it.
 struct StepStart {
     View<const Vec3> x;              ///< [vertices] positions at t0 [m]
@@ -30,6 +33,10 @@ public:
 
     /// Freezes the terms active at x into dH. False when none is: the solver then skips PCG.
     virtual bool activate(View<const Vec3> x) = 0;
+
+    /// Its terms as they are now on a GPU, good until begin_step() or revise(). Null where it has no such
+    /// form. The activate() and add_gradient() of a minimisation there are the device's.
+    virtual DeviceActiveSet* on_device([[maybe_unused]] const CudaSpace& space) { return nullptr; }
 
     /// After every minimisation: refreshes lagged quantities (friction limits) and looks again where x left
     /// the neighbourhood that the candidates were made for. True when the energy changed enough to be

@@ -5,20 +5,13 @@
 #include <utility>
 
 #include "core/linear/field.h"
+#include "core/pd/step_end.h"
 #include "core/pd/step_tolerance.h"
 
 namespace toile {
 
-namespace {
-
-/// How often the end of a step is satisfied at most, where cloth is brought back far again and again. A
-/// walking skirt asks for more than four and at most seven (docs/collision/cloth.md).
-constexpr int kEndRounds = 8;
-
-} // namespace
-
 Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings)
-    : PointMasses(std::move(positions)), system_(std::move(system)), settings_(settings),
+    : PointMassesOnHost(std::move(positions)), system_(std::move(system)), settings_(settings),
       outer_(make_outer_loop(settings.outer, settings.history)), prediction_(x_.size()), gradient_(x_.size())
 {
 }
@@ -43,25 +36,11 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
     parallel_for(kCpu, "pd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - x_[i]) / dt; });
     if (projection)
         projection->observe(x_t1_);
-    satisfy_all(dt, active, projection);
+    StepEnd(x_t1_, v_, system_->masses(), system_->fixed(), dt).satisfy(active, projection);
     if (active)
         active->end_step(x_t1_);
     x_.swap(x_t1_);
     return report;
-}
-
-/// What a minimisation does not promise: surfaces, limits, cloth apart from cloth. Cloth that was brought
-/// back is torn from what was not, so limits draw it on from there.
-void Body::satisfy_all(double dt, ActiveSetEnergy* active, StepProjection* projection)
-{
-    bool goes_on = true;
-    for (int round = 0; goes_on && round < kEndRounds; ++round) {
-        if (active)
-            active->clear(x_t1_, v_);
-        if (projection)
-            project(dt, system_->fixed(), *projection, active);
-        goes_on = active && active->keep_apart(x_t1_, v_);
-    }
 }
 
 StepStart Body::start_of(double dt) const

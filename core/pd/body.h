@@ -10,7 +10,7 @@
 namespace toile {
 
 /// A deformable body advanced by implicit Euler: each step minimises StepObjective.
-class Body : public PointMasses {
+class Body : public PointMassesOnHost {
 public:
     struct Settings {
         /// [m] Error that a step may end with: what StepError estimates, and the next move of any vertex.
@@ -38,7 +38,6 @@ private:
     OuterLoop::Outcome no_worse_than_standing(double dt, StepObjective& objective,
                                               OuterLoop::Settings settings, const OuterLoop::Outcome& found);
     void minimise(double dt, ActiveSetEnergy* active, StepReport& report);
-    void satisfy_all(double dt, ActiveSetEnergy* active, StepProjection* projection);
 
     std::unique_ptr<System> system_;
     Settings settings_;

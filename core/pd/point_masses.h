@@ -9,14 +9,10 @@
 
 namespace toile {
 
-/// Point masses that a method moves through time: what is asked of a Body, and of every method that it is
-/// compared with.
+/// Point masses that a method moves through time: what is asked of a Body, wherever it runs, and of every
+/// method that it is compared with.
 class PointMasses {
 public:
-    explicit PointMasses(std::vector<Vec3> positions)
-        : x_(std::move(positions)), v_(x_.size(), Vec3::Zero()), x_t1_(x_.size())
-    {
-    }
     virtual ~PointMasses() = default;
 
     /// Prepares for steps of dt [s] with these vertices fixed, which step() otherwise does.
@@ -35,13 +31,28 @@ public:
                             View<const Vec3> targets, ActiveSetEnergy* active,
                             StepProjection* projection) = 0;
 
-    View<const Vec3> positions() const { return x_; }
-    View<const Vec3> velocities() const { return v_; }
-    void set_positions(View<const Vec3> x) { x_.assign(x.begin(), x.end()); }
-    void set_velocities(View<const Vec3> v) { v_.assign(v.begin(), v.end()); }
+    // Of the vertices now, good until they change [m], [m/s].
+    virtual View<const Vec3> positions() const = 0;
+    virtual View<const Vec3> velocities() const = 0;
+    virtual void set_positions(View<const Vec3> x) = 0;
+    virtual void set_velocities(View<const Vec3> v) = 0;
 
     /// [vertices] [kg], positive
     virtual View<const double> masses() const = 0;
+};
+
+/// Point masses on the CPU.
+class PointMassesOnHost : public PointMasses {
+public:
+    explicit PointMassesOnHost(std::vector<Vec3> positions)
+        : x_(std::move(positions)), v_(x_.size(), Vec3::Zero()), x_t1_(x_.size())
+    {
+    }
+
+    View<const Vec3> positions() const override { return x_; }
+    View<const Vec3> velocities() const override { return v_; }
+    void set_positions(View<const Vec3> x) override { x_.assign(x.begin(), x.end()); }
+    void set_velocities(View<const Vec3> v) override { v_.assign(v.begin(), v.end()); }
 
 protected:
     /// q* = x + dt v + dt^2 a; fixed vertices go to their targets.
@@ -49,16 +60,8 @@ protected:
     void predict(double dt, View<const Vec3> acceleration, View<const unsigned char> fixed,
                  View<const Vec3> targets, View<Vec3> prediction) const;
 
-    /// Moves x_t1_ onto the constraint; what that moves becomes velocity.
-    void project(double dt, View<const unsigned char> fixed, StepProjection& projection,
-                 const ActiveSetEnergy* active);
-
     std::vector<Vec3> x_, v_; ///< [vertices] [m], [m/s]
     std::vector<Vec3> x_t1_;  ///< [vertices] end of the step in the making [m]
-
-private:
-    std::vector<Vec3> unprojected_;
-    std::vector<double> inverse_masses_;
 };
 
 } // namespace toile

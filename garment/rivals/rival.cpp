@@ -1,6 +1,6 @@
 #include "garment/rivals/rival.h"
 
-#include "core/backend/parallel.h"
+#include "core/pd/step_end.h"
 
 namespace toile {
 
@@ -18,7 +18,7 @@ StepReport Rival::step(double dt, View<const Vec3> acceleration, const std::vect
     if (active)
         active->resolve(x_t1_, v_);
     if (projection)
-        project(dt, fixed, *projection, active);
+        StepEnd(x_t1_, v_, cloth_.masses, fixed, dt).project(*projection, active);
     if (active) {
         // Where limit and contact contradict each other, contact has the last word.
         if (projection)

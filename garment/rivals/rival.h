@@ -22,10 +22,10 @@ struct ClothModel {
 ///
 /// None of them knows contact. A step with contact moves the cloth first and resolves contact by positions
 /// afterwards (ActiveSetEnergy::resolve), as position-based programs do; a StepProjection follows.
-class Rival : public PointMasses {
+class Rival : public PointMassesOnHost {
 public:
     Rival(std::vector<Vec3> positions, ClothModel cloth)
-        : PointMasses(std::move(positions)), cloth_(std::move(cloth))
+        : PointMassesOnHost(std::move(positions)), cloth_(std::move(cloth))
     {
     }
 

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "collision/contact_energy.h"
+#include "collision/device_contact_energy.h"
 #include "core/pd/active_set_energy.h"
 
 namespace toile::test {
@@ -20,7 +21,7 @@ public:
         double normal_force = 0.0;   ///< [N] that limits friction
     };
 
-    TouchingPlane(const std::vector<Vec3>& start, const Settings& settings)
+    TouchingPlane(const std::vector<Vec3>& start, const Settings& settings) : vertex_count_(int(start.size()))
     {
         std::vector<ContactTerm> terms(start.size());
         for (size_t v = 0; v < start.size(); ++v) {
@@ -37,7 +38,7 @@ public:
     }
 
     /// Any other terms.
-    TouchingPlane(std::vector<ContactTerm> terms, int vertex_count)
+    TouchingPlane(std::vector<ContactTerm> terms, int vertex_count) : vertex_count_(vertex_count)
     {
         energy_.set_terms(std::move(terms), vertex_count);
     }
@@ -55,6 +56,12 @@ public:
     }
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
+    DeviceActiveSet* on_device(const CudaSpace& space) override
+    {
+        there_ = std::make_unique<DeviceContactEnergy>(space);
+        there_->take(energy_, vertex_count_);
+        return there_.get();
+    }
     bool revise(View<Vec3>) override { return false; }
     void clear(View<Vec3>, View<Vec3>) override {}
     bool keep_apart(View<Vec3>, View<Vec3>) override { return false; }
@@ -83,7 +90,9 @@ public:
     }
 
 private:
+    int vertex_count_;
     ContactEnergy energy_;
+    std::unique_ptr<DeviceContactEnergy> there_;
 };
 
 } // namespace toile::test

@@ -23,24 +23,22 @@ struct StepSums {
     }
 };
 
-/// Predicts vertex i, where the descent begins too.
+/// Predicts vertex i.
 struct BeginVertex {
     PredictVertex predict;
-    View<Vec3> drive; ///< [vertices] out: q* - x0 [m]
-    DescentFields fields;
+    View<const double> masses; ///< [vertices] [kg]
+    View<Vec3> drive;          ///< [vertices] out: q* - x0 [m]
 
     TOILE_HD StepSums operator()(int i) const
     {
         predict(i);
-        fields.trial.x[i] = predict.prediction[i];
-        fields.begin_trial(i);
         const Vec3 move = predict.prediction[i] - predict.x[i];
         drive[i] = move;
         StepSums sums;
         sums.farthest_square = move.squaredNorm();
         if (predict.fixed[i])
             return sums;
-        sums.mass = fields.masses[i];
+        sums.mass = masses[i];
         sums.driving = sums.mass * sums.farthest_square;
         return sums;
     }
@@ -65,16 +63,32 @@ struct BeginDescent {
     }
 };
 
-/// Where vertex i was, and what is held where it belongs: the second place that a descent may begin at.
-struct StandStill {
-    View<const Vec3> x, prediction; ///< [vertices] [m]
+/// Begins a descent's first trial where vertex i of x [m] is.
+struct BeginAt {
+    View<const Vec3> x; ///< [vertices] [m]
     DescentFields fields;
 
     TOILE_HD void operator()(int i) const
     {
-        fields.trial.x[i] = fields.fixed[i] ? prediction[i] : x[i];
+        fields.trial.x[i] = x[i];
         fields.begin_trial(i);
     }
+};
+
+/// Where vertex i was at t0, and what is held where it belongs.
+struct StandStill {
+    View<const Vec3> x, prediction;  ///< [vertices] [m]
+    View<const unsigned char> fixed; ///< [vertices]
+    View<Vec3> standing;             ///< [vertices] out [m]
+
+    TOILE_HD void operator()(int i) const { standing[i] = fixed[i] ? prediction[i] : x[i]; }
+};
+
+/// Copies positions.
+struct CopyPositions {
+    View<const Vec3> x;
+    View<Vec3> to;
+    TOILE_HD void operator()(int i) const { to[i] = x[i]; }
 };
 
 /// Keeps what a descent found, or brings it back: positions [m] and gradient [N], [vertices].
@@ -114,14 +128,13 @@ struct FinishSums {
 
 /// The end of the step at vertex i.
 struct FinishVertex {
-    View<const Vec3> x_t1, gradient; ///< [vertices] [m], [N]
-    double dt;                       ///< [s]
-    View<Vec3> x, v;                 ///< [vertices] at t0, then at t1 [m], [m/s]
+    View<const Vec3> x, x_t1, gradient; ///< [vertices] at t0 and t1 [m], [N]
+    double dt;                          ///< [s]
+    View<Vec3> v;                       ///< [vertices] out [m/s]
 
     TOILE_HD FinishSums operator()(int i) const
     {
         v[i] = (x_t1[i] - x[i]) / dt;
-        x[i] = x_t1[i];
         return {gradient[i].squaredNorm()};
     }
 };

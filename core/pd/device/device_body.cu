@@ -4,6 +4,7 @@
 
 #include "core/backend/cuda/parallel.cuh"
 #include "core/backend/error.h"
+#include "core/pd/step_end.h"
 
 namespace toile {
 
@@ -19,6 +20,9 @@ DeviceSolver* device_solver_of(System& system, const CudaSpace& space)
     return solver;
 }
 
+/// Value of standing still that comes of inertia alone [J]: often more than all that was found.
+double inertia_of_standing(const Descent& asked) { return 0.5 / asked.dt2 * asked.driving; }
+
 DeviceEnergies energies_of(const CudaSpace& space, const System& system)
 {
     DeviceEnergies energies(space);
@@ -33,43 +37,28 @@ DeviceEnergies energies_of(const CudaSpace& space, const System& system)
 DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& positions,
                        std::unique_ptr<System> system, Settings settings)
     : space_(space), system_(std::move(system)), solver_(device_solver_of(*system_, space)),
-      settings_(settings), energies_(energies_of(space, *system_)), x_(space, "body/x"),
-      v_(space, "body/v", int(positions.size())),
-      acceleration_(space, "body/acceleration", int(positions.size())),
-      targets_(space, "body/targets", int(positions.size())),
-      prediction_(space, "body/prediction", int(positions.size())),
-      drive_(space, "body/drive", int(positions.size())), found_(space, "body/found", int(positions.size())),
-      found_gradient_(space, "body/found_gradient", int(positions.size())), masses_(space, "body/masses"),
-      fixed_(space, "body/fixed"),
-      begin_sums_(space, "body/begin_sums", block_count(int(positions.size()), kSumItems)),
-      finish_sums_(space, "body/finish_sums", block_count(int(positions.size()), kSumItems)),
+      settings_(settings), energies_(energies_of(space, *system_)), x_(space, "body/x", int(positions.size())),
+      v_(space, "body/v", x_.size()), x_t1_(space, "body/x_t1", x_.size()),
+      acceleration_(space, "body/acceleration", x_.size()), targets_(space, "body/targets", x_.size()),
+      prediction_(space, "body/prediction", x_.size()), drive_(space, "body/drive", x_.size()),
+      found_(space, "body/found", x_.size()), found_gradient_(space, "body/found_gradient", x_.size()),
+      masses_(space, "body/masses"), fixed_(space, "body/fixed"),
+      begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
+      finish_sums_(space, "body/finish_sums", block_count(x_.size(), kSumItems)),
       finish_(space, "body/finish", 1), finish_on_host_(space, "body/finish_on_host", 1),
-      descent_(space, int(positions.size()), energies_.share_count())
+      descent_(space, x_.size(), energies_.share_count()),
+      contact_descent_(space, x_.size(), settings.contact_solve)
 {
-    TOILE_ASSERT(int(positions.size()) == system_->vertex_count());
-    x_.upload(positions);
-    targets_.upload(positions);
+    TOILE_ASSERT(x_.size() == system_->vertex_count());
     masses_.upload(system_->masses());
-    v_.fill_zero();
-    acceleration_.fill_zero();
+    set_positions(positions);
+    set_velocities(std::vector<Vec3>(positions.size(), Vec3::Zero()));
 }
 
-void DeviceBody::set_acceleration(View<const Vec3> acceleration)
+void DeviceBody::overwrite(MirroredArray<Vec3>& field, View<const Vec3> values)
 {
-    TOILE_ASSERT(acceleration.size() == x_.size());
-    acceleration_.upload(acceleration);
-}
-
-void DeviceBody::set_targets(View<const Vec3> targets)
-{
-    TOILE_ASSERT(targets.size() == x_.size());
-    targets_.upload(targets);
-}
-
-void DeviceBody::set_positions(View<const Vec3> x)
-{
-    TOILE_ASSERT(x.size() == x_.size());
-    x_.upload(x);
+    TOILE_ASSERT(values.size() == field.size());
+    std::copy(values.begin(), values.end(), field.overwrite_on_host().begin());
 }
 
 void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
@@ -80,7 +69,10 @@ void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
     system_->prepare(dt, fixed);
     if (is_new) {
         fixed_.upload(fixed);
-        descent_.record(problem(dt));
+        const DeviceDescent::Problem problem = this->problem(dt);
+        descent_.record(problem);
+        contact_descent_.prepare(*system_, *solver_);
+        contact_descent_.record(problem, descent_.fields(problem));
         host_fixed_ = fixed;
     }
     dt_ = dt;
@@ -92,75 +84,186 @@ DeviceDescent::Problem DeviceBody::problem(double dt)
             [this](View<const Vec3> g, View<Vec3> z) { solver_->solve_there(g, z); },
             masses_.view(),
             fixed_.view(),
-            prediction_.view(),
+            prediction_.there(),
             drive_.view(),
             dt};
 }
 
-/// Predicts, and tells the descent what is asked.
-void DeviceBody::begin()
-{
-    const PredictVertex predict{x_.view(),       v_.view(), acceleration_.view(), fixed_.view(),
-                                targets_.view(), dt_,       prediction_.view()};
-    const DescentFields fields = descent_.fields(problem(dt_));
-    parallel_sum_then(
-        space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, drive_.view(), fields},
-        BeginDescent{fields.descent, {settings_.tolerance}, settings_.max_iterations, dt_}, begin_sums_);
-}
-
-StepReport DeviceBody::step(double dt, const std::vector<unsigned char>& fixed)
+StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                            View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     const StageScope stage("pd/device_step");
     prepare(dt, fixed);
+    overwrite(acceleration_, acceleration);
+    overwrite(targets_, targets);
     for (const auto& energy : energies_.all())
         energy->begin_step();
-    begin();
+    predict();
+    if (active)
+        begin_contact(*active);
 
     StepReport report;
     report.steps = 1;
-    const Descent outcome = no_worse_than_standing(descent_.run());
-    report.iterations = outcome.iterations;
-    report.displacement = outcome.displacement;
-    report.energy = outcome.search.value;
-    report.status = outcome.converged ? StepReport::Status::Converged : StepReport::Status::IterationLimit;
-    if (!std::isfinite(outcome.start_value)) {
-        report.status = StepReport::Status::NonFinite;
-        report.message = "the energy at the start of the step is not finite";
+    minimise(active, report);
+    if (report.status == StepReport::Status::NonFinite)
         return report;
-    }
+
     finish(report);
+    if (projection)
+        projection->observe(x_t1_.host());
+    if (active || projection)
+        StepEnd(x_t1_.change_on_host(), v_.change_on_host(), masses(), system_->fixed(), dt)
+            .satisfy(active, projection);
+    if (active)
+        active->end_step(x_t1_.host());
+    std::swap(x_, x_t1_);
     return report;
 }
 
-/// As Body's: begins again where the cloth stands where that is better than what was found.
-Descent DeviceBody::no_worse_than_standing(Descent found)
+/// Where everything would go alone, which is where the step begins; and tells the descent what is asked.
+void DeviceBody::predict()
 {
-    const double inertia = 0.5 / found.dt2 * found.driving;
-    if (found.search.value <= inertia)
-        return found;
-    const DescentFields fields = descent_.fields(problem(dt_));
-    parallel_for(space_, "pd/keep_found", x_.size(),
-                 CopyFound{descent_.x(), descent_.gradient(), found_.view(), found_gradient_.view()});
-    parallel_for(space_, "pd/stand_still", x_.size(), StandStill{x_.view(), prediction_.view(), fields});
+    const View<Vec3> prediction = prediction_.overwrite_there();
+    const PredictVertex predict{x_.there(),       v_.there(), acceleration_.there(), fixed_.view(),
+                                targets_.there(), dt_,        prediction};
+    parallel_sum_then(
+        space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, masses_.view(), drive_.view()},
+        BeginDescent{fields().descent, {settings_.tolerance}, settings_.max_iterations, dt_}, begin_sums_);
+    parallel_for(space_, "pd/begin", x_.size(), CopyPositions{prediction, x_t1_.overwrite_there()});
+}
+
+void DeviceBody::begin_contact(ActiveSetEnergy& active)
+{
+    active.begin_step(
+        {x_.host(), prediction_.host(), system_->diagonal(), system_->fixed(), system_->masses(), dt_});
+    active.make_feasible(x_t1_.change_on_host());
+    asked_ = descent_.state();
+}
+
+void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
+{
+    for (int round = 0; round < settings_.max_rounds; ++round) {
+        const StageScope stage("pd/minimise");
+        DeviceActiveSet* contact = active ? active->on_device(space_) : nullptr;
+        if (active && contact == nullptr)
+            throw InvalidInput("this contact does not run on a GPU");
+        const OuterLoop::Outcome outcome = contact != nullptr && contact->has_terms()
+                                               ? minimise_touching(*contact, round == 0)
+                                               : minimise_free(round == 0);
+        parallel_for(space_, "pd/take", x_.size(),
+                     CopyPositions{descent_.x(), x_t1_.overwrite_there()});
+        report.iterations += outcome.iterations;
+        report.linear_iterations += outcome.linear_iterations;
+        report.displacement = outcome.displacement;
+        report.energy = outcome.value;
+        report.status =
+            outcome.converged ? StepReport::Status::Converged : StepReport::Status::IterationLimit;
+        if (!is_finite(outcome.value)) {
+            report.status = StepReport::Status::NonFinite;
+            report.message = "the energy at the start of the step is not finite";
+            return;
+        }
+        if (active == nullptr || !active->revise(x_t1_.change_on_host()))
+            return;
+    }
+}
+
+/// As Body's: begins again where the cloth stands where that is better than what was found.
+OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
+{
+    const auto outcome_of = [](const Descent& found) {
+        OuterLoop::Outcome outcome;
+        outcome.iterations = found.iterations;
+        outcome.converged = found.converged;
+        outcome.displacement = found.displacement;
+        outcome.value = found.search.value;
+        return outcome;
+    };
+    const DescentFields fields = this->fields();
+    if (!is_first)
+        parallel_for(space_, "pd/begin_again", 1, BeginAgain{fields.descent, asked_.tolerance});
+    begin_at(x_t1_.there());
+    const Descent found = descent_.run();
+    const OuterLoop::Outcome first = outcome_of(found);
+    if (!is_first || found.search.value <= inertia_of_standing(found) || !is_finite(found.start_value))
+        return first;
+
+    keep_found();
+    stand_still();
     parallel_for(space_, "pd/begin_again", 1,
                  BeginAgain{fields.descent, StepTolerance::kStanding * found.tolerance});
-    Descent outcome = descent_.run_briefly();
-    if (found.search.value <= outcome.start_value || !std::isfinite(outcome.start_value)) {
-        parallel_for(space_, "pd/take_found", x_.size(),
-                     CopyFound{found_.view(), found_gradient_.view(), descent_.x(), descent_.gradient()});
-        return found;
+    Descent again = descent_.run_briefly();
+    if (found.search.value <= again.start_value || !is_finite(again.start_value)) {
+        take_found();
+        return first;
     }
-    if (!outcome.is_over)
-        outcome = descent_.run();
+    if (!again.is_over)
+        again = descent_.run();
+    OuterLoop::Outcome outcome = outcome_of(again);
     outcome.iterations += found.iterations;
     return outcome;
+}
+
+/// The same while contact may act.
+OuterLoop::Outcome DeviceBody::minimise_touching(DeviceActiveSet& contact, bool is_first)
+{
+    OuterLoop::Settings settings{asked_.tolerance, asked_.max_iterations};
+    begin_at(x_t1_.there());
+    const OuterLoop::Outcome found =
+        run_touching(contact, settings, contact_descent_.evaluate(fields(), contact));
+    if (!is_first || found.value <= inertia_of_standing(asked_) || !is_finite(found.value))
+        return found;
+
+    keep_found();
+    stand_still();
+    const double value = contact_descent_.evaluate(fields(), contact);
+    if (found.value <= value || !is_finite(value)) {
+        take_found();
+        return found;
+    }
+    settings.tolerance *= StepTolerance::kStanding;
+    OuterLoop::Outcome outcome = run_touching(contact, settings, value);
+    outcome.iterations += found.iterations;
+    outcome.linear_iterations += found.linear_iterations;
+    return outcome;
+}
+
+OuterLoop::Outcome DeviceBody::run_touching(DeviceActiveSet& contact, const OuterLoop::Settings& settings,
+                                            double value)
+{
+    return contact_descent_.minimise(fields(), contact, {settings, asked_.mass, asked_.driving, dt_}, value);
+}
+
+void DeviceBody::begin_at(View<const Vec3> x)
+{
+    parallel_for(space_, "pd/begin_at", x_.size(), BeginAt{x, fields()});
+}
+
+void DeviceBody::stand_still()
+{
+    const View<Vec3> standing = x_t1_.overwrite_there();
+    parallel_for(space_, "pd/stand_still", x_.size(),
+                 StandStill{x_.there(), prediction_.there(), fixed_.view(), standing});
+    begin_at(standing);
+}
+
+void DeviceBody::keep_found()
+{
+    parallel_for(space_, "pd/keep_found", x_.size(),
+                 CopyFound{descent_.x(), descent_.gradient(), found_.view(), found_gradient_.view()});
+}
+
+void DeviceBody::take_found()
+{
+    parallel_for(space_, "pd/take_found", x_.size(),
+                 CopyFound{found_.view(), found_gradient_.view(), descent_.x(), descent_.gradient()});
 }
 
 void DeviceBody::finish(StepReport& report)
 {
     parallel_sum(space_, "pd/finish", x_.size(), FinishSums{},
-                 FinishVertex{descent_.x(), descent_.gradient(), dt_, x_.view(), v_.view()}, finish_.view(),
-                 finish_sums_);
+                 FinishVertex{x_.there(), x_t1_.there(), descent_.gradient(), dt_, v_.overwrite_there()},
+                 finish_.view(), finish_sums_);
     finish_.download(finish_on_host_.view());
     space_.synchronise();
     report.gradient_norm = std::sqrt(finish_on_host_[0].gradient_square);

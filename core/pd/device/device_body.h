@@ -3,20 +3,26 @@
 #include <memory>
 #include <vector>
 
+#include "core/backend/cuda/mirrored_array.h"
 #include "core/linear/device_solver.h"
 #include "core/pd/device/body_kernels.h"
+#include "core/pd/device/device_contact_descent.h"
 #include "core/pd/device/device_descent.h"
-#include "core/pd/step_report.h"
+#include "core/pd/point_masses.h"
 #include "core/pd/system.h"
 
 namespace toile {
 
-/// Body on a GPU: implicit Euler steps whose fields stay there. L-BFGS is its method.
-class DeviceBody {
+/// Body on a GPU: implicit Euler steps minimised there. L-BFGS is its method. What is asked of contact and
+/// limits between minimisations is asked on the host; fields are copied where the host asks for them and not
+/// otherwise.
+class DeviceBody : public PointMasses {
 public:
     struct Settings {
         double tolerance = 1e-5; ///< [m] as Body's
         int max_iterations = 50; ///< outer iterations per minimisation
+        int max_rounds = 3;      ///< minimisations per step, when contact asks for another
+        Pcg::Settings contact_solve{0.1, 4, true}; ///< while contacts are active
     };
 
     /// @param space      borrowed; the solver's too
@@ -27,29 +33,39 @@ public:
     DeviceBody(const CudaSpace& space, const std::vector<Vec3>& positions, std::unique_ptr<System> system,
                Settings settings);
 
-    // What a step takes, [vertices]; kept until set again.
-    void set_acceleration(View<const Vec3> acceleration); ///< [m/s^2] external; none at first
-    void set_targets(View<const Vec3> targets);           ///< [m] of fixed vertices; where they are at first
-    void set_positions(View<const Vec3> x);               ///< [m]
-
-    // Waited for and copied, [vertices].
-    std::vector<Vec3> positions() const { return x_.downloaded(); }  ///< [m]
-    std::vector<Vec3> velocities() const { return v_.downloaded(); } ///< [m/s]
-
     /// Prepares for steps of dt [s] with these vertices fixed, which step() otherwise does: H, its inverse,
-    /// and the graph of a minimisation.
-    void prepare(double dt, const std::vector<unsigned char>& fixed);
+    /// and the graphs of a minimisation.
+    void prepare(double dt, const std::vector<unsigned char>& fixed) override;
 
-    /// Advances by dt [s]; waits for the end. Same bits in every run.
-    /// @param fixed  [vertices] 1 where targets() prescribes the position at the end of the step
-    StepReport step(double dt, const std::vector<unsigned char>& fixed);
+    /// Waits for the end. Same bits in every run.
+    /// @param active  has a form for a GPU (ActiveSetEnergy::on_device), or is null
+    /// @throws InvalidInput where it has none
+    StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                    View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection) override;
+
+    View<const Vec3> positions() const override { return x_.host(); }
+    View<const Vec3> velocities() const override { return v_.host(); }
+    void set_positions(View<const Vec3> x) override { overwrite(x_, x); }
+    void set_velocities(View<const Vec3> v) override { overwrite(v_, v); }
+    View<const double> masses() const override { return system_->masses(); }
 
     const System& system() const { return *system_; }
 
 private:
+    static void overwrite(MirroredArray<Vec3>& field, View<const Vec3> values);
     DeviceDescent::Problem problem(double dt);
-    void begin();
-    Descent no_worse_than_standing(Descent found);
+    DescentFields fields() { return descent_.fields(problem(dt_)); }
+    void predict();
+    void begin_contact(ActiveSetEnergy& active);
+    void minimise(ActiveSetEnergy* active, StepReport& report);
+    OuterLoop::Outcome minimise_free(bool is_first);
+    OuterLoop::Outcome minimise_touching(DeviceActiveSet& contact, bool is_first);
+    OuterLoop::Outcome run_touching(DeviceActiveSet& contact, const OuterLoop::Settings& settings,
+                                    double value);
+    void begin_at(View<const Vec3> x);
+    void stand_still();
+    void keep_found();
+    void take_found();
     void finish(StepReport& report);
 
     const CudaSpace& space_;
@@ -58,15 +74,18 @@ private:
     Settings settings_;
     DeviceEnergies energies_;
     double dt_ = 0.0;
+    Descent asked_; ///< of this step, where contact asks too
     std::vector<unsigned char> host_fixed_;
 
-    DeviceArray<Vec3> x_, v_, acceleration_, targets_, prediction_, drive_, found_, found_gradient_;
+    MirroredArray<Vec3> x_, v_, x_t1_, acceleration_, targets_, prediction_;
+    DeviceArray<Vec3> drive_, found_, found_gradient_;
     DeviceArray<double> masses_;
     DeviceArray<unsigned char> fixed_;
     DeviceArray<StepSums> begin_sums_;
     DeviceArray<FinishSums> finish_sums_, finish_;
     PinnedArray<FinishSums> finish_on_host_;
     DeviceDescent descent_;
+    DeviceContactDescent contact_descent_;
 };
 
 } // namespace toile

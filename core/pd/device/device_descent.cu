@@ -66,7 +66,7 @@ void DeviceDescent::record(const Problem& problem)
     });
 }
 
-const Descent& DeviceDescent::read_back()
+const Descent& DeviceDescent::state()
 {
     descent_.download(on_host_.view());
     space_.synchronise();
@@ -76,7 +76,7 @@ const Descent& DeviceDescent::read_back()
 Descent DeviceDescent::run_briefly()
 {
     turns_.launch();
-    return read_back();
+    return state();
 }
 
 Descent DeviceDescent::run()
@@ -89,7 +89,7 @@ Descent DeviceDescent::run()
             turns_.launch();
             turns += kTurnsAtOnce;
         } while (turns < expected_turns_);
-        is_over = read_back().is_over;
+        is_over = state().is_over;
     }
     const Descent& found = on_host_[0];
     expected_turns_ = found.turns;

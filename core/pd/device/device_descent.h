@@ -39,6 +39,9 @@ public:
     /// the run before took go at once.
     Descent run();
 
+    /// What is asked and what has come of it, waited for.
+    const Descent& state();
+
     /// Enqueues the fewest turns that can be, which tell the value where it begins, and reads back.
     Descent run_briefly();
 
@@ -48,7 +51,6 @@ public:
 
 private:
     void enqueue_turn(const Problem& problem);
-    const Descent& read_back();
 
     const CudaSpace& space_;
     DeviceArray<Vec3> x_, gradient_, z_, trial_x_, trial_gradient_, trial_z_;

@@ -1,0 +1,99 @@
+#pragma once
+
+#include "collision/contact_term.h"
+
+namespace toile {
+
+/// Force [N] and energy [J] of a term at x.
+struct EvaluateContact {
+    View<const ContactTerm> terms;
+    View<const Vec3> x; ///< [vertices] [m]
+    View<Vec3> force;   ///< [terms] out: gradient with respect to the cloth point
+    View<double> energy; ///< [terms] out
+
+    TOILE_HD void operator()(int i) const
+    {
+        const ContactTerm& term = terms[i];
+        const double gap = term.gap(x), depth = gap < 0.0 ? gap : 0.0;
+        Vec3 f = term.stiffness * depth * term.pair.normal;
+        double e = 0.5 * term.stiffness * depth * depth;
+
+        const double limit = term.friction_limit();
+        if (limit > 0.0) {
+            const Vec3 u = term.slip(x);
+            const double length = u.norm();
+            f += term.tangential_stiffness(length) * u;
+            e += term.stiffness * length <= limit ? 0.5 * term.stiffness * length * length
+                                                  : limit * length - 0.5 * limit * limit / term.stiffness;
+        }
+        force[i] = f;
+        energy[i] = e;
+    }
+};
+
+/// Freezes the Hessian of a term at x.
+struct FreezeContact {
+    View<const ContactTerm> terms;
+    View<const Vec3> x;         ///< [vertices] [m]
+    View<FrozenContact> frozen; ///< [terms] out
+
+    TOILE_HD void operator()(int i) const
+    {
+        const ContactTerm& term = terms[i];
+        FrozenContact at;
+        if (term.gap(x) < 0.0)
+            at.normal = term.stiffness;
+        if (term.friction_limit() > 0.0)
+            at.tangential = term.tangential_stiffness(term.slip(x).norm());
+        frozen[i] = at;
+    }
+};
+
+/// What a frozen term answers to a move p of its vertices [N].
+struct MultiplyContact {
+    View<const ContactTerm> terms;
+    View<const FrozenContact> frozen; ///< [terms]
+    View<const Vec3> p;               ///< [vertices] [m]
+    View<Vec3> force;                 ///< [terms] out
+
+    TOILE_HD void operator()(int i) const
+    {
+        const ContactPair& pair = terms[i].pair;
+        force[i] = frozen[i].acts() ? frozen[i].times(pair.normal, pair.cloth_point(p)) : Vec3(0.0, 0.0, 0.0);
+    }
+};
+
+/// Terms by vertex.
+struct ContactTouches {
+    View<const ContactTerm> terms;
+    View<const int> first;   ///< [lists + 1] into entries
+    View<const int> entries; ///< 4 * term + slot, ascending in each list
+
+    /// sum of weight * force over the terms of list k
+    TOILE_HD Vec3 force(int k, View<const Vec3> of_term) const
+    {
+        Vec3 sum(0.0, 0.0, 0.0);
+        for (int e = first[k]; e < first[k + 1]; ++e)
+            sum += terms[entries[e] / 4].pair.weight[entries[e] % 4] * of_term[entries[e] / 4];
+        return sum;
+    }
+
+    /// sum_p |b_k| (sum_j |b_j|) A_p over the terms of list k: bounds the frozen Hessian at its vertex
+    /// (Cauchy-Schwarz).
+    TOILE_HD Mat3 block(int k, View<const FrozenContact> frozen) const
+    {
+        Mat3 sum = Mat3::Zero();
+        for (int e = first[k]; e < first[k + 1]; ++e) {
+            const int term = entries[e] / 4;
+            if (!frozen[term].acts())
+                continue;
+            const ContactPair& pair = terms[term].pair;
+            const double total = pair.is_between_cloths() ? 2.0 : 1.0; // of a pair's |weights|
+            const double weight = pair.weight[entries[e] % 4];
+            sum += (weight < 0.0 ? -weight : weight) * total * frozen[term].matrix(pair.normal);
+        }
+        return sum;
+    }
+};
+
+} // namespace toile

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// What an ActiveSetEnergy has on a GPU between begin_step() and revise(): its terms as the host found them.
+/// Functions enqueue unless they say otherwise; all fields are the device's.
+class DeviceActiveSet {
+public:
+    /// The Hessian as frozen last, by the vertices that it touches ("lists").
+    struct Frozen {
+        View<const int> list_of;  ///< [vertices] number of its list and 1; 0: none
+        View<const int> vertices; ///< [lists]
+        View<const Mat3> blocks;  ///< [lists] bounds as FrozenHessian::diagonal_blocks() [N/m]
+        View<const Vec3> product; ///< [lists] of the last multiply() [N]
+    };
+
+    virtual ~DeviceActiveSet() = default;
+
+    /// False where the host has found nothing that could act.
+    virtual bool has_terms() const = 0;
+
+    /// Adds the gradient [N] and shares of the energy [J] at x [vertices] [m].
+    virtual void add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy) = 0;
+
+    /// Freezes the terms active at x. Waits, to tell whether there is any.
+    virtual bool activate(View<const Vec3> x) = 0;
+
+    /// Product of the frozen Hessian with p [vertices] [m].
+    virtual void multiply(View<const Vec3> p) = 0;
+
+    virtual Frozen frozen() const = 0;
+};
+
+} // namespace toile

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+
+#include "core/backend/cuda/graph.h"
+#include "core/pd/device/contact_descent_kernels.h"
+#include "core/pd/device/device_descent.h"
+#include "core/pd/device/device_nested_pcg.h"
+#include "core/pd/outer_loop.h"
+
+namespace toile {
+
+/// OuterLoop with L-BFGS around NestedPcg while contact acts, its fields on a GPU. How many iterations
+/// contact's inverse takes is known only there and then, so the host decides between kernels; a DeviceDescent
+/// whose inverse never changes does without.
+class DeviceContactDescent {
+public:
+    /// What the step asks.
+    struct Task {
+        OuterLoop::Settings settings;
+        double mass = 0.0;    ///< [kg] of the free vertices
+        double driving = 0.0; ///< StepError::Sums::driving of the step
+        double dt = 0.0;      ///< [s]
+    };
+
+    DeviceContactDescent(const CudaSpace& space, int vertex_count, const Pcg::Settings& contact_solve);
+
+    /// Takes another H. @param solver  its inverse, borrowed
+    void prepare(const System& system, DeviceSolver& solver);
+
+    /// Takes another problem: what it enqueues is recorded.
+    void record(const DeviceDescent::Problem& problem, const DescentFields& fields);
+
+    /// The objective at fields.trial.x, begun there (begin_trial()).
+    double evaluate(const DescentFields& fields, DeviceActiveSet& active);
+
+    /// Minimises from the point of the last evaluate(), whose value is given. What it finds is fields.here.
+    OuterLoop::Outcome minimise(const DescentFields& fields, DeviceActiveSet& active, const Task& task,
+                                double value);
+
+private:
+    ContactTrialSums measure(const DescentFields& fields, DeviceActiveSet& active, double step);
+    void find_direction(const DescentFields& fields, DeviceActiveSet& active, bool presses,
+                        OuterLoop::Outcome& outcome);
+    bool search(const DescentFields& fields, DeviceActiveSet& active, ContactTrialSums& trial,
+                LineSearch& line);
+    void take(const DescentFields& fields, const StepProducts* products);
+
+    const CudaSpace& space_;
+    DeviceSolver* solver_ = nullptr;
+    DeviceNestedPcg pcg_;
+    TwoLoop pairs_;
+    CudaGraph energies_; ///< everything of the objective but contact
+    DeviceArray<ContactTrialSums> trial_sums_, trial_;
+    PinnedArray<ContactTrialSums> trial_on_host_;
+    DeviceArray<InverseProducts> inverse_sums_, inverse_;
+    PinnedArray<InverseProducts> inverse_on_host_;
+};
+
+} // namespace toile

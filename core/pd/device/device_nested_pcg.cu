@@ -1,0 +1,98 @@
+#include "core/pd/device/device_nested_pcg.h"
+
+#include "core/backend/cuda/parallel.cuh"
+
+namespace toile {
+
+DeviceNestedPcg::DeviceNestedPcg(const CudaSpace& space, int n, const Pcg::Settings& settings)
+    : space_(space), settings_(settings), first_(space, "pcg/first"), column_(space, "pcg/column"),
+      value_(space, "pcg/value"), diagonal_(space, "pcg/diagonal"), fixed_(space, "pcg/fixed"),
+      inverse_(space, "pcg/inverse"), r_(space, "pcg/r", n), r_previous_(space, "pcg/r_previous", n),
+      z_(space, "pcg/z", n), p_(space, "pcg/p", n), product_(space, "pcg/product", n),
+      scaled_(space, "pcg/scaled", n), solved_(space, "pcg/solved", n), scalars_(space, "pcg/scalars", 1),
+      on_host_(space, "pcg/scalars_on_host", 1), block_sums_(space, "pcg/block_sums"),
+      block_two_sums_(space, "pcg/block_two_sums")
+{
+}
+
+void DeviceNestedPcg::prepare(const System& system, DeviceSolver& solver)
+{
+    const SparseMatrix& H = system.matrix();
+    solver_ = &solver;
+    first_.upload({H.outerIndexPtr(), int(H.rows()) + 1});
+    column_.upload({H.innerIndexPtr(), int(H.nonZeros())});
+    value_.upload({H.valuePtr(), int(H.nonZeros())});
+    diagonal_.upload(system.diagonal());
+    fixed_.upload(system.fixed());
+}
+
+void DeviceNestedPcg::update(DeviceActiveSet& active)
+{
+    active_ = &active;
+    const DeviceActiveSet::Frozen frozen = active.frozen();
+    if (inverse_.size() < frozen.blocks.size())
+        inverse_.resize(frozen.blocks.size());
+    parallel_for(space_, "pcg/invert_blocks", frozen.blocks.size(),
+                 InvertBlock{frozen.vertices, frozen.blocks, diagonal_.view(), inverse_.view()});
+}
+
+PcgFields DeviceNestedPcg::fields(View<Vec3> x)
+{
+    return {x,         r_.view(),       r_previous_.view(), z_.view(),
+            p_.view(), product_.view(), scaled_.view(),     solved_.view()};
+}
+
+BlocksInverse DeviceNestedPcg::blocks_inverse() const
+{
+    return {active_->frozen().list_of, inverse_.view(), diagonal_.view()};
+}
+
+SystemRows DeviceNestedPcg::rows() const
+{
+    return {first_.view(), column_.view(), value_.view(), diagonal_.view(), fixed_.view()};
+}
+
+Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z)
+{
+    const StageScope stage("pd/pcg");
+    const PcgFields fields = this->fields(z);
+    parallel_sum_then(space_, "pcg/begin", g.size(), 0.0, BeginPcg{g, fields, blocks_inverse()},
+                      KeepStart{scalars_.view()}, block_sums_);
+    Pcg::Outcome outcome;
+    while (outcome.iterations < settings_.max_iterations) {
+        iterate(fields);
+        const PcgScalars& now = read_back();
+        if (now.step == 0.0)
+            break;
+        ++outcome.iterations;
+        outcome.residual = std::sqrt(now.r_square / now.b_square);
+        if (outcome.residual <= settings_.tolerance)
+            break;
+    }
+    return outcome;
+}
+
+void DeviceNestedPcg::iterate(const PcgFields& fields)
+{
+    const int n = fields.x.size();
+    solver_->solve_there(fields.scaled, fields.solved);
+    parallel_sum_then(space_, "pcg/precondition", n, TwoSums{}, FinishPrecondition{fields, blocks_inverse()},
+                      FindBeta{scalars_.view()}, block_two_sums_);
+    parallel_for(space_, "pcg/turn", n, TurnDirection{fields, scalars_.view()});
+    active_->multiply(fields.p);
+    parallel_sum_then(
+        space_, "pcg/multiply", n, TwoSums{},
+        MultiplySystem{fields, rows(), active_->frozen().list_of, active_->frozen().product},
+        FindStep{scalars_.view()}, block_two_sums_);
+    parallel_sum_then(space_, "pcg/step", n, 0.0, TakeStep{fields, blocks_inverse(), scalars_.view()},
+                      KeepResidual{scalars_.view()}, block_sums_);
+}
+
+const PcgScalars& DeviceNestedPcg::read_back()
+{
+    scalars_.download(on_host_.view());
+    space_.synchronise();
+    return on_host_[0];
+}
+
+} // namespace toile

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "core/pd/device/descent.h"
+
+namespace toile {
+
+/// Dot products of a step s just taken, which changed the gradient by y to g, with the pairs kept (the oldest
+/// first).
+struct StepProducts {
+    double sy = 0.0, ss = 0.0, yy = 0.0;
+    double sg = 0.0;
+    double s_y[kHistory] = {}; ///< s_j . y
+
+    TOILE_HD StepProducts& operator+=(const StepProducts& other)
+    {
+        sy += other.sy;
+        ss += other.ss;
+        yy += other.yy;
+        sg += other.sg;
+        for (int j = 0; j < kHistory; ++j)
+            s_y[j] += other.s_y[j];
+        return *this;
+    }
+};
+
+/// Numbers that go with the fields of pairs, by age; for kernels.
+struct PairCoefficients {
+    int count = 0;
+    int slot[kHistory] = {};
+    double of[kHistory] = {};
+};
+
+/// L-BFGS around an inverse that changes from step to step: the two-loop recursion [Nocedal & Wright 2006,
+/// alg. 7.4] over dot products. Unlike GramLbfgs it does not know what the inverse makes of a pair, so a
+/// direction takes one more sum, between its loops. Fields of pairs are the caller's, in slots.
+class TwoLoop {
+public:
+    void clear() { count_ = next_slot_ = 0; }
+    int count() const { return count_; }
+
+    /// The pairs kept, with coefficients of 0.
+    PairCoefficients pairs() const
+    {
+        PairCoefficients all;
+        all.count = count_;
+        for (int k = 0; k < count_; ++k)
+            all.slot[k] = (next_slot_ - count_ + k + kHistory) % kHistory;
+        return all;
+    }
+
+    /// Learns of a step. The oldest pair goes where there is no room.
+    /// @return the slot where the step's s and y belong; -1 where they are not kept
+    int add(const StepProducts& step)
+    {
+        for (int j = 0; j < count_; ++j)
+            sg_[j] += step.s_y[j];
+        if (!(step.sy > Lbfgs::kMinCurvature * std::sqrt(step.ss * step.yy)))
+            return -1;
+        const bool is_full = count_ == kHistory;
+        if (is_full)
+            drop_oldest();
+        for (int j = 0; j < count_; ++j)
+            sy_[j][count_] = step.s_y[is_full ? j + 1 : j];
+        sy_[count_][count_] = step.sy;
+        sg_[count_] = step.sg;
+        ++count_;
+        const int slot = next_slot_;
+        next_slot_ = (next_slot_ + 1) % kHistory;
+        return slot;
+    }
+
+    /// Before the inverse: q = -g - sum_j of_j y_j.
+    PairCoefficients before() const
+    {
+        PairCoefficients alpha = pairs();
+        for (int i = count_ - 1; i >= 0; --i) {
+            double product = -sg_[i];
+            for (int newer = i + 1; newer < count_; ++newer)
+                product -= alpha.of[newer] * sy_[i][newer];
+            alpha.of[i] = product / sy_[i][i];
+        }
+        return alpha;
+    }
+
+    /// After the inverse has made z of q: the direction is z + sum_j of_j s_j.
+    /// @param y_z  y_j . z
+    PairCoefficients after(const PairCoefficients& alpha, const std::array<double, kHistory>& y_z) const
+    {
+        PairCoefficients of_s = pairs();
+        for (int i = 0; i < count_; ++i) {
+            double product = y_z[i];
+            for (int older = 0; older < i; ++older)
+                product += of_s.of[older] * sy_[older][i];
+            of_s.of[i] = alpha.of[i] - product / sy_[i][i];
+        }
+        return of_s;
+    }
+
+private:
+    void drop_oldest()
+    {
+        for (int i = 0; i + 1 < count_; ++i) {
+            for (int j = i; j + 1 < count_; ++j)
+                sy_[i][j] = sy_[i + 1][j + 1];
+            sg_[i] = sg_[i + 1];
+        }
+        --count_;
+    }
+
+    int count_ = 0, next_slot_ = 0;
+    double sy_[kHistory][kHistory] = {}; ///< s_i . y_j where j is not older than i
+    double sg_[kHistory] = {};           ///< s_i . g
+};
+
+} // namespace toile

@@ -1,0 +1,40 @@
+#include "core/pd/step_end.h"
+
+#include "core/backend/parallel.h"
+
+namespace toile {
+
+namespace {
+
+/// How often the end of a step is satisfied at most, where cloth is brought back far again and again. A
+/// walking skirt asks for more than four and at most seven (docs/collision/cloth.md).
+constexpr int kEndRounds = 8;
+
+} // namespace
+
+void StepEnd::satisfy(ActiveSetEnergy* active, StepProjection* projection)
+{
+    bool goes_on = true;
+    for (int round = 0; goes_on && round < kEndRounds; ++round) {
+        if (active)
+            active->clear(x_, v_);
+        if (projection)
+            project(*projection, active);
+        goes_on = active && active->keep_apart(x_, v_);
+    }
+}
+
+void StepEnd::project(StepProjection& projection, const ActiveSetEnergy* active)
+{
+    inverse_masses_.resize(x_.size());
+    for (int i = 0; i < x_.size(); ++i)
+        inverse_masses_[i] = fixed_[i] ? 0.0 : 1.0 / masses_[i];
+    unprojected_.assign(x_.begin(), x_.end());
+    std::function<bool()> clear_contacts;
+    if (active)
+        clear_contacts = [&] { return active->make_feasible(x_); };
+    projection.project(x_, inverse_masses_, clear_contacts);
+    parallel_for(kCpu, "pd/finish", x_.size(), [&](int i) { v_[i] += (x_[i] - unprojected_[i]) / dt_; });
+}
+
+} // namespace toile

@@ -1,0 +1,55 @@
+#include "scenes/backend.h"
+
+#include "core/backend/error.h"
+#include "scenes/format/field.h"
+#include "scenes/method_choice.h"
+
+namespace toile {
+
+using scene::SolverMethod;
+
+namespace {
+
+std::string only_on_cpu(const std::string& key, std::string_view word)
+{
+    return key + " \"" + std::string(word) + "\" runs on the CPU only";
+}
+
+} // namespace
+
+std::string why_not_on_gpu(const Scene& scene)
+{
+    const scene::Solver& solver = scene.solver;
+    if (solver.method != SolverMethod::Auto && solver.method != SolverMethod::Quadrature)
+        return only_on_cpu("solver.method", scene_format::word_of(solver.method));
+    if (solver.outer != OuterMethod::Lbfgs)
+        return only_on_cpu("solver.outer", scene_format::word_of(solver.outer));
+    if (solver.contact_preconditioner != ContactPreconditioner::Block)
+        return only_on_cpu("solver.contact_preconditioner",
+                           scene_format::word_of(solver.contact_preconditioner));
+    if (!scene.solids.empty())
+        return "solids run on the CPU only";
+    return {};
+}
+
+std::shared_ptr<const CudaSpace> open_backend(Backend backend, const Scene& scene,
+                                              const std::function<void(const std::string&)>& warn)
+{
+    if (backend == Backend::Cpu)
+        return nullptr;
+    const std::string needs_cpu = why_not_on_gpu(scene);
+    if (backend == Backend::Cuda) {
+        if (!needs_cpu.empty())
+            throw InvalidInput(scene.source.string() + ": " + needs_cpu +
+                               "; choose the backend cpu or auto, or change the scene");
+        return std::make_shared<CudaSpace>(0);
+    }
+    const std::string why_cpu = needs_cpu.empty() ? why_no_cuda_device() : needs_cpu;
+    if (why_cpu.empty())
+        return std::make_shared<CudaSpace>(0);
+    if (warn)
+        warn("the backend is cpu: " + why_cpu);
+    return nullptr;
+}
+
+} // namespace toile
