@@ -113,7 +113,7 @@ StepReport DeviceBody::step(double dt, const std::vector<unsigned char>& fixed)
     const StageScope stage("pd/device_step");
     prepare(dt, fixed);
     for (const auto& energy : energies_.all())
-        energy->begin_step();
+        energy->begin_step(x_.view());
     begin();
 
     StepReport report;
@@ -158,6 +158,8 @@ Descent DeviceBody::no_worse_than_standing(Descent found)
 
 void DeviceBody::finish(StepReport& report)
 {
+    for (const auto& energy : energies_.all())
+        energy->end_minimisation(descent_.x());
     parallel_sum(space_, "pd/finish", x_.size(), FinishSums{},
                  FinishVertex{descent_.x(), descent_.gradient(), dt_, x_.view(), v_.view()}, finish_.view(),
                  finish_sums_);
