@@ -33,10 +33,12 @@ void DeviceSprings::add(const Springs& springs, int first_vertex)
     first.push_back(int(sorted.size()));
     first_.upload(first);
     host_.resize(sorted.size());
-    begin_step();
+    take_springs();
 }
 
-void DeviceSprings::begin_step()
+void DeviceSprings::begin_step(View<const Vec3>) { take_springs(); }
+
+void DeviceSprings::take_springs()
 {
     int k = 0;
     for (const Part& part : parts_)

@@ -19,7 +19,7 @@ public:
     /// @param first_vertex  of the cloth among the body's
     void add(const Springs& springs, int first_vertex);
 
-    void begin_step() override;
+    void begin_step(View<const Vec3> x) override;
     void add_gradient(const DeviceEvaluation& at) override;
 
 private:
@@ -27,6 +27,8 @@ private:
         const Springs* springs;
         int first_vertex;
     };
+
+    void take_springs();
 
     const CudaSpace& space_;
     std::vector<Part> parts_;

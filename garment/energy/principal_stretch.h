@@ -10,23 +10,44 @@ namespace toile {
 struct PrincipalStretch {
     Vec2 sigma; ///< [-] largest first
     Mat2 V;     ///< columns: directions in material axes
+
+    /// V diag(values) V^T
+    TOILE_HD Mat2 with(double first, double second) const
+    {
+        const double c = V(0, 0), s = V(1, 0), across = (first - second) * c * s;
+        Mat2 result;
+        result(0, 0) = first * c * c + second * s * s;
+        result(0, 1) = across;
+        result(1, 0) = across;
+        result(1, 1) = first * s * s + second * c * c;
+        return result;
+    }
 };
 
 TOILE_HD inline PrincipalStretch principal_stretch(const Mat32& F)
 {
-    // Eigenvectors of C = F^T F from its deviator (half, b).
+    // Eigenvectors of C = F^T F from its deviator (half, b), at half of that one's angle: the larger of the
+    // sine and the cosine first, where nothing cancels.
     const double a = F.col(0).squaredNorm(), b = F.col(0).dot(F.col(1)), c = F.col(1).squaredNorm();
     const double mean = 0.5 * (a + c), half = 0.5 * (a - c);
-    const double radius = std::hypot(half, b);
+    const double radius = std::sqrt(half * half + b * b);
     PrincipalStretch result;
     result.sigma = Vec2(std::sqrt(mean + radius), std::sqrt(std::fmax(mean - radius, 0.0)));
-    const double angle = radius > 0.0 ? 0.5 * std::atan2(b, half) : 0.0;
-    const double cosine = std::cos(angle), sine = std::sin(angle);
-    result.V << cosine, -sine, sine, cosine;
+    double cosine = 1.0, sine = 0.0;
+    if (radius > 0.0) {
+        const double larger = std::sqrt(0.5 + 0.5 * std::fabs(half) / radius);
+        const double smaller = 0.5 * b / (radius * larger);
+        cosine = half > 0.0 ? larger : smaller;
+        sine = half > 0.0 ? smaller : larger;
+    }
+    result.V(0, 0) = cosine;
+    result.V(0, 1) = -sine;
+    result.V(1, 0) = sine;
+    result.V(1, 1) = cosine;
     return result;
 }
 
-/// Largest singular value of F alone, without trigonometry.
+/// Largest singular value of F alone.
 TOILE_HD inline double largest_stretch(const Mat32& F)
 {
     const double a = F.col(0).squaredNorm(), b = F.col(0).dot(F.col(1)), c = F.col(1).squaredNorm();

@@ -5,6 +5,7 @@
 
 #include "core/pd/body.h"
 #include "garment/energy/rest_shape.h"
+#include "garment/energy/strain_limit_kernels.h"
 #include "garment/energy/stretch_tension.h"
 
 namespace toile {
@@ -15,9 +16,10 @@ namespace toile {
 ///
 /// Enforced after the step's minimisation by nonlinear Gauss-Seidel over the violating triangles: each is
 /// moved, mass-weighted, to the closest edges with clamped singular values [Wang et al. 2010; projecting
-/// after the step: Goldenthal et al. 2007]. Sweeps that end with a larger strain than they began with are
-/// undone. Inside H the limit would need weights that stall every method built on a fixed H
-/// (docs/garment/strain_limit.md).
+/// after the step: Goldenthal et al. 2007]. They take turns colour by colour, where no two of a colour share
+/// a vertex, so that a GPU can clamp a colour at once (DeviceStrainLimit) and do the same as the CPU. Sweeps
+/// that end with a larger strain than they began with are undone. Inside H the limit would need weights that
+/// stall every method built on a fixed H (docs/garment/strain_limit.md).
 class StrainLimit : public StepProjection {
 public:
     struct Settings {
@@ -26,10 +28,14 @@ public:
         int max_sweeps = 100;    ///< an unreachable limit (pins too far apart) stops here
     };
 
+    /// Sweeps that clear contacts too. Beyond them the limit goes before contact: cloth caught between
+    /// colliders, where the two contradict each other, would never come to an end.
+    static constexpr int kSweepsWithContact = 30;
+
     /// @throws InvalidInput naming `source` when the limit is not positive.
     StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source);
 
-    /// Tells the tension of every minimiser from now on, before it is clamped.
+    /// Tells the tension of every minimiser from now on, before it is clamped. On a GPU DeviceBody tells it.
     void tell(std::shared_ptr<StretchTension> tension) { tension_ = std::move(tension); }
 
     void observe(View<const Vec3> x) override;
@@ -39,19 +45,27 @@ public:
     /// Largest principal stretch minus one at x, of slivers too [-].
     double max_strain(View<const Vec3> x) const;
 
+    const RestShape& rest() const { return *rest_; }
+    const Settings& settings() const { return settings_; }
+    LimitedTriangles triangles() const;
+    int colour_count() const { return int(first_of_colour_.size()) - 1; }
+    View<const int> triangles_of(int colour) const; ///< ascending
+
 private:
-    void clamp_triangle(int t, View<Vec3> x, View<const double> inverse_masses) const;
-    bool violates(int t, View<const Vec3> x) const;
     void look_at_everything(View<const Vec3> x);
     void look_around_violating(View<const Vec3> x);
 
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
     std::shared_ptr<StretchTension> tension_;
-    std::vector<unsigned char> is_sliver_; ///< [triangles] left to the membrane
+    std::vector<StretchLimits> limits_; ///< of triangles, of slivers: those are left to the membrane
+    std::vector<int> kind_;             ///< [triangles] into limits_
     bool has_slivers_ = false;
+    std::vector<int> order_;              ///< [triangles] colour by colour
+    std::vector<int> first_of_colour_{0}; ///< [colours + 1] into order_
+    std::vector<int> rank_;               ///< [triangles] places in order_
     std::vector<unsigned char> violates_; ///< [triangles]
-    std::vector<int> violating_;          ///< ascending triangle indices
+    std::vector<int> violating_;          ///< triangles as they come in order_
     std::vector<Vec3> before_;            ///< [vertices] positions before the first sweep [m]
 };
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <vector>
 
 #include "core/pd/energy.h"
 #include "garment/energy/rest_shape.h"
+#include "garment/energy/stretch_tension_kernels.h"
 
 namespace toile {
 
@@ -22,6 +22,9 @@ namespace toile {
 /// cloth at once, and it is remembered, so that after a few steps what is left for the clamping of single
 /// triangles (StrainLimit) is next to nothing. T_t turns with its triangle. It stays out of H: only triangles
 /// near the limit are looked at, and along the stiffer yarn their curvature at most doubles.
+///
+/// The tension has one owner: this object, or from add_to() on DeviceStretchTension. Then begin_step() and
+/// remember() here do nothing, since the body on the GPU calls its own; forget() still reaches it.
 class StretchTension : public Energy {
 public:
     struct Settings {
@@ -38,33 +41,33 @@ public:
     void add_constant_curvature(Triplets&) const override {}
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
+    bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
     /// Picks the triangles that are near their limit at x [vertices] and turns their tension with them. For
     /// the owner to call before Body::step.
     void begin_step(View<const Vec3> x);
 
     /// Drops the tension of earlier steps: for cloth that was put elsewhere.
-    void forget() { std::fill(tension_.begin(), tension_.end(), Mat2::Zero()); }
+    void forget();
 
     /// Remembers the tension at the minimiser x. StrainLimit calls it before it clamps.
     void remember(View<const Vec3> x);
 
+    const RestShape& rest() const { return *rest_; }
+    TensionTriangles triangles() const;
+    int forgotten() const { return forgotten_; } ///< how often forget() was called
+
 private:
-    /// A triangle near its limit.
-    struct Taut {
-        int triangle = 0;
-        Mat32 tension = Mat32::Zero(); ///< T_t / k at this step
-    };
-
-    Mat32 excess(const Taut& taut, View<const Vec3> x) const;
-
     std::shared_ptr<const RestShape> rest_;
-    Settings settings_;
-    std::vector<unsigned char> is_sliver_; ///< [triangles] left to the membrane
-    std::vector<Mat2> tension_;            ///< [triangles] T_t / k in material axes
-    std::vector<unsigned char> near_;      ///< [triangles] scratch
-    std::vector<Taut> taut_;
-    std::vector<Mat32> stress_; ///< [taut] scratch, dW/dF / (k A)
+    std::vector<TensionLimits> limits_; ///< of triangles, of slivers: those are left to the membrane
+    std::vector<int> kind_;             ///< [triangles] into limits_
+    bool is_on_device_ = false;
+    int forgotten_ = 0;
+    std::vector<Mat2> tension_;                      ///< [triangles] T_t / k in material axes
+    std::vector<unsigned char> near_;                ///< [triangles]
+    std::vector<Mat32> turned_;                      ///< [triangles] T_t / k at this step, where near
+    std::vector<int> taut_;                          ///< triangles near their limit, ascending
+    std::vector<MembraneResponse<double>> response_; ///< [taut] scratch
 };
 
 } // namespace toile

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/mesh/colouring.h"
 #include "garment/rivals/strain_constraints.h"
 
 namespace toile {
@@ -42,13 +43,7 @@ StrainBlock strain_block(const RestShape& rest, const LaneIndices& triangle, int
 
 void lay_out_strains(const RestShape& rest, ConstraintLayout& layout)
 {
-    Incidence vertices;
-    vertices.first.push_back(0);
-    for (const Triangle& t : rest.triangles) {
-        vertices.items.insert(vertices.items.end(), t.begin(), t.end());
-        vertices.first.push_back(int(vertices.items.size()));
-    }
-    for (const std::vector<int>& triangles : colour_items(vertices, rest.vertex_count()))
+    for (const std::vector<int>& triangles : colour_triangles(rest.triangles, rest.vertex_count()))
         layout.strain_colours.push_back(
             append_colour(triangles, int(layout.strains.size()), [&](const LaneIndices& lanes, int count) {
                 layout.strains.push_back(strain_block(rest, lanes, count));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mesh/colouring.h"
+
 namespace toile {
 
 namespace {

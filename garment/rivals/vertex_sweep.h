@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "garment/rivals/colouring.h"
+#include "garment/rivals/block_range.h"
 #include "garment/rivals/lane_gather.h"
 #include "garment/rivals/membrane_corner.h"
 #include "garment/rivals/rival.h"

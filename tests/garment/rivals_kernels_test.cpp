@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
-#include "garment/rivals/colouring.h"
+#include "core/mesh/colouring.h"
 #include "garment/rivals/membrane_corner.h"
 #include "garment/rivals/strain_constraints.h"
 #include "tests/garment/sheets.h"
@@ -23,17 +23,11 @@ Mat32 random_gradient(std::mt19937& random)
     return F;
 }
 
-TEST(ColourItems, GivesItemsWithACommonKeyDifferentColours)
+TEST(ColourTriangles, GivesTrianglesWithACommonVertexDifferentColours)
 {
-    // Triangles of an irregular sheet by their vertices: a few more colours than triangles at a vertex.
+    // A few more colours than triangles at a vertex.
     const auto rest = make_sheet(Vec2(1.0, 1.0), 20, 20, Pattern::Irregular).rest();
-    Incidence keys;
-    keys.first.push_back(0);
-    for (const Triangle& t : rest->triangles) {
-        keys.items.insert(keys.items.end(), t.begin(), t.end());
-        keys.first.push_back(int(keys.items.size()));
-    }
-    const auto colours = colour_items(keys, rest->vertex_count());
+    const auto colours = colour_triangles(rest->triangles, rest->vertex_count());
     size_t items = 0;
     for (const std::vector<int>& colour : colours) {
         std::vector<int> seen(rest->vertex_count(), 0);

@@ -97,7 +97,7 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
     overwrite(acceleration_, acceleration);
     overwrite(targets_, targets);
     for (const auto& energy : energies_.all())
-        energy->begin_step();
+        energy->begin_step(x_.there());
     predict();
     if (active)
         begin_contact(*active);
@@ -261,6 +261,8 @@ void DeviceBody::take_found()
 
 void DeviceBody::finish(StepReport& report)
 {
+    for (const auto& energy : energies_.all())
+        energy->end_minimisation(x_t1_.there());
     parallel_sum(space_, "pd/finish", x_.size(), FinishSums{},
                  FinishVertex{x_.there(), x_t1_.there(), descent_.gradient(), dt_, v_.overwrite_there()},
                  finish_.view(), finish_sums_);

@@ -23,7 +23,8 @@ public:
     virtual ~DeviceEnergy() = default;
 
     /// Called before every step: takes what the host has changed since. Enqueued.
-    virtual void begin_step() {}
+    /// @param x  [vertices] where the step starts [m], on the device
+    virtual void begin_step([[maybe_unused]] View<const Vec3> x) {}
 
     /// Shares of the value that belong to no vertex.
     virtual int share_count() const { return 0; }
@@ -31,6 +32,10 @@ public:
     /// Enqueues adding value and gradient. What it launches is recorded once and repeated, so it may depend
     /// on arrays of the device only.
     virtual void add_gradient(const DeviceEvaluation& at) = 0;
+
+    /// Called after every minimisation whose end is kept, for what an energy remembers of it. Enqueued.
+    /// @param x  [vertices] the minimiser [m], on the device, before anything moves it
+    virtual void end_minimisation([[maybe_unused]] View<const Vec3> x) {}
 };
 
 /// The terms of a body. Every energy adds its part (Energy::add_to), and equal kinds become one set of

@@ -1,4 +1,4 @@
-#include "garment/rivals/colouring.h"
+#include "core/mesh/colouring.h"
 
 namespace toile {
 
@@ -24,6 +24,17 @@ std::vector<std::vector<int>> colour_items(const Incidence& keys_of_item, int ke
             colours_of_key[key].push_back(colour);
     }
     return items_of_colour;
+}
+
+std::vector<std::vector<int>> colour_triangles(View<const Triangle> triangles, int vertex_count)
+{
+    Incidence vertices;
+    vertices.first.push_back(0);
+    for (const Triangle& t : triangles) {
+        vertices.items.insert(vertices.items.end(), t.begin(), t.end());
+        vertices.first.push_back(int(vertices.items.size()));
+    }
+    return colour_items(vertices, vertex_count);
 }
 
 } // namespace toile

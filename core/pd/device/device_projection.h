@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+
+#include "core/backend/types.h"
+
+namespace toile {
+
+/// A hard constraint applied after the minimisation of a step on a GPU: what StepProjection is on the CPU.
+/// What looks at the minimiser there is DeviceEnergy::end_minimisation() here.
+class DeviceStepProjection {
+public:
+    virtual ~DeviceStepProjection() = default;
+
+    /// Moves x onto the constraint, vertices with weight 0 not at all. Waits to see whether anything is left
+    /// to do. Arrays are the device's.
+    /// @param x               [vertices] [m]
+    /// @param inverse_masses  [vertices] [1/kg], 0 for fixed vertices
+    /// @param clear_contacts  as StepProjection's: to be called while projecting, moves x in the stream's
+    ///                        turn, true when anything moved; may be empty
+    virtual void project(View<Vec3> x, View<const double> inverse_masses,
+                         const std::function<bool()>& clear_contacts) = 0;
+};
+
+} // namespace toile

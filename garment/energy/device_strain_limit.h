@@ -1,0 +1,85 @@
+#pragma once
+
+#include <vector>
+
+#include "core/backend/cuda/array.h"
+#include "core/backend/cuda/graph.h"
+#include "core/pd/device/device_projection.h"
+#include "garment/energy/strain_limit.h"
+
+namespace toile {
+
+/// StrainLimit of all cloths of a body on a GPU: the same sweeps, a kernel per colour.
+///
+/// Whether anything violates its limit is one sum that is read back; where nothing does, that is all. A sweep
+/// is a graph, one call of stage "garment/strain_limit". Every kSweepsAtOnce sweeps, or each while contacts
+/// are cleared, the host reads back how many triangles are left; sweeps that come after none were left find
+/// nothing to do. Cloths sweep together, up to the largest of their max_sweeps, and are undone one by one.
+class DeviceStrainLimit : public DeviceStepProjection {
+public:
+    /// Sweeps that go without asking whether any triangle is left. More wait less often but leave more
+    /// kernels without work at the end.
+    static constexpr int kSweepsAtOnce = 4;
+
+    explicit DeviceStrainLimit(const CudaSpace& space);
+
+    /// Adds a cloth after those before it: all of them before the first step.
+    /// @param first_vertex  of the cloth among the body's
+    void add(const StrainLimit& limit, int first_vertex);
+
+    void project(View<Vec3> x, View<const double> inverse_masses,
+                 const std::function<bool()>& clear_contacts) override;
+
+    /// Largest principal stretch of all cloths minus one at x [vertices], of slivers too [-]. Waits.
+    double max_strain(View<const Vec3> x);
+
+private:
+    /// What is on the device, of all cloths so far.
+    struct OnHost {
+        std::vector<Triangle> triangles;
+        std::vector<Mat2> rest, rest_inv;
+        std::vector<int> kind;
+        std::vector<StretchLimits> limits;
+        std::vector<std::vector<int>> colours; ///< triangles
+        std::vector<int> cloth;                ///< [vertices]
+        std::vector<int> first_of_chunk{0};    ///< [chunks + 1] triangles; a chunk is of one cloth
+        std::vector<int> first_chunk{0};       ///< [cloths + 1]
+    };
+    void append(const StrainLimit& limit, int first_vertex);
+    void append_chunks(int triangle_count);
+    void upload();
+
+    LimitedTriangles triangles() const;
+    CountViolating count(View<const Vec3> x);
+    int look(View<const Vec3> x);
+    int read_back();
+    void find_largest(View<const Vec3> x, View<double> of_cloth);
+    void record(View<Vec3> x, View<const double> inverse_masses);
+    void enqueue_clamp(View<Vec3> x, View<const double> inverse_masses, int colour);
+    void sweep(View<const Vec3> x, const std::function<bool()>& clear_contacts);
+
+    const CudaSpace& space_;
+    OnHost host_;
+    int max_sweeps_ = 0;
+    std::vector<int> first_of_colour_{0}; ///< [colours + 1] into order_
+
+    DeviceArray<Triangle> triangles_;
+    DeviceArray<Mat2> rest_, rest_inv_;
+    DeviceArray<int> kind_;
+    DeviceArray<StretchLimits> limits_;
+    DeviceArray<int> order_; ///< [triangles] colour by colour
+    DeviceArray<int> cloth_; ///< [vertices] -1 of no cloth
+    DeviceArray<int> first_of_chunk_, first_chunk_;
+
+    DeviceArray<unsigned char> violates_;         ///< [triangles]
+    DeviceArray<int> violating_, sums_;           ///< [1] how many; scratch
+    PinnedArray<int> violating_on_host_;          ///< [1]
+    DeviceArray<double> stretch_t0_, stretch_t1_; ///< [cloths] largest, before and after [-]
+    DeviceArray<double> stretch_of_chunk_;        ///< [chunks]
+    DeviceArray<Vec3> kept_;                      ///< [vertices] positions before the first sweep [m]
+    View<Vec3> recorded_x_;                       ///< that the graphs are of
+    View<const double> recorded_masses_;          ///< likewise
+    CudaGraph forward_, backward_;
+};
+
+} // namespace toile

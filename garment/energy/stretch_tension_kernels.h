@@ -1,0 +1,171 @@
+#pragma once
+
+#include "garment/energy/membrane_kernels.h"
+#include "garment/energy/principal_stretch.h"
+
+namespace toile {
+
+/// What the tension of one kind of triangles goes by; see StretchTension.
+struct TensionLimits {
+    double allowed = 1.06;    ///< [-] largest principal stretch
+    double watched = 1.042;   ///< [-] stretch above which a triangle is near its limit; slivers: infinite
+    double stiffness = 250.0; ///< [N/m] k
+    double max_tension = 1.0; ///< [-] of k
+};
+
+/// Triangles that may carry tension.
+struct TensionTriangles {
+    View<const Triangle> tri;  ///< [triangles] vertex indices
+    View<const Mat2> rest_inv; ///< [triangles] inverse rest edge matrices [1/m]
+    View<const double> area;   ///< [triangles] rest areas [m^2]
+    View<const int> kind;      ///< [triangles] into limits
+    View<const TensionLimits> limits;
+
+    TOILE_HD Mat32 deformation_gradient(int t, View<const Vec3> x) const
+    {
+        Mat32 edges;
+        edges.col(0) = x[tri[t][1]] - x[tri[t][0]];
+        edges.col(1) = x[tri[t][2]] - x[tri[t][0]];
+        return edges.lazyProduct(rest_inv[t]);
+    }
+};
+
+/// G - P(G), P the projection onto the matrices with singular values up to `allowed`.
+TOILE_HD inline Mat32 stretch_excess(const Mat32& G, double allowed)
+{
+    if (!(largest_stretch(G) > allowed))
+        return Mat32::Zero();
+    const PrincipalStretch stretch = principal_stretch(G);
+    const double first = 1.0 - allowed / std::fmax(stretch.sigma[0], allowed);
+    const double second = 1.0 - allowed / std::fmax(stretch.sigma[1], allowed);
+    return G.lazyProduct(stretch.with(first, second));
+}
+
+/// Picks the triangles near their limit and turns their tension with them.
+struct WatchTriangle {
+    TensionTriangles triangles;
+    View<const Vec3> x;       ///< [vertices] [m] where the step starts
+    View<const Mat2> tension; ///< [triangles] T_t / k in material axes
+    View<unsigned char> near; ///< [triangles] out
+    View<Mat32> turned;       ///< [triangles] out where near: T_t / k of this step
+
+    TOILE_HD void operator()(int t) const
+    {
+        const Mat2 T = tension[t];
+        const bool is_taut = T(0, 0) != 0.0 || T(0, 1) != 0.0 || T(1, 0) != 0.0 || T(1, 1) != 0.0;
+        const Mat32 F = triangles.deformation_gradient(t, x);
+        near[t] = is_taut || largest_stretch(F) > triangles.limits[triangles.kind[t]].watched ? 1 : 0;
+        if (near[t])
+            turned[t] = closest_isometry<double>(F).lazyProduct(T);
+    }
+};
+
+/// The pull of a triangle near its limit.
+struct TensionPull {
+    TensionTriangles triangles;
+    View<const Vec3> x;       ///< [vertices] [m]
+    View<const Mat32> turned; ///< [triangles] as WatchTriangle leaves it
+
+    TOILE_HD Mat32 excess(int t) const
+    {
+        return stretch_excess(triangles.deformation_gradient(t, x) + turned[t],
+                              triangles.limits[triangles.kind[t]].allowed);
+    }
+    TOILE_HD MembraneResponse<double> of(int t) const
+    {
+        const Mat32 stress = excess(t);
+        const double weight = triangles.limits[triangles.kind[t]].stiffness * triangles.area[t];
+        MembraneResponse<double> response;
+        response.energy = 0.5 * weight * stress.squaredNorm();
+        response.corner_gradient = stress.lazyProduct(triangles.rest_inv[t].transpose());
+        response.corner_gradient *= weight;
+        return response;
+    }
+};
+
+/// The i-th triangle near its limit, as the CPU takes them.
+struct PullTautTriangle {
+    TensionPull pull;
+    View<const int> taut;                    ///< triangles
+    View<MembraneResponse<double>> response; ///< [taut] out
+
+    TOILE_HD void operator()(int i) const { response[i] = pull.of(taut[i]); }
+};
+
+/// What one of the vertices of triangles near their limit gets from them, as a GPU takes them: most vertices
+/// have none and are done with a look at `watched`.
+struct PullVertex {
+    TensionPull pull;
+    View<const unsigned char> near;    ///< [triangles]
+    View<const unsigned char> watched; ///< [vertices] with a triangle that is near
+    View<const int> first;             ///< [vertices + 1]
+    View<const int> corners;           ///< 3 * triangle + corner, ascending per vertex
+    View<Vec3> gradient;               ///< [vertices] added to [N]
+    View<double> energy;               ///< [vertices] added to, of each triangle by its corner 0 [J]
+
+    TOILE_HD void operator()(int v) const
+    {
+        if (!watched[v])
+            return;
+        Vec3 sum(0.0, 0.0, 0.0);
+        double share = 0.0;
+        for (int k = first[v]; k < first[v + 1]; ++k) {
+            const int t = corners[k] / 3, corner = corners[k] % 3;
+            if (!near[t])
+                continue;
+            const MembraneResponse<double> response = pull.of(t);
+            if (corner == 0) {
+                sum -= response.corner_gradient.col(0) + response.corner_gradient.col(1);
+                share += response.energy;
+            } else {
+                sum += response.corner_gradient.col(corner - 1);
+            }
+        }
+        gradient[v] += sum;
+        energy[v] += share;
+    }
+};
+
+/// Says whether vertex v has a triangle that is near its limit.
+struct WatchVertex {
+    View<const unsigned char> near; ///< [triangles]
+    View<const int> first;          ///< [vertices + 1]
+    View<const int> corners;        ///< 3 * triangle + corner
+    View<unsigned char> watched;    ///< [vertices] out
+
+    TOILE_HD void operator()(int v) const
+    {
+        unsigned char found = 0;
+        for (int k = first[v]; k < first[v + 1] && !found; ++k)
+            found = near[corners[k] / 3];
+        watched[v] = found;
+    }
+};
+
+/// Remembers the tension at the minimiser.
+struct RememberTension {
+    TensionPull pull;               ///< x: the minimiser
+    View<const unsigned char> near; ///< [triangles]
+    View<Mat2> tension;             ///< [triangles] T_t / k in material axes
+
+    TOILE_HD void operator()(int t) const
+    {
+        if (!near[t])
+            return;
+        const Mat32 R = closest_isometry<double>(pull.triangles.deformation_gradient(t, pull.x));
+        Mat2 T = R.transpose().lazyProduct(pull.excess(t));
+        const double size = T.norm(), most = pull.triangles.limits[pull.triangles.kind[t]].max_tension;
+        if (size > most)
+            T *= most / size;
+        tension[t] = T;
+    }
+};
+
+/// Drops the tension of a triangle.
+struct ForgetTension {
+    View<Mat2> tension;
+
+    TOILE_HD void operator()(int t) const { tension[t].setZero(); }
+};
+
+} // namespace toile

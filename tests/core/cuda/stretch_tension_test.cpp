@@ -1,0 +1,329 @@
+#include "garment/energy/device_stretch_tension.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/pd/body.h"
+#include "core/pd/device/device_body.h"
+#include "core/quadrature/device_quadrature_solver.h"
+#include "core/quadrature/quadrature_solver.h"
+#include "garment/energy/membrane.h"
+#include "garment/energy/strain_limit.h"
+#include "garment/energy/stretch_tension.h"
+#include "quadrature2d/geodesic_places.h"
+#include "tests/core/cuda/on_device.h"
+#include "tests/garment/sheets.h"
+
+/// The tension of strain limits on a GPU against the CPU's.
+namespace toile::test {
+namespace {
+
+constexpr double kLimit = 0.06;
+constexpr double kStiffness = 250.0; // [N/m]
+
+/// Pulled apart along u by `stretch`, with waves across.
+std::vector<Vec3> pulled(const Sheet& sheet, double stretch)
+{
+    std::vector<Vec3> x = sheet.flat();
+    for (Vec3& p : x)
+        p = Vec3(stretch * p.x(), 0.004 * std::sin(40 * p.x() + 9 * p.z()), p.z());
+    return x;
+}
+
+std::shared_ptr<StretchTension> tension_of(const std::shared_ptr<const RestShape>& rest)
+{
+    return std::make_shared<StretchTension>(rest, StretchTension::Settings{kLimit, kStiffness, 1.0});
+}
+
+/// Value and gradient.
+struct Pull {
+    double energy = 0.0;
+    std::vector<Vec3> gradient;
+};
+
+Pull pull_of(StretchTension& tension, View<const Vec3> x)
+{
+    Pull pull;
+    pull.gradient.assign(x.size(), Vec3::Zero());
+    pull.energy = tension.add_gradient(x, pull.gradient);
+    return pull;
+}
+
+double largest_of(const std::vector<Vec3>& field)
+{
+    double largest = 0.0;
+    for (const Vec3& value : field)
+        largest = std::max(largest, value.norm());
+    return largest;
+}
+
+/// Energies of a body on the device, and what an evaluation there needs.
+class OnGpu {
+public:
+    OnGpu(const CudaSpace& space, int vertex_count)
+        : energies(space), x_(space, "test/x"), gradient_(space, "test/gradient", vertex_count),
+          energy_(space, "test/energy", vertex_count), own_(space, "test/own")
+    {
+    }
+
+    void begin_step(const std::vector<Vec3>& x)
+    {
+        x_.upload(x);
+        for (const auto& energy : energies.all())
+            energy->begin_step(x_.view());
+    }
+    Pull pull(const std::vector<Vec3>& x)
+    {
+        x_.upload(x);
+        gradient_.fill_zero();
+        energy_.fill_zero();
+        own_.resize(energies.share_count());
+        energies.add_gradient(at());
+        Pull pull;
+        pull.gradient = gradient_.downloaded();
+        for (const double share : energy_.downloaded())
+            pull.energy += share;
+        return pull;
+    }
+    void end_minimisation(const std::vector<Vec3>& x)
+    {
+        x_.upload(x);
+        for (const auto& energy : energies.all())
+            energy->end_minimisation(x_.view());
+    }
+    DeviceEvaluation at() { return {x_.view(), gradient_.view(), energy_.view(), own_.view()}; }
+
+    DeviceEnergies energies;
+
+private:
+    DeviceArray<Vec3> x_, gradient_;
+    DeviceArray<double> energy_, own_;
+};
+
+using DeviceStretchTensionTest = OnDevice;
+
+void expect_equal(const Pull& there, const Pull& here)
+{
+    EXPECT_NEAR(there.energy, here.energy, 1e-12 * std::abs(here.energy));
+    const double scale = largest_of(here.gradient);
+    for (size_t v = 0; v < here.gradient.size(); ++v)
+        EXPECT_LT((there.gradient[v] - here.gradient[v]).norm(), 1e-12 * scale) << v;
+}
+
+TEST_F(DeviceStretchTensionTest, CarriesItsTensionFromStepToStepAsOnTheCpu)
+{
+    const Sheet sheet = make_sheet(Vec2(0.4, 0.3), 20, 15, Pattern::Irregular);
+    const auto rest = sheet.rest();
+    const auto here = tension_of(rest), there = tension_of(rest);
+    OnGpu gpu(space(), rest->vertex_count());
+    ASSERT_TRUE(there->add_to(gpu.energies, 0));
+    for (const double stretch : {1.1, 1.08, 1.05, 1.02, 3.0, 0.9, 0.9}) {
+        const std::vector<Vec3> start = pulled(sheet, stretch), end = pulled(sheet, stretch + 0.01);
+        here->begin_step(start);
+        gpu.begin_step(start);
+        expect_equal(gpu.pull(end), pull_of(*here, end));
+        here->remember(end);
+        gpu.end_minimisation(end);
+    }
+}
+
+TEST_F(DeviceStretchTensionTest, IsExactlyNothingOnASlackSheet)
+{
+    const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 8, 8, Pattern::Irregular);
+    const auto rest = sheet.rest();
+    OnGpu gpu(space(), rest->vertex_count());
+    const auto tension = tension_of(rest);
+    tension->add_to(gpu.energies, 0);
+    for (int step = 0; step < 2; ++step) {
+        gpu.begin_step(pulled(sheet, 1.0));
+        const Pull pull = gpu.pull(pulled(sheet, 1.2)); // stretched within the step: seen in the next
+        EXPECT_EQ(pull.energy, 0.0);
+        EXPECT_EQ(largest_of(pull.gradient), 0.0);
+        gpu.end_minimisation(pulled(sheet, 1.02));
+    }
+}
+
+TEST_F(DeviceStretchTensionTest, KeepsClothsApartAndForgetsOneByOne)
+{
+    // A taut one behind vertices of no cloth, then a slack one with other settings.
+    const int gap = 3;
+    const Sheet taut = make_sheet(Vec2(0.2, 0.3), 7, 9, Pattern::Irregular);
+    const Sheet other = make_sheet(Vec2(0.3, 0.1), 9, 3, Pattern::Irregular);
+    const auto taut_rest = taut.rest(), other_rest = other.rest();
+    const int n = taut_rest->vertex_count(), m = other_rest->vertex_count();
+    const StretchTension::Settings stiff{0.02, 900.0, 0.01};
+    const auto here = tension_of(taut_rest), there = tension_of(taut_rest);
+    StretchTension other_here(other_rest, stiff);
+    const auto other_there = std::make_shared<StretchTension>(other_rest, stiff);
+    OnGpu gpu(space(), gap + n + m);
+    there->add_to(gpu.energies, gap);
+    other_there->add_to(gpu.energies, gap + n);
+    ASSERT_EQ(gpu.energies.all().size(), 1u);
+
+    const auto together = [&](double stretch, double other_stretch) {
+        std::vector<Vec3> x(gap, Vec3(7.0, 8.0, 9.0));
+        for (const auto& part : {pulled(taut, stretch), pulled(other, other_stretch)})
+            x.insert(x.end(), part.begin(), part.end());
+        return x;
+    };
+    for (int step = 0; step < 3; ++step) {
+        const std::vector<Vec3> x = together(1.09, step == 0 ? 1.0 : 1.05);
+        const View<const Vec3> own = View<const Vec3>(x).subview(gap, n);
+        const View<const Vec3> others = View<const Vec3>(x).subview(gap + n, m);
+        if (step == 2) {
+            here->forget();
+            there->forget();
+        }
+        here->begin_step(own);
+        other_here.begin_step(others);
+        gpu.begin_step(x);
+        Pull expected{0.0, std::vector<Vec3>(gap, Vec3::Zero())};
+        for (const Pull& part : {pull_of(*here, own), pull_of(other_here, others)}) {
+            expected.energy += part.energy;
+            expected.gradient.insert(expected.gradient.end(), part.gradient.begin(), part.gradient.end());
+        }
+        expect_equal(gpu.pull(x), expected);
+        here->remember(own);
+        other_here.remember(others);
+        gpu.end_minimisation(x);
+    }
+}
+
+TEST_F(DeviceStretchTensionTest, LeavesSliversAlone)
+{
+    // Two wide triangles and one on the border whose altitude is a five-hundredth of its edge.
+    const std::vector<Vec2> uv{{0.0, 0.0}, {0.1, 0.0}, {0.1, 0.1}, {0.0, 0.1}, {0.05, -0.0002}};
+    const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}, {0, 4, 1}};
+    const auto rest = std::make_shared<const RestShape>(rest_shape_of_pattern(uv, triangles, "test"));
+    ASSERT_TRUE(rest->is_sliver(2));
+    const auto tension = tension_of(rest);
+    OnGpu gpu(space(), 5);
+    tension->add_to(gpu.energies, 0);
+    std::vector<Vec3> x;
+    for (const Vec2& p : uv)
+        x.emplace_back(p.x(), 0.0, p.y());
+    x[4].z() = -0.002;
+    gpu.begin_step(x);
+    EXPECT_EQ(gpu.pull(x).energy, 0.0);
+    x[2].x() += 0.02;
+    gpu.begin_step(x);
+    const Pull pull = gpu.pull(x);
+    EXPECT_GT(pull.energy, 0.0);
+    EXPECT_EQ(pull.gradient[4], Vec3(0.0, 0.0, 0.0));
+}
+
+TEST_F(DeviceStretchTensionTest, HasTheSameBitsTwiceAndAsksForNoMemoryInSteps)
+{
+    const Sheet sheet = make_sheet(Vec2(0.4, 0.3), 40, 30, Pattern::Irregular);
+    const auto rest = sheet.rest();
+    const auto run = [&] {
+        OnGpu gpu(space(), rest->vertex_count());
+        const auto tension = tension_of(rest);
+        tension->add_to(gpu.energies, 0);
+        Pull pull;
+        const auto step = [&](double stretch) {
+            const std::vector<Vec3> x = pulled(sheet, stretch);
+            gpu.begin_step(x);
+            pull = gpu.pull(x);
+            gpu.end_minimisation(x);
+        };
+        step(1.1);
+        EXPECT_EQ(allocations_of([&] {
+                      for (int k = 1; k < 5; ++k)
+                          step(1.1 - 0.01 * k);
+                  }),
+                  0);
+        return pull;
+    };
+    const Pull first = run(), second = run();
+    EXPECT_GT(first.energy, 0.0);
+    EXPECT_EQ(first.energy, second.energy);
+    EXPECT_EQ(first.gradient, second.gradient);
+}
+
+/// Looks at minimisers, as a strain limit that never clamps.
+class OnlyObserves : public StrainLimit {
+public:
+    using StrainLimit::StrainLimit;
+    void project(View<Vec3>, View<const double>, const std::function<bool()>&) override {}
+};
+
+/// A sheet too heavy for its stiffness, on two pins.
+class HeavySheet {
+public:
+    std::unique_ptr<System> system(std::shared_ptr<StretchTension> tension,
+                                   std::unique_ptr<GlobalSolver> solver) const
+    {
+        std::vector<std::shared_ptr<Energy>> energies{
+            std::make_shared<Membrane>(rest_, Membrane::Settings{30.0, 30.0, 10.0}, "sheet")};
+        if (tension)
+            energies.push_back(std::move(tension));
+        return std::make_unique<System>(masses_of(*rest_, 0.4), energies, std::move(solver));
+    }
+    std::vector<Place> places() const
+    {
+        return geodesic_places(rest_->vertex_count(),
+                               surface_metric(rest_->triangles, rest_->edges, rest_->topology));
+    }
+    std::unique_ptr<DeviceBody> body(const CudaSpace& space, std::shared_ptr<StretchTension> tension) const
+    {
+        auto solver = std::make_unique<DeviceQuadratureSolver>(
+            space, std::vector<DeviceQuadratureSolver::Part>{{places(), {}}});
+        auto body = std::make_unique<DeviceBody>(space, flat(), system(std::move(tension), std::move(solver)),
+                                                 DeviceBody::Settings{1e-5, 500});
+        body->set_acceleration(gravity());
+        return body;
+    }
+    const std::shared_ptr<const RestShape>& rest() const { return rest_; }
+    std::vector<Vec3> flat() const { return sheet_.flat(); }
+    std::vector<Vec3> gravity() const { return std::vector<Vec3>(sheet_.uv.size(), Vec3(0.0, -9.81, 0.3)); }
+    std::vector<unsigned char> fixed() const
+    {
+        std::vector<unsigned char> fixed(sheet_.uv.size(), 0);
+        fixed[sheet_.at(0, 0)] = fixed[sheet_.at(sheet_.columns, 0)] = 1;
+        return fixed;
+    }
+
+private:
+    Sheet sheet_ = make_sheet(Vec2(0.6, 0.4), 18, 12, Pattern::Irregular);
+    std::shared_ptr<const RestShape> rest_ = sheet_.rest();
+};
+
+TEST_F(DeviceStretchTensionTest, HoldsASheetOnTwoPinsAsOnTheCpu)
+{
+    constexpr double kDt = 1.0 / 60.0;
+    const HeavySheet heavy;
+    const auto here =
+        std::make_shared<StretchTension>(heavy.rest(), StretchTension::Settings{0.06, 30.0, 1.0});
+    const auto there =
+        std::make_shared<StretchTension>(heavy.rest(), StretchTension::Settings{0.06, 30.0, 1.0});
+    OnlyObserves limit(heavy.rest(), {0.06}, "sheet");
+    limit.tell(here);
+    Body::Settings settings;
+    settings.tolerance = 1e-5;
+    settings.max_iterations = 500;
+    Body cpu(
+        heavy.flat(),
+        heavy.system(here, std::make_unique<QuadratureSolver>(heavy.places(), QuadratureSolver::Settings{})),
+        settings);
+    const auto gpu = heavy.body(space(), there), without = heavy.body(space(), nullptr);
+    double apart = 0.0;
+    for (int step = 0; step < 20; ++step) {
+        here->begin_step(cpu.positions());
+        const StepReport expected =
+            cpu.step(kDt, heavy.gravity(), heavy.fixed(), heavy.flat(), nullptr, &limit);
+        const StepReport report = gpu->step(kDt, heavy.fixed());
+        (void)without->step(kDt, heavy.fixed());
+        ASSERT_EQ(expected.status, StepReport::Status::Converged) << step;
+        ASSERT_EQ(report.status, StepReport::Status::Converged) << step;
+        const std::vector<Vec3> x = gpu->positions();
+        for (size_t v = 0; v < x.size(); ++v)
+            apart = std::max(apart, (x[v] - cpu.positions()[int(v)]).norm());
+    }
+    EXPECT_LT(apart, 1e-3);
+    EXPECT_NEAR(limit.max_strain(gpu->positions()), limit.max_strain(cpu.positions()), 1e-2);
+    EXPECT_LT(limit.max_strain(gpu->positions()), 0.5 * limit.max_strain(without->positions()));
+}
+
+} // namespace
+} // namespace toile::test
