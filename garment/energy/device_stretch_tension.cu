@@ -1,8 +1,18 @@
 #include "garment/energy/device_stretch_tension.h"
 
-#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/teams.cuh"
 
 namespace toile {
+
+namespace {
+
+/// Threads of a vertex, which has some six corners.
+constexpr int kTeam = 8;
+
+/// Teams that share the watched vertices: as many as a large GPU holds at once.
+constexpr int kTeamCount = 16384;
+
+} // namespace
 
 DeviceStretchTension::DeviceStretchTension(const CudaSpace& space)
     : space_(space), triangles_(space, "stretch_tension/triangles"),
@@ -10,7 +20,9 @@ DeviceStretchTension::DeviceStretchTension(const CudaSpace& space)
       kind_(space, "stretch_tension/kind"), limits_(space, "stretch_tension/limits"),
       first_corner_(space, "stretch_tension/first_corner"), corners_(space, "stretch_tension/corners"),
       tension_(space, "stretch_tension/tension"), turned_(space, "stretch_tension/turned"),
-      near_(space, "stretch_tension/near"), watched_(space, "stretch_tension/watched")
+      near_(space, "stretch_tension/near"), has_near_(space, "stretch_tension/has_near"),
+      watched_(space, "stretch_tension/watched"), watched_count_(space, "stretch_tension/watched_count", 1),
+      scratch_(space, "stretch_tension/scratch")
 {
 }
 
@@ -56,9 +68,9 @@ void DeviceStretchTension::upload()
     tension_.fill_zero();
     turned_.resize(triangles_.size());
     near_.resize(triangles_.size());
-    near_.fill_zero();
+    has_near_.resize(first_corner_.size() - 1);
     watched_.resize(first_corner_.size() - 1);
-    watched_.fill_zero();
+    watched_count_.fill_zero();
 }
 
 TensionPull DeviceStretchTension::pull(View<const Vec3> x) const
@@ -77,15 +89,18 @@ void DeviceStretchTension::begin_step(View<const Vec3> x)
         }
     parallel_for(space_, "stretch_tension/watch", triangles_.size(),
                  WatchTriangle{pull(x).triangles, x, tension_.view(), near_.view(), turned_.view()});
-    parallel_for(space_, "stretch_tension/watch_vertices", watched_.size(),
-                 WatchVertex{near_.view(), first_corner_.view(), corners_.view(), watched_.view()});
+    parallel_for(space_, "stretch_tension/watch_vertices", has_near_.size(),
+                 WatchVertex{near_.view(), first_corner_.view(), corners_.view(), has_near_.view()});
+    list_flagged(space_, "stretch_tension/list", has_near_.view(), watched_.view(), watched_count_.view(),
+                 scratch_);
 }
 
 void DeviceStretchTension::add_gradient(const DeviceEvaluation& at)
 {
-    parallel_for(space_, "stretch_tension/pull", watched_.size(),
-                 PullVertex{pull(at.x), near_.view(), watched_.view(), first_corner_.view(), corners_.view(),
-                            at.gradient, at.energy});
+    parallel_for_teams<kTeam>(space_, "stretch_tension/pull", kTeamCount,
+                              PullWatchedVertices{pull(at.x), near_.view(), watched_.view(),
+                                                  watched_count_.view(), first_corner_.view(),
+                                                  corners_.view(), at.gradient, at.energy, kTeamCount});
 }
 
 void DeviceStretchTension::end_minimisation(View<const Vec3> x)

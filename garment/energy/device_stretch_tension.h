@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/backend/cuda/array.h"
+#include "core/backend/cuda/scan.h"
 #include "core/pd/device/device_energy.h"
 #include "garment/energy/stretch_tension.h"
 
@@ -10,8 +11,9 @@ namespace toile {
 
 /// StretchTension of all cloths of a body on a GPU, which owns their tension from one step to the next.
 ///
-/// An evaluation is one kernel over the vertices, which works each triangle near its limit out once per
-/// corner: most vertices have none, and are done with a look at a flag.
+/// An evaluation is one kernel over the vertices of triangles near their limit, which works each triangle out
+/// once per corner. They are listed where a step starts; what is launched does not depend on how many there
+/// are.
 class DeviceStretchTension : public DeviceEnergy {
 public:
     explicit DeviceStretchTension(const CudaSpace& space);
@@ -53,9 +55,11 @@ private:
     DeviceArray<int> kind_;
     DeviceArray<TensionLimits> limits_;
     DeviceArray<int> first_corner_, corners_;
-    DeviceArray<Mat2> tension_;                 ///< [triangles] T_t / k in material axes
-    DeviceArray<Mat32> turned_;                 ///< [triangles] T_t / k at this step, where near
-    DeviceArray<unsigned char> near_, watched_; ///< [triangles], [vertices]
+    DeviceArray<Mat2> tension_;                  ///< [triangles] T_t / k in material axes
+    DeviceArray<Mat32> turned_;                  ///< [triangles] T_t / k at this step, where near
+    DeviceArray<unsigned char> near_, has_near_; ///< [triangles]; [vertices] with one that is near
+    DeviceArray<int> watched_, watched_count_;   ///< vertices that have one, [1] how many
+    DeviceScratch scratch_;
 };
 
 } // namespace toile

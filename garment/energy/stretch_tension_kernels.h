@@ -92,37 +92,53 @@ struct PullTautTriangle {
     TOILE_HD void operator()(int i) const { response[i] = pull.of(taut[i]); }
 };
 
-/// What one of the vertices of triangles near their limit gets from them, as a GPU takes them: most vertices
-/// have none and are done with a look at `watched`.
-struct PullVertex {
+/// What the vertices of triangles near their limit get from them, as a GPU takes them: some teams of threads
+/// take turns at a list of such vertices, so that a short list costs next to nothing.
+struct PullWatchedVertices {
     TensionPull pull;
-    View<const unsigned char> near;    ///< [triangles]
-    View<const unsigned char> watched; ///< [vertices] with a triangle that is near
-    View<const int> first;             ///< [vertices + 1]
-    View<const int> corners;           ///< 3 * triangle + corner, ascending per vertex
-    View<Vec3> gradient;               ///< [vertices] added to [N]
-    View<double> energy;               ///< [vertices] added to, of each triangle by its corner 0 [J]
+    View<const unsigned char> near; ///< [triangles]
+    View<const int> watched;        ///< vertices with a triangle that is near, ascending
+    View<const int> watched_count;  ///< [1]
+    View<const int> first;          ///< [vertices + 1]
+    View<const int> corners;        ///< 3 * triangle + corner, ascending per vertex
+    View<Vec3> gradient;            ///< [vertices] added to [N]
+    View<double> energy;            ///< [vertices] added to, of each triangle by its corner 0 [J]
+    int team_count;
 
-    TOILE_HD void operator()(int v) const
+    template <typename Team>
+    TOILE_HD void operator()(int i, const Team& team, bool is_own) const
     {
-        if (!watched[v])
-            return;
-        Vec3 sum(0.0, 0.0, 0.0);
-        double share = 0.0;
-        for (int k = first[v]; k < first[v + 1]; ++k) {
-            const int t = corners[k] / 3, corner = corners[k] % 3;
-            if (!near[t])
+        // All teams take as many turns: sums want every thread of a warp.
+        for (int turn = 0; turn < watched_count[0]; turn += team_count) {
+            const bool has_one = is_own && turn + i < watched_count[0];
+            const int v = watched[has_one ? turn + i : 0];
+            Vec3 sum(0.0, 0.0, 0.0);
+            double share = 0.0;
+            for (int k = first[v] + team.thread; has_one && k < first[v + 1]; k += Team::kThreads)
+                add_corner(corners[k], sum, share);
+            for (int a = 0; a < 3; ++a)
+                sum[a] = team.sum(1, sum[a]);
+            share = team.sum(1, share);
+            if (!has_one || team.thread > 0)
                 continue;
-            const MembraneResponse<double> response = pull.of(t);
-            if (corner == 0) {
-                sum -= response.corner_gradient.col(0) + response.corner_gradient.col(1);
-                share += response.energy;
-            } else {
-                sum += response.corner_gradient.col(corner - 1);
-            }
+            gradient[v] += sum;
+            energy[v] += share;
         }
-        gradient[v] += sum;
-        energy[v] += share;
+    }
+
+private:
+    TOILE_HD void add_corner(int corner_of_triangle, Vec3& sum, double& share) const
+    {
+        const int t = corner_of_triangle / 3, corner = corner_of_triangle % 3;
+        if (!near[t])
+            return;
+        const MembraneResponse<double> response = pull.of(t);
+        if (corner > 0) {
+            sum += response.corner_gradient.col(corner - 1);
+            return;
+        }
+        sum -= response.corner_gradient.col(0) + response.corner_gradient.col(1);
+        share += response.energy;
     }
 };
 
@@ -131,14 +147,14 @@ struct WatchVertex {
     View<const unsigned char> near; ///< [triangles]
     View<const int> first;          ///< [vertices + 1]
     View<const int> corners;        ///< 3 * triangle + corner
-    View<unsigned char> watched;    ///< [vertices] out
+    View<unsigned char> has_near;   ///< [vertices] out
 
     TOILE_HD void operator()(int v) const
     {
         unsigned char found = 0;
         for (int k = first[v]; k < first[v + 1] && !found; ++k)
             found = near[corners[k] / 3];
-        watched[v] = found;
+        has_near[v] = found;
     }
 };
 
