@@ -61,7 +61,7 @@ std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths)
 }
 
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
-                 std::vector<ContactPartner> partners, const Settings& settings)
+                 std::vector<ContactPartner> partners, const Settings& settings, const CudaSpace* space)
     : cloths_(std::move(cloths)), rigid_(rigid_bodies_of(cloths_)), settings_(settings),
       colliders_(triangles, positions, std::move(partners),
                  {largest_gap(cloths_), settings.face_vertex, settings.edge_edge}),
@@ -71,7 +71,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std
         cloth_of_.insert(cloth_of_.end(), cloths_[c].vertex_count, c);
     TOILE_ASSERT(int(cloth_of_.size()) == positions.size());
     if (settings_.cloth_with_cloth)
-        between_.emplace(triangles, positions, cloths_, altitude_);
+        between_.emplace(triangles, positions, cloths_, altitude_, space);
 }
 
 void Contact::begin_step(const StepStart& start)

@@ -37,8 +37,9 @@ public:
     /// @param triangles  [triangles] of all cloths
     /// @param positions  [vertices] start positions [m]
     /// @param cloths     whose vertices follow each other
+    /// @param space      where pairs of cloth with cloth are looked for, borrowed; null: on the CPU
     Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
-            std::vector<ContactPartner> partners, const Settings& settings);
+            std::vector<ContactPartner> partners, const Settings& settings, const CudaSpace* space = nullptr);
 
     void begin_step(const StepStart& start) override;
     bool make_feasible(View<Vec3> x) const override;

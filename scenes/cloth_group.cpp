@@ -78,10 +78,7 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Obstacle>&
     }
     if (report.status == StepReport::Status::NonFinite)
         report.message = names() + ": " + report.message;
-    report.max_strain = 0.0;
-    for (SceneCloth& cloth : cloths_)
-        report.max_strain =
-            std::max(report.max_strain, cloth.strain_limit().max_strain(cloth.state().positions));
+    report.max_strain = limits_->max_strain(body_->positions());
 
     // A solver whose every direction was refused leaves the cloth standing: that is no rest.
     const bool is_stuck = report.status == StepReport::Status::IterationLimit && report.iterations == 0;

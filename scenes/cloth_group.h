@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "collision/contact.h"
-#include "core/pd/joint_projection.h"
 #include "core/pd/point_masses.h"
 #include "core/pd/rigid_active_set.h"
+#include "garment/energy/joint_strain_limit.h"
 #include "scenes/scene_cloth.h"
 #include "scenes/scene_solids.h"
 
@@ -40,7 +40,8 @@ private:
                                                   const CudaSpace& space);
     std::vector<double> masses() const;
     std::vector<std::shared_ptr<Energy>> make_energies();
-    std::unique_ptr<Contact> make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles);
+    std::unique_ptr<Contact> make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles,
+                                          const CudaSpace* space);
     std::vector<Vec3> positions() const;
     std::vector<Vec3> surfaces() const;
     template <typename T>
@@ -59,7 +60,7 @@ private:
     std::vector<SceneCloth> cloths_;
     std::unique_ptr<SceneSolids> solids_; ///< null: none
     std::vector<int> first_;              ///< [cloths + 1] vertices
-    std::unique_ptr<JointProjection> limits_;
+    std::unique_ptr<JointStrainLimit> limits_;
     std::unique_ptr<Contact> contact_; ///< null where there is nothing to touch
     std::unique_ptr<RigidActiveSet>
         rigid_contact_; ///< contact_ as the minimiser sees it; null without solids

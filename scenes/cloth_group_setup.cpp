@@ -44,13 +44,13 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
         body_ = make_rival(scene.solver, positions(), cloths_.front().model());
     else
         body_ = space != nullptr ? make_device_body(scene, options, *space) : make_body(scene, options);
-    contact_ = make_contact(scene, obstacles);
+    contact_ = make_contact(scene, obstacles, space);
     if (solids_)
         rigid_contact_ = std::make_unique<RigidActiveSet>(*contact_, solids_->bodies(), first_.back());
-    std::vector<JointProjection::Part> limits;
+    std::vector<JointStrainLimit::Part> limits;
     for (size_t i = 0; i < cloths_.size(); ++i)
         limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
-    limits_ = std::make_unique<JointProjection>(std::move(limits));
+    limits_ = std::make_unique<JointStrainLimit>(std::move(limits));
     const size_t unknowns = body_->positions().size();
     fixed_.assign(unknowns, 0);
     targets_.assign(unknowns, Vec3::Zero());
@@ -136,14 +136,15 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
         settings);
 }
 
-std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles)
+std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles,
+                                                  const CudaSpace* space)
 {
     const Contact::Settings settings = contact_settings(scene);
     if (obstacles.empty() && !settings.cloth_with_cloth)
         return nullptr;
     return std::make_unique<Contact>(triangles_, surfaces(),
                                      contact_cloths(scene, cloths_, solids_.get(), obstacles),
-                                     contact_partners(obstacles), settings);
+                                     contact_partners(obstacles), settings, space);
 }
 
 } // namespace toile

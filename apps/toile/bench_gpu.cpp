@@ -14,7 +14,7 @@ namespace toile {
 namespace {
 
 const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu_near_pairs.csv",
-                                       "gpu_tables.csv", "gpu_tables.md"};
+                                       "gpu_tables.csv", "gpu_scenes.csv", "gpu_tables.md"};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -37,6 +37,11 @@ const std::vector<gpu::StepCase> kQuickSteps{{2, 1'000, kStiffness, kTimeStep}};
 
 /// Sizes of the folded sheet in which near pairs are looked for [vertices].
 const std::vector<int> kFoldedSizes{50'000, 240'000};
+
+/// The paper's scenes as made by us. Frames that a few seconds are enough for, contact among them.
+const std::vector<gpu::SceneCase> kScenes{{"cloth", "scenes/benchmarks/cloth.json", 20, true},
+                                          {"runway", "scenes/benchmarks/runway.json", 3, false}};
+const std::vector<gpu::SceneCase> kQuickScenes{{"tablecloth", "scenes/demo/tablecloth.json", 8, true}};
 
 /// Copies that fit no cache, and such that fit the L2 cache twice [MB].
 constexpr int kLargeCopy = 1000, kSmallCopy = 8;
@@ -71,6 +76,11 @@ std::vector<Case> cases_of(const BenchOptions& options)
             {"near_pairs " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
                  gpu::measure_near_pairs(space, vertices, report.searches);
              }});
+    for (const gpu::SceneCase& scene : options.quick ? kQuickScenes : kScenes)
+        cases.push_back({"scene " + scene.name, [what = scene](const CudaSpace&, gpu::Report& report) {
+                             for (gpu::SceneRun& run : gpu::measure_scene(what))
+                                 report.scenes.push_back(std::move(run));
+                         }});
     std::erase_if(cases, [&](const Case& c) { return c.name.find(options.only) == std::string::npos; });
     if (cases.empty())
         throw InvalidInput("bench gpu: --only \"" + options.only + "\" leaves no case");
@@ -112,7 +122,8 @@ int bench_gpu(const BenchOptions& options)
                                   {kTables[1], gpu::csv_of_steps(report)},
                                   {kTables[2], gpu::csv_of(report.searches)},
                                   {kTables[3], gpu::csv_of(report.builds)},
-                                  {kTables[4], gpu::markdown_tables(report)}});
+                                  {kTables[4], gpu::csv_of(report.scenes)},
+                                  {kTables[5], gpu::markdown_tables(report)}});
     return kExitOk;
 }
 

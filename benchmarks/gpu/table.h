@@ -6,6 +6,7 @@
 #include "benchmarks/gpu/apply.h"
 #include "benchmarks/gpu/build_tables.h"
 #include "benchmarks/gpu/near_pairs.h"
+#include "benchmarks/gpu/scene.h"
 #include "benchmarks/gpu/step.h"
 
 namespace toile::gpu {
@@ -19,6 +20,7 @@ struct Report {
     std::vector<TableBuild> builds;
     std::vector<Step> steps;
     std::vector<NearSearch> searches;
+    std::vector<SceneRun> scenes;
 };
 
 std::string markdown_tables(const Report& report);

@@ -79,9 +79,10 @@ RigidWays rigid_ways_of(const std::vector<ContactCloth>& cloths)
 } // namespace
 
 ClothContact::ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
-                           const std::vector<ContactCloth>& cloths, View<const double> altitude)
+                           const std::vector<ContactCloth>& cloths, View<const double> altitude,
+                           const CudaSpace* space)
     : edge_(mean_edge(triangles, positions, rigid_bodies_of(cloths))),
-      near_(triangles, positions, rigid_bodies_of(cloths)),
+      near_(triangles, positions, rigid_bodies_of(cloths), space),
       exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
       safe_(near_, exempt_, settings_for(cloths, edge_), rigid_ways_of(cloths)),
       deviation_(positions.size(), Vec3::Zero()), motion_(positions.size())

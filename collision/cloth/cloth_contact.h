@@ -21,8 +21,10 @@ public:
     /// @param cloths     whose vertices follow each other
     /// @param altitude   [vertices] shortest altitude of the triangles around [m]: no more than half of it is
     ///                   kept, or a fine mesh would push itself apart. Rigid ones can't.
+    /// @param space      where pairs are looked for, borrowed; null: on the CPU
     ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
-                 const std::vector<ContactCloth>& cloths, View<const double> altitude);
+                 const std::vector<ContactCloth>& cloths, View<const double> altitude,
+                 const CudaSpace* space = nullptr);
     ClothContact(const ClothContact&) = delete;
     ClothContact& operator=(const ClothContact&) = delete;
 

@@ -28,6 +28,9 @@ public:
     /// @throws DeviceError where the device has not the memory, or there are 2^31 candidates
     View<const NearPair> find(View<const Vec3> x, const Ways& ways, double margin);
 
+    /// Copies the first pairs that find() has found into `out`, before the call returns.
+    void download(View<NearPair> out) const { pairs_.download_first(out); }
+
     /// find() in two parts, of which the first can be recorded in a graph: enqueues a search with the room
     /// that there is.
     void search(View<const Vec3> x, const Ways& ways, double margin);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/cloth/candidates.h"
+#include "collision/cloth/hosted_near_pairs.h"
 #include "collision/cloth/ordered_records.h"
 #include "collision/cloth/pair_rules.h"
 #include "core/backend/parallel.h"
@@ -136,8 +137,10 @@ void NearPairs::Search::report(std::vector<NearPair>& out)
     });
 }
 
-NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid)
-    : search_(std::make_unique<Search>(triangles, positions, std::move(rigid)))
+NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid,
+                     const CudaSpace* space)
+    : search_(std::make_unique<Search>(triangles, positions, rigid)),
+      there_(space ? std::make_unique<HostedNearPairs>(*space, triangles, positions, rigid) : nullptr)
 {
 }
 NearPairs::~NearPairs() = default;
@@ -153,7 +156,7 @@ const SurfaceEdges& NearPairs::edges() const { return search_->edges(); }
 
 void NearPairs::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {
-    search_->find(x, ways, margin, out);
+    there_ ? there_->find(x, ways, margin, out) : search_->find(x, ways, margin, out);
 }
 
 } // namespace toile

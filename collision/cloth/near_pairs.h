@@ -10,6 +10,9 @@
 
 namespace toile {
 
+class CudaSpace;
+class HostedNearPairs;
+
 /// Two primitives of one triangle soup that share no vertex and are near each other: a vertex and a
 /// triangle, or two edges. "First" and "second" below are these two.
 struct NearPair {
@@ -46,7 +49,9 @@ public:
     /// @param positions  [vertices x 3] [m] the first pose
     /// @param rigid      [vertices] number of the rigid body, -1 for none: no pairs within one body. Empty:
     ///                   none at all
-    NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {});
+    /// @param space      where find() searches, borrowed; null: on the CPU
+    NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {},
+              const CudaSpace* space = nullptr);
     ~NearPairs();
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;
@@ -69,6 +74,7 @@ public:
 private:
     class Search;
     std::unique_ptr<Search> search_;
+    std::unique_ptr<HostedNearPairs> there_; ///< null: on the CPU
 };
 
 } // namespace toile

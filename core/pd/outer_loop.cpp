@@ -12,6 +12,7 @@ int OuterLoop::max_trials() const { return LineSearch::kMaxTrials; }
 
 OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const Settings& settings)
 {
+    const StageScope stage("pd/descend");
     for (std::vector<Vec3>* field : {&gradient_, &direction_, &trial_, &trial_gradient_})
         field->resize(x.size());
     begin(x.size());

@@ -4,18 +4,10 @@
 
 namespace toile {
 
-namespace {
-
-/// How often the end of a step is satisfied at most, where cloth is brought back far again and again. A
-/// walking skirt asks for more than four and at most seven (docs/collision/cloth.md).
-constexpr int kEndRounds = 8;
-
-} // namespace
-
 void StepEnd::satisfy(ActiveSetEnergy* active, StepProjection* projection)
 {
     bool goes_on = true;
-    for (int round = 0; goes_on && round < kEndRounds; ++round) {
+    for (int round = 0; goes_on && round < kRounds; ++round) {
         if (active)
             active->clear(x_, v_);
         if (projection)

@@ -11,6 +11,10 @@ namespace toile {
 /// apart from cloth.
 class StepEnd {
 public:
+    /// How often the end of a step is satisfied at most, where cloth is brought back far again and again. A
+    /// walking skirt asks for more than four and at most seven (docs/collision/cloth.md).
+    static constexpr int kRounds = 8;
+
     /// All are borrowed.
     /// @param x, v    [vertices] positions [m] and velocities [m/s] at t1, to be changed
     /// @param masses  [vertices] [kg]

@@ -6,6 +6,9 @@
 
 namespace toile {
 
+class CudaSpace;
+class DeviceStepProjection;
+
 /// A hard constraint applied after the minimisation of a step, outside H: limits that would need weights far
 /// above the rest of H (strain limits) stall every method that inverts a fixed H.
 class StepProjection {
@@ -21,6 +24,9 @@ public:
     ///                        anything moved; may be empty
     virtual void project(View<Vec3> x, View<const double> inverse_masses,
                          const std::function<bool()>& clear_contacts) = 0;
+
+    /// The same for a body on a GPU; null where it has no such form.
+    virtual DeviceStepProjection* on_device([[maybe_unused]] const CudaSpace& space) { return nullptr; }
 };
 
 } // namespace toile

@@ -27,6 +27,7 @@ public:
     /// @param first_vertex  of the cloth among the body's
     void add(const StrainLimit& limit, int first_vertex);
 
+    bool is_satisfied(View<const Vec3> x) override { return look(x) == 0; }
     void project(View<Vec3> x, View<const double> inverse_masses,
                  const std::function<bool()>& clear_contacts) override;
 

@@ -12,6 +12,16 @@ namespace toile {
 
 namespace {
 
+/// A largest stretch, as what is summed.
+struct LargestStretch {
+    double value = 0.0;
+    LargestStretch& operator+=(const LargestStretch& other)
+    {
+        value = std::max(value, other.value);
+        return *this;
+    }
+};
+
 /// Triangles that share a vertex with a given one, counted per vertex.
 constexpr size_t kNeighbourhood = 18;
 
@@ -51,11 +61,10 @@ LimitedTriangles StrainLimit::triangles() const
 
 double StrainLimit::max_strain(View<const Vec3> x) const
 {
-    const LimitedTriangles triangles = this->triangles();
-    double largest = 0.0;
-    for (int t = 0; t < int(kind_.size()); ++t)
-        largest = std::max(largest, triangles.stretch(t, x));
-    return largest - 1.0;
+    const LargestStretch largest = parallel_sum(
+        kCpu, int(kind_.size()), LargestStretch{},
+        [&, triangles = triangles()](int t) { return LargestStretch{triangles.stretch(t, x)}; });
+    return largest.value - 1.0;
 }
 
 void StrainLimit::look_at_everything(View<const Vec3> x)

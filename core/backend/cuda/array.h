@@ -100,6 +100,12 @@ public:
         TOILE_ASSERT(values.size() == size_);
         buffer_.download(values.data(), bytes(size_));
     }
+    /// The first of them likewise.
+    void download_first(View<T> values) const
+    {
+        TOILE_ASSERT(values.size() <= size_);
+        buffer_.download(values.data(), bytes(values.size()));
+    }
     /// All of it, waited for.
     std::vector<T> downloaded() const
     {

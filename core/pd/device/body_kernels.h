@@ -139,4 +139,13 @@ struct FinishVertex {
     }
 };
 
+/// What a constraint has moved becomes velocity.
+struct AddProjected {
+    View<const Vec3> before, x; ///< [vertices] [m]
+    double dt;                  ///< [s]
+    View<Vec3> v;               ///< [vertices] added to [m/s]
+
+    TOILE_HD void operator()(int i) const { v[i] += (x[i] - before[i]) / dt; }
+};
+
 } // namespace toile

@@ -42,7 +42,7 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       acceleration_(space, "body/acceleration", x_.size()), targets_(space, "body/targets", x_.size()),
       prediction_(space, "body/prediction", x_.size()), drive_(space, "body/drive", x_.size()),
       found_(space, "body/found", x_.size()), found_gradient_(space, "body/found_gradient", x_.size()),
-      masses_(space, "body/masses"), fixed_(space, "body/fixed"),
+      masses_(space, "body/masses"), inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
       begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
       finish_sums_(space, "body/finish_sums", block_count(x_.size(), kSumItems)),
       finish_(space, "body/finish", 1), finish_on_host_(space, "body/finish_on_host", 1),
@@ -69,6 +69,11 @@ void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
     system_->prepare(dt, fixed);
     if (is_new) {
         fixed_.upload(fixed);
+        std::vector<double> inverse_masses(fixed.size(), 0.0);
+        for (size_t i = 0; i < fixed.size(); ++i)
+            if (!fixed[i])
+                inverse_masses[i] = 1.0 / masses()[int(i)];
+        inverse_masses_.upload(inverse_masses);
         const DeviceDescent::Problem problem = this->problem(dt);
         descent_.record(problem);
         contact_descent_.prepare(*system_, *solver_);
@@ -109,15 +114,45 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
         return report;
 
     finish(report);
-    if (projection)
-        projection->observe(x_t1_.host());
-    if (active || projection)
-        StepEnd(x_t1_.change_on_host(), v_.change_on_host(), masses(), system_->fixed(), dt)
-            .satisfy(active, projection);
+    satisfy(active, projection);
     if (active)
         active->end_step(x_t1_.host());
-    std::swap(x_, x_t1_);
+    if (x_t1_.is_on_host())
+        set_positions(x_t1_.host());
+    else
+        parallel_for(space_, "pd/end", x_.size(), CopyPositions{x_t1_.there(), x_.overwrite_there()});
     return report;
+}
+
+/// As StepEnd: contact on the host, limits there.
+void DeviceBody::satisfy(ActiveSetEnergy* active, StepProjection* projection)
+{
+    DeviceStepProjection* limits = projection ? projection->on_device(space_) : nullptr;
+    if (projection && limits == nullptr)
+        throw InvalidInput("this constraint does not run on a GPU");
+    for (int round = 0; round < StepEnd::kRounds; ++round) {
+        if (active)
+            active->clear(x_t1_.change_on_host(), v_.change_on_host());
+        if (limits && !limits->is_satisfied(x_t1_.there()))
+            project(*limits, active);
+        if (!active || !active->keep_apart(x_t1_.change_on_host(), v_.change_on_host()))
+            return;
+    }
+}
+
+void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* active)
+{
+    std::function<bool()> clear_contacts;
+    if (active)
+        clear_contacts = [&] {
+            const bool moved = active->make_feasible(x_t1_.change_on_host());
+            static_cast<void>(x_t1_.change_there());
+            return moved;
+        };
+    parallel_for(space_, "pd/keep_found", x_.size(), CopyPositions{x_t1_.there(), found_.view()});
+    limits.project(x_t1_.change_there(), inverse_masses_.view(), clear_contacts);
+    parallel_for(space_, "pd/projected", x_.size(),
+                 AddProjected{found_.view(), x_t1_.there(), dt_, v_.change_there()});
 }
 
 /// Where everything would go alone, which is where the step begins; and tells the descent what is asked.
@@ -147,9 +182,7 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
         DeviceActiveSet* contact = active ? active->on_device(space_) : nullptr;
         if (active && contact == nullptr)
             throw InvalidInput("this contact does not run on a GPU");
-        const OuterLoop::Outcome outcome = contact != nullptr && contact->has_terms()
-                                               ? minimise_touching(*contact, round == 0)
-                                               : minimise_free(round == 0);
+        const OuterLoop::Outcome outcome = descend(contact, round == 0);
         parallel_for(space_, "pd/take", x_.size(),
                      CopyPositions{descent_.x(), x_t1_.overwrite_there()});
         report.iterations += outcome.iterations;
@@ -166,6 +199,13 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
         if (active == nullptr || !active->revise(x_t1_.change_on_host()))
             return;
     }
+}
+
+OuterLoop::Outcome DeviceBody::descend(DeviceActiveSet* contact, bool is_first)
+{
+    const StageScope stage("pd/descend");
+    return contact != nullptr && contact->has_terms() ? minimise_touching(*contact, is_first)
+                                                      : minimise_free(is_first);
 }
 
 /// As Body's: begins again where the cloth stands where that is better than what was found.

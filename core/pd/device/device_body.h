@@ -8,6 +8,7 @@
 #include "core/pd/device/body_kernels.h"
 #include "core/pd/device/device_contact_descent.h"
 #include "core/pd/device/device_descent.h"
+#include "core/pd/device/device_projection.h"
 #include "core/pd/point_masses.h"
 #include "core/pd/system.h"
 
@@ -38,8 +39,8 @@ public:
     void prepare(double dt, const std::vector<unsigned char>& fixed) override;
 
     /// Waits for the end. Same bits in every run.
-    /// @param active  has a form for a GPU (ActiveSetEnergy::on_device), or is null
-    /// @throws InvalidInput where it has none
+    /// @param active, projection  have forms for a GPU (on_device), or are null
+    /// @throws InvalidInput where one has none
     StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                     View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection) override;
 
@@ -58,6 +59,7 @@ private:
     void predict();
     void begin_contact(ActiveSetEnergy& active);
     void minimise(ActiveSetEnergy* active, StepReport& report);
+    OuterLoop::Outcome descend(DeviceActiveSet* contact, bool is_first);
     OuterLoop::Outcome minimise_free(bool is_first);
     OuterLoop::Outcome minimise_touching(DeviceActiveSet& contact, bool is_first);
     OuterLoop::Outcome run_touching(DeviceActiveSet& contact, const OuterLoop::Settings& settings,
@@ -67,6 +69,8 @@ private:
     void keep_found();
     void take_found();
     void finish(StepReport& report);
+    void satisfy(ActiveSetEnergy* active, StepProjection* projection);
+    void project(DeviceStepProjection& limits, const ActiveSetEnergy* active);
 
     const CudaSpace& space_;
     std::unique_ptr<System> system_;
@@ -79,7 +83,7 @@ private:
 
     MirroredArray<Vec3> x_, v_, x_t1_, acceleration_, targets_, prediction_;
     DeviceArray<Vec3> drive_, found_, found_gradient_;
-    DeviceArray<double> masses_;
+    DeviceArray<double> masses_, inverse_masses_; ///< [1/kg] 0 where fixed
     DeviceArray<unsigned char> fixed_;
     DeviceArray<StepSums> begin_sums_;
     DeviceArray<FinishSums> finish_sums_, finish_;

@@ -12,6 +12,9 @@ class DeviceStepProjection {
 public:
     virtual ~DeviceStepProjection() = default;
 
+    /// True where project() would move nothing. Waits.
+    virtual bool is_satisfied(View<const Vec3> x) = 0;
+
     /// Moves x onto the constraint, vertices with weight 0 not at all. Waits to see whether anything is left
     /// to do. Arrays are the device's.
     /// @param x               [vertices] [m]

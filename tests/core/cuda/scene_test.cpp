@@ -1,0 +1,118 @@
+#include "scenes/world.h"
+
+#include <algorithm>
+
+#include "collision/crossings/find_crossings.h"
+#include "scenes/format/read_scene.h"
+#include "tests/core/cuda/on_device.h"
+
+/// Whole scenes on a GPU against the same on the CPU, with quadrature on both.
+namespace toile::test {
+namespace {
+
+Scene scene_of(const std::string& keys)
+{
+    return parse_scene("{\"toile\": 1, " + keys + "}", "test.json");
+}
+
+World world_on(Backend backend, const Scene& scene)
+{
+    WorldOptions options;
+    options.backend = backend;
+    options.tables = std::make_shared<TableStore>();
+    return World(scene, options);
+}
+
+double farthest_apart(const World& a, const World& b)
+{
+    double most = 0.0;
+    for (int c = 0; c < a.cloths().size(); ++c)
+        for (size_t v = 0; v < a.cloths()[c].positions.size(); ++v)
+            most = std::max(most, (a.cloths()[c].positions[v] - b.cloths()[c].positions[v]).norm());
+    return most;
+}
+
+int crossings_of(const World& world)
+{
+    std::vector<Triangle> triangles;
+    std::vector<Vec3> x;
+    for (const ClothState& cloth : world.cloths()) {
+        for (const Triangle& t : cloth.triangles)
+            triangles.push_back(t + Triangle::Constant(int(x.size())));
+        x.insert(x.end(), cloth.positions.begin(), cloth.positions.end());
+    }
+    return int(find_crossings(triangles, x).size());
+}
+
+/// Steps that end by their tolerance, small enough that both backends end at the same place.
+const std::string kExact = R"("fps": 60, "solver": {"method": "quadrature", "tolerance": 1e-6,
+    "max_iterations": 400, "substeps": 2, "sleep": {"enabled": false}}, )";
+
+const std::string kTwoSheetsOnABall = R"("avatars": [{"name": "ball", "sphere": {"radius": 0.1}}],
+    "cloths": [
+      {"name": "lower", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02}, "translate": [0, 0.105, 0]},
+      {"name": "upper", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02}, "translate": [0.01, 0.112, 0.02]}])";
+
+class DeviceSceneTest : public OnDevice {};
+
+TEST_F(DeviceSceneTest, SwingsInTheWindAsOnTheCpu)
+{
+    const Scene scene = scene_of(kExact + R"("frames": 12, "wind": {"velocity": [1, 0, 0.5], "turbulence": 0.4},
+        "cloths": [{"name": "flag", "rectangle": {"size": [0.4, 0.3], "resolution": 0.02}}],
+        "attachments": [{"cloth": "flag", "select": {"nearest": [[-0.2, 0, -0.15], [-0.2, 0, 0.15]]}}])");
+    World here = world_on(Backend::Cpu, scene), there = world_on(Backend::Cuda, scene);
+    ASSERT_NE(there.device(), nullptr);
+    for (int frame = 1; frame <= 3; ++frame) {
+        here.advance_frame();
+        there.advance_frame();
+        EXPECT_LT(farthest_apart(here, there), 2e-5 * frame) << frame;
+    }
+    EXPECT_EQ(there.stages().calls("garment/membrane"), 0);
+    EXPECT_EQ(there.stages().calls("pd/pcg"), 0);
+    EXPECT_EQ(there.stages().calls("contact/to_device"), 0);
+}
+
+/// Until they wrinkle, as far as chaos allows.
+TEST_F(DeviceSceneTest, LandsOnABallAsOnTheCpu)
+{
+    const Scene scene = scene_of(kExact + R"("frames": 12, )" + kTwoSheetsOnABall);
+    World here = world_on(Backend::Cpu, scene), there = world_on(Backend::Cuda, scene);
+    int contacts = 0;
+    for (int frame = 1; frame <= 4; ++frame) {
+        const StepReport expected = here.advance_frame(), report = there.advance_frame();
+        contacts = expected.contacts;
+        EXPECT_NEAR(report.contacts, contacts, 2 + 0.2 * contacts) << frame;
+        EXPECT_LT(farthest_apart(here, there), 3e-4) << frame;
+    }
+    EXPECT_GT(contacts, 10);
+    EXPECT_GT(there.stages().calls("pd/pcg"), 0);
+}
+
+TEST_F(DeviceSceneTest, NeverCrossesAndHasTheSameBitsEveryTime)
+{
+    const Scene scene = scene_of(R"("fps": 30, "frames": 16, )" + kTwoSheetsOnABall);
+    World first = world_on(Backend::Cuda, scene), second = world_on(Backend::Cuda, scene);
+    for (int frame = 1; frame < 16; ++frame) {
+        EXPECT_NE(first.advance_frame().status, StepReport::Status::NonFinite);
+        second.advance_frame();
+        EXPECT_EQ(crossings_of(first), 0) << frame;
+        EXPECT_EQ(farthest_apart(first, second), 0.0) << frame;
+    }
+}
+
+TEST_F(DeviceSceneTest, KeepsStrainLimits)
+{
+    const Scene scene = scene_of(R"("fps": 30, "frames": 16,
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.6, 0.6], "resolution": 0.02}, "rotate_deg": [90, 0, 0]}],
+        "attachments": [{"cloth": "sheet", "select": {"nearest": [[-0.3, 0.3, 0], [0.3, 0.3, 0]]}}])");
+    World here = world_on(Backend::Cpu, scene), there = world_on(Backend::Cuda, scene);
+    double expected = 0.0, strain = 0.0;
+    for (int frame = 1; frame < 16; ++frame) {
+        expected = std::max(expected, here.advance_frame().max_strain);
+        strain = std::max(strain, there.advance_frame().max_strain);
+    }
+    EXPECT_LT(strain, expected + 0.01);
+}
+
+} // namespace
+} // namespace toile::test

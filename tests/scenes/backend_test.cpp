@@ -1,0 +1,72 @@
+#include "scenes/backend.h"
+
+#include <gtest/gtest.h>
+
+#include "core/backend/error.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/world.h"
+
+namespace toile {
+namespace {
+
+Scene scene_with(const std::string& keys)
+{
+    return parse_scene(R"({"toile": 1, "frames": 3, )" + keys +
+                           R"("cloths": [{"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.05}}]})",
+                       "test.json");
+}
+
+TEST(Backend, SaysWhatOfASceneNeedsTheCpu)
+{
+    EXPECT_EQ(why_not_on_gpu(scene_with("")), "");
+    EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"method": "quadrature"}, )")), "");
+    EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"method": "multigrid"}, )")),
+              R"(solver.method "multigrid" runs on the CPU only)");
+    EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"outer": "anderson"}, )")),
+              R"(solver.outer "anderson" runs on the CPU only)");
+    EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"contact_preconditioner": "exact"}, )")),
+              R"(solver.contact_preconditioner "exact" runs on the CPU only)");
+}
+
+TEST(Backend, RefusesASceneThatNeedsTheCpu)
+{
+    WorldOptions options;
+    options.backend = Backend::Cuda;
+    try {
+        const World world(scene_with(R"("solver": {"method": "xpbd"}, )"), options);
+        FAIL() << "took it";
+    } catch (const InvalidInput& error) {
+        EXPECT_STREQ(error.what(), "test.json: solver.method \"xpbd\" runs on the CPU only; choose the backend cpu "
+                                   "or auto, or change the scene");
+    }
+}
+
+TEST(Backend, TakesTheCpuWhereAutoFindsNoGpuThatWorks)
+{
+    std::string warning;
+    WorldOptions options;
+    options.backend = Backend::Auto;
+    options.warn = [&](const std::string& text) { warning += text; };
+    World world(scene_with(R"("solver": {"method": "xpbd"}, )"), options);
+    EXPECT_EQ(warning, R"(the backend is cpu: solver.method "xpbd" runs on the CPU only)");
+    EXPECT_EQ(world.device(), nullptr);
+    EXPECT_NE(world.advance_frame().status, StepReport::Status::NonFinite);
+}
+
+TEST(Backend, SaysWhyThereIsNoGpu)
+{
+    const std::string why = why_no_cuda_device();
+    if (why.empty())
+        GTEST_SKIP() << "this machine has a CUDA device";
+    WorldOptions options;
+    options.backend = Backend::Cuda;
+    try {
+        const World world(scene_with(""), options);
+        FAIL() << "took it";
+    } catch (const DeviceError& error) {
+        EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+}
+
+} // namespace
+} // namespace toile
