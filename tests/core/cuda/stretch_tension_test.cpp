@@ -200,6 +200,7 @@ TEST_F(DeviceStretchTensionTest, LeavesSliversAlone)
     OnGpu gpu(space(), 5);
     tension->add_to(gpu.energies, 0);
     std::vector<Vec3> x;
+    x.reserve(uv.size());
     for (const Vec2& p : uv)
         x.emplace_back(p.x(), 0.0, p.y());
     x[4].z() = -0.002;
