@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/crossings/find_crossings.h"
+#include "core/quadrature/table_store.h"
 #include "scenes/format/read_scene.h"
 #include "tests/core/cuda/on_device.h"
 
