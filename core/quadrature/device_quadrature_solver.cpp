@@ -61,19 +61,20 @@ std::unique_ptr<DeviceQuadrature> DeviceQuadratureSolver::make_operator(const Gr
     const Part& part = *group.part;
     const TableInput input{group.H, group.fixed, part.places, settings_};
     const int size = int(part.places.size());
+    const Eigen::VectorXd diagonal = group.H.diagonal();
+    const PackingAccuracy packing{{diagonal.data(), int(diagonal.size())}, settings_.kernel.tolerance};
     if (const auto tables = store_->find(input, part.listener))
-        return std::make_unique<DeviceQuadrature>(space_, *tables, size, group.first);
+        return std::make_unique<DeviceQuadrature>(space_, *tables, size, group.first, packing);
 
     const std::shared_ptr<const QuadratureTables> tables = begin_tables(input);
     const std::shared_ptr<const SupernodalFactor> factor =
         shared_factor(group.H, [&] { return Cholesky(group.H).shared_factor(); });
-    const Eigen::VectorXd diagonal = group.H.diagonal();
-    std::optional<DeviceKernelTable> kernel =
-        build_kernel_table(space_, *factor, {diagonal.data(), int(diagonal.size())}, tables->basis,
-                           settings_.kernel, part.listener.progress);
+    std::optional<DeviceKernelTable> kernel = build_kernel_table(
+        space_, *factor, packing.diagonal, tables->basis, settings_.kernel, part.listener.progress);
     if (!kernel)
         throw Cancelled("building the quadrature tables was cancelled");
-    return std::make_unique<DeviceQuadrature>(space_, tables->basis, std::move(*kernel), size, group.first);
+    return std::make_unique<DeviceQuadrature>(space_, tables->basis, std::move(*kernel), size, group.first,
+                                              packing);
 }
 
 void DeviceQuadratureSolver::apply(View<const Vec3> b, View<Vec3> x) const
