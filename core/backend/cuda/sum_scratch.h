@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/backend/cuda/array.h"
+#include "core/backend/cuda/team.h"
 
 namespace toile {
 
@@ -15,6 +16,22 @@ struct SumScratch {
     DeviceArray<T> block_sums;
     DeviceArray<T> total;
     PinnedArray<T> value;
+};
+
+/// Blocks of a record's sum: each adds up every so many-th run of items, and all fit a large device at once.
+/// They decide how it rounds, whatever the device.
+inline constexpr int kRecordBlocks = 264;
+
+/// What the sum of a record (record_sum.cuh) needs.
+struct RecordScratch {
+    explicit RecordScratch(const CudaSpace& space)
+        : block_sums(space, "sum/record_blocks", kRecordBlocks * kWarp), finished(space, "sum/finished", 1)
+    {
+        finished.fill_zero();
+    }
+
+    DeviceArray<double> block_sums;
+    DeviceArray<unsigned> finished;
 };
 
 } // namespace toile

@@ -14,6 +14,8 @@ inline constexpr int kHistory = 5;
 
 /// What a turn of the descent sums up over all vertices.
 struct TrialSums {
+    static constexpr int kLargest = 2; ///< of the numbers, the one that is a maximum
+
     double value = 0.0;          ///< [J] of the objective at the trial point
     double slope = 0.0;          ///< [J] gradient . direction
     double largest_square = 0.0; ///< [m^2] of the direction's vectors: a maximum, not a sum

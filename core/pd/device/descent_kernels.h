@@ -67,25 +67,36 @@ struct MeasureTrial {
         if (descent.action == Descent::Action::Start || descent.is_over)
             return sums;
         sums.slope = gradient.dot(d);
-        sums.largest_square = d.squaredNorm();
-        sums.error.move = fields.masses[i] * sums.largest_square;
-        sums.error.force = gradient.squaredNorm() / fields.masses[i];
-        sums.error.opposing = gradient.dot(fields.drive[i]);
 
-        const Vec3 s = descent.search.step * d, y = new_gradient - gradient, w = new_z - z;
+        // Products in single precision, as the pairs are; what cancels, y and w, has been subtracted before.
+        const float mass = float(fields.masses[i]);
+        const PaddedVec3 move = fields.direction[i], force = padded(gradient);
+        sums.largest_square = dot(move, move);
+        sums.error.move = double(mass) * sums.largest_square;
+        sums.error.force = dot(force, force) / double(mass);
+        sums.error.opposing = dot(force, padded(fields.drive[i]));
+
+        const PaddedVec3 s = padded(descent.search.step * d), y = padded(new_gradient - gradient);
+        const PaddedVec3 w = padded(new_z - z);
         PairProducts<kHistory>& products = sums.products;
-        products.sy = s.dot(y);
-        products.ss = s.squaredNorm();
-        products.yy = y.squaredNorm();
-        products.yw = y.dot(w);
-        products.sg = s.dot(new_gradient);
-        products.yz = y.dot(new_z);
+        products.sy = dot(s, y);
+        products.ss = dot(s, s);
+        products.yy = dot(y, y);
+        products.yw = dot(y, w);
+        products.sg = dot(s, padded(new_gradient));
+        products.yz = dot(y, padded(new_z));
         for (int j = 0; j < kHistory; ++j) {
-            products.s_y[j] = unpadded(pairs[0][j]).dot(y);
-            products.y_w[j] = unpadded(pairs[1][j]).dot(y);
-            products.w_y[j] = unpadded(pairs[2][j]).dot(w);
+            products.s_y[j] = dot(pairs[0][j], y);
+            products.y_w[j] = dot(pairs[1][j], y);
+            products.w_y[j] = dot(pairs[2][j], w);
         }
         return sums;
+    }
+
+private:
+    TOILE_HD static double dot(const PaddedVec3& a, const PaddedVec3& b)
+    {
+        return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
     }
 };
 
