@@ -59,11 +59,12 @@ public:
                                                                  one_.tables)});
         return std::make_unique<BlockDiagonalSolver>(std::move(blocks));
     }
-    std::unique_ptr<GlobalSolver> device_solver(const CudaSpace& space) const
+    std::unique_ptr<GlobalSolver> device_solver(const CudaSpace& space,
+                                                DeviceQuadratureSolver::Weights weights) const
     {
         return std::make_unique<DeviceQuadratureSolver>(
             space, std::vector<DeviceQuadratureSolver::Part>(what_.cloths, {one_.places(), {}}),
-            QuadratureTables::Settings{}, one_.tables);
+            QuadratureTables::Settings{}, one_.tables, weights);
     }
 
     std::vector<Vec3> start;
@@ -114,15 +115,23 @@ Step measure_step(const CudaSpace& space, const StepCase& what)
     };
     step_cpu(); // the tables are built here, once for both
 
-    DeviceBody device(space, cloths.start, cloths.system(cloths.device_solver(space)),
-                      {settings.tolerance, settings.max_iterations});
-    device.set_acceleration(gravity);
-    (void)device.step(what.dt, cloths.fixed);
+    const auto body_with = [&](DeviceQuadratureSolver::Weights weights) {
+        auto body = std::make_unique<DeviceBody>(
+            space, cloths.start, cloths.system(cloths.device_solver(space, weights)),
+            DeviceBody::Settings{settings.tolerance, settings.max_iterations});
+        body->set_acceleration(gravity);
+        (void)body->step(what.dt, cloths.fixed);
+        return body;
+    };
+    using Weights = DeviceQuadratureSolver::Weights;
+    const std::unique_ptr<DeviceBody> body = body_with(Weights::Bytes);
+    DeviceBody& device = *body;
 
     Step result;
     result.cloths = what.cloths;
     result.vertices = int(cloths.start.size()) / what.cloths;
-    result.difference = largest_difference(device.positions(), cpu.positions());
+    result.difference = largest_difference(body_with(Weights::Single)->positions(), cpu.positions());
+    result.bytes_difference = largest_difference(device.positions(), cpu.positions());
     for (int k = 0; k < kWarmUp; ++k)
         (void)device.step(what.dt, cloths.fixed);
     int iterations = 0;

@@ -26,36 +26,43 @@ struct RecordLanes {
         return is_largest ? fmax(a, b) : a + b;
     }
 
-    /// What lane k holds of the records of all lanes: their number k. In every step a lane passes half of its
-    /// numbers on and takes over its half of the other's, so 31 exchanges do, not 5 a number.
+    /// Every lane passes half of its numbers on and takes over that half of the other's, then a quarter, and
+    /// so on: 31 exchanges, not 5 a number. At the end lane k has number k of all lanes in the first place.
+    template <int Half>
+    __device__ static void exchange(double (&numbers)[kWarp], int lane)
+    {
+        const bool is_upper = (lane & Half) != 0;
+        const bool has_largest = (lane & ~(Half - 1)) == (T::kLargest & ~(Half - 1));
+#pragma unroll
+        for (int k = 0; k < Half; ++k) {
+            const double low = numbers[k], high = numbers[k + Half];
+            const double taken = __shfl_xor_sync(0xffffffffU, is_upper ? low : high, Half);
+            numbers[k] = combined(is_upper ? high : low, taken, k == T::kLargest % Half && has_largest);
+        }
+        if constexpr (Half > 1)
+            exchange<Half / 2>(numbers, lane);
+    }
+
+    /// What lane k holds of the records of all lanes: their number k.
     __device__ static double of_warp(const T& record, int lane)
     {
-        double numbers[kWarp] = {};
-        memcpy(numbers, static_cast<const void*>(&record), sizeof(T));
+        double numbers[kWarp];
 #pragma unroll
-        for (int half = kWarp / 2; half > 0; half /= 2) {
-            const bool is_upper = (lane & half) != 0;
-            const bool has_largest = (lane & ~(half - 1)) == (T::kLargest & ~(half - 1));
-#pragma unroll
-            for (int k = 0; k < half; ++k) {
-                const double kept = is_upper ? numbers[k + half] : numbers[k];
-                const double passed_on = is_upper ? numbers[k] : numbers[k + half];
-                const double taken = __shfl_xor_sync(0xffffffffU, passed_on, half);
-                numbers[k] = combined(kept, taken, k == T::kLargest % half && has_largest);
-            }
-        }
+        for (int k = 0; k < kWarp; ++k)
+            numbers[k] = k < kNumbers ? reinterpret_cast<const double*>(&record)[k] : 0.0;
+        exchange<kWarp / 2>(numbers, lane);
         return numbers[0];
     }
 
     /// What lane k of the first warp gets: number k of all warps, in their order.
-    __device__ static double of_block(double number, double (&of_warps)[kSumThreads / kWarp][kWarp])
+    __device__ static double of_block(double number, double (&of_warps)[kRecordThreads / kWarp][kWarp])
     {
         const int lane = int(threadIdx.x) % kWarp, warp = int(threadIdx.x) / kWarp;
         of_warps[warp][lane] = number;
         __syncthreads();
         double sum = of_warps[0][lane];
         if (warp == 0)
-            for (int w = 1; w < kSumThreads / kWarp; ++w)
+            for (int w = 1; w < kRecordThreads / kWarp; ++w)
                 sum = combined(sum, of_warps[w][lane], lane == T::kLargest);
         __syncthreads();
         return sum;
@@ -67,16 +74,16 @@ struct RecordLanes {
 
 /// @param block_sums, finished  as RecordScratch's; the latter counts blocks, and is 0 before and after
 template <typename T, typename Term, typename Then>
-__global__ void __launch_bounds__(kSumThreads, kSumBlocksAtOnce)
+__global__ void __launch_bounds__(kRecordThreads)
     sum_records(int count, const Term term, const Then then, double* block_sums, unsigned* finished)
 {
     using Lanes = RecordLanes<T>;
-    __shared__ double of_warps[kSumThreads / kWarp][kWarp];
+    __shared__ double of_warps[kRecordThreads / kWarp][kWarp];
     __shared__ bool is_last;
     const int lane = int(threadIdx.x) % kWarp, warp = int(threadIdx.x) / kWarp;
     T record{};
-    for (long i = long(blockIdx.x) * kSumThreads + threadIdx.x; i < count;
-         i += long(gridDim.x) * kSumThreads)
+    for (long i = long(blockIdx.x) * kRecordThreads + threadIdx.x; i < count;
+         i += long(gridDim.x) * kRecordThreads)
         record += term(int(i));
     const double own = Lanes::of_block(Lanes::of_warp(record, lane), of_warps);
     if (warp == 0) {
@@ -94,7 +101,7 @@ __global__ void __launch_bounds__(kSumThreads, kSumBlocksAtOnce)
     __threadfence();
     double sum = 0.0;
 #pragma unroll 8
-    for (unsigned b = warp; b < gridDim.x; b += kSumThreads / kWarp)
+    for (unsigned b = warp; b < gridDim.x; b += kRecordThreads / kWarp)
         sum = Lanes::combined(sum, __ldcg(&block_sums[b * kWarp + lane]), lane == T::kLargest);
     sum = Lanes::of_block(sum, of_warps);
     if (warp == 0)
@@ -121,10 +128,10 @@ void parallel_sum_record_then(const CudaSpace& space, std::string_view name, int
 {
     static_assert(RecordLanes<T>::kNumbers > T::kLargest);
     const StageScope stage(name);
-    [[maybe_unused]] const int blocks = std::clamp(block_count(count, kSumThreads), 1, kRecordBlocks);
+    [[maybe_unused]] const int blocks = std::clamp(block_count(count, kRecordThreads), 1, kRecordBlocks);
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-    sum_records<T><<<blocks, kSumThreads, 0, space.stream()>>>(
+    sum_records<T><<<blocks, kRecordThreads, 0, space.stream()>>>(
         count, term, then, scratch.block_sums.view().data(), scratch.finished.view().data());
 #endif
     launch.done();

@@ -18,9 +18,10 @@ struct SumScratch {
     PinnedArray<T> value;
 };
 
-/// Blocks of a record's sum: each adds up every so many-th run of items, and all fit a large device at once.
-/// They decide how it rounds, whatever the device.
-inline constexpr int kRecordBlocks = 264;
+/// Threads of a block of a record's sum, and blocks at most: one for every multiprocessor of a large device,
+/// with many registers. They decide how it rounds, whatever the device.
+inline constexpr int kRecordThreads = 384;
+inline constexpr int kRecordBlocks = 132;
 
 /// What the sum of a record (record_sum.cuh) needs.
 struct RecordScratch {
