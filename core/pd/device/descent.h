@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "core/pd/device/gram_lbfgs.h"
 #include "core/pd/line_search.h"
@@ -32,6 +33,8 @@ struct TrialSums {
         return *this;
     }
 };
+
+static_assert(offsetof(TrialSums, largest_square) == TrialSums::kLargest * sizeof(double));
 
 /// OuterLoop with L-BFGS as a GPU runs it: the same decisions from the same numbers, made on the device, so
 /// that turns can follow each other without the host. A turn evaluates a trial point and the inverse applied
