@@ -39,9 +39,7 @@ TEST(AddBending, GivesTheGradientAndEnergyOfTheCpu)
     const double value = bending.add_gradient(x, expected);
 
     const SparseMatrix& K = bending.matrix();
-    std::vector<float> values;
-    for (int k = 0; k < K.nonZeros(); ++k)
-        values.push_back(float(K.valuePtr()[k]));
+    const std::vector<float> values(K.valuePtr(), K.valuePtr() + K.nonZeros());
     const SlicedRows rows(View<const int>(K.outerIndexPtr(), n + 1),
                           View<const int>(K.innerIndexPtr(), int(values.size())), values);
     EXPECT_EQ(int(rows.first.size()), (n + SlicedRows::kRows - 1) / SlicedRows::kRows + 1);

@@ -20,8 +20,8 @@ DeviceDescent::DeviceDescent(const CudaSpace& space, int vertex_count, int share
       energy_(space, "descent/energy", vertex_count + share_count),
       direction_(space, "descent/direction", vertex_count), s_(space, "descent/s", kHistory * vertex_count),
       y_(space, "descent/y", kHistory * vertex_count), w_(space, "descent/w", kHistory * vertex_count),
-      descent_(space, "descent/state"),
-      sums_(space), on_host_(space, "descent/on_host", 1), turns_(space, "descent/turns"), expected_turns_(kTurnsAtOnce)
+      descent_(space, "descent/state"), sums_(space), on_host_(space, "descent/on_host", 1),
+      turns_(space, "descent/turns"), expected_turns_(kTurnsAtOnce)
 {
     descent_.upload(std::vector<Descent>(1));
     for (DeviceArray<PaddedVec3>* pairs : {&s_, &y_, &w_})
