@@ -59,11 +59,12 @@ public:
                                                                  one_.tables)});
         return std::make_unique<BlockDiagonalSolver>(std::move(blocks));
     }
-    std::unique_ptr<GlobalSolver> device_solver(const CudaSpace& space) const
+    std::unique_ptr<GlobalSolver> device_solver(const CudaSpace& space,
+                                                DeviceQuadratureSolver::Weights weights) const
     {
         return std::make_unique<DeviceQuadratureSolver>(
             space, std::vector<DeviceQuadratureSolver::Part>(what_.cloths, {one_.places(), {}}),
-            QuadratureTables::Settings{}, one_.tables);
+            QuadratureTables::Settings{}, one_.tables, weights);
     }
 
     std::vector<Vec3> start;
@@ -114,14 +115,22 @@ Step measure_step(const CudaSpace& space, const StepCase& what)
     };
     step(cpu); // the tables are built here, once for both
 
-    DeviceBody device(space, cloths.start, cloths.system(cloths.device_solver(space)),
-                      {settings.tolerance, settings.max_iterations});
-    step(device);
+    using Weights = DeviceQuadratureSolver::Weights;
+    const auto body_with = [&](Weights weights) {
+        auto body = std::make_unique<DeviceBody>(
+            space, cloths.start, cloths.system(cloths.device_solver(space, weights)),
+            DeviceBody::Settings{settings.tolerance, settings.max_iterations});
+        step(*body);
+        return body;
+    };
+    const std::unique_ptr<DeviceBody> body = body_with(Weights::Bytes);
+    DeviceBody& device = *body;
 
     Step result;
     result.cloths = what.cloths;
     result.vertices = int(cloths.start.size()) / what.cloths;
-    result.difference = largest_difference(device.positions(), cpu.positions());
+    result.difference = largest_difference(body_with(Weights::Single)->positions(), cpu.positions());
+    result.bytes_difference = largest_difference(device.positions(), cpu.positions());
     for (int k = 0; k < kWarmUp; ++k)
         step(device);
     int iterations = 0;

@@ -25,7 +25,7 @@ std::vector<Row> step_rows_of(const Report& report)
         rows.push_back({std::to_string(s.cloths), std::to_string(s.vertices), format("%.0f", s.iterations),
                         format("%.2f", s.device_ms), format("%.1f", 1e3 * s.device_ms / s.iterations),
                         format("%.1f", s.cpu_ms), format("%.1f", s.cpu_ms / s.device_ms),
-                        format("%.1e", s.difference)});
+                        format("%.1e", s.difference), format("%.1e", s.bytes_difference)});
     return rows;
 }
 
@@ -40,7 +40,7 @@ std::string markdown_tables(const Report& report)
                     rows_of(report)) +
            "\nBuilding the tables\n\n" + markdown_of(report.builds) + "\nSteps without contact\n\n" +
            markdown({"cloths", "vertices of each", "iterations", "step ms", "iteration us", "CPU ms",
-                     "CPU / GPU", "difference m"},
+                     "CPU / GPU", "difference m", "with bytes m"},
                     step_rows_of(report)) +
            "\n" + markdown_of(report.searches) + "\nScenes\n\n" + markdown_of(report.scenes);
 }
@@ -48,7 +48,7 @@ std::string markdown_tables(const Report& report)
 std::string csv_of_steps(const Report& report)
 {
     return csv({"cloths", "vertices", "iterations", "step_ms", "iteration_us", "cpu_ms", "cpu_over_gpu",
-                "difference_m"},
+                "difference_m", "bytes_difference_m"},
                step_rows_of(report));
 }
 

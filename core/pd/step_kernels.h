@@ -28,11 +28,14 @@ struct InertiaOfVertex {
     View<Vec3> gradient;         ///< [vertices] overwritten [N]
 
     /// @return its energy [J]
-    TOILE_HD double operator()(int i) const
+    TOILE_HD double operator()(int i) const { return at(i, x[i], prediction[i], masses[i]); }
+
+    /// The same of numbers that are at hand.
+    TOILE_HD double at(int i, const Vec3& own_x, const Vec3& own_prediction, double mass) const
     {
-        const Vec3 away = x[i] - prediction[i];
-        gradient[i] = masses[i] * inverse_dt2 * away;
-        return 0.5 * gradient[i].dot(away);
+        const Vec3 away = own_x - own_prediction, force = mass * inverse_dt2 * away;
+        gradient[i] = force;
+        return 0.5 * force.dot(away);
     }
 };
 

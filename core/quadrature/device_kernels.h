@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/backend/cuda/team.h"
-#include "core/quadrature/leaf_sum.h"
 #include "core/quadrature/moments.h"
+#include "core/quadrature/packed_lists.h"
 
 namespace toile {
 
@@ -151,13 +151,15 @@ struct ClimbFromLevel {
     }
 };
 
-/// Second pass by a team per leaf: a thread has Width of the eight targets and every so many-th entry of the
-/// lists. Teams after those of the leaves copy x = b where the table knows nothing: at fixed nodes.
-template <int Rank, int Width>
+/// Second pass by a team per leaf: a thread has half of the eight targets, four numbers as it loads them at
+/// once, and every so many-th entry of the lists. Teams after those of the leaves copy x = b where the table
+/// knows nothing: at fixed nodes.
+template <int Rank>
 struct GatherLeafByTeam {
-    static constexpr int kThreadsPerEntry = KernelView::kTargets / Width;
+    static constexpr int kWidth = PackedView::kHalf, kThreadsPerEntry = KernelView::kTargets / kWidth;
 
-    KernelView table;
+    PackedView packed;
+    KernelView rest;                ///< entries that are not packed
     View<const PaddedVec3> sources; ///< [bodies * slots]
     View<const PaddedVec3> moments; ///< [bodies * clusters * rank]
     View<const int> nodes;          ///< [slots]
@@ -182,18 +184,21 @@ struct GatherLeafByTeam {
         }
         const int leaves = nodes.size() / ClusterTree::kLeaf, body = k / leaves, leaf = k % leaves;
         const int clusters = moments.size() / first.size();
-        const LeafPart part{Width * (team.thread % kThreadsPerEntry), team.thread / kThreadsPerEntry,
-                            Team::kThreads / kThreadsPerEntry};
-        LeafSum<Rank, Floats<Width>> sum;
-        sum.add(table, sources.subview(body * nodes.size(), nodes.size()),
-                moments.subview(body * clusters, clusters), leaf, part);
+        const int half = team.thread % kThreadsPerEntry, group = team.thread / kThreadsPerEntry;
+        constexpr int kGroups = Team::kThreads / kThreadsPerEntry;
+        const auto own_sources = sources.subview(body * nodes.size(), nodes.size());
+        const auto own_moments = moments.subview(body * clusters, clusters);
+        PackedSum<Rank> bytes;
+        bytes.add(packed, own_sources, own_moments, leaf, {half, group, kGroups});
+        LeafSum<Rank, Floats<kWidth>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
+        sum.add(rest, own_sources, own_moments, leaf, {half * kWidth, group, kGroups});
         for (int a = 0; a < 3; ++a)
-            for (int t = 0; t < Width; ++t)
+            for (int t = 0; t < kWidth; ++t)
                 sum.axis[a].value[t] = team.sum(kThreadsPerEntry, sum.axis[a][t]);
 
         // All threads of a target hold its sums; the first group writes.
-        for (int t = 0; t < Width && part.group == 0 && is_own; ++t)
-            if (const int v = nodes[leaf * ClusterTree::kLeaf + part.first_target + t]; v >= 0)
+        for (int t = 0; t < kWidth && group == 0 && is_own; ++t)
+            if (const int v = nodes[leaf * ClusterTree::kLeaf + half * kWidth + t]; v >= 0)
                 x[first[body] + v] =
                     Vec3(double(sum.axis[0][t]), double(sum.axis[1][t]), double(sum.axis[2][t]));
     }

@@ -8,10 +8,6 @@ namespace toile {
 
 namespace {
 
-/// Targets that a thread adds up at once: one load of 16 bytes of weights. With one or two, 10 000 vertices
-/// take a fifth to two fifths longer; 50 000 take the same, for their tables come from memory.
-constexpr int kWidth = 4;
-
 std::vector<float> single(View<const double> values) { return {values.begin(), values.end()}; }
 
 /// Nodes that are in no leaf.
@@ -31,16 +27,19 @@ std::vector<int> others_of(View<const int> slots, int node_count)
 } // namespace
 
 DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
-                                   const std::vector<int>& first)
-    : DeviceQuadrature(space, tables.basis, DeviceKernelTable(space, tables.kernel), node_count, first)
+                                   const std::vector<int>& first, const PackingAccuracy& packing)
+    : DeviceQuadrature(space, tables.basis, DeviceKernelTable(space, tables.kernel), node_count, first,
+                       packing)
 {
 }
 
 DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis,
-                                   DeviceKernelTable kernel, int node_count, const std::vector<int>& first)
-    : space_(space), kernel_(std::move(kernel)), leaves_(space, "quadrature/leaves"),
-      transfers_(space, "quadrature/transfers"), nodes_(space, "quadrature/nodes"),
-      others_(space, "quadrature/others"), first_(space, "quadrature/first"),
+                                   DeviceKernelTable kernel, int node_count, const std::vector<int>& first,
+                                   const PackingAccuracy& packing)
+    : space_(space), kernel_(pack_table(space, std::move(kernel), basis.tree(), packing)),
+      leaves_(space, "quadrature/leaves"), transfers_(space, "quadrature/transfers"),
+      nodes_(space, "quadrature/nodes"), others_(space, "quadrature/others"),
+      first_(space, "quadrature/first"),
       sources_(space, "quadrature/sources", int(first.size()) * basis.tree().nodes().size()),
       moments_(space, "quadrature/moments", int(first.size()) * basis.rank() * basis.tree().cluster_count())
 {
@@ -61,7 +60,8 @@ DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const ClusterBasis& b
 
 std::size_t DeviceQuadrature::table_bytes() const
 {
-    return kernel_.bytes() + (std::size_t(leaves_.size()) + transfers_.size()) * sizeof(float);
+    return kernel_.packed.bytes() + kernel_.rest.bytes() +
+           (std::size_t(leaves_.size()) + transfers_.size()) * sizeof(float);
 }
 
 void DeviceQuadrature::solve(View<const Vec3> b, View<Vec3> x)
@@ -117,8 +117,15 @@ void DeviceQuadrature::gather(View<const Vec3> b, View<Vec3> x)
 template <int Rank>
 void DeviceQuadrature::gather_leaves(View<const Vec3> b, View<Vec3> x)
 {
-    const GatherLeafByTeam<Rank, kWidth> leaves{
-        kernel_.view(), sources_.view(), moments_.view(), nodes_.view(), others_.view(), first_.view(), b, x};
+    const GatherLeafByTeam<Rank> leaves{kernel_.packed.view(),
+                                        kernel_.rest.view(),
+                                        sources_.view(),
+                                        moments_.view(),
+                                        nodes_.view(),
+                                        others_.view(),
+                                        first_.view(),
+                                        b,
+                                        x};
     parallel_for_teams(space_, "quadrature/gather", leaves.teams(Team::kThreads), leaves);
 }
 

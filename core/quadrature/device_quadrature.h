@@ -5,27 +5,31 @@
 #include "core/backend/cuda/array.h"
 #include "core/quadrature/device_kernel_table.h"
 #include "core/quadrature/device_kernels.h"
+#include "core/quadrature/device_packing.h"
 #include "core/quadrature/quadrature_tables.h"
 
 namespace toile {
 
-/// QuadratureOperator on a GPU: the same tables and sums, in single precision throughout and in another
-/// order; the same bits in every run. Its tables stay on the device and serve any number of equal bodies at
-/// once.
+/// QuadratureOperator on a GPU: the same lists and sums, in single precision throughout and in another order;
+/// the same bits in every run. Weights are bytes where the accuracy asked for allows it, which changes the
+/// operator a little, and so as single numbers as the CPU's where it says nothing. Its tables stay on the
+/// device and serve any number of equal bodies at once.
 class DeviceQuadrature {
 public:
     /// @param space   borrowed, as what the tables are copied to
     /// @param tables  of one body, not needed afterwards
     /// @param node_count  of one body
     /// @param first   [bodies] where the nodes of each begin among those of all
+    /// @param packing  which weights may be bytes
     /// @throws DeviceError where the device has not the memory
     DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
-                     const std::vector<int>& first = {0});
+                     const std::vector<int>& first = {0}, const PackingAccuracy& packing = {});
 
     /// The same from a table that was built on the device.
     /// @param basis  that the table was built with, not needed afterwards
     DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis, DeviceKernelTable kernel,
-                     int node_count, const std::vector<int>& first = {0});
+                     int node_count, const std::vector<int>& first = {0},
+                     const PackingAccuracy& packing = {});
 
     /// Enqueues x = H^-1 b, nearly, for every body; as it is for fixed nodes.
     /// @param b, x  [nodes of all] on the device; not the same array
@@ -46,7 +50,7 @@ private:
 
     const CudaSpace& space_;
     BasisView<float> basis_;
-    DeviceKernelTable kernel_;
+    PackedTable kernel_;
     DeviceArray<float> leaves_, transfers_;
     DeviceArray<int> nodes_, others_, first_;
     DeviceArray<PaddedVec3> sources_, moments_;

@@ -21,9 +21,9 @@ struct DeviceQuadratureSolver::Group {
 
 DeviceQuadratureSolver::DeviceQuadratureSolver(const CudaSpace& space, std::vector<Part> parts,
                                                QuadratureTables::Settings settings,
-                                               std::shared_ptr<TableStore> store)
+                                               std::shared_ptr<TableStore> store, Weights weights)
     : space_(space), parts_(std::move(parts)), settings_(settings), store_(std::move(store)),
-      b_(space, "quadrature/b"), x_(space, "quadrature/x")
+      weights_(weights), b_(space, "quadrature/b"), x_(space, "quadrature/x")
 {
 }
 
@@ -61,19 +61,23 @@ std::unique_ptr<DeviceQuadrature> DeviceQuadratureSolver::make_operator(const Gr
     const Part& part = *group.part;
     const TableInput input{group.H, group.fixed, part.places, settings_};
     const int size = int(part.places.size());
+    const Eigen::VectorXd diagonal = group.H.diagonal();
+    const View<const double> of_H(diagonal.data(), int(diagonal.size()));
+    PackingAccuracy packing;
+    if (weights_ == Weights::Bytes)
+        packing = {of_H, settings_.kernel.tolerance};
     if (const auto tables = store_->find(input, part.listener))
-        return std::make_unique<DeviceQuadrature>(space_, *tables, size, group.first);
+        return std::make_unique<DeviceQuadrature>(space_, *tables, size, group.first, packing);
 
     const std::shared_ptr<const QuadratureTables> tables = begin_tables(input);
     const std::shared_ptr<const SupernodalFactor> factor =
         shared_factor(group.H, [&] { return Cholesky(group.H).shared_factor(); });
-    const Eigen::VectorXd diagonal = group.H.diagonal();
     std::optional<DeviceKernelTable> kernel =
-        build_kernel_table(space_, *factor, {diagonal.data(), int(diagonal.size())}, tables->basis,
-                           settings_.kernel, part.listener.progress);
+        build_kernel_table(space_, *factor, of_H, tables->basis, settings_.kernel, part.listener.progress);
     if (!kernel)
         throw Cancelled("building the quadrature tables was cancelled");
-    return std::make_unique<DeviceQuadrature>(space_, tables->basis, std::move(*kernel), size, group.first);
+    return std::make_unique<DeviceQuadrature>(space_, tables->basis, std::move(*kernel), size, group.first,
+                                              packing);
 }
 
 void DeviceQuadratureSolver::apply(View<const Vec3> b, View<Vec3> x) const

@@ -19,11 +19,15 @@ public:
         TableListener listener;    ///< hears of tables that update() prepares
     };
 
+    /// Of the table: as single numbers, or a byte each where that is accurate enough (PackingRule).
+    enum class Weights { Single, Bytes };
+
     /// @param space  borrowed
     /// @param store  where tables come from
     DeviceQuadratureSolver(const CudaSpace& space, std::vector<Part> parts,
                            QuadratureTables::Settings settings = {},
-                           std::shared_ptr<TableStore> store = TableStore::of_process());
+                           std::shared_ptr<TableStore> store = TableStore::of_process(),
+                           Weights weights = Weights::Bytes);
 
     /// Takes tables that the store has at hand; builds others on the device.
     /// @throws Cancelled where a listener wanted no more; InvalidInput where H is not positive definite;
@@ -45,6 +49,7 @@ private:
     std::vector<Part> parts_;
     QuadratureTables::Settings settings_;
     std::shared_ptr<TableStore> store_;
+    Weights weights_;
     std::vector<std::unique_ptr<DeviceQuadrature>> operators_; ///< of equal bodies each
     mutable DeviceArray<Vec3> b_, x_;                          ///< of solve()
 };

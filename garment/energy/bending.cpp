@@ -106,11 +106,11 @@ void Bending::add_constant_curvature(Triplets& S) const
 double Bending::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
     const int n = int(K_.rows());
-    const BendVertex<double> bend{View<const int>(K_.outerIndexPtr(), n + 1),
-                                  View<const int>(K_.innerIndexPtr(), int(K_.nonZeros())),
-                                  View<const double>(K_.valuePtr(), int(K_.nonZeros())), x};
+    const BendVertex bend{View<const int>(K_.outerIndexPtr(), n + 1),
+                          View<const int>(K_.innerIndexPtr(), int(K_.nonZeros())),
+                          View<const double>(K_.valuePtr(), int(K_.nonZeros())), x};
     parallel_for(kCpu, "bending/multiply", n, [&](int i) {
-        const Vec3 own = bend.gradient(i, 0, 1);
+        const Vec3 own = bend.gradient(i);
         gradient[i] += own;
         vertex_energy_[i] = bend.energy(i, own);
     });

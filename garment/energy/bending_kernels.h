@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/backend/types.h"
-#include "core/backend/unroll.h"
+#include "garment/energy/sliced_rows.h"
 
 namespace toile {
 
@@ -9,22 +9,19 @@ namespace toile {
 ///
 /// Rows of K sum to zero, so differences to the own vertex replace positions: no rounding far from the
 /// origin.
-/// @tparam Number  of K's entries; float is as good to a GPU, whose bandwidth it saves
-template <typename Number>
 struct BendVertex {
     View<const int> first;    ///< [vertices + 1] entries of K's rows
     View<const int> column;   ///< [entries]
-    View<const Number> value; ///< [entries] [N/m]
+    View<const double> value; ///< [entries] [N/m]
     View<const Vec3> x;       ///< [vertices] [m]
 
-    /// What every stride-th entry from `begin` on adds to its gradient [N].
-    TOILE_HD Vec3 gradient(int i, int begin, int stride) const
+    /// Its gradient [N].
+    TOILE_HD Vec3 gradient(int i) const
     {
         const Vec3 here = x[i];
         Vec3 sum(0.0, 0.0, 0.0);
-        TOILE_UNROLL(4)
-        for (int k = first[i] + begin; k < first[i + 1]; k += stride)
-            sum += double(value[k]) * (x[column[k]] - here);
+        for (int k = first[i]; k < first[i + 1]; ++k)
+            sum += value[k] * (x[column[k]] - here);
         return sum;
     }
 
@@ -32,23 +29,50 @@ struct BendVertex {
     TOILE_HD double energy(int i, const Vec3& gradient) const { return 0.5 * x[i].dot(gradient); }
 };
 
-/// Bending at vertex i by a team of threads.
+/// BendVertex for a GPU, where bandwidth is short, by a team of threads: rows in slices, their entries in
+/// single precision.
 struct AddBending {
-    BendVertex<float> bend;
-    View<Vec3> gradient; ///< [vertices] added to [N]
-    View<double> energy; ///< [vertices] added to [J]
+    static constexpr int kAtOnce = 6; ///< entries of a thread: all of most rows, which have some 23
+
+    View<const int> first;        ///< [slices + 1] of SlicedRows
+    View<const RowEntry> entries; ///< of K [N/m]
+    View<const Vec3> x;           ///< [vertices] [m]
+    View<Vec3> gradient;          ///< [vertices] added to [N]
+    View<double> energy;          ///< [vertices] added to [J]
 
     template <typename Team>
     TOILE_HD void operator()(int i, const Team& team, bool is_own) const
     {
-        Vec3 sum = bend.gradient(i, team.thread, Team::kThreads);
-        const double own = team.sum(1, bend.energy(i, sum)); // where digits cancel, before they are dropped
+        const bool writes = team.thread == 0 && is_own;
+        const Vec3 here = x[i], before = writes ? gradient[i] : Vec3(0.0, 0.0, 0.0);
+        const double energy_before = writes ? energy[i] : 0.0;
+        const int slice = i / SlicedRows::kRows, end = first[slice + 1];
+        Vec3 sum(0.0, 0.0, 0.0);
+        for (int k = first[slice] + i % SlicedRows::kRows * SlicedRows::kThreads + team.thread; k < end;
+             k += kAtOnce * kWarp)
+            add_some(k, end, here, sum);
+
+        const double own = team.sum(1, 0.5 * here.dot(sum)); // where digits cancel, before they are dropped
         for (int a = 0; a < 3; ++a)
             sum[a] = double(team.sum(1, float(sum[a])));
-        if (team.thread > 0 || !is_own)
+        if (!writes)
             return;
-        gradient[i] += sum;
-        energy[i] += own;
+        gradient[i] = before + sum;
+        energy[i] = energy_before + own;
+    }
+
+private:
+    /// Entries k, k + kWarp and so on, all of which are loaded before any is waited for.
+    TOILE_HD void add_some(int k, int end, const Vec3& here, Vec3& sum) const
+    {
+        RowEntry some[kAtOnce];
+        for (int n = 0; n < kAtOnce; ++n) {
+            const bool exists = k + n * kWarp < end;
+            some[n] = entries[exists ? k + n * kWarp : k];
+            some[n].value = exists ? some[n].value : 0.0F;
+        }
+        for (const RowEntry& entry : some)
+            sum += double(entry.value) * (x[entry.column] - here);
     }
 };
 

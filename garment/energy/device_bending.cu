@@ -5,16 +5,8 @@
 
 namespace toile {
 
-namespace {
-
-/// Threads of a row, which has some 23 entries.
-constexpr int kTeam = 8;
-
-} // namespace
-
 DeviceBending::DeviceBending(const CudaSpace& space)
-    : space_(space), first_(space, "bending/first"), column_(space, "bending/column"),
-      value_(space, "bending/value")
+    : space_(space), first_(space, "bending/first"), entries_(space, "bending/entries")
 {
 }
 
@@ -29,16 +21,16 @@ void DeviceBending::add(const SparseMatrix& K, int first_vertex)
         }
         host_first_.push_back(int(host_column_.size()));
     }
-    first_.upload(host_first_);
-    column_.upload(host_column_);
-    value_.upload(host_value_);
+    const SlicedRows rows(host_first_, host_column_, host_value_);
+    first_.upload(rows.first);
+    entries_.upload(rows.entries);
 }
 
 void DeviceBending::add_gradient(const DeviceEvaluation& at)
 {
-    const BendVertex<float> bend{first_.view(), column_.view(), value_.view(), at.x};
-    parallel_for_teams<kTeam>(space_, "bending/multiply", first_.size() - 1,
-                              AddBending{bend, at.gradient, at.energy});
+    parallel_for_teams<SlicedRows::kThreads>(
+        space_, "bending/multiply", int(host_first_.size()) - 1,
+        AddBending{first_.view(), entries_.view(), at.x, at.gradient, at.energy});
 }
 
 } // namespace toile

@@ -5,6 +5,7 @@
 #include "core/backend/cuda/array.h"
 #include "core/linear/sparse_matrix.h"
 #include "core/pd/device/device_energy.h"
+#include "garment/energy/sliced_rows.h"
 
 namespace toile {
 
@@ -22,10 +23,10 @@ public:
 
 private:
     const CudaSpace& space_;
-    std::vector<int> host_first_{0}, host_column_;
+    std::vector<int> host_first_{0}, host_column_; ///< rows of all cloths so far
     std::vector<float> host_value_;
-    DeviceArray<int> first_, column_;
-    DeviceArray<float> value_;
+    DeviceArray<int> first_; ///< of SlicedRows
+    DeviceArray<RowEntry> entries_;
 };
 
 } // namespace toile

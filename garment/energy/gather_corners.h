@@ -16,6 +16,8 @@ struct GatherCornersByTeam {
     template <typename Team>
     TOILE_HD void operator()(int v, const Team& team, bool is_own) const
     {
+        const bool writes = team.thread == 0 && is_own;
+        const Vec3 before = writes ? gradient[v] : Vec3(0.0, 0.0, 0.0); // before others are waited for
         PaddedVec3 sum(0.0F);
         TOILE_UNROLL(2)
         for (int k = first[v] + team.thread; k < first[v + 1]; k += Team::kThreads) {
@@ -26,8 +28,8 @@ struct GatherCornersByTeam {
         }
         for (int a = 0; a < 3; ++a)
             sum.value[a] = team.sum(1, sum[a]);
-        if (team.thread == 0 && is_own)
-            gradient[v] += unpadded(sum);
+        if (writes)
+            gradient[v] = before + unpadded(sum);
     }
 };
 

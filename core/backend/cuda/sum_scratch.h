@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/backend/cuda/array.h"
+#include "core/backend/cuda/team.h"
 
 namespace toile {
 
@@ -15,6 +16,23 @@ struct SumScratch {
     DeviceArray<T> block_sums;
     DeviceArray<T> total;
     PinnedArray<T> value;
+};
+
+/// Threads of a block of a record's sum, and blocks at most: one for every multiprocessor of a large device,
+/// with many registers. They decide how it rounds, whatever the device.
+inline constexpr int kRecordThreads = 384;
+inline constexpr int kRecordBlocks = 132;
+
+/// What the sum of a record (record_sum.cuh) needs.
+struct RecordScratch {
+    explicit RecordScratch(const CudaSpace& space)
+        : block_sums(space, "sum/record_blocks", kRecordBlocks * kWarp), finished(space, "sum/finished", 1)
+    {
+        finished.fill_zero();
+    }
+
+    DeviceArray<double> block_sums;
+    DeviceArray<unsigned> finished;
 };
 
 } // namespace toile

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "core/pd/device/gram_lbfgs.h"
 #include "core/pd/line_search.h"
@@ -14,6 +15,8 @@ inline constexpr int kHistory = 5;
 
 /// What a turn of the descent sums up over all vertices.
 struct TrialSums {
+    static constexpr int kLargest = 2; ///< of the numbers, the one that is a maximum
+
     double value = 0.0;          ///< [J] of the objective at the trial point
     double slope = 0.0;          ///< [J] gradient . direction
     double largest_square = 0.0; ///< [m^2] of the direction's vectors: a maximum, not a sum
@@ -30,6 +33,8 @@ struct TrialSums {
         return *this;
     }
 };
+
+static_assert(offsetof(TrialSums, largest_square) == TrialSums::kLargest * sizeof(double));
 
 /// OuterLoop with L-BFGS as a GPU runs it: the same decisions from the same numbers, made on the device, so
 /// that turns can follow each other without the host. A turn evaluates a trial point and the inverse applied

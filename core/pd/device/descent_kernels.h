@@ -26,15 +26,23 @@ struct DescentFields {
     TOILE_HD int pair_of(int slot, int i) const { return slot * direction.size() + i; }
     TOILE_HD Vec3 free_part(const View<Vec3>& field, int i) const
     {
-        return fixed[i] ? Vec3(0.0, 0.0, 0.0) : field[i];
+        const Vec3 own = field[i]; // loaded beside the flag, not after it
+        return fixed[i] ? Vec3(0.0, 0.0, 0.0) : own;
     }
 
     /// Vertex i sums every n-th share, n vertices.
     TOILE_HD double shares_of(int i) const
     {
+        constexpr int kAtOnce = 4; // loads that don't wait for each other: triangles are twice the vertices
+        const int stride = direction.size();
         double sum = 0.0;
-        for (int k = i; k < energy.size(); k += direction.size())
-            sum += energy[k];
+        for (int first = i; first < energy.size(); first += kAtOnce * stride) {
+            double shares[kAtOnce];
+            for (int k = 0; k < kAtOnce; ++k)
+                shares[k] = first + k * stride < energy.size() ? energy[first + k * stride] : 0.0;
+            for (const double share : shares)
+                sum += share;
+        }
         return sum;
     }
 
@@ -67,25 +75,36 @@ struct MeasureTrial {
         if (descent.action == Descent::Action::Start || descent.is_over)
             return sums;
         sums.slope = gradient.dot(d);
-        sums.largest_square = d.squaredNorm();
-        sums.error.move = fields.masses[i] * sums.largest_square;
-        sums.error.force = gradient.squaredNorm() / fields.masses[i];
-        sums.error.opposing = gradient.dot(fields.drive[i]);
 
-        const Vec3 s = descent.search.step * d, y = new_gradient - gradient, w = new_z - z;
+        // Products in single precision, as the pairs are; what cancels, y and w, has been subtracted before.
+        const float mass = float(fields.masses[i]);
+        const PaddedVec3 move = fields.direction[i], force = padded(gradient);
+        sums.largest_square = dot(move, move);
+        sums.error.move = double(mass) * sums.largest_square;
+        sums.error.force = dot(force, force) / double(mass);
+        sums.error.opposing = dot(force, padded(fields.drive[i]));
+
+        const PaddedVec3 s = padded(descent.search.step * d), y = padded(new_gradient - gradient);
+        const PaddedVec3 w = padded(new_z - z);
         PairProducts<kHistory>& products = sums.products;
-        products.sy = s.dot(y);
-        products.ss = s.squaredNorm();
-        products.yy = y.squaredNorm();
-        products.yw = y.dot(w);
-        products.sg = s.dot(new_gradient);
-        products.yz = y.dot(new_z);
+        products.sy = dot(s, y);
+        products.ss = dot(s, s);
+        products.yy = dot(y, y);
+        products.yw = dot(y, w);
+        products.sg = dot(s, padded(new_gradient));
+        products.yz = dot(y, padded(new_z));
         for (int j = 0; j < kHistory; ++j) {
-            products.s_y[j] = unpadded(pairs[0][j]).dot(y);
-            products.y_w[j] = unpadded(pairs[1][j]).dot(y);
-            products.w_y[j] = unpadded(pairs[2][j]).dot(w);
+            products.s_y[j] = dot(pairs[0][j], y);
+            products.y_w[j] = dot(pairs[1][j], y);
+            products.w_y[j] = dot(pairs[2][j], w);
         }
         return sums;
+    }
+
+private:
+    TOILE_HD static double dot(const PaddedVec3& a, const PaddedVec3& b)
+    {
+        return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
     }
 };
 
@@ -106,53 +125,74 @@ struct TakeTrial {
 
     TOILE_HD void operator()(int i) const
     {
+        // Everything is loaded before anything is waited for, also what is seldom left out.
         const Descent& descent = fields.descent[0];
-        switch (descent.action) {
-        case Descent::Action::Rest:
+        const Own own{fields.here.x[i],
+                      fields.here.gradient[i],
+                      fields.here.z[i],
+                      fields.trial.x[i],
+                      fields.free_part(fields.trial.gradient, i),
+                      fields.free_part(fields.trial.z, i),
+                      fields.inertia.prediction[i],
+                      fields.masses[i]};
+        if (descent.action == Descent::Action::Rest)
             return;
-        case Descent::Action::Shorten:
-            break;
-        case Descent::Action::Restart:
-            fields.direction[i] = padded(-fields.here.z[i]);
-            break;
-        default:
-            take(descent, i);
+        Vec3 x = own.x, d;
+        if (descent.action == Descent::Action::Shorten) {
+            d = unpadded(fields.direction[i]);
+        } else if (descent.action == Descent::Action::Restart) {
+            d = -own.z;
+            fields.direction[i] = padded(d);
+        } else {
+            x = own.trial_x;
+            d = take(descent, i, own);
         }
-        fields.trial.x[i] = fields.here.x[i] + descent.search.step * unpadded(fields.direction[i]);
-        fields.begin_trial(i);
+        const Vec3 next = x + descent.search.step * d;
+        fields.trial.x[i] = next;
+        fields.energy[i] = fields.inertia.at(i, next, own.prediction, own.mass);
     }
 
 private:
-    TOILE_HD void take(const Descent& descent, int i) const
+    /// What vertex i has.
+    struct Own {
+        Vec3 x, gradient, z, trial_x, trial_gradient, trial_z, prediction;
+        double mass;
+    };
+
+    /// @return the direction from the trial point
+    TOILE_HD Vec3 take(const Descent& descent, int i, const Own& own) const
     {
-        const Vec3 x = fields.trial.x[i];
-        const Vec3 gradient = fields.free_part(fields.trial.gradient, i);
-        const Vec3 z = fields.free_part(fields.trial.z, i);
-        Vec3 d = direction(descent, i) - z;
+        Vec3 d = direction(descent, i) - own.trial_z;
         if (descent.kept_slot >= 0) {
             // The newest pair is not in memory yet.
-            const PaddedVec3 s = padded(x - fields.here.x[i]), w = padded(z - fields.here.z[i]);
+            const PaddedVec3 s = padded(own.trial_x - own.x), w = padded(own.trial_z - own.z);
             const int pair = fields.pair_of(descent.kept_slot, i), newest = descent.pairs.count() - 1;
-            fields.y[pair] = padded(gradient - fields.here.gradient[i]);
+            fields.y[pair] = padded(own.trial_gradient - own.gradient);
             fields.s[pair] = s;
             fields.w[pair] = w;
             d += descent.pairs.of_s(newest) * unpadded(s) - descent.pairs.of_w(newest) * unpadded(w);
         }
-        fields.here.x[i] = x;
-        fields.here.gradient[i] = gradient;
-        fields.here.z[i] = z;
-        fields.direction[i] = padded(descent.is_over ? Vec3(0.0, 0.0, 0.0) : d);
+        fields.here.x[i] = own.trial_x;
+        fields.here.gradient[i] = own.trial_gradient;
+        fields.here.z[i] = own.trial_z;
+        const PaddedVec3 rounded = padded(descent.is_over ? Vec3(0.0, 0.0, 0.0) : d);
+        fields.direction[i] = rounded;
+        return unpadded(rounded);
     }
 
-    /// What the pairs in memory add to it.
+    /// What the pairs in memory add to it, slot after slot: no address waits for what was decided.
     TOILE_HD Vec3 direction(const Descent& descent, int i) const
     {
+        PaddedVec3 s[kHistory], w[kHistory];
+        for (int slot = 0; slot < kHistory; ++slot) {
+            s[slot] = fields.s[fields.pair_of(slot, i)];
+            w[slot] = fields.w[fields.pair_of(slot, i)];
+        }
         Vec3 sum(0.0, 0.0, 0.0);
-        for (int j = 0; j < kHistory; ++j) {
-            const int slot = descent.pairs.slot_of(j), pair = fields.pair_of(slot, i);
-            const PaddedVec3 s = fields.s[pair], w = fields.w[pair];
-            if (j < descent.pairs.count() && slot != descent.kept_slot)
-                sum += descent.pairs.of_s(j) * unpadded(s) - descent.pairs.of_w(j) * unpadded(w);
+        for (int slot = 0; slot < kHistory; ++slot) {
+            const int k = descent.pairs.pair_in(slot);
+            if (k < descent.pairs.count() && slot != descent.kept_slot)
+                sum += descent.pairs.of_s(k) * unpadded(s[slot]) - descent.pairs.of_w(k) * unpadded(w[slot]);
         }
         return sum;
     }

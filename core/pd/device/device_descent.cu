@@ -1,6 +1,6 @@
 #include "core/pd/device/device_descent.h"
 
-#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/record_sum.cuh"
 
 namespace toile {
 
@@ -20,9 +20,8 @@ DeviceDescent::DeviceDescent(const CudaSpace& space, int vertex_count, int share
       energy_(space, "descent/energy", vertex_count + share_count),
       direction_(space, "descent/direction", vertex_count), s_(space, "descent/s", kHistory * vertex_count),
       y_(space, "descent/y", kHistory * vertex_count), w_(space, "descent/w", kHistory * vertex_count),
-      descent_(space, "descent/state"),
-      block_sums_(space, "descent/block_sums", block_count(vertex_count, kSumItems)),
-      on_host_(space, "descent/on_host", 1), turns_(space, "descent/turns"), expected_turns_(kTurnsAtOnce)
+      descent_(space, "descent/state"), sums_(space), on_host_(space, "descent/on_host", 1),
+      turns_(space, "descent/turns"), expected_turns_(kTurnsAtOnce)
 {
     descent_.upload(std::vector<Descent>(1));
     for (DeviceArray<PaddedVec3>* pairs : {&s_, &y_, &w_})
@@ -53,8 +52,8 @@ void DeviceDescent::enqueue_turn(const Problem& problem)
                           energy_.view().subview(n, energy_.size() - n)});
     problem.precondition(trial_gradient_.view(), trial_z_.view());
     const DescentFields all = fields(problem);
-    parallel_sum_then(space_, "descent/decide", x_.size(), TrialSums{}, MeasureTrial{all},
-                      DecideOnTrial{descent_.view()}, block_sums_);
+    parallel_sum_record_then<TrialSums>(space_, "descent/decide", x_.size(), MeasureTrial{all},
+                                        DecideOnTrial{descent_.view()}, sums_);
     parallel_for(space_, "descent/take", x_.size(), TakeTrial{all});
 }
 

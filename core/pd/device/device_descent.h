@@ -4,6 +4,7 @@
 
 #include "core/backend/cuda/array.h"
 #include "core/backend/cuda/graph.h"
+#include "core/backend/cuda/sum_scratch.h"
 #include "core/pd/device/descent_kernels.h"
 #include "core/pd/device/device_energy.h"
 
@@ -57,7 +58,7 @@ private:
     DeviceArray<double> energy_;
     DeviceArray<PaddedVec3> direction_, s_, y_, w_;
     DeviceArray<Descent> descent_;
-    DeviceArray<TrialSums> block_sums_;
+    RecordScratch sums_;
     PinnedArray<Descent> on_host_;
     CudaGraph turns_;
     int expected_turns_;

@@ -59,6 +59,13 @@ public:
         return slot < 0 ? slot + History : slot < History ? slot : slot - History;
     }
 
+    /// Which pair is in a slot, the inverse: none where it is count() or more.
+    TOILE_HD int pair_in(int slot) const
+    {
+        const int k = slot - next_slot_ + count_;
+        return k < 0 ? k + History : k < History ? k : k - History;
+    }
+
     // Coefficients of pair k in the direction.
     TOILE_HD double of_s(int k) const { return of_s_[k]; }
     TOILE_HD double of_w(int k) const { return of_w_[k]; }

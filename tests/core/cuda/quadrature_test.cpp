@@ -18,6 +18,9 @@ namespace {
 /// Largest difference, of the largest number of the CPU's result [-]: single precision, in another order.
 constexpr double kTolerance = 5e-6;
 
+/// The same where weights are bytes [-]; what that does to contraction: tests/core/packing_test.cpp.
+constexpr double kToleranceOfBytes = 5e-4;
+
 double largest(const std::vector<Vec3>& field)
 {
     double most = 0.0;
@@ -156,13 +159,16 @@ TEST_F(DeviceQuadratureTest, SolvesEqualAndOtherBodiesWithTablesOfEitherMaker)
     cpu.solve(load, expected);
 
     // One store has the CPU's tables, the other has none.
-    for (const auto& store : {TableStore::of_process(), std::make_shared<TableStore>()}) {
-        DeviceQuadratureSolver there(space(), std::vector<DeviceQuadratureSolver::Part>(3, {grid.places, {}}),
-                                     {}, store);
-        there.update(H, fixed);
-        there.solve(load, found);
-        EXPECT_LT(difference(found, expected), kTolerance);
-    }
+    using Weights = DeviceQuadratureSolver::Weights;
+    for (const auto& store : {TableStore::of_process(), std::make_shared<TableStore>()})
+        for (const auto [weights, tolerance] :
+             {std::pair(Weights::Single, kTolerance), std::pair(Weights::Bytes, kToleranceOfBytes)}) {
+            DeviceQuadratureSolver there(
+                space(), std::vector<DeviceQuadratureSolver::Part>(3, {grid.places, {}}), {}, store, weights);
+            there.update(H, fixed);
+            there.solve(load, found);
+            EXPECT_LT(difference(found, expected), tolerance);
+        }
 }
 
 } // namespace

@@ -1,0 +1,140 @@
+#pragma once
+
+/// Sums of records of many numbers on a GPU, and what is decided on them, in one kernel. Included by .cu
+/// files, as parallel.cuh.
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+#include <type_traits>
+
+#include "core/backend/cuda/parallel.cuh"
+
+namespace toile {
+
+/// A record as a warp adds it up: a number a lane.
+template <typename T>
+struct RecordLanes {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0);
+    static constexpr int kNumbers = int(sizeof(T) / sizeof(double));
+    static_assert(kNumbers <= kWarp);
+
+#ifdef __CUDACC__
+    /// One number of two records.
+    __device__ static double combined(double a, double b, bool is_largest)
+    {
+        return is_largest ? fmax(a, b) : a + b;
+    }
+
+    /// Every lane passes half of its numbers on and takes over that half of the other's, then a quarter, and
+    /// so on: 31 exchanges, not 5 a number. At the end lane k has number k of all lanes in the first place.
+    template <int Half>
+    __device__ static void exchange(double (&numbers)[kWarp], int lane)
+    {
+        const bool is_upper = (lane & Half) != 0;
+        const bool has_largest = (lane & ~(Half - 1)) == (T::kLargest & ~(Half - 1));
+#pragma unroll
+        for (int k = 0; k < Half; ++k) {
+            const double low = numbers[k], high = numbers[k + Half];
+            const double taken = __shfl_xor_sync(0xffffffffU, is_upper ? low : high, Half);
+            numbers[k] = combined(is_upper ? high : low, taken, k == T::kLargest % Half && has_largest);
+        }
+        if constexpr (Half > 1)
+            exchange<Half / 2>(numbers, lane);
+    }
+
+    /// What lane k holds of the records of all lanes: their number k.
+    __device__ static double of_warp(const T& record, int lane)
+    {
+        double numbers[kWarp];
+#pragma unroll
+        for (int k = 0; k < kWarp; ++k)
+            numbers[k] = k < kNumbers ? reinterpret_cast<const double*>(&record)[k] : 0.0;
+        exchange<kWarp / 2>(numbers, lane);
+        return numbers[0];
+    }
+
+    /// What lane k of the first warp gets: number k of all warps, in their order.
+    __device__ static double of_block(double number, double (&of_warps)[kRecordThreads / kWarp][kWarp])
+    {
+        const int lane = int(threadIdx.x) % kWarp, warp = int(threadIdx.x) / kWarp;
+        of_warps[warp][lane] = number;
+        __syncthreads();
+        double sum = of_warps[0][lane];
+        if (warp == 0)
+            for (int w = 1; w < kRecordThreads / kWarp; ++w)
+                sum = combined(sum, of_warps[w][lane], lane == T::kLargest);
+        __syncthreads();
+        return sum;
+    }
+#endif
+};
+
+#ifdef __CUDACC__
+
+/// @param block_sums, finished  as RecordScratch's; the latter counts blocks, and is 0 before and after
+template <typename T, typename Term, typename Then>
+__global__ void __launch_bounds__(kRecordThreads)
+    sum_records(int count, const Term term, const Then then, double* block_sums, unsigned* finished)
+{
+    using Lanes = RecordLanes<T>;
+    __shared__ double of_warps[kRecordThreads / kWarp][kWarp];
+    __shared__ bool is_last;
+    const int lane = int(threadIdx.x) % kWarp, warp = int(threadIdx.x) / kWarp;
+    T record{};
+    for (long i = long(blockIdx.x) * kRecordThreads + threadIdx.x; i < count;
+         i += long(gridDim.x) * kRecordThreads)
+        record += term(int(i));
+    const double own = Lanes::of_block(Lanes::of_warp(record, lane), of_warps);
+    if (warp == 0) {
+        block_sums[blockIdx.x * kWarp + lane] = own;
+        __threadfence();
+        __syncwarp();
+        if (lane == 0)
+            is_last = atomicInc(finished, gridDim.x - 1) == gridDim.x - 1;
+    }
+    __syncthreads();
+    if (!is_last)
+        return;
+
+    // The last block to finish adds up those of all: warps every so many-th, then the warps in order.
+    __threadfence();
+    double sum = 0.0;
+#pragma unroll 8
+    for (unsigned b = warp; b < gridDim.x; b += kRecordThreads / kWarp)
+        sum = Lanes::combined(sum, __ldcg(&block_sums[b * kWarp + lane]), lane == T::kLargest);
+    sum = Lanes::of_block(sum, of_warps);
+    if (warp == 0)
+        of_warps[0][lane] = sum;
+    __syncthreads();
+    if (threadIdx.x == 0) {
+        T total;
+        memcpy(static_cast<void*>(&total), &of_warps[0][0], sizeof(T));
+        then(total);
+    }
+}
+
+#endif
+
+/// Sums the records term(i) over [0, count) and calls then(sum) on the device, once, by one thread, in the
+/// stream's turn; nothing is read back. One kernel. The same bits in every run and on every device.
+/// @tparam T    at most 32 doubles and nothing else, all 0 by default, with +=. Number T::kLargest (-1: none)
+///              is a maximum of what is not negative, not a sum.
+/// @param term  may also write slot i of arrays
+template <typename T, typename Term, typename Then>
+void parallel_sum_record_then(const CudaSpace& space, std::string_view name, int count,
+                              [[maybe_unused]] const Term& term, [[maybe_unused]] const Then& then,
+                              [[maybe_unused]] RecordScratch& scratch, CallSite where = CallSite::here())
+{
+    static_assert(RecordLanes<T>::kNumbers > T::kLargest);
+    const StageScope stage(name);
+    [[maybe_unused]] const int blocks = std::clamp(block_count(count, kRecordThreads), 1, kRecordBlocks);
+    const CudaLaunch launch(space, name, where);
+#ifdef __CUDACC__
+    sum_records<T><<<blocks, kRecordThreads, 0, space.stream()>>>(
+        count, term, then, scratch.block_sums.view().data(), scratch.finished.view().data());
+#endif
+    launch.done();
+}
+
+} // namespace toile

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "core/backend/cuda/team.h"
+
+namespace toile {
+
+/// An entry of a sparse matrix: one load of 8 bytes on a GPU.
+struct alignas(8) RowEntry {
+    int column;
+    float value;
+};
+
+/// Rows of a sparse matrix in slices, one for each warp: kThreads threads a row, each with every kThreads-th
+/// entry. What a warp loads at once is side by side. Rows of a slice are as long as its longest, in whole
+/// warps of entries; what is missing is 0 at the diagonal.
+struct SlicedRows {
+    static constexpr int kThreads = 4; ///< of a row
+    static constexpr int kRows = kWarp / kThreads;
+
+    std::vector<int> first; ///< [slices + 1] into entries
+    std::vector<RowEntry> entries;
+
+    /// @param row_first  [rows + 1] into columns and values
+    SlicedRows(View<const int> row_first, View<const int> columns, View<const float> values)
+    {
+        const int rows = row_first.size() - 1;
+        first.push_back(0);
+        for (int begin = 0; begin < rows; begin += kRows) {
+            int longest = 0;
+            for (int row = begin; row < std::min(begin + kRows, rows); ++row)
+                longest = std::max(longest, row_first[row + 1] - row_first[row]);
+            for (int round = 0; round < longest; round += kThreads)
+                for (int item = 0; item < kWarp; ++item) {
+                    const int row = std::min(begin + item / kThreads, rows - 1);
+                    const int k = row_first[row] + round + item % kThreads;
+                    entries.push_back(k < row_first[row + 1] ? RowEntry{columns[k], values[k]}
+                                                             : RowEntry{row, 0.0F});
+                }
+            first.push_back(int(entries.size()));
+        }
+    }
+};
+
+} // namespace toile

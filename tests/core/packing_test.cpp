@@ -1,0 +1,189 @@
+#include "core/quadrature/packing_kernels.h"
+
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "core/backend/parallel.h"
+#include "core/quadrature/quadrature_operator.h"
+#include "core/quadrature/quadrature_tables.h"
+#include "tests/core/quadrature_problems.h"
+
+/// Lists with a byte a weight, made and summed by the kernels of a GPU on the CPU. No GPU is needed.
+namespace toile::test {
+namespace {
+
+constexpr double kTolerance = 0.2;
+
+/// One list split in two.
+struct SplitList {
+    std::vector<int> packed_first, rest_first, packed_source, rest_source;
+    std::vector<std::uint32_t> codes;
+    std::vector<float> scales, rest_weights;
+
+    SplitList(const EntryList& list, const PackingRule& rule, bool is_near, int words, int scale_count)
+    {
+        const int count = list.source.size();
+        std::vector<int> chosen(count + 1, 0);
+        parallel_for(kCpu, "test/choose", count, ChooseToPack{list, rule, chosen});
+        std::vector<long> before(count + 1);
+        std::exclusive_scan(chosen.begin(), chosen.end(), before.begin(), 0L);
+        const PackedPlaces places{chosen, before};
+        const size_t packed = before.back(), rest = count - packed;
+        packed_source.resize(packed);
+        codes.resize(packed * words);
+        scales.resize(packed * scale_count);
+        rest_source.resize(rest);
+        rest_weights.resize(rest * list.rows * list.row_size);
+        packed_first.resize(list.first.size());
+        rest_first.resize(list.first.size());
+        parallel_for(kCpu, "test/firsts", list.first.size(),
+                     SplitFirsts{places, list.first, packed_first, rest_first});
+        parallel_for(
+            kCpu, "test/split", count,
+            SplitEntry{list, places, is_near, packed_source, codes, scales, rest_source, rest_weights});
+    }
+};
+
+/// Quadrature with packed lists: moments and sums as on a GPU, one thread a leaf's half.
+template <int Rank>
+class PackedQuadrature : public GlobalSolver {
+public:
+    PackedQuadrature(std::shared_ptr<const QuadratureTables> tables, const SparseMatrix& H, double tolerance)
+        : tables_(std::move(tables)), diagonal_(H.diagonal()),
+          limits_(far_limits(tables_->tree, {diagonal_.data(), int(diagonal_.size())}, tolerance)),
+          largest_(tables_->tree.leaf_count(), 0.0),
+          near_(EntryList::near(table()), rule(), true, PackedView::kNearWords, 2),
+          far_(EntryList::far(table(), Rank), rule(), false, 2 * Rank, Rank + 1)
+    {
+    }
+
+    double packed_share() const
+    {
+        const double packed = double(near_.packed_source.size() + far_.packed_source.size());
+        return packed / (packed + double(near_.rest_source.size() + far_.rest_source.size()));
+    }
+
+    void update(const SparseMatrix&, View<const unsigned char>) override {}
+    bool is_symmetric() const override { return false; }
+    void solve(View<const Vec3> b, View<Vec3> x) const override
+    {
+        const ClusterTree& tree = tables_->tree;
+        const auto value = [&](int slot) {
+            return tree.nodes()[slot] >= 0 ? b[tree.nodes()[slot]] : Vec3(Vec3::Zero());
+        };
+        std::vector<Vec3> sums(tree.cluster_count() * Rank);
+        for (int level = 0; level < tree.level_count(); ++level)
+            for (int c = 0; c < tree.level_size(level); ++c)
+                tables_->basis.gather(level, c, Vec3(Vec3::Zero()), value, View<Vec3>(sums));
+        std::vector<PaddedVec3> moments, sources;
+        for (const Vec3& sum : sums)
+            moments.push_back(padded(sum));
+        for (int slot = 0; slot < tree.nodes().size(); ++slot)
+            sources.push_back(padded(value(slot)));
+        for (int leaf = 0; leaf < tree.leaf_count(); ++leaf)
+            for (int half = 0; half < 2; ++half)
+                sum_half(leaf, half, sources, moments, x);
+    }
+
+private:
+    KernelView table() const { return tables_->kernel.view(); }
+    PackingRule rule()
+    {
+        const View<const int> nodes = tables_->tree.nodes();
+        for (int slot = 0; slot < nodes.size(); ++slot)
+            if (nodes[slot] >= 0)
+                largest_[slot / 8] = std::max(largest_[slot / 8], diagonal_[nodes[slot]]);
+        return {limits_, largest_};
+    }
+
+    void sum_half(int leaf, int half, View<const PaddedVec3> sources, View<const PaddedVec3> moments,
+                  View<Vec3> x) const
+    {
+        PackedSum<Rank> bytes;
+        bytes.add({near_.packed_first, near_.packed_source, near_.codes, near_.scales, far_.packed_first,
+                   far_.packed_source, far_.codes, far_.scales},
+                  sources, moments, leaf, {half, 0, 1});
+        LeafSum<Rank, Floats<4>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
+        sum.add({near_.rest_first, near_.rest_source, near_.rest_weights, far_.rest_first, far_.rest_source,
+                 far_.rest_weights},
+                sources, moments, leaf, {4 * half, 0, 1});
+        for (int t = 0; t < 4; ++t)
+            if (const int v = tables_->tree.nodes()[8 * leaf + 4 * half + t]; v >= 0)
+                x[v] = Vec3(sum.axis[0][t], sum.axis[1][t], sum.axis[2][t]);
+    }
+
+    std::shared_ptr<const QuadratureTables> tables_;
+    Eigen::VectorXd diagonal_;
+    std::vector<double> limits_, largest_;
+    SplitList near_, far_;
+};
+
+/// Exact tables as a solver.
+class Unpacked : public GlobalSolver {
+public:
+    explicit Unpacked(std::shared_ptr<const QuadratureTables> tables) : all_(std::move(tables)) {}
+    void update(const SparseMatrix&, View<const unsigned char>) override {}
+    void solve(View<const Vec3> b, View<Vec3> x) const override { all_.solve(b, x); }
+    bool is_symmetric() const override { return false; }
+
+private:
+    QuadratureOperator all_;
+};
+
+double difference(const GlobalSolver& a, const GlobalSolver& b, int n)
+{
+    const std::vector<Vec3> load = random_field(n, 3);
+    std::vector<Vec3> x(n), y(n);
+    a.solve(load, x);
+    b.solve(load, y);
+    double most = 0.0, largest = 0.0;
+    for (int i = 0; i < n; ++i) {
+        most = std::max(most, (x[i] - y[i]).cwiseAbs().maxCoeff());
+        largest = std::max(largest, y[i].cwiseAbs().maxCoeff());
+    }
+    return most / largest;
+}
+
+TEST(PackedLists, ContractAsThoseOfSingleNumbers)
+{
+    const Grid grid;
+    // The softest reaches a few nodes; the stiffest moves as a whole, its kernel is nearly a constant.
+    for (const double shift : {1.0, 1e-1, 1e-4, 1e-7}) {
+        const SparseMatrix H = grid.matrix(shift);
+        const auto tables = build_tables({H, grid.fixed, grid.places, {}}, {});
+        const PackedQuadrature<3> packed(tables, H, kTolerance);
+        EXPECT_GT(packed.packed_share(), 0.98) << shift;
+        const double single = contraction(Unpacked(tables), H);
+        EXPECT_LT(contraction(packed, H), 1.1 * single) << shift;
+    }
+}
+
+TEST(PackedLists, KeepWhatBytesWouldRuin)
+{
+    const Grid grid;
+    const SparseMatrix H = grid.matrix(1e-4);
+    const int n = int(H.rows());
+    const auto tables = build_tables({H, grid.fixed, grid.places, {}}, {});
+    const Unpacked single(tables);
+    const PackedQuadrature<3> none(tables, H, 1e-9), some(tables, H, 0.02), all(tables, H, kTolerance);
+    EXPECT_EQ(none.packed_share(), 0.0);
+    EXPECT_LT(difference(none, single, n), 5e-6);
+    EXPECT_GT(some.packed_share(), 0.2);
+    EXPECT_LT(some.packed_share(), 0.95);
+    EXPECT_LT(difference(some, single, n), difference(all, single, n));
+}
+
+TEST(PackedLists, KnowVolumes)
+{
+    const std::vector<Place> cube = grid_places(10, 10, 10);
+    const SparseMatrix H = grid_laplacian(10, 100, 1e-1);
+    const std::vector<unsigned char> fixed(cube.size(), 0);
+    const auto tables = build_tables({H, fixed, cube, {{0.07}, Extent::Volume}}, {});
+    const PackedQuadrature<4> packed(tables, H, 0.07);
+    EXPECT_GT(packed.packed_share(), 0.5);
+    EXPECT_LT(contraction(packed, H), 1.1 * contraction(Unpacked(tables), H));
+}
+
+} // namespace
+} // namespace toile::test
