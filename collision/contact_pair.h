@@ -68,6 +68,9 @@ struct ContactPair {
 };
 
 /// ContactPair::vertex of one to four vertices.
-inline std::array<int, 4> contact_vertices(int a, int b = -1, int c = -1, int d = -1) { return {a, b, c, d}; }
+TOILE_HD inline std::array<int, 4> contact_vertices(int a, int b = -1, int c = -1, int d = -1)
+{
+    return {a, b, c, d};
+}
 
 } // namespace toile
