@@ -1,0 +1,218 @@
+#include "collision/device_detect_report.h"
+
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "collision/device_sides_kernels.h"
+#include "tests/collision/collider_cases.h"
+#include "tests/collision/contact_pairs_compared.h"
+#include "tests/collision/surface_on_cpu.h"
+
+namespace toile {
+namespace {
+
+using test::ColliderCase;
+using test::Random;
+using test::SurfaceOnCpu;
+
+/// The search of DeviceContactDetector, with the same bodies, on the CPU.
+class DetectOnCpu {
+public:
+    explicit DetectOnCpu(const TriangleMesh& cloth)
+        : cloth_(cloth), order_(cloth.positions.size()), sides_(cloth.positions.size())
+    {
+        std::iota(order_.begin(), order_.end(), 0);
+    }
+
+    std::vector<ContactPair> detect(View<const Vec3> x, const ColliderCase& what, int collider)
+    {
+        const MovingMesh& moving = what.mesh;
+        const DetectSettings& settings = what.settings;
+        const std::vector<Vec3> positions(x.begin(), x.end());
+        const SurfaceOnCpu mesh(moving.triangles, moving.x_t1, {}, 0.0);
+        const SurfaceOnCpu cloth(cloth_.triangles, positions, {{}, what.reach, {}},
+                                 what.reach.empty() ? 2.0 * settings.radius : 0.0);
+        const DeviceSearch search{x,        what.reach,      search_of(mesh),    moving.x_t0,
+                                  collider, settings.radius, settings.max_depth, settings.farthest_motion};
+        find(search, mesh, cloth);
+        return report(search, cloth);
+    }
+
+    void learn(View<const Vec3> x, const MovingMesh& moving, int collider)
+    {
+        const SurfaceOnCpu mesh(moving.triangles, moving.x_t1, {}, 0.0);
+        nearest_.assign(x.size(), -1);
+        parallel_for(kCpu, "test/learn", x.size(),
+                     LearnSides{x, search_of(mesh), collider, order_, nearest_, sides_});
+    }
+
+private:
+    static constexpr int kRoom = 120; ///< slots of a query
+
+    static SurfaceSearch search_of(const SurfaceOnCpu& surface)
+    {
+        return {{surface.triangles, surface.x, view_of(surface.edges)},
+                surface.triangle_tree(),
+                surface.edge_tree(),
+                surface.extent};
+    }
+
+    void find(const DeviceSearch& search, const SurfaceOnCpu& mesh, const SurfaceOnCpu& cloth)
+    {
+        const int vertices = search.x.size(), body = mesh.vertex_count(), edges = cloth.edges.edge_count();
+        counts_.assign(vertices + body + edges + 1, 0);
+        const View<int> counts = counts_;
+        vertex_counts_ = counts.subview(0, vertices);
+        sheet_counts_ = counts.subview(vertices, body);
+        ridge_counts_ = counts.subview(vertices + body, edges);
+        nearest_.assign(vertices, -1);
+        plane_items_.resize(3 * size_t(vertices));
+        planes_ = {plane_items_, vertices};
+        parallel_for(kCpu, "test/planes", vertices,
+                     FindPlanes{search, order_, sides_, nearest_, planes_, vertex_counts_});
+
+        std::vector<int> found(body, 0);
+        sheet_items_.resize(kRoom * size_t(body));
+        sheets_ = {sheet_items_, body};
+        parallel_for(kCpu, "test/sheets", int(mesh.used.size()),
+                     FindSheets{search, search_of(cloth), mesh.used, mesh.vertex_order, sheets_, found});
+        ASSERT_LE(*std::max_element(found.begin(), found.end()), kRoom);
+        parallel_for(kCpu, "test/keep_sheets", body,
+                     KeepSheets{search, search_of(cloth).surface, found, sheets_, sheet_counts_});
+
+        found.assign(edges, 0);
+        ridge_items_.resize(kRoom * size_t(edges));
+        ridges_ = {ridge_items_, edges};
+        parallel_for(kCpu, "test/ridges", edges,
+                     FindRidges{search, cloth.edge_items(), cloth.edges.vertex, ridges_, found});
+        found.push_back(0);
+        ASSERT_LE(*std::max_element(found.begin(), found.end()), kRoom);
+        parallel_for(kCpu, "test/keep_ridges", edges,
+                     KeepRidges{search, cloth.edges.vertex, found, ridges_, ridge_counts_});
+    }
+
+    std::vector<ContactPair> report(const DeviceSearch& search, const SurfaceOnCpu& cloth)
+    {
+        std::vector<long> first(counts_.size());
+        std::exclusive_scan(counts_.begin(), counts_.end(), first.begin(), 0L);
+        const PairPlaces places{first, planes_.queries, sheets_.queries};
+        std::vector<ContactPair> pairs(first.back());
+        parallel_for(kCpu, "test/report_planes", planes_.queries,
+                     ReportPlanes{search, vertex_counts_, planes_, places, pairs});
+
+        std::vector<std::uint64_t> keys(places.sheets() + 3);
+        std::vector<int> slots(keys.size());
+        parallel_for(kCpu, "test/clear", int(keys.size()), ClearSheetKeys{keys, slots});
+        const std::vector<int> rank = ranks_by_corners(cloth_.triangles);
+        parallel_for(kCpu, "test/keys", sheets_.queries,
+                     KeySheets{sheet_counts_, rank, sheets_, places, keys, slots});
+        std::vector<int> by_key(keys.size()), sorted(keys.size());
+        std::iota(by_key.begin(), by_key.end(), 0);
+        std::stable_sort(by_key.begin(), by_key.end(), [&](int a, int b) { return keys[a] < keys[b]; });
+        for (size_t i = 0; i < sorted.size(); ++i)
+            sorted[i] = slots[by_key[i]];
+        parallel_for(kCpu, "test/report_sheets", int(sorted.size()),
+                     ReportSheet{search, search_of(cloth).surface, sorted, sheets_, places, pairs});
+        parallel_for(kCpu, "test/report_ridges", ridges_.queries,
+                     ReportRidges{search, cloth.edges.vertex, ridge_counts_, ridges_, places, pairs});
+        return pairs;
+    }
+
+    const TriangleMesh& cloth_;
+    std::vector<int> order_, nearest_;
+    std::vector<VertexSides> sides_;
+    std::vector<int> counts_, plane_items_, sheet_items_, ridge_items_;
+    View<int> vertex_counts_, sheet_counts_, ridge_counts_;
+    Slots planes_, sheets_, ridges_;
+};
+
+/// Least pairs of each kind.
+struct Least {
+    int vertex_face, face_vertex, edge_edge;
+};
+
+void expect_those_of_the_detector(const ColliderCase& made, const Least& least)
+{
+    const MeshCollider collider(made.mesh);
+    ContactDetector detector(made.cloth.triangles, made.cloth.positions);
+    std::vector<ContactPair> expected;
+    detector.move(made.cloth.positions, made.reach);
+    detector.detect(collider, 3, made.settings, expected);
+    const auto count = [&](ContactKind kind) {
+        return std::count_if(expected.begin(), expected.end(),
+                             [&](const ContactPair& pair) { return pair.kind == kind; });
+    };
+    EXPECT_GE(count(ContactKind::kVertexFace), least.vertex_face) << made.name;
+    EXPECT_GE(count(ContactKind::kFaceVertex), least.face_vertex) << made.name;
+    EXPECT_GE(count(ContactKind::kEdgeEdge), least.edge_edge) << made.name;
+    test::expect_same(expected, DetectOnCpu(made.cloth).detect(made.cloth.positions, made, 3),
+                      made.cloth.positions, made.name);
+}
+
+TEST(DeviceDetectKernels, FindThePairsOfTheDetectorAroundABall)
+{
+    Random random(51);
+    for (const int levels : {2, 4, 5}) {
+        ColliderCase made = test::around_a_ball(random, 40, levels);
+        expect_those_of_the_detector(made, {800, levels > 2 ? 100 : 0, levels > 2 ? 1000 : 0});
+        add_reach(made, random);
+        expect_those_of_the_detector(made, {200, 0, 0});
+    }
+}
+
+TEST(DeviceDetectKernels, FindThePairsOfTheDetectorBetweenBalls)
+{
+    Random random(52);
+    expect_those_of_the_detector(test::between_balls(random), {300, 200, 300});
+}
+
+TEST(DeviceDetectKernels, FindThePairsOfTheDetectorInSoups)
+{
+    Random random(53);
+    for (int i = 0; i < 10; ++i)
+        expect_those_of_the_detector(test::soup_in_soup(random), {50, 50, 50});
+}
+
+TEST(DeviceDetectKernels, FindNothingInNothing)
+{
+    Random random(54);
+    ColliderCase made = test::soup_in_soup(random);
+    made.mesh.triangles.clear();
+    expect_those_of_the_detector(made, {0, 0, 0});
+    made = test::soup_in_soup(random);
+    made.cloth.triangles.clear();
+    expect_those_of_the_detector(made, {10, 0, 0});
+}
+
+TEST(DeviceDetectKernels, RememberSidesAsSideMemoryDoes)
+{
+    Random random(55);
+    ColliderCase made = test::between_balls(random);
+    const int vertices = made.cloth.vertex_count();
+    MeshCollider collider(made.mesh);
+    ContactDetector detector(made.cloth.triangles, made.cloth.positions);
+    SideMemory sides(vertices);
+    DetectOnCpu bodies(made.cloth);
+    int remembered = 0;
+    for (int step = 0; step < 4; ++step) {
+        // The upper ball sinks into the lower one.
+        made.mesh.x_t0 = made.mesh.x_t1;
+        for (size_t v = 0; v < made.mesh.x_t1.size() / 2; ++v)
+            made.mesh.x_t1[v] += Vec3(0.001, -0.003, 0.0005);
+        collider.move(made.mesh);
+        std::vector<ContactPair> expected, plain;
+        detector.move(made.cloth.positions);
+        detector.detect(collider, 3, made.settings, expected, &sides);
+        detector.detect(collider, 3, made.settings, plain);
+        remembered += int(!test::are_same_bits(expected, plain));
+        test::expect_same(expected, bodies.detect(made.cloth.positions, made, 3), made.cloth.positions,
+                          "step " + std::to_string(step));
+        sides.learn(made.cloth.positions, collider, 3, Clearance(vertices));
+        bodies.learn(made.cloth.positions, made.mesh, 3);
+    }
+    EXPECT_GT(remembered, 0);
+}
+
+} // namespace
+} // namespace toile
