@@ -85,6 +85,7 @@ public:
     Vec3 motion_from(const Vec3& point) const { return pose_t1_ * (pose_t0_.inverse() * point) - point; }
 
     const Shape& shape() const { return shape_; }
+    const Eigen::Isometry3d& pose_t0() const { return pose_t0_; } ///< world_from_shape at t0
     const Eigen::Isometry3d& pose() const { return pose_t1_; } ///< world_from_shape at t1
 
 private:

@@ -5,6 +5,7 @@
 
 #include "benchmarks/gpu/apply.h"
 #include "benchmarks/gpu/build_tables.h"
+#include "benchmarks/gpu/colliders.h"
 #include "benchmarks/gpu/near_pairs.h"
 #include "benchmarks/gpu/step.h"
 
@@ -19,6 +20,7 @@ struct Report {
     std::vector<TableBuild> builds;
     std::vector<Step> steps;
     std::vector<NearSearch> searches;
+    std::vector<ColliderSearch> colliders;
 };
 
 std::string markdown_tables(const Report& report);
