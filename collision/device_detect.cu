@@ -71,9 +71,10 @@ DeviceContactDetector::DeviceContactDetector(const CudaSpace& space, View<const 
     : space_(space), cloth_(space, triangles, positions), order_(space, "detect/order"),
       rank_(space, "detect/rank"), planes_(space, "detect/planes", VertexPlanes::kMost * positions.size()),
       sheets_(space, "detect/sheets"), ridges_(space, "detect/ridges"), counts_(space, "detect/counts"),
-      first_(space, "detect/first"), sort_(space), sorted_sheets_(space, "detect/sorted_sheets"),
-      sheet_room_(1 + positions.size() / kVerticesOfSheet), pairs_(space, "detect/pairs"),
-      numbers_(space, "detect/numbers", 1), read_(space, "detect/read", 1), scratch_(space, "detect/scratch")
+      first_(space, "detect/first"), distance_(space, "detect/distance"), sort_(space),
+      sorted_sheets_(space, "detect/sorted_sheets"), sheet_room_(1 + positions.size() / kVerticesOfSheet),
+      pairs_(space, "detect/pairs"), numbers_(space, "detect/numbers", 1), read_(space, "detect/read", 1),
+      scratch_(space, "detect/scratch")
 {
     order_.upload(order_of(positions));
     rank_.upload(ranks_by_corners(triangles));

@@ -6,6 +6,7 @@
 #include "collision/detect.h"
 #include "collision/device_detect_report.h"
 #include "collision/device_mesh_collider.h"
+#include "collision/device_shape_kernels.h"
 #include "core/backend/cuda/scan.h"
 
 namespace toile {
@@ -25,7 +26,7 @@ private:
     DeviceArray<VertexSides> sides_;
 };
 
-/// ContactDetector on a GPU: the same pairs with meshes in the same order; numbers differ from the CPU's in
+/// ContactDetector on a GPU: the same pairs in the same order; numbers differ from the CPU's in
 /// last bits, and so may a pair whose test is within rounding of its limit. The same bits in every run.
 /// Positions and pairs stay on the device.
 ///
@@ -53,9 +54,13 @@ public:
     View<const ContactPair> detect(const DeviceMeshCollider& mesh, int collider,
                                    const DeviceSideMemory* sides = nullptr);
 
+    /// The same against a solid.
+    View<const ContactPair> detect(const ShapeCollider& shape, int collider);
+
     /// detect() in two parts, of which the first can be recorded in a graph: enqueues a search with the room
     /// that there is.
     void search(const DeviceMeshCollider& mesh, int collider, const DeviceSideMemory* sides = nullptr);
+    void search(const ShapeCollider& shape, int collider);
     /// Waits. False where there was not enough room: it has grown, and the same search, recorded anew, finds
     /// all pairs; else these are appended.
     bool settle();
@@ -101,6 +106,12 @@ private:
     }
     PairPlaces places() const { return {first_.view(), x_.size(), sheets_.found.size()}; }
     void measure(SlotArrays& slots);
+    template <typename Solid>
+    void search_solid(const ShapeRules<Solid>& rules);
+    template <ShapeQuery Query, typename Solid>
+    void count_pairs(const ShapeRules<Solid>& rules, int begin, int queries);
+    template <ShapeQuery Query, typename Solid>
+    void report_pairs(const ShapeRules<Solid>& rules, int begin, int queries);
 
     const CudaSpace& space_;
     DeviceSurface cloth_;
@@ -113,8 +124,10 @@ private:
 
     DeviceArray<int> planes_; ///< [3 x vertices]
     SlotArrays sheets_, ridges_;
-    DeviceArray<int> counts_; ///< [vertices + vertices of the mesh + edges + 1]; the last stays 0
-    DeviceArray<long> first_; ///< their sums
+    /// [vertices + vertices of the mesh, or triangles where there is a solid, + edges + 1]; the last stays 0
+    DeviceArray<int> counts_;
+    DeviceArray<long> first_;      ///< their sums
+    DeviceArray<double> distance_; ///< [vertices] to a solid's skeleton [m]
     SortArrays sort_;
     DeviceArray<int> sorted_sheets_;
     int sheet_room_;

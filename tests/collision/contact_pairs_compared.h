@@ -17,8 +17,9 @@ namespace toile::test {
 /// Largest differences between machines of points and motions [m], and of weights [-].
 inline constexpr double kContactTolerance = 1e-12;
 
-/// Of normals [-]: rounding of coordinates of some metres over the distance that it is a direction of.
-inline constexpr double kNormalTolerance = 1e-12;
+/// Of normals [-]: what needles make of their faces', and rounding of coordinates of some metres over the
+/// distance that a normal is the direction of.
+inline constexpr double kNormalTolerance = 1e-11;
 inline constexpr double kNormalRounding = 1e-14; ///< [m]
 
 /// Pairs that are not the same but for rounding; counts, so that one line tells.

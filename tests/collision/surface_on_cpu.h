@@ -13,9 +13,9 @@ namespace toile::test {
 
 class SurfaceOnCpu {
 public:
-    SurfaceOnCpu(const std::vector<Triangle>& triangles, const std::vector<Vec3>& x, const Ways& ways,
+    SurfaceOnCpu(const std::vector<Triangle>& of, const std::vector<Vec3>& at, const Ways& ways,
                  double margin)
-        : triangles(triangles), x(x), edges(build_surface_edges(triangles, int(x.size())))
+        : triangles(of), x(at), edges(build_surface_edges(triangles, int(x.size())))
     {
         const int count = int(x.size());
         extent[0] = parallel_sum(kCpu, count, SoupExtent(), ExtentOfVertex{x, ways.motion});

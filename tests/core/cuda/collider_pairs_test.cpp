@@ -167,6 +167,46 @@ TEST_F(DeviceContactDetectorTest, AppendsTheMeshesOneByOneWhileItGrows)
     expect_same(expected, downloaded(device.pairs()), made.cloth.positions, "both again");
 }
 
+Eigen::Isometry3d random_pose(Random& random)
+{
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = Eigen::AngleAxisd(random.uniform(0, 3), random.point().normalized()).toRotationMatrix();
+    pose.translation() = 0.05 * random.point();
+    return pose;
+}
+
+TEST_F(DeviceContactDetectorTest, FindsThePairsOfTheCpuOnSolids)
+{
+    Random random(68);
+    std::array<int, 3> kinds{};
+    for (const int cells : {6, 40}) {
+        TriangleMesh cloth = testing::sheet_mesh(0.6, cells, 0.0);
+        for (const Shape& shape : {Shape(PlaneShape{Vec3(0, 0.6, 0.8)}), Shape(SphereShape{0.05}),
+                                   Shape(CapsuleShape{0.1, 0.03}), Shape(BoxShape{Vec3(0.1, 0.06, 0.15)})})
+            for (int i = 0; i < 10; ++i) {
+                for (Vec3& x : cloth.positions)
+                    x.y() = random.uniform(-0.06, 0.06) / cells * 6;
+                ShapeCollider collider(shape, random_pose(random), "test");
+                collider.move(collider.pose(), random_pose(random));
+                DetectSettings settings;
+                settings.radius = 0.03;
+                ContactDetector host(cloth.triangles, cloth.positions);
+                std::vector<ContactPair> expected;
+                host.detect(collider, 5, settings, expected);
+                DeviceContactDetector device(space(), cloth.triangles, cloth.positions, 1);
+                DeviceArray<Vec3> x(space(), "test/x");
+                x.upload(cloth.positions);
+                device.move(x.view(), {}, settings);
+                expect_same(expected, downloaded(device.detect(collider, 5)), cloth.positions,
+                            "shape " + std::to_string(shape.index()));
+                for (const ContactPair& pair : expected)
+                    ++kinds[int(pair.kind) - int(ContactKind::kVertexShape)];
+            }
+    }
+    for (const int count : kinds)
+        EXPECT_GT(count, 50);
+}
+
 TEST_F(DeviceContactDetectorTest, FindsTheSameBitsFromAGraph)
 {
     Random random(66);
