@@ -12,9 +12,9 @@ namespace toile {
 
 namespace {
 
-/// Room at first: pairs of a vertex, and vertices of a pair of face and vertex.
+/// Room at first: pairs of a vertex, and vertices of a sheet.
 constexpr int kPairsOfVertex = 3;
-constexpr int kVerticesOfSheet = 8;
+constexpr int kVerticesOfSheet = 4;
 
 /// Room is made for this much more than was needed [-].
 constexpr double kHeadroom = 1.25;
@@ -58,27 +58,23 @@ DeviceSideMemory::DeviceSideMemory(const CudaSpace& space, int vertex_count)
 
 void DeviceSideMemory::forget() { sides_.upload(std::vector<VertexSides>(sides_.size())); }
 
-void DeviceContactDetector::SlotArrays::resize(int queries)
-{
-    items.resize(room * queries);
-    found.resize(queries);
-}
-
-Slots DeviceContactDetector::SlotArrays::slots() { return {items.view(), found.size()}; }
-
 DeviceContactDetector::DeviceContactDetector(const CudaSpace& space, View<const Triangle> triangles,
                                              View<const Vec3> positions, int room)
     : space_(space), cloth_(space, triangles, positions), order_(space, "detect/order"),
       rank_(space, "detect/rank"), planes_(space, "detect/planes", VertexPlanes::kMost * positions.size()),
-      sheets_(space, "detect/sheets"), ridges_(space, "detect/ridges"), counts_(space, "detect/counts"),
-      first_(space, "detect/first"), distance_(space, "detect/distance"), sort_(space),
-      sorted_sheets_(space, "detect/sorted_sheets"), sheet_room_(1 + positions.size() / kVerticesOfSheet),
-      pairs_(space, "detect/pairs"), numbers_(space, "detect/numbers", 1), read_(space, "detect/read", 1),
-      scratch_(space, "detect/scratch")
+      sheets_(space, "detect/sheets", triangles.size()),
+      ridges_(space, "detect/ridges", cloth_.edges().vertex.size()), counts_(space, "detect/counts"),
+      first_(space, "detect/first"), first_sheet_(space, "detect/first_sheet"),
+      distance_(space, "detect/distance"), sort_(space), sorted_sheets_(space, "detect/sorted_sheets"),
+      sheet_room_(1 + positions.size() / kVerticesOfSheet), pairs_(space, "detect/pairs"),
+      numbers_(space, "detect/numbers", 1), read_(space, "detect/read", 1), scratch_(space, "detect/scratch")
 {
     order_.upload(order_of(positions));
     rank_.upload(ranks_by_corners(triangles));
     pairs_.resize(room > 0 ? room : 1 + kPairsOfVertex * positions.size());
+    DeviceArray<Vec3> x(space, "detect/first_pose");
+    x.upload(positions);
+    cloth_.move(x.view(), {}, 0.0);
 }
 
 void DeviceContactDetector::move(View<const Vec3> x, View<const double> reach, const DetectSettings& settings)
@@ -88,12 +84,6 @@ void DeviceContactDetector::move(View<const Vec3> x, View<const double> reach, c
     reach_ = reach;
     settings_ = settings;
     count_ = 0;
-
-    // Vertices of a mesh find the sheets in whose boxes they are.
-    if (reach.empty())
-        cloth_.move(x, {}, 2.0 * kPiercedRadii * settings.radius);
-    else
-        cloth_.move(x, {{}, reach, {}}, 0.0);
 }
 
 View<const ContactPair> DeviceContactDetector::detect(const DeviceMeshCollider& mesh, int collider,
@@ -108,7 +98,7 @@ View<const ContactPair> DeviceContactDetector::detect(const DeviceMeshCollider& 
 void DeviceContactDetector::search(const DeviceMeshCollider& mesh, int collider,
                                    const DeviceSideMemory* sides)
 {
-    resize_for(mesh);
+    clear_counts();
     find_planes(mesh, collider, sides);
     if (settings_.face_vertex)
         find_sheets(mesh, collider);
@@ -158,17 +148,20 @@ View<int> DeviceContactDetector::nearest_of(int collider)
 }
 
 /// Kinds that are not looked for stay without pairs.
-void DeviceContactDetector::resize_for(const DeviceMeshCollider& mesh)
+void DeviceContactDetector::clear_counts()
 {
-    sheets_.resize(mesh.surface().vertex_count());
-    ridges_.resize(cloth_.edges().vertex.size());
-    counts_.resize(x_.size() + sheets_.found.size() + ridges_.found.size() + 1);
+    for (SlotArrays* slots : {&sheets_, &ridges_}) {
+        slots->items.resize(slots->room * slots->queries);
+        slots->found.resize(slots->queries + 1);
+        slots->found.fill_zero();
+    }
+    counts_.resize(x_.size() + sheet_room_ + ridges_.queries + 1);
+    counts_.fill_zero();
     first_.resize(counts_.size());
+    first_sheet_.resize(sheets_.queries + 1);
+    first_sheet_.fill_zero();
     sort_.resize(sheet_room_);
     sorted_sheets_.resize(sheet_room_);
-    counts_.fill_zero();
-    sheets_.found.fill_zero();
-    ridges_.found.fill_zero();
 }
 
 void DeviceContactDetector::find_planes(const DeviceMeshCollider& mesh, int collider,
@@ -187,15 +180,28 @@ void DeviceContactDetector::find_planes(const DeviceMeshCollider& mesh, int coll
 void DeviceContactDetector::find_sheets(const DeviceMeshCollider& mesh, int collider)
 {
     const DeviceSearch search = search_of(mesh, collider);
-    const SurfaceSearch cloth = toile::search_of(cloth_, x_);
-    const View<const int> order = mesh.surface().vertex_order();
-    parallel_for(space_, "collision/device_sheets", order.size(),
-                 FindSheets{search, cloth, mesh.surface().used_vertices(), order, sheets_.slots(),
+    const SurfaceView cloth = toile::search_of(cloth_, x_).surface;
+    const ImplicitBoxTree tree = cloth_.triangle_tree();
+    parallel_for(space_, "collision/device_sheets", tree.shape.count,
+                 FindSheets{search, cloth, tree.nodes.subview(0, tree.shape.count), sheets_.slots(),
                             sheets_.found.view()},
                  kBlock);
-    parallel_for(space_, "collision/device_keep_sheets", sheets_.found.size(),
-                 KeepSheets{search, cloth.surface, sheets_.found.view(), sheets_.slots(), counts_of_sheets()},
+
+    // Those of one vertex of the mesh come together, are tested, and are put into the order of the pairs.
+    const View<std::uint64_t> keys = sort_.keys.view();
+    const View<int> slots = sort_.values.view();
+    const View<const long> first = first_sheet_.view();
+    exclusive_scan(space_, "collision/device_sheet_places", sheets_.found.view(), first_sheet_.view(),
+                   scratch_);
+    parallel_for(space_, "collision/device_clear_keys", keys.size(), ClearSheetKeys{keys, slots});
+    parallel_for(space_, "collision/device_keys", sheets_.queries,
+                 KeySheets{first, sheets_.slots(), keys, slots});
+    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
+    parallel_for(space_, "collision/device_keep_sheets", sheet_room_,
+                 KeepSheets{search, cloth, sheets_.slots(), sorted_sheets_.view(),
+                            first.subview(sheets_.queries, 1), rank_.view(), counts_of_sheets(), keys, slots},
                  kBlock);
+    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
 }
 
 void DeviceContactDetector::find_ridges(const DeviceMeshCollider& mesh, int collider)
@@ -207,7 +213,7 @@ void DeviceContactDetector::find_ridges(const DeviceMeshCollider& mesh, int coll
                  FindRidges{search, tree.nodes.subview(0, tree.shape.count), edge_vertex, ridges_.slots(),
                             ridges_.found.view()},
                  kBlock);
-    parallel_for(space_, "collision/device_keep_ridges", ridges_.found.size(),
+    parallel_for(space_, "collision/device_keep_ridges", ridges_.queries,
                  KeepRidges{search, edge_vertex, ridges_.found.view(), ridges_.slots(), counts_of_ridges()},
                  kBlock);
 }
@@ -215,33 +221,26 @@ void DeviceContactDetector::find_ridges(const DeviceMeshCollider& mesh, int coll
 /// The most that a query has found, before it was tested which are pairs.
 void DeviceContactDetector::measure(SlotArrays& slots)
 {
-    parallel_sum(space_, "collision/device_most", slots.found.size(), Largest(), MostOf{slots.found.view()},
+    parallel_sum(space_, "collision/device_most", slots.queries, Largest(), MostOf{slots.found.view()},
                  slots.most.view(), slots.sums);
 }
 
 void DeviceContactDetector::report(const DeviceMeshCollider& mesh, int collider)
 {
-    // Places.
     exclusive_scan(space_, "collision/device_places", counts_.view(), first_.view(), scratch_);
     measure(sheets_);
     measure(ridges_);
+    const View<const long> first_sheet = first_sheet_.view();
     parallel_for(space_, "collision/device_detect_numbers", 1,
-                 CollectDetectNumbers{places(), sheets_.most.view(), ridges_.most.view(), numbers_.view()});
+                 CollectDetectNumbers{places(), first_sheet.subview(sheets_.queries, 1), sheets_.most.view(),
+                                      ridges_.most.view(), numbers_.view()});
 
-    // Pairs of faces and vertices lie by cloth corners, not by what looked for them.
     const DeviceSearch search = search_of(mesh, collider);
     const View<ContactPair> pairs = pairs_.view().subview(count_, pairs_.size() - count_);
-    const View<std::uint64_t> keys = sort_.keys.view();
-    const View<int> slots = sort_.values.view();
-    parallel_for(space_, "collision/device_clear_keys", keys.size(), ClearSheetKeys{keys, slots});
-    parallel_for(space_, "collision/device_keys", sheets_.found.size(),
-                 KeySheets{counts_of_sheets(), rank_.view(), sheets_.slots(), places(), keys, slots});
-    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
-
     parallel_for(space_, "collision/device_report_planes", x_.size(),
                  ReportPlanes{search, counts_of_vertices(), {planes_.view(), x_.size()}, places(), pairs},
                  kBlock);
-    parallel_for(space_, "collision/device_report_sheets", sorted_sheets_.size(),
+    parallel_for(space_, "collision/device_report_sheets", settings_.face_vertex ? sheet_room_ : 0,
                  ReportSheet{search, toile::search_of(cloth_, x_).surface, sorted_sheets_.view(),
                              sheets_.slots(), places(), pairs},
                  kBlock);

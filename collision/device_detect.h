@@ -30,7 +30,7 @@ private:
 /// last bits, and so may a pair whose test is within rounding of its limit. The same bits in every run.
 /// Positions and pairs stay on the device.
 ///
-/// Cloth vertices look for planes, vertices of the mesh for sheets of cloth and cloth edges for ridges, a
+/// Cloth vertices look for planes, cloth triangles for vertices of the mesh and cloth edges for ridges, a
 /// thread each, and keep numbers in slots of their own; sums of counts give the pairs' places.
 class DeviceContactDetector {
 public:
@@ -42,7 +42,7 @@ public:
     DeviceContactDetector(const CudaSpace& space, View<const Triangle> triangles, View<const Vec3> positions,
                           int room = 0);
 
-    /// Enqueues: cloth positions to detect at and how far, on the device, borrowed until the next move, as
+    /// Cloth positions to detect at and how far, on the device, borrowed until the next move, as
     /// ContactDetector has them. Drops all pairs.
     /// @param settings  of the detect() that follow; no reach may be above its radius
     void move(View<const Vec3> x, View<const double> reach, const DetectSettings& settings);
@@ -82,29 +82,25 @@ public:
 private:
     /// Slots of queries that have more or less items.
     struct SlotArrays {
-        SlotArrays(const CudaSpace& space, const std::string& name)
-            : items(space, name + "_items"), found(space, name + "_found"), most(space, name + "_most", 1),
-              sums(space, name + "_sums")
+        SlotArrays(const CudaSpace& space, const std::string& name, int query_count)
+            : queries(query_count), items(space, name + "_items"), found(space, name + "_found"),
+              most(space, name + "_most", 1), sums(space, name + "_sums")
         {
         }
-        void resize(int queries);
-        Slots slots();
+        Slots slots() { return {items.view(), queries}; }
 
-        int room = 4; ///< items of a query
-        DeviceArray<int> items, found;
+        int queries, room = 4;           ///< room: items of a query
+        DeviceArray<int> items, found;   ///< [room x queries], [queries + 1]; the last stays 0
         DeviceArray<Largest> most, sums; ///< of found
     };
 
     DeviceSearch search_of(const DeviceMeshCollider& mesh, int collider) const;
     View<int> nearest_of(int collider);
-    void resize_for(const DeviceMeshCollider& mesh);
+    void clear_counts();
     View<int> counts_of_vertices() { return counts_.view().subview(0, x_.size()); }
-    View<int> counts_of_sheets() { return counts_.view().subview(x_.size(), sheets_.found.size()); }
-    View<int> counts_of_ridges()
-    {
-        return counts_.view().subview(x_.size() + sheets_.found.size(), ridges_.found.size());
-    }
-    PairPlaces places() const { return {first_.view(), x_.size(), sheets_.found.size()}; }
+    View<int> counts_of_sheets() { return counts_.view().subview(x_.size(), sheet_room_); }
+    View<int> counts_of_ridges() { return counts_.view().subview(x_.size() + sheet_room_, ridges_.queries); }
+    PairPlaces places() const { return {first_.view(), x_.size(), sheet_room_}; }
     void measure(SlotArrays& slots);
     template <typename Solid>
     void search_solid(const ShapeRules<Solid>& rules);
@@ -114,7 +110,7 @@ private:
     void report_pairs(const ShapeRules<Solid>& rules, int begin, int queries);
 
     const CudaSpace& space_;
-    DeviceSurface cloth_;
+    DeviceSurface cloth_;    ///< its trees tell who lies beside whom, their boxes are not renewed
     DeviceArray<int> order_; ///< [vertices] along a curve through the first pose
     DeviceArray<int> rank_;  ///< [triangles] ranks_by_corners
     View<const Vec3> x_;
@@ -124,13 +120,14 @@ private:
 
     DeviceArray<int> planes_; ///< [3 x vertices]
     SlotArrays sheets_, ridges_;
-    /// [vertices + vertices of the mesh, or triangles where there is a solid, + edges + 1]; the last stays 0
+    /// [vertices + room for sheets, or triangles where there is a solid, + edges + 1]; the last stays 0
     DeviceArray<int> counts_;
-    DeviceArray<long> first_;      ///< their sums
-    DeviceArray<double> distance_; ///< [vertices] to a solid's skeleton [m]
+    DeviceArray<long> first_;       ///< their sums
+    DeviceArray<long> first_sheet_; ///< [triangles + 1] sums of what they have found
+    DeviceArray<double> distance_;  ///< [vertices] to a solid's skeleton [m]
     SortArrays sort_;
     DeviceArray<int> sorted_sheets_;
-    int sheet_room_;
+    int sheet_room_; ///< sheets that there is room for
     DeviceArray<ContactPair> pairs_;
     int count_ = 0, last_count_ = 0;     ///< of pairs: all, and those of the last search
     DeviceArray<DetectNumbers> numbers_; ///< [1]

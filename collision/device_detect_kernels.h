@@ -1,6 +1,6 @@
 #pragma once
 
-/// ContactDetector's search of one mesh: kernels. Every cloth vertex, vertex of the mesh and cloth edge is a
+/// ContactDetector's search of one mesh: kernels. Every cloth vertex, triangle and edge is a
 /// query with a few slots for what it finds; counts of queries are summed, which gives the pairs' places.
 
 #include <cstdint>
@@ -99,40 +99,52 @@ private:
     }
 };
 
-/// Lists the sheets of cloth around a vertex of the mesh: triangles in which the distance is least.
+/// Lists the vertices of the mesh for which a cloth triangle is a sheet: the distance is least in it, and of
+/// triangles that meet at the closest point it is the lowest.
 struct FindSheets {
     DeviceSearch search;
-    SurfaceSearch cloth; ///< its boxes grown by as much as pairs are wanted
-    View<const std::array<int, 1>> vertices;
-    View<const int> order; ///< [queries] places in vertices
-    Slots sheets;          ///< out
-    View<int> found;       ///< [vertices of the mesh] out: more than there is room for, too
+    SurfaceView cloth;
+    View<const BoxNode> triangles; ///< [queries] items of the cloth's tree: neighbours side by side
+    Slots sheets;                  ///< out: vertices of the mesh
+    View<int> found;               ///< [cloth triangles] out: more than there is room for, too
 
     TOILE_HD void operator()(int i) const
     {
-        const int v = vertices[order[i]][0];
-        const Vec3& x = search.mesh.surface.positions[v];
-        const NearPoint point = cloth.near(x);
-        const BoxNode box = point.box_with(point, 0.0);
-        const double most = kPiercedRadii * search.radius;
+        const int t = triangles[i].last;
+        const Triangle& corner = cloth.triangles[t];
+        const double reach = kPiercedRadii * search.radius_of(corner[0], corner[1], corner[2]);
         int count = 0;
-        cloth.visit_local_minima(
-            x, Vec3::Zero(), [&](const BoxNode& node) { return node.box().overlaps(box.box()); },
-            [&](const NearTriangle& near) { return near.closest.distance2 <= most * most; },
-            [&](const NearTriangle& near) { list(v, cloth.surface.surface_point(near, x).triangle, count); });
-        found[v] = count;
+        if (reach >= 0.0) {
+            const SurfaceSearch& mesh = search.mesh;
+            const NearPoint c = mesh.near(search.x[corner[2]]);
+            BoxNode box = mesh.near(search.x[corner[0]]).box_with(mesh.near(search.x[corner[1]]), reach);
+            box.add(c.box_with(c, reach));
+            mesh.triangles.descend([&](const BoxNode& node) { return node.box().overlaps(box.box()); },
+                                   [&](int triangle) { list(t, reach, triangle, count); });
+        }
+        found[t] = count;
     }
 
 private:
-    TOILE_HD void list(int v, int triangle, int& count) const
+    /// Every vertex of the mesh belongs to the first of its triangles.
+    TOILE_HD void list(int t, double reach, int triangle, int& count) const
     {
-        const int kept = std::min(count, sheets.room());
-        for (int k = 0; k < kept; ++k)
-            if (sheets.of(v, k) == triangle)
-                return;
-        if (count < sheets.room())
-            sheets.of(v, count) = triangle;
-        ++count;
+        const SurfaceView& mesh = search.mesh.surface;
+        for (int k = 0; k < 3; ++k) {
+            const int v = mesh.triangles[triangle][k];
+            if (mesh.edges.corners_of_vertex.of(v)[0] != 3 * triangle + k || !is_sheet(t, reach, v))
+                continue;
+            if (count < sheets.room())
+                sheets.of(t, count) = v;
+            ++count;
+        }
+    }
+    TOILE_HD bool is_sheet(int t, double reach, int v) const
+    {
+        const Vec3& x = search.mesh.surface.positions[v];
+        const NearTriangle near{t, cloth.closest_on(t, x)};
+        return near.closest.distance2 <= reach * reach && cloth.is_local_minimum(near, x) &&
+               cloth.lowest_at(near, x).triangle == t;
     }
 };
 
@@ -147,55 +159,6 @@ TOILE_HD inline void sort_slots(const Slots& slots, int query, int count)
         slots.of(query, place) = item;
     }
 }
-
-/// Keeps the items for which is_kept(item, kept so far); returns their number.
-template <typename IsKept>
-TOILE_HD int keep_slots(const Slots& slots, int query, int count, const IsKept& is_kept)
-{
-    int kept = 0;
-    for (int k = 0; k < count; ++k)
-        if (const int item = slots.of(query, k); is_kept(item, kept))
-            slots.of(query, kept++) = item;
-    return kept;
-}
-
-/// Keeps the sheets that make pairs; of several at one point the lowest.
-struct KeepSheets {
-    DeviceSearch search;
-    SurfaceView cloth;
-    View<const int> found; ///< [vertices of the mesh]
-    Slots sheets;          ///< in, out
-    View<int> counts;      ///< [vertices of the mesh] out
-
-    TOILE_HD void operator()(int v) const
-    {
-        int count = std::min(found[v], sheets.room());
-        if (count > 0) {
-            const Vec3& x = search.mesh.surface.positions[v];
-            const Vec3 n = search.mesh.surface.vertex_normal(v);
-            sort_slots(sheets, v, count);
-            count = keep_slots(sheets, v, count, [&](int t, int kept) { return is_first(v, x, t, kept); });
-            count = keep_slots(sheets, v, count, [&](int t, int) { return is_pair(x, n, t); });
-        }
-        counts[v] = count;
-    }
-
-private:
-    TOILE_HD bool is_first(int v, const Vec3& x, int t, int kept) const
-    {
-        const Vec3 point = cloth.closest_on(t, x).point;
-        for (int k = 0; k < kept; ++k)
-            if ((cloth.closest_on(sheets.of(v, k), x).point - point).squaredNorm() < kSamePoint * kSamePoint)
-                return false;
-        return true;
-    }
-    TOILE_HD bool is_pair(const Vec3& x, const Vec3& n, int t) const
-    {
-        const Triangle& corner = cloth.triangles[t];
-        return meets_sheet(x, n, cloth.surface_point({t, cloth.closest_on(t, x)}, x),
-                           search.radius_of(corner[0], corner[1], corner[2]), search);
-    }
-};
 
 /// Lists the ridges that a cloth edge crosses.
 struct FindRidges {
@@ -260,10 +223,12 @@ struct KeepRidges {
     {
         const int listed = std::min(found[e], ridges.room());
         sort_slots(ridges, e, listed);
-        counts[e] = keep_slots(ridges, e, listed, [&](int ridge, int) {
-            ContactPair pair;
-            return ridge_pair(search, edge_vertex[e], ridge, search, pair);
-        });
+        int kept = 0;
+        ContactPair pair;
+        for (int k = 0; k < listed; ++k)
+            if (const int ridge = ridges.of(e, k); ridge_pair(search, edge_vertex[e], ridge, search, pair))
+                ridges.of(e, kept++) = ridge;
+        counts[e] = kept;
     }
 };
 

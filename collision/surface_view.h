@@ -84,6 +84,10 @@ struct SurfaceView {
     /// touching triangle, always nearer.
     TOILE_HD SurfacePoint closest_from(const Vec3& p, int triangle) const;
 
+    /// The lowest triangle of which the closest point's edge or vertex is also closest: which of those that
+    /// meet there comes out nearest is rounding.
+    TOILE_HD NearTriangle lowest_at(const NearTriangle& near, const Vec3& p) const;
+
 private:
     /// Calls visit(3 * triangle + corner) for the triangles around the closest point's vertex; for those at
     /// its edge with corner 0; for none inside a face.
@@ -98,7 +102,6 @@ private:
                 visit(corner);
         }
     }
-    TOILE_HD NearTriangle lowest_at(const NearTriangle& near, const Vec3& p) const;
 };
 
 TOILE_HD inline Vec3 SurfaceView::face_normal(int t) const
@@ -147,8 +150,6 @@ TOILE_HD inline bool SurfaceView::is_ridge(int edge) const
     return true;
 }
 
-/// The lowest triangle of which the closest point's edge or vertex is also closest: which of those that meet
-/// there comes out nearest is rounding.
 TOILE_HD inline NearTriangle SurfaceView::lowest_at(const NearTriangle& near, const Vec3& p) const
 {
     if (const int k = edge_of(near.closest.feature); k >= 0) {

@@ -31,11 +31,10 @@ public:
         const DetectSettings& settings = what.settings;
         const std::vector<Vec3> positions(x.begin(), x.end());
         const SurfaceOnCpu mesh(moving.triangles, moving.x_t1, {}, 0.0);
-        const SurfaceOnCpu cloth(cloth_.triangles, positions, {{}, what.reach, {}},
-                                 what.reach.empty() ? 2.0 * settings.radius : 0.0);
+        const SurfaceOnCpu cloth(cloth_.triangles, positions, {}, 0.0);
         const DeviceSearch search{x,        what.reach,      search_of(mesh),    moving.x_t0,
                                   collider, settings.radius, settings.max_depth, settings.farthest_motion};
-        find(search, mesh, cloth);
+        find(search, cloth);
         return report(search, cloth);
     }
 
@@ -58,35 +57,67 @@ private:
                 surface.extent};
     }
 
-    void find(const DeviceSearch& search, const SurfaceOnCpu& mesh, const SurfaceOnCpu& cloth)
+    void find(const DeviceSearch& search, const SurfaceOnCpu& cloth)
     {
-        const int vertices = search.x.size(), body = mesh.vertex_count(), edges = cloth.edges.edge_count();
-        counts_.assign(vertices + body + edges + 1, 0);
-        const View<int> counts = counts_;
-        vertex_counts_ = counts.subview(0, vertices);
-        sheet_counts_ = counts.subview(vertices, body);
-        ridge_counts_ = counts.subview(vertices + body, edges);
+        const int vertices = search.x.size();
         nearest_.assign(vertices, -1);
-        plane_items_.resize(3 * size_t(vertices));
+        plane_items_.resize(VertexPlanes::kMost * size_t(vertices));
         planes_ = {plane_items_, vertices};
+        plane_counts_.resize(vertices);
         parallel_for(kCpu, "test/planes", vertices,
-                     FindPlanes{search, order_, sides_, nearest_, planes_, vertex_counts_});
+                     FindPlanes{search, order_, sides_, nearest_, planes_, plane_counts_});
+        find_sheets(search, cloth);
+        find_ridges(search, cloth);
+    }
 
-        std::vector<int> found(body, 0);
-        sheet_items_.resize(kRoom * size_t(body));
-        sheets_ = {sheet_items_, body};
-        parallel_for(kCpu, "test/sheets", int(mesh.used.size()),
-                     FindSheets{search, search_of(cloth), mesh.used, mesh.vertex_order, sheets_, found});
+    void find_sheets(const DeviceSearch& search, const SurfaceOnCpu& cloth)
+    {
+        const int triangles = int(cloth_.triangles.size());
+        std::vector<int> found(triangles + 1, 0);
+        sheet_items_.resize(kRoom * size_t(triangles));
+        sheets_ = {sheet_items_, triangles};
+        const SurfaceView surface = search_of(cloth).surface;
+        parallel_for(kCpu, "test/sheets", triangles,
+                     FindSheets{search, surface, cloth.triangle_items(), sheets_, found});
         ASSERT_LE(*std::max_element(found.begin(), found.end()), kRoom);
-        parallel_for(kCpu, "test/keep_sheets", body,
-                     KeepSheets{search, search_of(cloth).surface, found, sheets_, sheet_counts_});
+        std::vector<long> first(found.size());
+        std::exclusive_scan(found.begin(), found.end(), first.begin(), 0L);
 
-        found.assign(edges, 0);
+        // Some more room than is needed.
+        const int room = int(first.back()) + 3;
+        std::vector<std::uint64_t> keys(room);
+        std::vector<int> slots(room);
+        parallel_for(kCpu, "test/clear", room, ClearSheetKeys{keys, slots});
+        parallel_for(kCpu, "test/keys", triangles, KeySheets{first, sheets_, keys, slots});
+        sorted_sheets_ = sorted(keys, slots);
+        sheet_counts_.resize(room);
+        const std::vector<int> rank = ranks_by_corners(cloth_.triangles);
+        const std::vector<long> count{first.back()};
+        parallel_for(
+            kCpu, "test/keep_sheets", room,
+            KeepSheets{search, surface, sheets_, sorted_sheets_, count, rank, sheet_counts_, keys, slots});
+        sorted_sheets_ = sorted(keys, slots);
+    }
+
+    static std::vector<int> sorted(const std::vector<std::uint64_t>& keys, const std::vector<int>& slots)
+    {
+        std::vector<int> order(keys.size()), result;
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return keys[a] < keys[b]; });
+        for (const int i : order)
+            result.push_back(slots[i]);
+        return result;
+    }
+
+    void find_ridges(const DeviceSearch& search, const SurfaceOnCpu& cloth)
+    {
+        const int edges = cloth.edges.edge_count();
+        std::vector<int> found(edges + 1, 0);
         ridge_items_.resize(kRoom * size_t(edges));
         ridges_ = {ridge_items_, edges};
+        ridge_counts_.resize(edges);
         parallel_for(kCpu, "test/ridges", edges,
                      FindRidges{search, cloth.edge_items(), cloth.edges.vertex, ridges_, found});
-        found.push_back(0);
         ASSERT_LE(*std::max_element(found.begin(), found.end()), kRoom);
         parallel_for(kCpu, "test/keep_ridges", edges,
                      KeepRidges{search, cloth.edges.vertex, found, ridges_, ridge_counts_});
@@ -94,26 +125,18 @@ private:
 
     std::vector<ContactPair> report(const DeviceSearch& search, const SurfaceOnCpu& cloth)
     {
-        std::vector<long> first(counts_.size());
-        std::exclusive_scan(counts_.begin(), counts_.end(), first.begin(), 0L);
-        const PairPlaces places{first, planes_.queries, sheets_.queries};
+        std::vector<int> counts = plane_counts_;
+        counts.insert(counts.end(), sheet_counts_.begin(), sheet_counts_.end());
+        counts.insert(counts.end(), ridge_counts_.begin(), ridge_counts_.end());
+        counts.push_back(0);
+        std::vector<long> first(counts.size());
+        std::exclusive_scan(counts.begin(), counts.end(), first.begin(), 0L);
+        const PairPlaces places{first, planes_.queries, int(sheet_counts_.size())};
         std::vector<ContactPair> pairs(first.back());
         parallel_for(kCpu, "test/report_planes", planes_.queries,
-                     ReportPlanes{search, vertex_counts_, planes_, places, pairs});
-
-        std::vector<std::uint64_t> keys(places.sheets() + 3);
-        std::vector<int> slots(keys.size());
-        parallel_for(kCpu, "test/clear", int(keys.size()), ClearSheetKeys{keys, slots});
-        const std::vector<int> rank = ranks_by_corners(cloth_.triangles);
-        parallel_for(kCpu, "test/keys", sheets_.queries,
-                     KeySheets{sheet_counts_, rank, sheets_, places, keys, slots});
-        std::vector<int> by_key(keys.size()), sorted(keys.size());
-        std::iota(by_key.begin(), by_key.end(), 0);
-        std::stable_sort(by_key.begin(), by_key.end(), [&](int a, int b) { return keys[a] < keys[b]; });
-        for (size_t i = 0; i < sorted.size(); ++i)
-            sorted[i] = slots[by_key[i]];
-        parallel_for(kCpu, "test/report_sheets", int(sorted.size()),
-                     ReportSheet{search, search_of(cloth).surface, sorted, sheets_, places, pairs});
+                     ReportPlanes{search, plane_counts_, planes_, places, pairs});
+        parallel_for(kCpu, "test/report_sheets", int(sorted_sheets_.size()),
+                     ReportSheet{search, search_of(cloth).surface, sorted_sheets_, sheets_, places, pairs});
         parallel_for(kCpu, "test/report_ridges", ridges_.queries,
                      ReportRidges{search, cloth.edges.vertex, ridge_counts_, ridges_, places, pairs});
         return pairs;
@@ -122,8 +145,8 @@ private:
     const TriangleMesh& cloth_;
     std::vector<int> order_, nearest_;
     std::vector<VertexSides> sides_;
-    std::vector<int> counts_, plane_items_, sheet_items_, ridge_items_;
-    View<int> vertex_counts_, sheet_counts_, ridge_counts_;
+    std::vector<int> plane_items_, sheet_items_, ridge_items_, sorted_sheets_;
+    std::vector<int> plane_counts_, sheet_counts_, ridge_counts_;
     Slots planes_, sheets_, ridges_;
 };
 

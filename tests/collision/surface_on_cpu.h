@@ -33,6 +33,10 @@ public:
     int vertex_count() const { return int(x.size()); }
     ImplicitBoxTree triangle_tree() const { return {triangle_shape_, triangle_nodes_}; }
     ImplicitBoxTree edge_tree() const { return {edge_shape_, edge_nodes_}; }
+    View<const BoxNode> triangle_items() const
+    {
+        return View<const BoxNode>(triangle_nodes_).subview(0, triangle_shape_.count);
+    }
     View<const BoxNode> edge_items() const
     {
         return View<const BoxNode>(edge_nodes_).subview(0, edge_shape_.count);
