@@ -198,8 +198,8 @@ void DeviceContactDetector::find_sheets(const DeviceMeshCollider& mesh, int coll
                  KeySheets{first, sheets_.slots(), keys, slots});
     sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
     parallel_for(space_, "collision/device_keep_sheets", sheet_room_,
-                 KeepSheets{search, cloth, sheets_.slots(), sorted_sheets_.view(),
-                            first.subview(sheets_.queries, 1), rank_.view(), counts_of_sheets(), keys, slots},
+                 KeepSheets{search, cloth, sheets_.slots(), sorted_sheets_.view(), rank_.view(),
+                            counts_of_sheets(), keys, slots},
                  kBlock);
     sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
 }

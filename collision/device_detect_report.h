@@ -49,7 +49,7 @@ struct ClearSheetKeys {
     TOILE_HD void operator()(int i) const
     {
         keys[i] = kNoSheet;
-        slots[i] = 0;
+        slots[i] = -1;
     }
 };
 
@@ -78,7 +78,6 @@ struct KeepSheets {
     SurfaceView cloth;
     Slots sheets;
     View<const int> sorted;   ///< [room] slots by vertex of the mesh, then by triangle
-    View<const long> count;   ///< [1] of sheets, whether there was room or not
     View<const int> rank;     ///< [cloth triangles] place in the order of their corners
     View<int> counts;         ///< [room] out: 0 or 1
     View<std::uint64_t> keys; ///< [room] out
@@ -86,7 +85,7 @@ struct KeepSheets {
 
     TOILE_HD void operator()(int i) const
     {
-        const bool is_kept = i < count[0] && is_first(i) && is_pair(i);
+        const bool is_kept = sorted[i] >= 0 && is_first(i) && is_pair(i);
         counts[i] = int(is_kept);
         keys[i] = is_kept ? std::uint64_t(rank[triangle(i)]) << 32U | unsigned(vertex(i)) : kNoSheet;
         slots[i] = sorted[i];
