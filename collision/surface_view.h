@@ -157,7 +157,7 @@ TOILE_HD inline NearTriangle SurfaceView::lowest_at(const NearTriangle& near, co
         for (const int t : edges.triangles.of(edge)) {
             if (t >= near.triangle)
                 break;
-            const NearTriangle other{t, closest_on(t, p)};
+            NearTriangle other{t, closest_on(t, p)};
             const int own = edge_of(other.closest.feature);
             if (own >= 0 && edges.triangle_edge[t][own] == edge)
                 return other;
@@ -167,7 +167,7 @@ TOILE_HD inline NearTriangle SurfaceView::lowest_at(const NearTriangle& near, co
         for (const int corner : edges.corners_of_vertex.of(vertex)) {
             if (corner / 3 >= near.triangle)
                 break;
-            const NearTriangle other{corner / 3, closest_on(corner / 3, p)};
+            NearTriangle other{corner / 3, closest_on(corner / 3, p)};
             const int own = vertex_of(other.closest.feature);
             if (own >= 0 && triangles[other.triangle][own] == vertex)
                 return other;
