@@ -41,6 +41,7 @@ int closest_by_brute_force(const TriangleMesh& mesh, const Vec3& p)
 {
     constexpr double kRounding = 1e-14; // [m]
     std::vector<double> distance;
+    distance.reserve(mesh.triangles.size());
     for (int t = 0; t < mesh.triangle_count(); ++t)
         distance.push_back(std::sqrt(closest_on(mesh, t, p).distance2));
     const double least = *std::min_element(distance.begin(), distance.end());
