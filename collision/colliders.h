@@ -31,20 +31,21 @@ public:
     const MotionBounds& last_motion() const { return last_motion_; }
     bool is_moving() const { return is_moving_; } ///< in the current step
 
+    /// Both ends of the step, until the next move().
+    MeshPose pose() const { return {surface_.view(), x_t0_}; }
+
     /// Displacement of a vertex from t0 to t1 [m].
-    Vec3 motion(int vertex) const { return surface_.positions()[vertex] - x_t0_[vertex]; }
+    Vec3 motion(int vertex) const { return pose().motion(vertex); }
 
     /// Displacement of a point of a triangle from t0 to t1 [m].
-    Vec3 motion(int triangle, const Vec3& barycentric) const;
+    Vec3 motion(int triangle, const Vec3& barycentric) const { return pose().motion(triangle, barycentric); }
 
     struct OwnedEdge {
         int edge;
         std::array<int, 2> vertex;
     };
 
-    /// True when cloth can rest on an edge: a ridge of at least 1 degree between its faces, or a border. Flat
-    /// edges add nothing to their faces; in a valley cloth touches the faces first.
-    bool is_ridge(int edge) const;
+    bool is_ridge(int edge) const { return surface_.view().is_ridge(edge); } ///< see SurfaceView
 
     /// Edges whose lowest triangle is this one: every edge belongs to exactly one triangle.
     View<const OwnedEdge> owned_edges(int triangle) const
@@ -84,6 +85,7 @@ public:
     Vec3 motion_from(const Vec3& point) const { return pose_t1_ * (pose_t0_.inverse() * point) - point; }
 
     const Shape& shape() const { return shape_; }
+    const Eigen::Isometry3d& pose_t0() const { return pose_t0_; } ///< world_from_shape at t0
     const Eigen::Isometry3d& pose() const { return pose_t1_; } ///< world_from_shape at t1
 
 private:

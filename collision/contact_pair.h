@@ -28,7 +28,7 @@ enum class ContactKind {
 //          | n                         | n                     | n
 //       ___x___ collider face          x collider vertex       x  collider edge (end on)
 //                                     / \                      |
-//    kFaceShape, kEdgeShape: a cloth face or edge against a corner or edge of a Skeleton
+//    kFaceShape, kEdgeShape: a cloth face or edge against a corner or edge of a ShapeSkeleton
 //    kClothVertexFace, kClothEdgeEdge: both are cloth. Weights are signed, sum 0, and point is zero:
 //                                      sum_k weight_k x_k runs from one side to the other.
 struct ContactPair {
@@ -68,6 +68,9 @@ struct ContactPair {
 };
 
 /// ContactPair::vertex of one to four vertices.
-inline std::array<int, 4> contact_vertices(int a, int b = -1, int c = -1, int d = -1) { return {a, b, c, d}; }
+TOILE_HD inline std::array<int, 4> contact_vertices(int a, int b = -1, int c = -1, int d = -1)
+{
+    return {a, b, c, d};
+}
 
 } // namespace toile

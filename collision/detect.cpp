@@ -66,7 +66,7 @@ void ContactDetector::detect(const ShapeCollider& shape, int collider, const Det
 {
     find_vertex_shape(x_, shape, collider, settings.radius, out);
 
-    const Skeleton skeleton = skeleton_of(shape.shape(), shape.pose());
+    const ShapeSkeleton skeleton = skeleton_of(shape.shape(), shape.pose());
     if (skeleton.corners.empty() ||
         are_apart(bounds_, bounds(skeleton.points()), skeleton.radius + settings.radius))
         return;

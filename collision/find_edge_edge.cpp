@@ -5,27 +5,6 @@ namespace toile {
 
 namespace {
 
-/// Least |cos| between the direction to the cloth and the ridge's pseudo-normal [-]: 60 degrees. Beyond it
-/// the closest points lie on the faces beside the ridge.
-constexpr double kConeCosine = 0.5;
-
-/// The closest points of segment a and ridge b when both lie strictly inside; nothing otherwise. Cheaper than
-/// closest_on_segments: most candidates leave without a division.
-std::optional<ClosestOnSegments> crossing(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1)
-{
-    const Vec3 da = a1 - a0, db = b1 - b0, gap = a0 - b0;
-    const double aa = da.squaredNorm(), bb = db.squaredNorm(), ab = da.dot(db);
-    const double ga = da.dot(gap), gb = db.dot(gap);
-    const double determinant = aa * bb - ab * ab;
-    const double s = ab * gb - bb * ga;
-    const double t = aa * gb - ab * ga;
-    if (!(s > 0.0 && s < determinant && t > 0.0 && t < determinant))
-        return std::nullopt;
-    if (!(determinant > kParallelSine2 * aa * bb))
-        return std::nullopt;
-    return at_parameters(a0, a1, b0, b1, s / determinant, t / determinant);
-}
-
 /// Eight edges of the mesh side by side.
 struct EdgeBlock {
     static constexpr int kCount = kLanes;
@@ -63,45 +42,6 @@ Lanes::mask_type EdgeBlock::may_cross(const Vec3& a0, const Vec3& a1, View<const
     return s > -slack && s < determinant + slack && t > -slack && t < determinant + slack;
 }
 
-/// Adds the pair of a cloth edge and a ridge whose closest points are given, when the ridge can push there.
-void add_pair(const PairSearch& search, const std::array<int, 2>& cloth_edge,
-              const MeshCollider::OwnedEdge& ridge, const ClosestOnSegments& closest,
-              std::vector<ContactPair>& out)
-{
-    const SurfaceProximity& surface = search.mesh.surface();
-    const Vec3 &b0 = surface.positions()[ridge.vertex[0]], &b1 = surface.positions()[ridge.vertex[1]];
-    const Vec3 pseudo_normal = surface.edge_normal(ridge.edge);
-    if (pseudo_normal.isZero(0.0))
-        return;
-
-    // Outside: the direction between the edges, when the ridge can push that way. Touching or inside: the
-    // ridge's own normal.
-    const double s = closest.s, t = closest.t;
-    const Vec3 on_cloth = (1.0 - s) * search.x[cloth_edge[0]] + s * search.x[cloth_edge[1]];
-    const Vec3 on_ridge = (1.0 - t) * b0 + t * b1;
-    const double distance = std::sqrt(closest.distance2);
-    Vec3 normal = pseudo_normal;
-    if (distance > kTouching) {
-        const Vec3 direction = (on_cloth - on_ridge) / distance;
-        const double ahead = direction.dot(pseudo_normal);
-        if (std::abs(ahead) < kConeCosine)
-            return;
-        if (ahead < 0.0 && !is_inside_below(search.mesh, on_cloth, distance, pseudo_normal))
-            return;
-        if (ahead > 0.0)
-            normal = direction;
-    }
-    out.push_back(
-        {.vertex = contact_vertices(cloth_edge[0], cloth_edge[1]),
-         .weight = {1.0 - s, s},
-         .normal = normal,
-         .point = on_ridge,
-         .motion = (1.0 - t) * search.mesh.motion(ridge.vertex[0]) + t * search.mesh.motion(ridge.vertex[1]),
-         .collider = search.collider,
-         .kind = ContactKind::kEdgeEdge,
-         .feature = ridge.edge});
-}
-
 void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
                  std::vector<ContactPair>& out)
 {
@@ -121,6 +61,9 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
     thread_local std::vector<int> triangles;
     search.mesh.surface().triangles_maybe_around(a, b, radius, triangles);
     const size_t first = out.size();
+    const MeshPose mesh = search.mesh.pose();
+    const InsideBelow is_inside_below{search.mesh};
+    ContactPair pair;
     EdgeBlock block;
     const auto test_block = [&] {
         const Lanes::mask_type may_cross = block.may_cross(a, b, body);
@@ -128,9 +71,11 @@ void find_ridges(const PairSearch& search, const std::array<int, 2>& cloth_edge,
             if (!may_cross[i])
                 continue;
             const MeshCollider::OwnedEdge& ridge = *block.edge[i];
-            if (const auto closest = crossing(a, b, body[ridge.vertex[0]], body[ridge.vertex[1]]);
-                closest && closest->distance2 < radius2 && search.mesh.is_ridge(ridge.edge))
-                add_pair(search, cloth_edge, ridge, *closest, out);
+            const ClosestOnSegments closest = crossing(a, b, body[ridge.vertex[0]], body[ridge.vertex[1]]);
+            if (closest.s >= 0.0 && closest.distance2 < radius2 && mesh.surface.is_ridge(ridge.edge) &&
+                meets_ridge(mesh, search.collider, cloth_edge, a, b, ridge.edge, closest, is_inside_below,
+                            pair))
+                out.push_back(pair);
         }
         block.count = 0;
     };

@@ -6,13 +6,6 @@ namespace toile {
 
 namespace {
 
-/// How deep a collider vertex may have pierced the cloth, in radii [-].
-constexpr double kPiercedRadii = 1.0;
-
-/// Least |cos| between the vertex normal and the direction to the cloth [-]: 45 degrees. Cloth that passes
-/// sideways is the business of its own vertices and edges.
-constexpr double kAheadCosine = 0.7071;
-
 void find_sheets(const PairSearch& search, const SurfaceProximity& cloth, const ReachingVertex& reaching,
                  std::vector<ContactPair>& out)
 {
@@ -24,28 +17,12 @@ void find_sheets(const PairSearch& search, const SurfaceProximity& cloth, const 
     if (sheets.empty())
         return;
     const Vec3 n = surface.vertex_normal(v);
+    const MeshPose mesh = search.mesh.pose();
     for (const SurfacePoint& sheet : sheets) {
-        // Above a cloth vertex the vertex itself makes the pair.
-        if (vertex_of(sheet.feature) >= 0)
-            continue;
         const Triangle& corner = cloth.triangles()[sheet.triangle];
         const double radius = search.radius_of(corner[0], corner[1], corner[2]);
-        if (sheet.distance() > kPiercedRadii * radius)
-            continue;
-        const double gap = n.dot(sheet.point - x);
-        const bool is_ahead = sheet.distance() < kTouching || std::abs(gap) > kAheadCosine * sheet.distance();
-        if (n.isZero(0.0) || !is_ahead || gap >= radius)
-            continue;
-        if (gap < -kTouching && !is_inside_below(search.mesh, sheet.point, sheet.distance(), n))
-            continue;
-        out.push_back({.vertex = contact_vertices(corner[0], corner[1], corner[2]),
-                       .weight = {sheet.barycentric[0], sheet.barycentric[1], sheet.barycentric[2]},
-                       .normal = n,
-                       .point = x,
-                       .motion = search.mesh.motion(v),
-                       .collider = search.collider,
-                       .kind = ContactKind::kFaceVertex,
-                       .feature = v});
+        if (meets_sheet(x, n, sheet, radius, InsideBelow{search.mesh}))
+            out.push_back(face_vertex_pair(mesh, search.collider, v, n, corner, sheet));
     }
 }
 
@@ -111,11 +88,10 @@ private:
 
 } // namespace
 
-bool is_inside_below(const MeshCollider& mesh, const Vec3& c, double reach, const Vec3& n)
+bool InsideBelow::operator()(const Vec3& c, double reach, const Vec3& n) const
 {
-    constexpr double kReachSlack = 1.0 + 1e-6; // the feature itself must be found
     const std::optional<SurfacePoint> nearest = mesh.surface().closest(c, reach * kReachSlack);
-    return nearest && nearest->signed_distance < 0.0 && nearest->normal.dot(n) > 0.0;
+    return nearest && is_below(*nearest, n);
 }
 
 std::vector<ReachingVertex> find_reaching_vertices(const PairSearch& search, View<const Triangle> triangles)

@@ -4,17 +4,11 @@
 
 #include <vector>
 
+#include "collision/collider_rules.h"
 #include "collision/detect.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
-
-/// Distance [m] below which the direction between two closest points is rounding: the collider's own normal
-/// takes its place.
-inline constexpr double kTouching = 1e-6;
-
-/// cos of the least angle between two planes of a vertex [-]: 45 degrees.
-inline constexpr double kDistinctCosine = 0.7071;
 
 /// What the stages share.
 struct PairSearch {
@@ -60,7 +54,10 @@ void find_vertex_shape(View<const Vec3> x, const ShapeCollider& shape, int colli
 /// True when the cloth point c, which lies behind a collider feature with normal n at distance `reach` or
 /// less, is inside the collider there: not outside on the far side of a thin part, where pushing along n
 /// would pull the cloth through.
-bool is_inside_below(const MeshCollider& mesh, const Vec3& c, double reach, const Vec3& n);
+struct InsideBelow {
+    const MeshCollider& mesh;
+    bool operator()(const Vec3& c, double reach, const Vec3& n) const;
+};
 
 /// True when x is within `margin` of the box.
 inline bool is_near(const Bounds& box, const Vec3& x, double margin)

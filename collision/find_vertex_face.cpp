@@ -4,37 +4,15 @@ namespace toile {
 
 namespace {
 
-/// Planes per cloth vertex: a corner needs three, more would only repeat them.
-constexpr size_t kMaxPlanes = 3;
-
-/// Gradient of the signed distance: the direction between vertex and surface, turned outwards.
-Vec3 outward(const SurfacePoint& surface, const Vec3& x)
-{
-    return surface.distance() > kTouching ? Vec3((x - surface.point) / surface.signed_distance)
-                                          : surface.normal;
-}
-
 /// The pairs of one cloth vertex. `hint` carries the last triangle found from vertex to vertex, for those
 /// that have not been looked for yet.
 void find_planes(const PairSearch& search, int v, int& hint, std::vector<ContactPair>& out)
 {
     const MeshCollider& mesh = search.mesh;
     const Vec3& x = search.x[v];
+    const MeshPose pose = mesh.pose();
     const auto add = [&](const SurfacePoint& at) {
-        out.push_back({.vertex = contact_vertices(v),
-                       .weight = {1.0},
-                       .normal = outward(at, x),
-                       .point = at.point,
-                       .motion = mesh.motion(at.triangle, at.barycentric),
-                       .collider = search.collider,
-                       .kind = ContactKind::kVertexFace,
-                       .feature = at.triangle});
-    };
-
-    const size_t first = out.size();
-    const auto is_distinct = [&](const Vec3& n) {
-        return std::all_of(out.begin() + long(first), out.end(),
-                           [&](const ContactPair& kept) { return kept.normal.dot(n) < kDistinctCosine; });
+        out.push_back(vertex_face_pair(pose, search.collider, v, x, at));
     };
 
     // The closest point: in front within the radius, behind down to the depth.
@@ -49,30 +27,18 @@ void find_planes(const PairSearch& search, int v, int& hint, std::vector<Contact
     hint = nearest->triangle;
     thread_local std::vector<SurfacePoint> sheets;
     sheets.clear();
-    const bool is_behind = nearest->signed_distance < 0.0;
-    if (search.sides != nullptr && is_behind)
+    if (search.sides != nullptr && nearest->signed_distance < 0.0)
         search.sides->find_behind(v, x, mesh, search.collider, search.settings.farthest_motion, sheets);
-    const bool is_caught = !sheets.empty();
-    if (is_behind ? !is_caught && nearest->distance() < search.settings.max_depth
-                  : nearest->distance() < radius)
-        add(*nearest);
-
-    // Sheets that it has come behind, of a body that it is inside of: outside, the place on a remembered
-    // sheet may face away from cloth that has gone round it.
-    for (const SurfacePoint& sheet : sheets)
-        if (out.size() - first < kMaxPlanes && is_distinct(outward(sheet, x)))
-            add(sheet);
-    if (out.size() == first)
+    VertexPlanes planes(x, radius, search.settings.max_depth);
+    planes.take_first(*nearest, sheets, add);
+    if (planes.count == 0)
         return;
 
     // Other sheets that the vertex stands in front of, each turned away from those before.
-    mesh.surface().local_closest(x, radius, sheets, out[first].normal);
-    for (const SurfacePoint& sheet : sheets) {
-        if (out.size() - first == kMaxPlanes)
-            break;
-        if (sheet.signed_distance >= 0.0 && sheet.distance() < radius && is_distinct(outward(sheet, x)))
-            add(sheet);
-    }
+    mesh.surface().local_closest(x, radius, sheets, planes.normal[0]);
+    for (const SurfacePoint& sheet : sheets)
+        if (!planes.is_full() && planes.is_wanted(sheet))
+            planes.take(sheet, add);
 }
 
 } // namespace

@@ -1,27 +1,22 @@
 #include "collision/find_pairs.h"
+#include "collision/shape_search.h"
 
 namespace toile {
 
 void find_vertex_shape(View<const Vec3> x, const ShapeCollider& shape, int collider, double radius,
                        std::vector<ContactPair>& out)
 {
-    parallel_append(
-        kCpu, "collision/shape", x.size(),
-        [&](int begin, int end, std::vector<ContactPair>& pairs) {
-            for (int v = begin; v < end; ++v) {
-                const ShapePoint at = shape.closest(x[v]);
-                if (at.signed_distance < radius)
-                    pairs.push_back({.vertex = contact_vertices(v),
-                                     .weight = {1.0},
-                                     .normal = at.normal,
-                                     .point = at.point,
-                                     .motion = shape.motion(at.point),
-                                     .collider = collider,
-                                     .kind = ContactKind::kVertexShape,
-                                     .feature = 0});
-            }
-        },
-        out);
+    with_solid(shape, [&](const auto& solid) {
+        const ShapeRules<std::decay_t<decltype(solid.solid)>> rules{{}, {}, x,        solid,
+                                                                    {}, {}, collider, radius};
+        parallel_append(
+            kCpu, "collision/shape", x.size(),
+            [&](int begin, int end, std::vector<ContactPair>& pairs) {
+                for (int v = begin; v < end; ++v)
+                    rules.visit_vertex(v, [&](const ContactPair& pair) { pairs.push_back(pair); });
+            },
+            out);
+    });
 }
 
 } // namespace toile

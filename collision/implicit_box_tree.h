@@ -68,9 +68,21 @@ struct ImplicitBoxTree {
     template <typename Visit>
     TOILE_HD void visit_overlapping(const BoxNode& query, int above, const Visit& visit) const
     {
+        const auto is_open = [&](const BoxNode& node) {
+            return (node.last > above) & ((node.is_wanted | query.is_wanted) != 0) &
+                   node.box().overlaps(query.box());
+        };
+        descend(is_open, visit);
+    }
+
+    /// Calls visit(number) for the items with is_open(node) whose nodes above are open too, in the tree's
+    /// order. What is open may become less while items are visited.
+    template <typename IsOpen, typename Visit>
+    TOILE_HD void descend(const IsOpen& is_open, const Visit& visit) const
+    {
         // Four bits per level: children that are still to be looked at, lower levels first.
         int level = shape.top - 1, base = 0;
-        std::uint64_t open = overlaps(query, above, level, base);
+        std::uint64_t open = open_ones(is_open, level, base);
         open <<= ImplicitShape::kFan * level;
         while (open != 0) {
             const int bit = lowest_bit(open);
@@ -85,19 +97,35 @@ struct ImplicitBoxTree {
             }
             --level;
             base = node * ImplicitShape::kFan;
-            open |= std::uint64_t(overlaps(query, above, level, base)) << (ImplicitShape::kFan * level);
+            open |= std::uint64_t(open_ones(is_open, level, base)) << (ImplicitShape::kFan * level);
         }
+    }
+
+    /// The item that is come to from the root by the child of least cost(node) again and again; -1 in an
+    /// empty tree.
+    template <typename Cost>
+    TOILE_HD int greedy_item(const Cost& cost) const
+    {
+        int node = 0;
+        for (int level = shape.top - 1; level >= 0; --level) {
+            const int base = ImplicitShape::kFan * node;
+            node = base;
+            for (int k = 1; k < ImplicitShape::kFan; ++k)
+                if (cost(nodes[shape.first[level] + base + k]) < cost(nodes[shape.first[level] + node]))
+                    node = base + k;
+        }
+        return nodes[node].last;
     }
 
 private:
     /// A bit for each of the four nodes from `base` on.
-    TOILE_HD unsigned overlaps(const BoxNode& query, int above, int level, int base) const
+    template <typename IsOpen>
+    TOILE_HD unsigned open_ones(const IsOpen& is_open, int level, int base) const
     {
         unsigned bits = 0;
         for (int k = 0; k < ImplicitShape::kFan; ++k) {
             const BoxNode node = nodes[shape.first[level] + base + k];
-            const bool is_open = (node.last > above) & ((node.is_wanted | query.is_wanted) != 0);
-            bits |= unsigned(is_open & node.box().overlaps(query.box())) << k;
+            bits |= unsigned(is_open(node)) << k;
         }
         return bits;
     }

@@ -1,12 +1,24 @@
 #pragma once
 
-#include <span>
+#include <variant>
 #include <vector>
 
 #include "collision/detect.h"
-#include "collision/skeleton.h"
+#include "collision/shape_rules.h"
 
 namespace toile {
+
+/// Calls visit(MovingSolid) with the solid of a collider.
+template <typename Visit>
+void with_solid(const ShapeCollider& shape, const Visit& visit)
+{
+    std::visit(
+        [&](const auto& solid) {
+            visit(MovingSolid<std::decay_t<decltype(solid)>>{solid, solid_pose(shape.pose_t0()),
+                                                             solid_pose(shape.pose())});
+        },
+        shape.shape());
+}
 
 /// The search for places where faces and edges of one cloth are near the corners and edges of one solid.
 class ShapeSearch {
@@ -17,7 +29,7 @@ public:
     /// @param collider  the solid's number
     /// @param radius    [m] places closer than this become pairs
     ShapeSearch(const SurfaceProximity& cloth, View<const Vec3> x, const ShapeCollider& shape,
-                const Skeleton& skeleton, int collider, double radius);
+                const ShapeSkeleton& skeleton, int collider, double radius);
 
     /// Appends cloth faces against corners, by cloth face, then by corner.
     void find_faces(std::vector<ContactPair>& out) const;
@@ -26,24 +38,13 @@ public:
     void find_edges(std::vector<ContactPair>& out) const;
 
 private:
-    struct Meeting;
-    bool is_worth_testing(std::span<const int> vertices, double longest) const;
-    bool is_nearest_of_its_faces(int edge, const Vec3& p) const;
-    void add_face(int t, std::vector<ContactPair>& out) const;
-    void add_corner_edge(int e, int corner, std::vector<ContactPair>& out) const;
-    void add_edge_edge(int e, int edge, std::vector<ContactPair>& out) const;
-    bool has_pierced(const Vec3& c, const Vec3& n, double depth) const;
-    void add(const Meeting& meeting, std::vector<ContactPair>& out) const;
-    void add_round(const Meeting& meeting, std::vector<ContactPair>& out) const;
-    void add_sharp(const Meeting& meeting, std::vector<ContactPair>& out) const;
-    void push(const Meeting& meeting, const Vec3& normal, const Vec3& point,
-              std::vector<ContactPair>& out) const;
+    template <typename Solid>
+    ShapeRules<Solid> rules_of(const MovingSolid<Solid>& solid) const;
 
-    View<const Triangle> triangles_;
-    const SurfaceEdges& edges_;
+    const SurfaceProximity& cloth_;
     View<const Vec3> x_;
     const ShapeCollider& shape_;
-    const Skeleton& skeleton_;
+    PlainSkeleton skeleton_;
     int collider_;
     double radius_;
     std::vector<double> distance_; ///< [vertices] to the skeleton [m]

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "collision/clearance.h"
+#include "collision/side_rules.h"
 
 namespace toile {
 
@@ -12,19 +12,9 @@ namespace toile {
 /// belongs: what it was in front of before does.
 class SideMemory {
 public:
-    /// A vertex can be caught by no more: as many as planes in a corner.
-    static constexpr int kMostSides = 3;
-
-    /// A sheet is remembered once it is this near [m]. Parts that close faster than this in a step pass
-    /// unseen.
-    static constexpr double kReach = 0.02;
-
-    /// Deeper behind a sheet [m] than this it is forgotten: the walk along the surface has lost its place.
-    static constexpr double kDeepest = 0.1;
-
     explicit SideMemory(int vertex_count) : sides_(size_t(vertex_count)) {}
 
-    void forget() { std::fill(sides_.begin(), sides_.end(), Sides{}); }
+    void forget() { std::fill(sides_.begin(), sides_.end(), VertexSides{}); }
 
     /// Learns at the end of a step. A sheet that the vertex is behind by now is kept; new ones are those it
     /// is in front of. A query or two for each vertex near the mesh; none for a mesh that never moved.
@@ -40,15 +30,9 @@ public:
                      std::vector<SurfacePoint>& out) const;
 
 private:
-    struct Side {
-        int collider = -1; ///< -1: none
-        int triangle = -1; ///< where the sheet was nearest
-    };
-    using Sides = std::array<Side, kMostSides>;
+    VertexSides learnt(int v, const Vec3& x, const MeshCollider& mesh, int collider, int hint) const;
 
-    Sides learnt(int v, const Vec3& x, const MeshCollider& mesh, int collider, int hint) const;
-
-    std::vector<Sides> sides_; ///< [vertices]
+    std::vector<VertexSides> sides_; ///< [vertices]
 };
 
 } // namespace toile

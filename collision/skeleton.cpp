@@ -1,22 +1,20 @@
 #include "collision/skeleton.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "collision/distance.h"
+#include "collision/shape_rules.h"
 
 namespace toile {
 
 namespace {
 
 /// The corner number of a box: bit k tells the side along axis k.
-Skeleton box_skeleton(const Vec3& half, const Eigen::Isometry3d& pose)
+ShapeSkeleton box_skeleton(const Vec3& half, const Eigen::Isometry3d& pose)
 {
     const auto side = [](int corner, int axis) { return (corner >> axis & 1) != 0 ? 1.0 : -1.0; };
-    Skeleton box;
+    ShapeSkeleton box;
     for (int c = 0; c < 8; ++c) {
-        Skeleton::Corner corner;
+        ShapeSkeleton::Corner corner;
         const Vec3 signs(side(c, 0), side(c, 1), side(c, 2));
         corner.point = pose * signs.cwiseProduct(half);
         for (int k = 0; k < 3; ++k)
@@ -28,7 +26,7 @@ Skeleton box_skeleton(const Vec3& half, const Eigen::Isometry3d& pose)
     for (int axis = 0; axis < 3; ++axis)
         for (int c = 0; c < 8; ++c)
             if ((c >> axis & 1) == 0) {
-                const Skeleton::Corner& low = box.corners[c];
+                const ShapeSkeleton::Corner& low = box.corners[c];
                 box.edges.push_back({low.point,
                                      box.corners[c | 1 << axis].point,
                                      {low.faces[(axis + 1) % 3], low.faces[(axis + 2) % 3]}});
@@ -38,19 +36,22 @@ Skeleton box_skeleton(const Vec3& half, const Eigen::Isometry3d& pose)
 
 } // namespace
 
-double Skeleton::distance(const Vec3& x) const
+PlainSkeleton plain(const ShapeSkeleton& skeleton)
 {
-    double squared = std::numeric_limits<double>::infinity();
-    for (const Corner& corner : corners)
-        squared = std::min(squared, (x - corner.point).squaredNorm());
-    for (const Edge& edge : edges) {
-        const double t = closest_on_segment(x, edge.a, edge.b);
-        squared = std::min(squared, (x - edge.a - t * (edge.b - edge.a)).squaredNorm());
-    }
-    return std::sqrt(squared) - radius;
+    PlainSkeleton made{};
+    TOILE_ASSERT(skeleton.corners.size() <= made.corners.size() &&
+                 skeleton.edges.size() <= made.edges.size());
+    std::copy(skeleton.corners.begin(), skeleton.corners.end(), made.corners.begin());
+    std::copy(skeleton.edges.begin(), skeleton.edges.end(), made.edges.begin());
+    made.corner_count = int(skeleton.corners.size());
+    made.edge_count = int(skeleton.edges.size());
+    made.radius = skeleton.radius;
+    return made;
 }
 
-std::vector<Vec3> Skeleton::points() const
+double ShapeSkeleton::distance(const Vec3& x) const { return plain(*this).distance(x); }
+
+std::vector<Vec3> ShapeSkeleton::points() const
 {
     std::vector<Vec3> points;
     for (const Corner& corner : corners)
@@ -58,9 +59,9 @@ std::vector<Vec3> Skeleton::points() const
     return points;
 }
 
-Skeleton skeleton_of(const Shape& shape, const Eigen::Isometry3d& pose)
+ShapeSkeleton skeleton_of(const Shape& shape, const Eigen::Isometry3d& pose)
 {
-    Skeleton round;
+    ShapeSkeleton round;
     if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
         round.radius = sphere->radius;
         round.corners = {{pose.translation(), {}}};

@@ -14,7 +14,7 @@ namespace toile {
 ///   capsule  two corners and the edge between them, thickened
 ///   box      eight corners, twelve edges, sharp
 ///   plane    none: cloth vertices alone meet it
-struct Skeleton {
+struct ShapeSkeleton {
     struct Corner {
         Vec3 point;
         std::array<Vec3, 3> faces; ///< unit normals of the faces that meet here; unused where round
@@ -36,6 +36,6 @@ struct Skeleton {
 };
 
 /// @param pose  world_from_shape
-Skeleton skeleton_of(const Shape& shape, const Eigen::Isometry3d& pose);
+ShapeSkeleton skeleton_of(const Shape& shape, const Eigen::Isometry3d& pose);
 
 } // namespace toile

@@ -1,9 +1,24 @@
 #include "collision/surface_edges.h"
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 namespace toile {
+
+std::vector<int> ranks_by_corners(View<const Triangle> triangles)
+{
+    const auto is_less = [&](int a, int b) {
+        return std::lexicographical_compare(triangles[a].begin(), triangles[a].end(), triangles[b].begin(),
+                                            triangles[b].end());
+    };
+    std::vector<int> order(triangles.size()), rank(triangles.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), is_less);
+    for (size_t i = 1; i < order.size(); ++i)
+        rank[order[i]] = rank[order[i - 1]] + int(is_less(order[i - 1], order[i]));
+    return rank;
+}
 
 SurfaceEdges build_surface_edges(View<const Triangle> triangles, int vertex_count)
 {

@@ -47,6 +47,10 @@ inline SurfaceEdgesView view_of(const SurfaceEdges& edges)
             {edges.corners_of_vertex.first, edges.corners_of_vertex.items}};
 }
 
+/// Places of triangles in the order of their corners, as they are listed; equal ones share a place.
+/// O(n log n).
+std::vector<int> ranks_by_corners(View<const Triangle> triangles);
+
 /// O(n log n).
 SurfaceEdges build_surface_edges(View<const Triangle> triangles, int vertex_count);
 

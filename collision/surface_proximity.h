@@ -5,29 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "collision/distance.h"
-#include "collision/surface_edges.h"
-#include "core/backend/types.h"
+#include "collision/surface_view.h"
 
 namespace toile {
-
-/// Cosine of the angle [-] within which local_closest takes a face for more of the same sheet (30 degrees).
-inline constexpr double kUnlikeCosine = 0.866;
-
-/// A point on a triangle surface, seen from a query point p.
-struct SurfacePoint {
-    int triangle = -1;
-    TriangleFeature feature = TriangleFeature::kFace; ///< of that triangle: where the point lies
-    Vec3 barycentric = Vec3::Zero();                  ///< weights of the triangle's corners
-    Vec3 point = Vec3::Zero();                        ///< [m]
-    /// Unit pseudo-normal of the feature: the face's, the sum of the edge's faces', the angle-weighted sum
-    /// around the vertex. It gives the right sign on a closed mesh whichever feature is closest, which no
-    /// single face normal does. [Baerentzen and Aanaes 2005]
-    Vec3 normal = Vec3::Zero();
-    double signed_distance = 0.0; ///< [m] |p - point|, negative behind the surface: normal.(p - point) < 0
-
-    double distance() const { return std::abs(signed_distance); }
-};
 
 /// Closest-point queries on a triangle surface that moves without changing its triangles.
 ///
@@ -50,7 +30,7 @@ public:
     void update(View<const Vec3> positions);
 
     /// The closest point of the surface nearer than max_distance [m] to p, or nothing; of equally near
-    /// triangles the lowest.
+    /// triangles the lowest, also where they meet in a closest edge or vertex and differ by rounding.
     /// @param hint  a triangle that is probably near (e.g. a neighbour's answer), or -1: speeds the
     ///              search up, never changes the answer
     std::optional<SurfacePoint> closest(const Vec3& p,
@@ -82,6 +62,7 @@ public:
     Vec3 edge_normal(int edge) const;     ///< unit, or zero where all its triangles have no area
     Vec3 vertex_normal(int vertex) const; ///< angle-weighted; unit or zero likewise
     const SurfaceEdges& edges() const;
+    const SurfaceView& view() const; ///< of all of it, until the next update()
 
 private:
     class Surface;

@@ -13,8 +13,9 @@ namespace toile {
 
 namespace {
 
-const std::vector<std::string> kTables{"gpu_apply.csv", "gpu_step.csv", "gpu_near_pairs.csv",
-                                       "gpu_tables.csv", "gpu_scenes.csv", "gpu_tables.md"};
+const std::vector<std::string> kTables{"gpu_apply.csv",     "gpu_step.csv",   "gpu_near_pairs.csv",
+                                       "gpu_colliders.csv", "gpu_tables.csv", "gpu_scenes.csv",
+                                       "gpu_tables.md"};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -35,7 +36,7 @@ const std::vector<gpu::StepCase> kSteps{{5, 10'000, kStiffness, kTimeStep},
                                         {1, 240'000, kStiffness, kTimeStep}};
 const std::vector<gpu::StepCase> kQuickSteps{{2, 1'000, kStiffness, kTimeStep}};
 
-/// Sizes of the folded sheet in which near pairs are looked for [vertices].
+/// Sizes of the folded sheet in which near pairs are looked for, and of the dress on a body [vertices].
 const std::vector<int> kFoldedSizes{50'000, 240'000};
 
 /// The paper's scenes as made by us. Frames that a few seconds are enough for, contact among them.
@@ -75,6 +76,11 @@ std::vector<Case> cases_of(const BenchOptions& options)
         cases.push_back(
             {"near_pairs " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
                  gpu::measure_near_pairs(space, vertices, report.searches);
+             }});
+    for (const int vertices : options.quick ? kQuickSizes : kFoldedSizes)
+        cases.push_back(
+            {"colliders " + std::to_string(vertices), [=](const CudaSpace& space, gpu::Report& report) {
+                 gpu::measure_colliders(space, vertices, report.colliders);
              }});
     for (const gpu::SceneCase& scene : options.quick ? kQuickScenes : kScenes)
         cases.push_back({"scene " + scene.name, [what = scene](const CudaSpace&, gpu::Report& report) {
@@ -121,9 +127,10 @@ int bench_gpu(const BenchOptions& options)
     write_tables(options.output, {{kTables[0], gpu::csv_of_applies(report)},
                                   {kTables[1], gpu::csv_of_steps(report)},
                                   {kTables[2], gpu::csv_of(report.searches)},
-                                  {kTables[3], gpu::csv_of(report.builds)},
-                                  {kTables[4], gpu::csv_of(report.scenes)},
-                                  {kTables[5], gpu::markdown_tables(report)}});
+                                  {kTables[3], gpu::csv_of(report.colliders)},
+                                  {kTables[4], gpu::csv_of(report.builds)},
+                                  {kTables[5], gpu::csv_of(report.scenes)},
+                                  {kTables[6], gpu::markdown_tables(report)}});
     return kExitOk;
 }
 

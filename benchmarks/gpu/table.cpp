@@ -42,7 +42,8 @@ std::string markdown_tables(const Report& report)
            markdown({"cloths", "vertices of each", "iterations", "step ms", "iteration us", "CPU ms",
                      "CPU / GPU", "difference m", "with bytes m"},
                     step_rows_of(report)) +
-           "\n" + markdown_of(report.searches) + "\nScenes\n\n" + markdown_of(report.scenes);
+           "\n" + markdown_of(report.searches) + "\n" + markdown_of(report.colliders) + "\nScenes\n\n" +
+           markdown_of(report.scenes);
 }
 
 std::string csv_of_steps(const Report& report)

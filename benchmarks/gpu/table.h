@@ -5,6 +5,7 @@
 
 #include "benchmarks/gpu/apply.h"
 #include "benchmarks/gpu/build_tables.h"
+#include "benchmarks/gpu/colliders.h"
 #include "benchmarks/gpu/near_pairs.h"
 #include "benchmarks/gpu/scene.h"
 #include "benchmarks/gpu/step.h"
@@ -21,6 +22,7 @@ struct Report {
     std::vector<Step> steps;
     std::vector<NearSearch> searches;
     std::vector<SceneRun> scenes;
+    std::vector<ColliderSearch> colliders;
 };
 
 std::string markdown_tables(const Report& report);

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "collision/cloth/near_pairs.h"
-#include "core/backend/parallel.h"
 #include "tests/collision/same_pairs.h"
 #include "tests/collision/soups.h"
+#include "tests/collision/surface_on_cpu.h"
 
 namespace toile {
 namespace {
@@ -23,51 +23,14 @@ using test::Soup;
 class SearchOnCpu {
 public:
     SearchOnCpu(const Soup& soup, double margin)
-        : soup_(soup), edges_(build_surface_edges(soup.triangles, int(soup.x.size())))
+        : soup_(soup), surface_(soup.triangles, soup.x, soup.ways(), margin)
     {
-        extent_[0] = parallel_sum(kCpu, vertex_count(), SoupExtent(), ExtentOfVertex{soup.x, soup.motion});
-        points_.resize(soup.x.size());
-        largest_[0] =
-            parallel_sum(kCpu, vertex_count(), Largest(), PlacePoint{soup.x, soup.ways(), extent_, points_});
-        boxes_ = {points_, {}, largest_, margin};
-        for (int v = 0; v < vertex_count(); ++v)
-            if (!edges_.corners_of_vertex.of(v).empty())
-                used_.push_back({v});
-        build<Triangle>(soup.triangles, triangle_shape_, triangle_nodes_);
-        build<std::array<int, 2>>(edges_.vertex, edge_shape_, edge_nodes_);
-        vertex_order_ = order_of<std::array<int, 1>>(used_);
         find(margin);
     }
 
     const std::vector<NearPair>& pairs() const { return pairs_; }
 
 private:
-    int vertex_count() const { return int(soup_.x.size()); }
-
-    template <typename Primitive>
-    std::vector<int> order_of(View<const Primitive> primitives)
-    {
-        std::vector<std::uint64_t> keys(primitives.size());
-        std::vector<int> order(primitives.size());
-        parallel_for(kCpu, "test/curve", primitives.size(),
-                     PlaceOnCurve<Primitive>{primitives, soup_.x, extent_, keys, order});
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return keys[a] < keys[b]; });
-        return order;
-    }
-
-    template <typename Primitive>
-    void build(View<const Primitive> primitives, ImplicitShape& shape, std::vector<BoxNode>& nodes)
-    {
-        shape = ImplicitShape(primitives.size());
-        nodes.assign(shape.node_count(), BoxNode());
-        const std::vector<int> order = order_of<Primitive>(primitives);
-        parallel_for(kCpu, "test/refit", shape.size_of(1),
-                     RefitItems<Primitive>{shape, order, primitives, boxes_, nodes});
-        for (int level = 2; level <= shape.top; ++level)
-            for (int c = 0; c < shape.size_of(level); ++c)
-                RefitNodes{shape, nodes}(level - 1, c);
-    }
-
     template <typename Queries>
     void list(const Queries& queries, const ImplicitBoxTree& tree, int first_number, int count)
     {
@@ -85,20 +48,22 @@ private:
 
     void find(double margin)
     {
-        const PairCorners corners{soup_.triangles, edges_.vertex};
-        counts_.assign(vertex_count() + edges_.edge_count() + 1, 0);
+        const SurfaceEdges& edges = surface_.edges;
+        const int vertices = surface_.vertex_count();
+        const PairCorners corners{soup_.triangles, edges.vertex};
+        counts_.assign(vertices + edges.edge_count() + 1, 0);
         first_.resize(counts_.size());
-        list(VertexQueries{used_, vertex_order_, boxes_, corners, {}}, {triangle_shape_, triangle_nodes_}, 0,
-             vertex_count());
-        list(EdgeQueries{View<const BoxNode>(edge_nodes_).subview(0, edge_shape_.count), corners, {}},
-             {edge_shape_, edge_nodes_}, vertex_count(), edges_.edge_count());
+        list(VertexQueries{surface_.used, surface_.vertex_order, surface_.boxes, corners, {}},
+             surface_.triangle_tree(), 0, vertices);
+        list(EdgeQueries{surface_.edge_items(), corners, {}}, surface_.edge_tree(), vertices,
+             edges.edge_count());
 
-        const CandidateList list{candidates_, vertex_count()};
+        const CandidateList list{candidates_, vertices};
         const std::vector<long> candidate_count{first_.back()};
         std::vector<unsigned char> is_pair(candidates_.size());
-        parallel_for(
-            kCpu, "test/test", int(candidates_.size()),
-            TestCandidate{list, candidate_count, corners, soup_.x, soup_.ways(), margin, extent_, is_pair});
+        parallel_for(kCpu, "test/test", int(candidates_.size()),
+                     TestCandidate{list, candidate_count, corners, soup_.x, soup_.ways(), margin,
+                                   surface_.extent, is_pair});
         std::vector<int> pairs_in_list;
         for (int i = 0; i < int(is_pair.size()); ++i)
             if (is_pair[i] != 0)
@@ -107,19 +72,11 @@ private:
         pairs_.resize(pairs_in_list.size());
         parallel_for(
             kCpu, "test/report", count[0],
-            ReportPair{list, pairs_in_list, count, soup_.triangles, view_of(edges_), soup_.x, pairs_});
+            ReportPair{list, pairs_in_list, count, soup_.triangles, view_of(edges), soup_.x, pairs_});
     }
 
     const Soup& soup_;
-    SurfaceEdges edges_;
-    std::vector<std::array<int, 1>> used_;
-    std::vector<int> vertex_order_;
-    std::vector<SoupExtent> extent_{1};
-    std::vector<Largest> largest_{1};
-    std::vector<MovingPoint> points_;
-    BoxesAtPoints boxes_;
-    ImplicitShape triangle_shape_{0}, edge_shape_{0};
-    std::vector<BoxNode> triangle_nodes_, edge_nodes_;
+    test::SurfaceOnCpu surface_;
     std::vector<int> counts_;
     std::vector<long> first_;
     std::vector<Record> candidates_;

@@ -44,22 +44,22 @@ TriangleMesh large_triangle(double height)
     return {{{-1, height, -1}, {0, height, 2}, {1, height, -1}}, {{0, 1, 2}}};
 }
 
-TEST(Skeleton, IsAsFarAwayAsTheSolidsItThickens)
+TEST(ShapeSkeleton, IsAsFarAwayAsTheSolidsItThickens)
 {
     const Eigen::Isometry3d pose = pose_of(Vec3(0.2, 0.1, -0.3), 0.8, Vec3(1, 2, 3));
     const Shape capsule = CapsuleShape{0.3, 0.1};
-    const Skeleton skeleton = skeleton_of(capsule, pose);
+    const ShapeSkeleton skeleton = skeleton_of(capsule, pose);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     for (int i = 0; i < 200; ++i) {
         const Vec3 x(uniform(random), uniform(random), uniform(random));
         EXPECT_NEAR(skeleton.distance(x), closest(capsule, pose, x).signed_distance, 1e-14);
     }
-    const Skeleton box = skeleton_of(BoxShape{Vec3(0.1, 0.2, 0.3)}, Eigen::Isometry3d::Identity());
+    const ShapeSkeleton box = skeleton_of(BoxShape{Vec3(0.1, 0.2, 0.3)}, Eigen::Isometry3d::Identity());
     EXPECT_EQ(box.corners.size(), 8u);
     EXPECT_EQ(box.edges.size(), 12u);
     EXPECT_NEAR(box.distance(Vec3(0, 0.2, 0)), 0.1, 1e-15);
-    for (const Skeleton::Edge& edge : box.edges)
+    for (const ShapeSkeleton::Edge& edge : box.edges)
         for (const Vec3& face : edge.faces) {
             EXPECT_NEAR(face.dot(edge.b - edge.a), 0.0, 1e-15);
             EXPECT_GT(face.dot(edge.a), 0.0);

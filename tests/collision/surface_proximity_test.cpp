@@ -1,5 +1,6 @@
 #include "collision/surface_proximity.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <random>
 
@@ -35,14 +36,18 @@ ClosestOnTriangle closest_on(const TriangleMesh& mesh, int t, const Vec3& p)
                                mesh.positions[corner[2]]);
 }
 
-/// Lowest triangle of least distance, over all.
+/// Lowest triangle of least distance but for rounding, over all.
 int closest_by_brute_force(const TriangleMesh& mesh, const Vec3& p)
 {
-    int best = 0;
-    for (int t = 1; t < mesh.triangle_count(); ++t)
-        if (closest_on(mesh, t, p).distance2 < closest_on(mesh, best, p).distance2)
-            best = t;
-    return best;
+    constexpr double kRounding = 1e-14; // [m]
+    std::vector<double> distance;
+    distance.reserve(mesh.triangles.size());
+    for (int t = 0; t < mesh.triangle_count(); ++t)
+        distance.push_back(std::sqrt(closest_on(mesh, t, p).distance2));
+    const double least = *std::min_element(distance.begin(), distance.end());
+    return int(std::find_if(distance.begin(), distance.end(),
+                            [&](double other) { return other <= least + kRounding; }) -
+               distance.begin());
 }
 
 TriangleMesh noisy_sphere()

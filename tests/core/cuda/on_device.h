@@ -10,7 +10,7 @@
 namespace toile::test {
 
 /// A test that needs a GPU: it has device 0, or is skipped with the reason.
-class OnDevice : public testing::Test {
+class OnDevice : public ::testing::Test {
 protected:
     void SetUp() override
     {

@@ -1,0 +1,262 @@
+#include "collision/device_detect.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "collision/device_sides_kernels.h"
+#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/error.h"
+
+namespace toile {
+
+namespace {
+
+/// Room at first: pairs of a vertex, and vertices of a sheet.
+constexpr int kPairsOfVertex = 3;
+constexpr int kVerticesOfSheet = 4;
+
+/// Room is made for this much more than was needed [-].
+constexpr double kHeadroom = 1.25;
+
+/// Threads of a block: kernels with many registers.
+constexpr int kBlock = 64;
+
+int with_headroom(long needed)
+{
+    const long most = std::numeric_limits<int>::max();
+    if (needed > most)
+        throw DeviceError("collider pairs: " + std::to_string(needed) +
+                          " are more than a search can hold; is the radius in metres?");
+    return int(std::min(long(kHeadroom * double(needed)), most));
+}
+
+/// Vertices along a curve.
+std::vector<int> order_of(View<const Vec3> positions)
+{
+    SoupExtent extent;
+    for (int v = 0; v < positions.size(); ++v)
+        extent += ExtentOfVertex{positions, {}}(v);
+    const SpaceCurve curve = SpaceCurve::through(extent.lower, extent.upper);
+    std::vector<std::pair<std::uint64_t, int>> places;
+    for (int v = 0; v < positions.size(); ++v)
+        places.emplace_back(curve.place(positions[v]), v);
+    std::sort(places.begin(), places.end());
+    std::vector<int> order;
+    for (const auto& place : places)
+        order.push_back(place.second);
+    return order;
+}
+
+} // namespace
+
+DeviceSideMemory::DeviceSideMemory(const CudaSpace& space, int vertex_count)
+    : sides_(space, "sides/sides", vertex_count)
+{
+    forget();
+}
+
+void DeviceSideMemory::forget() { sides_.upload(std::vector<VertexSides>(sides_.size())); }
+
+DeviceContactDetector::DeviceContactDetector(const CudaSpace& space, View<const Triangle> triangles,
+                                             View<const Vec3> positions, int room)
+    : space_(space), cloth_(space, triangles, positions), order_(space, "detect/order"),
+      rank_(space, "detect/rank"), planes_(space, "detect/planes", VertexPlanes::kMost * positions.size()),
+      sheets_(space, "detect/sheets", triangles.size()),
+      ridges_(space, "detect/ridges", cloth_.edges().vertex.size()), counts_(space, "detect/counts"),
+      first_(space, "detect/first"), first_sheet_(space, "detect/first_sheet"),
+      distance_(space, "detect/distance"), sort_(space), sorted_sheets_(space, "detect/sorted_sheets"),
+      sheet_room_(1 + positions.size() / kVerticesOfSheet), pairs_(space, "detect/pairs"),
+      numbers_(space, "detect/numbers", 1), read_(space, "detect/read", 1), scratch_(space, "detect/scratch")
+{
+    order_.upload(order_of(positions));
+    rank_.upload(ranks_by_corners(triangles));
+    pairs_.resize(room > 0 ? room : 1 + kPairsOfVertex * positions.size());
+    DeviceArray<Vec3> x(space, "detect/first_pose");
+    x.upload(positions);
+    cloth_.move(x.view(), {}, 0.0);
+}
+
+void DeviceContactDetector::move(View<const Vec3> x, View<const double> reach, const DetectSettings& settings)
+{
+    TOILE_ASSERT(x.size() == order_.size() && (reach.empty() || reach.size() == x.size()));
+    x_ = x;
+    reach_ = reach;
+    settings_ = settings;
+    count_ = 0;
+}
+
+View<const ContactPair> DeviceContactDetector::detect(const DeviceMeshCollider& mesh, int collider,
+                                                      const DeviceSideMemory* sides)
+{
+    do
+        search(mesh, collider, sides);
+    while (!settle());
+    return pairs_.view().subview(count_ - last_count_, last_count_);
+}
+
+void DeviceContactDetector::search(const DeviceMeshCollider& mesh, int collider,
+                                   const DeviceSideMemory* sides)
+{
+    clear_counts();
+    find_planes(mesh, collider, sides);
+    if (settings_.face_vertex)
+        find_sheets(mesh, collider);
+    if (settings_.edge_edge)
+        find_ridges(mesh, collider);
+    report(mesh, collider);
+}
+
+bool DeviceContactDetector::settle()
+{
+    numbers_.download(read_.view());
+    space_.synchronise();
+    const DetectNumbers& numbers = read_[0];
+    const long all = count_ + numbers.pairs;
+    const bool had_room = all <= pairs_.size() && numbers.sheets <= sheet_room_ &&
+                          numbers.most_sheets <= sheets_.room && numbers.most_ridges <= ridges_.room;
+    if (had_room) {
+        last_count_ = int(numbers.pairs);
+        count_ = int(all);
+        return true;
+    }
+    if (all > pairs_.size()) {
+        const int kept = count_;
+        pairs_.resize_keeping(with_headroom(all));
+        count_ = kept;
+    }
+    if (numbers.sheets > sheet_room_)
+        sheet_room_ = with_headroom(numbers.sheets);
+    sheets_.room = std::max(sheets_.room, numbers.most_sheets);
+    ridges_.room = std::max(ridges_.room, numbers.most_ridges);
+    return false;
+}
+
+DeviceSearch DeviceContactDetector::search_of(const DeviceMeshCollider& mesh, int collider) const
+{
+    return {x_,       reach_,           mesh.search(),       mesh.x_t0(),
+            collider, settings_.radius, settings_.max_depth, settings_.farthest_motion};
+}
+
+View<int> DeviceContactDetector::nearest_of(int collider)
+{
+    while (int(nearest_.size()) <= collider) {
+        nearest_.push_back(std::make_unique<DeviceArray<int>>(space_, "detect/nearest"));
+        nearest_.back()->upload(std::vector<int>(order_.size(), -1));
+    }
+    return nearest_[collider]->view();
+}
+
+/// Kinds that are not looked for stay without pairs.
+void DeviceContactDetector::clear_counts()
+{
+    for (SlotArrays* slots : {&sheets_, &ridges_}) {
+        slots->items.resize(slots->room * slots->queries);
+        slots->found.resize(slots->queries + 1);
+        slots->found.fill_zero();
+    }
+    counts_.resize(x_.size() + sheet_room_ + ridges_.queries + 1);
+    counts_.fill_zero();
+    first_.resize(counts_.size());
+    first_sheet_.resize(sheets_.queries + 1);
+    first_sheet_.fill_zero();
+    sort_.resize(sheet_room_);
+    sorted_sheets_.resize(sheet_room_);
+}
+
+void DeviceContactDetector::find_planes(const DeviceMeshCollider& mesh, int collider,
+                                        const DeviceSideMemory* sides)
+{
+    parallel_for(space_, "collision/device_planes", x_.size(),
+                 FindPlanes{search_of(mesh, collider),
+                            order_.view(),
+                            sides ? sides->sides() : View<const VertexSides>(),
+                            nearest_of(collider),
+                            {planes_.view(), x_.size()},
+                            counts_of_vertices()},
+                 kBlock);
+}
+
+void DeviceContactDetector::find_sheets(const DeviceMeshCollider& mesh, int collider)
+{
+    const DeviceSearch search = search_of(mesh, collider);
+    const SurfaceView cloth = toile::search_of(cloth_, x_).surface;
+    const ImplicitBoxTree tree = cloth_.triangle_tree();
+    parallel_for(space_, "collision/device_sheets", tree.shape.count,
+                 FindSheets{search, cloth, tree.nodes.subview(0, tree.shape.count), sheets_.slots(),
+                            sheets_.found.view()},
+                 kBlock);
+
+    // Those of one vertex of the mesh come together, are tested, and are put into the order of the pairs.
+    const View<std::uint64_t> keys = sort_.keys.view();
+    const View<int> slots = sort_.values.view();
+    const View<const long> first = first_sheet_.view();
+    exclusive_scan(space_, "collision/device_sheet_places", sheets_.found.view(), first_sheet_.view(),
+                   scratch_);
+    parallel_for(space_, "collision/device_clear_keys", keys.size(), ClearSheetKeys{keys, slots});
+    parallel_for(space_, "collision/device_keys", sheets_.queries,
+                 KeySheets{first, sheets_.slots(), keys, slots});
+    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
+    parallel_for(space_, "collision/device_keep_sheets", sheet_room_,
+                 KeepSheets{search, cloth, sheets_.slots(), sorted_sheets_.view(), rank_.view(),
+                            counts_of_sheets(), keys, slots},
+                 kBlock);
+    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
+}
+
+void DeviceContactDetector::find_ridges(const DeviceMeshCollider& mesh, int collider)
+{
+    const DeviceSearch search = search_of(mesh, collider);
+    const View<const std::array<int, 2>> edge_vertex = cloth_.edges().vertex;
+    const ImplicitBoxTree tree = cloth_.edge_tree();
+    parallel_for(space_, "collision/device_ridges", tree.shape.count,
+                 FindRidges{search, tree.nodes.subview(0, tree.shape.count), edge_vertex, ridges_.slots(),
+                            ridges_.found.view()},
+                 kBlock);
+    parallel_for(space_, "collision/device_keep_ridges", ridges_.queries,
+                 KeepRidges{search, edge_vertex, ridges_.found.view(), ridges_.slots(), counts_of_ridges()},
+                 kBlock);
+}
+
+/// The most that a query has found, before it was tested which are pairs.
+void DeviceContactDetector::measure(SlotArrays& slots)
+{
+    parallel_sum(space_, "collision/device_most", slots.queries, Largest(), MostOf{slots.found.view()},
+                 slots.most.view(), slots.sums);
+}
+
+void DeviceContactDetector::report(const DeviceMeshCollider& mesh, int collider)
+{
+    exclusive_scan(space_, "collision/device_places", counts_.view(), first_.view(), scratch_);
+    measure(sheets_);
+    measure(ridges_);
+    const View<const long> first_sheet = first_sheet_.view();
+    parallel_for(space_, "collision/device_detect_numbers", 1,
+                 CollectDetectNumbers{places(), first_sheet.subview(sheets_.queries, 1), sheets_.most.view(),
+                                      ridges_.most.view(), numbers_.view()});
+
+    const DeviceSearch search = search_of(mesh, collider);
+    const View<ContactPair> pairs = pairs_.view().subview(count_, pairs_.size() - count_);
+    parallel_for(space_, "collision/device_report_planes", x_.size(),
+                 ReportPlanes{search, counts_of_vertices(), {planes_.view(), x_.size()}, places(), pairs},
+                 kBlock);
+    parallel_for(space_, "collision/device_report_sheets", settings_.face_vertex ? sheet_room_ : 0,
+                 ReportSheet{search, toile::search_of(cloth_, x_).surface, sorted_sheets_.view(),
+                             sheets_.slots(), places(), pairs},
+                 kBlock);
+    parallel_for(
+        space_, "collision/device_report_ridges", ridges_.found.size(),
+        ReportRidges{search, cloth_.edges().vertex, counts_of_ridges(), ridges_.slots(), places(), pairs},
+        kBlock);
+}
+
+void DeviceContactDetector::learn_sides(View<const Vec3> x, const DeviceMeshCollider& mesh, int collider,
+                                        DeviceSideMemory& sides)
+{
+    TOILE_ASSERT(x.size() == order_.size());
+    parallel_for(space_, "collision/device_learn_sides", x.size(),
+                 LearnSides{x, mesh.search(), collider, order_.view(), nearest_of(collider), sides.sides()},
+                 kBlock);
+}
+
+} // namespace toile
