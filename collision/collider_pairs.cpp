@@ -26,11 +26,14 @@ bool is_vertex_pair(const ContactPair& pair)
 } // namespace
 
 ColliderPairs::ColliderPairs(View<const Triangle> triangles, View<const Vec3> positions,
-                             std::vector<ContactPartner> partners, const Settings& settings)
+                             std::vector<ContactPartner> partners, const Settings& settings,
+                             const CudaSpace* space)
     : partners_(std::move(partners)), settings_(settings), detector_(triangles, positions),
       sides_(positions.size()), found_at_(positions.begin(), positions.end()), reach_(positions.size(), 0.0),
       wanted_(positions.size(), 0.0), nearest_(positions.size())
 {
+    if (space != nullptr && !empty())
+        there_ = std::make_unique<HostedDetector>(*space, triangles, positions, partners_);
 }
 
 void ColliderPairs::find(const StepStart& start)
@@ -102,6 +105,10 @@ void ColliderPairs::look(View<const Vec3> x)
     settings.farthest_motion = farthest_motion_;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;
+    if (there_) {
+        there_->detect(x, wanted_, settings, pairs_);
+        return take_nearest();
+    }
     detector_.move(x, wanted_);
     for (int c = 0; c < int(partners_.size()); ++c) {
         if (partners_[c].mesh)
@@ -148,6 +155,8 @@ void ColliderPairs::learn_sides(View<const Vec3> x)
 {
     if (empty())
         return;
+    if (there_)
+        return there_->learn_sides(x);
     detector_.move(x);
     for (int c = 0; c < int(partners_.size()); ++c)
         if (const MeshCollider* mesh = partners_[c].mesh)
@@ -158,6 +167,8 @@ void ColliderPairs::forget()
 {
     std::fill(nearest_.begin(), nearest_.end(), Nearest{});
     sides_.forget();
+    if (there_)
+        there_->forget();
 }
 
 } // namespace toile

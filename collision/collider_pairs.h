@@ -1,8 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "collision/detect.h"
+#include "collision/hosted_detector.h"
 #include "core/pd/active_set_energy.h"
 
 namespace toile {
@@ -24,8 +25,12 @@ public:
     /// @param triangles  [triangles] of all cloths
     /// @param positions  [vertices] start positions [m]
     /// @param partners   their numbers are those of the pairs
+    /// @param space      where pairs are looked for, borrowed; null: on the CPU
     ColliderPairs(View<const Triangle> triangles, View<const Vec3> positions,
-                  std::vector<ContactPartner> partners, const Settings& settings);
+                  std::vector<ContactPartner> partners, const Settings& settings,
+                  const CudaSpace* space = nullptr);
+    ColliderPairs(const ColliderPairs&) = delete;
+    ColliderPairs& operator=(const ColliderPairs&) = delete;
 
     /// All pairs at the start of a step.
     void find(const StepStart& start);
@@ -68,8 +73,9 @@ private:
     std::vector<ContactPartner> partners_;
     Settings settings_;
     ContactDetector detector_;
-    SideMemory sides_;             ///< of moving meshes
-    double farthest_motion_ = 0.0; ///< [m] in the step, of a surface that takes cloth along
+    SideMemory sides_;                      ///< of moving meshes
+    std::unique_ptr<HostedDetector> there_; ///< null: on the CPU
+    double farthest_motion_ = 0.0;          ///< [m] in the step, of a surface that takes cloth along
 
     std::vector<ContactPair> pairs_;
     std::vector<Vec3> found_at_;   ///< [vertices] [m]

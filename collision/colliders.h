@@ -86,7 +86,7 @@ public:
 
     const Shape& shape() const { return shape_; }
     const Eigen::Isometry3d& pose_t0() const { return pose_t0_; } ///< world_from_shape at t0
-    const Eigen::Isometry3d& pose() const { return pose_t1_; } ///< world_from_shape at t1
+    const Eigen::Isometry3d& pose() const { return pose_t1_; }    ///< world_from_shape at t1
 
 private:
     Shape shape_;

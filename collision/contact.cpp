@@ -64,7 +64,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std
                  std::vector<ContactPartner> partners, const Settings& settings, const CudaSpace* space)
     : cloths_(std::move(cloths)), rigid_(rigid_bodies_of(cloths_)), settings_(settings),
       colliders_(triangles, positions, std::move(partners),
-                 {largest_gap(cloths_), settings.face_vertex, settings.edge_edge}),
+                 {largest_gap(cloths_), settings.face_vertex, settings.edge_edge}, space),
       altitude_(shortest_altitudes(triangles, positions))
 {
     for (int c = 0; c < int(cloths_.size()); ++c)

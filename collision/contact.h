@@ -37,7 +37,7 @@ public:
     /// @param triangles  [triangles] of all cloths
     /// @param positions  [vertices] start positions [m]
     /// @param cloths     whose vertices follow each other
-    /// @param space      where pairs of cloth with cloth are looked for, borrowed; null: on the CPU
+    /// @param space      where pairs are looked for, borrowed; null: on the CPU
     Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
             std::vector<ContactPartner> partners, const Settings& settings, const CudaSpace* space = nullptr);
 

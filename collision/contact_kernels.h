@@ -7,8 +7,8 @@ namespace toile {
 /// Force [N] and energy [J] of a term at x.
 struct EvaluateContact {
     View<const ContactTerm> terms;
-    View<const Vec3> x; ///< [vertices] [m]
-    View<Vec3> force;   ///< [terms] out: gradient with respect to the cloth point
+    View<const Vec3> x;  ///< [vertices] [m]
+    View<Vec3> force;    ///< [terms] out: gradient with respect to the cloth point
     View<double> energy; ///< [terms] out
 
     TOILE_HD void operator()(int i) const

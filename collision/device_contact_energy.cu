@@ -8,8 +8,8 @@ namespace toile {
 DeviceContactEnergy::DeviceContactEnergy(const CudaSpace& space)
     : space_(space), terms_(space, "contact/terms"), vertices_(space, "contact/vertices"),
       first_(space, "contact/first"), entries_(space, "contact/entries"), list_of_(space, "contact/list_of"),
-      force_(space, "contact/force"), term_energy_(space, "contact/energy"),
-      frozen_(space, "contact/frozen"), blocks_(space, "contact/blocks"), product_(space, "contact/product"),
+      force_(space, "contact/force"), term_energy_(space, "contact/energy"), frozen_(space, "contact/frozen"),
+      blocks_(space, "contact/blocks"), product_(space, "contact/product"),
       acting_(space, "contact/acting", 1), acting_sums_(space, "contact/acting_sums"),
       acting_on_host_(space, "contact/acting_on_host", 1)
 {

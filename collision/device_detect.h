@@ -67,6 +67,8 @@ public:
 
     /// Those of all colliders since the last move.
     View<const ContactPair> pairs() const { return pairs_.view().subview(0, count_); }
+    /// Copies them into `out` [pairs().size()], before the call returns.
+    void download(View<ContactPair> out) const { pairs_.download_first(out); }
 
     /// Enqueues: SideMemory::learn at positions x [vertices] [m] of the device, for a mesh that has ever
     /// moved.

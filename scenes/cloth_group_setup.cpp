@@ -112,8 +112,8 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.outer = scene.solver.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
     return std::make_unique<Body>(
-        std::move(unknowns),
-        std::make_unique<System>(std::move(masses), make_energies(), std::move(solver)), settings);
+        std::move(unknowns), std::make_unique<System>(std::move(masses), make_energies(), std::move(solver)),
+        settings);
 }
 
 /// The same with the fields on a GPU. Equal cloths share their tables.
@@ -129,10 +129,10 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
     settings.max_iterations = scene.solver.max_iterations;
     return std::make_unique<DeviceBody>(
         space, positions(),
-        std::make_unique<System>(masses(), make_energies(),
-                                 std::make_unique<DeviceQuadratureSolver>(
-                                     space, std::move(parts), QuadratureTables::Settings{},
-                                     source_of_tables(options, "").store)),
+        std::make_unique<System>(
+            masses(), make_energies(),
+            std::make_unique<DeviceQuadratureSolver>(space, std::move(parts), QuadratureTables::Settings{},
+                                                     source_of_tables(options, "").store)),
         settings);
 }
 

@@ -58,8 +58,7 @@ SceneRun run_on(Backend backend, const SceneCase& what)
         run.linear_iterations += report.linear_iterations;
         run.contacts = report.contacts;
     }
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     run.crossings = crossings_of(world);
 
     const double ms = 1e3 / run.steps;

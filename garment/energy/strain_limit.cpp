@@ -61,9 +61,9 @@ LimitedTriangles StrainLimit::triangles() const
 
 double StrainLimit::max_strain(View<const Vec3> x) const
 {
-    const LargestStretch largest = parallel_sum(
-        kCpu, int(kind_.size()), LargestStretch{},
-        [&, triangles = triangles()](int t) { return LargestStretch{triangles.stretch(t, x)}; });
+    const LargestStretch largest =
+        parallel_sum(kCpu, int(kind_.size()), LargestStretch{},
+                     [&, triangles = triangles()](int t) { return LargestStretch{triangles.stretch(t, x)}; });
     return largest.value - 1.0;
 }
 

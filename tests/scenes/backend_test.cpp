@@ -11,9 +11,10 @@ namespace {
 
 Scene scene_with(const std::string& keys)
 {
-    return parse_scene(R"({"toile": 1, "frames": 3, )" + keys +
-                           R"("cloths": [{"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.05}}]})",
-                       "test.json");
+    return parse_scene(
+        R"({"toile": 1, "frames": 3, )" + keys +
+            R"("cloths": [{"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.05}}]})",
+        "test.json");
 }
 
 TEST(Backend, SaysWhatOfASceneNeedsTheCpu)
@@ -36,8 +37,9 @@ TEST(Backend, RefusesASceneThatNeedsTheCpu)
         const World world(scene_with(R"("solver": {"method": "xpbd"}, )"), options);
         FAIL() << "took it";
     } catch (const InvalidInput& error) {
-        EXPECT_STREQ(error.what(), "test.json: solver.method \"xpbd\" runs on the CPU only; choose the backend cpu "
-                                   "or auto, or change the scene");
+        EXPECT_STREQ(error.what(),
+                     "test.json: solver.method \"xpbd\" runs on the CPU only; choose the backend cpu "
+                     "or auto, or change the scene");
     }
 }
 

@@ -37,12 +37,13 @@ DeviceEnergies energies_of(const CudaSpace& space, const System& system)
 DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& positions,
                        std::unique_ptr<System> system, Settings settings)
     : space_(space), system_(std::move(system)), solver_(device_solver_of(*system_, space)),
-      settings_(settings), energies_(energies_of(space, *system_)), x_(space, "body/x", int(positions.size())),
-      v_(space, "body/v", x_.size()), x_t1_(space, "body/x_t1", x_.size()),
-      acceleration_(space, "body/acceleration", x_.size()), targets_(space, "body/targets", x_.size()),
-      prediction_(space, "body/prediction", x_.size()), drive_(space, "body/drive", x_.size()),
-      found_(space, "body/found", x_.size()), found_gradient_(space, "body/found_gradient", x_.size()),
-      masses_(space, "body/masses"), inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
+      settings_(settings), energies_(energies_of(space, *system_)),
+      x_(space, "body/x", int(positions.size())), v_(space, "body/v", x_.size()),
+      x_t1_(space, "body/x_t1", x_.size()), acceleration_(space, "body/acceleration", x_.size()),
+      targets_(space, "body/targets", x_.size()), prediction_(space, "body/prediction", x_.size()),
+      drive_(space, "body/drive", x_.size()), found_(space, "body/found", x_.size()),
+      found_gradient_(space, "body/found_gradient", x_.size()), masses_(space, "body/masses"),
+      inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
       begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
       finish_sums_(space, "body/finish_sums", block_count(x_.size(), kSumItems)),
       finish_(space, "body/finish", 1), finish_on_host_(space, "body/finish_on_host", 1),
@@ -159,8 +160,8 @@ void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* ac
 void DeviceBody::predict()
 {
     const View<Vec3> prediction = prediction_.overwrite_there();
-    const PredictVertex predict{x_.there(),       v_.there(), acceleration_.there(), fixed_.view(),
-                                targets_.there(), dt_,        prediction};
+    const PredictVertex predict{
+        x_.there(), v_.there(), acceleration_.there(), fixed_.view(), targets_.there(), dt_, prediction};
     parallel_sum_then(
         space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, masses_.view(), drive_.view()},
         BeginDescent{fields().descent, {settings_.tolerance}, settings_.max_iterations, dt_}, begin_sums_);
@@ -183,8 +184,7 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
         if (active && contact == nullptr)
             throw InvalidInput("this contact does not run on a GPU");
         const OuterLoop::Outcome outcome = descend(contact, round == 0);
-        parallel_for(space_, "pd/take", x_.size(),
-                     CopyPositions{descent_.x(), x_t1_.overwrite_there()});
+        parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_there()});
         report.iterations += outcome.iterations;
         report.linear_iterations += outcome.linear_iterations;
         report.displacement = outcome.displacement;

@@ -20,9 +20,9 @@ namespace toile {
 class DeviceBody : public PointMasses {
 public:
     struct Settings {
-        double tolerance = 1e-5; ///< [m] as Body's
-        int max_iterations = 50; ///< outer iterations per minimisation
-        int max_rounds = 3;      ///< minimisations per step, when contact asks for another
+        double tolerance = 1e-5;                   ///< [m] as Body's
+        int max_iterations = 50;                   ///< outer iterations per minimisation
+        int max_rounds = 3;                        ///< minimisations per step, when contact asks for another
         Pcg::Settings contact_solve{0.1, 4, true}; ///< while contacts are active
     };
 

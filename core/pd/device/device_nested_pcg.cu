@@ -80,10 +80,9 @@ void DeviceNestedPcg::iterate(const PcgFields& fields)
                       FindBeta{scalars_.view()}, block_two_sums_);
     parallel_for(space_, "pcg/turn", n, TurnDirection{fields, scalars_.view()});
     active_->multiply(fields.p);
-    parallel_sum_then(
-        space_, "pcg/multiply", n, TwoSums{},
-        MultiplySystem{fields, rows(), active_->frozen().list_of, active_->frozen().product},
-        FindStep{scalars_.view()}, block_two_sums_);
+    parallel_sum_then(space_, "pcg/multiply", n, TwoSums{},
+                      MultiplySystem{fields, rows(), active_->frozen().list_of, active_->frozen().product},
+                      FindStep{scalars_.view()}, block_two_sums_);
     parallel_sum_then(space_, "pcg/step", n, 0.0, TakeStep{fields, blocks_inverse(), scalars_.view()},
                       KeepResidual{scalars_.view()}, block_sums_);
 }

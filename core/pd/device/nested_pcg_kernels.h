@@ -43,8 +43,8 @@ struct SystemRows {
 
 /// E = (D + blocks)^-1: 1 / D where nothing is frozen.
 struct BlocksInverse {
-    View<const int> list_of;   ///< [vertices] as DeviceActiveSet::Frozen's
-    View<const Mat3> inverse;  ///< [lists]
+    View<const int> list_of;     ///< [vertices] as DeviceActiveSet::Frozen's
+    View<const Mat3> inverse;    ///< [lists]
     View<const double> diagonal; ///< [vertices]
 
     TOILE_HD Vec3 operator()(int i, const Vec3& r) const

@@ -11,10 +11,7 @@
 namespace toile::test {
 namespace {
 
-Scene scene_of(const std::string& keys)
-{
-    return parse_scene("{\"toile\": 1, " + keys + "}", "test.json");
-}
+Scene scene_of(const std::string& keys) { return parse_scene("{\"toile\": 1, " + keys + "}", "test.json"); }
 
 World world_on(Backend backend, const Scene& scene)
 {
