@@ -105,11 +105,13 @@ void ColliderPairs::look(View<const Vec3> x)
     settings.farthest_motion = farthest_motion_;
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;
+    detector_.move(x, wanted_);
     if (there_) {
-        there_->detect(x, wanted_, settings, pairs_);
+        there_->detect(
+            x, wanted_, settings,
+            [this](int c, View<const double> in_front) { learn_clearance(c, in_front); }, pairs_);
         return take_nearest();
     }
-    detector_.move(x, wanted_);
     for (int c = 0; c < int(partners_.size()); ++c) {
         if (partners_[c].mesh)
             detector_.detect(*partners_[c].mesh, c, settings, pairs_, &sides_);
@@ -117,6 +119,15 @@ void ColliderPairs::look(View<const Vec3> x)
             detector_.detect(*partners_[c].shape, c, settings, pairs_);
     }
     take_nearest();
+}
+
+/// Of a mesh searched on a GPU, at the positions of the search.
+void ColliderPairs::learn_clearance(int c, View<const double> in_front)
+{
+    Clearance& clearance = detector_.clearance_of(*partners_[c].mesh, c);
+    for (int v = 0; v < in_front.size(); ++v)
+        if (in_front[v] >= 0.0)
+            clearance.learn(v, in_front[v], -1);
 }
 
 void ColliderPairs::take_nearest()

@@ -68,6 +68,7 @@ private:
     void carry(View<const Vec3> x);
     Vec3 carrying_motion(const Vec3& x, const Nearest& last) const;
     void look(View<const Vec3> x);
+    void learn_clearance(int c, View<const double> in_front);
     void take_nearest();
 
     std::vector<ContactPartner> partners_;

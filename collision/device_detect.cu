@@ -65,7 +65,8 @@ DeviceContactDetector::DeviceContactDetector(const CudaSpace& space, View<const 
       sheets_(space, "detect/sheets", triangles.size()),
       ridges_(space, "detect/ridges", cloth_.edges().vertex.size()), counts_(space, "detect/counts"),
       first_(space, "detect/first"), first_sheet_(space, "detect/first_sheet"),
-      distance_(space, "detect/distance"), sort_(space), sorted_sheets_(space, "detect/sorted_sheets"),
+      distance_(space, "detect/distance"), in_front_(space, "detect/in_front", positions.size()),
+      sort_(space), sorted_sheets_(space, "detect/sorted_sheets"),
       sheet_room_(1 + positions.size() / kVerticesOfSheet), pairs_(space, "detect/pairs"),
       numbers_(space, "detect/numbers", 1), read_(space, "detect/read", 1), scratch_(space, "detect/scratch")
 {
@@ -173,7 +174,8 @@ void DeviceContactDetector::find_planes(const DeviceMeshCollider& mesh, int coll
                             sides ? sides->sides() : View<const VertexSides>(),
                             nearest_of(collider),
                             {planes_.view(), x_.size()},
-                            counts_of_vertices()},
+                            counts_of_vertices(),
+                            in_front_.view()},
                  kBlock);
 }
 

@@ -67,6 +67,9 @@ public:
 
     /// Those of all colliders since the last move.
     View<const ContactPair> pairs() const { return pairs_.view().subview(0, count_); }
+    /// How far in front of the mesh of the last search each vertex is [m], at least; 0: inside, negative: it
+    /// was not looked for.
+    const DeviceArray<double>& in_front() const { return in_front_; }
     /// Copies them into `out` [pairs().size()], before the call returns.
     void download(View<ContactPair> out) const { pairs_.download_first(out); }
 
@@ -127,6 +130,7 @@ private:
     DeviceArray<long> first_;       ///< their sums
     DeviceArray<long> first_sheet_; ///< [triangles + 1] sums of what they have found
     DeviceArray<double> distance_;  ///< [vertices] to a solid's skeleton [m]
+    DeviceArray<double> in_front_;  ///< [vertices] see in_front()
     SortArrays sort_;
     DeviceArray<int> sorted_sheets_;
     int sheet_room_; ///< sheets that there is room for

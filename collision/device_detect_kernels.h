@@ -60,17 +60,21 @@ struct FindPlanes {
     View<int> nearest;             ///< [vertices] in: triangle that is probably near, or -1; out
     Slots planes;                  ///< out: triangles
     View<int> counts;              ///< [vertices] out
+    View<double> in_front;         ///< [vertices] out: see Clearance::learn [m]; negative: not looked for
 
     TOILE_HD void operator()(int i) const
     {
         const int v = order[i];
         counts[v] = 0;
+        in_front[v] = -1.0;
         const Vec3& x = search.x[v];
         const double radius = search.radius_of(v);
         if (radius < 0.0)
             return;
-        const SurfacePoint at = search.mesh.closest(x, std::max(radius, search.max_depth), nearest[v]);
+        const double reach = std::max(radius, search.max_depth);
+        const SurfacePoint at = search.mesh.closest(x, reach, nearest[v]);
         nearest[v] = at.triangle;
+        in_front[v] = at.triangle >= 0 ? std::max(at.signed_distance, 0.0) : reach;
         if (at.triangle >= 0)
             counts[v] = find(v, x, radius, at);
     }

@@ -32,7 +32,7 @@ void HostedDetector::follow(const MeshCollider& mesh, Mesh& there)
 }
 
 void HostedDetector::detect(View<const Vec3> x, View<const double> reach, const DetectSettings& settings,
-                            std::vector<ContactPair>& out)
+                            const Learn& learn, std::vector<ContactPair>& out)
 {
     const StageScope stage("collision/detect_there");
     x_.upload(x);
@@ -42,6 +42,9 @@ void HostedDetector::detect(View<const Vec3> x, View<const double> reach, const 
         if (meshes_[c]) {
             follow(*partners_[c].mesh, *meshes_[c]);
             detector_.detect(meshes_[c]->there, c, &sides_);
+            in_front_.resize(x.size());
+            detector_.in_front().download(in_front_);
+            learn(c, in_front_);
         } else {
             detector_.detect(*partners_[c].shape, c);
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -17,10 +18,13 @@ public:
     HostedDetector(const CudaSpace& space, View<const Triangle> triangles, View<const Vec3> positions,
                    const std::vector<ContactPartner>& partners);
 
+    /// Told how far in front of partner c, a mesh, each vertex is: DeviceContactDetector::in_front().
+    using Learn = std::function<void(int c, View<const double> in_front)>;
+
     /// Appends the pairs with all partners at x [vertices] [m], as ContactDetector has them. Waits.
     /// @param reach  [vertices] see ContactDetector::move
     void detect(View<const Vec3> x, View<const double> reach, const DetectSettings& settings,
-                std::vector<ContactPair>& out);
+                const Learn& learn, std::vector<ContactPair>& out);
 
     /// As SideMemory, of the meshes that have ever moved.
     void learn_sides(View<const Vec3> x);
@@ -48,6 +52,7 @@ private:
     std::vector<std::unique_ptr<Mesh>> meshes_; ///< [partners] null for shapes
     DeviceArray<Vec3> x_;
     DeviceArray<double> reach_;
+    std::vector<double> in_front_; ///< [vertices]
 };
 
 } // namespace toile

@@ -13,7 +13,7 @@ namespace toile {
 enum class Backend {
     Cpu,
     Cuda, ///< the first GPU; refused where there is none or the scene needs the CPU
-    Auto  ///< a GPU where that works, else the CPU
+    Auto  ///< a GPU where there is one and the scene can, else the CPU
 };
 
 /// Why a scene does not run on a GPU, e.g. `solver.method "multigrid" runs on the CPU only`; empty where it
@@ -21,7 +21,7 @@ enum class Backend {
 std::string why_not_on_gpu(const Scene& scene);
 
 /// The GPU that a scene is to run on; null: the CPU.
-/// @param warn  told why it is not a GPU where Auto has found none that works; may be empty
+/// @param warn  told why it is not a GPU where Auto takes the CPU; may be empty
 /// @throws InvalidInput where the scene asked for Cuda needs the CPU, DeviceError where there is no GPU
 std::shared_ptr<const CudaSpace> open_backend(Backend backend, const Scene& scene,
                                               const std::function<void(const std::string&)>& warn);

@@ -72,6 +72,7 @@ void RunReport::write(const std::filesystem::path& file, const std::string& outc
                  {"name", scene_.name},
                  {"outcome", outcome},
                  {"vertices", vertex_count_},
+                 {"backend", backend_},
                  {"settings", settings_of(scene_)},
                  {"start", start_json(start_, scene_)},
                  {"peak_memory_bytes", peak_memory()}};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collision/untangle/start_report.h"
+#include "core/backend/cuda/runtime.h"
 #include "core/backend/stages.h"
 #include "core/pd/step_report.h"
 #include "scenes/format/scene.h"
@@ -15,8 +16,10 @@ namespace toile {
 /// and seconds of every stage, peak memory. Stages that never ran are absent.
 class RunReport {
 public:
-    RunReport(const Scene& scene, int vertex_count, StartReport start)
-        : scene_(scene), vertex_count_(vertex_count), start_(std::move(start))
+    /// @param device  the GPU that it ran on; null: the CPU
+    RunReport(const Scene& scene, int vertex_count, StartReport start, const CudaDevice* device)
+        : scene_(scene), vertex_count_(vertex_count), start_(std::move(start)),
+          backend_(device != nullptr ? "cuda: " + device->name : "cpu")
     {
     }
 
@@ -40,6 +43,7 @@ private:
     const Scene& scene_;
     int vertex_count_;
     StartReport start_;
+    std::string backend_;
     std::vector<Frame> frames_;
 };
 

@@ -226,7 +226,7 @@ int run_into_caches(World& world, const Scene& scene, const SimulateOptions& opt
     int vertex_count = 0;
     for (const auto& cloth : world.surfaces())
         vertex_count += int(cloth.positions.size());
-    RunReport report(scene, vertex_count, world.start());
+    RunReport report(scene, vertex_count, world.start(), world.device());
     for (const OpenCache& cache : caches)
         write_start_mesh(world, cache, caches);
 

@@ -69,7 +69,7 @@ SceneRun run_on(Backend backend, const SceneCase& what)
     run.search_ms = of_step({"collision/near_pairs", "collision/detect"});
     run.apart_ms = of_step({"collision/safe_step"});
     run.minimise_ms = of_step({"pd/descend"});
-    run.limit_ms = of_step({"garment/strain_limit"});
+    run.limit_ms = of_step({"pd/limits"});
     run.iterations /= run.steps;
     run.linear_iterations /= run.steps;
     return run;

@@ -24,7 +24,7 @@ struct SceneRun {
     int contacts = 0;                                 ///< at the end
     int crossings = 0;                                ///< pairs of triangles that cross, at the end
     double total_ms = 0.0;
-    double search_ms = 0.0;   ///< pairs looked for at the start of a step, with colliders and with cloth
+    double search_ms = 0.0;   ///< pairs looked for, with colliders and with cloth
     double apart_ms = 0.0;    ///< cloth kept from crossing, its own searches included
     double minimise_ms = 0.0; ///< descents: local steps, global solves, PCG
     double limit_ms = 0.0;    ///< strain limits

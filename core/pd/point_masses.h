@@ -20,8 +20,8 @@ public:
     {
     }
 
-    /// Advances by dt [s]. Same bits for every thread count, except
-    /// where an AutoSolver has changed its method.
+    /// Advances by dt [s]. Same bits for every thread count, except where an AutoSolver has changed its
+    /// method.
     /// @param acceleration  [vertices] external acceleration of this step [m/s^2]
     /// @param fixed         [vertices] 1 where `targets` prescribes the position at the end of the step
     /// @param targets       [vertices] read where fixed [m]

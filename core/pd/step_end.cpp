@@ -18,6 +18,7 @@ void StepEnd::satisfy(ActiveSetEnergy* active, StepProjection* projection)
 
 void StepEnd::project(StepProjection& projection, const ActiveSetEnergy* active)
 {
+    const StageScope stage("pd/limits");
     inverse_masses_.resize(x_.size());
     for (int i = 0; i < x_.size(); ++i)
         inverse_masses_[i] = fixed_[i] ? 0.0 : 1.0 / masses_[i];

@@ -17,11 +17,11 @@ constexpr int kThreads = 256;
 DeviceStrainLimit::DeviceStrainLimit(const CudaSpace& space)
     : space_(space), triangles_(space, "strain_limit/triangles"), rest_(space, "strain_limit/rest"),
       rest_inv_(space, "strain_limit/rest_inv"), kind_(space, "strain_limit/kind"),
-      limits_(space, "strain_limit/limits"), order_(space, "strain_limit/order"),
-      cloth_(space, "strain_limit/cloth"), first_of_chunk_(space, "strain_limit/first_of_chunk"),
-      first_chunk_(space, "strain_limit/first_chunk"), violates_(space, "strain_limit/violates"),
-      violating_(space, "strain_limit/violating", 1), sums_(space, "strain_limit/sums"),
-      violating_on_host_(space, "strain_limit/violating_on_host", 1),
+      limits_(space, "strain_limit/limits"), tolerated_(space, "strain_limit/tolerated"),
+      order_(space, "strain_limit/order"), cloth_(space, "strain_limit/cloth"),
+      first_of_chunk_(space, "strain_limit/first_of_chunk"), first_chunk_(space, "strain_limit/first_chunk"),
+      violates_(space, "strain_limit/violates"), violating_(space, "strain_limit/violating", 1),
+      sums_(space, "strain_limit/sums"), violating_on_host_(space, "strain_limit/violating_on_host", 1),
       stretch_t0_(space, "strain_limit/stretch_t0"), stretch_t1_(space, "strain_limit/stretch_t1"),
       stretch_of_chunk_(space, "strain_limit/stretch_of_chunk"), kept_(space, "strain_limit/kept"),
       forward_(space, "garment/strain_limit"), backward_(space, "garment/strain_limit")
@@ -47,6 +47,7 @@ void DeviceStrainLimit::append(const StrainLimit& limit, int first_vertex)
     host_.rest.insert(host_.rest.end(), triangles.rest.begin(), triangles.rest.end());
     host_.rest_inv.insert(host_.rest_inv.end(), triangles.rest_inv.begin(), triangles.rest_inv.end());
     host_.limits.insert(host_.limits.end(), triangles.limits.begin(), triangles.limits.end());
+    host_.tolerated.push_back(triangles.limits[0].tolerated);
     if (int(host_.colours.size()) < limit.colour_count())
         host_.colours.resize(limit.colour_count());
     for (int c = 0; c < limit.colour_count(); ++c)
@@ -78,6 +79,7 @@ void DeviceStrainLimit::upload()
     rest_inv_.upload(host_.rest_inv);
     kind_.upload(host_.kind);
     limits_.upload(host_.limits);
+    tolerated_.upload(host_.tolerated);
     order_.upload(order);
     cloth_.upload(host_.cloth);
     first_of_chunk_.upload(host_.first_of_chunk);
@@ -143,7 +145,8 @@ void DeviceStrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
     // Sweeps that end worse than they began would be velocity: see StrainLimit::project.
     find_largest(x, stretch_t1_.view());
     parallel_for(space_, "strain_limit/undo", cloth_.size(),
-                 UndoVertex{cloth_.view(), stretch_t0_.view(), stretch_t1_.view(), kept_.view(), x});
+                 UndoVertex{cloth_.view(), tolerated_.view(), stretch_t0_.view(), stretch_t1_.view(),
+                            kept_.view(), x});
 }
 
 /// Sweeps until nothing violates its limit or the sweeps are over.

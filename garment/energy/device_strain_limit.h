@@ -41,6 +41,7 @@ private:
         std::vector<Mat2> rest, rest_inv;
         std::vector<int> kind;
         std::vector<StretchLimits> limits;
+        std::vector<double> tolerated;         ///< [cloths] stretch
         std::vector<std::vector<int>> colours; ///< triangles
         std::vector<int> cloth;                ///< [vertices]
         std::vector<int> first_of_chunk{0};    ///< [chunks + 1] triangles; a chunk is of one cloth
@@ -68,6 +69,7 @@ private:
     DeviceArray<Mat2> rest_, rest_inv_;
     DeviceArray<int> kind_;
     DeviceArray<StretchLimits> limits_;
+    DeviceArray<double> tolerated_;
     DeviceArray<int> order_; ///< [triangles] colour by colour
     DeviceArray<int> cloth_; ///< [vertices] -1 of no cloth
     DeviceArray<int> first_of_chunk_, first_chunk_;

@@ -169,16 +169,19 @@ struct KeepPosition {
     TOILE_HD void operator()(int v) const { kept[v] = x[v]; }
 };
 
-/// Puts vertex v back where its cloth ended with a larger stretch than it began with.
+/// Puts vertex v back where its cloth, beyond its limit at first, ended with a larger stretch than it began
+/// with. Cloth within its limit keeps what the clearing of contacts has moved.
 struct UndoVertex {
     View<const int> cloth;                     ///< [vertices] -1 of no cloth
+    View<const double> tolerated;              ///< [cloths] stretch
     View<const double> stretch_t0, stretch_t1; ///< [cloths] largest, before and after
     View<const Vec3> kept;                     ///< [vertices] [m]
     View<Vec3> x;                              ///< [vertices] in, out [m]
 
     TOILE_HD void operator()(int v) const
     {
-        if (cloth[v] >= 0 && stretch_t1[cloth[v]] > stretch_t0[cloth[v]])
+        const int c = cloth[v];
+        if (c >= 0 && stretch_t0[c] > tolerated[c] && stretch_t1[c] > stretch_t0[c])
             x[v] = kept[v];
     }
 };

@@ -65,8 +65,9 @@ private:
         plane_items_.resize(VertexPlanes::kMost * size_t(vertices));
         planes_ = {plane_items_, vertices};
         plane_counts_.resize(vertices);
+        in_front_.resize(vertices);
         parallel_for(kCpu, "test/planes", vertices,
-                     FindPlanes{search, order_, sides_, nearest_, planes_, plane_counts_});
+                     FindPlanes{search, order_, sides_, nearest_, planes_, plane_counts_, in_front_});
         find_sheets(search, cloth);
         find_ridges(search, cloth);
     }
@@ -125,6 +126,7 @@ private:
     std::vector<ContactPair> report(const DeviceSearch& search, const SurfaceOnCpu& cloth)
     {
         std::vector<int> counts = plane_counts_;
+        std::vector<double> in_front_;
         counts.insert(counts.end(), sheet_counts_.begin(), sheet_counts_.end());
         counts.insert(counts.end(), ridge_counts_.begin(), ridge_counts_.end());
         counts.push_back(0);
@@ -151,6 +153,7 @@ private:
     std::vector<VertexSides> sides_;
     std::vector<int> plane_items_, sheet_items_, ridge_items_, sorted_sheets_;
     std::vector<int> plane_counts_, sheet_counts_, ridge_counts_;
+    std::vector<double> in_front_;
     Slots planes_, sheets_, ridges_;
 };
 

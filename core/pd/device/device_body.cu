@@ -47,8 +47,7 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
       finish_sums_(space, "body/finish_sums", block_count(x_.size(), kSumItems)),
       finish_(space, "body/finish", 1), finish_on_host_(space, "body/finish_on_host", 1),
-      descent_(space, x_.size(), energies_.share_count()),
-      contact_descent_(space, x_.size(), settings.contact_solve)
+      descent_(space, x_.size(), energies_.share_count())
 {
     TOILE_ASSERT(x_.size() == system_->vertex_count());
     masses_.upload(system_->masses());
@@ -77,8 +76,7 @@ void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
         inverse_masses_.upload(inverse_masses);
         const DeviceDescent::Problem problem = this->problem(dt);
         descent_.record(problem);
-        contact_descent_.prepare(*system_, *solver_);
-        contact_descent_.record(problem, descent_.fields(problem));
+        is_touching_prepared_ = false;
         host_fixed_ = fixed;
     }
     dt_ = dt;
@@ -99,6 +97,9 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
                             View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     const StageScope stage("pd/device_step");
+    DeviceStepProjection* limits = projection ? projection->on_device(space_) : nullptr;
+    if (projection && limits == nullptr)
+        throw InvalidInput("this constraint does not run on a GPU");
     prepare(dt, fixed);
     overwrite(acceleration_, acceleration);
     overwrite(targets_, targets);
@@ -115,7 +116,7 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
         return report;
 
     finish(report);
-    satisfy(active, projection);
+    satisfy(active, limits);
     if (active)
         active->end_step(x_t1_.host());
     if (x_t1_.is_on_host())
@@ -126,15 +127,12 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
 }
 
 /// As StepEnd: contact on the host, limits there.
-void DeviceBody::satisfy(ActiveSetEnergy* active, StepProjection* projection)
+void DeviceBody::satisfy(ActiveSetEnergy* active, DeviceStepProjection* limits)
 {
-    DeviceStepProjection* limits = projection ? projection->on_device(space_) : nullptr;
-    if (projection && limits == nullptr)
-        throw InvalidInput("this constraint does not run on a GPU");
     for (int round = 0; round < StepEnd::kRounds; ++round) {
         if (active)
             active->clear(x_t1_.change_on_host(), v_.change_on_host());
-        if (limits && !limits->is_satisfied(x_t1_.there()))
+        if (limits)
             project(*limits, active);
         if (!active || !active->keep_apart(x_t1_.change_on_host(), v_.change_on_host()))
             return;
@@ -143,6 +141,9 @@ void DeviceBody::satisfy(ActiveSetEnergy* active, StepProjection* projection)
 
 void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* active)
 {
+    const StageScope stage("pd/limits");
+    if (limits.is_satisfied(x_t1_.there()))
+        return;
     std::function<bool()> clear_contacts;
     if (active)
         clear_contacts = [&] {
@@ -150,7 +151,7 @@ void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* ac
             static_cast<void>(x_t1_.change_there());
             return moved;
         };
-    parallel_for(space_, "pd/keep_found", x_.size(), CopyPositions{x_t1_.there(), found_.view()});
+    parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyPositions{x_t1_.there(), found_.view()});
     limits.project(x_t1_.change_there(), inverse_masses_.view(), clear_contacts);
     parallel_for(space_, "pd/projected", x_.size(),
                  AddProjected{found_.view(), x_t1_.there(), dt_, v_.change_there()});
@@ -225,7 +226,7 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
     begin_at(x_t1_.there());
     const Descent found = descent_.run();
     const OuterLoop::Outcome first = outcome_of(found);
-    if (!is_first || found.search.value <= inertia_of_standing(found) || !is_finite(found.start_value))
+    if (!is_first || found.search.value <= inertia_of_standing(found))
         return first;
 
     keep_found();
@@ -247,20 +248,18 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
 /// The same while contact may act.
 OuterLoop::Outcome DeviceBody::minimise_touching(DeviceActiveSet& contact, bool is_first)
 {
+    prepare_touching();
     OuterLoop::Settings settings{asked_.tolerance, asked_.max_iterations};
     begin_at(x_t1_.there());
     const OuterLoop::Outcome found =
-        run_touching(contact, settings, contact_descent_.evaluate(fields(), contact));
-    if (!is_first || found.value <= inertia_of_standing(asked_) || !is_finite(found.value))
+        run_touching(contact, settings, contact_descent_->evaluate(fields(), contact));
+    if (!is_first || found.value <= inertia_of_standing(asked_))
         return found;
 
-    keep_found();
     stand_still();
-    const double value = contact_descent_.evaluate(fields(), contact);
-    if (found.value <= value || !is_finite(value)) {
-        take_found();
+    const double value = contact_descent_->evaluate(fields(), contact);
+    if (found.value <= value || !is_finite(value))
         return found;
-    }
     settings.tolerance *= StepTolerance::kStanding;
     OuterLoop::Outcome outcome = run_touching(contact, settings, value);
     outcome.iterations += found.iterations;
@@ -268,10 +267,22 @@ OuterLoop::Outcome DeviceBody::minimise_touching(DeviceActiveSet& contact, bool 
     return outcome;
 }
 
+/// What minimises while contact acts is made when something first touches.
+void DeviceBody::prepare_touching()
+{
+    if (is_touching_prepared_)
+        return;
+    if (!contact_descent_)
+        contact_descent_ = std::make_unique<DeviceContactDescent>(space_, x_.size(), settings_.contact_solve);
+    contact_descent_->prepare(*system_, *solver_);
+    contact_descent_->record(problem(dt_), fields());
+    is_touching_prepared_ = true;
+}
+
 OuterLoop::Outcome DeviceBody::run_touching(DeviceActiveSet& contact, const OuterLoop::Settings& settings,
                                             double value)
 {
-    return contact_descent_.minimise(fields(), contact, {settings, asked_.mass, asked_.driving, dt_}, value);
+    return contact_descent_->minimise(fields(), contact, {settings, asked_.mass, asked_.driving, dt_}, value);
 }
 
 void DeviceBody::begin_at(View<const Vec3> x)

@@ -20,10 +20,10 @@ namespace toile {
 class DeviceBody : public PointMasses {
 public:
     struct Settings {
-        double tolerance = 1e-5;                   ///< [m] as Body's
-        int max_iterations = 50;                   ///< outer iterations per minimisation
-        int max_rounds = 3;                        ///< minimisations per step, when contact asks for another
-        Pcg::Settings contact_solve{0.1, 4, true}; ///< while contacts are active
+        double tolerance = 1e-5;     ///< [m] as Body's
+        int max_iterations = 50;     ///< outer iterations per minimisation
+        int max_rounds = 3;          ///< minimisations per step, when contact asks for another
+        Pcg::Settings contact_solve; ///< while contacts are active; flexible in any case
     };
 
     /// @param space      borrowed; the solver's too
@@ -62,6 +62,7 @@ private:
     OuterLoop::Outcome descend(DeviceActiveSet* contact, bool is_first);
     OuterLoop::Outcome minimise_free(bool is_first);
     OuterLoop::Outcome minimise_touching(DeviceActiveSet& contact, bool is_first);
+    void prepare_touching();
     OuterLoop::Outcome run_touching(DeviceActiveSet& contact, const OuterLoop::Settings& settings,
                                     double value);
     void begin_at(View<const Vec3> x);
@@ -69,7 +70,7 @@ private:
     void keep_found();
     void take_found();
     void finish(StepReport& report);
-    void satisfy(ActiveSetEnergy* active, StepProjection* projection);
+    void satisfy(ActiveSetEnergy* active, DeviceStepProjection* limits);
     void project(DeviceStepProjection& limits, const ActiveSetEnergy* active);
 
     const CudaSpace& space_;
@@ -89,7 +90,8 @@ private:
     DeviceArray<FinishSums> finish_sums_, finish_;
     PinnedArray<FinishSums> finish_on_host_;
     DeviceDescent descent_;
-    DeviceContactDescent contact_descent_;
+    std::unique_ptr<DeviceContactDescent> contact_descent_; ///< null before contact first acts
+    bool is_touching_prepared_ = false;                     ///< contact_descent_ knows H
 };
 
 } // namespace toile

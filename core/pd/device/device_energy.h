@@ -33,8 +33,8 @@ public:
     /// on arrays of the device only.
     virtual void add_gradient(const DeviceEvaluation& at) = 0;
 
-    /// Called after every minimisation whose end is kept, for what an energy remembers of it. Enqueued.
-    /// @param x  [vertices] the minimiser [m], on the device, before anything moves it
+    /// Called once per step, for what an energy remembers of its minimiser. Enqueued.
+    /// @param x  [vertices] the last minimiser [m], on the device, before contact and limits end the step
     virtual void end_minimisation([[maybe_unused]] View<const Vec3> x) {}
 };
 
