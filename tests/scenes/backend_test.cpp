@@ -27,9 +27,9 @@ TEST(Backend, SaysWhatOfASceneNeedsTheCpu)
               R"(solver.outer "anderson" runs on the CPU only)");
     EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"contact_preconditioner": "exact"}, )")),
               R"(solver.contact_preconditioner "exact" runs on the CPU only)");
-    EXPECT_EQ(
-        why_not_on_gpu(scene_with(R"("solids": [{"name": "ball", "sphere": {"radius": 0.1}, "density": 500}], )")),
-        "solids run on the CPU only");
+    EXPECT_EQ(why_not_on_gpu(
+                  scene_with(R"("solids": [{"name": "ball", "sphere": {"radius": 0.1}, "density": 500}], )")),
+              "solids run on the CPU only");
 }
 
 TEST(Backend, RefusesASceneThatNeedsTheCpu)
