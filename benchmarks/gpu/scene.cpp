@@ -78,6 +78,7 @@ SceneRun run_on(Backend backend, const SceneCase& what)
 std::vector<Row> rows_of(const std::vector<SceneRun>& runs)
 {
     std::vector<Row> rows;
+    rows.reserve(runs.size());
     for (const SceneRun& r : runs)
         rows.push_back({r.name, r.backend, std::to_string(r.vertices), std::to_string(r.steps),
                         format("%.0f", r.iterations), format("%.0f", r.linear_iterations),
