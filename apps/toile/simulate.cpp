@@ -36,7 +36,7 @@ struct SimulateOptions {
     std::optional<int> threads;
     std::string solver;
     std::string outer;
-    Backend backend = Backend::Cpu;
+    std::string backend = "cpu"; ///< a key of kBackends
     std::filesystem::path report;
     bool no_cache = false;
     bool no_check = false;
@@ -253,7 +253,7 @@ int simulate(const SimulateOptions& options)
     TableProgress tables(options.quiet);
     std::optional<InterruptGuard> interrupt;
     WorldOptions world_options;
-    world_options.backend = options.backend;
+    world_options.backend = kBackends.at(options.backend);
     if (options.no_cache)
         world_options.tables = std::make_shared<TableStore>();
     world_options.building = [&](const std::string& cloth, double share) {
@@ -295,7 +295,7 @@ Command add_simulate(CLI::App& program)
         ->check(CLI::IsMember(scene_format::words_of<OuterMethod>()));
     add.add_option("--backend", options->backend,
                    "Where steps are minimised [cpu]; auto: on a GPU where there is one and the scene can")
-        ->transform(CLI::CheckedTransformer(kBackends, CLI::ignore_case));
+        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
     add.add_option("--report", options->report, "Write stages, frames and settings to this JSON file");
     add.add_flag("--no-cache", options->no_cache, "Neither read nor keep quadrature tables on disk");
     add.add_flag("--no-check", options->no_check, "Write no certificate of the caches");
