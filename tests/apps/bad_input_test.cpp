@@ -66,6 +66,7 @@ const std::vector<BadRun> kBadRuns{
     {{"simulate", "good.json", "--frames", "0"}, {"--frames", "0", "from 1 to 1000000"}},
     {{"simulate", "good.json", "--solver", "magic"}, {"--solver", "magic", "direct"}},
     {{"simulate", "good.json", "--outer", "magic"}, {"--outer", "magic", "anderson"}},
+    {{"simulate", "good.json", "--backend", "magic"}, {"--backend", "magic", "cuda"}},
     {{"simulate", "good.json", "-o", "file/there"}, {"file/there"}},
     {{"simulate", "good.json", "--report", "."}, {".", "is a folder", "name a file"}},
     {{"simulate", "good.json", "--report", "file/run.json"}, {"file/run.json", "is no folder"}},
