@@ -40,7 +40,7 @@ MAY_INCLUDE = {
     "apps/toile": BELOW_SCENES + ["scenes", "export", "apps/render", "benchmarks"],
     "python": BELOW_SCENES + ["scenes", "export"],
     "benchmarks/quadrature": ["core", "quadrature2d"],
-    "benchmarks": ["core", "quadrature2d", "garment", "collision", "scenes"],
+    "benchmarks": ["core", "quadrature2d", "garment", "collision", "avatars", "scenes"],
     "tests": BELOW_SCENES + ["scenes", "export", "apps", "benchmarks"],
 }
 

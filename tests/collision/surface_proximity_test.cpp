@@ -177,7 +177,7 @@ TEST(SurfaceProximity, AnswersFinitelyOnCollapsedTriangles)
         x = x.x() > 0 ? Vec3(0.5, 0.0, 0.0) : Vec3(x.x(), 0.0, 0.0);
     surface.update(mesh.positions);
     std::vector<SurfacePoint> local;
-    for (Vec3 p :
+    for (const Vec3& p :
          {Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.7, 0.1, 0), Vec3(-0.5, 0, 0), Vec3(-0.2, 0.1, 0.1)}) {
         const SurfacePoint found = *surface.closest(p);
         EXPECT_TRUE(found.point.allFinite() && found.barycentric.allFinite());
