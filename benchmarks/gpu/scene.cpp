@@ -5,9 +5,8 @@
 #include <string_view>
 
 #include "benchmarks/text_table.h"
-#include "collision/crossings/find_crossings.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world_crossings.h"
 
 namespace toile::gpu {
 
@@ -19,19 +18,6 @@ double seconds_of(const Stages& stages, std::initializer_list<std::string_view> 
     for (const std::string_view name : names)
         sum += stages.seconds(name);
     return sum;
-}
-
-/// Pairs of triangles that cross, of all cloths.
-int crossings_of(const World& world)
-{
-    std::vector<Triangle> triangles;
-    std::vector<Vec3> x;
-    for (const ClothState& cloth : world.cloths()) {
-        for (const Triangle& t : cloth.triangles)
-            triangles.push_back(t + Triangle::Constant(int(x.size())));
-        x.insert(x.end(), cloth.positions.begin(), cloth.positions.end());
-    }
-    return int(find_crossings(triangles, x).size());
 }
 
 SceneRun run_on(Backend backend, const SceneCase& what)
@@ -59,7 +45,7 @@ SceneRun run_on(Backend backend, const SceneCase& what)
         run.contacts = report.contacts;
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    run.crossings = crossings_of(world);
+    run.crossings = crossing_count(world);
 
     const double ms = 1e3 / run.steps;
     const auto of_step = [&](std::initializer_list<std::string_view> names) {

@@ -4,33 +4,19 @@
 #include <cmath>
 #include <numbers>
 
-#include "collision/crossings/find_crossings.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world_crossings.h"
 
 namespace toile {
 namespace {
 
 World world_of(const std::string& json) { return World(parse_scene(json, "test.json")); }
 
-/// Pairs of triangles of all cloths that cross.
-int crossings_of(const World& world)
-{
-    std::vector<Triangle> triangles;
-    std::vector<Vec3> x;
-    for (const ClothState& cloth : world.cloths()) {
-        for (const Triangle& t : cloth.triangles)
-            triangles.push_back(t + Triangle::Constant(int(x.size())));
-        x.insert(x.end(), cloth.positions.begin(), cloth.positions.end());
-    }
-    return int(find_crossings(triangles, x).size());
-}
-
 void expect_no_crossing(World& world, int frames)
 {
     for (int frame = 0; frame < frames; ++frame) {
         ASSERT_NE(world.advance_frame().status, StepReport::Status::NonFinite);
-        ASSERT_EQ(crossings_of(world), 0) << "frame " << world.frame();
+        ASSERT_EQ(crossing_count(world), 0) << "frame " << world.frame();
     }
 }
 
@@ -172,10 +158,10 @@ TEST(ClothContact, ClothThatCrossesFromTheStartComesApart)
         sheet("held", 0.3, "[0, 0, 0]") + "," +
         sheet("through", 0.1, "[0.003, -0.02, 0.002]", R"(, "rotate_deg": [90, 0, 0])") +
         R"(], "attachments": [{"cloth": "held", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}}}]})");
-    EXPECT_GT(crossings_of(world), 0);
+    EXPECT_GT(crossing_count(world), 0);
     for (int frame = 0; frame < 30; ++frame)
         ASSERT_NE(world.advance_frame().status, StepReport::Status::NonFinite);
-    EXPECT_EQ(crossings_of(world), 0);
+    EXPECT_EQ(crossing_count(world), 0);
     for (const Vec3& p : world.cloths()[1].positions)
         EXPECT_LT(p.y(), 0.0);
 }

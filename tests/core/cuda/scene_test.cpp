@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "collision/crossings/find_crossings.h"
 #include "core/quadrature/table_store.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/world_crossings.h"
 #include "tests/core/cuda/on_device.h"
 
 /// Whole scenes on a GPU against the same on the CPU, with quadrature on both.
@@ -30,18 +30,6 @@ double farthest_apart(const World& a, const World& b)
                 !(apart <= most)) // NaN is kept too
                 most = apart;
     return most;
-}
-
-int crossings_of(const World& world)
-{
-    std::vector<Triangle> triangles;
-    std::vector<Vec3> x;
-    for (const ClothState& cloth : world.cloths()) {
-        for (const Triangle& t : cloth.triangles)
-            triangles.push_back(t + Triangle::Constant(int(x.size())));
-        x.insert(x.end(), cloth.positions.begin(), cloth.positions.end());
-    }
-    return int(find_crossings(triangles, x).size());
 }
 
 /// Steps that end by their tolerance, small enough that both backends end at the same place.
@@ -96,7 +84,7 @@ TEST_F(DeviceSceneTest, NeverCrossesAndHasTheSameBitsEveryTime)
     for (int frame = 1; frame < 16; ++frame) {
         EXPECT_NE(first.advance_frame().status, StepReport::Status::NonFinite);
         second.advance_frame();
-        EXPECT_EQ(crossings_of(first), 0) << frame;
+        EXPECT_EQ(crossing_count(first), 0) << frame;
         EXPECT_EQ(farthest_apart(first, second), 0.0) << frame;
     }
 }
@@ -134,7 +122,7 @@ TEST_F(DeviceSceneTest, DressesAWalkingFigureAsOnTheCpu)
         EXPECT_NE(report.status, StepReport::Status::NonFinite);
         found += report.contacts;
         EXPECT_LT(farthest_apart(here, there), 0.05) << frame; // folds differ, the skirt does not
-        EXPECT_EQ(crossings_of(there), 0) << frame;
+        EXPECT_EQ(crossing_count(there), 0) << frame;
     }
     EXPECT_GT(contacts, 100);
     EXPECT_NEAR(found, contacts, 0.3 * contacts);
