@@ -121,6 +121,13 @@ StepReport step(PointMasses& body, const Swings& swings, ActiveSetEnergy* active
     return body.step(kDt, swings.gravity(), swings.fixed(), swings.start(), active, nullptr);
 }
 
+/// Puts a body where another one is, as fast as that.
+void start_where(const PointMasses& other, PointMasses& body)
+{
+    body.set_positions(other.positions());
+    body.set_velocities(other.velocities());
+}
+
 std::vector<Vec3> copy_of(View<const Vec3> field) { return {field.begin(), field.end()}; }
 
 double farthest_apart(View<const Vec3> a, View<const Vec3> b)
@@ -149,8 +156,7 @@ TEST_F(DeviceBodyTest, MovesAsOnTheCpu)
         Body here(swings.start(), swings.system(swings.solver()), exact());
         const auto there = make_body(swings, {1e-5, 500});
         for (int k = 0; k < 20; ++k) {
-            there->set_positions(here.positions());
-            there->set_velocities(here.velocities());
+            start_where(here, *there);
             const StepReport expected = step(here, swings), report = step(*there, swings);
             ASSERT_EQ(expected.status, StepReport::Status::Converged) << k;
             ASSERT_EQ(report.status, StepReport::Status::Converged)
@@ -172,8 +178,7 @@ TEST_F(DeviceBodyTest, TakesTheIterationsOfTheCpu)
     Body here(swings.start(), swings.system(swings.solver()), settings);
     const auto there = make_body(swings, {1e-5, 15});
     for (int k = 0; k < 10; ++k) {
-        there->set_positions(here.positions());
-        there->set_velocities(here.velocities());
+        start_where(here, *there);
         const StepReport expected = step(here, swings), report = step(*there, swings);
         EXPECT_EQ(report.iterations, expected.iterations) << k;
         EXPECT_LT(farthest_apart(there->positions(), here.positions()), 1e-6) << k;
@@ -195,8 +200,7 @@ TEST_F(DeviceBodyTest, TouchesAsOnTheCpu)
     Body here(swings.start(), swings.system(swings.solver()), settings);
     const auto there = make_body(swings, {1e-5, 15});
     for (int k = 0; k < 10; ++k) {
-        there->set_positions(here.positions());
-        there->set_velocities(here.velocities());
+        start_where(here, *there);
         const StepReport expected = step(here, swings, &plane), report = step(*there, swings, &plane);
         EXPECT_GT(plane.pressing(copy_of(here.positions())), 5) << k;
         EXPECT_EQ(report.iterations, expected.iterations) << k;
