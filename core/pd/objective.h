@@ -54,6 +54,11 @@ public:
     {
         return true;
     }
+
+    /// What several iterations together must gain, from the last accepted point on, to be worth it [J]; 0:
+    /// whatever they do.
+    /// @param tolerance  [m]
+    virtual double negligible_gain([[maybe_unused]] double tolerance) const { return 0.0; }
 };
 
 } // namespace toile

@@ -5,6 +5,7 @@
 
 #include "core/linear/field.h"
 #include "core/pd/line_search.h"
+#include "core/pd/recent_values.h"
 
 namespace toile {
 
@@ -20,6 +21,8 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
     Outcome outcome;
     outcome.value = objective.evaluate(x, gradient_);
     objective.accept(x);
+    RecentValues recent;
+    recent.begin(outcome.value);
     while (std::isfinite(outcome.value) && outcome.iterations < settings.max_iterations) {
         find_direction(objective, {x, gradient_, trial_gradient_}, direction_);
         outcome.displacement = max_norm(direction_);
@@ -42,6 +45,9 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
             break;
         ++outcome.iterations;
         outcome.displacement *= step;
+        outcome.converged = recent.add_and_tell_stall(outcome.value, objective.negligible_gain(settings.tolerance));
+        if (outcome.converged)
+            break;
         learn({step, direction_, trial_gradient_, gradient_});
     }
     outcome.linear_iterations = linear_iterations();

@@ -18,7 +18,8 @@ class OuterLoop {
 public:
     struct Settings {
         /// [m] Stop when no vertex would move further in an iteration and the objective agrees. That move is
-        /// still made; it does not count as an iteration.
+        /// still made; it does not count as an iteration. Stop too where RecentValues::kWindow iterations
+        /// together have gained less than what the objective says is negligible.
         double tolerance = 1e-5;
         int max_iterations = 50;
     };

@@ -41,6 +41,13 @@ public:
         }
     };
 
+    /// Energy that tells two points apart whose distance is the tolerance [m] [J]: what inertia alone makes of
+    /// it.
+    TOILE_HD static double energy_of(double tolerance, double mass, double dt)
+    {
+        return 0.5 * mass * (tolerance / dt) * (tolerance / dt);
+    }
+
     /// @param masses      [vertices] [kg]
     /// @param fixed       [vertices] 1: left out
     /// @param start       [vertices] positions at t0 [m]

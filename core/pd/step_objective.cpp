@@ -10,6 +10,8 @@ StepObjective::StepObjective(const System& system, const StepStart& start, Activ
                              const NestedPcg::Settings& contact_solve)
     : system_(system), start_(start), active_(active), contact_solve_(contact_solve)
 {
+    for (int i = 0; active_ && i < start.masses.size(); ++i)
+        free_mass_ += start.fixed[i] ? 0.0 : start.masses[i];
 }
 
 double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
@@ -45,6 +47,13 @@ bool StepObjective::is_minimiser(View<const Vec3> gradient, View<const Vec3> mov
 {
     const StepError error(system_.masses(), system_.fixed(), start_.x, start_.prediction, start_.dt);
     return error.is_within(tolerance, gradient, move);
+}
+
+/// While contact acts: minimisations end at their limit of iterations there, most of which change the error
+/// by nothing that could be measured (docs/core/pd.md).
+double StepObjective::negligible_gain(double tolerance) const
+{
+    return has_active_set_ ? StepError::energy_of(tolerance, free_mass_, start_.dt) : 0.0;
 }
 
 void StepObjective::precondition(View<const Vec3> g, View<Vec3> z)

@@ -23,6 +23,7 @@ public:
     void accept(View<const Vec3> x) override;
     Hessian* hessian() override;
     bool is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const override;
+    double negligible_gain(double tolerance) const override;
 
     int linear_iterations() const { return linear_iterations_; }
 
@@ -34,6 +35,7 @@ private:
     ActiveSetEnergy* active_;
     NestedPcg::Settings contact_solve_;
     std::optional<NestedPcg> pcg_; ///< none before the active set first acts
+    double free_mass_ = 0.0;       ///< [kg] where there may be an active set
     bool has_active_set_ = false;
     bool is_pcg_current_ = false; ///< pcg_ knows the active set as it was last frozen
     int linear_iterations_ = 0;

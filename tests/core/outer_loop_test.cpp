@@ -4,6 +4,7 @@
 
 #include "core/backend/error.h"
 #include "core/pd/make_outer_loop.h"
+#include "core/pd/recent_values.h"
 #include "tests/core/objectives.h"
 
 /// What plain local/global and Anderson acceleration share with L-BFGS (lbfgs_test.cpp), and what sets them
@@ -40,6 +41,38 @@ TEST_P(FirstOrder, NeverRaisesTheValue)
         previous = outcome.value;
     }
     EXPECT_LT(previous, 0.5 * start);
+}
+
+TEST_P(FirstOrder, StopsWhereIterationsGainTooLittle)
+{
+    struct Modest : Valley {
+        double worth = 0.0;
+        double negligible_gain(double) const override { return worth; }
+    };
+    const auto values_until = [&](double worth, int most) {
+        std::vector<double> values;
+        std::vector<Vec3> ignored(1);
+        for (int limit = 0; limit <= most; ++limit) {
+            Modest valley;
+            valley.worth = worth;
+            std::vector<Vec3> x{Vec3(-1.2, 1.0, 1.0)};
+            const OuterLoop::Outcome outcome = loop_->minimise(valley, x, {1e-14, limit});
+            values.push_back(outcome.value);
+            if (outcome.converged)
+                break;
+        }
+        return values;
+    };
+    const std::vector<double> all = values_until(0.0, 40);
+    ASSERT_EQ(all.size(), 41U) << "nothing is negligible";
+    const double worth = 0.02 * all[0];
+    size_t expected = RecentValues::kWindow;
+    while (all[expected - RecentValues::kWindow] - all[expected] >= worth)
+        ++expected;
+    ASSERT_LT(expected, 40U);
+    const std::vector<double> some = values_until(worth, 40);
+    EXPECT_EQ(some.size(), expected + 1);
+    EXPECT_EQ(some.back(), all[expected]);
 }
 
 TEST_P(FirstOrder, LeavesAStartAloneThatIsNotFinite)

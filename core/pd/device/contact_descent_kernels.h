@@ -8,6 +8,8 @@ namespace toile {
 /// What a trial point tells: the objective there, what is to be known of the direction that led there, and of
 /// the step that it would be.
 struct ContactTrialSums {
+    static constexpr int kLargest = 2; ///< of the numbers, the one that is a maximum
+
     double value = 0.0;          ///< [J]
     double slope = 0.0;          ///< [J] gradient . direction
     double largest_square = 0.0; ///< [m^2] of the direction's vectors: a maximum, not a sum
@@ -24,6 +26,8 @@ struct ContactTrialSums {
         return *this;
     }
 };
+
+static_assert(offsetof(ContactTrialSums, largest_square) == ContactTrialSums::kLargest * sizeof(double));
 
 struct MeasureContactTrial {
     DescentFields fields;
@@ -90,6 +94,8 @@ struct BeforeInverse {
 
 /// y_j . z of all pairs, with here.z what the inverse made of q.
 struct InverseProducts {
+    static constexpr int kLargest = -1;
+
     double y_z[kHistory] = {};
 
     TOILE_HD InverseProducts& operator+=(const InverseProducts& other)

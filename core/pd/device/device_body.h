@@ -9,6 +9,7 @@
 #include "core/pd/device/device_contact_descent.h"
 #include "core/pd/device/device_descent.h"
 #include "core/pd/device/device_projection.h"
+#include "core/pd/nested/nested_pcg.h"
 #include "core/pd/point_masses.h"
 #include "core/pd/system.h"
 
@@ -20,10 +21,10 @@ namespace toile {
 class DeviceBody : public PointMasses {
 public:
     struct Settings {
-        double tolerance = 1e-5;     ///< [m] as Body's
-        int max_iterations = 50;     ///< outer iterations per minimisation
-        int max_rounds = 3;          ///< minimisations per step, when contact asks for another
-        Pcg::Settings contact_solve; ///< while contacts are active; flexible in any case
+        double tolerance = 1e-5; ///< [m] as Body's
+        int max_iterations = 50; ///< outer iterations per minimisation
+        int max_rounds = 3;      ///< minimisations per step, when contact asks for another
+        Pcg::Settings contact_solve = NestedPcg::Settings{}.pcg; ///< while contacts are active
     };
 
     /// @param space      borrowed; the solver's too

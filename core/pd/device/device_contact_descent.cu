@@ -1,14 +1,14 @@
 #include "core/pd/device/device_contact_descent.h"
 
-#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/record_sum.cuh"
+#include "core/pd/recent_values.h"
 
 namespace toile {
 
 DeviceContactDescent::DeviceContactDescent(const CudaSpace& space, int vertex_count,
                                            const Pcg::Settings& contact_solve)
     : space_(space), pcg_(space, vertex_count, contact_solve), energies_(space, "descent/energies"),
-      trial_sums_(space, "descent/trial_sums"), trial_(space, "descent/trial", 1),
-      trial_on_host_(space, "descent/trial_on_host", 1), inverse_sums_(space, "descent/inverse_sums"),
+      sums_(space), trial_(space, "descent/trial", 1), trial_on_host_(space, "descent/trial_on_host", 1),
       inverse_(space, "descent/inverse", 1), inverse_on_host_(space, "descent/inverse_on_host", 1)
 {
 }
@@ -40,8 +40,9 @@ ContactTrialSums DeviceContactDescent::measure(const DescentFields& fields, Devi
     const int n = fields.direction.size();
     energies_.launch();
     active.add_gradient(fields.trial.x, fields.trial.gradient, fields.energy.subview(0, n));
-    parallel_sum(space_, "descent/measure", n, ContactTrialSums{},
-                 MeasureContactTrial{fields, pairs_.pairs(), step}, trial_.view(), trial_sums_);
+    parallel_sum_record_then<ContactTrialSums>(space_, "descent/measure", n,
+                                               MeasureContactTrial{fields, pairs_.pairs(), step},
+                                               KeepTotal<ContactTrialSums>{trial_.view()}, sums_);
     trial_.download(trial_on_host_.view());
     space_.synchronise();
     return trial_on_host_[0];
@@ -53,6 +54,8 @@ OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, D
     const StageScope stage("descent/contact");
     OuterLoop::Outcome outcome;
     outcome.value = value;
+    RecentValues recent;
+    recent.begin(value);
     pairs_.clear();
     take(fields, nullptr);
     bool presses = active.activate(fields.here.x);
@@ -82,6 +85,10 @@ OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, D
         presses = active.activate(fields.here.x);
         ++outcome.iterations;
         outcome.displacement *= line.step;
+        outcome.converged = recent.add_and_tell_stall(
+            outcome.value, presses ? StepError::energy_of(task.settings.tolerance, task.mass, task.dt) : 0.0);
+        if (outcome.converged)
+            break;
     }
     return outcome;
 }
@@ -124,8 +131,9 @@ void DeviceContactDescent::find_direction(const DescentFields& fields, DeviceAct
 
     std::array<double, kHistory> y_z{};
     if (pairs_.count() > 0) {
-        parallel_sum(space_, "descent/measure_inverse", n, InverseProducts{},
-                     MeasureInverse{fields, pairs_.pairs()}, inverse_.view(), inverse_sums_);
+        parallel_sum_record_then<InverseProducts>(space_, "descent/measure_inverse", n,
+                                                  MeasureInverse{fields, pairs_.pairs()},
+                                                  KeepTotal<InverseProducts>{inverse_.view()}, sums_);
         inverse_.download(inverse_on_host_.view());
         space_.synchronise();
         std::copy(std::begin(inverse_on_host_[0].y_z), std::end(inverse_on_host_[0].y_z), y_z.begin());

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/backend/cuda/graph.h"
+#include "core/backend/cuda/sum_scratch.h"
 #include "core/pd/device/contact_descent_kernels.h"
 #include "core/pd/device/device_descent.h"
 #include "core/pd/device/device_nested_pcg.h"
@@ -51,9 +52,10 @@ private:
     DeviceNestedPcg pcg_;
     TwoLoop pairs_;
     CudaGraph energies_; ///< everything of the objective but contact
-    DeviceArray<ContactTrialSums> trial_sums_, trial_;
+    RecordScratch sums_;
+    DeviceArray<ContactTrialSums> trial_;
     PinnedArray<ContactTrialSums> trial_on_host_;
-    DeviceArray<InverseProducts> inverse_sums_, inverse_;
+    DeviceArray<InverseProducts> inverse_;
     PinnedArray<InverseProducts> inverse_on_host_;
 };
 

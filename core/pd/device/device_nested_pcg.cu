@@ -1,6 +1,6 @@
 #include "core/pd/device/device_nested_pcg.h"
 
-#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/record_sum.cuh"
 
 namespace toile {
 
@@ -8,10 +8,9 @@ DeviceNestedPcg::DeviceNestedPcg(const CudaSpace& space, int n, const Pcg::Setti
     : space_(space), settings_(settings), first_(space, "pcg/first"), column_(space, "pcg/column"),
       value_(space, "pcg/value"), diagonal_(space, "pcg/diagonal"), fixed_(space, "pcg/fixed"),
       inverse_(space, "pcg/inverse"), r_(space, "pcg/r", n), r_previous_(space, "pcg/r_previous", n),
-      z_(space, "pcg/z", n), p_(space, "pcg/p", n), product_(space, "pcg/product", n),
+      z_(space, "pcg/z", n), p_(space, "pcg/p", n), Kz_(space, "pcg/Kz", n), Kp_(space, "pcg/Kp", n),
       scaled_(space, "pcg/scaled", n), solved_(space, "pcg/solved", n), scalars_(space, "pcg/scalars", 1),
-      on_host_(space, "pcg/scalars_on_host", 1), block_sums_(space, "pcg/block_sums"),
-      block_two_sums_(space, "pcg/block_two_sums")
+      on_host_(space, "pcg/scalars_on_host", 1), sums_(space)
 {
 }
 
@@ -38,8 +37,8 @@ void DeviceNestedPcg::update(DeviceActiveSet& active)
 
 PcgFields DeviceNestedPcg::fields(View<Vec3> x)
 {
-    return {x,         r_.view(),       r_previous_.view(), z_.view(),
-            p_.view(), product_.view(), scaled_.view(),     solved_.view()};
+    return {x,          r_.view(),  r_previous_.view(), z_.view(),     p_.view(),
+            Kz_.view(), Kp_.view(), scaled_.view(),     solved_.view()};
 }
 
 BlocksInverse DeviceNestedPcg::blocks_inverse() const
@@ -56,9 +55,9 @@ Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z)
 {
     const StageScope stage("pd/pcg");
     const PcgFields fields = this->fields(z);
-    parallel_sum_then(space_, "pcg/begin", g.size(), 0.0, BeginPcg{g, fields, blocks_inverse()},
-                      KeepStart{scalars_.view()}, block_sums_);
+    parallel_for(space_, "pcg/begin", g.size(), BeginPcg{g, fields, blocks_inverse(), scalars_.view()});
     Pcg::Outcome outcome;
+    double total_gain = 0.0;
     while (outcome.iterations < settings_.max_iterations) {
         iterate(fields);
         const PcgScalars& now = read_back();
@@ -66,7 +65,9 @@ Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z)
             break;
         ++outcome.iterations;
         outcome.residual = std::sqrt(now.r_square / now.b_square);
-        if (outcome.residual <= settings_.tolerance)
+        total_gain += now.gain;
+        if (outcome.residual <= settings_.tolerance ||
+            !settings_.is_worth_more(outcome.iterations, now.gain, total_gain))
             break;
     }
     return outcome;
@@ -76,15 +77,13 @@ void DeviceNestedPcg::iterate(const PcgFields& fields)
 {
     const int n = fields.x.size();
     solver_->solve_there(fields.scaled, fields.solved);
-    parallel_sum_then(space_, "pcg/precondition", n, TwoSums{}, FinishPrecondition{fields, blocks_inverse()},
-                      FindBeta{scalars_.view()}, block_two_sums_);
-    parallel_for(space_, "pcg/turn", n, TurnDirection{fields, scalars_.view()});
-    active_->multiply(fields.p);
-    parallel_sum_then(space_, "pcg/multiply", n, TwoSums{},
-                      MultiplySystem{fields, rows(), active_->frozen().list_of, active_->frozen().product},
-                      FindStep{scalars_.view()}, block_two_sums_);
-    parallel_sum_then(space_, "pcg/step", n, 0.0, TakeStep{fields, blocks_inverse(), scalars_.view()},
-                      KeepResidual{scalars_.view()}, block_sums_);
+    parallel_for(space_, "pcg/precondition", n, FinishPrecondition{fields, blocks_inverse()});
+    active_->multiply(fields.z);
+    parallel_sum_record_then<PcgSums>(
+        space_, "pcg/multiply", n,
+        MultiplySystem{fields, rows(), active_->frozen().list_of, active_->frozen().product},
+        FindStep{scalars_.view()}, sums_);
+    parallel_for(space_, "pcg/step", n, TakeStep{fields, blocks_inverse(), scalars_.view()});
 }
 
 const PcgScalars& DeviceNestedPcg::read_back()

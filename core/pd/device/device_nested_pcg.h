@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/backend/cuda/array.h"
+#include "core/backend/cuda/sum_scratch.h"
 #include "core/linear/device_solver.h"
 #include "core/linear/pcg.h"
 #include "core/pd/device/nested_pcg_kernels.h"
@@ -39,11 +40,10 @@ private:
     DeviceArray<double> value_, diagonal_;
     DeviceArray<unsigned char> fixed_;
     DeviceArray<Mat3> inverse_; ///< [lists]
-    DeviceArray<Vec3> r_, r_previous_, z_, p_, product_, scaled_, solved_;
+    DeviceArray<Vec3> r_, r_previous_, z_, p_, Kz_, Kp_, scaled_, solved_;
     DeviceArray<PcgScalars> scalars_;
     PinnedArray<PcgScalars> on_host_;
-    DeviceArray<double> block_sums_;
-    DeviceArray<TwoSums> block_two_sums_;
+    RecordScratch sums_;
 };
 
 } // namespace toile

@@ -10,19 +10,50 @@
 namespace toile {
 
 /// NestedPcg with BlockInverse as a GPU runs it: the steps of an iteration that lie between applications of
-/// H^-1, in as few passes as there can be. Flexible conjugate gradients [Notay 2000].
+/// H^-1. Flexible conjugate gradients [Notay 2000], rearranged so that all sums of an iteration are known at
+/// once [Chronopoulos & Gear 1989]: K z is taken instead of K p = K z + beta K p', K = H + dH.
 struct PcgFields {
-    View<Vec3> x, r, r_previous, z, p, product; ///< [vertices]
-    View<Vec3> scaled;                          ///< [vertices] D E r [N]
-    View<Vec3> solved;                          ///< [vertices] H^-1 D E r [m]
+    View<Vec3> x, r, r_previous, z, p; ///< [vertices]
+    View<Vec3> Kz, Kp;                 ///< [vertices] [N]
+    View<Vec3> scaled;                 ///< [vertices] D E r [N]
+    View<Vec3> solved;                 ///< [vertices] H^-1 D E r [m]
+};
+
+/// What an iteration sums up, p and K p being those of the one before.
+struct PcgSums {
+    static constexpr int kLargest = -1;
+
+    double r_z = 0.0, previous_z = 0.0; ///< r . z, and with r of the iteration before [J]
+    double z_Kz = 0.0, z_Kp = 0.0, p_r = 0.0;
+    double r_r = 0.0, r_Kz = 0.0, r_Kp = 0.0; ///< [N^2]
+    double Kz_Kz = 0.0, Kz_Kp = 0.0, Kp_Kp = 0.0;
+
+    TOILE_HD PcgSums& operator+=(const PcgSums& other)
+    {
+        r_z += other.r_z;
+        previous_z += other.previous_z;
+        z_Kz += other.z_Kz;
+        z_Kp += other.z_Kp;
+        p_r += other.p_r;
+        r_r += other.r_r;
+        r_Kz += other.r_Kz;
+        r_Kp += other.r_Kp;
+        Kz_Kz += other.Kz_Kz;
+        Kz_Kp += other.Kz_Kp;
+        Kp_Kp += other.Kp_Kp;
+        return *this;
+    }
 };
 
 /// Numbers of an iteration.
 struct PcgScalars {
-    double b_square = 0.0, r_square = 0.0; ///< [N^2]
-    double rz = 0.0;                       ///< r . P r [J]
+    double b_square = 0.0, r_square = 0.0; ///< [N^2] at the start and after this iteration
+    double rz = 0.0;                       ///< r . z [J]
+    double pKp = 0.0;                      ///< p . K p [J]
     double beta = 0.0;                     ///< [-] of p in its successor
     double step = 0.0;                     ///< [-] along p; 0 where p is no direction of descent
+    double gain = 0.0;                     ///< [J] twice what the quadratic loses by the step
+    bool has_begun = false;
 };
 
 /// H [vertices x vertices] as rows of numbers, and what is constant beside it.
@@ -66,125 +97,108 @@ struct InvertBlock {
     }
 };
 
-/// Begins: x = 0, r = b, and the part of P r before H^-1. A term of |b|^2.
+/// Begins: x = 0, r = b, and the part of P r before H^-1.
 struct BeginPcg {
     View<const Vec3> b;
     PcgFields fields;
     BlocksInverse E;
+    View<PcgScalars> scalars; ///< [1]
 
-    TOILE_HD double operator()(int i) const
+    TOILE_HD void operator()(int i) const
     {
+        if (i == 0)
+            scalars[0] = {};
         const Vec3 r = b[i];
-        fields.x[i] = fields.p[i] = fields.r_previous[i] = Vec3(0.0, 0.0, 0.0);
+        fields.x[i] = fields.p[i] = fields.Kp[i] = fields.r_previous[i] = Vec3(0.0, 0.0, 0.0);
         fields.r[i] = r;
         fields.scaled[i] = E.diagonal[i] * E(i, r);
-        return r.squaredNorm();
     }
 };
 
-struct KeepStart {
-    View<PcgScalars> scalars; ///< [1]
-    TOILE_HD void operator()(double b_square) const
-    {
-        PcgScalars all;
-        all.b_square = all.r_square = b_square;
-        scalars[0] = all;
-    }
-};
-
-/// Two sums at once.
-struct TwoSums {
-    double first = 0.0, second = 0.0;
-    TOILE_HD TwoSums& operator+=(const TwoSums& other)
-    {
-        first += other.first;
-        second += other.second;
-        return *this;
-    }
-};
-
-/// z = E (r + D H^-1 D E r). Terms of r . z and r_previous . z.
+/// z = E (r + D H^-1 D E r)
 struct FinishPrecondition {
     PcgFields fields;
     BlocksInverse E;
 
-    TOILE_HD TwoSums operator()(int i) const
+    TOILE_HD void operator()(int i) const
     {
-        const Vec3 r = fields.r[i];
-        const Vec3 z = E(i, r + E.diagonal[i] * fields.solved[i]);
-        fields.z[i] = z;
-        return {r.dot(z), fields.r_previous[i].dot(z)};
+        fields.z[i] = E(i, fields.r[i] + E.diagonal[i] * fields.solved[i]);
     }
 };
 
-/// Polak-Ribiere's beta.
-struct FindBeta {
-    View<PcgScalars> scalars; ///< [1]
-    TOILE_HD void operator()(const TwoSums& sums) const
-    {
-        PcgScalars& all = scalars[0];
-        all.beta = all.rz != 0.0 ? (sums.first - sums.second) / all.rz : 0.0;
-        all.rz = sums.first;
-    }
-};
-
-/// p = z + beta p
-struct TurnDirection {
-    PcgFields fields;
-    View<const PcgScalars> scalars;
-    TOILE_HD void operator()(int i) const { fields.p[i] = fields.z[i] + scalars[0].beta * fields.p[i]; }
-};
-
-/// (H + dH) p; p itself at fixed vertices. Terms of p . (H + dH) p and r . p.
+/// K z; z itself at fixed vertices. Terms of all sums.
 struct MultiplySystem {
     PcgFields fields;
     SystemRows H;
     View<const int> list_of;         ///< [vertices]
-    View<const Vec3> frozen_product; ///< [lists] dH p [N]
+    View<const Vec3> frozen_product; ///< [lists] dH z [N]
 
-    TOILE_HD TwoSums operator()(int i) const
+    TOILE_HD PcgSums operator()(int i) const
     {
-        const Vec3 p = fields.p[i];
-        Vec3 product = p;
+        const Vec3 z = fields.z[i], r = fields.r[i], Kp = fields.Kp[i];
+        Vec3 Kz = z;
         if (!H.fixed[i]) {
-            product = H.times(i, fields.p);
+            Kz = H.times(i, fields.z);
             if (list_of[i] > 0)
-                product += frozen_product[list_of[i] - 1];
+                Kz += frozen_product[list_of[i] - 1];
         }
-        fields.product[i] = product;
-        return {p.dot(product), p.dot(fields.r[i])};
+        fields.Kz[i] = Kz;
+        PcgSums sums;
+        sums.r_z = r.dot(z);
+        sums.previous_z = fields.r_previous[i].dot(z);
+        sums.z_Kz = z.dot(Kz);
+        sums.z_Kp = z.dot(Kp);
+        sums.p_r = fields.p[i].dot(r);
+        sums.r_r = r.squaredNorm();
+        sums.r_Kz = r.dot(Kz);
+        sums.r_Kp = r.dot(Kp);
+        sums.Kz_Kz = Kz.squaredNorm();
+        sums.Kz_Kp = Kz.dot(Kp);
+        sums.Kp_Kp = Kp.squaredNorm();
+        return sums;
     }
 };
 
+/// Polak-Ribiere's beta, the step along p = z + beta p', and what it leaves of r.
 struct FindStep {
     View<PcgScalars> scalars; ///< [1]
-    TOILE_HD void operator()(const TwoSums& sums) const
+
+    TOILE_HD void operator()(const PcgSums& sums) const
     {
-        scalars[0].step = sums.first > 0.0 ? sums.second / sums.first : 0.0;
+        PcgScalars& all = scalars[0];
+        if (!all.has_begun)
+            all.b_square = sums.r_r;
+        all.has_begun = true;
+        const double beta = all.rz != 0.0 ? (sums.r_z - sums.previous_z) / all.rz : 0.0;
+        all.beta = beta;
+        all.rz = sums.r_z;
+        all.pKp = sums.z_Kz + beta * (2.0 * sums.z_Kp + beta * all.pKp);
+        all.step = all.pKp > 0.0 ? (sums.r_z + beta * sums.p_r) / all.pKp : 0.0;
+        all.gain = all.step * all.step * all.pKp;
+        const double r_Kp = sums.r_Kz + beta * sums.r_Kp;
+        const double Kp_Kp = sums.Kz_Kz + beta * (2.0 * sums.Kz_Kp + beta * sums.Kp_Kp);
+        all.r_square = std::fmax(0.0, sums.r_r + all.step * (all.step * Kp_Kp - 2.0 * r_Kp));
     }
 };
 
-/// Moves along p, and begins the next P r. A term of |r|^2.
+/// Moves along p, and begins the next P r.
 struct TakeStep {
     PcgFields fields;
     BlocksInverse E;
     View<const PcgScalars> scalars;
 
-    TOILE_HD double operator()(int i) const
+    TOILE_HD void operator()(int i) const
     {
-        const double step = scalars[0].step;
-        const Vec3 before = fields.r[i], r = before - step * fields.product[i];
-        fields.x[i] += step * fields.p[i];
+        const double step = scalars[0].step, beta = scalars[0].beta;
+        const Vec3 p = fields.z[i] + beta * fields.p[i], Kp = fields.Kz[i] + beta * fields.Kp[i];
+        const Vec3 before = fields.r[i], r = before - step * Kp;
+        fields.p[i] = p;
+        fields.Kp[i] = Kp;
+        fields.x[i] += step * p;
         fields.r_previous[i] = before;
         fields.r[i] = r;
         fields.scaled[i] = E.diagonal[i] * E(i, r);
-        return r.squaredNorm();
     }
-};
-
-struct KeepResidual {
-    View<PcgScalars> scalars; ///< [1]
-    TOILE_HD void operator()(double r_square) const { scalars[0].r_square = r_square; }
 };
 
 } // namespace toile
