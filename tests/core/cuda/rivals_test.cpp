@@ -17,12 +17,12 @@ constexpr double kDt = 1.0 / 120.0;
 
 /// A sheet that swings from two corners, one of which is carried along.
 struct Swing {
-    Sheet sheet = make_sheet(Vec2(0.6, 0.4), 30, 20, Pattern::Irregular);
+    Sheet sheet;
     ClothModel cloth;
     std::vector<Vec3> x = sheet.flat(), v, acceleration, targets;
     std::vector<unsigned char> fixed;
 
-    Swing()
+    explicit Swing(const Sheet& shape = make_sheet(Vec2(0.6, 0.4), 30, 20, Pattern::Irregular)) : sheet(shape)
     {
         cloth.rest = sheet.rest();
         cloth.masses = masses_of(*cloth.rest, 0.2);
@@ -30,7 +30,7 @@ struct Swing {
         cloth.bending = {5e-6, 2e-6};
         acceleration.assign(x.size(), Vec3(0.0, -9.81, 0.4));
         fixed.assign(x.size(), 0);
-        fixed[sheet.at(0, 0)] = fixed[sheet.at(30, 0)] = 1;
+        fixed[sheet.at(0, 0)] = fixed[sheet.at(sheet.columns, 0)] = 1;
         targets = x;
         for (const Vec3& p : x)
             v.push_back(0.3 * Vec3(std::sin(20.0 * p.z()), std::cos(15.0 * p.x()), std::cos(18.0 * p.x())));
@@ -45,7 +45,7 @@ std::vector<Vec3> run(Swing swing, PointMasses& masses, int steps)
     masses.set_positions(swing.x);
     masses.set_velocities(swing.v);
     for (int k = 0; k < steps; ++k) {
-        swing.targets[swing.sheet.at(30, 0)].x() += 1e-3;
+        swing.targets[swing.sheet.at(swing.sheet.columns, 0)].x() += 1e-3;
         const StepReport report =
             masses.step(kDt, swing.acceleration, swing.fixed, swing.targets, nullptr, nullptr);
         EXPECT_EQ(report.status, StepReport::Status::IterationLimit) << k;
@@ -81,7 +81,7 @@ TEST_F(DeviceRivalTest, XpbdMovesAsOnTheCpu)
         EXPECT_LT(farthest_apart(run(swing, *exact, 5), expected), 1e-8) << by_forces;
         EXPECT_LT(farthest_apart(copy_of(exact->velocities()), copy_of(here.velocities())), 1e-5);
         const auto single = make<DeviceXpbd<float>>(swing, {20, by_forces});
-        EXPECT_LT(farthest_apart(run(swing, *single, 5), expected), 5e-6) << by_forces;
+        EXPECT_LT(farthest_apart(run(swing, *single, 5), expected), 2e-5) << by_forces;
     }
 }
 
@@ -96,15 +96,16 @@ TEST_F(DeviceRivalTest, VertexBlockDescentMovesAsOnTheCpu)
         EXPECT_LT(farthest_apart(run(swing, *exact, 5), expected), 1e-8) << rho;
         EXPECT_LT(farthest_apart(copy_of(exact->velocities()), copy_of(here.velocities())), 1e-5);
         const auto single = make<DeviceVertexBlockDescent<float>>(swing, {40, rho});
-        EXPECT_LT(farthest_apart(run(swing, *single, 5), expected), 5e-6) << rho;
+        EXPECT_LT(farthest_apart(run(swing, *single, 5), expected), 2e-5) << rho;
     }
 }
 
 TEST_F(DeviceRivalTest, VertexBlockDescentWithLaggedBendingFindsTheSameMinimiser)
 {
-    const Swing swing;
-    VertexBlockDescent here(swing.x, swing.cloth, {4000, 0.0, 0.0});
-    const auto lagging = make<DeviceVertexBlockDescent<double>>(swing, {4000, 0.0, true, true});
+    // Small: sweeps carry a change by an edge.
+    const Swing swing(make_sheet(Vec2(0.3, 0.25), 12, 10, Pattern::Irregular));
+    VertexBlockDescent here(swing.x, swing.cloth, {3000, 0.0, 0.0});
+    const auto lagging = make<DeviceVertexBlockDescent<double>>(swing, {3000, 0.0, true, true});
     EXPECT_LT(lagging->colour_count(), here.colour_count() / 2);
     EXPECT_LT(farthest_apart(run(swing, *lagging, 1), run(swing, here, 1)), 1e-6);
 }
