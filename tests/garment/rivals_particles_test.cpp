@@ -44,7 +44,7 @@ struct Stirred {
     }
     int size() const { return int(x.size()); }
     MembraneWeights weights() const { return Membrane(cloth.rest, cloth.stretch, "sheet").weights(); }
-    SparseMatrix K() const { return Bending(cloth.rest, cloth.bending, "sheet").matrix(); }
+    SparseMatrix bending_matrix() const { return Bending(cloth.rest, cloth.bending, "sheet").matrix(); }
 
     /// Positions after a step of a rival on the CPU.
     std::vector<Vec3> after(Rival& rival) const
@@ -75,7 +75,7 @@ template <typename T>
 std::vector<Vec3> xpbd_step(const Stirred& from, int substeps, bool bends_by_forces)
 {
     const ConstraintTable<T> table(from.cloth);
-    const SlicedRows rows = sliced_rows_of(from.K());
+    const SlicedRows rows = sliced_rows_of(from.bending_matrix());
     std::vector<Vec3> x = from.x, v = from.v;
     std::vector<Particle> before(x.size()), after(x.size());
     const double h = from.dt / substeps;
@@ -116,7 +116,7 @@ template <typename T>
 std::vector<Vec3> descent_step(const Stirred& from, int sweeps, double rho, bool lags_bending)
 {
     const SweepTable<T> table(from.cloth, lags_bending);
-    const SlicedRows rows = sliced_rows_of(from.K());
+    const SlicedRows rows = sliced_rows_of(from.bending_matrix());
     std::vector<Vec3> x = from.x, v = from.v, v_before(x.size(), Vec3::Zero());
     std::vector<Vec3> prediction(x.size()), last(x.size()), before_last(x.size());
     std::vector<Particle> particles(x.size());

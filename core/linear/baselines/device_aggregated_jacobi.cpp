@@ -12,9 +12,9 @@ void DeviceAggregatedJacobi::prepare(const SparseMatrix& A, const std::vector<do
     step.setIdentity();
     step -= sweeps.R;
     step.makeCompressed();
-    std::vector<double> is_free;
-    for (const double inverse : inverse_diagonal)
-        is_free.push_back(inverse == 0.0 ? 0.0 : 1.0);
+    std::vector<double> is_free(inverse_diagonal.size());
+    for (size_t i = 0; i < is_free.size(); ++i)
+        is_free[i] = inverse_diagonal[i] == 0.0 ? 0.0 : 1.0;
     aggregated_.set(step, is_free, sweeps.steps);
     c_.resize(int(is_free.size()));
 }

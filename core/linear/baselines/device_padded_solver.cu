@@ -15,9 +15,9 @@ DevicePaddedSolver::DevicePaddedSolver(const CudaSpace& space)
 void DevicePaddedSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
 {
     TOILE_ASSERT(H.rows() == fixed.size());
-    std::vector<float> is_free;
-    for (const unsigned char held : fixed)
-        is_free.push_back(held ? 0.0F : 1.0F);
+    std::vector<float> is_free(fixed.size());
+    for (int i = 0; i < fixed.size(); ++i)
+        is_free[i] = fixed[i] ? 0.0F : 1.0F;
     is_free_.upload(is_free);
     b_.resize(fixed.size());
     x_.resize(fixed.size());
