@@ -15,7 +15,7 @@ namespace {
 
 const std::vector<std::string> kTables{"gpu_apply.csv",     "gpu_step.csv",   "gpu_near_pairs.csv",
                                        "gpu_colliders.csv", "gpu_tables.csv", "gpu_scenes.csv",
-                                       "gpu_tables.md"};
+                                       "gpu_rivals.csv",    "gpu_tables.md"};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -43,6 +43,13 @@ const std::vector<int> kFoldedSizes{50'000, 240'000};
 const std::vector<gpu::SceneCase> kScenes{{"cloth", "scenes/benchmarks/cloth.json", 20, true},
                                           {"runway", "scenes/benchmarks/runway.json", 3, false}};
 const std::vector<gpu::SceneCase> kQuickScenes{{"tablecloth", "scenes/demo/tablecloth.json", 8, true}};
+
+/// Beside other people's methods, at the same states: two steps of a swinging sheet.
+const std::vector<gpu::RivalsCase> kRivals{{10'000, 1e3, kTimeStep, 2, 16},
+                                           {10'000, 1e4, kTimeStep, 2, 16},
+                                           {50'000, 1e3, kTimeStep, 2, 16},
+                                           {50'000, 1e4, kTimeStep, 2, 16}};
+const std::vector<gpu::RivalsCase> kQuickRivals{{900, 1e3, kTimeStep, 2, 4}};
 
 /// Copies that fit no cache, and such that fit the L2 cache twice [MB].
 constexpr int kLargeCopy = 1000, kSmallCopy = 8;
@@ -87,21 +94,45 @@ std::vector<Case> cases_of(const BenchOptions& options)
                              for (gpu::SceneRun& run : gpu::measure_scene(what))
                                  report.scenes.push_back(std::move(run));
                          }});
+    for (const gpu::RivalsCase& rivals : options.quick ? kQuickRivals : kRivals)
+        cases.push_back(
+            {"rivals " + std::to_string(rivals.vertices) + "x" + std::to_string(int(rivals.stiffness)),
+             [what = rivals](const CudaSpace& space, gpu::Report& report) {
+                 for (solvers::Result& result : gpu::measure_rivals(space, what))
+                     report.rivals.push_back(std::move(result));
+             }});
     std::erase_if(cases, [&](const Case& c) { return c.name.find(options.only) == std::string::npos; });
     if (cases.empty())
         throw InvalidInput("bench gpu: --only \"" + options.only + "\" leaves no case");
     return cases;
 }
 
+/// Files and what they hold.
+/// @param is_whole  false: only tables that have rows
+std::vector<TableFile> tables_of(const gpu::Report& report, bool is_whole)
+{
+    std::vector<TableFile> tables;
+    const auto add = [&](const std::string& name, bool has_rows, const std::string& text) {
+        if (is_whole || has_rows)
+            tables.push_back({name, text});
+    };
+    add(kTables[0], !report.applies.empty(), gpu::csv_of_applies(report));
+    add(kTables[1], !report.steps.empty(), gpu::csv_of_steps(report));
+    add(kTables[2], !report.searches.empty(), gpu::csv_of(report.searches));
+    add(kTables[3], !report.colliders.empty(), gpu::csv_of(report.colliders));
+    add(kTables[4], !report.builds.empty(), gpu::csv_of(report.builds));
+    add(kTables[5], !report.scenes.empty(), gpu::csv_of(report.scenes));
+    add(kTables[6], !report.rivals.empty(), solvers::csv_table(report.rivals));
+    add(kTables[7], false, gpu::markdown_tables(report));
+    return tables;
+}
+
 } // namespace
 
 int bench_gpu(const BenchOptions& options)
 {
-    if (!options.output.empty()) {
-        if (!options.only.empty())
-            throw InvalidInput("bench gpu: -o writes the tables of all cases; leave out --only");
+    if (!options.output.empty())
         require_place(options.output, kTables);
-    }
     const std::vector<Case> cases = cases_of(options);
     if (const std::string reason = why_no_cuda_device(); !reason.empty())
         throw DeviceError("bench gpu: no CUDA device: " + reason);
@@ -124,13 +155,7 @@ int bench_gpu(const BenchOptions& options)
         std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
         return kExitFailure;
     }
-    write_tables(options.output, {{kTables[0], gpu::csv_of_applies(report)},
-                                  {kTables[1], gpu::csv_of_steps(report)},
-                                  {kTables[2], gpu::csv_of(report.searches)},
-                                  {kTables[3], gpu::csv_of(report.colliders)},
-                                  {kTables[4], gpu::csv_of(report.builds)},
-                                  {kTables[5], gpu::csv_of(report.scenes)},
-                                  {kTables[6], gpu::markdown_tables(report)}});
+    write_tables(options.output, tables_of(report, options.only.empty()));
     return kExitOk;
 }
 

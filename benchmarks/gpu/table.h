@@ -7,6 +7,7 @@
 #include "benchmarks/gpu/build_tables.h"
 #include "benchmarks/gpu/colliders.h"
 #include "benchmarks/gpu/near_pairs.h"
+#include "benchmarks/gpu/rivals.h"
 #include "benchmarks/gpu/scene.h"
 #include "benchmarks/gpu/step.h"
 
@@ -23,6 +24,7 @@ struct Report {
     std::vector<NearSearch> searches;
     std::vector<SceneRun> scenes;
     std::vector<ColliderSearch> colliders;
+    std::vector<solvers::Result> rivals;
 };
 
 std::string markdown_tables(const Report& report);

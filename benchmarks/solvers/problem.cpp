@@ -163,31 +163,59 @@ void advance(const Problem& problem, const System& system, SampledStep& step)
     step.energy = NewtonPcg().minimise(objective, step.minimiser, kBetweenFinish).value;
 }
 
+/// Prediction and value at q* of a step whose x and v are set.
+void begin(const Problem& problem, const System& system, SampledStep& step)
+{
+    predict(problem, step);
+    step.start_energy = objective(problem, system, step, step.prediction);
+    step.is_converged = false;
+}
+
+/// Whether what Newton's method still expects is little.
+void judge(double decrement, SampledStep& step)
+{
+    step.is_converged = 0.5 * decrement <= kConverged * (step.start_energy - step.energy);
+}
+
+/// To the bottom of the valley that step.minimiser lies in.
+OuterLoop::Outcome finish(StepObjective& objective, SampledStep& step)
+{
+    NewtonPcg newton(kFinishLinearIterations);
+    const OuterLoop::Outcome outcome = newton.minimise(objective, step.minimiser, kFinish);
+    step.energy = outcome.value;
+    judge(newton.decrement(), step);
+    return outcome;
+}
+
 } // namespace
 
 void converge(const Problem& problem, const System& system, SampledStep& step)
 {
-    predict(problem, step);
+    begin(problem, system, step);
     StepObjective objective(system, step_start(problem, system, step), nullptr);
     step.minimiser = step.prediction;
-    step.is_converged = false;
-    step.start_energy = Lbfgs().minimise(objective, step.minimiser, {0.0, 0}).value;
-    const auto judge = [&](double decrement) {
-        step.is_converged = 0.5 * decrement <= kConverged * (step.start_energy - step.energy);
-    };
     for (int round = 0; round < kMostRounds && !step.is_converged; ++round) {
         (void)Lbfgs().minimise(objective, step.minimiser, round == 0 ? kApproach : kApproachAgain);
         if (round > 0)
             (void)NewtonPcg(kFinishLinearIterations, Definiteness::Projected)
                 .minimise(objective, step.minimiser, kProjected);
-        NewtonPcg newton(kFinishLinearIterations);
-        step.energy = newton.minimise(objective, step.minimiser, kFinish).value;
-        judge(newton.decrement());
+        (void)finish(objective, step);
     }
     if (!step.is_converged && problem.vertex_count() <= kFactorSize) {
         NewtonDirect newton;
         step.energy = newton.minimise(objective, step.minimiser, kFactorFinish).value;
-        judge(newton.decrement());
+        judge(newton.decrement(), step);
+    }
+}
+
+void converge_near(const Problem& problem, const System& system, SampledStep& step)
+{
+    begin(problem, system, step);
+    StepObjective objective(system, step_start(problem, system, step), nullptr);
+    for (int round = 0; round < kMostRounds && !step.is_converged; ++round) {
+        const OuterLoop::Outcome outcome = finish(objective, step);
+        // What begins at the minimiser ends there, after a step solved too loosely to tell what is left.
+        step.is_converged |= outcome.converged && outcome.iterations <= 1;
     }
 }
 

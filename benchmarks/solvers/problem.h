@@ -59,6 +59,10 @@ struct SampledStep {
 /// @param system  of the problem around a good solver, prepared
 void converge(const Problem& problem, const System& system, SampledStep& step);
 
+/// The same from step.minimiser, which is close already, by Newton's method alone. It counts as converged too
+/// where Newton's method, begun there again, moves no vertex by more than 1e-9 m.
+void converge_near(const Problem& problem, const System& system, SampledStep& step);
+
 /// Every `stride`-th of the first stride * count steps of the cloth, converged. The steps between them are
 /// only minimised well enough for a trajectory that is smooth: they are where sampled steps start from.
 /// @throws std::runtime_error  naming the step, where an energy is not finite

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Eight numbers computed side by side, so that one templated kernel body serves a single item (T = double,
-/// as on a GPU) and eight items in vector registers (T = Lanes, on the CPU).
+/// Eight numbers computed side by side, so that one templated kernel body serves a single item (T = double
+/// or float, as on a GPU) and eight items in vector registers (T = Lanes, on the CPU).
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,9 @@ using Mat3Of = Eigen::Matrix<T, 3, 3>;
 
 /// condition ? yes : no
 TOILE_HD inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+TOILE_HD inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
 TOILE_HD inline double square_root(double x) { return std::sqrt(x); }
+TOILE_HD inline float square_root(float x) { return std::sqrt(x); }
 
 /// What a thread of a GPU has of FloatLanes: as many numbers as it loads at once.
 template <int Count>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/backend/types.h"
-#include "garment/energy/sliced_rows.h"
+#include "core/linear/sliced_rows.h"
 
 namespace toile {
 

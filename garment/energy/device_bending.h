@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "core/backend/cuda/array.h"
+#include "core/linear/sliced_rows.h"
 #include "core/linear/sparse_matrix.h"
 #include "core/pd/device/device_energy.h"
-#include "garment/energy/sliced_rows.h"
 
 namespace toile {
 

@@ -50,8 +50,7 @@ struct ProjectStrains {
     void operator()(int b) const;
 };
 
-/// Projects the curvatures of eight stencils: the three vectors row_k x to zero with compliances
-/// 1 / stiffness_k, whose energies 1/2 |C|^2 / alpha add up to Bending's.
+/// Projects the curvatures of eight stencils (curvature_constraints.h).
 struct ProjectCurvatures {
     View<const CurvatureBlock> blocks;
     View<const CurvatureEntry> entries;

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 
 #include "garment/energy/membrane_curvature.h"
-#include "garment/rivals/lane_gather.h"
 
 namespace toile {
 
@@ -119,6 +118,21 @@ TOILE_HD void add_membrane_corner(const Mat32Of<T>& F, const HatGradient<T>& g, 
 {
     add_yarns<T>(F, g, area, weights, gradient, hessian);
     add_shear<T>(F, g, T(weights.shear) * area, gradient, hessian);
+}
+
+/// add_membrane_corner() of corner 0 of a triangle.
+/// @param edge1, edge2  corners 1 and 2 from corner 0 [m]
+/// @param rest_inv      [1/m] rows: hat gradients of corners 1 and 2
+template <typename T>
+TOILE_HD void add_first_corner(const Vec3Of<T>& edge1, const Vec3Of<T>& edge2, const Mat2Of<T>& rest_inv,
+                               const T& area, const MembraneWeights& weights, Vec3Of<T>& gradient,
+                               Symmetric3<T>& hessian)
+{
+    Mat32Of<T> F;
+    F.col(0) = rest_inv(0, 0) * edge1 + rest_inv(1, 0) * edge2;
+    F.col(1) = rest_inv(0, 1) * edge1 + rest_inv(1, 1) * edge2;
+    const HatGradient<T> g{-rest_inv(0, 0) - rest_inv(1, 0), -rest_inv(0, 1) - rest_inv(1, 1)};
+    add_membrane_corner<T>(F, g, area, weights, gradient, hessian);
 }
 
 } // namespace toile

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "garment/rivals/lane_gather.h"
+#include "garment/energy/membrane_kernels.h"
 
 namespace toile {
 
@@ -71,6 +71,47 @@ TOILE_HD Mat32Of<T> project_strains(Mat32Of<T> F, const Mat2Of<T>& N, const Stra
     project_stretch<T>(p, stiffness.shear, N, F, D);
     project_stretch<T>(Direction(-p(1), p(0)), stiffness.shear, N, F, D);
     return D;
+}
+
+/// A triangle as its constraints see it.
+template <typename T>
+struct StrainTriangle {
+    Vec3Of<T> edge1, edge2; ///< corners 1 and 2 from corner 0 [m]
+    T mobility[3];          ///< [1/kg] of the corners, 0 where fixed
+    Mat2Of<T> rest_inv;     ///< [1/m] rows: hat gradients of corners 1 and 2
+    T area;                 ///< [m^2]
+};
+
+/// One pass over its constraints in a substep of h [s].
+/// @return column k: move of corner k [m]
+template <typename T>
+TOILE_HD Mat3Of<T> strain_moves(const StrainTriangle<T>& triangle, const MembraneWeights& weights, double h)
+{
+    // Deformation gradient, and N from the hat gradients of the three corners.
+    const Mat2Of<T>& inv = triangle.rest_inv;
+    const T hat_u[3] = {-inv(0, 0) - inv(1, 0), inv(0, 0), inv(1, 0)};
+    const T hat_v[3] = {-inv(0, 1) - inv(1, 1), inv(0, 1), inv(1, 1)};
+    Mat2Of<T> N;
+    N(0, 0) = N(0, 1) = N(1, 1) = T(0.0);
+    for (int k = 0; k < 3; ++k) {
+        N(0, 0) += triangle.mobility[k] * hat_u[k] * hat_u[k];
+        N(0, 1) += triangle.mobility[k] * hat_u[k] * hat_v[k];
+        N(1, 1) += triangle.mobility[k] * hat_v[k] * hat_v[k];
+    }
+    N(1, 0) = N(0, 1);
+    Mat32Of<T> F;
+    F.col(0) = inv(0, 0) * triangle.edge1 + inv(1, 0) * triangle.edge2;
+    F.col(1) = inv(0, 1) * triangle.edge1 + inv(1, 1) * triangle.edge2;
+
+    const T scale = triangle.area * T(h * h);
+    const StrainStiffness<T> stiffness{scale * T(weights.warp), scale * T(weights.weft),
+                                       scale * T(weights.shear)};
+    const Mat32Of<T> D = project_strains<T>(F, N, stiffness);
+    Mat3Of<T> moves;
+    for (int k = 0; k < 3; ++k)
+        moves.col(k) =
+            (triangle.mobility[k] * hat_u[k]) * D.col(0) + (triangle.mobility[k] * hat_v[k]) * D.col(1);
+    return moves;
 }
 
 } // namespace toile

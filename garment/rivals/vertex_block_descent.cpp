@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/linear/field.h"
+#include "garment/rivals/followed_acceleration.h"
 
 namespace toile {
 
@@ -12,15 +13,6 @@ namespace {
 
 /// Blocks of eight vertices per task: about 50 us of work.
 constexpr int kBlocksPerTask = 8;
-
-/// The part of the acceleration that a vertex has followed: along a, between nothing and all of it.
-/// [Chen et al. 2024, section 3.7]
-Vec3 followed(const Vec3& acceleration, const Vec3& last)
-{
-    const double square = acceleration.squaredNorm();
-    return square > 0.0 ? Vec3(std::clamp(last.dot(acceleration) / square, 0.0, 1.0) * acceleration)
-                        : Vec3(Vec3::Zero());
-}
 
 } // namespace
 

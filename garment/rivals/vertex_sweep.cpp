@@ -1,62 +1,20 @@
 #include "garment/rivals/vertex_sweep.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "core/mesh/colouring.h"
+#include "garment/rivals/colours.h"
 
 namespace toile {
 
 namespace {
 
-/// Entries of K below this share of their row's diagonal are rounding left over from sums that cancel [-]:
-/// on regular meshes the whole second ring. Larger drops bending.
-constexpr double kRoundingOfK = 1e-12;
-
-bool couples(const SparseMatrix& K, int row, SparseMatrix::InnerIterator& entry)
-{
-    return entry.col() != row && std::abs(entry.value()) > kRoundingOfK * K.coeff(row, row);
-}
-
-/// Pairs of vertices that share a term, as keys of both.
-Incidence pairs_of_vertices(const RestShape& rest, const SparseMatrix& K, int& pair_count)
-{
-    std::vector<std::array<int, 2>> pairs;
-    for (const Edge& edge : rest.topology.edges)
-        pairs.push_back({edge.vertex[0], edge.vertex[1]});
-    for (int row = 0; row < K.outerSize(); ++row)
-        for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry)
-            if (couples(K, row, entry))
-                pairs.push_back({row, int(entry.col())});
-    pair_count = int(pairs.size());
-
-    Incidence keys;
-    keys.first.assign(rest.vertex_count() + 1, 0);
-    for (const auto& pair : pairs)
-        for (const int v : pair)
-            ++keys.first[v + 1];
-    for (int v = 0; v < rest.vertex_count(); ++v)
-        keys.first[v + 1] += keys.first[v];
-    keys.items.resize(keys.first.back());
-    std::vector<int> next(keys.first.begin(), keys.first.end() - 1);
-    for (int p = 0; p < pair_count; ++p)
-        for (const int v : pairs[p])
-            keys.items[next[v]++] = p;
-    return keys;
-}
-
 /// Appends blocks to a layout.
 class Layouter {
 public:
     Layouter(const ClothModel& cloth, const SparseMatrix& K, SweepLayout& layout)
-        : cloth_(cloth), corners_(cloth.rest->topology.corners_of_vertex), K_(K), layout_(layout)
+        : cloth_(cloth), corners_(cloth.rest->topology.corners_of_vertex), K_(K), rows_(couplings(K)),
+          layout_(layout)
     {
-        for (int row = 0; row < K.outerSize(); ++row) {
-            rows_.emplace_back();
-            for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry)
-                if (couples(K, row, entry))
-                    rows_.back().emplace_back(int(entry.col()), entry.value());
-        }
     }
 
     /// Vertices with equally many terms come into the same block.
@@ -125,8 +83,8 @@ private:
         for (int lane = 0; lane < kLanes; ++lane) {
             const auto& row = rows_[vertex[lane]];
             const bool exists = k < int(row.size());
-            neighbour[lane] = exists ? row[k].first : vertex[lane];
-            stiffness[lane] = exists ? row[k].second : 0.0;
+            neighbour[lane] = exists ? row[k].vertex : vertex[lane];
+            stiffness[lane] = exists ? row[k].stiffness : 0.0;
         }
         layout_.bend_vertex.push_back(neighbour);
         layout_.bend_stiffness.push_back(stiffness);
@@ -135,7 +93,7 @@ private:
     const ClothModel& cloth_;
     const Incidence& corners_;
     const SparseMatrix& K_;
-    std::vector<std::vector<std::pair<int, double>>> rows_; ///< off-diagonal entries of K
+    std::vector<std::vector<Coupling>> rows_;
     SweepLayout& layout_;
 };
 
@@ -143,11 +101,9 @@ private:
 
 SweepLayout lay_out_sweep(const ClothModel& cloth, const SparseMatrix& K)
 {
-    int pair_count = 0;
-    const Incidence pairs = pairs_of_vertices(*cloth.rest, K, pair_count);
     SweepLayout layout;
     Layouter layouter(cloth, K, layout);
-    for (std::vector<int>& vertices : colour_items(pairs, pair_count))
+    for (std::vector<int>& vertices : colour_vertices(*cloth.rest, K))
         layouter.append_colour(std::move(vertices));
     return layout;
 }
@@ -166,14 +122,9 @@ void DescendVertices::operator()(int b) const
     // The membrane: the vertex is corner 0 of each triangle.
     for (int k = block.first_triangle; k < block.first_triangle + block.triangles; ++k) {
         const RingTriangle& triangle = layout.triangles[k];
-        const Mat2Of<Lanes>& inv = triangle.rest_inv;
         const Vec3Of<Lanes> e1 = gather_vectors(x, triangle.corner1) - own;
         const Vec3Of<Lanes> e2 = gather_vectors(x, triangle.corner2) - own;
-        Mat32Of<Lanes> F;
-        F.col(0) = inv(0, 0) * e1 + inv(1, 0) * e2;
-        F.col(1) = inv(0, 1) * e1 + inv(1, 1) * e2;
-        const HatGradient<Lanes> g{-inv(0, 0) - inv(1, 0), -inv(0, 1) - inv(1, 1)};
-        add_membrane_corner<Lanes>(F, g, triangle.area, weights, gradient, hessian);
+        add_first_corner<Lanes>(e1, e2, triangle.rest_inv, triangle.area, weights, gradient, hessian);
     }
 
     const Vec3Of<Lanes> step = hessian.solve(gradient);

@@ -7,6 +7,7 @@
 
 #include "core/backend/error.h"
 #include "core/linear/field.h"
+#include "garment/rivals/bending_forces.h"
 
 namespace toile {
 
@@ -14,23 +15,6 @@ namespace {
 
 /// Blocks of eight constraints per task: 10 to 50 us of work.
 constexpr int kBlocksPerTask = 32;
-
-/// h^2 times the largest eigenvalue of K / m up to which bending acts by explicit forces [-]. Symplectic
-/// Euler is stable up to 4; at 1 the frequency of the fastest mode is 5 % off.
-constexpr double kExplicitBending = 1.0;
-
-/// Bound on the eigenvalues of K / m by Gershgorin's circles [1/s^2].
-double largest_eigenvalue(const SparseMatrix& K, const std::vector<double>& masses)
-{
-    double largest = 0.0;
-    for (int row = 0; row < K.outerSize(); ++row) {
-        double sum = 0.0;
-        for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry)
-            sum += std::abs(entry.value());
-        largest = std::max(largest, sum / masses[row]);
-    }
-    return largest;
-}
 
 /// (K x)_i; rows sum to zero, so differences replace positions.
 Vec3 bending_gradient(const SparseMatrix& K, int i, View<const Vec3> x)
@@ -47,7 +31,7 @@ Xpbd::Xpbd(std::vector<Vec3> positions, ClothModel cloth, Settings settings)
     : Rival(std::move(positions), std::move(cloth)), settings_(settings),
       weights_(Membrane(cloth_.rest, cloth_.stretch, "Xpbd").weights()),
       bending_(Bending(cloth_.rest, cloth_.bending, "Xpbd").matrix()),
-      fastest_(largest_eigenvalue(bending_, cloth_.masses)), layout_(lay_out_constraints(cloth_)),
+      fastest_(fastest_bending(bending_, cloth_.masses)), layout_(lay_out_constraints(cloth_)),
       inverse_masses_(x_.size()), before_(x_.size())
 {
     if (settings.substeps < 1)
@@ -86,7 +70,7 @@ StepReport Xpbd::advance(double dt, View<const Vec3> acceleration, const std::ve
 
 bool Xpbd::bends_by_forces(double h) const
 {
-    return settings_.bend_by_forces && fastest_ > 0.0 && h * h * fastest_ < kExplicitBending;
+    return settings_.bend_by_forces && allows_bending_forces(fastest_, h);
 }
 
 /// Free vertices fly on; fixed ones go their straight way to the target.

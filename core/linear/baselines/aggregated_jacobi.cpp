@@ -38,42 +38,48 @@ SpectralBounds aggregated(const SpectralBounds& bounds, double damping, int orde
 
 } // namespace
 
+AggregatedSweeps::AggregatedSweeps(const SparseMatrix& A, View<const double> inverse_diagonal,
+                                   const Settings& settings)
+{
+    const SpectralBounds of_jacobi = estimate_bounds(A, inverse_diagonal, settings.lanczos_steps);
+    const double damping = 2.0 / (of_jacobi.lowest + of_jacobi.highest);
+    bounds = aggregated(of_jacobi, damping, settings.order);
+    steps = settings.accelerate ? chebyshev_steps(bounds, settings.applications)
+                                : std::vector<ChebyshevStep>(settings.applications, {0.0, 1.0});
+    before.assign(settings.order, {0.0, damping});
+
+    const SparseMatrix once = iteration_matrix(A, inverse_diagonal, damping);
+    R = once;
+    for (int k = 1; k < settings.order; ++k)
+        R = SparseMatrix(R * once);
+}
+
 void AggregatedJacobi::prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal)
 {
-    const int order = settings_.order;
-    const SpectralBounds bounds = estimate_bounds(A, inverse_diagonal, settings_.lanczos_steps);
-    const double damping = 2.0 / (bounds.lowest + bounds.highest);
-    bounds_ = aggregated(bounds, damping, order);
-    steps_ = settings_.accelerate ? chebyshev_steps(bounds_, settings_.applications)
-                                  : std::vector<ChebyshevStep>(settings_.applications, {0.0, 1.0});
-
-    const SparseMatrix R = iteration_matrix(A, inverse_diagonal, damping);
-    R_ = R;
-    for (int k = 1; k < order; ++k)
-        R_ = SparseMatrix(R_ * R);
+    aggregated_ = AggregatedSweeps(A, inverse_diagonal, settings_);
     for (std::vector<Vec4>* field : {&c_, &d_, &other_})
         field->resize(inverse_diagonal.size());
-    sweeps_ =
-        ChebyshevJacobi(A, std::move(inverse_diagonal), std::vector<ChebyshevStep>(order, {0.0, damping}));
+    sweeps_ = ChebyshevJacobi(A, std::move(inverse_diagonal), aggregated_.before);
 }
 
 void AggregatedJacobi::solve_free(View<const Vec4> b, View<Vec4> x) const
 {
+    const std::vector<ChebyshevStep>& steps = aggregated_.steps;
     // The first application, from zero, is c itself. It lands where the last one then ends in x.
     sweeps_.solve(b, c_);
     View<Vec4> from = x, to = other_;
-    if (steps_.size() % 2 == 0)
+    if (steps.size() % 2 == 0)
         std::swap(from, to);
     const View<Vec4> c = c_, d = d_;
     parallel_for(
-        kCpu, "baselines/first_sweep", b.size(), [&](int i) { from[i] = d[i] = steps_[0].gain * c[i]; },
+        kCpu, "baselines/first_sweep", b.size(), [&](int i) { from[i] = d[i] = steps[0].gain * c[i]; },
         kFieldGrain);
 
     // d = momentum d + gain (R^l x + c - x), x += d.
-    for (size_t k = 1; k < steps_.size(); ++k) {
+    for (size_t k = 1; k < steps.size(); ++k) {
         parallel_for(kCpu, "baselines/aggregated_sweep", b.size(), [&](int i) {
-            const Vec4 change = row_times(R_, i, View<const Vec4>(from)) + c[i] - from[i];
-            d[i] = steps_[k].momentum * d[i] + steps_[k].gain * change;
+            const Vec4 change = row_times(aggregated_.R, i, View<const Vec4>(from)) + c[i] - from[i];
+            d[i] = steps[k].momentum * d[i] + steps[k].gain * change;
             to[i] = from[i] + d[i];
         });
         std::swap(from, to);

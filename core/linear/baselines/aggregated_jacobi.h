@@ -4,6 +4,24 @@
 
 namespace toile {
 
+/// What A-Jacobi applies, for any machine.
+struct AggregatedSweeps {
+    struct Settings {
+        int order = 2;          ///< l, Jacobi sweeps per application: 1, 2 or 3 in the paper
+        int applications = 16;  ///< products with R^l, plus one. At least 1.
+        bool accelerate = true; ///< false: plain A-Jacobi
+        int lanczos_steps = 40; ///< in update(); see estimate_bounds()
+    };
+
+    SparseMatrix R;                    ///< R^l; empty rows where vertices are fixed
+    SpectralBounds bounds;             ///< of I - R^l
+    std::vector<ChebyshevStep> steps;  ///< of the applications
+    std::vector<ChebyshevStep> before; ///< of the plain sweeps from zero that give c
+
+    AggregatedSweeps() = default;
+    AggregatedSweeps(const SparseMatrix& A, View<const double> inverse_diagonal, const Settings& settings);
+};
+
 /// A-Jacobi: several Jacobi sweeps as one product with a wider matrix [Lan et al. 2022, "Penetration-free
 /// projective dynamics on the GPU", section on A-Jacobi]. With R = I - w D^-1 H, l sweeps are
 ///
@@ -22,12 +40,7 @@ namespace toile {
 /// O(applications nnz(R^l)). Linear in b, symmetric positive definite.
 class AggregatedJacobi final : public PaddedSolver {
 public:
-    struct Settings {
-        int order = 2;          ///< l, Jacobi sweeps per application: 1, 2 or 3 in the paper
-        int applications = 16;  ///< products with R^l, plus one. At least 1.
-        bool accelerate = true; ///< false: plain A-Jacobi
-        int lanczos_steps = 40; ///< in update(); see estimate_bounds()
-    };
+    using Settings = AggregatedSweeps::Settings;
 
     AggregatedJacobi() : AggregatedJacobi(Settings{}) {}
     explicit AggregatedJacobi(const Settings& settings) : settings_(settings) {}
@@ -35,19 +48,17 @@ public:
     bool is_symmetric() const override { return true; }
 
     /// Entries of R^l; after update().
-    long entry_count() const { return R_.nonZeros(); }
+    long entry_count() const { return aggregated_.R.nonZeros(); }
     /// Of I - R^l; after update().
-    const SpectralBounds& bounds() const { return bounds_; }
+    const SpectralBounds& bounds() const { return aggregated_.bounds; }
 
 private:
     void prepare(const SparseMatrix& A, std::vector<double> inverse_diagonal) override;
     void solve_free(View<const Vec4> b, View<Vec4> x) const override;
 
     Settings settings_;
-    SpectralBounds bounds_;
     ChebyshevJacobi sweeps_; ///< plain damped Jacobi: gives c
-    SparseMatrix R_;         ///< R^l
-    std::vector<ChebyshevStep> steps_;
+    AggregatedSweeps aggregated_;
     mutable std::vector<Vec4> c_, d_, other_;
 };
 

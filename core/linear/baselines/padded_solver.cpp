@@ -21,14 +21,20 @@ std::vector<double> invert_diagonal(const SparseMatrix& A, View<const unsigned c
     return inverse;
 }
 
+SparseMatrix without_zeros(const SparseMatrix& H)
+{
+    SparseMatrix A = H.pruned(0.0, 0.0);
+    A.makeCompressed();
+    return A;
+}
+
 void PaddedSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
 {
     TOILE_ASSERT(H.rows() == fixed.size());
     fixed_.assign(fixed.begin(), fixed.end());
     b_.resize(fixed.size());
     x_.resize(fixed.size());
-    SparseMatrix A = H.pruned(0.0, 0.0);
-    A.makeCompressed();
+    const SparseMatrix A = without_zeros(H);
     prepare(A, invert_diagonal(A, fixed));
 }
 

@@ -14,6 +14,9 @@ using Vec4 = Eigen::Vector4d;
 /// @throws InvalidInput naming the first row whose diagonal is not positive
 std::vector<double> invert_diagonal(const SparseMatrix& A, View<const unsigned char> fixed);
 
+/// H without the zeros that fixed vertices leave in its pattern, compressed.
+SparseMatrix without_zeros(const SparseMatrix& H);
+
 /// What the baselines of the global step share: they keep their own copy of H without the zeros that fixed
 /// vertices leave in its pattern, work on padded fields, and hand b through at fixed vertices bit for bit.
 ///

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/backend/cuda/team.h"
+#include "core/linear/sparse_matrix.h"
 
 namespace toile {
 
@@ -43,5 +44,13 @@ struct SlicedRows {
         }
     }
 };
+
+/// @param A  compressed
+inline SlicedRows sliced_rows_of(const SparseMatrix& A)
+{
+    const std::vector<int> columns(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros());
+    const std::vector<float> values(A.valuePtr(), A.valuePtr() + A.nonZeros());
+    return {View<const int>(A.outerIndexPtr(), int(A.rows()) + 1), columns, values};
+}
 
 } // namespace toile

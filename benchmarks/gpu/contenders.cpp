@@ -1,0 +1,144 @@
+#include "benchmarks/gpu/contenders.h"
+
+#include <initializer_list>
+#include <utility>
+
+#include "core/linear/baselines/device_aggregated_jacobi.h"
+#include "core/linear/baselines/device_chebyshev_solver.h"
+#include "core/pd/device/device_body.h"
+#include "core/quadrature/device_quadrature_solver.h"
+#include "garment/rivals/device_vertex_block_descent.h"
+#include "garment/rivals/device_xpbd.h"
+
+namespace toile::gpu {
+
+namespace {
+
+Contender contender(std::unique_ptr<PointMasses> masses)
+{
+    PointMasses* const placed = masses.get();
+    return {std::move(masses), [placed](const Sample& sample) {
+                placed->set_positions(sample.step.x);
+                placed->set_velocities(sample.step.v);
+            }};
+}
+
+std::unique_ptr<PointMasses> body_around(const CudaSpace& space, const solvers::Problem& problem,
+                                         std::unique_ptr<GlobalSolver> solver, double tolerance,
+                                         int max_iterations)
+{
+    DeviceBody::Settings settings;
+    settings.tolerance = tolerance;
+    settings.max_iterations = max_iterations;
+    return std::make_unique<DeviceBody>(space, problem.start.positions,
+                                        problem.make_system(std::move(solver)), settings);
+}
+
+template <typename Solver>
+DeviceMethod around(const std::string& name, int iterations)
+{
+    return {name + " " + std::to_string(iterations), 1,
+            [iterations](const CudaSpace& space, const solvers::Problem& problem) {
+                return contender(
+                    body_around(space, problem, std::make_unique<Solver>(space), 0.0, iterations));
+            }};
+}
+
+template <typename T>
+DeviceMethod xpbd(const std::string& name, int substeps)
+{
+    return {name + " " + std::to_string(substeps), 1,
+            [substeps](const CudaSpace& space, const solvers::Problem& problem) {
+                return contender(std::make_unique<DeviceXpbd<T>>(space, problem.start.positions,
+                                                                 problem.cloth,
+                                                                 typename DeviceXpbd<T>::Settings{substeps}));
+            }};
+}
+
+template <typename T>
+DeviceMethod vbd(const std::string& name, const typename DeviceVertexBlockDescent<T>::Settings& settings,
+                 int parts = 1)
+{
+    return {name + " " + std::to_string(parts > 1 ? parts : settings.max_sweeps), parts,
+            [settings](const CudaSpace& space, const solvers::Problem& problem) {
+                auto descent = std::make_unique<DeviceVertexBlockDescent<T>>(space, problem.start.positions,
+                                                                             problem.cloth, settings);
+                auto* const placed = descent.get();
+                Contender result = contender(std::move(descent));
+                result.begin = [placed, begin = result.begin](const Sample& sample) {
+                    begin(sample);
+                    placed->set_last_velocities(sample.v_before);
+                };
+                return result;
+            }};
+}
+
+/// With every number of sweeps that does not explode at once.
+void append_vbd(std::vector<DeviceMethod>& methods)
+{
+    for (const bool lags : {false, true})
+        for (const auto& [rho, suffix, least] :
+             {std::tuple{0.0, "", 10}, {0.98, " 0.98", 50}, {0.99, " 0.99", 100}})
+            for (const int sweeps : {10, 50, 100, 200, 500, 1000, 2000})
+                if (sweeps >= least)
+                    methods.push_back(vbd<float>(std::string(lags ? "vbd lagged" : "vbd") + suffix,
+                                                 {sweeps, rho, true, lags}));
+    for (const int sweeps : {50, 200})
+        methods.push_back(vbd<double>("vbd double", {sweeps}));
+}
+
+DeviceMethod ours(const std::string& name, int iterations, int parts = 1)
+{
+    return {name + " " + std::to_string(parts > 1 ? parts : iterations), parts,
+            [iterations](const CudaSpace& space, const solvers::Problem& problem) {
+                return contender(make_ours(space, problem, 0.0, iterations));
+            }};
+}
+
+/// A sampled step in small ones, each with little work.
+void append_small_steps(std::vector<DeviceMethod>& methods)
+{
+    for (const int parts : {4, 16, 32, 64}) {
+        for (const int iterations : {1, 2, 5})
+            methods.push_back(ours("quadrature of " + std::to_string(iterations), iterations, parts));
+        for (const int sweeps : {1, 5})
+            methods.push_back(vbd<float>("vbd of " + std::to_string(sweeps), {sweeps}, parts));
+    }
+}
+
+} // namespace
+
+std::unique_ptr<PointMasses> make_ours(const CudaSpace& space, const solvers::Problem& problem,
+                                       double tolerance, int max_iterations)
+{
+    auto solver = std::make_unique<DeviceQuadratureSolver>(
+        space, std::vector<DeviceQuadratureSolver::Part>{{problem.places(), {}}},
+        QuadratureTables::Settings{}, problem.tables);
+    return body_around(space, problem, std::move(solver), tolerance, max_iterations);
+}
+
+std::unique_ptr<PointMasses> make_xpbd(const CudaSpace& space, const solvers::Problem& problem, int substeps)
+{
+    return std::make_unique<DeviceXpbd<double>>(space, problem.start.positions, problem.cloth,
+                                                DeviceXpbd<double>::Settings{substeps});
+}
+
+std::vector<DeviceMethod> device_methods()
+{
+    std::vector<DeviceMethod> methods;
+    for (const int iterations : {1, 2, 3, 5, 8, 20, 50, 100, 200, 500})
+        methods.push_back(ours("quadrature", iterations));
+    for (const int iterations : {1, 3, 8, 20, 50, 200}) {
+        methods.push_back(around<DeviceChebyshevSolver>("chebyshev", iterations));
+        methods.push_back(around<DeviceAggregatedJacobi>("a-jacobi", iterations));
+    }
+    append_vbd(methods);
+    for (const int substeps : {5, 10, 20, 30, 40, 80, 160, 320, 640})
+        methods.push_back(xpbd<float>("xpbd", substeps));
+    for (const int substeps : {20, 320})
+        methods.push_back(xpbd<double>("xpbd double", substeps));
+    append_small_steps(methods);
+    return methods;
+}
+
+} // namespace toile::gpu

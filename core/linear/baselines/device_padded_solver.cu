@@ -1,0 +1,44 @@
+#include "core/linear/baselines/device_padded_solver.h"
+
+#include "core/backend/cuda/parallel.cuh"
+#include "core/linear/baselines/jacobi_kernels.h"
+#include "core/linear/baselines/padded_solver.h"
+
+namespace toile {
+
+DevicePaddedSolver::DevicePaddedSolver(const CudaSpace& space)
+    : space_(space), is_free_(space, "baselines/is_free"), b_(space, "baselines/b"), x_(space, "baselines/x"),
+      given_(space, "baselines/given"), found_(space, "baselines/found")
+{
+}
+
+void DevicePaddedSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
+{
+    TOILE_ASSERT(H.rows() == fixed.size());
+    std::vector<float> is_free(fixed.size());
+    for (int i = 0; i < fixed.size(); ++i)
+        is_free[i] = fixed[i] ? 0.0F : 1.0F;
+    is_free_.upload(is_free);
+    b_.resize(fixed.size());
+    x_.resize(fixed.size());
+    const SparseMatrix A = without_zeros(H);
+    prepare(A, invert_diagonal(A, fixed));
+}
+
+void DevicePaddedSolver::apply(View<const Vec3> b, View<Vec3> x) const
+{
+    parallel_for(space_, "baselines/pad", b.size(), PadFree{b, is_free_.view(), b_.view()});
+    solve_free(b_.view(), x_.view());
+    parallel_for(space_, "baselines/unpad", b.size(), UnpadFree{x_.view(), b, is_free_.view(), x});
+}
+
+void DevicePaddedSolver::solve(View<const Vec3> b, View<Vec3> x) const
+{
+    given_.upload(b);
+    found_.resize(x.size());
+    apply(given_.view(), found_.view());
+    found_.download(x);
+    space_.synchronise();
+}
+
+} // namespace toile

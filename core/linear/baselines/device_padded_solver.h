@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "core/backend/cuda/array.h"
+#include "core/backend/lanes.h"
+#include "core/linear/device_solver.h"
+
+namespace toile {
+
+/// PaddedSolver on a GPU: what its baselines share there. Fields are in single precision, as solvers that
+/// others correct have it; b is handed through at fixed vertices bit for bit.
+class DevicePaddedSolver : public DeviceSolver {
+public:
+    /// @param space  borrowed
+    explicit DevicePaddedSolver(const CudaSpace& space);
+
+    void update(const SparseMatrix& H, View<const unsigned char> fixed) final;
+    /// Copies there and back.
+    void solve(View<const Vec3> b, View<Vec3> x) const final;
+    void solve_there(View<const Vec3> b, View<Vec3> x) final { apply(b, x); }
+    const CudaSpace& space() const final { return space_; }
+    bool is_symmetric() const final { return false; }
+
+protected:
+    /// @param A                 [n x n] H, compressed, without explicit zeros
+    /// @param inverse_diagonal  [n] 0 where fixed
+    virtual void prepare(const SparseMatrix& A, const std::vector<double>& inverse_diagonal) = 0;
+
+    /// Enqueues x = A^-1 b or close to it; b is zero at fixed vertices.
+    virtual void solve_free(View<const PaddedVec3> b, View<PaddedVec3> x) const = 0;
+
+private:
+    void apply(View<const Vec3> b, View<Vec3> x) const;
+
+    const CudaSpace& space_;
+    DeviceArray<float> is_free_; ///< 0 where fixed
+    mutable DeviceArray<PaddedVec3> b_, x_;
+    mutable DeviceArray<Vec3> given_, found_; ///< of solve()
+};
+
+} // namespace toile
