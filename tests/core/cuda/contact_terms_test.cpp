@@ -16,6 +16,10 @@ namespace {
 constexpr double kDt = 1.0 / 120.0;     // [s]
 constexpr double kTermTolerance = 1e-9; // [m], [N/m] and [N] of what terms have besides their pairs
 
+/// Straying that is looked for [m], less than was looked around: whether a place farther away was seen is
+/// told by a Clearance, which searches of the CPU leave smaller than they might.
+constexpr double kTrust = 0.001;
+
 /// Two sheets around a dented ball that moves, with solids that overlap it, so that some of the cloth is
 /// caught between planes that oppose each other; parts of it are held.
 struct Dressed {
@@ -79,7 +83,7 @@ struct Dressed {
         for (int v = 0; v < int(x.size()); ++v) {
             const Vec3 jitter = 3e-4 * random.point();
             prediction[v] += way + jitter;
-            found[v] = prediction[v] + Vec3(v % 5 == 0 ? 0.009 : 0.0, -0.0005, 0.0);
+            found[v] = prediction[v] + Vec3(v % 5 == 0 ? slide : 0.0, -0.0005, 0.0);
         }
     }
 
@@ -98,6 +102,7 @@ struct Dressed {
     std::vector<ContactCloth> cloths;
     std::vector<double> diagonal, masses;
     std::vector<unsigned char> fixed;
+    double slide = 0.002;                   ///< [m] in a step, of some of the cloth
     std::vector<Vec3> x, prediction, found; ///< at t0, guessed, and where the step ends [m]
 };
 
@@ -155,14 +160,17 @@ protected:
     TermDifferences compare(const std::vector<ContactTerm>& here, const std::vector<ContactTerm>& there,
                             const Dressed& made, const std::string& what)
     {
-        std::vector<ContactPair> pairs_here, pairs_there;
-        for (const ContactTerm& term : here)
-            pairs_here.push_back(term.pair);
-        for (const ContactTerm& term : there)
-            pairs_there.push_back(term.pair);
-        expect_same(pairs_here, pairs_there, made.x, what);
+        EXPECT_EQ(here.size(), there.size()) << what;
+        const size_t count = std::min(here.size(), there.size());
+        ContactDifferences of_pairs;
+        for (size_t i = 0; i < count; ++i)
+            of_pairs.add(here[i].pair, there[i].pair, made.x);
+        EXPECT_EQ(of_pairs.keys, 0) << what;
+        EXPECT_EQ(of_pairs.not_finite, 0) << what;
+        EXPECT_LT(of_pairs.numbers, kContactTolerance) << what;
+        EXPECT_LT(of_pairs.normal, kTermTolerance) << what;
         TermDifferences differences;
-        for (size_t i = 0; i < std::min(here.size(), there.size()); ++i)
+        for (size_t i = 0; i < count; ++i)
             differences.add(here[i], there[i]);
         EXPECT_LT(differences.numbers, kTermTolerance) << what;
         return differences;
@@ -180,12 +188,10 @@ protected:
         EXPECT_NEAR(limits.change, expected.change, 1e-9 * expected.total);
         EXPECT_TRUE(here.leaning() == there.leaning());
         EXPECT_NEAR(there.deepest(), here.deepest(), kTermTolerance);
-        for (const bool found : {true, false}) {
-            const double trust = found ? 0.007 : 1.0;
-            EXPECT_EQ(there.has_left(trust), here.has_left(trust));
-        }
-        EXPECT_TRUE(here.has_left(0.007));
-        EXPECT_TRUE(there.has_left(0.007));
+        EXPECT_FALSE(here.has_left(1.0));
+        EXPECT_FALSE(there.has_left(1.0));
+        EXPECT_TRUE(here.has_left(kTrust));
+        EXPECT_TRUE(there.has_left(kTrust));
         here.remember(RememberedSlip::kByStart);
         there.remember(RememberedSlip::kByStart);
         EXPECT_EQ(there.remembered(), here.remembered());
@@ -264,6 +270,7 @@ TEST_F(DeviceContactTermsTest, TellsWhichTermsAreNear)
 TEST_F(DeviceContactTermsTest, MoveClothAsOnTheCpu)
 {
     Dressed made;
+    made.slide = 0.009; // farther than is trusted
     const Contact::Settings settings;
     Contact here(made.mesh.triangles, made.x, made.cloths, made.partners, settings);
     Contact there(made.mesh.triangles, made.x, made.cloths, made.partners, settings, &space());
@@ -335,7 +342,7 @@ TEST_F(DeviceContactTermsTest, HaveTheSameBitsInTwoRuns)
             terms.make(nullptr);
             terms.see(board.found);
             terms.update_normal_forces();
-            terms.has_left(0.007);
+            terms.has_left(kTrust);
             terms.remember(RememberedSlip::kSoFar);
             terms.find_again();
             terms.make(nullptr);
