@@ -23,11 +23,14 @@ public:
             count_[k] = 1 + int((box.upper[k] - box.lower[k]) / size_);
     }
 
-    int cell_count() const { return count_[0] * count_[1] * count_[2]; }
-    int number_of(const Cell& cell) const { return (cell[2] * count_[1] + cell[1]) * count_[0] + cell[0]; }
+    TOILE_HD int cell_count() const { return count_[0] * count_[1] * count_[2]; }
+    TOILE_HD int number_of(const Cell& cell) const
+    {
+        return (cell[2] * count_[1] + cell[1]) * count_[0] + cell[0];
+    }
 
     /// May lie outside the grid, by at most two cells.
-    Cell cell_of(const Vec3& x) const
+    TOILE_HD Cell cell_of(const Vec3& x) const
     {
         Cell cell;
         for (int k = 0; k < 3; ++k)
@@ -36,7 +39,7 @@ public:
     }
 
     /// The number of the cell that is nearest to x, or -1 where x is farther than `beside` cells outside.
-    int nearest_to(const Vec3& x, int beside) const
+    TOILE_HD int nearest_to(const Vec3& x, int beside) const
     {
         Cell cell = cell_of(x);
         for (int k = 0; k < 3; ++k) {

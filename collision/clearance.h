@@ -21,6 +21,8 @@ public:
     /// [m] No surface is nearer, and the vertex is not inside; 0 where that is not known.
     double of(int vertex) const { return bound_[vertex]; }
 
+    View<const double> bounds() const { return bound_; } ///< [vertices] of() of each [m]
+
     /// True where no surface is within `radius` [m] of any point of an edge: its ends are clear by more than
     /// the radius and half of it.
     bool is_edge_clear(int a, int b, double radius) const

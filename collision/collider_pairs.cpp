@@ -1,22 +1,12 @@
 #include "collision/collider_pairs.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/backend/parallel.h"
 
 namespace toile {
 
 namespace {
-
-/// Largest distance [m] looked at. Cloth that moves further relative to a collider in one step may pass it.
-constexpr double kMaxReach = 0.06;
-
-/// How far [m] the solver may take cloth from where it was expected before more pairs are looked for.
-constexpr double kMargin = 0.003;
-
-/// The reach of vertices whose pairs are kept.
-constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 bool is_vertex_pair(const ContactPair& pair)
 {
@@ -25,15 +15,27 @@ bool is_vertex_pair(const ContactPair& pair)
 
 } // namespace
 
+CarryingPartner carrying(const ContactPartner& partner)
+{
+    CarryingPartner carrying;
+    if (partner.mesh) {
+        carrying.is_mesh = true;
+        carrying.is_moving = partner.mesh->is_moving();
+        carrying.mesh = partner.mesh->pose();
+        carrying.motion = partner.mesh->last_motion().view();
+    } else {
+        carrying.pose_t1 = partner.shape->pose();
+        carrying.shape_from_t0 = partner.shape->pose_t0().inverse();
+    }
+    return carrying;
+}
+
 ColliderPairs::ColliderPairs(View<const Triangle> triangles, View<const Vec3> positions,
-                             std::vector<ContactPartner> partners, const Settings& settings,
-                             const CudaSpace* space)
+                             std::vector<ContactPartner> partners, const Settings& settings)
     : partners_(std::move(partners)), settings_(settings), detector_(triangles, positions),
       sides_(positions.size()), found_at_(positions.begin(), positions.end()), reach_(positions.size(), 0.0),
       wanted_(positions.size(), 0.0), nearest_(positions.size())
 {
-    if (space != nullptr && !empty())
-        there_ = std::make_unique<HostedDetector>(*space, triangles, positions, partners_);
 }
 
 void ColliderPairs::find(const StepStart& start)
@@ -42,36 +44,20 @@ void ColliderPairs::find(const StepStart& start)
         return;
     farthest_motion_ = kMaxCarrySpeed * start.dt;
     carry(start.x);
-    for (int v = 0; v < start.x.size(); ++v) {
-        const double motion = (start.prediction[v] - found_at_[v]).norm();
-        wanted_[v] = reach_[v] = std::min(settings_.gap + kMargin + motion, kMaxReach);
-    }
+    const ReachVertex reach{start.prediction, found_at_, settings_.gap};
+    for (int v = 0; v < start.x.size(); ++v)
+        wanted_[v] = reach_[v] = reach(v);
     pairs_.clear();
     look(found_at_);
 }
 
-/// Moves every vertex along with what is around it, so that it is still on the right side of a surface at t1.
 void ColliderPairs::carry(View<const Vec3> x)
 {
-    parallel_for(kCpu, "contact/carry", x.size(), [&](int v) {
-        const Vec3 motion = carrying_motion(x[v], nearest_[v]);
-        found_at_[v] = motion.norm() <= farthest_motion_ ? Vec3(x[v] + motion) : x[v];
-    });
-}
-
-/// That of the surface that was nearest [m]; where none was near, the middle of those of meshes around.
-Vec3 ColliderPairs::carrying_motion(const Vec3& x, const Nearest& last) const
-{
-    if (last.collider >= 0) {
-        const ContactPartner& partner = partners_[last.collider];
-        return partner.mesh ? partner.mesh->motion(last.feature, Vec3::Constant(1.0 / 3.0))
-                            : partner.shape->motion_from(last.point);
-    }
+    std::vector<CarryingPartner> partners;
     for (const ContactPartner& partner : partners_)
-        if (partner.mesh && partner.mesh->is_moving())
-            if (const Bounds& around = partner.mesh->last_motion().around(x); !around.empty())
-                return around.center();
-    return Vec3::Zero();
+        partners.push_back(carrying(partner));
+    parallel_for(kCpu, "contact/carry", x.size(),
+                 CarryVertex{partners, nearest_, x, farthest_motion_, found_at_});
 }
 
 void ColliderPairs::find_again(View<const Vec3> x, View<const unsigned char> strays)
@@ -83,7 +69,7 @@ void ColliderPairs::find_again(View<const Vec3> x, View<const unsigned char> str
         if (!strays[v])
             continue;
         found_at_[v] = x[v];
-        wanted_[v] = reach_[v] = settings_.gap + kMargin;
+        wanted_[v] = reach_[v] = settings_.gap + kReachMargin;
     }
     std::erase_if(pairs_, [&](const ContactPair& pair) {
         if (partners_[pair.collider].shape)
@@ -106,12 +92,6 @@ void ColliderPairs::look(View<const Vec3> x)
     settings.face_vertex = settings_.face_vertex;
     settings.edge_edge = settings_.edge_edge;
     detector_.move(x, wanted_);
-    if (there_) {
-        there_->detect(
-            x, wanted_, settings,
-            [this](int c, View<const double> in_front) { learn_clearance(c, in_front); }, pairs_);
-        return take_nearest();
-    }
     for (int c = 0; c < int(partners_.size()); ++c) {
         if (partners_[c].mesh)
             detector_.detect(*partners_[c].mesh, c, settings, pairs_, &sides_);
@@ -121,26 +101,12 @@ void ColliderPairs::look(View<const Vec3> x)
     take_nearest();
 }
 
-/// Of a mesh searched on a GPU, at the positions of the search.
-void ColliderPairs::learn_clearance(int c, View<const double> in_front)
-{
-    Clearance& clearance = detector_.clearance_of(*partners_[c].mesh, c);
-    for (int v = 0; v < in_front.size(); ++v)
-        if (in_front[v] >= 0.0)
-            clearance.learn(v, in_front[v], -1);
-}
-
 void ColliderPairs::take_nearest()
 {
-    std::fill(nearest_.begin(), nearest_.end(), Nearest{});
-    for (const ContactPair& pair : pairs_) {
-        if (!is_vertex_pair(pair))
-            continue;
-        const double gap = pair.gap(found_at_);
-        Nearest& nearest = nearest_[pair.vertex[0]];
-        if (nearest.collider < 0 || gap < nearest.gap)
-            nearest = {pair.collider, pair.feature, gap, pair.point};
-    }
+    std::fill(nearest_.begin(), nearest_.end(), NearestSurface{});
+    for (const ContactPair& pair : pairs_)
+        if (is_vertex_pair(pair))
+            nearest_[pair.vertex[0]].consider(pair, found_at_);
 }
 
 bool ColliderPairs::mark_unseen(View<const Vec3> x, View<unsigned char> strays)
@@ -152,10 +118,15 @@ bool ColliderPairs::mark_unseen(View<const Vec3> x, View<unsigned char> strays)
     for (int c = 0; c < int(partners_.size()); ++c) {
         if (!partners_[c].mesh)
             continue;
-        const Clearance& clearance = detector_.clearance_of(*partners_[c].mesh, c);
+        const MarkUnseen mark{detector_.clearance_of(*partners_[c].mesh, c).bounds(),
+                              x,
+                              found_at_,
+                              reach_,
+                              settings_.gap,
+                              strays};
         for (int v = 0; v < x.size(); ++v)
-            if (clearance.of(v) < settings_.gap && (x[v] - found_at_[v]).norm() > reach_[v] - settings_.gap) {
-                strays[v] = 1;
+            if (mark.is_unseen(v)) {
+                mark(v);
                 any = true;
             }
     }
@@ -166,8 +137,6 @@ void ColliderPairs::learn_sides(View<const Vec3> x)
 {
     if (empty())
         return;
-    if (there_)
-        return there_->learn_sides(x);
     detector_.move(x);
     for (int c = 0; c < int(partners_.size()); ++c)
         if (const MeshCollider* mesh = partners_[c].mesh)
@@ -176,10 +145,8 @@ void ColliderPairs::learn_sides(View<const Vec3> x)
 
 void ColliderPairs::forget()
 {
-    std::fill(nearest_.begin(), nearest_.end(), Nearest{});
+    std::fill(nearest_.begin(), nearest_.end(), NearestSurface{});
     sides_.forget();
-    if (there_)
-        there_->forget();
 }
 
 } // namespace toile

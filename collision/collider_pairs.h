@@ -1,9 +1,9 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "collision/hosted_detector.h"
+#include "collision/collider_pairs_kernels.h"
+#include "collision/detect.h"
 #include "core/pd/active_set_energy.h"
 
 namespace toile {
@@ -25,10 +25,8 @@ public:
     /// @param triangles  [triangles] of all cloths
     /// @param positions  [vertices] start positions [m]
     /// @param partners   their numbers are those of the pairs
-    /// @param space      where pairs are looked for, borrowed; null: on the CPU
     ColliderPairs(View<const Triangle> triangles, View<const Vec3> positions,
-                  std::vector<ContactPartner> partners, const Settings& settings,
-                  const CudaSpace* space = nullptr);
+                  std::vector<ContactPartner> partners, const Settings& settings);
     ColliderPairs(const ColliderPairs&) = delete;
     ColliderPairs& operator=(const ColliderPairs&) = delete;
 
@@ -57,32 +55,24 @@ public:
     View<const Vec3> found_at() const { return found_at_; }
 
 private:
-    /// The surface point nearest to a cloth vertex.
-    struct Nearest {
-        int collider = -1; ///< -1: none near
-        int feature = -1;
-        double gap = 0.0;          ///< [m]
-        Vec3 point = Vec3::Zero(); ///< [m]
-    };
-
     void carry(View<const Vec3> x);
-    Vec3 carrying_motion(const Vec3& x, const Nearest& last) const;
     void look(View<const Vec3> x);
-    void learn_clearance(int c, View<const double> in_front);
     void take_nearest();
 
     std::vector<ContactPartner> partners_;
     Settings settings_;
     ContactDetector detector_;
-    SideMemory sides_;                      ///< of moving meshes
-    std::unique_ptr<HostedDetector> there_; ///< null: on the CPU
-    double farthest_motion_ = 0.0;          ///< [m] in the step, of a surface that takes cloth along
+    SideMemory sides_;             ///< of moving meshes
+    double farthest_motion_ = 0.0; ///< [m] in the step, of a surface that takes cloth along
 
     std::vector<ContactPair> pairs_;
-    std::vector<Vec3> found_at_;   ///< [vertices] [m]
-    std::vector<double> reach_;    ///< [vertices] how near to found_at_ was looked [m]
-    std::vector<double> wanted_;   ///< [vertices] the same where it is to be looked, elsewhere kNowhere [m]
-    std::vector<Nearest> nearest_; ///< [vertices] last step's
+    std::vector<Vec3> found_at_; ///< [vertices] [m]
+    std::vector<double> reach_;  ///< [vertices] how near to found_at_ was looked [m]
+    std::vector<double> wanted_; ///< [vertices] the same where it is to be looked, elsewhere kNowhere [m]
+    std::vector<NearestSurface> nearest_; ///< [vertices] last step's
 };
+
+/// What takes cloth along, of a partner of the host.
+CarryingPartner carrying(const ContactPartner& partner);
 
 } // namespace toile

@@ -81,9 +81,6 @@ public:
     /// Displacement from t0 to t1 [m] of the material point that is at `point` at t1.
     Vec3 motion(const Vec3& point) const { return point - pose_t0_ * (pose_t1_.inverse() * point); }
 
-    /// The same of the material point that is at `point` at t0.
-    Vec3 motion_from(const Vec3& point) const { return pose_t1_ * (pose_t0_.inverse() * point) - point; }
-
     const Shape& shape() const { return shape_; }
     const Eigen::Isometry3d& pose_t0() const { return pose_t0_; } ///< world_from_shape at t0
     const Eigen::Isometry3d& pose() const { return pose_t1_; }    ///< world_from_shape at t1

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
-#include "core/backend/parallel.h"
+#include "collision/device_contact_terms.h"
+#include "collision/host_contact_terms.h"
+#include "core/backend/stages.h"
 
 namespace toile {
 
@@ -39,39 +40,28 @@ std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<cons
     return shortest;
 }
 
-double largest_gap(const std::vector<ContactCloth>& cloths)
+std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Triangle> triangles,
+                                         View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
+                                         const std::vector<ContactPartner>& partners,
+                                         const Contact::Settings& asked, const CudaSpace* space)
 {
-    double largest = 0.0;
-    for (const ContactCloth& cloth : cloths)
-        largest = std::max(largest, cloth.gap);
-    return largest;
+    const ContactTerms::Settings settings{asked.stiffness, asked.recovery_speed, asked.face_vertex,
+                                          asked.edge_edge};
+    if (space != nullptr)
+        return std::make_unique<DeviceContactTerms>(*space, triangles, positions, cloths, partners, settings);
+    return std::make_unique<HostContactTerms>(energy, triangles, positions, cloths, partners, settings);
 }
 
 } // namespace
 
-std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths)
+Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
+                 const std::vector<ContactCloth>& cloths, const std::vector<ContactPartner>& partners,
+                 const Settings& settings, const CudaSpace* space)
+    : rigid_(rigid_bodies_of(cloths)), altitude_(shortest_altitudes(triangles, positions)),
+      terms_(make_terms(energy_, triangles, positions, cloths, partners, settings, space))
 {
-    std::vector<int> bodies;
-    int count = 0;
-    for (const ContactCloth& cloth : cloths)
-        bodies.insert(bodies.end(), cloth.vertex_count, cloth.is_rigid ? count++ : -1);
-    if (count == 0)
-        bodies.clear();
-    return bodies;
-}
-
-Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
-                 std::vector<ContactPartner> partners, const Settings& settings, const CudaSpace* space)
-    : cloths_(std::move(cloths)), rigid_(rigid_bodies_of(cloths_)), settings_(settings),
-      colliders_(triangles, positions, std::move(partners),
-                 {largest_gap(cloths_), settings.face_vertex, settings.edge_edge}, space),
-      altitude_(shortest_altitudes(triangles, positions))
-{
-    for (int c = 0; c < int(cloths_.size()); ++c)
-        cloth_of_.insert(cloth_of_.end(), cloths_[c].vertex_count, c);
-    TOILE_ASSERT(int(cloth_of_.size()) == positions.size());
-    if (settings_.cloth_with_cloth)
-        between_.emplace(triangles, positions, cloths_, altitude_, space);
+    if (settings.cloth_with_cloth)
+        between_.emplace(triangles, positions, cloths, altitude_, space);
 }
 
 void Contact::begin_step(const StepStart& start)
@@ -80,14 +70,13 @@ void Contact::begin_step(const StepStart& start)
     has_cleared_ = false;
     if (between_)
         between_->begin_step(start.x, start.prediction, start.fixed);
-    colliders_.find(start);
-    make_terms();
+    terms_->begin_step(start);
+    terms_->make(between());
 }
 
 void Contact::forget()
 {
-    memory_.forget();
-    colliders_.forget();
+    terms_->forget();
     if (between_)
         between_->forget();
 }
@@ -104,133 +93,70 @@ void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
     energy_.add_hessian_product(p, out);
 }
 
-DeviceActiveSet* Contact::on_device(const CudaSpace& space)
+bool Contact::revise(StepField x)
 {
-    if (!there_)
-        there_ = std::make_unique<DeviceContactEnergy>(space);
-    there_->take(energy_, start_.x.size());
-    return there_.get();
-}
-
-bool Contact::revise(View<Vec3> x)
-{
-    if (energy_.terms().empty() && !between_)
+    if (terms_->empty() && !between_)
         return false;
-    const bool friction_changed = update_normal_forces(x);
-    const bool has_new_pairs = between_ && between_->advance(x, leaning(x));
-    if (has_left(x, kTrust) || has_new_pairs) {
-        remember_start();
-        find_again(x);
+    terms_->see(x);
+    const FrictionLimits friction = terms_->update_normal_forces();
+    bool has_new_pairs = false;
+    if (between_) {
+        const std::vector<unsigned char> leaning = terms_->leaning();
+        has_new_pairs = between_->advance(x.change_on_host(), leaning);
+        terms_->see(x);
+    }
+    if (terms_->has_left(kTrust) || has_new_pairs) {
+        terms_->remember(RememberedSlip::kByStart);
+        find_again();
         return true;
     }
-    return friction_changed;
+    return friction.change > kFrictionChange * friction.total;
 }
 
-/// For pairs found again within the step, which begin at t0 too: what had stuck by then.
-void Contact::remember_start()
+/// The pairs of what has left its own, and all terms.
+void Contact::find_again()
 {
-    remember([&](int i) {
-        const ContactTerm& term = energy_.terms()[i];
-        return Vec3(at_start(term.pair) - term.anchor);
-    });
+    terms_->find_again();
+    terms_->make(between());
 }
 
-/// True when cloth has left the places that its pairs with colliders are good for: strays_ are marked.
-bool Contact::has_left(View<const Vec3> x, double trust)
+void Contact::end_step(StepField x)
 {
-    strays_.assign(x.size(), 0);
-    const bool slid = mark_slid(x, trust);
-    return colliders_.mark_unseen(x, strays_) || slid;
-}
-
-/// Those of a pair that presses of which one has gone farther than `trust` [m] from where it was found.
-bool Contact::mark_slid(View<const Vec3> x, double trust)
-{
-    const View<const Vec3> found_at = colliders_.found_at();
-    bool any = false;
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        const ContactPair& pair = energy_.terms()[i].pair;
-        if (pair.is_between_cloths() || energy_.gap(i, x) > 0.5 * gap_of(pair))
-            continue;
-        bool has_slid = false;
-        for (int k = 0; k < pair.count(); ++k)
-            has_slid = has_slid || (x[pair.vertex[k]] - found_at[pair.vertex[k]]).norm() > trust;
-        for (int k = 0; k < pair.count() && has_slid; ++k)
-            strays_[pair.vertex[k]] = 1;
-        any = any || has_slid;
-    }
-    return any;
-}
-
-/// The pairs of strays_.
-void Contact::find_again(View<const Vec3> x)
-{
-    colliders_.find_again(x, strays_);
-    make_terms();
-}
-
-/// Refreshes the lagged normal forces; true when friction limits changed noticeably.
-bool Contact::update_normal_forces(View<const Vec3> x)
-{
-    double total = 0.0, change = 0.0;
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        const ContactTerm& term = energy_.terms()[i];
-        const double force = energy_.pressing_force(i, x);
-        total += term.friction * force;
-        change += term.friction * std::abs(force - term.normal_force);
-        energy_.set_normal_force(i, force);
-    }
-    return change > kFrictionChange * total;
-}
-
-/// Keeps forces and sticking of the pairs that press, for their successors. The forces are the minimiser's:
-/// clearing and the strain limit move cloth afterwards, out of pairs to the last bit.
-/// @param slip  slip(term): what has slipped since the anchor [m]
-template <typename Slip>
-void Contact::remember(const Slip& slip)
-{
-    memory_.forget();
-    for (int i = 0; i < int(energy_.terms().size()); ++i)
-        memory_.keep(energy_.terms()[i], slip(i));
-}
-
-void Contact::end_step(View<const Vec3> x)
-{
+    terms_->see(x);
     if (!has_cleared_)
-        remember([&](int i) { return energy_.slip(i, x); });
-    active_count_ = memory_.size();
-    min_gap_ = 0.0;
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        const double gap = energy_.terms()[i].pair.gap(x);
-        min_gap_ = i == 0 ? gap : std::min(min_gap_, gap);
-    }
-    colliders_.learn_sides(x);
+        terms_->remember(RememberedSlip::kSoFar);
+    active_count_ = terms_->remembered();
+    min_gap_ = terms_->end_step();
     if (between_)
-        between_->end_step(x);
+        between_->end_step(x.host());
 }
 
 /// Looks where the cloth has come to and moves it out of what is still inside there. This correction does not
 /// become velocity, or it would throw the cloth. Again in the same step, it forgets pairs that it has parted:
 /// friction there would drag cloth that is caught.
-void Contact::clear(View<Vec3> x, View<Vec3> v)
+void Contact::clear(StepField x, StepField v)
 {
-    if (!has_left(x, kEndTrust) && deepest(x) <= kLeftOver)
+    terms_->see(x);
+    if (!terms_->has_left(kEndTrust) && terms_->deepest() <= kLeftOver)
         return;
-    remember([&](int i) { return energy_.slip(i, x); });
+    terms_->remember(RememberedSlip::kSoFar);
     has_cleared_ = true;
-    find_again(x);
+    find_again();
     const StageScope stage("collision/clear");
     stop_at_surfaces(x, v);
     push_out(x);
 }
 
 /// What would have crossed stops: it loses the velocity that it was to have got there.
-bool Contact::keep_apart(View<Vec3> x, View<Vec3> v)
+bool Contact::keep_apart(StepField positions, StepField velocities)
 {
     if (!between_)
         return false;
+    terms_->see(positions);
+    const std::vector<unsigned char> leaning = terms_->leaning();
+    const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
     const std::vector<Vec3> wanted(x.begin(), x.end());
-    const bool is_far = between_->hold_back(x, leaning(x));
+    const bool is_far = between_->hold_back(x, leaning);
     for (int i = 0; i < x.size(); ++i)
         v[i] += (x[i] - wanted[i]) / start_.dt;
     return is_far;
@@ -238,13 +164,14 @@ bool Contact::keep_apart(View<Vec3> x, View<Vec3> v)
 
 /// Coulomb's law with the distance pushed out for the normal impulse [Macklin et al. 2014, eq. 24]. Nothing
 /// of a stick stays for the next step: friction has undone it.
-void Contact::resolve(View<Vec3> x, View<Vec3> v)
+void Contact::resolve(StepField x, StepField v)
 {
-    if (has_left(x, kEndTrust))
-        find_again(x);
+    terms_->see(x);
+    if (terms_->has_left(kEndTrust))
+        find_again();
     const StageScope stage("collision/resolve");
-    update_normal_forces(x);
-    remember([](int) { return Vec3(Vec3::Zero()); });
+    terms_->update_normal_forces();
+    terms_->remember(RememberedSlip::kNothing);
     has_cleared_ = true;
     rub(x, v);
     push_out(x);

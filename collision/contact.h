@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "collision/cloth/cloth_contact.h"
-#include "collision/collider_pairs.h"
 #include "collision/contact_cloth.h"
-#include "collision/contact_memory.h"
-#include "collision/device_contact_energy.h"
+#include "collision/contact_energy.h"
+#include "collision/contact_terms.h"
 #include "core/pd/active_set_energy.h"
 
 namespace toile {
@@ -37,23 +36,24 @@ public:
     /// @param triangles  [triangles] of all cloths
     /// @param positions  [vertices] start positions [m]
     /// @param cloths     whose vertices follow each other
-    /// @param space      where pairs are looked for, borrowed; null: on the CPU
-    Contact(View<const Triangle> triangles, View<const Vec3> positions, std::vector<ContactCloth> cloths,
-            std::vector<ContactPartner> partners, const Settings& settings, const CudaSpace* space = nullptr);
+    /// @param space      where pairs are looked for and terms made, borrowed; null: on the CPU
+    Contact(View<const Triangle> triangles, View<const Vec3> positions,
+            const std::vector<ContactCloth>& cloths, const std::vector<ContactPartner>& partners,
+            const Settings& settings, const CudaSpace* space = nullptr);
 
     void begin_step(const StepStart& start) override;
-    bool make_feasible(View<Vec3> x) const override;
+    bool make_feasible(StepField x) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
-    DeviceActiveSet* on_device(const CudaSpace& space) override;
-    bool revise(View<Vec3> x) override;
-    void clear(View<Vec3> x, View<Vec3> v) override;
-    void resolve(View<Vec3> x, View<Vec3> v) override;
-    bool keep_apart(View<Vec3> x, View<Vec3> v) override;
-    void end_step(View<const Vec3> x) override;
+    DeviceActiveSet* on_device(const CudaSpace& space) override { return terms_->on_device(space); }
+    bool revise(StepField x) override;
+    void clear(StepField x, StepField v) override;
+    void resolve(StepField x, StepField v) override;
+    bool keep_apart(StepField x, StepField v) override;
+    void end_step(StepField x) override;
 
     bool keeps_cloth_apart() const { return between_.has_value(); }
 
@@ -69,52 +69,33 @@ public:
     /// Drops what earlier steps left: cloth that was put elsewhere touches nothing it knows.
     void forget();
 
-    const ContactEnergy& energy() const { return energy_; }
-    int active_count() const { return active_count_; } ///< pairs that push, after end_step()
-    double min_gap() const { return min_gap_; }        ///< [m] smallest distance of a pair, after end_step()
+    const ContactEnergy& energy() const { return energy_; } ///< without terms where they are on a GPU
+    int active_count() const { return active_count_; }      ///< pairs that push, after end_step()
+    double min_gap() const { return min_gap_; } ///< [m] smallest distance of a pair, after end_step()
 
 private:
-    std::vector<unsigned char> leaning(View<const Vec3> x) const;
-    void find_again(View<const Vec3> x);
-    void make_terms();
-    std::vector<double> room_of(const std::vector<ContactPair>& pairs) const;
-    ContactTerm make_term(const ContactPair& pair, double room) const;
-    double gap_of(const ContactPair& pair) const;
-    double friction_of(const ContactPair& pair) const;
-    double stiffness_of(const ContactPair& pair) const;
-    Vec3 at_start(const ContactPair& pair) const;
-    bool is_carried(const Vec3& motion) const;
-    template <typename Slip>
-    void remember(const Slip& slip);
-    bool update_normal_forces(View<const Vec3> x);
-    bool mark_slid(View<const Vec3> x, double trust);
-    bool has_left(View<const Vec3> x, double trust);
+    const ClothContact* between() const { return between_ ? &*between_ : nullptr; }
+    void find_again();
+    template <typename Sweeps>
+    void sweep_near(StepField x, const Sweeps& sweeps) const;
     double mobility_of(const ContactPair& pair) const;
     void accelerate(const ContactPair& pair, double force, View<Vec3> x) const;
-    double deepest(View<const Vec3> x) const;
     bool is_held(int vertex) const;
     double leverage_of(const ContactPair& pair) const;
     bool push(const ContactPair& pair, const Vec3& move, View<Vec3> field) const;
     double clearance_of(const ContactPair& pair) const;
     Vec3 surface_velocity(const ContactPair& pair) const;
-    void stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const;
-    void rub(View<Vec3> x, View<Vec3> v) const;
-    void push_out(View<Vec3> x) const;
-    void remember_start();
+    void stop_at_surfaces(StepField x, StepField v) const;
+    void rub(StepField x, StepField v) const;
+    void push_out(StepField x) const;
 
-    std::vector<ContactCloth> cloths_;
-    std::vector<int> cloth_of_; ///< [vertices]
-    std::vector<int> rigid_;    ///< [vertices] see rigid_bodies_of
-    Settings settings_;
-    ColliderPairs colliders_;
-    ContactEnergy energy_;
+    std::vector<int> rigid_; ///< [vertices] see rigid_bodies_of
     StepStart start_;
-    std::vector<unsigned char> strays_; ///< [vertices] 1 where pairs with colliders are to be found again
-    std::vector<double> altitude_;      ///< [vertices] the shortest of the triangles around, at the start [m]
+    std::vector<double> altitude_; ///< [vertices] the shortest of the triangles around, at the start [m]
     std::optional<ClothContact> between_; ///< cloth and cloth; none where that is switched off
-    ContactMemory memory_;
-    bool has_cleared_ = false; ///< in this step: memory_ is the minimiser's, the pairs are new
-    std::unique_ptr<DeviceContactEnergy> there_; ///< null before a GPU asks
+    ContactEnergy energy_;                ///< without terms where they are on a GPU
+    std::unique_ptr<ContactTerms> terms_;
+    bool has_cleared_ = false; ///< in this step: friction remembers the minimiser's pairs, these are new
     int active_count_ = 0;
     double min_gap_ = 0.0;
 };

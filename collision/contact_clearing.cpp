@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/collider_pairs.h"
 #include "collision/contact.h"
+#include "collision/near_moves.h"
 
 /// How contact moves cloth out of surfaces, pair by pair, where no minimisation does it.
 namespace toile {
@@ -22,9 +24,6 @@ constexpr double kThinnest = 5e-5;
 /// Where fixed vertices carry nearly all of the pair, the free one would have to be thrown far; the energy
 /// deals with it.
 constexpr double kMinLeverage = 0.1;
-
-/// Distance on top of the gap, of the gap [-], up to which cloth counts as lying on a collider.
-constexpr double kLeaning = 0.25;
 
 } // namespace
 
@@ -58,32 +57,23 @@ bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) 
     return true;
 }
 
-double Contact::deepest(View<const Vec3> x) const
-{
-    double depth = 0.0;
-    for (int i = 0; i < int(energy_.terms().size()); ++i)
-        if (!energy_.terms()[i].pair.is_between_cloths())
-            depth = std::max(depth, -energy_.gap(i, x) - energy_.terms()[i].give);
-    return depth;
-}
-
 /// Takes back what slips, as far as friction holds it, and pushes out at once: pairs that share a vertex
 /// share its depth. Velocities obey the same law by themselves: a method of many substeps ends faster than it
 /// has moved.
-void Contact::rub(View<Vec3> x, View<Vec3> v) const
+void Contact::rub(StepField positions, StepField velocities) const
 {
+    const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
     const auto at_most = [](const Vec3& move, double limit) {
         const double length = move.norm();
         return length > limit ? Vec3(limit / length * move) : move;
     };
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        const double depth = -energy_.gap(i, x);
+    for (const ContactTerm& term : terms_->near(std::numeric_limits<double>::infinity()).terms) {
+        const double depth = -term.gap(x);
         if (depth <= 0.0)
             continue;
-        const ContactTerm& term = energy_.terms()[i];
         const ContactPair& pair = term.pair;
         const double clearance = clearance_of(pair);
-        push(pair, at_most(-energy_.slip(i, x), term.friction * depth), x);
+        push(pair, at_most(-term.slip(x), term.friction * depth), x);
         push(pair, std::clamp(depth - term.give, 0.0, clearance) * pair.normal, x);
 
         const Vec3 lag = surface_velocity(pair) - pair.cloth_point(v);
@@ -94,29 +84,42 @@ void Contact::rub(View<Vec3> x, View<Vec3> v) const
     }
 }
 
-void Contact::push_out(View<Vec3> x) const
+void Contact::push_out(StepField positions) const
 {
-    for (int sweep = 0; sweep < kClearSweeps; ++sweep)
-        for (int i = 0; i < int(energy_.terms().size()); ++i) {
-            const ContactPair& pair = energy_.terms()[i].pair;
-            if (const double depth = -energy_.gap(i, x) - energy_.terms()[i].give; depth > 0.0)
-                push(pair, std::min(depth, clearance_of(pair)) * pair.normal, x);
-        }
+    sweep_near(positions, [&](const NearTerms& near, const NearMoves& moves, View<Vec3> x) {
+        for (int sweep = 0; sweep < kClearSweeps; ++sweep)
+            for (int i = 0; i < near.terms.size(); ++i) {
+                const ContactTerm& term = near.terms[i];
+                const double depth = -term.gap(x) - term.give;
+                if (depth <= 0.0)
+                    continue;
+                push(term.pair, std::min(depth, clearance_of(term.pair)) * term.pair.normal, x);
+                if (moves.are_far(i, x))
+                    return false;
+            }
+        return true;
+    });
 }
 
 /// Velocity of the surface at the pair [m/s]; 0 where it jumped.
 Vec3 Contact::surface_velocity(const ContactPair& pair) const
 {
-    return is_carried(pair.motion) ? Vec3(pair.motion / start_.dt) : Vec3(Vec3::Zero());
+    const bool is_carried = pair.motion.norm() <= ColliderPairs::kMaxCarrySpeed * start_.dt;
+    return is_carried ? Vec3(pair.motion / start_.dt) : Vec3(Vec3::Zero());
 }
 
 /// Cloth inside moves at least as fast out of a surface as that does.
-void Contact::stop_at_surfaces(View<const Vec3> x, View<Vec3> v) const
+void Contact::stop_at_surfaces(StepField positions, StepField velocities) const
 {
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        if (energy_.gap(i, x) >= 0.0)
+    const NearTerms near = terms_->near(0.0);
+    if (near.terms.empty())
+        return;
+    const View<const Vec3> x = positions.host();
+    const View<Vec3> v = velocities.change_on_host();
+    for (const ContactTerm& term : near.terms) {
+        if (term.gap(x) >= 0.0)
             continue;
-        const ContactPair& pair = energy_.terms()[i].pair;
+        const ContactPair& pair = term.pair;
         if (clearance_of(pair) < kThinnest)
             continue;
         if (const double approach = pair.normal.dot(surface_velocity(pair) - pair.cloth_point(v));
@@ -135,19 +138,6 @@ double Contact::clearance_of(const ContactPair& pair) const
             largest = std::max(largest, pair.weight[k]);
     }
     return largest > 0.0 ? kClearance * shortest * leverage_of(pair) / largest : 0.0;
-}
-
-/// Cloth that lies on a collider, or is in it: 1 for each such vertex.
-std::vector<unsigned char> Contact::leaning(View<const Vec3> x) const
-{
-    std::vector<unsigned char> leans(x.size(), 0);
-    for (int i = 0; i < int(energy_.terms().size()); ++i) {
-        const ContactPair& pair = energy_.terms()[i].pair;
-        if (!pair.is_between_cloths() && energy_.gap(i, x) <= kLeaning * gap_of(pair))
-            for (int k = 0; k < pair.count(); ++k)
-                leans[pair.vertex[k]] = 1;
-    }
-    return leans;
 }
 
 } // namespace toile

@@ -20,4 +20,18 @@ struct ContactCloth {
 /// @param cloths  whose vertices follow each other
 std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths);
 
+/// Of those that cloths keep to colliders [m].
+double largest_gap(const std::vector<ContactCloth>& cloths);
+
+/// What ContactRules asks of the cloths.
+struct ContactTables {
+    /// @param cloths  whose vertices follow each other
+    ContactTables(const std::vector<ContactCloth>& cloths, int partner_count);
+
+    std::vector<int> cloth_of;            ///< [vertices]
+    std::vector<double> gap;              ///< [cloths] [m]
+    std::vector<double> partner_friction; ///< [cloths x partners] [-]
+    std::vector<double> cloth_friction;   ///< [cloths x cloths] [-]
+};
+
 } // namespace toile

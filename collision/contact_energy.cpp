@@ -44,11 +44,6 @@ void ContactEnergy::set_terms(std::vector<ContactTerm> terms, int vertex_count)
     blocks_.assign(vertex_count, Mat3::Zero());
 }
 
-double ContactEnergy::pressing_force(int i, View<const Vec3> x) const
-{
-    return terms_[i].stiffness * std::max(-gap(i, x), 0.0);
-}
-
 /// out[v] += sum of weight * force over the terms that touch v, in ascending order.
 void ContactEnergy::gather(const Touches& touches, View<Vec3> out) const
 {

@@ -26,7 +26,7 @@ public:
     void set_terms(std::vector<ContactTerm> terms, int vertex_count);
 
     const std::vector<ContactTerm>& terms() const { return terms_; }
-    void set_normal_force(int term, double force) { terms_[term].normal_force = force; }
+    View<ContactTerm> change_terms() { return terms_; } ///< not what they touch
 
     /// Adds the gradient [N] and returns the energy [J].
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const;
@@ -41,8 +41,6 @@ public:
 
     /// Gap g of a term at x [m]; negative where it pushes.
     double gap(int term, View<const Vec3> x) const { return terms_[term].gap(x); }
-    /// Force of the normal spring at x [N].
-    double pressing_force(int term, View<const Vec3> x) const;
     /// Part of anchor-to-cloth in the tangent plane, u above [m].
     Vec3 slip(int term, View<const Vec3> x) const { return terms_[term].slip(x); }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "collision/contact.h"
+#include "collision/near_moves.h"
 
 /// Where contact alone takes the start guess of a step.
 namespace toile {
@@ -30,25 +31,32 @@ double Contact::mobility_of(const ContactPair& pair) const
 /// Gauss-Seidel over the pairs, with masses and the compliance 1/w of their springs [Macklin et al. 2016, eq.
 /// 18] and forces that never pull. Momentum goes where contact sends it, and pairs that press begin as deep
 /// as their force asks for: friction reads it from there.
-bool Contact::make_feasible(View<Vec3> x) const
+bool Contact::make_feasible(StepField positions) const
 {
-    const std::vector<ContactTerm>& terms = energy_.terms();
-    std::vector<double> mobility, force(terms.size(), 0.0);
-    for (const ContactTerm& term : terms)
-        mobility.push_back(mobility_of(term.pair));
-
     bool moved = false;
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (int i = 0; i < int(terms.size()); ++i) {
-            const double compliance = 1.0 / terms[i].stiffness;
-            const double depth = -energy_.gap(i, x) - terms[i].give - compliance * force[i];
-            const double change = std::max(-force[i], depth / (compliance + mobility[i]));
-            if (mobility[i] == 0.0 || change == 0.0)
-                continue;
-            force[i] += change;
-            accelerate(terms[i].pair, change, x);
-            moved = true;
-        }
+    std::vector<double> mobility, force;
+    sweep_near(positions, [&](const NearTerms& near, const NearMoves& moves, View<Vec3> x) {
+        moved = false;
+        force.assign(near.terms.size(), 0.0);
+        mobility.clear();
+        for (const ContactTerm& term : near.terms)
+            mobility.push_back(mobility_of(term.pair));
+        for (int sweep = 0; sweep < kSweeps; ++sweep)
+            for (int i = 0; i < near.terms.size(); ++i) {
+                const ContactTerm& term = near.terms[i];
+                const double compliance = 1.0 / term.stiffness;
+                const double depth = -term.gap(x) - term.give - compliance * force[i];
+                const double change = std::max(-force[i], depth / (compliance + mobility[i]));
+                if (mobility[i] == 0.0 || change == 0.0)
+                    continue;
+                force[i] += change;
+                accelerate(term.pair, change, x);
+                moved = true;
+                if (moves.are_far(i, x))
+                    return false;
+            }
+        return true;
+    });
     return moved;
 }
 

@@ -19,6 +19,13 @@ struct ContactTerm {
     /// Gap g at x [m]; negative where it pushes.
     TOILE_HD double gap(View<const Vec3> x) const { return pair.gap(x) - offset; }
 
+    /// Force of the normal spring at x [N].
+    TOILE_HD double pressing_force(View<const Vec3> x) const
+    {
+        const double depth = -gap(x);
+        return depth > 0.0 ? stiffness * depth : 0.0;
+    }
+
     /// Part of anchor-to-cloth in the tangent plane, u [m].
     TOILE_HD Vec3 slip(View<const Vec3> x) const
     {

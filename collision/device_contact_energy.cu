@@ -1,9 +1,19 @@
 #include "collision/device_contact_energy.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "collision/device_contact_kernels.h"
 #include "core/backend/cuda/parallel.cuh"
 
 namespace toile {
+
+namespace {
+
+/// Room is made for this much more than was needed [-].
+constexpr double kHeadroom = 1.25;
+
+} // namespace
 
 DeviceContactEnergy::DeviceContactEnergy(const CudaSpace& space)
     : space_(space), terms_(space, "contact/terms"), vertices_(space, "contact/vertices"),
@@ -11,29 +21,55 @@ DeviceContactEnergy::DeviceContactEnergy(const CudaSpace& space)
       force_(space, "contact/force"), term_energy_(space, "contact/energy"), frozen_(space, "contact/frozen"),
       blocks_(space, "contact/blocks"), product_(space, "contact/product"),
       acting_(space, "contact/acting", 1), acting_sums_(space, "contact/acting_sums"),
-      acting_on_host_(space, "contact/acting_on_host", 1)
+      acting_on_host_(space, "contact/acting_on_host", 1), sort_(space), flags_(space, "contact/flags"),
+      count_(space), scratch_(space, "contact/scratch")
 {
 }
 
-void DeviceContactEnergy::take(const ContactEnergy& energy, int vertex_count)
+View<ContactTerm> DeviceContactEnergy::make_room(int count)
 {
-    const StageScope stage("contact/to_device");
-    const ContactEnergy::Touches& touches = energy.touches();
-    terms_.upload(energy.terms());
+    if (count > room_)
+        room_ = int(std::min(kHeadroom * count, double(std::numeric_limits<int>::max() / 4 - 1)));
+    for (const int size : {room_, count}) {
+        terms_.resize(size);
+        force_.resize(size);
+        term_energy_.resize(size);
+        frozen_.resize(size);
+        sort_.resize(4 * size);
+        entries_.resize(4 * size);
+        flags_.resize(4 * size + 1);
+        first_.resize(4 * size + 1);
+    }
+    return terms_.view();
+}
+
+void DeviceContactEnergy::set_terms(View<const ContactTerm> terms, int vertex_count)
+{
+    make_room(terms.size());
+    terms_.upload(terms);
+    touch(vertex_count);
+}
+
+void DeviceContactEnergy::touch(int vertex_count)
+{
+    vertices_.resize(0);
     if (!has_terms())
         return;
-    vertices_.upload(touches.vertices);
-    first_.upload(touches.first);
-    entries_.upload(touches.entries);
-    force_.resize(terms_.size());
-    term_energy_.resize(terms_.size());
-    frozen_.resize(terms_.size());
-    blocks_.resize(vertices_.size());
-    product_.resize(vertices_.size());
+    const View<std::uint64_t> keys = sort_.keys.view();
+    parallel_for(space_, "contact/key_touches", keys.size(),
+                 KeyTouch{terms_.view(), keys, sort_.values.view()});
+    sort_by_key(space_, "contact/sort_touches", sort_, entries_.view());
+    parallel_for(space_, "contact/flag_lists", flags_.size(),
+                 FlagLists{sort_.sorted_keys.view(), flags_.view()});
+    const int lists =
+        list_flagged(space_, "contact/list_touched", flags_.view(), first_, count_, scratch_) - 1;
+    vertices_.resize(lists);
+    blocks_.resize(lists);
+    product_.resize(lists);
     list_of_.resize(vertex_count);
     list_of_.fill_zero();
-    parallel_for(space_, "contact/number_lists", vertices_.size(),
-                 NumberList{vertices_.view(), list_of_.view()});
+    parallel_for(space_, "contact/number_lists", lists,
+                 NumberList{first_.view(), sort_.sorted_keys.view(), vertices_.view(), list_of_.view()});
 }
 
 void DeviceContactEnergy::add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy)

@@ -1,19 +1,30 @@
 #pragma once
 
-#include "collision/contact_energy.h"
-#include "core/backend/cuda/array.h"
+#include "collision/contact_kernels.h"
+#include "core/backend/cuda/sort.h"
+#include "core/backend/cuda/sum_scratch.h"
 #include "core/pd/device/device_active_set.h"
 
 namespace toile {
 
-/// ContactEnergy on a GPU, from terms that the host has made.
+/// ContactEnergy on a GPU.
 class DeviceContactEnergy : public DeviceActiveSet {
 public:
     /// @param space  borrowed
     explicit DeviceContactEnergy(const CudaSpace& space);
 
-    /// Takes over the terms as they now are. Grows where it has to.
-    void take(const ContactEnergy& energy, int vertex_count);
+    /// The terms, for who makes them; touch() follows. Grows where it has to.
+    View<ContactTerm> make_room(int count);
+    /// Lists who touches what. Waits.
+    void touch(int vertex_count);
+
+    /// Those of the host.
+    void set_terms(View<const ContactTerm> terms, int vertex_count);
+
+    View<const ContactTerm> terms() const { return terms_.view(); }
+    View<ContactTerm> change_terms() { return terms_.view(); }    ///< not what they touch
+    View<const int> vertices() const { return vertices_.view(); } ///< [lists] see ContactEnergy::Touches
+    ContactTouches touches() const { return {terms_.view(), first_.view(), entries_.view()}; }
 
     bool has_terms() const override { return terms_.size() > 0; }
     void add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy) override;
@@ -22,9 +33,8 @@ public:
     Frozen frozen() const override;
 
 private:
-    ContactTouches touches() const { return {terms_.view(), first_.view(), entries_.view()}; }
-
     const CudaSpace& space_;
+    int room_ = 0; ///< terms
     DeviceArray<ContactTerm> terms_;
     DeviceArray<int> vertices_, first_, entries_; ///< ContactEnergy::Touches
     DeviceArray<int> list_of_;                    ///< [vertices] see Frozen
@@ -35,6 +45,10 @@ private:
     DeviceArray<Vec3> product_;                   ///< [touched] [N]
     DeviceArray<int> acting_, acting_sums_;
     PinnedArray<int> acting_on_host_;
+    SortArrays sort_;                  ///< [4 x terms] by vertex
+    DeviceArray<unsigned char> flags_; ///< [4 x terms + 1]
+    SumScratch<int> count_;
+    DeviceScratch scratch_;
 };
 
 } // namespace toile

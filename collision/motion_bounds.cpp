@@ -8,8 +8,6 @@ namespace toile {
 
 namespace {
 
-const Bounds kNothing;
-
 /// Vertices and triangles in parts, each of which one task looks at with a grid of its own.
 struct Parts {
     static constexpr int kSize = 8192;
@@ -33,7 +31,7 @@ void extend(Bounds& box, const Bounds& other)
 void MotionBounds::build(View<const Triangle> triangles, View<const Vec3> before, View<const Vec3> now,
                          const Bounds& box)
 {
-    grid_ = CellGrid(box, kReach);
+    grid_ = CellGrid(box, MotionView::kReach);
     const Parts parts(std::max(triangles.size(), now.size()));
     std::vector<std::vector<Bounds>> own_of(parts.count, std::vector<Bounds>(grid_.cell_count()));
 
@@ -82,12 +80,6 @@ void MotionBounds::build(View<const Triangle> triangles, View<const Vec3> before
         grid_.for_cells({x - 1, y - 1, z - 1}, {x + 1, y + 1, z + 1},
                         [&](int other) { extend(around, own[other]); });
     });
-}
-
-const Bounds& MotionBounds::around(const Vec3& x) const
-{
-    const int cell = grid_.nearest_to(x, 1);
-    return cell < 0 ? kNothing : motion_[cell];
 }
 
 } // namespace toile

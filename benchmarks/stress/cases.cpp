@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "benchmarks/stress/sliver_sheet.h"
+#include "collision/collider_pairs.h"
 #include "collision/contact.h"
 #include "core/mesh/obj.h"
 #include "scenes/format/scene_fabric.h"

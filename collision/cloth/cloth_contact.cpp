@@ -121,22 +121,6 @@ void ClothContact::look(View<const Vec3> x)
     safe_.begin(x, expected_, slack_, fixed_, pairs_);
 }
 
-/// @param first_count  vertices of the pair's first side
-double ClothContact::thickness_of(const std::array<int, 4>& vertex, int first_count) const
-{
-    double side[2] = {half_thickness_[vertex[0]], half_thickness_[vertex[3]]};
-    for (int k = 1; k < 3; ++k) {
-        double& half = side[k < first_count ? 0 : 1];
-        half = std::min(half, half_thickness_[vertex[k]]);
-    }
-    return side[0] + side[1];
-}
-
-double ClothContact::thickness_of(const ContactPair& pair) const
-{
-    return thickness_of(pair.vertex, first_count(pair.kind == ContactKind::kClothEdgeEdge));
-}
-
 void ClothContact::append_pairs(std::vector<ContactPair>& out) const
 {
     parallel_append(
@@ -154,7 +138,7 @@ void ClothContact::append_pairs(std::vector<ContactPair>& out) const
 /// meet the direction in which the border was ahead of it.
 std::optional<ContactPair> ClothContact::pressing_pair(const NearPair& now) const
 {
-    const double thickness = thickness_of(now.vertex, first_count(now.is_edge_edge));
+    const double thickness = thickness_between(half_thickness_, now.vertex, first_count(now.is_edge_edge));
     double slack = 0.0;
     std::array<Vec3, 4> x, way;
     for (int k = 0; k < 4; ++k) {
@@ -219,7 +203,8 @@ bool ClothContact::has_slid(View<const Vec3> x) const
         if (strayed.squaredNorm() <= kSlid * kSlid * edge_ * edge_)
             continue;
         const NearPair now = near_.at(x, near);
-        if (now.is_facing && now.distance <= thickness_of(now.vertex, first_count(now.is_edge_edge)))
+        if (now.is_facing &&
+            now.distance <= thickness_between(half_thickness_, now.vertex, first_count(now.is_edge_edge)))
             return true;
     }
     return false;

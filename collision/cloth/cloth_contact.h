@@ -53,11 +53,9 @@ public:
     /// Drops what earlier steps left, for cloth that was put elsewhere.
     void forget();
 
-    /// Between the middle surfaces of a pair [m].
-    double thickness_of(const ContactPair& pair) const;
+    View<const double> half_thickness() const { return half_thickness_; } ///< [vertices] [m]
 
 private:
-    double thickness_of(const std::array<int, 4>& vertex, int first_count) const;
     void look(View<const Vec3> x);
     void look_on(View<const Vec3> x, View<const Vec3> wanted);
     std::optional<ContactPair> pressing_pair(const NearPair& now) const;

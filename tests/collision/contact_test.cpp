@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "collision/collider_pairs.h"
+
 namespace toile {
 namespace {
 
@@ -194,8 +196,11 @@ TEST(Contact, FollowsATurningShapeByThePointItStartedFrom)
     ShapeCollider box(BoxShape{Vec3::Constant(0.1)}, Eigen::Isometry3d::Identity(), "box");
     box.move(Eigen::Isometry3d::Identity(), quarter);
     const Vec3 point(0.1, 0.1, 0.0);
-    EXPECT_LT((box.motion_from(point) - (quarter * point - point)).norm(), 1e-15);
-    EXPECT_LT((box.motion(quarter * point) - box.motion_from(point)).norm(), 1e-15);
+    NearestSurface started;
+    started.point = point;
+    const Vec3 motion = carrying({nullptr, &box}).motion_of(started);
+    EXPECT_LT((motion - (quarter * point - point)).norm(), 1e-15);
+    EXPECT_LT((box.motion(quarter * point) - motion).norm(), 1e-15);
 }
 
 TEST(Contact, KeepsTheAnchorOfTheStartWhenItLooksAgain)

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/contact_energy.h"
 #include "collision/device_contact_energy.h"
 #include "core/pd/active_set_energy.h"
 
@@ -44,7 +45,7 @@ public:
     }
 
     void begin_step(const StepStart&) override {}
-    bool make_feasible(View<Vec3>) const override { return false; }
+    bool make_feasible(StepField) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
     {
         return energy_.add_gradient(x, gradient);
@@ -59,13 +60,13 @@ public:
     DeviceActiveSet* on_device(const CudaSpace& space) override
     {
         there_ = std::make_unique<DeviceContactEnergy>(space);
-        there_->take(energy_, vertex_count_);
+        there_->set_terms(energy_.terms(), vertex_count_);
         return there_.get();
     }
-    bool revise(View<Vec3>) override { return false; }
-    void clear(View<Vec3>, View<Vec3>) override {}
-    bool keep_apart(View<Vec3>, View<Vec3>) override { return false; }
-    void end_step(View<const Vec3>) override {}
+    bool revise(StepField) override { return false; }
+    void clear(StepField, StepField) override {}
+    bool keep_apart(StepField, StepField) override { return false; }
+    void end_step(StepField) override {}
 
     /// Vertices that press on the plane at x.
     int pressing(const std::vector<Vec3>& x) const

@@ -1,6 +1,7 @@
 #include "core/backend/cuda/scan.h"
 
 #include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/roomy.h"
 
 #ifdef __CUDACC__
 #include "core/backend/cuda/with_scratch.cuh"
@@ -44,6 +45,17 @@ void list_flagged(const CudaSpace& space, std::string_view name, View<const unsi
     });
 #endif
     launch.done();
+}
+
+int list_flagged(const CudaSpace& space, std::string_view name, View<const unsigned char> flags,
+                 DeviceArray<int>& places, SumScratch<int>& count, DeviceScratch& scratch, CallSite where)
+{
+    if (flags.empty())
+        return 0;
+    list_flagged(space, name, flags, first_items(places, flags.size()), count.total.view(), scratch, where);
+    count.total.download(count.value.view());
+    space.synchronise(where);
+    return count.value[0];
 }
 
 } // namespace toile

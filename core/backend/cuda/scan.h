@@ -6,6 +6,7 @@
 
 #include "core/backend/cuda/array.h"
 #include "core/backend/cuda/device.h"
+#include "core/backend/cuda/sum_scratch.h"
 
 namespace toile {
 
@@ -25,5 +26,11 @@ void exclusive_scan(const CudaSpace& space, std::string_view name, View<const in
 void list_flagged(const CudaSpace& space, std::string_view name, View<const unsigned char> flags,
                   View<int> places, View<int> count, DeviceScratch& scratch,
                   CallSite where = CallSite::here());
+
+/// The same, waited for: returns how many there are.
+/// @param places  grows where it is shorter than flags
+int list_flagged(const CudaSpace& space, std::string_view name, View<const unsigned char> flags,
+                 DeviceArray<int>& places, SumScratch<int>& count, DeviceScratch& scratch,
+                 CallSite where = CallSite::here());
 
 } // namespace toile

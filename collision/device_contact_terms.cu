@@ -1,0 +1,172 @@
+#include "collision/device_contact_terms.h"
+
+#include <algorithm>
+
+#include "core/backend/cuda/parallel.cuh"
+
+namespace toile {
+
+namespace {
+
+/// Uploads what differs from what was uploaded before.
+template <typename T>
+void follow(View<const T> values, std::vector<T>& uploaded, DeviceArray<T>& there)
+{
+    if (std::equal(values.begin(), values.end(), uploaded.begin(), uploaded.end()))
+        return;
+    uploaded.assign(values.begin(), values.end());
+    there.upload(uploaded);
+}
+
+} // namespace
+
+DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triangle> triangles,
+                                       View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
+                                       const std::vector<ContactPartner>& partners, const Settings& settings)
+    : space_(space), tables_(cloths, int(partners.size())), settings_(settings),
+      colliders_(space, triangles, positions, partners,
+                 {largest_gap(cloths), settings.face_vertex, settings.edge_edge}),
+      energy_(space), memory_(space), cloth_of_(space, "terms/cloth_of"), gap_(space, "terms/gap"),
+      partner_friction_(space, "terms/partner_friction"), cloth_friction_(space, "terms/cloth_friction"),
+      half_thickness_(space, "terms/half_thickness"), diagonal_(space, "terms/diagonal"),
+      fixed_(space, "terms/fixed"), between_(space, "terms/between"), room_(space, "terms/room"),
+      overlap_(space, "terms/overlap", positions.size()), pair_flags_(space, "terms/pair_flags"),
+      flags_(space, "terms/flags"), leans_(space, "terms/leans", positions.size()),
+      list_(space, "terms/list"), near_(space, "terms/near"), near_here_(space, "terms/near_here"),
+      count_(space), limits_(space), least_(space), scratch_(space, "terms/scratch")
+{
+    TOILE_ASSERT(int(tables_.cloth_of.size()) == positions.size());
+    cloth_of_.upload(tables_.cloth_of);
+    gap_.upload(tables_.gap);
+    partner_friction_.upload(tables_.partner_friction);
+    cloth_friction_.upload(tables_.cloth_friction);
+}
+
+void DeviceContactTerms::begin_step(const StepStart& start)
+{
+    follow(start.diagonal, host_diagonal_, diagonal_);
+    follow(start.fixed, host_fixed_, fixed_);
+    rules_ = rules_of(start, settings_);
+    rules_.cloth_of = cloth_of_.view();
+    rules_.gap = gap_.view();
+    rules_.partner_friction = partner_friction_.view();
+    rules_.cloth_friction = cloth_friction_.view();
+    rules_.half_thickness = half_thickness_.view();
+    rules_.x = start.there.x;
+    rules_.diagonal = diagonal_.view();
+    rules_.fixed = fixed_.view();
+    colliders_.find(start.there.x, start.there.prediction, start.dt);
+}
+
+/// The pairs of cloth with cloth, as the host has them.
+void DeviceContactTerms::take_between(const ClothContact* between)
+{
+    host_between_.clear();
+    if (between != nullptr) {
+        between->append_pairs(host_between_);
+        if (half_thickness_.size() == 0)
+            half_thickness_.upload(between->half_thickness());
+        rules_.half_thickness = half_thickness_.view();
+    }
+    between_.upload(host_between_);
+}
+
+void DeviceContactTerms::make(const ClothContact* between)
+{
+    const StageScope stage("contact/make_there");
+    take_between(between);
+    const PairsInTurn pairs{colliders_.all(), between_.view()};
+    const int count = pairs.first.size() + pairs.second.size();
+    const View<double> room = first_items(room_, pairs.first.size());
+    parallel_for(space_, "contact/find_room", overlap_.size(),
+                 FindRoom{colliders_.planes(), colliders_.found_at(), room, overlap_.view()});
+    const View<unsigned char> flags = first_items(pair_flags_, count);
+    parallel_for(space_, "contact/flag_terms", count, FlagTerm{pairs, rules_, overlap_.view(), flags});
+    const int kept = list_flagged(space_, "contact/list_terms", flags, list_, count_, scratch_);
+    const View<ContactTerm> terms = energy_.make_room(kept);
+    parallel_for(space_, "contact/make_terms", kept,
+                 MakeTerm{pairs, rules_, room, memory_.known(), list_.view(), terms});
+    energy_.touch(overlap_.size());
+}
+
+FrictionLimits DeviceContactTerms::update_normal_forces()
+{
+    return parallel_sum(space_, "contact/update_forces", energy_.terms().size(), FrictionLimits{},
+                        UpdateNormalForce{energy_.change_terms(), x_.there()}, limits_);
+}
+
+/// Marks the vertices of flagged terms.
+void DeviceContactTerms::mark_flagged(View<unsigned char> marks)
+{
+    parallel_for(space_, "contact/mark_flagged", energy_.vertices().size(),
+                 MarkFlagged{energy_.touches(), energy_.vertices(), flags(), marks});
+}
+
+std::vector<unsigned char> DeviceContactTerms::leaning()
+{
+    leans_.fill_zero();
+    parallel_for(space_, "contact/flag_leaning", energy_.terms().size(),
+                 FlagLeaning{look(), rules_, flags()});
+    mark_flagged(leans_.view());
+    return leans_.downloaded();
+}
+
+bool DeviceContactTerms::has_left(double trust)
+{
+    colliders_.clear_strays();
+    parallel_for(space_, "contact/flag_slid", energy_.terms().size(),
+                 FlagSlid{look(), rules_, colliders_.found_at(), trust, flags()});
+    mark_flagged(colliders_.strays());
+    return colliders_.mark_unseen(x_.there());
+}
+
+double DeviceContactTerms::deepest()
+{
+    const Least height =
+        parallel_sum(space_, "contact/deepest", energy_.terms().size(), Least{}, LeastHeight{look()}, least_);
+    return std::max(0.0, -height.value);
+}
+
+NearTerms DeviceContactTerms::near(double margin) const
+{
+    parallel_for(space_, "contact/flag_near", energy_.terms().size(), FlagNear{look(), margin, flags()});
+    const int count = list_flagged(space_, "contact/list_near", flags(), list_, count_, scratch_);
+    const View<ContactTerm> near = first_items(near_, count);
+    parallel_for(space_, "contact/copy_near", count,
+                 CopyListed<ContactTerm>{energy_.terms(), list_.view(), near});
+    if (near_here_.size() < near_.size())
+        near_here_.resize(near_.size());
+    if (count > 0) {
+        near_.download_first(near_here_.view().subview(0, count));
+        space_.synchronise();
+    }
+    const PinnedArray<ContactTerm>& here = near_here_;
+    return {here.view().subview(0, count), margin};
+}
+
+void DeviceContactTerms::remember(Slip slip) { memory_.keep(energy_.terms(), rules_, slip, x_.there()); }
+
+double DeviceContactTerms::end_step()
+{
+    double least = 0.0;
+    if (!empty())
+        least = parallel_sum(space_, "contact/least_gap", energy_.terms().size(), Least{}, LeastGap{look()},
+                             least_)
+                    .value;
+    colliders_.learn_sides(x_.there());
+    return least;
+}
+
+void DeviceContactTerms::forget()
+{
+    memory_.forget();
+    colliders_.forget();
+}
+
+DeviceActiveSet* DeviceContactTerms::on_device([[maybe_unused]] const CudaSpace& space)
+{
+    TOILE_ASSERT(&space == &space_);
+    return &energy_;
+}
+
+} // namespace toile
