@@ -71,7 +71,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions, std
         cloth_of_.insert(cloth_of_.end(), cloths_[c].vertex_count, c);
     TOILE_ASSERT(int(cloth_of_.size()) == positions.size());
     if (settings_.cloth_with_cloth)
-        between_.emplace(triangles, positions, cloths_, altitude_, space);
+        between_ = make_cloth_contact(triangles, positions, cloths_, altitude_, space);
 }
 
 void Contact::begin_step(const StepStart& start)
@@ -79,7 +79,7 @@ void Contact::begin_step(const StepStart& start)
     start_ = start;
     has_cleared_ = false;
     if (between_)
-        between_->begin_step(start.x, start.prediction, start.fixed);
+        between_->begin_step(start);
     colliders_.find(start);
     make_terms();
 }
@@ -112,15 +112,15 @@ DeviceActiveSet* Contact::on_device(const CudaSpace& space)
     return there_.get();
 }
 
-bool Contact::revise(View<Vec3> x)
+bool Contact::revise(StepField x)
 {
     if (energy_.terms().empty() && !between_)
         return false;
-    const bool friction_changed = update_normal_forces(x);
-    const bool has_new_pairs = between_ && between_->advance(x, leaning(x));
-    if (has_left(x, kTrust) || has_new_pairs) {
+    const bool friction_changed = update_normal_forces(x.host());
+    const bool has_new_pairs = between_ && between_->advance(x, [&] { return leaning(x.host()); });
+    if (has_left(x.host(), kTrust) || has_new_pairs) {
         remember_start();
-        find_again(x);
+        find_again(x.host());
         return true;
     }
     return friction_changed;
@@ -194,8 +194,9 @@ void Contact::remember(const Slip& slip)
         memory_.keep(energy_.terms()[i], slip(i));
 }
 
-void Contact::end_step(View<const Vec3> x)
+void Contact::end_step(StepField positions)
 {
+    const View<const Vec3> x = positions.host();
     if (!has_cleared_)
         remember([&](int i) { return energy_.slip(i, x); });
     active_count_ = memory_.size();
@@ -206,16 +207,18 @@ void Contact::end_step(View<const Vec3> x)
     }
     colliders_.learn_sides(x);
     if (between_)
-        between_->end_step(x);
+        between_->end_step(positions);
 }
 
 /// Looks where the cloth has come to and moves it out of what is still inside there. This correction does not
 /// become velocity, or it would throw the cloth. Again in the same step, it forgets pairs that it has parted:
 /// friction there would drag cloth that is caught.
-void Contact::clear(View<Vec3> x, View<Vec3> v)
+void Contact::clear(StepField positions, StepField velocities)
 {
-    if (!has_left(x, kEndTrust) && deepest(x) <= kLeftOver)
+    const View<const Vec3> reached = positions.host();
+    if (!has_left(reached, kEndTrust) && deepest(reached) <= kLeftOver)
         return;
+    const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
     remember([&](int i) { return energy_.slip(i, x); });
     has_cleared_ = true;
     find_again(x);
@@ -225,21 +228,16 @@ void Contact::clear(View<Vec3> x, View<Vec3> v)
 }
 
 /// What would have crossed stops: it loses the velocity that it was to have got there.
-bool Contact::keep_apart(View<Vec3> x, View<Vec3> v)
+bool Contact::keep_apart(StepField x, StepField v)
 {
-    if (!between_)
-        return false;
-    const std::vector<Vec3> wanted(x.begin(), x.end());
-    const bool is_far = between_->hold_back(x, leaning(x));
-    for (int i = 0; i < x.size(); ++i)
-        v[i] += (x[i] - wanted[i]) / start_.dt;
-    return is_far;
+    return between_ && between_->hold_back(x, v, start_.dt, [&] { return leaning(x.host()); });
 }
 
 /// Coulomb's law with the distance pushed out for the normal impulse [Macklin et al. 2014, eq. 24]. Nothing
 /// of a stick stays for the next step: friction has undone it.
-void Contact::resolve(View<Vec3> x, View<Vec3> v)
+void Contact::resolve(StepField positions, StepField velocities)
 {
+    const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
     if (has_left(x, kEndTrust))
         find_again(x);
     const StageScope stage("collision/resolve");

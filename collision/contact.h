@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "collision/cloth/cloth_contact.h"
@@ -42,20 +41,20 @@ public:
             std::vector<ContactPartner> partners, const Settings& settings, const CudaSpace* space = nullptr);
 
     void begin_step(const StepStart& start) override;
-    bool make_feasible(View<Vec3> x) const override;
+    bool make_feasible(StepField positions) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     DeviceActiveSet* on_device(const CudaSpace& space) override;
-    bool revise(View<Vec3> x) override;
-    void clear(View<Vec3> x, View<Vec3> v) override;
-    void resolve(View<Vec3> x, View<Vec3> v) override;
-    bool keep_apart(View<Vec3> x, View<Vec3> v) override;
-    void end_step(View<const Vec3> x) override;
+    bool revise(StepField x) override;
+    void clear(StepField positions, StepField velocities) override;
+    void resolve(StepField positions, StepField velocities) override;
+    bool keep_apart(StepField x, StepField v) override;
+    void end_step(StepField positions) override;
 
-    bool keeps_cloth_apart() const { return between_.has_value(); }
+    bool keeps_cloth_apart() const { return between_ != nullptr; }
 
     /// Where cloth crosses cloth at the start of the coming step: contact would keep it on the wrong side, so
     /// it leaves those places alone (ExemptPairs).
@@ -111,7 +110,7 @@ private:
     StepStart start_;
     std::vector<unsigned char> strays_; ///< [vertices] 1 where pairs with colliders are to be found again
     std::vector<double> altitude_;      ///< [vertices] the shortest of the triangles around, at the start [m]
-    std::optional<ClothContact> between_; ///< cloth and cloth; none where that is switched off
+    std::unique_ptr<ClothContact> between_; ///< cloth and cloth; null where that is switched off
     ContactMemory memory_;
     bool has_cleared_ = false; ///< in this step: memory_ is the minimiser's, the pairs are new
     std::unique_ptr<DeviceContactEnergy> there_; ///< null before a GPU asks

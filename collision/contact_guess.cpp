@@ -30,8 +30,11 @@ double Contact::mobility_of(const ContactPair& pair) const
 /// Gauss-Seidel over the pairs, with masses and the compliance 1/w of their springs [Macklin et al. 2016, eq.
 /// 18] and forces that never pull. Momentum goes where contact sends it, and pairs that press begin as deep
 /// as their force asks for: friction reads it from there.
-bool Contact::make_feasible(View<Vec3> x) const
+bool Contact::make_feasible(StepField positions) const
 {
+    if (energy_.terms().empty())
+        return false;
+    const View<Vec3> x = positions.change_on_host();
     const std::vector<ContactTerm>& terms = energy_.terms();
     std::vector<double> mobility, force(terms.size(), 0.0);
     for (const ContactTerm& term : terms)

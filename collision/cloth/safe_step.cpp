@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "collision/cloth/pair_geometry.h"
-#include "collision/cloth/safe_motion.h"
+#include "collision/cloth/safe_step_kernels.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -14,9 +13,6 @@ namespace {
 /// Part of an allowed share that is taken [-]: the shortened way is another one, whose own limit must not be
 /// met again by rounding.
 constexpr double kTaken = 0.95;
-
-/// How much farther than it has strayed a vertex may go on before pairs are looked for again [-].
-constexpr double kStrayMore = 0.5;
 
 /// How often the ends of ways are moved apart, in how many sweeps over the pairs each, and how much farther
 /// than they have to be [-].
@@ -34,16 +30,6 @@ constexpr double kTethered = 0.2;
 /// Rounds in which the vertices of a pair or edge are brought back in proportion. Those that are still in the
 /// way then go where their zone does.
 constexpr int kRounds = 16;
-
-/// True where the direction that separates the pair at first shows that it may go all of its way.
-bool stays_apart(const NearPair& pair, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& move,
-                 double least)
-{
-    std::array<Vec3, 4> end;
-    for (int k = 0; k < 4; ++k)
-        end[k] = x[k] + move[k];
-    return pair.distance >= least && gap_along(pair.normal, pair.is_edge_edge, end) >= least;
-}
 
 /// Those of cloth.
 std::vector<Tethers::Edge> flexible_edges(const SurfaceEdges& edges, const RigidWays& bodies)
@@ -70,10 +56,9 @@ void SafeStep::begin(View<const Vec3> x, View<const Vec3> expected, View<const d
     fixed_ = fixed;
     expected_pairs_ = pairs;
     more_pairs_.clear();
-    known_radius_.assign(slack.begin(), slack.end());
+    known_radius_.resize(x.size());
     known_motion_.resize(x.size());
-    for (int v = 0; v < x.size(); ++v)
-        known_motion_[v] = expected[v] - x[v];
+    parallel_for(kCpu, "collision/know_expected", x.size(), KnowExpected{x, expected, slack, known()});
 }
 
 double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
@@ -104,21 +89,13 @@ double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
     return farthest;
 }
 
-/// Of two layers that lie on each other a tenth of their distance is left; far ones may come that near too.
-double SafeStep::least_gap_of(const NearPair& pair) const
-{
-    return std::max(settings_.least_gap,
-                    settings_.least_share * std::min(pair.distance, settings_.thickness));
-}
-
 /// Marks whose motion is none that the lists are complete for. False when all are.
 bool SafeStep::mark_strays()
 {
     is_marked_.assign(motion_.size(), 0);
     bool any = false;
     for (size_t v = 0; v < motion_.size(); ++v) {
-        const double radius = known_radius_[v];
-        is_marked_[v] = (motion_[v] - known_motion_[v]).squaredNorm() > radius * radius;
+        is_marked_[v] = !known().hold(int(v), motion_[v]);
         any = any || is_marked_[v];
     }
     return any;
@@ -129,12 +106,9 @@ void SafeStep::look_around_marked()
 {
     const StageScope stage("collision/look_again");
     for (size_t v = 0; v < motion_.size(); ++v)
-        if (is_marked_[v]) {
-            known_motion_[v] = motion_[v];
-            known_radius_[v] = std::max(slack_[int(v)], kStrayMore * (motion_[v] - way_[v]).norm());
-        }
-    near_.find(base_, {known_motion_, known_radius_, is_marked_},
-               std::max(settings_.least_gap, settings_.least_share * settings_.thickness), found_pairs_);
+        if (is_marked_[v])
+            known().widen(int(v), motion_[v], (motion_[v] - way_[v]).norm(), slack_[int(v)]);
+    near_.find(base_, {known_motion_, known_radius_, is_marked_}, least_gap().most(), found_pairs_);
     std::copy_if(found_pairs_.begin(), found_pairs_.end(), std::back_inserter(more_pairs_),
                  [&](const NearPair& pair) { return !exempt_.is_exempt(pair); });
 }
@@ -167,7 +141,7 @@ bool SafeStep::give_way()
                 end[k] = base_[pair.vertex[k]] + way_[pair.vertex[k]];
                 longest = std::max(longest, way_[pair.vertex[k]].norm());
             }
-            const double kept = std::min(kMoreThanLeast * least_gap_of(pair), pair.distance);
+            const double kept = std::min(kMoreThanLeast * least_gap().of(pair), pair.distance);
             const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
             const double ahead = mobility_of(pair, true), behind = mobility_of(pair, false);
             const bool is_small = lacking <= settings_.most_deflection;
@@ -233,21 +207,12 @@ void SafeStep::take_along()
 void SafeStep::look_at_pairs()
 {
     pair_share_.resize(pair_count(), 1.0);
+    const PairShare share{base_, motion_, least_gap()};
     parallel_for(kCpu, "collision/safe_share", pair_count(), [&](int i) {
         const NearPair& pair = this->pair(i);
-        std::array<Vec3, 4> x, move;
-        bool is_stale = false;
-        for (int k = 0; k < 4; ++k) {
-            const int v = pair.vertex[k];
-            is_stale = is_stale || is_stale_[v];
-            x[k] = base_[v];
-            move[k] = motion_[v];
-        }
-        if (!is_stale)
-            return;
-        const double least = least_gap_of(pair);
-        pair_share_[i] =
-            stays_apart(pair, x, move, least) ? 1.0 : safe_share(pair.is_edge_edge, x, move, least);
+        const std::array<int, 4>& v = pair.vertex;
+        if (is_stale_[v[0]] || is_stale_[v[1]] || is_stale_[v[2]] || is_stale_[v[3]])
+            pair_share_[i] = share(pair);
     });
 }
 

@@ -7,6 +7,7 @@
 #include "collision/cloth/impact_zones.h"
 #include "collision/cloth/near_pairs.h"
 #include "collision/cloth/rigid_ways.h"
+#include "collision/cloth/safe_step_kernels.h"
 #include "collision/cloth/tethers.h"
 
 namespace toile {
@@ -61,8 +62,10 @@ public:
 
     View<const Vec3> base() const { return base_; } ///< [vertices] the pose of begin() [m]
 
+    LeastGap least_gap() const { return {settings_.least_gap, settings_.least_share, settings_.thickness}; }
+
 private:
-    double least_gap_of(const NearPair& pair) const;
+    KnownWays known() { return {known_motion_, known_radius_}; }
     bool mark_strays();
     void look_around_marked();
     const NearPair& pair(int i) const

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/pd/frozen_hessian.h"
+#include "core/pd/step_field.h"
 
 namespace toile {
 
@@ -15,6 +16,11 @@ struct StepStart {
     View<const unsigned char> fixed; ///< [vertices] 1 where the position is prescribed
     View<const double> masses;       ///< [vertices] [kg]; of unknowns that are no vertices: unspecified
     double dt = 0.0;                 ///< [s]
+
+    /// The first two as the device has them, until the end of the step; empty where no GPU makes it.
+    struct There {
+        View<const Vec3> x, prediction;
+    } there = {};
 };
 
 /// A convex energy that acts on changing places, contact above all. It stays out of H; while it is active the
@@ -26,7 +32,7 @@ public:
 
     /// Moves a start guess out of the candidates' forbidden half-spaces as contact without anything else
     /// would. True when anything moved.
-    virtual bool make_feasible(View<Vec3> x) const = 0;
+    virtual bool make_feasible(StepField x) const = 0;
 
     /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) const = 0;
@@ -43,23 +49,23 @@ public:
     /// the neighbourhood that the candidates were made for. True when the energy changed enough to be
     /// minimised again.
     /// x [vertices] is moved back where it has gone too far for what must always hold (keep_apart).
-    virtual bool revise(View<Vec3> x) = 0;
+    virtual bool revise(StepField x) = 0;
 
     /// Clears what the minimisation has left inside the forbidden half-spaces. x and v [vertices] are its
     /// positions and velocities.
-    virtual void clear(View<Vec3> x, View<Vec3> v) = 0;
+    virtual void clear(StepField x, StepField v) = 0;
 
     /// Instead of clear(), for a method that knows nothing of this energy: takes the positions x and
     /// velocities v [vertices] that it has found without, and changes them as rigid contact would.
-    virtual void resolve(View<Vec3> x, View<Vec3> v) { clear(x, v); }
+    virtual void resolve(StepField x, StepField v) { clear(x, v); }
 
     /// The last word on positions x and velocities v [vertices], after all that has moved them: brings back
     /// what would break an invariant, such as cloth that would have passed through cloth. True when that was
     /// far: what moved x may go on from there, and ask again.
-    virtual bool keep_apart(View<Vec3> x, View<Vec3> v) = 0;
+    virtual bool keep_apart(StepField x, StepField v) = 0;
 
     /// Remembers what the next step builds on. x [vertices] are the final positions.
-    virtual void end_step(View<const Vec3> x) = 0;
+    virtual void end_step(StepField x) = 0;
 };
 
 } // namespace toile

@@ -64,8 +64,9 @@ void RigidActiveSet::begin_step(const StepStart& start)
 }
 
 /// Of the start guess the free points only: pushed out one by one, the vertices of a body would come apart.
-bool RigidActiveSet::make_feasible(View<Vec3> q) const
+bool RigidActiveSet::make_feasible(StepField positions) const
 {
+    const View<Vec3> q = positions.change_on_host();
     to_surface(q, x_);
     const bool moved = surface_.make_feasible(x_);
     take_free(x_, q);
@@ -126,8 +127,9 @@ void RigidActiveSet::append_terms(std::vector<FrozenTerm>& terms) const
     }
 }
 
-bool RigidActiveSet::revise(View<Vec3> q)
+bool RigidActiveSet::revise(StepField positions)
 {
+    const View<Vec3> q = positions.change_on_host();
     to_surface(q, x_);
     const std::vector<Vec3> before = x_;
     const bool changed = surface_.revise(x_);
@@ -135,8 +137,9 @@ bool RigidActiveSet::revise(View<Vec3> q)
     return changed;
 }
 
-void RigidActiveSet::clear(View<Vec3> q, View<Vec3> v)
+void RigidActiveSet::clear(StepField positions, StepField velocities)
 {
+    const View<Vec3> q = positions.change_on_host(), v = velocities.change_on_host();
     to_surface(q, x_);
     const View<Vec3> velocity(field_);
     std::copy_n(v.begin(), free_count_, velocity.begin());
@@ -147,8 +150,9 @@ void RigidActiveSet::clear(View<Vec3> q, View<Vec3> v)
     take_free(velocity, v);
 }
 
-bool RigidActiveSet::keep_apart(View<Vec3> q, View<Vec3> v)
+bool RigidActiveSet::keep_apart(StepField positions, StepField velocities)
 {
+    const View<Vec3> q = positions.change_on_host(), v = velocities.change_on_host();
     to_surface(q, x_);
     const std::vector<Vec3> before = x_, wanted(q.begin(), q.end());
     std::copy_n(v.begin(), free_count_, field_.begin());
@@ -161,6 +165,6 @@ bool RigidActiveSet::keep_apart(View<Vec3> q, View<Vec3> v)
 }
 
 /// After keep_apart(), whose surfaces count.
-void RigidActiveSet::end_step(View<const Vec3>) { surface_.end_step(x_); }
+void RigidActiveSet::end_step(StepField) { surface_.end_step(x_); }
 
 } // namespace toile

@@ -22,7 +22,7 @@ public:
     RigidActiveSet(ActiveSetEnergy& surface, const RigidBodies& bodies, int free_count);
 
     void begin_step(const StepStart& start) override;
-    bool make_feasible(View<Vec3> q) const override;
+    bool make_feasible(StepField q) const override;
     double add_gradient(View<const Vec3> q, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> q) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
@@ -32,10 +32,10 @@ public:
     /// Preconditioners made of terms then know less of bodies than those made of diagonal_blocks().
     void append_terms(std::vector<FrozenTerm>& terms) const override;
 
-    bool revise(View<Vec3> q) override;
-    void clear(View<Vec3> q, View<Vec3> v) override;
-    bool keep_apart(View<Vec3> q, View<Vec3> v) override;
-    void end_step(View<const Vec3> q) override;
+    bool revise(StepField q) override;
+    void clear(StepField q, StepField v) override;
+    bool keep_apart(StepField q, StepField v) override;
+    void end_step(StepField q) override;
 
 private:
     void to_surface(View<const Vec3> q, View<Vec3> x) const;

@@ -167,7 +167,7 @@ public:
         }
     }
     void begin_step(const StepStart&) override {}
-    bool make_feasible(View<Vec3>) const override { return false; }
+    bool make_feasible(StepField) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
     {
         double value = 0.0;
@@ -185,10 +185,10 @@ public:
     }
     View<const Mat3> diagonal_blocks() const override { return blocks_; }
     void append_terms(std::vector<FrozenTerm>& terms) const override { terms = terms_; }
-    bool revise(View<Vec3>) override { return false; }
-    void clear(View<Vec3>, View<Vec3>) override {}
-    bool keep_apart(View<Vec3>, View<Vec3>) override { return false; }
-    void end_step(View<const Vec3>) override {}
+    bool revise(StepField) override { return false; }
+    void clear(StepField, StepField) override {}
+    bool keep_apart(StepField, StepField) override { return false; }
+    void end_step(StepField) override {}
 
     std::vector<Vec3> anchor_;
     std::vector<Mat3> blocks_;

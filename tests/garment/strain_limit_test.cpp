@@ -179,10 +179,11 @@ public:
         : TouchingPlane({}, int(start.size())), start_(std::move(start)), up_to_(up_to)
     {
     }
-    bool keep_apart(View<Vec3> x, View<Vec3>) override
+    bool keep_apart(StepField positions, StepField) override
     {
         if (asked_++ > 0)
             return false;
+        const View<Vec3> x = positions.change_on_host();
         for (int v = 0; v < x.size(); ++v)
             if (start_[v].x() < up_to_)
                 x[v] = start_[v];

@@ -44,7 +44,7 @@ public:
     }
 
     void begin_step(const StepStart&) override {}
-    bool make_feasible(View<Vec3>) const override { return false; }
+    bool make_feasible(StepField) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
     {
         return energy_.add_gradient(x, gradient);
@@ -62,10 +62,10 @@ public:
         there_->take(energy_, vertex_count_);
         return there_.get();
     }
-    bool revise(View<Vec3>) override { return false; }
-    void clear(View<Vec3>, View<Vec3>) override {}
-    bool keep_apart(View<Vec3>, View<Vec3>) override { return false; }
-    void end_step(View<const Vec3>) override {}
+    bool revise(StepField) override { return false; }
+    void clear(StepField, StepField) override {}
+    bool keep_apart(StepField, StepField) override { return false; }
+    void end_step(StepField) override {}
 
     /// Vertices that press on the plane at x.
     int pressing(const std::vector<Vec3>& x) const

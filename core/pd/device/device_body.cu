@@ -118,11 +118,8 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
     finish(report);
     satisfy(active, limits);
     if (active)
-        active->end_step(x_t1_.host());
-    if (x_t1_.is_on_host())
-        set_positions(x_t1_.host());
-    else
-        parallel_for(space_, "pd/end", x_.size(), CopyPositions{x_t1_.there(), x_.overwrite_there()});
+        active->end_step(x_t1_);
+    parallel_for(space_, "pd/end", x_.size(), CopyPositions{x_t1_.there(), x_.overwrite_there()});
     return report;
 }
 
@@ -131,10 +128,10 @@ void DeviceBody::satisfy(ActiveSetEnergy* active, DeviceStepProjection* limits)
 {
     for (int round = 0; round < StepEnd::kRounds; ++round) {
         if (active)
-            active->clear(x_t1_.change_on_host(), v_.change_on_host());
+            active->clear(x_t1_, v_);
         if (limits)
             project(*limits, active);
-        if (!active || !active->keep_apart(x_t1_.change_on_host(), v_.change_on_host()))
+        if (!active || !active->keep_apart(x_t1_, v_))
             return;
     }
 }
@@ -147,7 +144,7 @@ void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* ac
     std::function<bool()> clear_contacts;
     if (active)
         clear_contacts = [&] {
-            const bool moved = active->make_feasible(x_t1_.change_on_host());
+            const bool moved = active->make_feasible(x_t1_);
             static_cast<void>(x_t1_.change_there());
             return moved;
         };
@@ -171,9 +168,14 @@ void DeviceBody::predict()
 
 void DeviceBody::begin_contact(ActiveSetEnergy& active)
 {
-    active.begin_step(
-        {x_.host(), prediction_.host(), system_->diagonal(), system_->fixed(), system_->masses(), dt_});
-    active.make_feasible(x_t1_.change_on_host());
+    active.begin_step({x_.host(),
+                       prediction_.host(),
+                       system_->diagonal(),
+                       system_->fixed(),
+                       system_->masses(),
+                       dt_,
+                       {x_.there(), prediction_.there()}});
+    active.make_feasible(x_t1_);
     asked_ = descent_.state();
 }
 
@@ -197,7 +199,7 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
             report.message = "the energy at the start of the step is not finite";
             return;
         }
-        if (active == nullptr || !active->revise(x_t1_.change_on_host()))
+        if (active == nullptr || !active->revise(x_t1_))
             return;
     }
 }
