@@ -5,6 +5,13 @@
 
 namespace toile {
 
+namespace {
+
+/// Room is made for this much more than is needed [-].
+constexpr double kHeadroom = 1.25;
+
+} // namespace
+
 DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triangle> triangles,
                                        View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                        View<const double> altitude)
@@ -21,7 +28,11 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triang
       expected_(space, "cloth_contact/expected", positions.size()), wanted_(space, "cloth_contact/wanted"),
       pressing_(space, "cloth_contact/pressing"), marks_(space, "cloth_contact/marks"),
       places_(space, "cloth_contact/places"), number_(space, "cloth_contact/number", 1),
-      read_(space, "cloth_contact/read", 1), sum_(space), scratch_(space, "cloth_contact/scratch")
+      read_(space, "cloth_contact/read", 1), sum_(space), scratch_(space, "cloth_contact/scratch"),
+      host_base_(space, "cloth_contact/host_base", positions.size()),
+      host_expected_(space, "cloth_contact/host_expected", positions.size()),
+      host_slack_(space, "cloth_contact/host_slack", positions.size()),
+      host_pairs_(space, "cloth_contact/host_pairs")
 {
     half_thickness_.upload(rules().thickness().half);
     forget();
@@ -133,10 +144,16 @@ double DeviceClothContact::limit(StepField x, const Leaning& leans)
 void DeviceClothContact::begin_on_host()
 {
     const StageScope stage("collision/safe_step_to_host");
-    host_slack_ = slack_.downloaded();
-    host_pairs_.resize(safe_there_.pairs().size());
-    safe_there_.download_pairs(host_pairs_);
-    safe_.begin(base_.downloaded(), expected_.downloaded(), host_slack_, fixed_, host_pairs_);
+    const int count = safe_there_.pairs().size();
+    if (count > host_pairs_.size())
+        host_pairs_.resize(int(kHeadroom * count));
+    const View<NearPair> pairs = host_pairs_.view().subview(0, count);
+    safe_there_.download_pairs(pairs);
+    base_.download(host_base_.view());
+    expected_.download(host_expected_.view());
+    slack_.download(host_slack_.view());
+    space_.synchronise();
+    safe_.begin(host_base_.view(), host_expected_.view(), host_slack_.view(), fixed_, pairs);
     is_begun_ = true;
 }
 

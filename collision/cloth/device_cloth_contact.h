@@ -2,6 +2,7 @@
 
 #include "collision/cloth/cloth_contact.h"
 #include "collision/cloth/device_safe_step.h"
+#include "core/backend/cuda/sum_scratch.h"
 
 namespace toile {
 
@@ -53,8 +54,9 @@ private:
     // What safe_ borrows, and where x wanted to go before it was brought back.
     View<const unsigned char> fixed_;
     bool is_begun_ = false; ///< safe_ knows the pairs
-    std::vector<double> host_slack_;
-    std::vector<NearPair> host_pairs_;
+    PinnedArray<Vec3> host_base_, host_expected_;
+    PinnedArray<double> host_slack_;
+    PinnedArray<NearPair> host_pairs_; ///< the first of them, as many as there are
     std::vector<Vec3> host_wanted_;
 };
 

@@ -3,7 +3,6 @@
 #include "collision/cloth/device_exempt_pairs.h"
 #include "collision/cloth/device_near_pairs.h"
 #include "collision/cloth/safe_step_kernels.h"
-#include "core/backend/cuda/sum_scratch.h"
 
 namespace toile {
 
@@ -28,12 +27,16 @@ public:
 
     /// Those of begin(), without the exempt ones, on the device.
     View<const NearPair> pairs() const { return pairs_.view().subview(0, expected_count_); }
-    /// The same, copied before the call returns. @param out  [pairs] of the host
+    /// The same, to `out` [pairs] of the host: as DeviceArray::download.
     void download_pairs(View<NearPair> out) const { pairs_.download_first(out); }
 
 private:
     KnownWays known() { return {known_motion_.view(), known_radius_.view()}; }
-    bool any_in_the_way(int first);
+    struct Counts {
+        int strays, in_the_way; ///< vertices; pairs
+    };
+    void count_in_the_way(int first);
+    Counts read_counts();
 
     const CudaSpace& space_;
     DeviceNearPairs& near_;
@@ -47,9 +50,10 @@ private:
     int expected_count_ = 0, count_ = 0;
 
     // Of one look.
-    DeviceArray<Vec3> way_;            ///< [vertices] [m]
-    DeviceArray<unsigned char> marks_; ///< [vertices] 1: strays
-    SumScratch<int> sum_;
+    DeviceArray<Vec3> way_;                ///< [vertices] [m]
+    DeviceArray<unsigned char> marks_;     ///< [vertices] 1: strays
+    DeviceArray<int> counts_, block_sums_; ///< Counts; scratch
+    PinnedArray<int> read_;                ///< Counts
 };
 
 } // namespace toile

@@ -31,6 +31,20 @@ constexpr double kTethered = 0.2;
 /// way then go where their zone does.
 constexpr int kRounds = 16;
 
+/// Appends the numbers in [0, count) of which `is_one` is true, ascending.
+template <typename IsOne>
+void list_where(std::string_view name, int count, const IsOne& is_one, std::vector<int>& out)
+{
+    parallel_append(
+        kCpu, name, count,
+        [&](int begin, int end, std::vector<int>& found) {
+            for (int i = begin; i < end; ++i)
+                if (is_one(i))
+                    found.push_back(i);
+        },
+        out);
+}
+
 /// Those of cloth.
 std::vector<Tethers::Edge> flexible_edges(const SurfaceEdges& edges, const RigidWays& bodies)
 {
@@ -65,15 +79,14 @@ double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
 {
     const StageScope stage("collision/safe_step");
     way_.resize(x.size());
-    for (int v = 0; v < x.size(); ++v)
-        way_[v] = x[v] - base_[v];
-    motion_ = way_;
+    motion_.resize(x.size());
+    parallel_for(kCpu, "collision/ways", x.size(), [&](int v) { motion_[v] = way_[v] = x[v] - base_[v]; });
     is_stale_.assign(x.size(), 1);
     is_deflected_.assign(x.size(), 0);
     if (mark_strays())
         look_around_marked();
     look_at_pairs();
-    if (std::all_of(pair_share_.begin(), pair_share_.end(), [](double share) { return share >= 1.0; }))
+    if (in_the_way_.empty())
         return 0.0;
     deflect();
     find_shares(leans);
@@ -92,13 +105,11 @@ double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
 /// Marks whose motion is none that the lists are complete for. False when all are.
 bool SafeStep::mark_strays()
 {
-    is_marked_.assign(motion_.size(), 0);
-    bool any = false;
-    for (size_t v = 0; v < motion_.size(); ++v) {
-        is_marked_[v] = !known().hold(int(v), motion_[v]);
-        any = any || is_marked_[v];
-    }
-    return any;
+    is_marked_.resize(motion_.size());
+    return parallel_sum(kCpu, int(motion_.size()), 0, [&](int v) {
+               is_marked_[v] = !known().hold(v, motion_[v]);
+               return int(is_marked_[v]);
+           }) > 0;
 }
 
 /// Adds the pairs of marked vertices.
@@ -131,9 +142,7 @@ bool SafeStep::give_way()
     std::fill(is_stale_.begin(), is_stale_.end(), 0);
     bool any = false;
     for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (int i = 0; i < pair_count(); ++i) {
-            if (pair_share_[i] >= 1.0)
-                continue;
+        for (const int i : in_the_way_) {
             const NearPair& pair = this->pair(i);
             std::array<Vec3, 4> end;
             double longest = 0.0;
@@ -214,33 +223,36 @@ void SafeStep::look_at_pairs()
         if (is_stale_[v[0]] || is_stale_[v[1]] || is_stale_[v[2]] || is_stale_[v[3]])
             pair_share_[i] = share(pair);
     });
+    in_the_way_.clear();
+    list_where(
+        "collision/in_the_way", pair_count(), [&](int i) { return pair_share_[i] < 1.0; }, in_the_way_);
 }
 
 /// Brings the vertices of pairs in each other's way together. False when there are none.
 bool SafeStep::shorten(bool for_good)
 {
-    bool any = false;
-    for (int i = 0; i < pair_count(); ++i) {
-        if (pair_share_[i] >= 1.0)
-            continue;
-        any = true;
+    for (const int i : in_the_way_) {
         const double share = for_good ? 0.0 : kTaken * pair_share_[i];
         for (const int v : pair(i).vertex) {
             zones_.join(bodies_.leader_of(pair(i).vertex[0]), bodies_.leader_of(v));
             zones_.bring_back(bodies_.leader_of(v), share);
         }
     }
-    return any;
+    return !in_the_way_.empty();
 }
 
 /// Of vertices whose zone has grown or who are brought back farther.
 void SafeStep::follow_zones()
 {
     zones_.close_round();
-    const std::vector<Vec3> before = motion_;
-    for (int v = 0; v < int(motion_.size()); ++v)
-        if (!bodies_.is_rigid(v))
-            motion_[v] = zones_.motion(v);
+    const std::vector<Vec3> before = bodies_.count() > 0 ? motion_ : std::vector<Vec3>();
+    parallel_for(kCpu, "collision/follow_zones", int(motion_.size()), [&](int v) {
+        if (bodies_.is_rigid(v))
+            return;
+        const Vec3 now = zones_.motion(v);
+        is_stale_[v] = is_stale_[v] || motion_[v] != now;
+        motion_[v] = now;
+    });
     for (int body = 0; body < bodies_.count(); ++body) {
         const int leader = bodies_.leader(body);
         const double share = zones_.share(leader);
@@ -248,7 +260,7 @@ void SafeStep::follow_zones()
         if (share < 1.0)
             bodies_.go(body, common + share * (bodies_.move(body) - common), share, motion_);
     }
-    for (size_t v = 0; v < motion_.size(); ++v)
+    for (size_t v = 0; v < before.size(); ++v)
         is_stale_[v] = is_stale_[v] || motion_[v] != before[v];
 }
 
@@ -256,11 +268,17 @@ void SafeStep::follow_zones()
 /// is not taken, slivers apart: zones that reach from one leg to the other would draw it through both.
 bool SafeStep::hold_together(bool for_good)
 {
+    torn_.clear();
+    list_where(
+        "collision/torn_edges", int(tethers_.edges().size()),
+        [&](int e) {
+            const auto [a, b] = tethers_.edges()[e];
+            return (is_stale_[a] || is_stale_[b]) && tethers_.is_torn(e, motion_);
+        },
+        torn_);
     bool any = false;
-    for (int e = 0; e < int(tethers_.edges().size()); ++e) {
+    for (const int e : torn_) {
         const auto [a, b] = tethers_.edges()[e];
-        if ((!is_stale_[a] && !is_stale_[b]) || !tethers_.is_torn(e, motion_))
-            continue;
         if (!tethers_.is_sliver(e) && (zones_.leans(a) || zones_.leans(b)))
             continue;
         any = true;

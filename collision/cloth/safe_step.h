@@ -104,6 +104,8 @@ private:
     std::vector<Vec3> way_;                   ///< [vertices] from base_ to where they want to go [m]
     std::vector<Vec3> motion_;                ///< [vertices] from base_ to where they may go [m]
     std::vector<double> pair_share_;          ///< [pairs] that one allows
+    std::vector<int> in_the_way_;             ///< pairs that allow less than all, by the last look
+    std::vector<int> torn_;                   ///< edges of tethers_
     std::vector<unsigned char> is_deflected_; ///< [vertices] way_ is not the one that was asked for
     std::vector<unsigned char> is_marked_;    ///< [vertices] for look_around_marked()
     std::vector<unsigned char> is_stale_; ///< [vertices] motion_ has changed since its pairs were looked at
