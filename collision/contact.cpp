@@ -61,7 +61,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
       terms_(make_terms(energy_, triangles, positions, cloths, partners, settings, space))
 {
     if (settings.cloth_with_cloth)
-        between_.emplace(triangles, positions, cloths, altitude_, space);
+        between_ = make_cloth_contact(triangles, positions, cloths, altitude_, space);
 }
 
 void Contact::begin_step(const StepStart& start)
@@ -69,9 +69,9 @@ void Contact::begin_step(const StepStart& start)
     start_ = start;
     has_cleared_ = false;
     if (between_)
-        between_->begin_step(start.x, start.prediction, start.fixed);
+        between_->begin_step(start);
     terms_->begin_step(start);
-    terms_->make(between());
+    terms_->make(between_.get());
 }
 
 void Contact::forget()
@@ -99,12 +99,7 @@ bool Contact::revise(StepField x)
         return false;
     terms_->see(x);
     const FrictionLimits friction = terms_->update_normal_forces();
-    bool has_new_pairs = false;
-    if (between_) {
-        const std::vector<unsigned char> leaning = terms_->leaning();
-        has_new_pairs = between_->advance(x.change_on_host(), leaning);
-        terms_->see(x);
-    }
+    const bool has_new_pairs = between_ && between_->advance(x, [&] { return terms_->leaning(); });
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);
         find_again();
@@ -117,7 +112,7 @@ bool Contact::revise(StepField x)
 void Contact::find_again()
 {
     terms_->find_again();
-    terms_->make(between());
+    terms_->make(between_.get());
 }
 
 void Contact::end_step(StepField x)
@@ -128,7 +123,7 @@ void Contact::end_step(StepField x)
     active_count_ = terms_->remembered();
     min_gap_ = terms_->end_step();
     if (between_)
-        between_->end_step(x.host());
+        between_->end_step(x);
 }
 
 /// Looks where the cloth has come to and moves it out of what is still inside there. This correction does not
@@ -148,18 +143,10 @@ void Contact::clear(StepField x, StepField v)
 }
 
 /// What would have crossed stops: it loses the velocity that it was to have got there.
-bool Contact::keep_apart(StepField positions, StepField velocities)
+bool Contact::keep_apart(StepField x, StepField v)
 {
-    if (!between_)
-        return false;
-    terms_->see(positions);
-    const std::vector<unsigned char> leaning = terms_->leaning();
-    const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
-    const std::vector<Vec3> wanted(x.begin(), x.end());
-    const bool is_far = between_->hold_back(x, leaning);
-    for (int i = 0; i < x.size(); ++i)
-        v[i] += (x[i] - wanted[i]) / start_.dt;
-    return is_far;
+    terms_->see(x);
+    return between_ && between_->hold_back(x, v, start_.dt, [&] { return terms_->leaning(); });
 }
 
 /// Coulomb's law with the distance pushed out for the normal impulse [Macklin et al. 2014, eq. 24]. Nothing

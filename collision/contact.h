@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "collision/cloth/cloth_contact.h"
@@ -55,7 +54,7 @@ public:
     bool keep_apart(StepField x, StepField v) override;
     void end_step(StepField x) override;
 
-    bool keeps_cloth_apart() const { return between_.has_value(); }
+    bool keeps_cloth_apart() const { return between_ != nullptr; }
 
     /// Where cloth crosses cloth at the start of the coming step: contact would keep it on the wrong side, so
     /// it leaves those places alone (ExemptPairs).
@@ -74,7 +73,6 @@ public:
     double min_gap() const { return min_gap_; } ///< [m] smallest distance of a pair, after end_step()
 
 private:
-    const ClothContact* between() const { return between_ ? &*between_ : nullptr; }
     void find_again();
     template <typename Sweeps>
     void sweep_near(StepField x, const Sweeps& sweeps) const;
@@ -92,8 +90,8 @@ private:
     std::vector<int> rigid_; ///< [vertices] see rigid_bodies_of
     StepStart start_;
     std::vector<double> altitude_; ///< [vertices] the shortest of the triangles around, at the start [m]
-    std::optional<ClothContact> between_; ///< cloth and cloth; none where that is switched off
-    ContactEnergy energy_;                ///< without terms where they are on a GPU
+    std::unique_ptr<ClothContact> between_; ///< cloth and cloth; null where that is switched off
+    ContactEnergy energy_;                  ///< without terms where they are on a GPU
     std::unique_ptr<ContactTerms> terms_;
     bool has_cleared_ = false; ///< in this step: friction remembers the minimiser's pairs, these are new
     int active_count_ = 0;

@@ -3,7 +3,7 @@
 /// How a pair becomes a term of the contact energy, and what terms are asked during a step. The same bodies
 /// on CPU and GPU.
 
-#include "collision/cloth/pair_geometry.h"
+#include "collision/cloth/cloth_contact_kernels.h"
 #include "collision/contact_term.h"
 
 namespace toile {
@@ -50,7 +50,7 @@ struct ContactRules {
     View<const double> gap;              ///< [cloths] see ContactCloth [m]
     View<const double> partner_friction; ///< [cloths x partners] [-]
     View<const double> cloth_friction;   ///< [cloths x cloths] [-]
-    View<const double> half_thickness;   ///< [vertices] none where cloth does not touch cloth [m]
+    PairThickness thickness;             ///< of nothing where cloth does not touch cloth
     View<const Vec3> x;                  ///< [vertices] at t0 [m]
     View<const double> diagonal;         ///< [vertices] see StepStart [N/m]
     View<const unsigned char> fixed;     ///< [vertices]
@@ -63,8 +63,7 @@ struct ContactRules {
     {
         if (!pair.is_between_cloths())
             return gap[cloth_of[pair.vertex[0]]];
-        return thickness_between(half_thickness, pair.vertex,
-                                 first_count(pair.kind == ContactKind::kClothEdgeEdge));
+        return thickness.of(pair.vertex, pair.kind == ContactKind::kClothEdgeEdge);
     }
 
     /// Coulomb coefficient [-].

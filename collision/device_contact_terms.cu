@@ -29,7 +29,7 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
       energy_(space), memory_(space), cloth_of_(space, "terms/cloth_of"), gap_(space, "terms/gap"),
       partner_friction_(space, "terms/partner_friction"), cloth_friction_(space, "terms/cloth_friction"),
       half_thickness_(space, "terms/half_thickness"), diagonal_(space, "terms/diagonal"),
-      fixed_(space, "terms/fixed"), between_(space, "terms/between"), room_(space, "terms/room"),
+      fixed_(space, "terms/fixed"), room_(space, "terms/room"),
       overlap_(space, "terms/overlap", positions.size()), pair_flags_(space, "terms/pair_flags"),
       flags_(space, "terms/flags"), leans_(space, "terms/leans", positions.size()),
       list_(space, "terms/list"), near_(space, "terms/near"), near_here_(space, "terms/near_here"),
@@ -51,31 +51,22 @@ void DeviceContactTerms::begin_step(const StepStart& start)
     rules_.gap = gap_.view();
     rules_.partner_friction = partner_friction_.view();
     rules_.cloth_friction = cloth_friction_.view();
-    rules_.half_thickness = half_thickness_.view();
     rules_.x = start.there.x;
     rules_.diagonal = diagonal_.view();
     rules_.fixed = fixed_.view();
     colliders_.find(start.there.x, start.there.prediction, start.dt);
 }
 
-/// The pairs of cloth with cloth, as the host has them.
-void DeviceContactTerms::take_between(const ClothContact* between)
-{
-    host_between_.clear();
-    if (between != nullptr) {
-        between->append_pairs(host_between_);
-        if (half_thickness_.size() == 0)
-            half_thickness_.upload(between->half_thickness());
-        rules_.half_thickness = half_thickness_.view();
-    }
-    between_.upload(host_between_);
-}
-
 void DeviceContactTerms::make(const ClothContact* between)
 {
     const StageScope stage("contact/make_there");
-    take_between(between);
-    const PairsInTurn pairs{colliders_.all(), between_.view()};
+    PairsInTurn pairs{colliders_.all(), {}};
+    if (between != nullptr) {
+        if (half_thickness_.size() == 0)
+            half_thickness_.upload(between->thickness().half);
+        rules_.thickness = {half_thickness_.view()};
+        pairs.second = between->pressing_there();
+    }
     const int count = pairs.first.size() + pairs.second.size();
     const View<double> room = first_items(room_, pairs.first.size());
     parallel_for(space_, "contact/find_room", overlap_.size(),
@@ -150,7 +141,7 @@ double DeviceContactTerms::end_step()
 {
     double least = 0.0;
     if (!empty())
-        least = parallel_sum(space_, "contact/least_gap", energy_.terms().size(), Least{}, LeastGap{look()},
+        least = parallel_sum(space_, "contact/least_gap", energy_.terms().size(), Least{}, LeastDistance{look()},
                              least_)
                     .value;
     colliders_.learn_sides(x_.there());

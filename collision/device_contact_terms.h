@@ -38,7 +38,6 @@ public:
     const DeviceContactEnergy& energy() const { return energy_; }
 
 private:
-    void take_between(const ClothContact* between);
     void mark_flagged(View<unsigned char> marks);
     View<unsigned char> flags() const { return first_items(flags_, energy_.terms().size()); }
     ContactLook look() const { return {energy_.terms(), x_.there()}; }
@@ -59,8 +58,6 @@ private:
     std::vector<double> host_diagonal_;             ///< as they were uploaded
     std::vector<unsigned char> host_fixed_;
 
-    std::vector<ContactPair> host_between_; ///< pairs of cloth with cloth
-    DeviceArray<ContactPair> between_;
     DeviceArray<double> room_, overlap_;       ///< see FindRoom
     DeviceArray<unsigned char> pair_flags_;    ///< [pairs]
     mutable DeviceArray<unsigned char> flags_; ///< [terms]

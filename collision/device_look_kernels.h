@@ -57,7 +57,7 @@ struct Least {
     }
 };
 
-struct LeastGap {
+struct LeastDistance {
     ContactLook look;
     TOILE_HD Least operator()(int i) const { return {look.terms[i].pair.gap(look.x)}; }
 };

@@ -71,7 +71,7 @@ void HostContactTerms::make(const ClothContact* between)
 {
     std::vector<ContactPair> pairs = colliders_.all();
     if (between) {
-        rules_.half_thickness = between->half_thickness();
+        rules_.thickness = between->thickness();
         between->append_pairs(pairs);
     }
     const std::vector<double> room = room_of(pairs);

@@ -1,14 +1,16 @@
 #pragma once
 
-#include <optional>
+#include <functional>
+#include <memory>
 #include <vector>
 
-#include "collision/cloth/near_pairs.h"
-#include "collision/cloth/safe_step.h"
-#include "collision/contact_cloth.h"
+#include "collision/cloth/cloth_contact_rules.h"
 #include "collision/contact_pair.h"
+#include "core/pd/active_set_energy.h"
 
 namespace toile {
+
+class CudaSpace;
 
 /// Cloth against itself and other cloth during a step: which pairs press, and that none ever crosses.
 ///
@@ -16,63 +18,58 @@ namespace toile {
 /// back or has slid away from where they were found; then it is looked again from there.
 class ClothContact {
 public:
-    /// @param triangles  [triangles] of all cloths
-    /// @param positions  [vertices] start positions, without crossings [m]
-    /// @param cloths     whose vertices follow each other
-    /// @param altitude   [vertices] shortest altitude of the triangles around [m]: no more than half of it is
-    ///                   kept, or a fine mesh would push itself apart. Rigid ones can't.
-    /// @param space      where pairs are looked for, borrowed; null: on the CPU
-    ClothContact(View<const Triangle> triangles, View<const Vec3> positions,
-                 const std::vector<ContactCloth>& cloths, View<const double> altitude,
-                 const CudaSpace* space = nullptr);
+    /// [vertices] 1 where cloth lies on a body that takes it along: asked where something is brought back.
+    using Leaning = std::function<std::vector<unsigned char>()>;
+
+    explicit ClothContact(ClothContactRules rules) : rules_(std::move(rules)) {}
+    virtual ~ClothContact() = default;
     ClothContact(const ClothContact&) = delete;
     ClothContact& operator=(const ClothContact&) = delete;
 
-    /// Finds the pairs for a step from x to about `prediction` [vertices] [m].
-    /// @param fixed  [vertices] 1 where the position is prescribed; borrowed during the step
-    void begin_step(View<const Vec3> x, View<const Vec3> prediction, View<const unsigned char> fixed);
+    /// Finds the pairs for a step from start.x to about start.prediction; fields are borrowed during the
+    /// step.
+    virtual void begin_step(const StepStart& start) = 0;
 
     /// Appends the pairs that may press in this step.
-    void append_pairs(std::vector<ContactPair>& out) const;
+    virtual void append_pairs(std::vector<ContactPair>& out) const = 0;
+    /// What append_pairs() appends, on the device until it is looked again; nothing on the CPU.
+    virtual View<const ContactPair> pressing_there() const { return {}; }
 
     /// Brings x back where cloth would cross, and looks again from there where that leaves much undone or
     /// where pairs that press have slid away. True when there are new pairs.
-    /// @param leans  see SafeStep::limit
-    bool advance(View<Vec3> x, View<const unsigned char> leans);
+    virtual bool advance(StepField x, const Leaning& leans) = 0;
 
-    /// Brings x back where cloth would cross. True when that was far: x may go on from there, and be brought
-    /// back again.
-    bool hold_back(View<Vec3> x, View<const unsigned char> leans);
+    /// Brings x back where cloth would cross: what is held back loses the velocity v that it was to have got
+    /// there by in the step of dt [s]. True when that was far: x may go on from there, and be brought back
+    /// again.
+    virtual bool hold_back(StepField x, StepField v, double dt, const Leaning& leans) = 0;
 
     /// See ExemptPairs.
-    void set_crossing(View<const unsigned char> crosses) { exempt_.set_crossing(crosses); }
+    virtual void set_crossing(View<const unsigned char> crosses) = 0;
 
     /// Learns how far the cloth came from what was predicted.
-    void end_step(View<const Vec3> x);
+    virtual void end_step(StepField x) = 0;
 
     /// Drops what earlier steps left, for cloth that was put elsewhere.
-    void forget();
+    virtual void forget() = 0;
 
-    View<const double> half_thickness() const { return half_thickness_; } ///< [vertices] [m]
+    PairThickness thickness() const { return rules_.thickness(); } ///< of the host
+
+protected:
+    const ClothContactRules& rules() const { return rules_; }
 
 private:
-    void look(View<const Vec3> x);
-    void look_on(View<const Vec3> x, View<const Vec3> wanted);
-    std::optional<ContactPair> pressing_pair(const NearPair& now) const;
-    bool has_slid(View<const Vec3> x) const;
-    double bounded_slack(double slack) const;
-
-    double edge_;                                 ///< [m] mean
-    double least_slack_ = 0.0, most_slack_ = 0.0; ///< [m]
-    NearPairs near_;
-    ExemptPairs exempt_;
-    SafeStep safe_;
-    std::vector<double> half_thickness_; ///< [vertices] [m]
-    std::vector<double> slack_;          ///< [vertices] see SafeStep [m]
-    double thickest_ = 0.0;              ///< [m] of the cloths
-    std::vector<NearPair> pairs_;
-    View<const unsigned char> fixed_;
-    std::vector<Vec3> prediction_, deviation_, motion_, expected_; ///< [vertices] [m]
+    ClothContactRules rules_;
 };
+
+/// @param triangles  [triangles] of all cloths
+/// @param positions  [vertices] start positions, without crossings [m]
+/// @param cloths     whose vertices follow each other
+/// @param altitude   [vertices] shortest altitude of the triangles around [m]
+/// @param space      where pairs are looked for and looked at, borrowed, and the steps are made there; null:
+///                   on the CPU
+std::unique_ptr<ClothContact> make_cloth_contact(View<const Triangle> triangles, View<const Vec3> positions,
+                                                 const std::vector<ContactCloth>& cloths,
+                                                 View<const double> altitude, const CudaSpace* space);
 
 } // namespace toile

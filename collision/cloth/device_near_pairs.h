@@ -42,6 +42,8 @@ public:
     View<const NearPair> pairs() const { return pairs_.view(); }
     View<const int> count() const { return count_.view(); }
 
+    SoupView soup() const { return {surface_.triangles(), surface_.edges()}; } ///< on the device
+
     /// The parts of search(), for whoever times them.
     void refit(View<const Vec3> x, const Ways& ways, double margin) { surface_.move(x, ways, margin); }
     void count_triangles();

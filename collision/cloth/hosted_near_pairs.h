@@ -16,6 +16,8 @@ public:
     /// As NearPairs::find. Waits.
     void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
 
+    DeviceNearPairs& there() { return there_; }
+
 private:
     DeviceNearPairs there_;
     DeviceArray<Vec3> x_, motion_;

@@ -19,17 +19,26 @@ void ImpactZones::reset(View<const Vec3> ways, View<const Hold> hold, double slo
 }
 
 /// The vertex that names the zone of v.
-int ImpactZones::zone(int v)
+int ImpactZones::zone(int v) const
+{
+    while (parent_[v] != v)
+        v = parent_[v];
+    return v;
+}
+
+/// The path from v to the one that names its zone, by half.
+void ImpactZones::shorten_path(int v)
 {
     while (parent_[v] != v) {
         parent_[v] = parent_[parent_[v]];
         v = parent_[v];
     }
-    return v;
 }
 
 void ImpactZones::join(int a, int b)
 {
+    shorten_path(a);
+    shorten_path(b);
     const auto [root, child] = std::minmax({zone(a), zone(b)});
     if (root == child)
         return;
@@ -47,14 +56,22 @@ void ImpactZones::join(int a, int b)
     }
 }
 
-Vec3 ImpactZones::common(int v)
+/// Paths are halved here, for motion() must not.
+void ImpactZones::close_round()
+{
+    share_ = next_share_;
+    for (int& parent : parent_)
+        parent = parent_[parent];
+}
+
+Vec3 ImpactZones::common(int v) const
 {
     const Sum& sum = sum_[zone(v)];
     const Vec3 common = sum.way / sum.weight;
     return common.norm() < slow_ ? Vec3(Vec3::Zero()) : common;
 }
 
-Vec3 ImpactZones::motion(int v)
+Vec3 ImpactZones::motion(int v) const
 {
     const double share = share_[v];
     if (share == 1.0)

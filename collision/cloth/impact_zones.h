@@ -34,13 +34,13 @@ public:
 
     /// After close_round() v goes at most this factor of the share that it goes now.
     void bring_back(int v, double factor) { next_share_[v] = std::min(next_share_[v], factor * share_[v]); }
-    void close_round() { share_ = next_share_; }
+    void close_round();
 
-    double share(int v) const { return share_[v]; }                  ///< [-]
-    bool leans(int v) { return sum_[zone(v)].hold == Hold::kLeans; } ///< the zone of v goes with a body
+    double share(int v) const { return share_[v]; }                        ///< [-]
+    bool leans(int v) const { return sum_[zone(v)].hold == Hold::kLeans; } ///< the zone of v goes with a body
 
-    Vec3 common(int v); ///< where the zone of v goes [m]
-    Vec3 motion(int v); ///< of v, a vertex of cloth [m]
+    Vec3 common(int v) const; ///< where the zone of v goes [m]
+    Vec3 motion(int v) const; ///< of v, a vertex of cloth [m]
 
 private:
     /// Weighted sum of the ways of a zone's vertices of the greatest hold; of held ones the slowest.
@@ -50,7 +50,8 @@ private:
         Hold hold;
     };
 
-    int zone(int v);
+    int zone(int v) const;
+    void shorten_path(int v);
 
     double slow_ = 0.0; ///< [m]
     View<const Vec3> ways_;

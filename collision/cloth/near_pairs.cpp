@@ -16,8 +16,7 @@ public:
 
     void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
     const SurfaceEdges& edges() const { return edges_; }
-
-    NearPair at(View<const Vec3> x, int first, int second, bool is_edge_edge) const;
+    SoupView soup() const { return {triangles_, view_of(edges_)}; }
 
 private:
     /// What one task found: (vertex, triangle) and (edge, edge).
@@ -86,11 +85,6 @@ void NearPairs::Search::try_triangle(int p, int t, Found& found) const
         found.vertex_triangle.push_back({p, t});
 }
 
-NearPair NearPairs::Search::at(View<const Vec3> x, int first, int second, bool is_edge_edge) const
-{
-    return near_pair_at(triangles_, view_of(edges_), x, first, second, is_edge_edge);
-}
-
 void NearPairs::Search::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {
     x_ = x;
@@ -133,7 +127,7 @@ void NearPairs::Search::report(std::vector<NearPair>& out)
     parallel_for(kCpu, "collision/cloth_facing", count, [&](int i) {
         const bool is_edge_edge = i >= triangle_count;
         const auto [first, second] = is_edge_edge ? edge_edge_[i - triangle_count] : vertex_triangle_[i];
-        out[i] = at(x_, first, second, is_edge_edge);
+        out[i] = near_pair_at(triangles_, view_of(edges_), x_, first, second, is_edge_edge);
     });
 }
 
@@ -147,12 +141,9 @@ NearPairs::~NearPairs() = default;
 NearPairs::NearPairs(NearPairs&&) noexcept = default;
 NearPairs& NearPairs::operator=(NearPairs&&) noexcept = default;
 
-NearPair NearPairs::at(View<const Vec3> x, const NearPair& pair) const
-{
-    return search_->at(x, pair.first, pair.second, pair.is_edge_edge);
-}
-
 const SurfaceEdges& NearPairs::edges() const { return search_->edges(); }
+SoupView NearPairs::soup() const { return search_->soup(); }
+DeviceNearPairs* NearPairs::on_device() const { return there_ ? &there_->there() : nullptr; }
 
 void NearPairs::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {

@@ -11,7 +11,9 @@
 namespace toile {
 
 class CudaSpace;
+class DeviceNearPairs;
 class HostedNearPairs;
+struct SoupView;
 
 /// Two primitives of one triangle soup that share no vertex and are near each other: a vertex and a
 /// triangle, or two edges. "First" and "second" below are these two.
@@ -68,8 +70,10 @@ public:
 
     const SurfaceEdges& edges() const; ///< of the triangles
 
-    /// A pair as it is at other positions [vertices x 3] [m].
-    NearPair at(View<const Vec3> x, const NearPair& pair) const;
+    SoupView soup() const; ///< borrowed
+
+    /// What searches on a GPU; null: find() searches on the CPU.
+    DeviceNearPairs* on_device() const;
 
 private:
     class Search;

@@ -18,21 +18,6 @@ inline constexpr double kNoDirection = 1e-12;
 /// Corners of the first primitive; those of the second fill the rest of the four.
 TOILE_HD inline int first_count(bool is_edge_edge) { return is_edge_edge ? 2 : 1; }
 
-/// Between the middle surfaces of a pair of cloth with cloth [m].
-/// @param half_thickness  [vertices] [m]
-/// @param first_count     vertices of the pair's first side
-TOILE_HD inline double thickness_between(View<const double> half_thickness, const std::array<int, 4>& vertex,
-                                         int first_count)
-{
-    double side[2] = {half_thickness[vertex[0]], half_thickness[vertex[3]]};
-    for (int k = 1; k < 3; ++k) {
-        double& half = side[k < first_count ? 0 : 1];
-        if (half_thickness[vertex[k]] < half)
-            half = half_thickness[vertex[k]];
-    }
-    return side[0] + side[1];
-}
-
 /// Signed weights, sum 0: sum_k weight_k x_k runs from the second's closest point to the first's.
 TOILE_HD inline std::array<double, 4> closest_weights(bool is_edge_edge, const std::array<Vec3, 4>& x)
 {

@@ -114,4 +114,16 @@ TOILE_HD inline NearPair near_pair_at(View<const Triangle> triangles, const Surf
     return pair;
 }
 
+/// A soup as pairs are told in full from.
+struct SoupView {
+    View<const Triangle> triangles;
+    SurfaceEdgesView edges;
+
+    /// A pair as it is at other positions x [vertices x 3] [m].
+    TOILE_HD NearPair at(View<const Vec3> x, const NearPair& pair) const
+    {
+        return near_pair_at(triangles, edges, x, pair.first, pair.second, pair.is_edge_edge);
+    }
+};
+
 } // namespace toile

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "collision/cloth/pair_geometry.h"
-#include "collision/cloth/safe_motion.h"
+#include "collision/cloth/safe_step_kernels.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -14,9 +13,6 @@ namespace {
 /// Part of an allowed share that is taken [-]: the shortened way is another one, whose own limit must not be
 /// met again by rounding.
 constexpr double kTaken = 0.95;
-
-/// How much farther than it has strayed a vertex may go on before pairs are looked for again [-].
-constexpr double kStrayMore = 0.5;
 
 /// How often the ends of ways are moved apart, in how many sweeps over the pairs each, and how much farther
 /// than they have to be [-].
@@ -35,14 +31,18 @@ constexpr double kTethered = 0.2;
 /// way then go where their zone does.
 constexpr int kRounds = 16;
 
-/// True where the direction that separates the pair at first shows that it may go all of its way.
-bool stays_apart(const NearPair& pair, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& move,
-                 double least)
+/// Appends the numbers in [0, count) of which `is_one` is true, ascending.
+template <typename IsOne>
+void list_where(std::string_view name, int count, const IsOne& is_one, std::vector<int>& out)
 {
-    std::array<Vec3, 4> end;
-    for (int k = 0; k < 4; ++k)
-        end[k] = x[k] + move[k];
-    return pair.distance >= least && gap_along(pair.normal, pair.is_edge_edge, end) >= least;
+    parallel_append(
+        kCpu, name, count,
+        [&](int begin, int end, std::vector<int>& found) {
+            for (int i = begin; i < end; ++i)
+                if (is_one(i))
+                    found.push_back(i);
+        },
+        out);
 }
 
 /// Those of cloth.
@@ -70,25 +70,23 @@ void SafeStep::begin(View<const Vec3> x, View<const Vec3> expected, View<const d
     fixed_ = fixed;
     expected_pairs_ = pairs;
     more_pairs_.clear();
-    known_radius_.assign(slack.begin(), slack.end());
+    known_radius_.resize(x.size());
     known_motion_.resize(x.size());
-    for (int v = 0; v < x.size(); ++v)
-        known_motion_[v] = expected[v] - x[v];
+    parallel_for(kCpu, "collision/know_expected", x.size(), KnowExpected{x, expected, slack, known()});
 }
 
 double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
 {
     const StageScope stage("collision/safe_step");
     way_.resize(x.size());
-    for (int v = 0; v < x.size(); ++v)
-        way_[v] = x[v] - base_[v];
-    motion_ = way_;
+    motion_.resize(x.size());
+    parallel_for(kCpu, "collision/ways", x.size(), [&](int v) { motion_[v] = way_[v] = x[v] - base_[v]; });
     is_stale_.assign(x.size(), 1);
     is_deflected_.assign(x.size(), 0);
     if (mark_strays())
         look_around_marked();
     look_at_pairs();
-    if (std::all_of(pair_share_.begin(), pair_share_.end(), [](double share) { return share >= 1.0; }))
+    if (in_the_way_.empty())
         return 0.0;
     deflect();
     find_shares(leans);
@@ -104,24 +102,14 @@ double SafeStep::limit(View<Vec3> x, View<const unsigned char> leans)
     return farthest;
 }
 
-/// Of two layers that lie on each other a tenth of their distance is left; far ones may come that near too.
-double SafeStep::least_gap_of(const NearPair& pair) const
-{
-    return std::max(settings_.least_gap,
-                    settings_.least_share * std::min(pair.distance, settings_.thickness));
-}
-
 /// Marks whose motion is none that the lists are complete for. False when all are.
 bool SafeStep::mark_strays()
 {
-    is_marked_.assign(motion_.size(), 0);
-    bool any = false;
-    for (size_t v = 0; v < motion_.size(); ++v) {
-        const double radius = known_radius_[v];
-        is_marked_[v] = (motion_[v] - known_motion_[v]).squaredNorm() > radius * radius;
-        any = any || is_marked_[v];
-    }
-    return any;
+    is_marked_.resize(motion_.size());
+    return parallel_sum(kCpu, int(motion_.size()), 0, [&](int v) {
+               is_marked_[v] = !known().hold(v, motion_[v]);
+               return int(is_marked_[v]);
+           }) > 0;
 }
 
 /// Adds the pairs of marked vertices.
@@ -129,12 +117,9 @@ void SafeStep::look_around_marked()
 {
     const StageScope stage("collision/look_again");
     for (size_t v = 0; v < motion_.size(); ++v)
-        if (is_marked_[v]) {
-            known_motion_[v] = motion_[v];
-            known_radius_[v] = std::max(slack_[int(v)], kStrayMore * (motion_[v] - way_[v]).norm());
-        }
-    near_.find(base_, {known_motion_, known_radius_, is_marked_},
-               std::max(settings_.least_gap, settings_.least_share * settings_.thickness), found_pairs_);
+        if (is_marked_[v])
+            known().widen(int(v), motion_[v], (motion_[v] - way_[v]).norm(), slack_[int(v)]);
+    near_.find(base_, {known_motion_, known_radius_, is_marked_}, least_gap().most(), found_pairs_);
     std::copy_if(found_pairs_.begin(), found_pairs_.end(), std::back_inserter(more_pairs_),
                  [&](const NearPair& pair) { return !exempt_.is_exempt(pair); });
 }
@@ -157,9 +142,7 @@ bool SafeStep::give_way()
     std::fill(is_stale_.begin(), is_stale_.end(), 0);
     bool any = false;
     for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (int i = 0; i < pair_count(); ++i) {
-            if (pair_share_[i] >= 1.0)
-                continue;
+        for (const int i : in_the_way_) {
             const NearPair& pair = this->pair(i);
             std::array<Vec3, 4> end;
             double longest = 0.0;
@@ -167,7 +150,7 @@ bool SafeStep::give_way()
                 end[k] = base_[pair.vertex[k]] + way_[pair.vertex[k]];
                 longest = std::max(longest, way_[pair.vertex[k]].norm());
             }
-            const double kept = std::min(kMoreThanLeast * least_gap_of(pair), pair.distance);
+            const double kept = std::min(kMoreThanLeast * least_gap().of(pair), pair.distance);
             const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
             const double ahead = mobility_of(pair, true), behind = mobility_of(pair, false);
             const bool is_small = lacking <= settings_.most_deflection;
@@ -233,49 +216,43 @@ void SafeStep::take_along()
 void SafeStep::look_at_pairs()
 {
     pair_share_.resize(pair_count(), 1.0);
+    const PairShare share{base_, motion_, least_gap()};
     parallel_for(kCpu, "collision/safe_share", pair_count(), [&](int i) {
         const NearPair& pair = this->pair(i);
-        std::array<Vec3, 4> x, move;
-        bool is_stale = false;
-        for (int k = 0; k < 4; ++k) {
-            const int v = pair.vertex[k];
-            is_stale = is_stale || is_stale_[v];
-            x[k] = base_[v];
-            move[k] = motion_[v];
-        }
-        if (!is_stale)
-            return;
-        const double least = least_gap_of(pair);
-        pair_share_[i] =
-            stays_apart(pair, x, move, least) ? 1.0 : safe_share(pair.is_edge_edge, x, move, least);
+        const std::array<int, 4>& v = pair.vertex;
+        if (is_stale_[v[0]] || is_stale_[v[1]] || is_stale_[v[2]] || is_stale_[v[3]])
+            pair_share_[i] = share(pair);
     });
+    in_the_way_.clear();
+    list_where(
+        "collision/in_the_way", pair_count(), [&](int i) { return pair_share_[i] < 1.0; }, in_the_way_);
 }
 
 /// Brings the vertices of pairs in each other's way together. False when there are none.
 bool SafeStep::shorten(bool for_good)
 {
-    bool any = false;
-    for (int i = 0; i < pair_count(); ++i) {
-        if (pair_share_[i] >= 1.0)
-            continue;
-        any = true;
+    for (const int i : in_the_way_) {
         const double share = for_good ? 0.0 : kTaken * pair_share_[i];
         for (const int v : pair(i).vertex) {
             zones_.join(bodies_.leader_of(pair(i).vertex[0]), bodies_.leader_of(v));
             zones_.bring_back(bodies_.leader_of(v), share);
         }
     }
-    return any;
+    return !in_the_way_.empty();
 }
 
 /// Of vertices whose zone has grown or who are brought back farther.
 void SafeStep::follow_zones()
 {
     zones_.close_round();
-    const std::vector<Vec3> before = motion_;
-    for (int v = 0; v < int(motion_.size()); ++v)
-        if (!bodies_.is_rigid(v))
-            motion_[v] = zones_.motion(v);
+    const std::vector<Vec3> before = bodies_.count() > 0 ? motion_ : std::vector<Vec3>();
+    parallel_for(kCpu, "collision/follow_zones", int(motion_.size()), [&](int v) {
+        if (bodies_.is_rigid(v))
+            return;
+        const Vec3 now = zones_.motion(v);
+        is_stale_[v] = is_stale_[v] || motion_[v] != now;
+        motion_[v] = now;
+    });
     for (int body = 0; body < bodies_.count(); ++body) {
         const int leader = bodies_.leader(body);
         const double share = zones_.share(leader);
@@ -283,7 +260,7 @@ void SafeStep::follow_zones()
         if (share < 1.0)
             bodies_.go(body, common + share * (bodies_.move(body) - common), share, motion_);
     }
-    for (size_t v = 0; v < motion_.size(); ++v)
+    for (size_t v = 0; v < before.size(); ++v)
         is_stale_[v] = is_stale_[v] || motion_[v] != before[v];
 }
 
@@ -291,11 +268,17 @@ void SafeStep::follow_zones()
 /// is not taken, slivers apart: zones that reach from one leg to the other would draw it through both.
 bool SafeStep::hold_together(bool for_good)
 {
+    torn_.clear();
+    list_where(
+        "collision/torn_edges", int(tethers_.edges().size()),
+        [&](int e) {
+            const auto [a, b] = tethers_.edges()[e];
+            return (is_stale_[a] || is_stale_[b]) && tethers_.is_torn(e, motion_);
+        },
+        torn_);
     bool any = false;
-    for (int e = 0; e < int(tethers_.edges().size()); ++e) {
+    for (const int e : torn_) {
         const auto [a, b] = tethers_.edges()[e];
-        if ((!is_stale_[a] && !is_stale_[b]) || !tethers_.is_torn(e, motion_))
-            continue;
         if (!tethers_.is_sliver(e) && (zones_.leans(a) || zones_.leans(b)))
             continue;
         any = true;

@@ -7,6 +7,7 @@
 #include "collision/cloth/impact_zones.h"
 #include "collision/cloth/near_pairs.h"
 #include "collision/cloth/rigid_ways.h"
+#include "collision/cloth/safe_step_kernels.h"
 #include "collision/cloth/tethers.h"
 
 namespace toile {
@@ -61,8 +62,10 @@ public:
 
     View<const Vec3> base() const { return base_; } ///< [vertices] the pose of begin() [m]
 
+    LeastGap least_gap() const { return {settings_.least_gap, settings_.least_share, settings_.thickness}; }
+
 private:
-    double least_gap_of(const NearPair& pair) const;
+    KnownWays known() { return {known_motion_, known_radius_}; }
     bool mark_strays();
     void look_around_marked();
     const NearPair& pair(int i) const
@@ -101,6 +104,8 @@ private:
     std::vector<Vec3> way_;                   ///< [vertices] from base_ to where they want to go [m]
     std::vector<Vec3> motion_;                ///< [vertices] from base_ to where they may go [m]
     std::vector<double> pair_share_;          ///< [pairs] that one allows
+    std::vector<int> in_the_way_;             ///< pairs that allow less than all, by the last look
+    std::vector<int> torn_;                   ///< edges of tethers_
     std::vector<unsigned char> is_deflected_; ///< [vertices] way_ is not the one that was asked for
     std::vector<unsigned char> is_marked_;    ///< [vertices] for look_around_marked()
     std::vector<unsigned char> is_stale_; ///< [vertices] motion_ has changed since its pairs were looked at

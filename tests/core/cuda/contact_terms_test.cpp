@@ -178,7 +178,7 @@ protected:
 
     /// Both at what lies between two minimisations of a step and at its end.
     void revise(HostContactTerms& here, DeviceContactTerms& there, OnBoard& board, Dressed& made,
-                const ClothContact* between)
+                const ClothContact& between, const ClothContact& between_there)
     {
         here.see(made.found);
         there.see(board.found);
@@ -197,8 +197,8 @@ protected:
         EXPECT_EQ(there.remembered(), here.remembered());
         here.find_again();
         there.find_again();
-        here.make(between);
-        there.make(between);
+        here.make(&between);
+        there.make(&between_there);
     }
 };
 
@@ -211,25 +211,28 @@ TEST_F(DeviceContactTermsTest, AreThoseOfTheCpuFromStepToStep)
     DeviceContactTerms there(space(), made.mesh.triangles, made.x, made.cloths, made.partners,
                              made.settings());
     const std::vector<double> altitude(made.x.size(), 0.005);
-    ClothContact between(made.mesh.triangles, made.x, made.cloths, altitude);
+    const auto between = make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, nullptr);
+    const auto between_there =
+        make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, &space());
     OnBoard board(space(), count);
     int gripped = 0, handed_on = 0, with_cloth = 0, faces = 0;
     for (int step = 0; step < 5; ++step) {
         const std::string what = "step " + std::to_string(step);
         made.advance();
         const StepStart start = board.begin(made);
-        between.begin_step(made.x, made.prediction, made.fixed);
+        between->begin_step(start);
+        between_there->begin_step(start);
         here.begin_step(start);
         there.begin_step(start);
-        here.make(&between);
-        there.make(&between);
+        here.make(between.get());
+        there.make(between_there.get());
         const TermDifferences first = compare(energy.terms(), downloaded(there), made, what);
         gripped += first.gripped;
         handed_on += first.remembered;
         with_cloth += first.between;
         faces += first.faces;
 
-        revise(here, there, board, made, &between);
+        revise(here, there, board, made, *between, *between_there);
         const TermDifferences again = compare(energy.terms(), downloaded(there), made, what + " again");
         EXPECT_GT(again.remembered, 10);
 

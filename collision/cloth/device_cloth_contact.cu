@@ -1,0 +1,190 @@
+#include "collision/cloth/device_cloth_contact.h"
+
+#include "core/backend/cuda/parallel.cuh"
+#include "core/pd/device/body_kernels.h"
+
+namespace toile {
+
+namespace {
+
+/// Room is made for this much more than is needed [-].
+constexpr double kHeadroom = 1.25;
+
+} // namespace
+
+DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triangle> triangles,
+                                       View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
+                                       View<const double> altitude)
+    : ClothContact({triangles, positions, cloths, altitude}), space_(space),
+      near_(triangles, positions, rigid_bodies_of(cloths), &space),
+      exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
+      safe_(near_, exempt_, rules().safe_step(), rules().bodies()), exempt_there_(space, exempt_),
+      safe_there_(space, *near_.on_device(), exempt_there_, safe_.least_gap(), positions.size()),
+      half_thickness_(space, "cloth_contact/half_thickness"),
+      slack_(space, "cloth_contact/slack", positions.size()),
+      base_(space, "cloth_contact/base", positions.size()),
+      deviation_(space, "cloth_contact/deviation", positions.size()),
+      motion_(space, "cloth_contact/motion", positions.size()),
+      expected_(space, "cloth_contact/expected", positions.size()), wanted_(space, "cloth_contact/wanted"),
+      pressing_(space, "cloth_contact/pressing"), marks_(space, "cloth_contact/marks"),
+      places_(space, "cloth_contact/places"), number_(space, "cloth_contact/number", 1),
+      read_(space, "cloth_contact/read", 1), sum_(space), scratch_(space, "cloth_contact/scratch"),
+      host_base_(space, "cloth_contact/host_base", positions.size()),
+      host_expected_(space, "cloth_contact/host_expected", positions.size()),
+      host_slack_(space, "cloth_contact/host_slack", positions.size()),
+      host_pairs_(space, "cloth_contact/host_pairs")
+{
+    half_thickness_.upload(rules().thickness().half);
+    forget();
+}
+
+void DeviceClothContact::set_crossing(View<const unsigned char> crosses)
+{
+    exempt_.set_crossing(crosses);
+    exempt_there_.set_crossing(crosses);
+}
+
+void DeviceClothContact::forget()
+{
+    deviation_.fill_zero();
+    slack_.upload(std::vector<double>(slack_.size(), rules().slack().least));
+}
+
+void DeviceClothContact::begin_step(const StepStart& start)
+{
+    fixed_ = start.fixed;
+    prediction_ = start.there.prediction;
+    parallel_for(space_, "collision/expect", start.there.x.size(),
+                 ExpectMotion{start.there.x, prediction_, deviation_.view(), motion_.view()});
+    look(start.there.x);
+}
+
+void DeviceClothContact::look(View<const Vec3> x)
+{
+    const StageScope stage("collision/near_pairs");
+    is_begun_ = false;
+    parallel_for(space_, "collision/keep_base", x.size(), CopyPositions{x, base_.view()});
+    parallel_for(space_, "collision/expect", x.size(),
+                 ExpectEnd{base_.view(), motion_.view(), expected_.view()});
+    const View<const NearPair> found =
+        near_.on_device()->find(base_.view(), {motion_.view(), slack_.view()}, rules().thickest());
+    safe_there_.begin(base_.view(), expected_.view(), slack_.view(), found);
+    list_pressing();
+}
+
+FindPressing DeviceClothContact::find_pressing() const
+{
+    return {near_.on_device()->soup(), base_.view(),  motion_.view(),
+            expected_.view(),          slack_.view(), {half_thickness_.view()}};
+}
+
+/// Waits for their number.
+void DeviceClothContact::list_pressing()
+{
+    const StageScope stage("collision/cloth_terms");
+    const View<const NearPair> pairs = safe_there_.pairs();
+    marks_.resize(pairs.size());
+    places_.resize(pairs.size());
+    number_.fill_zero();
+    parallel_for(space_, "collision/device_mark_pressing", pairs.size(),
+                 MarkPressing{find_pressing(), pairs, marks_.view()});
+    list_flagged(space_, "collision/device_list_pressing", marks_.view(), places_.view(), number_.view(),
+                 scratch_);
+    number_.download(read_.view());
+    space_.synchronise();
+    pressing_.resize(read_[0]);
+    parallel_for(space_, "collision/device_report_pressing", pressing_.size(),
+                 ReportPressing{find_pressing(), pairs, places_.view(), pressing_.view()});
+}
+
+void DeviceClothContact::append_pairs(std::vector<ContactPair>& out) const
+{
+    const size_t before = out.size();
+    out.resize(before + pressing_.size());
+    pressing_.download({out.data() + before, pressing_.size()});
+}
+
+bool DeviceClothContact::advance(StepField x, const Leaning& leans)
+{
+    const double held = limit(x, leans);
+    if (held <= rules().held_aside() && !has_slid(x.there()))
+        return false;
+    look_on(x.there(), held > 0.0, true);
+    return true;
+}
+
+bool DeviceClothContact::hold_back(StepField x, StepField v, double dt, const Leaning& leans)
+{
+    const double held = limit(x, leans);
+    if (held > 0.0) {
+        const View<const Vec3> reached = x.host();
+        const View<Vec3> velocity = v.change_on_host();
+        for (int i = 0; i < reached.size(); ++i)
+            velocity[i] += (reached[i] - host_wanted_[i]) / dt;
+    }
+    if (held <= rules().held_aside())
+        return false;
+    look_on(x.there(), true, false);
+    return true;
+}
+
+/// As SafeStep::limit. Where that changes x, host_wanted_ has what it was.
+double DeviceClothContact::limit(StepField x, const Leaning& leans)
+{
+    if (safe_there_.leaves_alone(x.there()))
+        return 0.0;
+    if (!is_begun_)
+        begin_on_host();
+    const View<const Vec3> wanted = x.host();
+    host_wanted_.assign(wanted.begin(), wanted.end());
+    const std::vector<unsigned char> leaning = leans();
+    return safe_.limit(x.change_on_host(), leaning);
+}
+
+void DeviceClothContact::begin_on_host()
+{
+    const StageScope stage("collision/safe_step_to_host");
+    const int count = safe_there_.pairs().size();
+    if (count > host_pairs_.size())
+        host_pairs_.resize(int(kHeadroom * count));
+    const View<NearPair> pairs = host_pairs_.view().subview(0, count);
+    safe_there_.download_pairs(pairs);
+    base_.download(host_base_.view());
+    expected_.download(host_expected_.view());
+    slack_.download(host_slack_.view());
+    space_.synchronise();
+    safe_.begin(host_base_.view(), host_expected_.view(), host_slack_.view(), fixed_, pairs);
+    is_begun_ = true;
+}
+
+/// @param was_held  host_wanted_ is where the cloth wanted to be
+void DeviceClothContact::look_on(View<const Vec3> x, bool was_held, bool goes_on)
+{
+    if (was_held)
+        wanted_.upload(host_wanted_);
+    parallel_for(space_, "collision/look_on", x.size(),
+                 LookOn{x, was_held ? View<const Vec3>(wanted_.view()) : x, goes_on, rules().slack(),
+                        motion_.view(), slack_.view()});
+    look(x);
+}
+
+bool DeviceClothContact::has_slid(View<const Vec3> x)
+{
+    const View<const NearPair> pairs = safe_there_.pairs();
+    return parallel_sum(space_, "collision/device_slid", pairs.size(), 0,
+                        CountSlid{near_.on_device()->soup(),
+                                  pairs,
+                                  x,
+                                  expected_.view(),
+                                  {half_thickness_.view()},
+                                  rules().slid()},
+                        sum_) > 0;
+}
+
+void DeviceClothContact::end_step(StepField x)
+{
+    parallel_for(space_, "collision/learn_deviation", x.size(),
+                 LearnDeviation{x.there(), prediction_, rules().slack(), deviation_.view(), slack_.view()});
+}
+
+} // namespace toile

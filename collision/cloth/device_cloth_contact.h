@@ -1,0 +1,61 @@
+#pragma once
+
+#include "collision/cloth/cloth_contact.h"
+#include "collision/cloth/device_safe_step.h"
+#include "core/backend/cuda/sum_scratch.h"
+
+namespace toile {
+
+/// ClothContact on a GPU. Pairs, ways and what is learnt of them stay there; the host has what presses, and
+/// where something is to be brought back it does that with a copy of the pairs.
+class DeviceClothContact : public ClothContact {
+public:
+    /// See make_cloth_contact.
+    DeviceClothContact(const CudaSpace& space, View<const Triangle> triangles, View<const Vec3> positions,
+                       const std::vector<ContactCloth>& cloths, View<const double> altitude);
+
+    /// @param start  with `there`
+    void begin_step(const StepStart& start) override;
+    void append_pairs(std::vector<ContactPair>& out) const override;
+    View<const ContactPair> pressing_there() const override { return pressing_.view(); }
+    bool advance(StepField x, const Leaning& leans) override;
+    bool hold_back(StepField x, StepField v, double dt, const Leaning& leans) override;
+    void set_crossing(View<const unsigned char> crosses) override;
+    void end_step(StepField x) override;
+    void forget() override;
+
+private:
+    double limit(StepField x, const Leaning& leans);
+    void begin_on_host();
+    void look(View<const Vec3> x);
+    void look_on(View<const Vec3> x, bool was_held, bool goes_on);
+    void list_pressing();
+    bool has_slid(View<const Vec3> x);
+    FindPressing find_pressing() const;
+
+    const CudaSpace& space_;
+    NearPairs near_;
+    ExemptPairs exempt_;
+    SafeStep safe_; ///< of the host, where something is brought back
+    DeviceExemptPairs exempt_there_;
+    DeviceSafeStep safe_there_;
+    DeviceArray<double> half_thickness_, slack_;                      ///< [vertices] [m]
+    View<const Vec3> prediction_;                                     ///< [vertices] on the device [m]
+    DeviceArray<Vec3> base_, deviation_, motion_, expected_, wanted_; ///< [vertices] [m]
+    DeviceArray<ContactPair> pressing_;
+    DeviceArray<unsigned char> marks_; ///< [pairs] 1: presses
+    DeviceArray<int> places_, number_; ///< [pairs], [1]
+    PinnedArray<int> read_;            ///< [1]
+    SumScratch<int> sum_;
+    DeviceScratch scratch_;
+
+    // What safe_ borrows, and where x wanted to go before it was brought back.
+    View<const unsigned char> fixed_;
+    bool is_begun_ = false; ///< safe_ knows the pairs
+    PinnedArray<Vec3> host_base_, host_expected_;
+    PinnedArray<double> host_slack_;
+    PinnedArray<NearPair> host_pairs_; ///< the first of them, as many as there are
+    std::vector<Vec3> host_wanted_;
+};
+
+} // namespace toile

@@ -1,0 +1,66 @@
+#include "collision/cloth/device_exempt_pairs.h"
+
+#include <algorithm>
+
+#include "collision/cloth/device_exempt_kernels.h"
+#include "core/backend/cuda/parallel.cuh"
+
+namespace toile {
+
+namespace {
+
+/// Room is made for this much more than is needed [-].
+constexpr double kHeadroom = 1.25;
+
+} // namespace
+
+DeviceExemptPairs::DeviceExemptPairs(const CudaSpace& space, const ExemptPairs& exempt)
+    : space_(space), rest_(space, "exempt_pairs/rest"), too_near_(exempt.rule().too_near),
+      is_thin_(space, "exempt_pairs/is_thin"), crosses_(space, "exempt_pairs/crosses"),
+      has_thin_(any(exempt.rule().is_thin)), marks_(space, "exempt_pairs/marks"),
+      places_(space, "exempt_pairs/places"), number_(space, "exempt_pairs/number", 1),
+      read_(space, "exempt_pairs/read", 1), scratch_(space, "exempt_pairs/scratch")
+{
+    rest_.upload(exempt.rule().rest);
+    is_thin_.upload(exempt.rule().is_thin);
+    set_crossing(exempt.rule().crosses);
+}
+
+bool DeviceExemptPairs::any(View<const unsigned char> marks)
+{
+    return std::find(marks.begin(), marks.end(), 1) != marks.end();
+}
+
+void DeviceExemptPairs::set_crossing(View<const unsigned char> crosses)
+{
+    crosses_.upload(crosses);
+    has_crossing_ = any(crosses);
+}
+
+void DeviceExemptPairs::append_kept(View<const NearPair> found, DeviceArray<NearPair>& kept, int& count)
+{
+    const int most = count + found.size();
+    if (most > kept.size()) {
+        kept.resize_keeping(count); // what lies beyond need not be kept
+        kept.resize_keeping(int(kHeadroom * double(most)));
+    }
+    const View<NearPair> rest = kept.view().subview(count, found.size());
+    if (!has_thin_ && !has_crossing_) {
+        parallel_for(space_, "collision/device_keep_pairs", found.size(), KeepAll{found, rest});
+        count = most;
+        return;
+    }
+
+    marks_.resize(found.size());
+    places_.resize(found.size());
+    number_.fill_zero();
+    parallel_for(space_, "collision/device_mark_kept", found.size(), MarkKept{rule(), found, marks_.view()});
+    list_flagged(space_, "collision/device_list_kept", marks_.view(), places_.view(), number_.view(),
+                 scratch_);
+    number_.download(read_.view());
+    space_.synchronise();
+    parallel_for(space_, "collision/device_keep_pairs", read_[0], KeepMarked{found, places_.view(), rest});
+    count += read_[0];
+}
+
+} // namespace toile
