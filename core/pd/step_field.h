@@ -11,11 +11,10 @@ namespace toile {
 /// view is good until the other side changes the field.
 class StepField {
 public:
-    // NOLINTBEGIN(google-explicit-constructor): whoever has a field passes it
+    // Conversions, for whoever has a field to pass it.
     StepField(View<Vec3> of_host) : of_host_(of_host) {}
     StepField(std::vector<Vec3>& of_host) : of_host_(of_host) {}
     StepField(MirroredArray<Vec3>& mirrored) : mirrored_(&mirrored) {}
-    // NOLINTEND(google-explicit-constructor)
 
     int size() const { return mirrored_ ? mirrored_->size() : of_host_.size(); }
 
