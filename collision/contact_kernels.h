@@ -69,21 +69,21 @@ struct ContactTouches {
     View<const int> first;   ///< [lists + 1] into entries
     View<const int> entries; ///< 4 * term + slot, ascending in each list
 
-    /// sum of weight * force over the terms of list k
-    TOILE_HD Vec3 force(int k, View<const Vec3> of_term) const
+    /// sum of weight * force over the terms of list k, or over every `stride`-th from number `from` on
+    TOILE_HD Vec3 force(int k, View<const Vec3> of_term, int from = 0, int stride = 1) const
     {
         Vec3 sum(0.0, 0.0, 0.0);
-        for (int e = first[k]; e < first[k + 1]; ++e)
+        for (int e = first[k] + from; e < first[k + 1]; e += stride)
             sum += terms[entries[e] / 4].pair.weight[entries[e] % 4] * of_term[entries[e] / 4];
         return sum;
     }
 
-    /// sum_p |b_k| (sum_j |b_j|) A_p over the terms of list k: bounds the frozen Hessian at its vertex
-    /// (Cauchy-Schwarz).
-    TOILE_HD Mat3 block(int k, View<const FrozenContact> frozen) const
+    /// sum_p |b_k| (sum_j |b_j|) A_p over the same terms: over all of list k it bounds the frozen Hessian at
+    /// its vertex (Cauchy-Schwarz).
+    TOILE_HD Mat3 block(int k, View<const FrozenContact> frozen, int from = 0, int stride = 1) const
     {
         Mat3 sum = Mat3::Zero();
-        for (int e = first[k]; e < first[k + 1]; ++e) {
+        for (int e = first[k] + from; e < first[k + 1]; e += stride) {
             const int term = entries[e] / 4;
             if (!frozen[term].acts())
                 continue;

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "collision/device_contact_kernels.h"
-#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/teams.cuh"
 
 namespace toile {
 
@@ -12,6 +12,9 @@ namespace {
 
 /// Room is made for this much more than was needed [-].
 constexpr double kHeadroom = 1.25;
+
+/// Threads that share the terms of a vertex.
+constexpr int kListThreads = 8;
 
 } // namespace
 
@@ -76,7 +79,7 @@ void DeviceContactEnergy::add_gradient(View<const Vec3> x, View<Vec3> gradient, 
 {
     parallel_for(space_, "contact/evaluate", terms_.size(),
                  EvaluateContact{terms_.view(), x, force_.view(), term_energy_.view()});
-    parallel_for(
+    parallel_for_teams<kListThreads>(
         space_, "contact/gather", vertices_.size(),
         AddContact{touches(), vertices_.view(), force_.view(), term_energy_.view(), gradient, energy});
 }
@@ -85,8 +88,8 @@ bool DeviceContactEnergy::activate(View<const Vec3> x)
 {
     parallel_sum(space_, "contact/freeze", terms_.size(), 0,
                  FreezeAndCount{{terms_.view(), x, frozen_.view()}}, acting_.view(), acting_sums_);
-    parallel_for(space_, "contact/blocks", vertices_.size(),
-                 BoundList{touches(), frozen_.view(), blocks_.view()});
+    parallel_for_teams<kListThreads>(space_, "contact/blocks", vertices_.size(),
+                                     BoundList{touches(), frozen_.view(), blocks_.view()});
     acting_.download(acting_on_host_.view());
     space_.synchronise();
     return acting_on_host_[0] > 0;
@@ -96,8 +99,8 @@ void DeviceContactEnergy::multiply(View<const Vec3> p)
 {
     parallel_for(space_, "contact/multiply", terms_.size(),
                  MultiplyContact{terms_.view(), frozen_.view(), p, force_.view()});
-    parallel_for(space_, "contact/gather", vertices_.size(),
-                 GatherList{touches(), force_.view(), product_.view()});
+    parallel_for_teams<kListThreads>(space_, "contact/gather", vertices_.size(),
+                                     GatherList{touches(), force_.view(), product_.view()});
 }
 
 DeviceActiveSet::Frozen DeviceContactEnergy::frozen() const

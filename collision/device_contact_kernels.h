@@ -188,6 +188,16 @@ struct NumberList {
     }
 };
 
+/// Sums up what the threads of a team have: a vertex may be in many terms, and a kernel lasts as long as its
+/// longest list.
+template <typename Team, typename Numbers>
+TOILE_HD Numbers team_sum(const Team& team, Numbers own)
+{
+    for (int k = 0; k < int(own.size()); ++k)
+        own.data()[k] = team.sum(1, own.data()[k]);
+    return own;
+}
+
 /// Adds the forces on the vertex of list k, and the energies of the terms whose first vertex it is.
 struct AddContact {
     ContactTouches touches;
@@ -197,15 +207,19 @@ struct AddContact {
     View<Vec3> gradient;       ///< [vertices] added to [N]
     View<double> own;          ///< [vertices] added to: shares of the value [J]
 
-    TOILE_HD void operator()(int k) const
+    template <typename Team>
+    TOILE_HD void operator()(int k, const Team& team, bool is_own) const
     {
-        const int v = vertices[k];
-        gradient[v] += touches.force(k, force);
-        double sum = 0.0;
-        for (int e = touches.first[k]; e < touches.first[k + 1]; ++e)
+        const Vec3 sum = team_sum(team, touches.force(k, force, team.thread, Team::kThreads));
+        double shares = 0.0;
+        for (int e = touches.first[k] + team.thread; e < touches.first[k + 1]; e += Team::kThreads)
             if (touches.entries[e] % 4 == 0)
-                sum += energy[touches.entries[e] / 4];
-        own[v] += sum;
+                shares += energy[touches.entries[e] / 4];
+        shares = team.sum(1, shares);
+        if (team.thread != 0 || !is_own)
+            return;
+        gradient[vertices[k]] += sum;
+        own[vertices[k]] += shares;
     }
 };
 
@@ -224,7 +238,14 @@ struct BoundList {
     ContactTouches touches;
     View<const FrozenContact> frozen; ///< [terms]
     View<Mat3> blocks;                ///< [lists] out
-    TOILE_HD void operator()(int k) const { blocks[k] = touches.block(k, frozen); }
+
+    template <typename Team>
+    TOILE_HD void operator()(int k, const Team& team, bool is_own) const
+    {
+        const Mat3 sum = team_sum(team, touches.block(k, frozen, team.thread, Team::kThreads));
+        if (team.thread == 0 && is_own)
+            blocks[k] = sum;
+    }
 };
 
 /// The forces on the vertex of list k.
@@ -232,7 +253,14 @@ struct GatherList {
     ContactTouches touches;
     View<const Vec3> force; ///< [terms] [N]
     View<Vec3> product;     ///< [lists] out [N]
-    TOILE_HD void operator()(int k) const { product[k] = touches.force(k, force); }
+
+    template <typename Team>
+    TOILE_HD void operator()(int k, const Team& team, bool is_own) const
+    {
+        const Vec3 sum = team_sum(team, touches.force(k, force, team.thread, Team::kThreads));
+        if (team.thread == 0 && is_own)
+            product[k] = sum;
+    }
 };
 
 } // namespace toile
