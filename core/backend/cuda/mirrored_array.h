@@ -19,6 +19,9 @@ public:
 
     int size() const { return there_.size(); }
 
+    /// True where the host has it as it is: nothing is copied when it asks.
+    bool is_on_host() const { return newer_ != Newer::Device; }
+
     /// On the host; waits for the device where that is newer. Good until the device changes it.
     View<const T> host() const
     {
