@@ -10,8 +10,8 @@ class DeviceActiveSet;
 
 /// State of a body at the start of a step, as an energy with an active set needs it.
 struct StepStart {
-    View<const Vec3> x;              ///< [vertices] positions at t0 [m]
-    View<const Vec3> prediction;     ///< [vertices] q* = x + dt v + dt^2 f/m [m]
+    View<const Vec3> x;              ///< [vertices] positions at t0; empty where a GPU makes the step [m]
+    View<const Vec3> prediction;     ///< [vertices] q* = x + dt v + dt^2 f/m; as x [m]
     View<const double> diagonal;     ///< [vertices] of H [N/m]: the scale that penalty stiffnesses refer to
     View<const unsigned char> fixed; ///< [vertices] 1 where the position is prescribed
     View<const double> masses;       ///< [vertices] [kg]; of unknowns that are no vertices: unspecified

@@ -168,8 +168,8 @@ void DeviceBody::predict()
 
 void DeviceBody::begin_contact(ActiveSetEnergy& active)
 {
-    active.begin_step({x_.host(),
-                       prediction_.host(),
+    active.begin_step({{},
+                       {},
                        system_->diagonal(),
                        system_->fixed(),
                        system_->masses(),
