@@ -87,7 +87,8 @@ std::vector<Vec3> random_forces()
 }
 
 /// Iterations as a GPU does them.
-PcgScalars iterate(const Chain& chain, View<const Vec3> b, int iterations, std::vector<Vec3>& x)
+PcgScalars iterate(const Chain& chain, View<const Vec3> b, int iterations, std::vector<Vec3>& x,
+                   const Pcg::Settings& settings = {.tolerance = 0.0, .max_iterations = 100})
 {
     std::vector<std::vector<Vec3>> field(8, std::vector<Vec3>(kCount));
     x.resize(kCount);
@@ -105,7 +106,7 @@ PcgScalars iterate(const Chain& chain, View<const Vec3> b, int iterations, std::
         PcgSums sums;
         for (int i = 0; i < kCount; ++i)
             sums += MultiplySystem{fields, chain.rows(), chain.list_of, product}(i);
-        FindStep{scalars}(sums);
+        FindStep{scalars, settings}(sums);
         for (int i = 0; i < kCount; ++i)
             TakeStep{fields, chain.E(), scalars}(i);
     }
@@ -126,7 +127,8 @@ TEST(NestedPcgKernels, TakeTheIterationsOfPcg)
         const PcgScalars found = iterate(chain, b, iterations, x);
         for (int i = 0; i < kCount; ++i)
             EXPECT_LT((x[i] - expected[i]).norm(), 1e-9) << i;
-        EXPECT_NEAR(std::sqrt(found.r_square / found.b_square), outcome.residual, 1e-7 * outcome.residual);
+        EXPECT_NEAR(found.residual, outcome.residual, 1e-7 * outcome.residual);
+        EXPECT_EQ(found.iterations, iterations);
         EXPECT_GT(found.gain, 0.0);
     }
 }
@@ -145,12 +147,29 @@ TEST(NestedPcgKernels, GainsAddUpToWhatTheQuadraticLoses)
     }
 }
 
+TEST(NestedPcgKernels, ChangeNothingPastTheEnd)
+{
+    const Chain chain;
+    const std::vector<Vec3> b = random_forces();
+    for (const Pcg::Settings& settings :
+         {Pcg::Settings{.tolerance = 0.0, .max_iterations = 3},
+          Pcg::Settings{.tolerance = 0.1, .max_iterations = 100},
+          Pcg::Settings{.tolerance = 0.0, .max_iterations = 100, .least_gain = 0.5}}) {
+        std::vector<Vec3> expected, x;
+        const int last = iterate(chain, b, 30, expected, settings).iterations;
+        ASSERT_LT(last, 20);
+        EXPECT_FALSE(iterate(chain, b, last - 1, x, settings).is_over);
+        EXPECT_TRUE(iterate(chain, b, last, x, settings).is_over);
+        EXPECT_EQ(x, expected);
+    }
+}
+
 TEST(NestedPcgKernels, StandStillWhereNothingIsAsked)
 {
     const Chain chain;
     const std::vector<Vec3> nothing(kCount, Vec3::Zero());
     std::vector<Vec3> x;
-    EXPECT_EQ(iterate(chain, nothing, 2, x).step, 0.0);
+    EXPECT_EQ(iterate(chain, nothing, 2, x).iterations, 0);
     EXPECT_EQ(x, nothing);
 }
 

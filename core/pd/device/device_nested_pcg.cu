@@ -1,5 +1,7 @@
 #include "core/pd/device/device_nested_pcg.h"
 
+#include <algorithm>
+
 #include "core/backend/cuda/record_sum.cuh"
 
 namespace toile {
@@ -56,21 +58,14 @@ Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z)
     const StageScope stage("pd/pcg");
     const PcgFields fields = this->fields(z);
     parallel_for(space_, "pcg/begin", g.size(), BeginPcg{g, fields, blocks_inverse(), scalars_.view()});
-    Pcg::Outcome outcome;
-    double total_gain = 0.0;
-    while (outcome.iterations < settings_.max_iterations) {
-        iterate(fields);
-        const PcgScalars& now = read_back();
-        if (now.step == 0.0)
-            break;
-        ++outcome.iterations;
-        outcome.residual = std::sqrt(now.r_square / now.b_square);
-        total_gain += now.gain;
-        if (outcome.residual <= settings_.tolerance ||
-            !settings_.is_worth_more(outcome.iterations, now.gain, total_gain))
-            break;
+    const PcgScalars* now = nullptr;
+    for (int count = expected_iterations_; now == nullptr || !now->is_over; count = 1) {
+        for (int k = 0; k < count; ++k)
+            iterate(fields);
+        now = &read_back();
     }
-    return outcome;
+    expected_iterations_ = std::max(1, now->iterations);
+    return {now->iterations, now->residual};
 }
 
 void DeviceNestedPcg::iterate(const PcgFields& fields)
@@ -82,7 +77,7 @@ void DeviceNestedPcg::iterate(const PcgFields& fields)
     parallel_sum_record_then<PcgSums>(
         space_, "pcg/multiply", n,
         MultiplySystem{fields, rows(), active_->frozen().list_of, active_->frozen().product},
-        FindStep{scalars_.view()}, sums_);
+        FindStep{scalars_.view(), settings_}, sums_);
     parallel_for(space_, "pcg/step", n, TakeStep{fields, blocks_inverse(), scalars_.view()});
 }
 

@@ -21,7 +21,8 @@ public:
     /// Enqueues the inverses of the blocks that were frozen last. @param active  borrowed until the next
     void update(DeviceActiveSet& active);
 
-    /// z = (H + dH)^-1 g, waiting after each iteration to see whether that is enough.
+    /// z = (H + dH)^-1 g. Waits to see whether that is enough when it has enqueued as many iterations as the
+    /// solve before took, and then after each; what is too much changes nothing.
     /// @param g, z  [vertices] on the device [N], [m]
     Pcg::Outcome solve(View<const Vec3> g, View<Vec3> z);
 
@@ -43,6 +44,7 @@ private:
     DeviceArray<Vec3> r_, r_previous_, z_, p_, Kz_, Kp_, scaled_, solved_;
     DeviceArray<PcgScalars> scalars_;
     PinnedArray<PcgScalars> on_host_;
+    int expected_iterations_ = 1;
     RecordScratch sums_;
 };
 

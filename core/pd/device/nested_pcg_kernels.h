@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "core/backend/types.h"
+#include "core/linear/pcg.h"
 #include "core/pd/device/device_active_set.h"
 
 namespace toile {
@@ -45,15 +46,18 @@ struct PcgSums {
     }
 };
 
-/// Numbers of an iteration.
+/// Numbers of an iteration, and how the solve goes.
 struct PcgScalars {
-    double b_square = 0.0, r_square = 0.0; ///< [N^2] at the start and after this iteration
-    double rz = 0.0;                       ///< r . z [J]
-    double pKp = 0.0;                      ///< p . K p [J]
-    double beta = 0.0;                     ///< [-] of p in its successor
-    double step = 0.0;                     ///< [-] along p; 0 where p is no direction of descent
-    double gain = 0.0;                     ///< [J] twice what the quadratic loses by the step
-    bool has_begun = false;
+    double b_square = 0.0;               ///< [N^2] |b|^2
+    double rz = 0.0;                     ///< r . z [J]
+    double pKp = 0.0;                    ///< p . K p [J]
+    double beta = 0.0;                   ///< [-] of p in its successor
+    double step = 0.0;                   ///< [-] along p
+    double gain = 0.0, total_gain = 0.0; ///< [J] twice what the quadratic loses by a step, by all
+    double residual = 1.0;               ///< [-] |r| / |b|
+    int iterations = 0;
+    bool is_over = false; ///< this iteration is the last
+    bool is_past = false; ///< it was: x stays
 };
 
 /// H [vertices x vertices] as rows of numbers, and what is constant beside it.
@@ -159,25 +163,38 @@ struct MultiplySystem {
     }
 };
 
-/// Polak-Ribiere's beta, the step along p = z + beta p', and what it leaves of r.
+/// Polak-Ribiere's beta, the step along p = z + beta p', what it leaves of r, and whether that is enough.
+/// Where p is no direction of descent (rounding, or K is indefinite after all), the iterate so far is the
+/// answer.
 struct FindStep {
     View<PcgScalars> scalars; ///< [1]
+    Pcg::Settings settings;
 
     TOILE_HD void operator()(const PcgSums& sums) const
     {
         PcgScalars& all = scalars[0];
-        if (!all.has_begun)
+        all.is_past = all.is_over;
+        if (all.is_past)
+            return;
+        if (all.iterations == 0)
             all.b_square = sums.r_r;
-        all.has_begun = true;
         const double beta = all.rz != 0.0 ? (sums.r_z - sums.previous_z) / all.rz : 0.0;
         all.beta = beta;
         all.rz = sums.r_z;
         all.pKp = sums.z_Kz + beta * (2.0 * sums.z_Kp + beta * all.pKp);
-        all.step = all.pKp > 0.0 ? (sums.r_z + beta * sums.p_r) / all.pKp : 0.0;
+        all.is_over = all.is_past = !(all.pKp > 0.0);
+        if (all.is_past)
+            return;
+        ++all.iterations;
+        all.step = (sums.r_z + beta * sums.p_r) / all.pKp;
         all.gain = all.step * all.step * all.pKp;
+        all.total_gain += all.gain;
         const double r_Kp = sums.r_Kz + beta * sums.r_Kp;
         const double Kp_Kp = sums.Kz_Kz + beta * (2.0 * sums.Kz_Kp + beta * sums.Kp_Kp);
-        all.r_square = std::fmax(0.0, sums.r_r + all.step * (all.step * Kp_Kp - 2.0 * r_Kp));
+        const double r_square = sums.r_r + all.step * (all.step * Kp_Kp - 2.0 * r_Kp);
+        all.residual = std::sqrt(std::fmax(0.0, r_square) / all.b_square);
+        all.is_over = all.iterations >= settings.max_iterations || all.residual <= settings.tolerance ||
+                      !settings.is_worth_more(all.iterations, all.gain, all.total_gain);
     }
 };
 
@@ -189,6 +206,8 @@ struct TakeStep {
 
     TOILE_HD void operator()(int i) const
     {
+        if (scalars[0].is_past)
+            return;
         const double step = scalars[0].step, beta = scalars[0].beta;
         const Vec3 p = fields.z[i] + beta * fields.p[i], Kp = fields.Kz[i] + beta * fields.Kp[i];
         const Vec3 before = fields.r[i], r = before - step * Kp;
