@@ -28,7 +28,7 @@ public:
         /// few stiff pairs stop all of its weight, and an iteration for each gains more than going on from
         /// a poor direction would; elsewhere two or three do. Flexible in any case where the global solver is
         /// not symmetric.
-        Pcg::Settings pcg{.tolerance = 1e-3, .max_iterations = 20, .least_gain = 0.5};
+        Pcg::Settings pcg{.tolerance = 1e-3, .max_iterations = 20, .least_gain = 0.9};
     };
 
     /// @param system  prepared, borrowed
