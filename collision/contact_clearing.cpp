@@ -3,7 +3,7 @@
 
 #include "collision/collider_pairs.h"
 #include "collision/contact.h"
-#include "collision/near_moves.h"
+#include "collision/near_sweeps.h"
 
 /// How contact moves cloth out of surfaces, pair by pair, where no minimisation does it.
 namespace toile {
@@ -62,12 +62,13 @@ bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) 
 /// has moved.
 void Contact::rub(StepField positions, StepField velocities) const
 {
+    const NearTerms all = terms_->near(std::numeric_limits<double>::infinity()); // sees x before it changes
     const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
     const auto at_most = [](const Vec3& move, double limit) {
         const double length = move.norm();
         return length > limit ? Vec3(limit / length * move) : move;
     };
-    for (const ContactTerm& term : terms_->near(std::numeric_limits<double>::infinity()).terms) {
+    for (const ContactTerm& term : all.terms) {
         const double depth = -term.gap(x);
         if (depth <= 0.0)
             continue;

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "collision/contact.h"
-#include "collision/near_moves.h"
+#include "collision/near_sweeps.h"
 
 /// Where contact alone takes the start guess of a step.
 namespace toile {

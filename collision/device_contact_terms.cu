@@ -44,6 +44,7 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
 
 void DeviceContactTerms::begin_step(const StepStart& start)
 {
+    TOILE_ASSERT(start.there.x.size() == overlap_.size());
     follow(start.diagonal, host_diagonal_, diagonal_);
     follow(start.fixed, host_fixed_, fixed_);
     rules_ = rules_of(start, settings_);
@@ -141,8 +142,8 @@ double DeviceContactTerms::end_step()
 {
     double least = 0.0;
     if (!empty())
-        least = parallel_sum(space_, "contact/least_gap", energy_.terms().size(), Least{}, LeastDistance{look()},
-                             least_)
+        least = parallel_sum(space_, "contact/least_gap", energy_.terms().size(), Least{},
+                             LeastDistance{look()}, least_)
                     .value;
     colliders_.learn_sides(x_.there());
     return least;

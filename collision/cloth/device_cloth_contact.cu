@@ -27,8 +27,8 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triang
       motion_(space, "cloth_contact/motion", positions.size()),
       expected_(space, "cloth_contact/expected", positions.size()), wanted_(space, "cloth_contact/wanted"),
       pressing_(space, "cloth_contact/pressing"), marks_(space, "cloth_contact/marks"),
-      places_(space, "cloth_contact/places"), number_(space, "cloth_contact/number", 1),
-      read_(space, "cloth_contact/read", 1), sum_(space), scratch_(space, "cloth_contact/scratch"),
+      places_(space, "cloth_contact/places"), count_(space), sum_(space),
+      scratch_(space, "cloth_contact/scratch"),
       host_base_(space, "cloth_contact/host_base", positions.size()),
       host_expected_(space, "cloth_contact/host_expected", positions.size()),
       host_slack_(space, "cloth_contact/host_slack", positions.size()),
@@ -52,6 +52,7 @@ void DeviceClothContact::forget()
 
 void DeviceClothContact::begin_step(const StepStart& start)
 {
+    TOILE_ASSERT(start.there.x.size() == slack_.size());
     fixed_ = start.fixed;
     prediction_ = start.there.prediction;
     parallel_for(space_, "collision/expect", start.there.x.size(),
@@ -84,15 +85,10 @@ void DeviceClothContact::list_pressing()
     const StageScope stage("collision/cloth_terms");
     const View<const NearPair> pairs = safe_there_.pairs();
     marks_.resize(pairs.size());
-    places_.resize(pairs.size());
-    number_.fill_zero();
     parallel_for(space_, "collision/device_mark_pressing", pairs.size(),
                  MarkPressing{find_pressing(), pairs, marks_.view()});
-    list_flagged(space_, "collision/device_list_pressing", marks_.view(), places_.view(), number_.view(),
-                 scratch_);
-    number_.download(read_.view());
-    space_.synchronise();
-    pressing_.resize(read_[0]);
+    pressing_.resize(
+        list_flagged(space_, "collision/device_list_pressing", marks_.view(), places_, count_, scratch_));
     parallel_for(space_, "collision/device_report_pressing", pressing_.size(),
                  ReportPressing{find_pressing(), pairs, places_.view(), pressing_.view()});
 }

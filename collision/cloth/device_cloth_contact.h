@@ -6,8 +6,8 @@
 
 namespace toile {
 
-/// ClothContact on a GPU. Pairs, ways and what is learnt of them stay there; the host has what presses, and
-/// where something is to be brought back it does that with a copy of the pairs.
+/// ClothContact on a GPU. Pairs, ways and what is learnt of them stay there; where something is to be brought
+/// back the host does that with a copy of the pairs.
 class DeviceClothContact : public ClothContact {
 public:
     /// See make_cloth_contact.
@@ -44,8 +44,8 @@ private:
     DeviceArray<Vec3> base_, deviation_, motion_, expected_, wanted_; ///< [vertices] [m]
     DeviceArray<ContactPair> pressing_;
     DeviceArray<unsigned char> marks_; ///< [pairs] 1: presses
-    DeviceArray<int> places_, number_; ///< [pairs], [1]
-    PinnedArray<int> read_;            ///< [1]
+    DeviceArray<int> places_;          ///< [pairs] of those that press
+    SumScratch<int> count_;
     SumScratch<int> sum_;
     DeviceScratch scratch_;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/cloth/device_exempt_kernels.h"
+#include "collision/device_pair_kernels.h"
 #include "core/backend/cuda/parallel.cuh"
 
 namespace toile {
@@ -18,8 +19,7 @@ DeviceExemptPairs::DeviceExemptPairs(const CudaSpace& space, const ExemptPairs& 
     : space_(space), rest_(space, "exempt_pairs/rest"), too_near_(exempt.rule().too_near),
       is_thin_(space, "exempt_pairs/is_thin"), crosses_(space, "exempt_pairs/crosses"),
       has_thin_(any(exempt.rule().is_thin)), marks_(space, "exempt_pairs/marks"),
-      places_(space, "exempt_pairs/places"), number_(space, "exempt_pairs/number", 1),
-      read_(space, "exempt_pairs/read", 1), scratch_(space, "exempt_pairs/scratch")
+      places_(space, "exempt_pairs/places"), count_(space), scratch_(space, "exempt_pairs/scratch")
 {
     rest_.upload(exempt.rule().rest);
     is_thin_.upload(exempt.rule().is_thin);
@@ -46,21 +46,18 @@ void DeviceExemptPairs::append_kept(View<const NearPair> found, DeviceArray<Near
     }
     const View<NearPair> rest = kept.view().subview(count, found.size());
     if (!has_thin_ && !has_crossing_) {
-        parallel_for(space_, "collision/device_keep_pairs", found.size(), KeepAll{found, rest});
+        parallel_for(space_, "collision/device_keep_pairs", found.size(), CopyItems<NearPair>{found, rest});
         count = most;
         return;
     }
 
     marks_.resize(found.size());
-    places_.resize(found.size());
-    number_.fill_zero();
     parallel_for(space_, "collision/device_mark_kept", found.size(), MarkKept{rule(), found, marks_.view()});
-    list_flagged(space_, "collision/device_list_kept", marks_.view(), places_.view(), number_.view(),
-                 scratch_);
-    number_.download(read_.view());
-    space_.synchronise();
-    parallel_for(space_, "collision/device_keep_pairs", read_[0], KeepMarked{found, places_.view(), rest});
-    count += read_[0];
+    const int number =
+        list_flagged(space_, "collision/device_list_kept", marks_.view(), places_, count_, scratch_);
+    parallel_for(space_, "collision/device_keep_pairs", number,
+                 CopyListed<NearPair>{found, places_.view(), rest});
+    count += number;
 }
 
 } // namespace toile

@@ -31,8 +31,8 @@ private:
     bool has_thin_, has_crossing_ = false; ///< none: nothing is exempt
 
     DeviceArray<unsigned char> marks_; ///< [found] 1: kept
-    DeviceArray<int> places_, number_; ///< [found], [1]
-    PinnedArray<int> read_;            ///< [1]
+    DeviceArray<int> places_;          ///< [found] of those that are kept
+    SumScratch<int> count_;
     DeviceScratch scratch_;
 };
 

@@ -21,7 +21,7 @@ public:
 
         TOILE_HD bool is_worth_more(int iterations, double gain, double total_gain) const
         {
-            return iterations * gain > least_gain * total_gain;
+            return least_gain == 0.0 || iterations * gain > least_gain * total_gain;
         }
     };
     struct Outcome {

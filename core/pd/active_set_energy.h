@@ -40,9 +40,9 @@ public:
     /// Freezes the terms active at x into dH. False when none is: the solver then skips PCG.
     virtual bool activate(View<const Vec3> x) = 0;
 
-    /// Its terms as they are now on a GPU, good until a call that looks for others: begin_step(),
-    /// revise(), clear(). Null where it has no such
-    /// form. The activate() and add_gradient() of a minimisation there are the device's.
+    /// Its terms as they are now on a GPU, good until a call that looks for others: begin_step(), revise(),
+    /// clear(). Null where it has no such form. The activate() and add_gradient() of a minimisation there are
+    /// the device's.
     virtual DeviceActiveSet* on_device([[maybe_unused]] const CudaSpace& space) { return nullptr; }
 
     /// After every minimisation: refreshes lagged quantities (friction limits) and looks again where x left

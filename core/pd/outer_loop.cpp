@@ -45,7 +45,8 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
             break;
         ++outcome.iterations;
         outcome.displacement *= step;
-        outcome.converged = recent.add_and_tell_stall(outcome.value, objective.negligible_gain(settings.tolerance));
+        outcome.converged =
+            recent.add_and_tell_stall(outcome.value, objective.negligible_gain(settings.tolerance));
         if (outcome.converged)
             break;
         learn({step, direction_, trial_gradient_, gradient_});

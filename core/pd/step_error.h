@@ -41,8 +41,8 @@ public:
         }
     };
 
-    /// Energy that tells two points apart whose distance is the tolerance [m] [J]: what inertia alone makes of
-    /// it.
+    /// Energy that tells two points apart whose distance is the tolerance [m] [J]: what inertia alone makes
+    /// of it.
     TOILE_HD static double energy_of(double tolerance, double mass, double dt)
     {
         return 0.5 * mass * (tolerance / dt) * (tolerance / dt);

@@ -19,7 +19,9 @@ public:
     void prepare(double dt, const std::vector<unsigned char>& fixed) override;
 
     /// Waits for the end. Same bits in every run.
-    /// @return iterations and status; everything else is left 0
+    /// @return iterations and status; everything else is left 0. Positions and velocities are lost where it
+    /// is
+    ///         NonFinite.
     /// @throws InvalidInput where contact or a limit is asked for: these methods know none on a GPU
     StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                     View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection) override;

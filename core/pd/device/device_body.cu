@@ -100,6 +100,8 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
     DeviceStepProjection* limits = projection ? projection->on_device(space_) : nullptr;
     if (projection && limits == nullptr)
         throw InvalidInput("this constraint does not run on a GPU");
+    if (active && active->on_device(space_) == nullptr)
+        throw InvalidInput("this contact does not run on a GPU");
     prepare(dt, fixed);
     overwrite(acceleration_, acceleration);
     overwrite(targets_, targets);
@@ -123,7 +125,7 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
     return report;
 }
 
-/// As StepEnd: contact on the host, limits there.
+/// As StepEnd.
 void DeviceBody::satisfy(ActiveSetEnergy* active, DeviceStepProjection* limits)
 {
     for (int round = 0; round < StepEnd::kRounds; ++round) {
@@ -184,8 +186,6 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
     for (int round = 0; round < settings_.max_rounds; ++round) {
         const StageScope stage("pd/minimise");
         DeviceActiveSet* contact = active ? active->on_device(space_) : nullptr;
-        if (active && contact == nullptr)
-            throw InvalidInput("this contact does not run on a GPU");
         const OuterLoop::Outcome outcome = descend(contact, round == 0);
         parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_there()});
         report.iterations += outcome.iterations;

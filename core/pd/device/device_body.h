@@ -15,9 +15,8 @@
 
 namespace toile {
 
-/// Body on a GPU: implicit Euler steps minimised there. L-BFGS is its method. What is asked of contact and
-/// limits between minimisations is asked on the host; fields are copied where the host asks for them and not
-/// otherwise.
+/// Body on a GPU: implicit Euler steps minimised there. L-BFGS is its method. Fields are copied where contact
+/// or others ask for them on the host and not otherwise.
 class DeviceBody : public PointMasses {
 public:
     struct Settings {

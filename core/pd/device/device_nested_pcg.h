@@ -22,7 +22,8 @@ public:
     void update(DeviceActiveSet& active);
 
     /// z = (H + dH)^-1 g. Waits to see whether that is enough when it has enqueued as many iterations as the
-    /// solve before took, and then after each; what is too much changes nothing.
+    /// solve before took, and then after each; what is too much changes nothing. Takes at least
+    /// one.
     /// @param g, z  [vertices] on the device [N], [m]
     Pcg::Outcome solve(View<const Vec3> g, View<Vec3> z);
 

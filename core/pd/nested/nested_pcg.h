@@ -24,8 +24,8 @@ class NestedPcg {
 public:
     struct Settings {
         ContactPreconditioner preconditioner = ContactPreconditioner::Block;
-        /// What the inside of a quasi-Newton method needs is a direction, not a solution. Where cloth lands, a
-        /// few stiff pairs stop all of its weight, and an iteration for each gains more than going on from
+        /// What the inside of a quasi-Newton method needs is a direction, not a solution. Where cloth lands,
+        /// a few stiff pairs stop all of its weight, and an iteration for each gains more than going on from
         /// a poor direction would; elsewhere two or three do. Flexible in any case where the global solver is
         /// not symmetric.
         Pcg::Settings pcg{.tolerance = 1e-3, .max_iterations = 20, .least_gain = 0.9};

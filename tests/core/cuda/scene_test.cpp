@@ -58,7 +58,7 @@ TEST_F(DeviceSceneTest, SwingsInTheWindAsOnTheCpu)
     }
     EXPECT_EQ(there.stages().calls("garment/membrane"), 0);
     EXPECT_EQ(there.stages().calls("pd/pcg"), 0);
-    EXPECT_EQ(there.stages().calls("contact/to_device"), 0);
+    EXPECT_EQ(there.stages().calls("contact/make_there"), 0);
 }
 
 /// Until they wrinkle: from the third frame on two minimisers of nearly the same energy lie 2 mm apart, and
