@@ -18,10 +18,12 @@ public:
         /// Ends with an iteration that gains less than this share [-] of what one has gained on average, of
         /// the quadratic 1/2 x . A x - b . x [Nash & Sofer 1990]; 0: never.
         double least_gain = 0.0;
+        int least_iterations = 0; ///< before that counts
 
         TOILE_HD bool is_worth_more(int iterations, double gain, double total_gain) const
         {
-            return least_gain == 0.0 || iterations * gain > least_gain * total_gain;
+            return iterations < least_iterations || least_gain == 0.0 ||
+                   iterations * gain > least_gain * total_gain;
         }
     };
     struct Outcome {

@@ -141,6 +141,13 @@ TEST(Pcg, StopsWhereAnIterationGainsLittle)
             total += gains[expected++];
         while (expected < 10 && gains[expected - 1] > least * total / expected);
         EXPECT_EQ(taken, expected) << least;
+        const int late = pcg.solve(problem.multiply(), copy, problem.b, problem.x,
+                                   {.tolerance = 0.0,
+                                    .max_iterations = 10,
+                                    .least_gain = least,
+                                    .least_iterations = expected + 2})
+                             .iterations;
+        EXPECT_GE(late, expected + 2) << least;
     }
 }
 
