@@ -38,14 +38,15 @@ TEST(SimulateScenes, LeavesWhatEachLeavesAlone)
 TEST(SimulateScenes, GoesOnWhereOneFails)
 {
     const TemporaryFolder folder;
-    folder.write("a.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "x", "file": "none.obj"}]})");
+    folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    folder.write("a.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "x", "file": "flat.obj"}]})");
     folder.write("b.json", small_scene(3));
     const Finished run = run_toile({"simulate", "a.json", "b.json", "-o", ".", "--quiet"}, folder.path());
     EXPECT_EQ(run.exit_code, 1);
     EXPECT_EQ(run.output, "./b/sheet.pc2\n./b/certificate.json\n");
     EXPECT_EQ(run.error_lines(), 1) << run.errors;
     EXPECT_EQ(run.errors.rfind("toile: error: a: ", 0), 0u) << run.errors;
-    EXPECT_NE(run.errors.find("none.obj"), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("flat.obj: triangle 0"), std::string::npos) << run.errors;
 }
 
 TEST(SimulateScenes, BeginsNoneAfterAnInterrupt)
