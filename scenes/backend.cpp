@@ -32,21 +32,26 @@ std::string why_not_on_gpu(const Scene& scene)
     return {};
 }
 
-std::shared_ptr<const CudaSpace> open_backend(Backend backend, const Scene& scene,
+void require_runs_on_gpu(const Scene& scene)
+{
+    if (const std::string needs_cpu = why_not_on_gpu(scene); !needs_cpu.empty())
+        throw InvalidInput(scene.source.string() + ": " + needs_cpu +
+                           "; choose the backend cpu or auto, or change the scene");
+}
+
+std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const Scene& scene,
                                               const std::function<void(const std::string&)>& warn)
 {
     if (backend == Backend::Cpu)
         return nullptr;
-    const std::string needs_cpu = why_not_on_gpu(scene);
     if (backend == Backend::Cuda) {
-        if (!needs_cpu.empty())
-            throw InvalidInput(scene.source.string() + ": " + needs_cpu +
-                               "; choose the backend cpu or auto, or change the scene");
-        return std::make_shared<CudaSpace>(0);
+        require_runs_on_gpu(scene);
+        return std::make_shared<CudaSpace>(device);
     }
+    const std::string needs_cpu = why_not_on_gpu(scene);
     const std::string why_cpu = needs_cpu.empty() ? why_no_cuda_device() : needs_cpu;
     if (why_cpu.empty())
-        return std::make_shared<CudaSpace>(0);
+        return std::make_shared<CudaSpace>(device);
     if (warn)
         warn("the backend is cpu: " + why_cpu);
     return nullptr;

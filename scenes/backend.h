@@ -12,7 +12,7 @@ namespace toile {
 /// Where a World minimises its steps.
 enum class Backend {
     Cpu,
-    Cuda, ///< the first GPU; refused where there is none or the scene needs the CPU
+    Cuda, ///< a GPU; refused where there is none or the scene needs the CPU
     Auto  ///< a GPU where there is one and the scene can, else the CPU
 };
 
@@ -20,10 +20,14 @@ enum class Backend {
 /// does.
 std::string why_not_on_gpu(const Scene& scene);
 
+/// @throws InvalidInput  why_not_on_gpu() as an error of the scene's file, with what to do
+void require_runs_on_gpu(const Scene& scene);
+
 /// The GPU that a scene is to run on; null: the CPU.
+/// @param device  number of the GPU where it is not the CPU
 /// @param warn  told why it is not a GPU where Auto takes the CPU; may be empty
-/// @throws InvalidInput where the scene asked for Cuda needs the CPU, DeviceError where there is no GPU
-std::shared_ptr<const CudaSpace> open_backend(Backend backend, const Scene& scene,
+/// @throws InvalidInput where the scene asked for Cuda needs the CPU, DeviceError where there is no such GPU
+std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const Scene& scene,
                                               const std::function<void(const std::string&)>& warn);
 
 } // namespace toile

@@ -61,7 +61,7 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     parts_->scene = scene;
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->obstacles.emplace_back(avatar, scene.contact.friction);
-    parts_->space = open_backend(options.backend, scene, options.warn);
+    parts_->space = open_backend(options.backend, options.device, scene, options.warn);
     parts_->groups = make_groups(scene, parts_->obstacles, options, parts_->space.get());
 
     const ThreadLimit threads(scene.solver.threads);

@@ -31,6 +31,7 @@ struct ClothState {
 /// How a World prepares its global solvers, beyond what the scene says.
 struct WorldOptions {
     Backend backend = Backend::Cpu;
+    int device = 0; ///< number of the GPU that Backend::Cuda and Auto take (cuda_devices())
 
     /// Where quadrature tables come from; null: TableStore::of_process(), which keeps them on disk.
     std::shared_ptr<TableStore> tables = nullptr;

@@ -1,7 +1,6 @@
 #include "apps/toile/certify.h"
 
 #include <algorithm>
-#include <iostream>
 
 #include "apps/toile/avatar_crossings.h"
 #include "apps/toile/cache_cloth.h"
@@ -182,13 +181,13 @@ std::optional<Certificate> certify(const Scene& scene, const std::vector<CachedC
     return certificate;
 }
 
-int conclude(const Certificate& certificate, const std::filesystem::path& file, bool quiet)
+int conclude(const Certificate& certificate, const std::filesystem::path& file, const RunLog& log)
 {
     write_atomically(file, to_json(certificate));
     if (!certificate.holds())
-        std::cerr << "toile: error: " << summary_of(certificate) << "; see " << file.string() << std::endl;
-    else if (!quiet)
-        std::cerr << summary_of(certificate) << std::endl;
+        log.error(summary_of(certificate) + "; see " + file.string());
+    else
+        log.result(summary_of(certificate));
     return certificate.holds() ? kExitOk : kExitFailure;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/toile/certificate.h"
+#include "apps/toile/run_log.h"
 #include "export/point_cache.h"
 #include "scenes/world.h"
 
@@ -26,10 +27,11 @@ std::optional<Certificate> certify(const Scene& scene, const std::vector<CachedC
                                    const CertificateLimits& limits,
                                    const std::function<bool(int done, int all)>& goes_on);
 
-/// Writes the certificate and says on stderr in one line whether it holds: when it does, only unless quiet.
+/// Writes the certificate and says on stderr in one line whether it holds: when it does, only unless the log
+/// is quiet.
 /// @return kExitOk or kExitFailure
 /// @throws InvalidInput or DeviceError as write_atomically().
-int conclude(const Certificate& certificate, const std::filesystem::path& file, bool quiet);
+int conclude(const Certificate& certificate, const std::filesystem::path& file, const RunLog& log);
 
 /// The name of the certificate of several caches, in their folder.
 inline constexpr const char* kCertificateName = "certificate.json";

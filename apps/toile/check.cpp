@@ -105,7 +105,7 @@ int check(const CheckOptions& options)
     progress.reset();
     if (options.output.empty())
         std::cout << to_json(certificate);
-    return conclude(certificate, place_of(options), options.quiet);
+    return conclude(certificate, place_of(options), RunLog(options.quiet));
 }
 
 } // namespace

@@ -1,22 +1,14 @@
 #include "apps/toile/command_line.h"
 
 #include <algorithm>
-#include <iostream>
 
 #include "apps/toile/commands.h"
+#include "apps/toile/run_log.h"
 #include "core/backend/error.h"
 
 namespace toile {
 
 namespace {
-
-/// Prints "toile: error: ..." on one line whatever the message holds.
-int report_error(std::string message, int exit_code)
-{
-    std::replace(message.begin(), message.end(), '\n', ' ');
-    std::cerr << "toile: error: " << message << std::endl;
-    return exit_code;
-}
 
 /// A misspelt option would otherwise be reported together with its value and without a remedy.
 void require_known_options(int argc, char** argv, const CLI::App& command)
@@ -83,15 +75,7 @@ int parse_and_run(int argc, char** argv)
 
 int run_command_line(int argc, char** argv)
 {
-    try {
-        return parse_and_run(argc, argv);
-    } catch (const InvalidInput& error) {
-        return report_error(error.what(), kExitBadInput);
-    } catch (const std::bad_alloc&) {
-        return report_error("out of memory; use a coarser resolution or fewer cloths", kExitFailure);
-    } catch (const std::exception& error) {
-        return report_error(error.what(), kExitFailure);
-    }
+    return run_and_report(RunLog(false), [&] { return parse_and_run(argc, argv); });
 }
 
 } // namespace toile

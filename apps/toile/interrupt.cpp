@@ -1,5 +1,6 @@
 #include "apps/toile/interrupt.h"
 
+#include <atomic>
 #include <csignal>
 
 #include <signal.h>
@@ -8,15 +9,17 @@ namespace toile {
 
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+/// Set by the signal's handler, read by any thread.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
-extern "C" void remember_interrupt(int) { interrupted = 1; }
+extern "C" void remember_interrupt(int) { interrupted = true; }
 
 } // namespace
 
 InterruptGuard::InterruptGuard()
 {
-    interrupted = 0;
+    interrupted = false;
     struct sigaction action = {};
     action.sa_handler = remember_interrupt;
     action.sa_flags = int(SA_RESETHAND); // the second signal finds the default action again
@@ -30,6 +33,6 @@ InterruptGuard::~InterruptGuard()
     std::signal(SIGTERM, SIG_DFL);
 }
 
-bool InterruptGuard::requested() const { return interrupted != 0; }
+bool InterruptGuard::requested() const { return interrupted; }
 
 } // namespace toile

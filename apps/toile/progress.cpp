@@ -15,8 +15,9 @@ constexpr std::chrono::seconds kLogInterval(10);
 
 } // namespace
 
-Progress::Progress(std::string what, int total, bool quiet)
-    : what_(std::move(what)), total_(total), quiet_(quiet), on_terminal_(::isatty(STDERR_FILENO) == 1)
+Progress::Progress(std::string what, int total, bool quiet, Stderr use)
+    : what_(std::move(what)), total_(total), quiet_(quiet),
+      rewrites_(use == Stderr::Own && ::isatty(STDERR_FILENO) == 1)
 {
 }
 
@@ -29,7 +30,7 @@ Progress::~Progress()
 void Progress::update(int done, const std::string& note)
 {
     const Clock::time_point now = Clock::now();
-    const bool due = on_terminal_ || done == total_ || now - last_line_ >= kLogInterval;
+    const bool due = rewrites_ || done == total_ || now - last_line_ >= kLogInterval;
     if (quiet_ || !due)
         return;
     last_line_ = now;
@@ -41,9 +42,9 @@ void Progress::update(int done, const std::string& note)
                   int(100.0 * done / total_), per_item, clock_text(per_item * (total_ - done)).c_str(),
                   note.empty() ? "" : "  ", note.c_str());
     // Return to the line's start and clear what a longer text left behind.
-    std::fprintf(stderr, on_terminal_ ? "\r%s\033[K" : "%s\n", text);
+    std::fprintf(stderr, rewrites_ ? "\r%s\033[K" : "%s\n", text);
     std::fflush(stderr);
-    line_open_ = on_terminal_;
+    line_open_ = rewrites_;
 }
 
 std::string clock_text(double seconds)

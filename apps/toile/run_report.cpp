@@ -72,10 +72,12 @@ void RunReport::write(const std::filesystem::path& file, const std::string& outc
                  {"name", scene_.name},
                  {"outcome", outcome},
                  {"vertices", vertex_count_},
-                 {"backend", backend_},
-                 {"settings", settings_of(scene_)},
-                 {"start", start_json(start_, scene_)},
-                 {"peak_memory_bytes", peak_memory()}};
+                 {"backend", backend_}};
+    if (device_)
+        json["device"] = *device_;
+    json["settings"] = settings_of(scene_);
+    json["start"] = start_json(start_, scene_);
+    json["peak_memory_bytes"] = peak_memory();
     double seconds = 0.0;
     Json& frames = json["frames"] = Json::array();
     for (const Frame& frame : frames_) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ public:
     /// @param device  the GPU that it ran on; null: the CPU
     RunReport(const Scene& scene, int vertex_count, StartReport start, const CudaDevice* device)
         : scene_(scene), vertex_count_(vertex_count), start_(std::move(start)),
-          backend_(device != nullptr ? "cuda: " + device->name : "cpu")
+          backend_(device != nullptr ? "cuda: " + device->name : "cpu"),
+          device_(device != nullptr ? std::optional(device->index) : std::nullopt)
     {
     }
 
@@ -44,6 +46,7 @@ private:
     int vertex_count_;
     StartReport start_;
     std::string backend_;
+    std::optional<int> device_; ///< number of the GPU
     std::vector<Frame> frames_;
 };
 

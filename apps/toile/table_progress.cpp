@@ -5,8 +5,6 @@
 
 #include <unistd.h>
 
-#include "apps/toile/progress.h"
-
 namespace toile {
 
 namespace {
@@ -20,7 +18,11 @@ constexpr std::chrono::milliseconds kTerminalInterval(100);
 
 } // namespace
 
-TableProgress::TableProgress(bool quiet) : quiet_(quiet), on_terminal_(::isatty(STDERR_FILENO) == 1) {}
+TableProgress::TableProgress(bool quiet, const std::string& scene, Stderr use)
+    : prefix_(scene.empty() ? "" : scene + ": "), quiet_(quiet),
+      rewrites_(use == Stderr::Own && ::isatty(STDERR_FILENO) == 1)
+{
+}
 
 TableProgress::~TableProgress() { end_line(); }
 
@@ -33,15 +35,15 @@ void TableProgress::update(const std::string& cloth, double share)
         cloth_ = cloth;
         first_share_ = share;
         start_ = now;
-        last_line_ = now + kSilence - (on_terminal_ ? Clock::duration(kTerminalInterval) : kLogInterval);
+        last_line_ = now + kSilence - (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
     }
     const bool is_finished = share >= 1.0;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    const bool is_due =
-        now - last_line_ >= (on_terminal_ ? Clock::duration(kTerminalInterval) : kLogInterval);
+    const bool is_due = now - last_line_ >= (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
     if (!quiet_ && (is_finished ? now - start_ >= kSilence : is_due)) {
         last_line_ = now;
-        std::string text = "tables of cloth \"" + cloth + "\": " + std::to_string(int(100.0 * share)) + " %";
+        std::string text =
+            prefix_ + "tables of cloth \"" + cloth + "\": " + std::to_string(int(100.0 * share)) + " %";
         if (is_finished)
             text += ", built in " + duration_text(seconds);
         else if (share > first_share_)
@@ -65,7 +67,7 @@ void TableProgress::warn(const std::string& text)
 {
     const std::lock_guard lock(mutex_);
     end_line();
-    std::fprintf(stderr, "toile: warning: %s\n", text.c_str());
+    std::fprintf(stderr, "toile: warning: %s%s\n", prefix_.c_str(), text.c_str());
 }
 
 void TableProgress::end_line()
@@ -77,9 +79,9 @@ void TableProgress::end_line()
 
 void TableProgress::print(const std::string& text)
 {
-    std::fprintf(stderr, on_terminal_ ? "\r%s\033[K" : "%s\n", text.c_str());
+    std::fprintf(stderr, rewrites_ ? "\r%s\033[K" : "%s\n", text.c_str());
     std::fflush(stderr);
-    line_open_ = on_terminal_;
+    line_open_ = rewrites_;
 }
 
 std::string duration_text(double seconds)

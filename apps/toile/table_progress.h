@@ -4,6 +4,8 @@
 #include <mutex>
 #include <string>
 
+#include "apps/toile/progress.h"
+
 namespace toile {
 
 /// Tells on stderr how far the quadrature tables of a cloth are, in the manner of Progress: one line that is
@@ -11,7 +13,8 @@ namespace toile {
 /// than half a second. Calls may come from several threads.
 class TableProgress {
 public:
-    explicit TableProgress(bool quiet);
+    /// @param scene  begins every text; empty where a single scene runs
+    explicit TableProgress(bool quiet, const std::string& scene = "", Stderr use = Stderr::Own);
     ~TableProgress();
     TableProgress(const TableProgress&) = delete;
     TableProgress& operator=(const TableProgress&) = delete;
@@ -32,7 +35,8 @@ private:
     void print(const std::string& text);
 
     std::mutex mutex_;
-    bool quiet_, on_terminal_;
+    std::string prefix_;
+    bool quiet_, rewrites_;
     bool line_open_ = false, is_building_ = false;
     std::string cloth_;
     double first_share_ = 0.0;

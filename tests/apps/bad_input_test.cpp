@@ -55,6 +55,10 @@ void fill(const TemporaryFolder& folder)
     folder.write("text.xyz", "?");
     std::filesystem::create_directory(folder.path() / "bare");
     folder.write("file", "not a folder");
+    std::filesystem::create_directory(folder.path() / "other");
+    folder.write("other/good.json", small_scene(3));
+    folder.write("second.json", small_scene(3));
+    folder.write("slow.json", small_scene(3, R"("solver": {"method": "xpbd"})"));
 }
 
 const std::vector<BadRun> kBadRuns{
@@ -67,7 +71,18 @@ const std::vector<BadRun> kBadRuns{
     {{"simulate", "good.json", "--solver", "magic"}, {"--solver", "magic", "direct"}},
     {{"simulate", "good.json", "--outer", "magic"}, {"--outer", "magic", "anderson"}},
     {{"simulate", "good.json", "--backend", "magic"}, {"--backend", "magic", "cuda"}},
+    {{"simulate", "good.json", "--devices", "0,1"}, {"--devices: 0,1", "backend cpu", "--backend cuda"}},
+    {{"simulate", "good.json", "--backend", "cuda", "--devices", "0,x"}, {"--devices", "\"x\"", "e.g. 0,1"}},
+    {{"simulate", "good.json", "--backend", "auto", "--devices", "1,1"}, {"--devices", "1 is there twice"}},
+    {{"simulate", "good.json", "--backend", "auto", "--devices", ""}, {"--devices", "empty", "e.g. 0,1"}},
     {{"simulate", "good.json", "-o", "file/there"}, {"file/there"}},
+    {{"simulate", "good.json", "other/good.json"}, {"other/good.json", "out/good", "a name of its own"}},
+    {{"simulate", "good.json", "good.json", "-o", "o"}, {"good.json", "o/good", "each scene once"}},
+    {{"simulate", "good.json", "second.json", "-o", "file"}, {"-o: file", "is no folder"}},
+    {{"simulate", "good.json", "second.json", "--report", "file"}, {"--report: file", "is no folder"}},
+    {{"simulate", "good.json", "none.json"}, {"none.json", "check the path"}},
+    {{"simulate", "good.json", "slow.json", "--backend", "cuda"},
+     {"slow.json", "\"xpbd\" runs on the CPU only"}},
     {{"simulate", "good.json", "--report", "."}, {".", "is a folder", "name a file"}},
     {{"simulate", "good.json", "--report", "file/run.json"}, {"file/run.json", "is no folder"}},
     {{"simulate", "none.json"}, {"none.json", "check the path"}},

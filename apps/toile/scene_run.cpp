@@ -1,0 +1,225 @@
+#include "apps/toile/scene_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "apps/toile/certify.h"
+#include "apps/toile/command_line.h"
+#include "apps/toile/exports.h"
+#include "apps/toile/run_report.h"
+#include "apps/toile/start_text.h"
+#include "core/backend/error.h"
+#include "core/backend/parallel.h"
+#include "core/mesh/obj.h"
+#include "core/quadrature/table_store.h"
+#include "export/async_cache_writer.h"
+
+namespace toile {
+
+namespace {
+
+/// A cache on its way to disk and the cloth whose positions it takes.
+struct OpenCache {
+    std::filesystem::path file;
+    int cloth;
+    std::unique_ptr<CacheWriter> writer;
+};
+
+std::vector<OpenCache> open_caches(const Scene& scene, const World& world,
+                                   const std::filesystem::path& folder)
+{
+    std::vector<OpenCache> caches;
+    for (const scene::Export& entry : exports_of(scene)) {
+        const int cloth = surface_index(scene, entry.cloth);
+        CacheLayout layout = cache_layout(world.surfaces()[cloth].rest, scene.frames);
+        layout.fps = scene.fps;
+        const std::filesystem::path file = folder / entry.file;
+        caches.push_back({file, cloth, std::make_unique<AsyncCacheWriter>(make_cache_writer(file, layout))});
+    }
+    return caches;
+}
+
+void write_frame(const World& world, std::vector<OpenCache>& caches)
+{
+    for (OpenCache& cache : caches)
+        cache.writer->write(world.frame(), world.surfaces()[cache.cloth].positions);
+}
+
+/// PC2 and MDD hold positions only: the mesh they play on goes beside them, in its start state, unless an OBJ
+/// of that name is among the caches.
+void write_start_mesh(const World& world, const OpenCache& cache, const std::vector<OpenCache>& caches)
+{
+    const std::filesystem::path file = std::filesystem::path(cache.file).replace_extension(".obj");
+    if (std::any_of(caches.begin(), caches.end(), [&](const OpenCache& other) { return other.file == file; }))
+        return;
+    ObjMesh mesh = world.surfaces()[cache.cloth].rest;
+    mesh.positions = world.surfaces()[cache.cloth].positions;
+    write_obj(file, mesh);
+}
+
+std::string note_of(const StepReport& report)
+{
+    return std::to_string(report.iterations) + " iterations, " + std::to_string(report.contacts) +
+           " contacts";
+}
+
+/// How a run ended.
+struct Outcome {
+    std::string word = "complete"; ///< or "interrupted", "failed"
+    std::string message;           ///< why it failed
+};
+
+/// Settles and runs to the last frame, to an interrupt, or to a failure.
+/// @throws Cancelled when interrupted while tables were built
+Outcome run_frames(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
+                   const InterruptGuard& interrupt, const RunLog& log)
+{
+    world.settle();
+    Progress progress = log.progress("frame", scene.frames);
+    write_frame(world, caches);
+    progress.update(1);
+    while (world.frame() + 1 < scene.frames) {
+        if (interrupt.requested())
+            return {"interrupted", ""};
+        const auto start = std::chrono::steady_clock::now();
+        const StepReport step = world.advance_frame();
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        report.add_frame(world.frame(), step, seconds.count());
+        if (step.status == StepReport::Status::NonFinite)
+            return {"failed", step.message};
+        write_frame(world, caches);
+        progress.update(world.frame() + 1, note_of(step));
+    }
+    return {};
+}
+
+Outcome run_or_stop(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
+                    const InterruptGuard& interrupt, const RunLog& log)
+{
+    try {
+        return run_frames(world, scene, caches, report, interrupt, log);
+    } catch (const Cancelled&) {
+        return {"interrupted", ""};
+    }
+}
+
+/// Says where a run ended that did not get to its end, and lists the partial caches.
+int explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>& caches, const RunLog& log)
+{
+    for (OpenCache& cache : caches) {
+        const std::filesystem::path partial = cache.writer->partial();
+        cache.writer.reset(); // delivers what is still queued
+        log.file(partial);
+    }
+    log.error(outcome.word + " at frame " + std::to_string(last_frame) +
+              (outcome.message.empty() ? "" : ": " + outcome.message) +
+              "; the frames before it are in the partial caches");
+    return kExitFailure;
+}
+
+/// One cache of each cloth, as it lies on disk.
+std::vector<CachedCloth> cloths_to_check(const World& world, const std::vector<OpenCache>& caches)
+{
+    std::vector<CachedCloth> cloths;
+    for (const OpenCache& cache : caches) {
+        const ClothState* cloth = &world.surfaces()[cache.cloth];
+        if (std::none_of(cloths.begin(), cloths.end(),
+                         [&](const CachedCloth& other) { return other.cloth == cloth; }))
+            cloths.push_back({cloth, cache.file});
+    }
+    return cloths;
+}
+
+/// Certifies what lies on disk now.
+int check_caches(const World& world, const Scene& scene, const std::vector<OpenCache>& caches,
+                 const std::filesystem::path& folder, const InterruptGuard& interrupt, const RunLog& log)
+{
+    const ThreadLimit threads(scene.solver.threads);
+    std::optional<Certificate> certificate;
+    {
+        Progress progress = log.progress("check", scene.frames);
+        certificate = certify(scene, cloths_to_check(world, caches), {}, [&](int done, int) {
+            progress.update(done);
+            return !interrupt.requested();
+        });
+    }
+    if (!certificate) {
+        log.error("interrupted while checking; the caches are complete, toile check " + folder.string() +
+                  " --scene " + scene.source.string() + " certifies them");
+        return kExitFailure;
+    }
+    const std::filesystem::path file = folder / kCertificateName;
+    log.file(file);
+    return conclude(*certificate, file, log);
+}
+
+} // namespace
+
+SceneRun::SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log)
+    : job_(job), no_check_(settings.no_check), log_(std::move(log)),
+      tables_(log_.quiet(), log_.scene(), log_.use()), world_(job.scene, world_options(settings))
+{
+    if (const std::string text = start_text(world_.start(), job.scene); !text.empty())
+        log_.note(text);
+}
+
+WorldOptions SceneRun::world_options(const RunSettings& settings)
+{
+    WorldOptions options;
+    options.backend = settings.backend;
+    options.device = settings.device;
+    if (settings.no_cache)
+        options.tables = std::make_shared<TableStore>();
+    options.building = [this](const std::string& cloth, double share) {
+        const bool goes_on = !interrupt_->requested();
+        goes_on ? tables_.update(cloth, share) : tables_.stop();
+        return goes_on;
+    };
+    options.warn = [this](const std::string& text) { tables_.warn(text); };
+    return options;
+}
+
+int SceneRun::run(const InterruptGuard& interrupt)
+{
+    interrupt_ = &interrupt;
+    try {
+        if (interrupt.requested())
+            throw Cancelled("interrupted while the scene was loaded");
+        world_.prepare();
+    } catch (const Cancelled&) {
+        log_.error("interrupted before the first frame; nothing was written");
+        return kExitFailure;
+    }
+    return run_into_caches(interrupt);
+}
+
+int SceneRun::run_into_caches(const InterruptGuard& interrupt)
+{
+    std::vector<OpenCache> caches = open_caches(job_.scene, world_, job_.folder);
+
+    int vertex_count = 0;
+    for (const auto& cloth : world_.surfaces())
+        vertex_count += int(cloth.positions.size());
+    RunReport report(job_.scene, vertex_count, world_.start(), world_.device());
+    for (const OpenCache& cache : caches)
+        write_start_mesh(world_, cache, caches);
+
+    const Outcome outcome = run_or_stop(world_, job_.scene, caches, report, interrupt, log_);
+    if (!job_.report.empty())
+        report.write(job_.report, outcome.word, world_.stages());
+    if (outcome.word != "complete")
+        return explain_stop(world_.frame(), outcome, caches, log_);
+    for (OpenCache& cache : caches) {
+        cache.writer->finish();
+        log_.file(cache.file);
+    }
+    // A certificate of an earlier run says nothing of these caches.
+    std::error_code none_there;
+    std::filesystem::remove(job_.folder / kCertificateName, none_there);
+    return no_check_ ? int(kExitOk) : check_caches(world_, job_.scene, caches, job_.folder, interrupt, log_);
+}
+
+} // namespace toile
