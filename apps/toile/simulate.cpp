@@ -80,7 +80,7 @@ std::vector<int> devices_of(const SimulateOptions& options)
     if (kBackends.at(options.backend) == Backend::Cpu)
         throw InvalidInput("--devices: " + *options.devices +
                            " with the backend cpu; give --backend cuda or auto, or leave --devices out");
-    const std::vector<int> devices = parse_devices(*options.devices);
+    std::vector<int> devices = parse_devices(*options.devices);
     const std::vector<CudaDevice> there = cuda_devices();
     if (there.empty())
         return {devices.front()};

@@ -25,14 +25,14 @@ TEST(DeviceList, KeepsTheOrder)
 
 TEST(DeviceList, RefusesWhatIsNoNumber)
 {
-    const std::string remedy = "give numbers of GPUs with commas between, e.g. 0,1";
-    EXPECT_EQ(refused([] { parse_devices(""); }), "--devices: is empty; " + remedy);
-    for (const std::string bad : {"x", "-1", "1.5", "0x1", " 1", "99999999999"})
-        EXPECT_EQ(refused([&] { parse_devices("0," + bad); }),
-                  "--devices: \"" + bad + "\" in \"0," + bad + "\" is no number of a GPU; " + remedy);
-    for (const std::string bad : {",", "0,", ",0", "0,,1"})
-        EXPECT_EQ(refused([&] { parse_devices(bad); }),
-                  "--devices: \"\" in \"" + bad + "\" is no number of a GPU; " + remedy);
+    EXPECT_EQ(refused([] { parse_devices(""); }),
+              "--devices: is empty; give numbers of GPUs with commas between, e.g. 0,1");
+    EXPECT_EQ(
+        refused([] { parse_devices("0,x"); }),
+        R"(--devices: "x" in "0,x" is no number of a GPU; give numbers of GPUs with commas between, e.g. 0,1)");
+    for (const char* bad : {"-1", "0,1.5", "0x1", " 1", "99999999999", ",", "0,", ",0", "0,,1"})
+        EXPECT_NE(refused([&] { parse_devices(bad); }).find("is no number of a GPU"), std::string::npos)
+            << bad;
 }
 
 TEST(DeviceList, RefusesTheSameNumberTwice)
