@@ -41,11 +41,11 @@ public:
         }
     };
 
-    /// Energy that tells two points apart whose distance is the tolerance [m] [J]: what inertia alone makes
-    /// of it.
+    /// Energy that tells two points apart whose distance is half the tolerance [m] [J]: what inertia alone
+    /// makes of it.
     TOILE_HD static double energy_of(double tolerance, double mass, double dt)
     {
-        return 0.5 * mass * (tolerance / dt) * (tolerance / dt);
+        return 0.125 * mass * (tolerance / dt) * (tolerance / dt);
     }
 
     /// @param masses      [vertices] [kg]
