@@ -98,14 +98,17 @@ bool Contact::revise(StepField x)
     if (terms_->empty() && !between_)
         return false;
     terms_->see(x);
-    const FrictionLimits friction = terms_->update_normal_forces();
+    const FrictionLimits friction = terms_->look_at_forces();
+    const bool has_landed = friction.change > kFrictionChange * friction.total;
+    if (has_landed)
+        terms_->adopt_forces();
     const bool has_new_pairs = between_ && between_->advance(x, [&] { return terms_->leaning(); });
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);
         find_again();
         return true;
     }
-    return friction.change > kFrictionChange * friction.total;
+    return has_landed;
 }
 
 /// The pairs of what has left its own, and all terms.
@@ -115,11 +118,18 @@ void Contact::find_again()
     terms_->make(between_.get());
 }
 
+/// How the minimiser has ended.
+void Contact::remember_end()
+{
+    terms_->adopt_forces();
+    terms_->remember(RememberedSlip::kSoFar);
+}
+
 void Contact::end_step(StepField x)
 {
     terms_->see(x);
     if (!has_cleared_)
-        terms_->remember(RememberedSlip::kSoFar);
+        remember_end();
     active_count_ = terms_->remembered();
     min_gap_ = terms_->end_step();
     if (between_)
@@ -134,7 +144,7 @@ void Contact::clear(StepField x, StepField v)
     terms_->see(x);
     if (!terms_->has_left(kEndTrust) && terms_->deepest() <= kLeftOver)
         return;
-    terms_->remember(RememberedSlip::kSoFar);
+    remember_end();
     has_cleared_ = true;
     find_again();
     const StageScope stage("collision/clear");
@@ -157,7 +167,8 @@ void Contact::resolve(StepField x, StepField v)
     if (terms_->has_left(kEndTrust))
         find_again();
     const StageScope stage("collision/resolve");
-    terms_->update_normal_forces();
+    terms_->look_at_forces();
+    terms_->adopt_forces();
     terms_->remember(RememberedSlip::kNothing);
     has_cleared_ = true;
     rub(x, v);

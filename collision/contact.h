@@ -43,6 +43,7 @@ public:
             const Settings& settings, const CudaSpace* space = nullptr);
 
     void begin_step(const StepStart& start) override;
+    bool may_act() const override { return !terms_->empty(); }
     bool make_feasible(StepField x) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
@@ -76,6 +77,7 @@ public:
 
 private:
     void find_again();
+    void remember_end();
     template <typename Sweeps>
     void sweep_near(StepField x, const Sweeps& sweeps) const;
     double mobility_of(const ContactPair& pair) const;

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "collision/contact.h"
 #include "collision/near_sweeps.h"
 
@@ -28,8 +26,8 @@ double Contact::mobility_of(const ContactPair& pair) const
     return start_.dt * start_.dt * mobility;
 }
 
-/// Gauss-Seidel over the pairs, with masses and the compliance 1/w of their springs [Macklin et al. 2016, eq.
-/// 18] and forces that never pull. Momentum goes where contact sends it, and pairs that press begin as deep
+/// Gauss-Seidel over the pairs, with masses and the compliance of their springs [Macklin et al. 2016, eq. 18]
+/// and forces that never pull. Momentum goes where contact sends it, and pairs that press begin as deep
 /// as their force asks for: friction reads it from there.
 bool Contact::make_feasible(StepField positions) const
 {
@@ -44,9 +42,9 @@ bool Contact::make_feasible(StepField positions) const
         for (int sweep = 0; sweep < kSweeps; ++sweep)
             for (int i = 0; i < near.terms.size(); ++i) {
                 const ContactTerm& term = near.terms[i];
-                const double compliance = 1.0 / term.stiffness;
-                const double depth = -term.gap(x) - term.give - compliance * force[i];
-                const double change = std::max(-force[i], depth / (compliance + mobility[i]));
+                const double reach = -term.gap(x) - term.give + mobility[i] * force[i];
+                const double change =
+                    term.spring.force(term.spring.depth_at_rest(reach, mobility[i])) - force[i];
                 if (mobility[i] == 0.0 || change == 0.0)
                     continue;
                 force[i] += change;

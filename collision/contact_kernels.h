@@ -14,17 +14,15 @@ struct EvaluateContact {
     TOILE_HD void operator()(int i) const
     {
         const ContactTerm& term = terms[i];
-        const double gap = term.gap(x), depth = gap < 0.0 ? gap : 0.0;
-        Vec3 f = term.stiffness * depth * term.pair.normal;
-        double e = 0.5 * term.stiffness * depth * depth;
+        const double depth = -term.gap(x);
+        Vec3 f = -term.spring.force(depth) * term.pair.normal;
+        double e = term.spring.energy(depth);
 
-        const double limit = term.friction_limit();
-        if (limit > 0.0) {
+        if (term.friction_limit() > 0.0) {
             const Vec3 u = term.slip(x);
             const double length = u.norm();
             f += term.tangential_stiffness(length) * u;
-            e += term.stiffness * length <= limit ? 0.5 * term.stiffness * length * length
-                                                  : limit * length - 0.5 * limit * limit / term.stiffness;
+            e += term.friction_energy(length);
         }
         force[i] = f;
         energy[i] = e;
@@ -41,8 +39,7 @@ struct FreezeContact {
     {
         const ContactTerm& term = terms[i];
         FrozenContact at;
-        if (term.gap(x) < 0.0)
-            at.normal = term.stiffness;
+        at.normal = term.spring.stiffness_at(-term.gap(x));
         if (term.friction_limit() > 0.0)
             at.tangential = term.tangential_stiffness(term.slip(x).norm());
         frozen[i] = at;

@@ -42,7 +42,7 @@ struct ContactRecord {
         record.normal_force = term.normal_force;
         record.normal = term.pair.normal;
         record.stick = slip;
-        if (const double pull = term.stiffness * record.stick.norm();
+        if (const double pull = term.sticking_stiffness() * record.stick.norm();
             pull > term.friction * record.normal_force)
             record.stick *= term.friction * record.normal_force / pull;
         return record;
@@ -61,7 +61,7 @@ struct ContactRecord {
         const Vec3& n = term.pair.normal;
         if (normal.dot(n) < kSameContact)
             return false;
-        term.normal_force = normal_force;
+        term.normal_force = term.pressing = normal_force;
         term.anchor -= stick - n.dot(stick) * n;
         return true;
     }

@@ -19,6 +19,9 @@ inline constexpr double kLeaning = 0.25;
 /// away.
 inline constexpr double kPressing = 0.5;
 
+/// Depth over which a term's spring becomes as stiff as it gets, of the gap [-].
+inline constexpr double kRampPerGap = 0.3;
+
 /// True for a plane of a single cloth vertex.
 TOILE_HD inline bool is_plane(const ContactPair& pair)
 {
@@ -120,12 +123,12 @@ struct ContactRules {
         ContactTerm term;
         term.pair = pair;
         term.friction = friction_of(pair);
-        term.stiffness = stiffness_of(pair);
 
         // Cloth that starts inside comes out at the recovery speed, not at once; between two parts it is
         // brought to the middle, where neither can push it through the other, and gripped there by a gap's
         // worth of force.
         const double keep = gap_of(pair);
+        term.spring = {stiffness_of(pair), kRampPerGap * keep};
         const Vec3 start = at_start(pair);
         const double recovered = pair.normal.dot(start - pair.point) + farthest_recovery;
         term.offset = recovered < keep ? recovered : keep;
@@ -149,17 +152,22 @@ struct FrictionLimits {
     }
 };
 
-/// Refreshes a normal force; the term of a sum.
-struct UpdateNormalForce {
+/// Sees how hard a term presses; the term of a sum of what friction's limits would be.
+struct LookAtForce {
     View<ContactTerm> terms;
     View<const Vec3> x; ///< [vertices] [m]
     TOILE_HD FrictionLimits operator()(int i) const
     {
         ContactTerm& term = terms[i];
-        const double before = term.normal_force;
-        term.normal_force = term.pressing_force(x);
-        return {term.friction * term.normal_force, term.friction * std::abs(term.normal_force - before)};
+        term.pressing = term.pressing_force(x);
+        return {term.friction * term.pressing, term.friction * std::abs(term.pressing - term.normal_force)};
     }
+};
+
+/// Bounds friction by it from now on.
+struct AdoptForce {
+    View<ContactTerm> terms;
+    TOILE_HD void operator()(int i) const { terms[i].normal_force = terms[i].pressing; }
 };
 
 /// What terms and vertices are asked at x during a step.

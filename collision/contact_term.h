@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "collision/contact_pair.h"
+#include "collision/contact_spring.h"
 
 namespace toile {
 
@@ -10,21 +11,21 @@ namespace toile {
 struct ContactTerm {
     ContactPair pair;
     double offset = 0.0;        ///< [m] gap to keep between cloth and surface
-    double stiffness = 0.0;     ///< [N/m] w, of the normal spring and of sticking
+    ContactSpring spring;       ///< along the normal
     double friction = 0.0;      ///< [-] Coulomb coefficient
     Vec3 anchor = Vec3::Zero(); ///< [m] where the cloth point would stick, in space at t1
     double give = 0.0;          ///< [m] below the offset where a step may end: cloth gripped from both sides
     double normal_force = 0.0;  ///< [N] lagged, bounds friction
+    double pressing = 0.0;      ///< [N] its successor: what was found at the last look
+
+    /// Slip at which friction has its limit, of the spring's ramp [-].
+    static constexpr double kSlipPerRamp = 1.0 / 3.0;
 
     /// Gap g at x [m]; negative where it pushes.
     TOILE_HD double gap(View<const Vec3> x) const { return pair.gap(x) - offset; }
 
     /// Force of the normal spring at x [N].
-    TOILE_HD double pressing_force(View<const Vec3> x) const
-    {
-        const double depth = -gap(x);
-        return depth > 0.0 ? stiffness * depth : 0.0;
-    }
+    TOILE_HD double pressing_force(View<const Vec3> x) const { return spring.force(-gap(x)); }
 
     /// Part of anchor-to-cloth in the tangent plane, u [m].
     TOILE_HD Vec3 slip(View<const Vec3> x) const
@@ -35,11 +36,27 @@ struct ContactTerm {
 
     TOILE_HD double friction_limit() const { return friction * normal_force; } ///< Coulomb's L [N]
 
-    /// Friction's stiffness at slip length |u| [m]: w while sticking, L/|u| while sliding [N/m].
+    /// Friction's stiffness while it sticks: as soft as the slip allows at which it has its limit, so that
+    /// what is far below the tolerance of a step does not tell sticking from sliding [N/m].
+    TOILE_HD double sticking_stiffness() const
+    {
+        const double limit = friction_limit(), slip = kSlipPerRamp * spring.ramp;
+        return limit < spring.stiffness * slip ? limit / slip : spring.stiffness;
+    }
+
+    /// The same at slip length |u| [m]: L/|u| while it slides [N/m].
     TOILE_HD double tangential_stiffness(double slip_length) const
     {
-        const double limit = friction_limit();
-        return stiffness * slip_length <= limit ? stiffness : limit / slip_length;
+        const double limit = friction_limit(), sticking = sticking_stiffness();
+        return sticking * slip_length <= limit ? sticking : limit / slip_length;
+    }
+
+    /// Energy of friction at slip length |u| [J].
+    TOILE_HD double friction_energy(double slip_length) const
+    {
+        const double limit = friction_limit(), sticking = sticking_stiffness();
+        return sticking * slip_length <= limit ? 0.5 * sticking * slip_length * slip_length
+                                               : limit * (slip_length - 0.5 * limit / sticking);
     }
 };
 

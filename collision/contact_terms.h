@@ -49,8 +49,11 @@ public:
     /// Positions [vertices] [m] that the functions below are about, as they are when these are called.
     virtual void see(StepField x) = 0;
 
-    /// Refreshes the lagged normal forces.
-    virtual FrictionLimits update_normal_forces() = 0;
+    /// Sees how hard the terms press, and what friction's limits would be by that.
+    virtual FrictionLimits look_at_forces() = 0;
+
+    /// Bounds friction by what was seen.
+    virtual void adopt_forces() = 0;
 
     /// Cloth that lies on a collider, or is in it: 1 for each such vertex.
     virtual std::vector<unsigned char> leaning() = 0;

@@ -81,10 +81,15 @@ void DeviceContactTerms::make(const ClothContact* between)
     energy_.touch(overlap_.size());
 }
 
-FrictionLimits DeviceContactTerms::update_normal_forces()
+FrictionLimits DeviceContactTerms::look_at_forces()
 {
-    return parallel_sum(space_, "contact/update_forces", energy_.terms().size(), FrictionLimits{},
-                        UpdateNormalForce{energy_.change_terms(), x_.there()}, limits_);
+    return parallel_sum(space_, "contact/look_at_forces", energy_.terms().size(), FrictionLimits{},
+                        LookAtForce{energy_.change_terms(), x_.there()}, limits_);
+}
+
+void DeviceContactTerms::adopt_forces()
+{
+    parallel_for(space_, "contact/adopt_forces", energy_.terms().size(), AdoptForce{energy_.change_terms()});
 }
 
 /// Marks the vertices of flagged terms.

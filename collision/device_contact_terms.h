@@ -23,7 +23,8 @@ public:
     void make(const ClothContact* between) override;
     bool empty() const override { return !energy_.has_terms(); }
     void see(StepField x) override { x_ = x; }
-    FrictionLimits update_normal_forces() override;
+    FrictionLimits look_at_forces() override;
+    void adopt_forces() override;
     std::vector<unsigned char> leaning() override;
     bool has_left(double trust) override;
     void find_again() override { colliders_.find_again(x_.there()); }

@@ -85,13 +85,20 @@ void HostContactTerms::make(const ClothContact* between)
     energy_.set_terms(std::move(terms), rules_.x.size());
 }
 
-FrictionLimits HostContactTerms::update_normal_forces()
+FrictionLimits HostContactTerms::look_at_forces()
 {
     FrictionLimits sum;
-    const UpdateNormalForce update{energy_.change_terms(), x_};
-    for (int i = 0; i < update.terms.size(); ++i)
-        sum += update(i);
+    const LookAtForce look{energy_.change_terms(), x_};
+    for (int i = 0; i < look.terms.size(); ++i)
+        sum += look(i);
     return sum;
+}
+
+void HostContactTerms::adopt_forces()
+{
+    const AdoptForce adopt{energy_.change_terms()};
+    for (int i = 0; i < adopt.terms.size(); ++i)
+        adopt(i);
 }
 
 std::vector<unsigned char> HostContactTerms::leaning()

@@ -21,7 +21,8 @@ public:
     void make(const ClothContact* between) override;
     bool empty() const override { return energy_.terms().empty(); }
     void see(StepField x) override { x_ = x.host(); }
-    FrictionLimits update_normal_forces() override;
+    FrictionLimits look_at_forces() override;
+    void adopt_forces() override;
     std::vector<unsigned char> leaning() override;
     bool has_left(double trust) override;
     void find_again() override;

@@ -30,6 +30,9 @@ public:
     /// Finds the candidates of this step.
     virtual void begin_step(const StepStart& start) = 0;
 
+    /// False where it has no candidates: nothing can make it act.
+    virtual bool may_act() const { return true; }
+
     /// Moves a start guess out of the candidates' forbidden half-spaces as contact without anything else
     /// would. True when anything moved.
     virtual bool make_feasible(StepField x) const = 0;

@@ -6,6 +6,7 @@
 
 #include "core/linear/field.h"
 #include "core/pd/step_end.h"
+#include "core/pd/step_rounds.h"
 #include "core/pd/step_tolerance.h"
 
 namespace toile {
@@ -91,11 +92,13 @@ OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& object
 void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
 {
     StepObjective objective(*system_, start_of(dt), active, settings_.contact_solve);
-    const OuterLoop::Settings settings{tolerance(), settings_.max_iterations};
-    for (int round = 0; round < settings_.max_rounds; ++round) {
+    OuterLoop::Settings settings{tolerance(), settings_.max_iterations};
+    StepRounds rounds(settings_.max_iterations, settings_.max_rounds);
+    for (bool goes_on = true; goes_on;) {
         const StageScope stage("pd/minimise");
+        settings.max_iterations = rounds.max_iterations(active && active->may_act());
         OuterLoop::Outcome outcome = outer_->minimise(objective, x_t1_, settings);
-        if (round == 0)
+        if (rounds.is_first())
             outcome = no_worse_than_standing(dt, objective, settings, outcome);
         report.iterations += outcome.iterations;
         report.linear_iterations += outcome.linear_iterations;
@@ -109,8 +112,8 @@ void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
             report.message = "the energy at the start of the step is not finite";
             break;
         }
-        if (!active || !active->revise(x_t1_))
-            break;
+        const bool has_changed = active && active->revise(x_t1_);
+        goes_on = rounds.goes_on(outcome, settings.max_iterations, has_changed);
     }
     report.linear_iterations += objective.linear_iterations();
 }

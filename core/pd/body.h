@@ -16,8 +16,8 @@ public:
         /// [m] Error that a step may end with: what StepError estimates, and the next move of any vertex.
         /// Lowered to a tenth of the farthest predicted move, but never below a five-hundredth of this.
         double tolerance = 1e-5;
-        int max_iterations = 50; ///< outer iterations per minimisation
-        int max_rounds = 3;      ///< minimisations per step, when contact asks for another
+        int max_iterations = 50; ///< outer iterations of a step
+        int max_rounds = 3;      ///< see StepRounds
         int history = 5;         ///< pairs of L-BFGS, moves of Anderson acceleration
         OuterMethod outer = OuterMethod::Lbfgs;
         NestedPcg::Settings contact_solve; ///< while contacts are active

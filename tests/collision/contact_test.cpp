@@ -43,7 +43,7 @@ ContactEnergy sample_energy()
     terms[2].pair.point = Vec3(0.0, -1.0, 0.0);
     for (ContactTerm& term : terms) {
         term.offset = 0.002;
-        term.stiffness = 500.0;
+        term.spring.stiffness = 500.0;
     }
     ContactEnergy energy;
     energy.set_terms(terms, 5);

@@ -90,7 +90,7 @@ public:
             std::make_shared<Membrane>(rest, Membrane::Settings{2000.0, 2000.0, 800.0}, "strip"), springs_};
         Body::Settings settings;
         settings.tolerance = 1e-7;
-        settings.max_iterations = 200;
+        settings.max_iterations = 600;
         body_ =
             std::make_unique<Body>(x, std::make_unique<System>(masses_of(*rest, 0.2), energies), settings);
         touch(x, triangles, cylinder, friction);

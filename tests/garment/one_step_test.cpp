@@ -273,7 +273,7 @@ TEST(OneStep, AgreesWithNewtonWhateverThePreconditionerOfContact)
         term.pair.weight = {0.5, 0.3, 0.2};
         term.pair.normal = Vec3(0.1, 1.0, 0.2).normalized();
         term.pair.point = 0.03 * term.pair.normal;
-        term.stiffness = 800.0;
+        term.spring.stiffness = 800.0;
     }
     TouchingPlane plane(std::move(terms), int(step.x.size()));
     step.active = &plane;

@@ -30,7 +30,7 @@ public:
             terms[v].pair.weight[0] = 1.0;
             terms[v].pair.normal = settings.normal;
             terms[v].pair.point = settings.height * settings.normal;
-            terms[v].stiffness = settings.stiffness;
+            terms[v].spring.stiffness = settings.stiffness;
             terms[v].friction = settings.friction;
             terms[v].normal_force = settings.normal_force;
             terms[v].anchor = start[v];
@@ -84,7 +84,7 @@ public:
         for (int v = 0; v < int(x.size()); ++v) {
             const ContactTerm& term = energy_.terms()[v];
             const bool slides =
-                term.stiffness * energy_.slip(v, x).norm() > term.friction * term.normal_force;
+                term.sticking_stiffness() * energy_.slip(v, x).norm() > term.friction * term.normal_force;
             count += energy_.gap(v, x) < 0.0 && slides ? 1 : 0;
         }
         return count;

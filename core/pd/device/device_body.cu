@@ -5,6 +5,7 @@
 #include "core/backend/cuda/parallel.cuh"
 #include "core/backend/error.h"
 #include "core/pd/step_end.h"
+#include "core/pd/step_rounds.h"
 
 namespace toile {
 
@@ -183,10 +184,14 @@ void DeviceBody::begin_contact(ActiveSetEnergy& active)
 
 void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
 {
-    for (int round = 0; round < settings_.max_rounds; ++round) {
+    StepRounds rounds(settings_.max_iterations, settings_.max_rounds);
+    for (bool goes_on = true; goes_on;) {
         const StageScope stage("pd/minimise");
         DeviceActiveSet* contact = active ? active->on_device(space_) : nullptr;
-        const OuterLoop::Outcome outcome = descend(contact, round == 0);
+        const bool touches = contact != nullptr && contact->has_terms();
+        const int limit = rounds.max_iterations(touches);
+        const OuterLoop::Outcome outcome =
+            touches ? minimise_touching(*contact, limit, rounds.is_first()) : minimise_free(rounds.is_first());
         parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_there()});
         report.iterations += outcome.iterations;
         report.linear_iterations += outcome.linear_iterations;
@@ -199,16 +204,9 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
             report.message = "the energy at the start of the step is not finite";
             return;
         }
-        if (active == nullptr || !active->revise(x_t1_))
-            return;
+        const bool has_changed = active && active->revise(x_t1_);
+        goes_on = rounds.goes_on(outcome, limit, has_changed);
     }
-}
-
-OuterLoop::Outcome DeviceBody::descend(DeviceActiveSet* contact, bool is_first)
-{
-    const StageScope stage("pd/descend");
-    return contact != nullptr && contact->has_terms() ? minimise_touching(*contact, is_first)
-                                                      : minimise_free(is_first);
 }
 
 /// As Body's: begins again where the cloth stands where that is better than what was found.
@@ -248,10 +246,10 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
 }
 
 /// The same while contact may act.
-OuterLoop::Outcome DeviceBody::minimise_touching(DeviceActiveSet& contact, bool is_first)
+OuterLoop::Outcome DeviceBody::minimise_touching(DeviceActiveSet& contact, int limit, bool is_first)
 {
     prepare_touching();
-    OuterLoop::Settings settings{asked_.tolerance, asked_.max_iterations};
+    OuterLoop::Settings settings{asked_.tolerance, limit};
     begin_at(x_t1_.there());
     const OuterLoop::Outcome found =
         run_touching(contact, settings, contact_descent_->evaluate(fields(), contact));

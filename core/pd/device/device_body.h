@@ -21,8 +21,8 @@ class DeviceBody : public PointMasses {
 public:
     struct Settings {
         double tolerance = 1e-5; ///< [m] as Body's
-        int max_iterations = 50; ///< outer iterations per minimisation
-        int max_rounds = 3;      ///< minimisations per step, when contact asks for another
+        int max_iterations = 50; ///< outer iterations of a step
+        int max_rounds = 3;      ///< see StepRounds
         Pcg::Settings contact_solve = NestedPcg::Settings{}.pcg; ///< while contacts are active
     };
 
@@ -59,9 +59,8 @@ private:
     void predict();
     void begin_contact(ActiveSetEnergy& active);
     void minimise(ActiveSetEnergy* active, StepReport& report);
-    OuterLoop::Outcome descend(DeviceActiveSet* contact, bool is_first);
     OuterLoop::Outcome minimise_free(bool is_first);
-    OuterLoop::Outcome minimise_touching(DeviceActiveSet& contact, bool is_first);
+    OuterLoop::Outcome minimise_touching(DeviceActiveSet& contact, int limit, bool is_first);
     void prepare_touching();
     OuterLoop::Outcome run_touching(DeviceActiveSet& contact, const OuterLoop::Settings& settings,
                                     double value);

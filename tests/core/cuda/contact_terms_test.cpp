@@ -113,7 +113,7 @@ struct TermDifferences {
     void add(const ContactTerm& a, const ContactTerm& b)
     {
         for (const double difference :
-             {a.offset - b.offset, a.stiffness - b.stiffness, a.friction - b.friction, a.give - b.give,
+             {a.offset - b.offset, a.spring.stiffness - b.spring.stiffness, a.friction - b.friction, a.give - b.give,
               a.normal_force - b.normal_force, (a.anchor - b.anchor).norm()})
             if (!(std::abs(difference) <= numbers)) // NaN is kept too
                 numbers = std::abs(difference);
@@ -360,7 +360,7 @@ TEST_F(DeviceContactTermsTest, HaveTheSameBitsInTwoRuns)
         const ContactTerm &a = runs[0][i], &b = runs[1][i];
         different += a.pair.vertex != b.pair.vertex || a.pair.normal != b.pair.normal ||
                      a.pair.point != b.pair.point || a.anchor != b.anchor || a.offset != b.offset ||
-                     a.stiffness != b.stiffness || a.normal_force != b.normal_force;
+                     a.spring.stiffness != b.spring.stiffness || a.normal_force != b.normal_force;
     }
     EXPECT_EQ(different, 0);
 }
