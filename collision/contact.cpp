@@ -149,7 +149,7 @@ void Contact::clear(StepField x, StepField v)
     find_again();
     const StageScope stage("collision/clear");
     stop_at_surfaces(x, v);
-    push_out(x);
+    push_out(x, kLeftOver);
 }
 
 /// What would have crossed stops: it loses the velocity that it was to have got there.
@@ -172,7 +172,7 @@ void Contact::resolve(StepField x, StepField v)
     terms_->remember(RememberedSlip::kNothing);
     has_cleared_ = true;
     rub(x, v);
-    push_out(x);
+    push_out(x, 0.0);
 }
 
 } // namespace toile

@@ -89,7 +89,7 @@ private:
     Vec3 surface_velocity(const ContactPair& pair) const;
     void stop_at_surfaces(StepField x, StepField v) const;
     void rub(StepField x, StepField v) const;
-    void push_out(StepField x) const;
+    void push_out(StepField x, double most) const;
 
     std::vector<int> rigid_; ///< [vertices] see rigid_bodies_of
     StepStart start_;

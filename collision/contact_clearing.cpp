@@ -85,13 +85,14 @@ void Contact::rub(StepField positions, StepField velocities) const
     }
 }
 
-void Contact::push_out(StepField positions) const
+/// @param most  depth that is left to a pair which rests there [m]
+void Contact::push_out(StepField positions, double most) const
 {
     sweep_near(positions, [&](const NearTerms& near, const NearMoves& moves, View<Vec3> x) {
         for (int sweep = 0; sweep < kClearSweeps; ++sweep)
             for (int i = 0; i < near.terms.size(); ++i) {
                 const ContactTerm& term = near.terms[i];
-                const double depth = -term.gap(x) - term.give;
+                const double depth = -term.gap(x) - term.give - std::min(most, term.rest_depth());
                 if (depth <= 0.0)
                     continue;
                 push(term.pair, std::min(depth, clearance_of(term.pair)) * term.pair.normal, x);

@@ -40,6 +40,15 @@ struct ContactSpring {
         return depth < ramp ? stiffness * depth / ramp : stiffness;
     }
 
+    /// Depth of a force [N]: the inverse of force() [m].
+    TOILE_HD double depth_of(double force) const
+    {
+        if (force <= 0.0)
+            return 0.0;
+        const double beyond = force / stiffness + 0.5 * ramp;
+        return beyond >= ramp ? beyond : std::sqrt(2.0 * ramp * force / stiffness);
+    }
+
     /// Depth at rest of what would be `reach` [m] deep if nothing pushed, and is pushed out by `mobility`
     /// [m/N] times the force: d + mobility force(d) = reach.
     TOILE_HD double depth_at_rest(double reach, double mobility) const

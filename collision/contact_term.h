@@ -19,13 +19,16 @@ struct ContactTerm {
     double pressing = 0.0;      ///< [N] its successor: what was found at the last look
 
     /// Slip at which friction has its limit, of the spring's ramp [-].
-    static constexpr double kSlipPerRamp = 1.0 / 3.0;
+    static constexpr double kSlipPerRamp = 0.1;
 
     /// Gap g at x [m]; negative where it pushes.
     TOILE_HD double gap(View<const Vec3> x) const { return pair.gap(x) - offset; }
 
     /// Force of the normal spring at x [N].
     TOILE_HD double pressing_force(View<const Vec3> x) const { return spring.force(-gap(x)); }
+
+    /// Depth at which it presses as hard as friction reckons with [m].
+    TOILE_HD double rest_depth() const { return spring.depth_of(normal_force); }
 
     /// Part of anchor-to-cloth in the tangent plane, u [m].
     TOILE_HD Vec3 slip(View<const Vec3> x) const

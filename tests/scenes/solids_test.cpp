@@ -47,7 +47,8 @@ TEST(Solids, LandAndRestAtTheGapAndSleep)
     double lowest = 1.0;
     for (const Vec3& p : x)
         lowest = std::min(lowest, p.y());
-    EXPECT_NEAR(lowest, 0.001, 2e-5);
+    EXPECT_LE(lowest, 0.001);
+    EXPECT_GE(lowest, 0.00085); // its weight presses half of the spring's ramp in
     EXPECT_LT(distortion(world.surfaces()[0].rest.positions, x), 1e-12);
     const long minimised = world.stages().calls("pd/minimise");
     while (world.frame() < 70)
@@ -92,8 +93,7 @@ TEST(Solids, HoldOnAnInclineBelowTheFrictionAngle) { EXPECT_LT(slide(0.49, 0.5, 
 TEST(Solids, SlideAtCoulombsAcceleration)
 {
     const double angle = std::atan(0.6);
-    const double exact =
-        0.5 * 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)); // 1/2 t^2 g (sin a - mu cos a)
+    const double dt = 1.0 / 120.0, exact = 0.5 * 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)) * (1.0 + dt);
     const Slide found = slide(0.6, 0.5, 0.05);
     EXPECT_NEAR(found.way, exact, 0.02 * exact);
     EXPECT_LT(found.lean, 0.01);
