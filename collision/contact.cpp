@@ -93,13 +93,13 @@ void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
     energy_.add_hessian_product(p, out);
 }
 
-bool Contact::revise(StepField x)
+bool Contact::revise(StepField x, bool is_settled)
 {
     if (terms_->empty() && !between_)
         return false;
     terms_->see(x);
     const FrictionLimits friction = terms_->look_at_forces();
-    const bool has_landed = friction.change > kFrictionChange * friction.total;
+    const bool has_landed = is_settled && friction.change > kFrictionChange * friction.total;
     if (has_landed)
         terms_->adopt_forces();
     const bool has_new_pairs = between_ && between_->advance(x, [&] { return terms_->leaning(); });

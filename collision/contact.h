@@ -51,7 +51,7 @@ public:
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     DeviceActiveSet* on_device(const CudaSpace& space) override { return terms_->on_device(space); }
-    bool revise(StepField x) override;
+    bool revise(StepField x, bool is_settled) override;
     void clear(StepField x, StepField v) override;
     void resolve(StepField x, StepField v) override;
     bool keep_apart(StepField x, StepField v) override;

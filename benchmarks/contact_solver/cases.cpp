@@ -115,7 +115,7 @@ void Case::press(Kind kind, double stiffness)
     // Friction is limited by the normal forces of the last look.
     std::vector<Vec3> looked = pressed_;
     if (friction > 0.0)
-        contact_->revise(looked);
+        contact_->revise(looked, true);
     contact_->activate(pressed_);
     std::vector<FrozenTerm> terms;
     contact_->append_terms(terms);

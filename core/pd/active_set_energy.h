@@ -48,11 +48,12 @@ public:
     /// the device's.
     virtual DeviceActiveSet* on_device([[maybe_unused]] const CudaSpace& space) { return nullptr; }
 
-    /// After every minimisation: refreshes lagged quantities (friction limits) and looks again where x left
-    /// the neighbourhood that the candidates were made for. True when the energy changed enough to be
-    /// minimised again.
+    /// After every minimisation: refreshes lagged quantities (friction limits) where x is settled, and looks
+    /// again where x left the neighbourhood that the candidates were made for. True when the energy changed
+    /// enough to be minimised again.
     /// x [vertices] is moved back where it has gone too far for what must always hold (keep_apart).
-    virtual bool revise(StepField x) = 0;
+    /// @param is_settled  the minimisation was not cut short: forces at x are more than what it has left
+    virtual bool revise(StepField x, bool is_settled) = 0;
 
     /// Clears what the minimisation has left inside the forbidden half-spaces. x and v [vertices] are its
     /// positions and velocities.

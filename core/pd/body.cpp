@@ -96,7 +96,7 @@ void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
     StepRounds rounds(settings_.max_iterations, settings_.max_rounds);
     for (bool goes_on = true; goes_on;) {
         const StageScope stage("pd/minimise");
-        settings.max_iterations = rounds.max_iterations(active && active->may_act());
+        settings.max_iterations = rounds.next(active && active->may_act());
         OuterLoop::Outcome outcome = outer_->minimise(objective, x_t1_, settings);
         if (rounds.is_first())
             outcome = no_worse_than_standing(dt, objective, settings, outcome);
@@ -112,8 +112,8 @@ void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
             report.message = "the energy at the start of the step is not finite";
             break;
         }
-        const bool has_changed = active && active->revise(x_t1_);
-        goes_on = rounds.goes_on(outcome, settings.max_iterations, has_changed);
+        const bool has_changed = active && active->revise(x_t1_, rounds.is_settled(outcome));
+        goes_on = rounds.goes_on(outcome, has_changed);
     }
     report.linear_iterations += objective.linear_iterations();
 }

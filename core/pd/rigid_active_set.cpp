@@ -127,12 +127,12 @@ void RigidActiveSet::append_terms(std::vector<FrozenTerm>& terms) const
     }
 }
 
-bool RigidActiveSet::revise(StepField positions)
+bool RigidActiveSet::revise(StepField positions, bool is_settled)
 {
     const View<Vec3> q = positions.change_on_host();
     to_surface(q, x_);
     const std::vector<Vec3> before = x_;
-    const bool changed = surface_.revise(x_);
+    const bool changed = surface_.revise(x_, is_settled);
     take_moved(before, x_, q);
     return changed;
 }

@@ -20,25 +20,30 @@ public:
     StepRounds(int max_iterations, int max_rounds) : left_(max_iterations), rounds_(max_rounds + kLooks) {}
 
     /// Limit of the next minimisation.
-    int max_iterations(bool touches) const
+    int next(bool touches)
     {
-        return touches && round_ < kLooks ? std::min(kIterationsOfLook, left_) : left_;
+        limit_ = touches && round_ < kLooks ? std::min(kIterationsOfLook, left_) : left_;
+        return limit_;
     }
     bool is_first() const { return round_ == 0; }
 
-    /// @param limit        what max_iterations() was
+    /// False where the limit has cut it short.
+    bool is_settled(const OuterLoop::Outcome& outcome) const
+    {
+        return outcome.converged || outcome.iterations < limit_;
+    }
+
     /// @param has_changed  what is minimised, by how it ended
     /// @return true where another minimisation is to follow
-    bool goes_on(const OuterLoop::Outcome& outcome, int limit, bool has_changed)
+    bool goes_on(const OuterLoop::Outcome& outcome, bool has_changed)
     {
-        const bool was_cut_short = !outcome.converged && outcome.iterations >= limit;
         left_ -= outcome.iterations;
         ++round_;
-        return left_ > 0 && round_ < rounds_ && (has_changed || was_cut_short);
+        return left_ > 0 && round_ < rounds_ && (has_changed || !is_settled(outcome));
     }
 
 private:
-    int left_, rounds_, round_ = 0;
+    int left_, rounds_, round_ = 0, limit_ = 0;
 };
 
 } // namespace toile

@@ -208,7 +208,7 @@ TEST(Contact, KeepsTheAnchorOfTheStartWhenItLooksAgain)
     RisingPlate scene;
     std::vector<Vec3> x = scene.start;
     x[0] = Vec3(0.02, scene.rise + 0.5 * kGap, 0.0); // slid 2 cm, pressing
-    ASSERT_TRUE(scene.contact.revise(x));
+    ASSERT_TRUE(scene.contact.revise(x, true));
     ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
     const ContactTerm& term = scene.contact.energy().terms()[0];
     EXPECT_GT(term.normal_force, 0.0);

@@ -63,7 +63,7 @@ public:
         there_->set_terms(energy_.terms(), vertex_count_);
         return there_.get();
     }
-    bool revise(StepField) override { return false; }
+    bool revise(StepField, bool) override { return false; }
     void clear(StepField, StepField) override {}
     bool keep_apart(StepField, StepField) override { return false; }
     void end_step(StepField) override {}

@@ -189,7 +189,7 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
         const StageScope stage("pd/minimise");
         DeviceActiveSet* contact = active ? active->on_device(space_) : nullptr;
         const bool touches = contact != nullptr && contact->has_terms();
-        const int limit = rounds.max_iterations(touches);
+        const int limit = rounds.next(touches);
         const OuterLoop::Outcome outcome =
             touches ? minimise_touching(*contact, limit, rounds.is_first()) : minimise_free(rounds.is_first());
         parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_there()});
@@ -204,8 +204,8 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
             report.message = "the energy at the start of the step is not finite";
             return;
         }
-        const bool has_changed = active && active->revise(x_t1_);
-        goes_on = rounds.goes_on(outcome, limit, has_changed);
+        const bool has_changed = active && active->revise(x_t1_, rounds.is_settled(outcome));
+        goes_on = rounds.goes_on(outcome, has_changed);
     }
 }
 

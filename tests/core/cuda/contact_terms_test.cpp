@@ -182,7 +182,7 @@ protected:
     {
         here.see(made.found);
         there.see(board.found);
-        const FrictionLimits expected = here.update_normal_forces(), limits = there.update_normal_forces();
+        const FrictionLimits expected = here.look_at_forces(), limits = there.look_at_forces();
         EXPECT_GT(expected.total, 0.0);
         EXPECT_NEAR(limits.total, expected.total, 1e-9 * expected.total);
         EXPECT_NEAR(limits.change, expected.change, 1e-9 * expected.total);
@@ -192,6 +192,8 @@ protected:
         EXPECT_FALSE(there.has_left(1.0));
         EXPECT_TRUE(here.has_left(kTrust));
         EXPECT_TRUE(there.has_left(kTrust));
+        here.adopt_forces();
+        there.adopt_forces();
         here.remember(RememberedSlip::kByStart);
         there.remember(RememberedSlip::kByStart);
         EXPECT_EQ(there.remembered(), here.remembered());
@@ -294,8 +296,8 @@ TEST_F(DeviceContactTermsTest, MoveClothAsOnTheCpu)
         EXPECT_TRUE(there.make_feasible(board.prediction));
         expect_same_field(guess, board.prediction.host(), 1e-8);
 
-        EXPECT_TRUE(here.revise(x));
-        EXPECT_TRUE(there.revise(board.found));
+        EXPECT_TRUE(here.revise(x, true));
+        EXPECT_TRUE(there.revise(board.found, true));
         OnBoard::fill(board.v, v);
         here.clear(x, v);
         there.clear(board.found, board.v);
@@ -324,7 +326,7 @@ TEST_F(DeviceContactTermsTest, AreNoneWhereNothingIsNear)
     contact.begin_step(board.begin(made));
     EXPECT_FALSE(contact.make_feasible(board.prediction));
     EXPECT_FALSE(contact.on_device(space())->has_terms());
-    EXPECT_FALSE(contact.revise(board.found));
+    EXPECT_FALSE(contact.revise(board.found, true));
     contact.clear(board.found, board.v);
     contact.end_step(board.found);
     EXPECT_EQ(contact.active_count(), 0);
@@ -344,7 +346,8 @@ TEST_F(DeviceContactTermsTest, HaveTheSameBitsInTwoRuns)
             terms.begin_step(board.begin(made));
             terms.make(nullptr);
             terms.see(board.found);
-            terms.update_normal_forces();
+            terms.look_at_forces();
+            terms.adopt_forces();
             terms.has_left(kTrust);
             terms.remember(RememberedSlip::kSoFar);
             terms.find_again();
