@@ -12,16 +12,17 @@ namespace toile {
 /// for nothing.
 class StepRounds {
 public:
-    /// Minimisations cut short, and their iterations.
+    /// Minimisations cut short, and their iterations, which do not count as the step's.
     static constexpr int kLooks = 2, kIterationsOfLook = 6;
 
-    /// @param max_iterations  of all minimisations of the step
+    /// @param max_iterations  of all minimisations of the step that are not cut short
     /// @param max_rounds      minimisations that are not cut short
     StepRounds(int max_iterations, int max_rounds) : left_(max_iterations), rounds_(max_rounds + kLooks) {}
 
     /// Limit of the next minimisation.
     int next(bool touches)
     {
+        touches_ = touches;
         limit_ = touches && round_ < kLooks ? std::min(kIterationsOfLook, left_) : left_;
         return limit_;
     }
@@ -37,13 +38,14 @@ public:
     /// @return true where another minimisation is to follow
     bool goes_on(const OuterLoop::Outcome& outcome, bool has_changed)
     {
-        left_ -= outcome.iterations;
-        ++round_;
+        if (round_++ >= kLooks || !touches_)
+            left_ -= outcome.iterations;
         return left_ > 0 && round_ < rounds_ && (has_changed || !is_settled(outcome));
     }
 
 private:
     int left_, rounds_, round_ = 0, limit_ = 0;
+    bool touches_ = false;
 };
 
 } // namespace toile
