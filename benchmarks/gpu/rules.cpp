@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "benchmarks/gpu/contenders.h"
 #include "benchmarks/gpu/median_time.h"
@@ -53,6 +54,7 @@ struct Exact {
 std::vector<Row> rows_of(const std::vector<RuleApply>& rules)
 {
     std::vector<Row> rows;
+    rows.reserve(rules.size());
     for (const RuleApply& rule : rules)
         rows.push_back({std::to_string(rule.vertices), rule.name, format("%.1f", rule.solve_us),
                         format("%.2g", rule.smooth_error), format("%.2g", rule.rough_error)});

@@ -3,6 +3,8 @@
 
 #include "core/backend/cuda/answers.h"
 #include "core/backend/error.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/world.h"
 #include "tests/core/cuda/kernels.h"
 #include "tests/core/cuda/on_device.h"
 
@@ -74,6 +76,33 @@ TEST_F(CudaKernelFailureDeathTest, NamesThoseItMayHaveBeenWhenNoticedLate)
 TEST_F(CudaKernelFailureDeathTest, LeavesADeviceThatNoLongerAnswers)
 {
     EXPECT_EXIT(ask_and_exit(), testing::ExitedWithCode(0), "before: (yes )+after: no (yes )*");
+}
+
+/// Steps a world before and after a wild kernel on its device, and ends the process.
+[[noreturn]] void step_and_exit()
+{
+    const Scene scene = parse_scene(R"({"toile": 1, "frames": 3, "cloths": [
+        {"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02}}]})",
+                                    "test.json");
+    std::string before, after;
+    {
+        WorldOptions options;
+        options.backend = Backend::Cuda;
+        World world(scene, options);
+        before = message_of<DeviceError>([&] { world.advance_frame(); });
+        const CudaSpace space(0, CudaSpace::Checks::EveryLaunch);
+        message_of<DeviceError>([&] { launch(space, WriteWild{View<int>(nullptr, 300)}); });
+        after = message_of<DeviceError>([&] { world.advance_frame(); });
+        // The world goes on a device that no longer answers.
+    }
+    std::cerr << "before: " << before << ", after: " << after << std::endl;
+    std::_Exit(0);
+}
+
+/// As `toile simulate` needs it: one error, and the world can be taken away.
+TEST_F(CudaKernelFailureDeathTest, EndsAWorldWithAnError)
+{
+    EXPECT_EXIT(step_and_exit(), testing::ExitedWithCode(0), "before: , after: .*CUDA device 0 \\(.*\\)");
 }
 
 } // namespace
