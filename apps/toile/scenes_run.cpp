@@ -1,5 +1,7 @@
 #include "apps/toile/scenes_run.h"
 
+#include <utility>
+
 #include "apps/toile/command_line.h"
 #include "apps/toile/scene_queue.h"
 #include "core/backend/cuda/answers.h"
