@@ -15,7 +15,7 @@ namespace {
 
 const std::vector<std::string> kTables{"gpu_apply.csv",     "gpu_step.csv",   "gpu_near_pairs.csv",
                                        "gpu_colliders.csv", "gpu_tables.csv", "gpu_scenes.csv",
-                                       "gpu_rivals.csv",    "gpu_tables.md"};
+                                       "gpu_rivals.csv",    "gpu_rules.csv",  "gpu_tables.md"};
 
 /// As the paper's Cloth scene.
 constexpr double kStiffness = 1e4; ///< [N/m]
@@ -44,8 +44,10 @@ const std::vector<gpu::SceneCase> kScenes{{"cloth", "scenes/benchmarks/cloth.jso
                                           {"runway", "scenes/benchmarks/runway.json", 3, false}};
 const std::vector<gpu::SceneCase> kQuickScenes{{"tablecloth", "scenes/demo/tablecloth.json", 8, true}};
 
-/// Beside other people's methods, at the same states: two steps of a swinging sheet.
-const std::vector<gpu::RivalsCase> kRivals{{10'000, 1e3, kTimeStep, 2, 16},
+/// Beside other people's methods, at the same states: two steps of a swinging sheet. The paper's rule is made
+/// for the smallest only.
+const std::vector<gpu::RivalsCase> kRivals{{2'500, 1e3, kTimeStep, 2, 16},
+                                           {10'000, 1e3, kTimeStep, 2, 16},
                                            {10'000, 1e4, kTimeStep, 2, 16},
                                            {50'000, 1e3, kTimeStep, 2, 16},
                                            {50'000, 1e4, kTimeStep, 2, 16}};
@@ -101,6 +103,10 @@ std::vector<Case> cases_of(const BenchOptions& options)
                  for (solvers::Result& result : gpu::measure_rivals(space, what))
                      report.rivals.push_back(std::move(result));
              }});
+    const gpu::RivalsCase small = (options.quick ? kQuickRivals : kRivals).front();
+    cases.push_back({"rivals' global solvers", [=](const CudaSpace& space, gpu::Report& report) {
+                         gpu::measure_rules(space, small.vertices, small.stiffness, small.dt, report.rules);
+                     }});
     std::erase_if(cases, [&](const Case& c) { return c.name.find(options.only) == std::string::npos; });
     if (cases.empty())
         throw InvalidInput("bench gpu: --only \"" + options.only + "\" leaves no case");
@@ -123,7 +129,8 @@ std::vector<TableFile> tables_of(const gpu::Report& report, bool is_whole)
     add(kTables[4], !report.builds.empty(), gpu::csv_of(report.builds));
     add(kTables[5], !report.scenes.empty(), gpu::csv_of(report.scenes));
     add(kTables[6], !report.rivals.empty(), solvers::csv_table(report.rivals));
-    add(kTables[7], false, gpu::markdown_tables(report));
+    add(kTables[7], !report.rules.empty(), gpu::csv_of(report.rules));
+    add(kTables[8], false, gpu::markdown_tables(report));
     return tables;
 }
 

@@ -70,54 +70,71 @@ std::string note_of(const StepReport& report)
 struct Outcome {
     std::string word = "complete"; ///< or "interrupted", "failed"
     std::string message;           ///< why it failed
+    int written = 0;               ///< frames that caches were given
 };
 
 /// Settles and runs to the last frame, to an interrupt, or to a failure.
-/// @throws Cancelled when interrupted while tables were built
-Outcome run_frames(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
-                   const InterruptGuard& interrupt, const RunLog& log)
+/// @throws Cancelled when interrupted while tables were built, DeviceError where GPU or disk refuse
+void run_frames(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
+                const InterruptGuard& interrupt, const RunLog& log, Outcome& outcome)
 {
     world.settle();
     Progress progress = log.progress("frame", scene.frames);
     write_frame(world, caches);
-    progress.update(1);
+    progress.update(++outcome.written);
     while (world.frame() + 1 < scene.frames) {
-        if (interrupt.requested())
-            return {"interrupted", ""};
+        if (interrupt.requested()) {
+            outcome.word = "interrupted";
+            return;
+        }
         const auto start = std::chrono::steady_clock::now();
         const StepReport step = world.advance_frame();
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         report.add_frame(world.frame(), step, seconds.count());
-        if (step.status == StepReport::Status::NonFinite)
-            return {"failed", step.message};
+        if (step.status == StepReport::Status::NonFinite) {
+            outcome.word = "failed";
+            outcome.message = step.message;
+            return;
+        }
         write_frame(world, caches);
-        progress.update(world.frame() + 1, note_of(step));
+        progress.update(++outcome.written, note_of(step));
     }
-    return {};
 }
 
 Outcome run_or_stop(World& world, const Scene& scene, std::vector<OpenCache>& caches, RunReport& report,
                     const InterruptGuard& interrupt, const RunLog& log)
 {
+    Outcome outcome;
     try {
-        return run_frames(world, scene, caches, report, interrupt, log);
+        run_frames(world, scene, caches, report, interrupt, log, outcome);
     } catch (const Cancelled&) {
-        return {"interrupted", ""};
+        outcome.word = "interrupted";
+    } catch (const DeviceError& error) {
+        outcome.word = "failed";
+        outcome.message = error.what();
     }
+    return outcome;
 }
 
-/// Says where a run ended that did not get to its end, and lists the partial caches.
-int explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>& caches, const RunLog& log)
+/// Says where a run ended that did not get to its end, and lists the partial caches; those without a frame
+/// go.
+void explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>& caches, const RunLog& log)
 {
     for (OpenCache& cache : caches) {
         const std::filesystem::path partial = cache.writer->partial();
         cache.writer.reset(); // delivers what is still queued
-        log.file(partial);
+        std::error_code gone_already;
+        if (outcome.written == 0)
+            std::filesystem::remove_all(partial, gone_already);
+        else
+            log.file(partial);
     }
-    log.error(outcome.word + " at frame " + std::to_string(last_frame) +
-              (outcome.message.empty() ? "" : ": " + outcome.message) +
-              "; the frames before it are in the partial caches");
-    return kExitFailure;
+    const std::string reason = outcome.message.empty() ? "" : ": " + outcome.message;
+    if (outcome.written == 0)
+        log.error(outcome.word + " before the first frame" + reason + "; no frame was written");
+    else
+        log.error(outcome.word + " at frame " + std::to_string(last_frame) + reason +
+                  "; the frames before it are in the partial caches");
 }
 
 /// One cache of each cloth, as it lies on disk.
@@ -208,10 +225,13 @@ int SceneRun::run_into_caches(const InterruptGuard& interrupt)
         write_start_mesh(world_, cache, caches);
 
     const Outcome outcome = run_or_stop(world_, job_.scene, caches, report, interrupt, log_);
+    const bool is_complete = outcome.word == "complete";
+    if (!is_complete)
+        explain_stop(world_.frame(), outcome, caches, log_);
     if (!job_.report.empty())
         report.write(job_.report, outcome.word, world_.stages());
-    if (outcome.word != "complete")
-        return explain_stop(world_.frame(), outcome, caches, log_);
+    if (!is_complete)
+        return kExitFailure;
     for (OpenCache& cache : caches) {
         cache.writer->finish();
         log_.file(cache.file);

@@ -1,77 +1,41 @@
 #include "apps/toile/scenes_run.h"
 
-#include <algorithm>
-#include <atomic>
-#include <thread>
+#include <utility>
 
 #include "apps/toile/command_line.h"
+#include "apps/toile/scene_queue.h"
+#include "core/backend/cuda/answers.h"
+#include "core/backend/cuda/device.h"
 
 namespace toile {
-
-namespace {
-
-/// Scenes that wait to be run, for several threads.
-class SceneQueue {
-public:
-    SceneQueue(const std::vector<SceneJob>& jobs, const RunSettings& settings, bool quiet, Stderr use)
-        : jobs_(jobs), settings_(settings), quiet_(quiet), use_(use)
-    {
-    }
-
-    /// Runs scenes on a GPU until none is left or the user has enough.
-    void work(int device)
-    {
-        RunSettings settings = settings_;
-        settings.device = device;
-        while (!interrupt_.requested()) {
-            const size_t taken = next_++;
-            if (taken >= jobs_.size())
-                return;
-            const RunLog log = log_of(jobs_[taken]);
-            const int exit_code =
-                run_and_report(log, [&] { return SceneRun(jobs_[taken], settings, log).run(interrupt_); });
-            if (exit_code != kExitOk)
-                has_failed_ = true;
-        }
-    }
-
-    /// Names what an interrupt left, once nobody works any more.
-    int conclude() const
-    {
-        for (size_t left = next_; left < jobs_.size(); ++left)
-            log_of(jobs_[left]).error("interrupted before it was begun");
-        return has_failed_ || next_ < jobs_.size() ? kExitFailure : kExitOk;
-    }
-
-private:
-    RunLog log_of(const SceneJob& job) const
-    {
-        return RunLog(quiet_, job.scene.source.stem().string(), use_);
-    }
-
-    const std::vector<SceneJob>& jobs_;
-    RunSettings settings_;
-    bool quiet_;
-    Stderr use_;
-    InterruptGuard interrupt_;
-    std::atomic<size_t> next_ = 0;
-    std::atomic<bool> has_failed_ = false;
-};
-
-} // namespace
 
 int run_scenes(const std::vector<SceneJob>& jobs, const RunSettings& settings,
                const std::vector<int>& devices, bool quiet)
 {
-    const size_t used = std::min(devices.size(), jobs.size());
-    SceneQueue queue(jobs, settings, quiet, used > 1 ? Stderr::Shared : Stderr::Own);
-    {
-        std::vector<std::jthread> others; // joined here
-        for (size_t i = 1; i < used; ++i)
-            others.emplace_back([&queue, device = devices[i]] { queue.work(device); });
-        queue.work(devices.front());
-    }
-    return queue.conclude();
+    const Stderr use = devices.size() > 1 && jobs.size() > 1 ? Stderr::Shared : Stderr::Own;
+    const auto log_of = [&](std::size_t scene) {
+        return RunLog(quiet, jobs[scene].scene.source.stem().string(), use);
+    };
+    const bool has_gpus = settings.backend != Backend::Cpu && !cuda_devices().empty();
+    const InterruptGuard interrupt;
+
+    SceneQueue::Calls calls;
+    calls.run = [&](std::size_t scene, int device) {
+        RunSettings own = settings;
+        own.device = device;
+        const RunLog log = log_of(scene);
+        return run_and_report(log, [&] { return SceneRun(jobs[scene], own, log).run(interrupt); }) == kExitOk;
+    };
+    calls.answers = [&](int device) {
+        if (!has_gpus || answers(device))
+            return true;
+        RunLog(quiet, "", use)
+            .note("GPU " + std::to_string(device) + " no longer answers and takes no more scenes");
+        return false;
+    };
+    calls.is_interrupted = [&] { return interrupt.requested(); };
+    calls.leave_out = [&](std::size_t scene, const std::string& reason) { log_of(scene).error(reason); };
+    return SceneQueue(jobs.size(), std::move(calls)).run(devices) ? kExitOk : kExitFailure;
 }
 
 } // namespace toile

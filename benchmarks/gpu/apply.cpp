@@ -7,6 +7,7 @@
 #include "benchmarks/best_time.h"
 #include "benchmarks/gpu/copy.h"
 #include "benchmarks/gpu/median_time.h"
+#include "benchmarks/gpu/rough_load.h"
 #include "benchmarks/solvers/problem.h"
 #include "core/quadrature/device_quadrature.h"
 #include "core/quadrature/quadrature_operator.h"
@@ -16,15 +17,6 @@ namespace toile::gpu {
 namespace {
 
 constexpr double kMega = 1e6;
-
-/// A load of all wavelengths.
-std::vector<Vec3> rough_load(int count)
-{
-    std::vector<Vec3> load(count);
-    for (int i = 0; i < count; ++i)
-        load[i] = Vec3(std::sin(1.7 * i), std::cos(0.011 * i), std::sin(0.3 * i + 0.5));
-    return load;
-}
 
 double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 {

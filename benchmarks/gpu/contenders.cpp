@@ -3,12 +3,14 @@
 #include <initializer_list>
 #include <utility>
 
+#include "benchmarks/solvers/methods.h"
 #include "core/linear/baselines/device_aggregated_jacobi.h"
 #include "core/linear/baselines/device_chebyshev_solver.h"
 #include "core/pd/device/device_body.h"
 #include "core/quadrature/device_quadrature_solver.h"
 #include "garment/rivals/device_vertex_block_descent.h"
 #include "garment/rivals/device_xpbd.h"
+#include "quadrature2d/paper/device_paper_rule.h"
 
 namespace toile::gpu {
 
@@ -34,13 +36,36 @@ std::unique_ptr<PointMasses> body_around(const CudaSpace& space, const solvers::
                                         problem.make_system(std::move(solver)), settings);
 }
 
-template <typename Solver>
-DeviceMethod around(const std::string& name, int iterations)
+std::unique_ptr<GlobalSolver> make_quadrature(const CudaSpace& space, const solvers::Problem& problem)
 {
-    return {name + " " + std::to_string(iterations), 1,
-            [iterations](const CudaSpace& space, const solvers::Problem& problem) {
-                return contender(
-                    body_around(space, problem, std::make_unique<Solver>(space), 0.0, iterations));
+    return std::make_unique<DeviceQuadratureSolver>(
+        space, std::vector<DeviceQuadratureSolver::Part>{{problem.places(), {}}},
+        QuadratureTables::Settings{}, problem.tables);
+}
+
+template <typename Solver>
+std::unique_ptr<GlobalSolver> make_plain(const CudaSpace& space, const solvers::Problem&)
+{
+    return std::make_unique<Solver>(space);
+}
+
+/// @param applications  of the rule in an iteration
+NamedSolver paper_rule(const std::string& name, Denominator denominator, int applications)
+{
+    return {name, [=](const CudaSpace& space, const solvers::Problem& problem) {
+                DevicePaperRule::Settings settings;
+                settings.denominator = denominator;
+                settings.applications = applications;
+                return std::make_unique<DevicePaperRule>(space, problem.chart(), problem.start.triangles,
+                                                         settings);
+            }};
+}
+
+DeviceMethod around(const NamedSolver& solver, int iterations)
+{
+    return {solver.name + " " + std::to_string(iterations), 1,
+            [=](const CudaSpace& space, const solvers::Problem& problem) {
+                return contender(body_around(space, problem, solver.make(space, problem), 0.0, iterations));
             }};
 }
 
@@ -111,10 +136,7 @@ void append_small_steps(std::vector<DeviceMethod>& methods)
 std::unique_ptr<PointMasses> make_ours(const CudaSpace& space, const solvers::Problem& problem,
                                        double tolerance, int max_iterations)
 {
-    auto solver = std::make_unique<DeviceQuadratureSolver>(
-        space, std::vector<DeviceQuadratureSolver::Part>{{problem.places(), {}}},
-        QuadratureTables::Settings{}, problem.tables);
-    return body_around(space, problem, std::move(solver), tolerance, max_iterations);
+    return body_around(space, problem, make_quadrature(space, problem), tolerance, max_iterations);
 }
 
 std::unique_ptr<PointMasses> make_xpbd(const CudaSpace& space, const solvers::Problem& problem, int substeps)
@@ -123,15 +145,29 @@ std::unique_ptr<PointMasses> make_xpbd(const CudaSpace& space, const solvers::Pr
                                                 DeviceXpbd<double>::Settings{substeps});
 }
 
-std::vector<DeviceMethod> device_methods()
+std::vector<NamedSolver> device_solvers(const solvers::Problem& problem)
+{
+    std::vector<NamedSolver> solvers{{"quadrature", make_quadrature},
+                                     {"chebyshev", make_plain<DeviceChebyshevSolver>},
+                                     {"a-jacobi", make_plain<DeviceAggregatedJacobi>}};
+    if (problem.vertex_count() <= solvers::kPaperSize && problem.is_flat)
+        for (const int applications : {1, 2}) {
+            const std::string often = applications > 1 ? " twice" : "";
+            solvers.push_back(paper_rule("paper" + often, Denominator::SameRule, applications));
+            solvers.push_back(paper_rule("paper exact" + often, Denominator::Exact, applications));
+        }
+    return solvers;
+}
+
+std::vector<DeviceMethod> device_methods(const solvers::Problem& problem)
 {
     std::vector<DeviceMethod> methods;
     for (const int iterations : {1, 2, 3, 5, 8, 20, 50, 100, 200, 500})
         methods.push_back(ours("quadrature", iterations));
-    for (const int iterations : {1, 3, 8, 20, 50, 200}) {
-        methods.push_back(around<DeviceChebyshevSolver>("chebyshev", iterations));
-        methods.push_back(around<DeviceAggregatedJacobi>("a-jacobi", iterations));
-    }
+    for (const NamedSolver& solver : device_solvers(problem))
+        if (solver.name != "quadrature")
+            for (const int iterations : {1, 3, 8, 20, 50, 200})
+                methods.push_back(around(solver, iterations));
     append_vbd(methods);
     for (const int substeps : {5, 10, 20, 30, 40, 80, 160, 320, 640})
         methods.push_back(xpbd<float>("xpbd", substeps));

@@ -39,7 +39,16 @@ std::unique_ptr<PointMasses> make_ours(const CudaSpace& space, const solvers::Pr
 /// XPBD in double precision, whose limit of ever more substeps is that of every method.
 std::unique_ptr<PointMasses> make_xpbd(const CudaSpace& space, const solvers::Problem& problem, int substeps);
 
+/// A global solver that runs on a GPU.
+struct NamedSolver {
+    std::string name;
+    std::function<std::unique_ptr<GlobalSolver>(const CudaSpace&, const solvers::Problem&)> make;
+};
+
+/// Ours ("quadrature") and other people's that can be made for the problem.
+std::vector<NamedSolver> device_solvers(const solvers::Problem& problem);
+
 /// Ours, the same L-BFGS around other people's global solvers, and their whole methods.
-std::vector<DeviceMethod> device_methods();
+std::vector<DeviceMethod> device_methods(const solvers::Problem& problem);
 
 } // namespace toile::gpu

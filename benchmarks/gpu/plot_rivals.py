@@ -18,8 +18,9 @@ import table  # noqa: E402  of benchmarks/solvers
 
 OURS = "quadrature"
 FAMILIES = {  # of a rival: its variants, of which the fastest counts, and its colour
-    "chebyshev": "#2ca02c", "a-jacobi": "#98df8a", "vbd": "#9467bd", "xpbd": "#e377c2",
+    "chebyshev": "#2ca02c", "a-jacobi": "#98df8a", "paper": "#8c564b", "vbd": "#9467bd", "xpbd": "#e377c2",
 }
+AIMS = {"vbd": 3.0, "xpbd": 10.0}  # how many times as long as ours a rival should take
 SMALL_STEPS = "sheet in small steps"  # mesh of the rows against the limit of small steps
 
 # Errors [mean edges] and relative energy gaps at which times are compared.
@@ -115,6 +116,39 @@ def print_tables(problems):
         print_table(problem, "rms_over_edge", ERRORS, "error [edges]")
         if problem.mesh != SMALL_STEPS:
             print_table(problem, "energy_gap", GAPS, "energy gap")
+    print("**Aims**\n")
+    print_aims(problems)
+
+
+def print_aims(problems):
+    """Of every problem and rival with an aim: the errors and gaps at which it is met, and at which not; where the
+    rival's smallest budget is there already ("begins there") its time is not known."""
+    print("| | by | " + " | ".join(f"{name}: {aim:g} times" for name, aim in AIMS.items()) + " |")
+    print("|" + "---|" * (len(AIMS) + 2))
+    for problem in problems:
+        measures = [("rms_over_edge", ERRORS, "error")]
+        if problem.mesh != SMALL_STEPS:
+            measures.append(("energy_gap", GAPS, "gap"))
+        for quantity, targets, label in measures:
+            cells = []
+            for name, aim in AIMS.items():
+                outcomes = {"met": [], "not met": [], "never gets to": [], "begins there": [], "nobody gets to": []}
+                for target in targets:
+                    _, _, ours = fastest(problem, OURS, quantity, target)
+                    _, prefix, time = fastest(problem, name, quantity, target)
+                    if not math.isfinite(ours):
+                        outcome = "nobody gets to" if math.isinf(time) else "not met"
+                    elif math.isinf(time):
+                        outcome = "never gets to"
+                    elif prefix == "<":
+                        outcome = "begins there"
+                    else:
+                        outcome = "met" if time >= aim * ours else "not met"
+                    outcomes[outcome].append(f"{target:g}")
+                cells.append("; ".join(f"{word} {', '.join(found)}" for word, found in outcomes.items() if found))
+            note = ", small steps" if problem.mesh == SMALL_STEPS else ""
+            print(f"| {title(problem)}{note} | {label} | " + " | ".join(cells) + " |")
+    print()
 
 
 def main():

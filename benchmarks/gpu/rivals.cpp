@@ -180,7 +180,7 @@ std::vector<solvers::Result> measure_rivals(const CudaSpace& space, const Rivals
     const std::vector<Sample> samples = sample_steps(space, stepping, *system, what);
     const Measurement measurement(space, stepping, *system, samples);
     std::vector<solvers::Result> results;
-    for (const DeviceMethod& method : device_methods())
+    for (const DeviceMethod& method : device_methods(problem))
         measurement.of(method, results);
     return results;
 }

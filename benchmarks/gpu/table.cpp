@@ -43,7 +43,8 @@ std::string markdown_tables(const Report& report)
                      "CPU / GPU", "difference m", "with bytes m"},
                     step_rows_of(report)) +
            "\n" + markdown_of(report.searches) + "\n" + markdown_of(report.colliders) + "\nScenes\n\n" +
-           markdown_of(report.scenes) + "\nRivals\n\n" + solvers::markdown_table(report.rivals);
+           markdown_of(report.scenes) + "\nRivals\n\n" + solvers::markdown_table(report.rivals) +
+           "\nGlobal solvers of rivals\n\n" + markdown_of(report.rules);
 }
 
 std::string csv_of_steps(const Report& report)

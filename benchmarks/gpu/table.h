@@ -8,6 +8,7 @@
 #include "benchmarks/gpu/colliders.h"
 #include "benchmarks/gpu/near_pairs.h"
 #include "benchmarks/gpu/rivals.h"
+#include "benchmarks/gpu/rules.h"
 #include "benchmarks/gpu/scene.h"
 #include "benchmarks/gpu/step.h"
 
@@ -25,6 +26,7 @@ struct Report {
     std::vector<SceneRun> scenes;
     std::vector<ColliderSearch> colliders;
     std::vector<solvers::Result> rivals;
+    std::vector<RuleApply> rules;
 };
 
 std::string markdown_tables(const Report& report);

@@ -17,9 +17,6 @@ namespace {
 
 constexpr int kAnySize = 1'000'000;
 
-/// Kernel rows of the paper's rule are clustered one by one: O(n^2).
-constexpr int kPaperSize = 3000;
-
 /// Vertices times outer iterations of Jacobi-PCG, whose inner iterations grow with the mesh as well: beyond
 /// it one step takes seconds.
 constexpr int kJacobiPcgSize = 130'000;
@@ -63,10 +60,7 @@ std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem)
 /// On the sheet's own plane. The rule needs one flat chart, which a skirt does not have.
 std::unique_ptr<GlobalSolver> make_paper(const Problem& problem)
 {
-    std::vector<Vec2> uv;
-    for (const Vec3& p : problem.start.positions)
-        uv.emplace_back(p.z(), p.x());
-    return std::make_unique<PaperRule>(uv, problem.start.triangles);
+    return std::make_unique<PaperRule>(problem.chart(), problem.start.triangles);
 }
 
 Method around(const std::string& name, const MakeSolver& make, int iterations,

@@ -29,6 +29,9 @@ struct Method {
     std::function<std::unique_ptr<Stepper>(const Problem&)> make;
 };
 
+/// Vertices up to which the paper's rule is made: its kernel rows are clustered one by one, O(n^2).
+inline constexpr int kPaperSize = 3000;
+
 bool applies(const Method& method, const Problem& problem);
 
 /// Projective Dynamics around every global solver at several numbers of outer iterations, then the rivals at

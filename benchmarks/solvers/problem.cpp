@@ -129,6 +129,14 @@ std::unique_ptr<System> Problem::make_system(std::unique_ptr<GlobalSolver> solve
     return std::make_unique<System>(cloth.masses, std::move(energies), std::move(solver));
 }
 
+std::vector<Vec2> Problem::chart() const
+{
+    std::vector<Vec2> uv;
+    for (const Vec3& p : start.positions)
+        uv.emplace_back(p.z(), p.x());
+    return uv;
+}
+
 std::vector<Place> Problem::places() const
 {
     const RestShape& rest = *cloth.rest;

@@ -41,6 +41,7 @@ struct Problem {
 
     std::vector<Vec3> acceleration() const; ///< [vertices] gravity [m/s^2]
     std::vector<Place> places() const;      ///< [vertices] of quadrature
+    std::vector<Vec2> chart() const;        ///< [vertices] the plane in which a flat cloth starts [m]
 };
 
 /// One implicit Euler step to be repeated by every method: from where it starts, and the exact end.

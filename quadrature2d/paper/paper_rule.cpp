@@ -36,12 +36,38 @@ void require_usable(const RuleSettings& rule)
     require(rule.cluster_count >= 1, "cluster_count", rule.cluster_count, "at least 1");
 }
 
+/// A thread of the CPU has a row for itself.
+template <typename Kernel>
+void for_each_row(const char* name, int count, const Kernel& kernel)
+{
+    parallel_for(kCpu, name, count, [&](int i) { kernel(i, OneThread(), true); });
+}
+
 } // namespace
 
 PaperRule::PaperRule(View<const Vec2> uv, View<const Triangle> triangles, Settings settings)
     : settings_(settings), surface_(uv, triangles, settings.pixels)
 {
     require_usable(settings.rule);
+    require(settings.applications >= 1, "applications", settings.applications, "at least 1");
+}
+
+PaperRule::Table::Table(const std::vector<std::vector<WeightedVertex>>& rows) : first(1, 0)
+{
+    for (const std::vector<WeightedVertex>& row : rows) {
+        entries.insert(entries.end(), row.begin(), row.end());
+        first.push_back(int(entries.size()));
+    }
+}
+
+PaperRule::Table PaperRule::table_of(const SparseMatrix& H)
+{
+    std::vector<std::vector<WeightedVertex>> rows(H.rows());
+    for (int i = 0; i < int(H.rows()); ++i)
+        for (SparseMatrix::InnerIterator entry(H, i); entry; ++entry)
+            if (entry.value() != 0.0)
+                rows[i].push_back({int(entry.col()), entry.value()});
+    return Table(rows);
 }
 
 void PaperRule::update(const SparseMatrix& H, View<const unsigned char> fixed)
@@ -77,13 +103,9 @@ void PaperRule::update(const SparseMatrix& H, View<const unsigned char> fixed)
             rows[vertices[column]] = tabulate(vertices[column], G);
         }
     });
-
-    first_.assign(1, 0);
-    entries_.clear();
-    for (const std::vector<WeightedVertex>& row : rows) {
-        entries_.insert(entries_.end(), row.begin(), row.end());
-        first_.push_back(int(entries_.size()));
-    }
+    rule_ = Table(rows);
+    if (settings_.applications > 1)
+        H_ = table_of(H);
 }
 
 std::vector<WeightedVertex> PaperRule::tabulate(int vertex, std::vector<double> G) const
@@ -110,15 +132,14 @@ std::vector<WeightedVertex> PaperRule::tabulate(int vertex, std::vector<double> 
 void PaperRule::solve(View<const Vec3> b, View<Vec3> x) const
 {
     // x may be b.
-    thread_local std::vector<Vec3> source;
+    thread_local std::vector<Vec3> source, left;
     source.assign(b.begin(), b.end());
-    const View<const Vec3> values(source);
-    parallel_for(kCpu, "paper_rule/solve", x.size(), [&](int i) {
-        Vec3 sum = Vec3::Zero();
-        for (const WeightedVertex& entry : row(i))
-            sum += entry.weight * values[entry.vertex];
-        x[i] = sum;
-    });
+    for_each_row("paper_rule/solve", x.size(), ApplyRule{rule(), source, x});
+    for (int done = 1; done < settings_.applications; ++done) {
+        left.resize(source.size());
+        for_each_row("paper_rule/residual", x.size(), RuleResidual{matrix(), source, x, left});
+        for_each_row("paper_rule/correct", x.size(), CorrectByRule{rule(), left, x});
+    }
 }
 
 } // namespace toile

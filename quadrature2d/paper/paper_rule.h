@@ -20,7 +20,7 @@ enum class Denominator {
 ///   7]
 ///
 /// with the inner product taken from about 43 vertices (rule_weights.h). Everything but b is tabulated, so
-/// that solve() is one gather.
+/// that an application is one gather.
 ///
 /// For comparison only: one application is right to some ten per cent for smooth b, but x += solve(b - H x)
 /// diverges on every cloth measured, and so does the local/global loop around it unless each step is
@@ -30,7 +30,8 @@ public:
     struct Settings {
         RuleSettings rule;
         Denominator denominator = Denominator::SameRule;
-        int pixels = 64; ///< of Alg. 1 along the longer side of the UV bounding box
+        int pixels = 64;      ///< of Alg. 1 along the longer side of the UV bounding box
+        int applications = 1; ///< of the rule in a solve; from the second on x += rule(b - H x). At least 1
     };
 
     /// @param uv         [vertices x 2] positions in the plane [m]
@@ -46,19 +47,35 @@ public:
     void solve(View<const Vec3> b, View<Vec3> x) const override;
     bool is_symmetric() const override { return false; }
 
-    /// The rule of x_i, denominator included; fixed vertices read themselves. After update().
+    const Settings& settings() const { return settings_; }
+
+    // After update(): the rule of every x_i, denominator included, where fixed vertices read themselves; and
+    // H, which has rows only where a second application asks for it.
+    WeightedRows rule() const { return rule_.view(); }
+    WeightedRows matrix() const { return H_.view(); }
+
+    /// The rule of x_i.
     View<const WeightedVertex> row(int i) const
     {
-        return View<const WeightedVertex>(entries_.data() + first_[i], first_[i + 1] - first_[i]);
+        return rule().entries.subview(rule_.first[i], rule_.first[i + 1] - rule_.first[i]);
     }
 
 private:
+    /// Rows one after the other.
+    struct Table {
+        std::vector<int> first; ///< [vertices + 1] into entries
+        std::vector<WeightedVertex> entries;
+
+        explicit Table(const std::vector<std::vector<WeightedVertex>>& rows = {});
+        WeightedRows view() const { return {first, entries}; }
+    };
+
     std::vector<WeightedVertex> tabulate(int vertex, std::vector<double> G) const;
+    static Table table_of(const SparseMatrix& H);
 
     Settings settings_;
     UvSurface surface_;
-    std::vector<int> first_; ///< [vertices + 1] into entries_
-    std::vector<WeightedVertex> entries_;
+    Table rule_, H_;
 };
 
 } // namespace toile

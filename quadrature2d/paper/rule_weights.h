@@ -5,6 +5,7 @@
 #include "quadrature2d/paper/far_clusters.h"
 #include "quadrature2d/paper/field_domains.h"
 #include "quadrature2d/paper/gaussian_fit.h"
+#include "quadrature2d/paper/rule_kernels.h"
 
 namespace toile {
 
@@ -16,12 +17,6 @@ struct RuleSettings {
     int order = 3;          ///< of Gauss-Legendre per axis, 3 or 4
     int cluster_count = 8;  ///< of the far field
     unsigned seed = 1;      ///< of k-means++; added to the vertex's index
-};
-
-/// A vertex that the rule reads.
-struct WeightedVertex {
-    int vertex = 0;
-    double weight = 0.0; ///< [-]
 };
 
 /// The near field of one vertex, ready for fit and stacking.

@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <signal.h>
+#include <sys/resource.h>
+
 #include "core/mesh/obj.h"
 #include "export/point_cache.h"
 
@@ -80,6 +83,46 @@ TEST(Simulate, SaysHowTheStartPoseWasRepaired)
     EXPECT_EQ(start["places"][0]["other"], "ball");
     EXPECT_EQ(start["places"][0]["repaired"], true);
     EXPECT_EQ(start["places"][0]["position_m"].size(), 3u);
+}
+
+/// Files of this process and those that it starts may be so long while it lives [bytes].
+class FileLimit {
+public:
+    explicit FileLimit(rlim_t bytes) : handler_(::signal(SIGXFSZ, SIG_IGN))
+    {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileLimit()
+    {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        ::signal(SIGXFSZ, handler_);
+    }
+    FileLimit(const FileLimit&) = delete;
+    FileLimit& operator=(const FileLimit&) = delete;
+
+private:
+    rlimit before_{};
+    void (*handler_)(int);
+};
+
+TEST(Simulate, NamesThePartialWhereTheMachineRefuses)
+{
+    const TemporaryFolder folder;
+    folder.write("drop.json", small_scene(60));
+    Finished run;
+    {
+        const FileLimit limit(8192);
+        run = run_toile({"simulate", "drop.json", "-o", ".", "--quiet"}, folder.path());
+    }
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(run.output, "./sheet.partial.pc2\n");
+    EXPECT_EQ(run.error_lines(), 1) << run.errors;
+    EXPECT_NE(run.errors.find("toile: error: failed at frame "), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("sheet.partial.pc2: writing broke off"), std::string::npos) << run.errors;
+    EXPECT_GE(read_cache(folder.path() / "sheet.partial.pc2").frame_count(), 1);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "sheet.pc2"));
 }
 
 TEST(Simulate, KeepsAReadableCacheWhenInterrupted)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 #include "core/linear/field.h"
 #include "tests/core/matrices.h"
 #include "tests/core/meshes.h"
+#include "tests/core/teams_on_cpu.h"
 
 namespace toile::test {
 namespace {
@@ -133,11 +135,80 @@ TEST(PaperRule, StallsUnderALineSearch)
     EXPECT_GT(relative_error(x, exact), 0.5); // a direct solve is there after one
 }
 
+/// The paper's loop hands the rule the whole b of a global step, not what is left of it: already where it
+/// belongs, cloth leaves its place by more than an edge.
+TEST(PaperRule, MovesWhatIsWhereItBelongs)
+{
+    const Sheet sheet = unit_sheet(kSide, 0.2);
+    const double edge = 1.0 / (kSide - 1);
+    std::vector<Vec3> there;
+    for (const Vec2& p : sheet.uv)
+        there.emplace_back(p.x(), 0.0, p.y());
+    for (const double k : {100.0, 1e3, 1e4})
+        for (const Denominator denominator : {Denominator::Exact, Denominator::SameRule}) {
+            const SparseMatrix H = sheet_matrix(sheet, k);
+            std::vector<Vec3> b(there.size(), Vec3::Zero());
+            for (int i = 0; i < int(b.size()); ++i)
+                b[i] = row_times(H, i, there);
+            std::vector<Vec3> found = solve(prepared(sheet, H, denominator), b);
+            axpy(-1.0, there, found);
+            const double moved = as_matrix(found).norm() / std::sqrt(double(found.size())) / edge;
+            std::cout << k << " " << int(denominator) << ": " << moved << " edges\n";
+            EXPECT_GT(moved, 1.0) << k;
+        }
+}
+
+/// Two corners and the middle held.
+std::vector<unsigned char> some_fixed(const Sheet& sheet)
+{
+    std::vector<unsigned char> fixed = none_fixed(sheet);
+    fixed[0] = fixed[kSide - 1] = fixed[kSide * 10 + 10] = 1;
+    return fixed;
+}
+
+TEST(PaperRule, IsAppliedAgainToWhatIsLeft)
+{
+    const Sheet sheet = unit_sheet(kSide, 0.2);
+    const std::vector<unsigned char> fixed = some_fixed(sheet);
+    const SparseMatrix H = sheet_matrix(sheet, 100.0, fixed);
+    const std::vector<Vec3> b = smooth_load(sheet);
+    const auto applied = [&](int applications) {
+        PaperRule::Settings settings;
+        settings.applications = applications;
+        PaperRule rule(sheet.uv, sheet.triangles, settings);
+        rule.update(H, fixed);
+        return solve(rule, b);
+    };
+    PaperRule once(sheet.uv, sheet.triangles);
+    once.update(H, fixed);
+    std::vector<Vec3> expected = solve(once, b);
+    EXPECT_EQ(applied(1), expected);
+    for (int applications = 2; applications <= 3; ++applications) {
+        axpy(1.0, solve(once, residual(H, b, expected)), expected);
+        EXPECT_LT(relative_error(applied(applications), expected), 1e-12) << applications;
+    }
+}
+
+/// As a GPU runs it.
+TEST(PaperRule, IsTheSameByTeamsOfThreads)
+{
+    const Sheet sheet = unit_sheet(kSide, 0.2);
+    const SparseMatrix H = sheet_matrix(sheet, 100.0);
+    const PaperRule rule = prepared(sheet, H, Denominator::Exact);
+    const std::vector<Vec3> b = smooth_load(sheet), expected = solve(rule, b);
+    std::vector<Vec3> x(b.size(), Vec3::Constant(NAN));
+    run_teams<WeightedRows::kThreads>(int(b.size()), ApplyRule{rule.rule(), b, x});
+    EXPECT_LT(relative_error(x, expected), 1e-14);
+    std::vector<Vec3> doubled = b;
+    axpy(1.0, b, doubled);
+    run_teams<WeightedRows::kThreads>(int(b.size()), CorrectByRule{rule.rule(), b, x});
+    EXPECT_LT(relative_error(x, solve(rule, doubled)), 1e-14);
+}
+
 TEST(PaperRule, KeepsFixedVerticesAndReadsNothingFromThem)
 {
     const Sheet sheet = unit_sheet(kSide);
-    std::vector<unsigned char> fixed = none_fixed(sheet);
-    fixed[0] = fixed[kSide - 1] = fixed[kSide * 10 + 10] = 1;
+    const std::vector<unsigned char> fixed = some_fixed(sheet);
     const SparseMatrix H = sheet_matrix(sheet, 100.0, fixed);
     PaperRule rule(sheet.uv, sheet.triangles);
     rule.update(H, fixed);
@@ -191,6 +262,8 @@ TEST(PaperRule, NamesASettingOutOfRange)
         std::string::npos);
     EXPECT_NE(message([](PaperRule::Settings& s) { s.rule.penalty = NAN; }).find("penalty"),
               std::string::npos);
+    EXPECT_EQ(message([](PaperRule::Settings& s) { s.applications = 0; }),
+              "paper rule: applications is 0.000000; at least 1 needed");
     EXPECT_NE(message([](PaperRule::Settings& s) { s.pixels = 0; }).find("0 pixels"), std::string::npos);
 }
 

@@ -9,6 +9,7 @@
 #include "core/quadrature/device_quadrature.h"
 #include "core/quadrature/quadrature_operator.h"
 #include "tests/core/cuda/on_device.h"
+#include "tests/core/cuda/taken_memory.h"
 #include "tests/core/kernel_tables.h"
 #include "tests/core/quadrature_problems.h"
 
@@ -173,16 +174,6 @@ TEST_F(DeviceTableBuilderTest, SolvesWithoutADetourOverTheHost)
         difference = std::max(difference, (solved[i] - expected[i]).cwiseAbs().maxCoeff());
     }
     EXPECT_LT(difference, 3e-6 * largest);
-}
-
-/// Leaves so many bytes free, or a little more.
-std::vector<DeviceArray<double>> take_all_but(std::size_t bytes, const CudaSpace& space)
-{
-    std::vector<DeviceArray<double>> taken;
-    for (std::size_t chunk = std::size_t(1) << 33; chunk >= std::size_t(1) << 22; chunk /= 2)
-        while (space.free_memory() > chunk + bytes)
-            taken.emplace_back(space, "test/taken", int(chunk / sizeof(double)));
-    return taken;
 }
 
 TEST_F(DeviceTableBuilderTest, TakesSmallerBlocksWhereMemoryIsShort)

@@ -1,0 +1,86 @@
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "export/point_cache.h"
+#include "tests/apps/program.h"
+#include "tests/core/cuda/on_device.h"
+#include "tests/core/cuda/taken_memory.h"
+
+/// Scenes on a GPU whose memory something else has taken.
+namespace toile {
+namespace {
+
+constexpr int kFrames = 3;
+
+/// Five cloths that fall onto each other.
+std::string cloths_scene()
+{
+    std::string cloths;
+    for (int i = 0; i < 5; ++i)
+        cloths += std::string(i > 0 ? ", " : "") + R"({"name": "c)" + std::to_string(i) +
+                  R"(", "rectangle": {"size": [1, 1], "resolution": 0.01}, "translate": [0, )" +
+                  std::to_string(0.004 * i) + ", 0]}";
+    return R"({"toile": 1, "frames": )" + std::to_string(kFrames) +
+           R"(, "solver": {"method": "quadrature"}, "cloths": [)" + cloths +
+           R"(], "export": [{"cloth": "c0", "file": "c0.pc2"}]})";
+}
+
+class GpuMemoryTest : public test::OnDevice {
+protected:
+    void SetUp() override
+    {
+        OnDevice::SetUp();
+        folder_.write("cloths.json", cloths_scene());
+    }
+
+    /// Runs the scene in a process of its own. It ends well, or with one line that says what for memory was
+    /// missing; never with a cache that is not whole, or a partial that does not read.
+    Finished run_with(int mebibytes)
+    {
+        const auto taken = test::take_all_but(std::size_t(mebibytes) << 20, space());
+        const std::filesystem::path out = folder_.path() / "out";
+        std::filesystem::remove_all(out);
+        Finished run = run_toile({"simulate", "cloths.json", "--backend", "cuda", "-o", "out", "--quiet",
+                                  "--no-check", "--report", "run.json"},
+                                 folder_.path());
+        std::cout << mebibytes << " MiB: " << (run.exit_code == 0 ? "ran\n" : run.errors);
+        const std::filesystem::path cache = out / "c0.pc2", partial = out / "c0.partial.pc2";
+        EXPECT_EQ(std::filesystem::exists(cache), run.exit_code == 0);
+        if (run.exit_code == 0)
+            EXPECT_EQ(read_cache(cache).frame_count(), kFrames);
+        else {
+            EXPECT_EQ(run.exit_code, 1);
+            EXPECT_EQ(run.error_lines(), 1) << run.errors;
+            EXPECT_NE(run.errors.find("out of memory"), std::string::npos) << run.errors;
+            EXPECT_EQ(run.output, std::filesystem::exists(partial) ? "out/c0.partial.pc2\n" : "");
+        }
+        if (std::filesystem::exists(partial))
+            EXPECT_GE(read_cache(partial).frame_count(), 1);
+        return run;
+    }
+
+private:
+    TemporaryFolder folder_;
+};
+
+/// Around the least that the scene runs with, it is its own arrays that find no room, in places that depend
+/// on how much is left.
+TEST_F(GpuMemoryTest, EndsCleanlyWhereItIsTooLittle)
+{
+    int enough = 4096, too_little = 0;
+    ASSERT_EQ(run_with(enough).exit_code, 0);
+    bool names_array = false;
+    while (enough - too_little > 16) {
+        const int left = (enough + too_little) / 2;
+        const Finished run = run_with(left);
+        (run.exit_code == 0 ? enough : too_little) = left;
+        names_array |= test::holds_in_order(run.errors, "CUDA device 0 (", ") is out of memory: '",
+                                            "' asked for ", " MiB, ", " MiB are free");
+    }
+    EXPECT_GT(too_little, 0);
+    EXPECT_TRUE(names_array);
+}
+
+} // namespace
+} // namespace toile
