@@ -42,8 +42,9 @@ const std::vector<int> kFoldedSizes{50'000, 240'000};
 /// The paper's scenes as made by us, Runway also of a million vertices, and a dance.
 const std::vector<gpu::SceneCase> kScenes{
     {"cloth", "scenes/benchmarks/cloth.json", 60, 20},
-    {"runway", "scenes/benchmarks/runway.json", 60, 0, 1},
-    {"runway", "scenes/benchmarks/runway.json", 20, 0, 4},
+    {"runway_60", "scenes/benchmarks/runway.json", 60, 0, 1},
+    {"runway_120", "scenes/benchmarks/runway.json", 60, 0, 2},
+    {"runway_240", "scenes/benchmarks/runway.json", 20, 0, 4},
     {"runway_1m", "scenes/benchmarks/runway_1m.json", 5},
     {"dance", "scenes/data/dance.json", 90, 5, 0, true},
 };
