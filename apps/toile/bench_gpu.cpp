@@ -39,10 +39,16 @@ const std::vector<gpu::StepCase> kQuickSteps{{2, 1'000, kStiffness, kTimeStep}};
 /// Sizes of the folded sheet in which near pairs are looked for, and of the dress on a body [vertices].
 const std::vector<int> kFoldedSizes{50'000, 240'000};
 
-/// The paper's scenes as made by us. Frames that a few seconds are enough for, contact among them.
-const std::vector<gpu::SceneCase> kScenes{{"cloth", "scenes/benchmarks/cloth.json", 20, true},
-                                          {"runway", "scenes/benchmarks/runway.json", 3, false}};
-const std::vector<gpu::SceneCase> kQuickScenes{{"tablecloth", "scenes/demo/tablecloth.json", 8, true}};
+/// The paper's scenes as made by us, Runway also of a million vertices, and a dance.
+const std::vector<gpu::SceneCase> kScenes{
+    {"cloth", "scenes/benchmarks/cloth.json", 60, 20},
+    {"runway_60", "scenes/benchmarks/runway.json", 60, 0, 1},
+    {"runway_120", "scenes/benchmarks/runway.json", 60, 0, 2},
+    {"runway_240", "scenes/benchmarks/runway.json", 20, 0, 4},
+    {"runway_1m", "scenes/benchmarks/runway_1m.json", 5},
+    {"dance", "scenes/data/dance.json", 90, 5, 0, true},
+};
+const std::vector<gpu::SceneCase> kQuickScenes{{"tablecloth", "scenes/demo/tablecloth.json", 8, 8}};
 
 /// Beside other people's methods, at the same states: two steps of a swinging sheet. The paper's rule is made
 /// for the smallest only.
@@ -92,8 +98,8 @@ std::vector<Case> cases_of(const BenchOptions& options)
                  gpu::measure_colliders(space, vertices, report.colliders);
              }});
     for (const gpu::SceneCase& scene : options.quick ? kQuickScenes : kScenes)
-        cases.push_back({"scene " + scene.name, [what = scene](const CudaSpace&, gpu::Report& report) {
-                             for (gpu::SceneRun& run : gpu::measure_scene(what))
+        cases.push_back({"scene " + scene.name, [what = scene](const CudaSpace& space, gpu::Report& report) {
+                             for (gpu::SceneRun& run : gpu::measure_scene(space, what))
                                  report.scenes.push_back(std::move(run));
                          }});
     for (const gpu::RivalsCase& rivals : options.quick ? kQuickRivals : kRivals)

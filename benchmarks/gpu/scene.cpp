@@ -1,18 +1,33 @@
 #include "benchmarks/gpu/scene.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <initializer_list>
+#include <memory>
 #include <string_view>
 
 #include "benchmarks/text_table.h"
+#include "core/backend/error.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/world.h"
 #include "scenes/world_crossings.h"
 
 namespace toile::gpu {
 
 namespace {
 
-double seconds_of(const Stages& stages, std::initializer_list<std::string_view> names)
+constexpr double kGiga = 1e9;
+
+template <typename Work>
+double seconds_of(const Work& work)
+{
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double sum_of(const Stages& stages, std::initializer_list<std::string_view> names)
 {
     double sum = 0.0;
     for (const std::string_view name : names)
@@ -20,83 +35,216 @@ double seconds_of(const Stages& stages, std::initializer_list<std::string_view> 
     return sum;
 }
 
-SceneRun run_on(Backend backend, const SceneCase& what)
+/// Adds frames up from the start that it is given.
+class Tally {
+public:
+    Tally(SceneRun start, const Stages& stages) : sum_(std::move(start)), before_(stages) {}
+
+    void add(const StepReport& report, double seconds)
+    {
+        ++sum_.frames;
+        sum_.steps += report.steps;
+        sum_.iterations += report.iterations;
+        sum_.linear_iterations += report.linear_iterations;
+        sum_.contacts += report.contacts;
+        sum_.frames_at_limit += report.status == StepReport::Status::IterationLimit;
+        sum_.max_strain = std::max(sum_.max_strain, report.max_strain);
+        sum_.slowest_ms = std::max(sum_.slowest_ms, 1e3 * seconds / report.steps);
+        seconds_ += seconds;
+    }
+
+    SceneRun so_far(const Stages& stages) const
+    {
+        SceneRun run = sum_;
+        const double ms = 1e3 / run.steps;
+        const auto of_step = [&](std::initializer_list<std::string_view> names) {
+            return ms * (sum_of(stages, names) - sum_of(before_, names));
+        };
+        // The search ends with which of its pairs press.
+        const double pressing_ms = of_step({"collision/cloth_terms"});
+        run.total_ms = ms * seconds_;
+        run.cull_ms = of_step({"collision/near_pairs", "collision/detect"}) - pressing_ms;
+        run.narrow_ms =
+            of_step({"contact/make_there", "collision/safe_step", "collision/safe_step_to_host"}) +
+            pressing_ms;
+        run.minimise_ms = of_step({"pd/descend"});
+        run.limit_ms = of_step({"pd/limits"});
+        run.iterations /= run.steps;
+        run.linear_iterations /= run.steps;
+        run.contacts /= run.frames;
+        return run;
+    }
+
+private:
+    SceneRun sum_;
+    Stages before_;
+    double seconds_ = 0.0;
+};
+
+Scene scene_of(const SceneCase& what)
 {
     Scene scene = read_scene(what.file);
     scene.solver.method = scene::SolverMethod::Quadrature;
-    WorldOptions options;
-    options.backend = backend;
-    World world(scene, options);
-    world.prepare();
-    world.settle();
-
-    SceneRun run;
-    run.name = what.name;
-    run.backend = backend == Backend::Cuda ? "cuda" : "cpu";
-    for (const ClothState& cloth : world.cloths())
-        run.vertices += int(cloth.positions.size());
-    const Stages before = world.stages();
-    const auto start = std::chrono::steady_clock::now();
-    for (int frame = 0; frame < what.frames; ++frame) {
-        const StepReport report = world.advance_frame();
-        run.steps += report.steps;
-        run.iterations += report.iterations;
-        run.linear_iterations += report.linear_iterations;
-        run.contacts = report.contacts;
-    }
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    run.crossings = crossing_count(world);
-
-    const double ms = 1e3 / run.steps;
-    const auto of_step = [&](std::initializer_list<std::string_view> names) {
-        return ms * (seconds_of(world.stages(), names) - seconds_of(before, names));
-    };
-    run.total_ms = ms * seconds;
-    run.search_ms = of_step({"collision/near_pairs", "collision/detect"});
-    run.apart_ms = of_step({"collision/safe_step"});
-    run.minimise_ms = of_step({"pd/descend"});
-    run.limit_ms = of_step({"pd/limits"});
-    run.iterations /= run.steps;
-    run.linear_iterations /= run.steps;
-    return run;
+    if (what.substeps > 0)
+        scene.solver.substeps = what.substeps;
+    return scene;
 }
 
-std::vector<Row> rows_of(const std::vector<SceneRun>& runs)
+/// @param rows  a row at the end of each of these frames, which ascend
+void run_on(Backend backend, const SceneCase& what, const Scene& scene, const std::vector<int>& rows,
+            const CudaSpace& space, std::vector<SceneRun>& runs)
 {
-    std::vector<Row> rows;
-    rows.reserve(runs.size());
-    for (const SceneRun& r : runs)
-        rows.push_back({r.name, r.backend, std::to_string(r.vertices), std::to_string(r.steps),
-                        format("%.0f", r.iterations), format("%.0f", r.linear_iterations),
-                        std::to_string(r.contacts), std::to_string(r.crossings), format("%.1f", r.search_ms),
-                        format("%.1f", r.minimise_ms), format("%.1f", r.apart_ms), format("%.1f", r.limit_ms),
-                        format("%.1f", r.total_ms)});
-    return rows;
+    SceneRun start;
+    start.name = what.name;
+    start.backend = backend == Backend::Cuda ? "cuda" : "cpu";
+    start.dt = scene.frame_duration() / scene.solver.substeps;
+    const double free_before = double(space.free_memory());
+
+    WorldOptions options;
+    options.backend = backend;
+    std::unique_ptr<World> world;
+    start.load_s = seconds_of([&] { world = std::make_unique<World>(scene, options); });
+    start.prepare_s = seconds_of([&] { world->prepare(); });
+    start.settle_s = seconds_of([&] { world->settle(); });
+    for (const ClothState& cloth : world->cloths())
+        start.vertices += int(cloth.positions.size());
+    start.crossings_before = crossing_count(*world);
+
+    Tally tally(std::move(start), world->stages());
+    for (const int end : rows) {
+        while (world->frame() < end) {
+            StepReport report;
+            const double seconds = seconds_of([&] { report = world->advance_frame(); });
+            tally.add(report, seconds);
+        }
+        SceneRun run = tally.so_far(world->stages());
+        run.crossings = crossing_count(*world);
+        run.device_gb = (free_before - double(space.free_memory())) / kGiga;
+        runs.push_back(std::move(run));
+    }
+}
+
+std::string fraction(double dt) { return "1/" + std::to_string(int(std::lround(1.0 / dt))); }
+
+std::vector<SceneRun> run_only(const std::vector<SceneRun>& runs)
+{
+    std::vector<SceneRun> made;
+    std::copy_if(runs.begin(), runs.end(), std::back_inserter(made),
+                 [](const SceneRun& run) { return run.skipped.empty(); });
+    return made;
+}
+
+Row step_row(const SceneRun& r)
+{
+    return {r.name,
+            r.backend,
+            std::to_string(r.vertices),
+            fraction(r.dt),
+            std::to_string(r.frames),
+            format("%.0f", r.iterations),
+            format("%.0f", r.linear_iterations),
+            format("%.0f", r.contacts),
+            format("%.1f", r.cull_ms),
+            format("%.1f", r.narrow_ms),
+            format("%.1f", r.minimise_ms),
+            format("%.1f", r.limit_ms),
+            format("%.1f", r.total_ms),
+            format("%.1f", r.slowest_ms)};
+}
+
+Row run_row(const SceneRun& r)
+{
+    return {format("%.1f", r.load_s),
+            format("%.1f", r.prepare_s),
+            format("%.1f", r.settle_s),
+            format("%.2f", r.device_gb),
+            std::to_string(r.crossings_before),
+            std::to_string(r.crossings),
+            format("%.1f", 100.0 * r.max_strain),
+            std::to_string(r.frames_at_limit)};
 }
 
 } // namespace
 
-std::vector<SceneRun> measure_scene(const SceneCase& what)
+std::vector<SceneRun> measure_scene(const CudaSpace& space, const SceneCase& what)
 {
+    Scene scene;
+    try {
+        scene = scene_of(what);
+    } catch (const InvalidInput& error) {
+        if (!what.needs_data)
+            throw;
+        SceneRun run;
+        run.name = what.name;
+        run.skipped = error.what();
+        return {run};
+    }
     std::vector<SceneRun> runs;
-    if (what.on_cpu)
-        runs.push_back(run_on(Backend::Cpu, what));
-    runs.push_back(run_on(Backend::Cuda, what));
+    std::vector<int> rows{what.frames};
+    if (what.cpu_frames > 0) {
+        run_on(Backend::Cpu, what, scene, {what.cpu_frames}, space, runs);
+        if (what.cpu_frames < what.frames)
+            rows.insert(rows.begin(), what.cpu_frames);
+    }
+    run_on(Backend::Cuda, what, scene, rows, space, runs);
     return runs;
 }
 
 std::string markdown_of(const std::vector<SceneRun>& runs)
 {
-    return markdown({"scene", "backend", "vertices", "steps", "iterations", "PCG", "contacts", "crossings",
-                     "search ms", "minimise ms", "apart ms", "limits ms", "step ms"},
-                    rows_of(runs));
+    std::vector<Row> steps, ends;
+    for (const SceneRun& run : run_only(runs)) {
+        steps.push_back(step_row(run));
+        Row end{run.name, run.backend, fraction(run.dt), std::to_string(run.frames)};
+        const Row more = run_row(run);
+        end.insert(end.end(), more.begin(), more.end());
+        ends.push_back(std::move(end));
+    }
+    std::string text =
+        markdown({"scene", "backend", "vertices", "dt", "frames", "iterations", "PCG", "contacts", "cull ms",
+                  "narrow ms", "local/global ms", "limits ms", "step ms", "slowest ms"},
+                 steps) +
+        "\n" +
+        markdown({"scene", "backend", "dt", "frames", "load s", "prepare s", "settle s", "GPU GB",
+                  "crossings before", "after", "strain %", "frames at limit"},
+                 ends);
+    for (const SceneRun& run : runs)
+        if (!run.skipped.empty())
+            text += "\nSKIPPED: scene " + run.name + ": " + run.skipped + "\n";
+    return text;
 }
 
 std::string csv_of(const std::vector<SceneRun>& runs)
 {
-    return csv({"scene", "backend", "vertices", "steps", "iterations", "pcg", "contacts", "crossings",
-                "search_ms", "minimise_ms", "apart_ms", "limits_ms", "step_ms"},
-               rows_of(runs));
+    std::vector<Row> rows;
+    for (const SceneRun& run : run_only(runs)) {
+        rows.push_back(step_row(run));
+        const Row more = run_row(run);
+        rows.back().insert(rows.back().end(), more.begin(), more.end());
+    }
+    return csv({"scene",
+                "backend",
+                "vertices",
+                "dt",
+                "frames",
+                "iterations",
+                "pcg",
+                "contacts",
+                "cull_ms",
+                "narrow_ms",
+                "local_global_ms",
+                "limits_ms",
+                "step_ms",
+                "slowest_ms",
+                "load_s",
+                "prepare_s",
+                "settle_s",
+                "gpu_gb",
+                "crossings_before",
+                "crossings",
+                "strain_percent",
+                "frames_at_limit"},
+               rows);
 }
 
 } // namespace toile::gpu

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
@@ -32,15 +33,68 @@ void require_valid(const Bending::Settings& s, const std::string& source)
     check("weft", s.weft);
 }
 
-/// Adds rows^T stiffness rows.
-void add_block(const Bending::Term& term, Triplets& entries)
+/// Which terms have a vertex in their stencil: those of v are term[first[v]] to term[first[v + 1]].
+struct TermsOfVertices {
+    std::vector<int> first, term;
+};
+
+TermsOfVertices terms_of_vertices(const std::vector<Bending::Term>& terms, int vertex_count)
+{
+    TermsOfVertices of;
+    of.first.assign(vertex_count + 1, 0);
+    for (const Bending::Term& term : terms)
+        for (const int v : term.stencil.vertex)
+            ++of.first[v + 1];
+    std::partial_sum(of.first.begin(), of.first.end(), of.first.begin());
+    of.term.resize(of.first.back());
+    std::vector<int> next(of.first.begin(), of.first.end() - 1);
+    for (int t = 0; t < int(terms.size()); ++t)
+        for (const int v : terms[t].stencil.vertex)
+            of.term[next[v]++] = t;
+    return of;
+}
+
+/// Zeros at every pair of vertices that share a term.
+SparseMatrix pattern_of(const std::vector<Bending::Term>& terms, int n)
+{
+    const TermsOfVertices of = terms_of_vertices(terms, n);
+    std::vector<std::vector<int>> columns(n);
+    parallel_for(kCpu, "bending/columns", n, [&](int v) {
+        std::vector<int> all;
+        for (int k = of.first[v]; k < of.first[v + 1]; ++k) {
+            const std::vector<int>& vertices = terms[of.term[k]].stencil.vertex;
+            all.insert(all.end(), vertices.begin(), vertices.end());
+        }
+        std::sort(all.begin(), all.end());
+        columns[v].assign(all.begin(), std::unique(all.begin(), all.end()));
+    });
+    SparseMatrix K(n, n);
+    for (int v = 0; v < n; ++v)
+        K.outerIndexPtr()[v + 1] = K.outerIndexPtr()[v] + int(columns[v].size());
+    K.resizeNonZeros(K.outerIndexPtr()[n]);
+    parallel_for(kCpu, "bending/pattern", n, [&](int v) {
+        std::copy(columns[v].begin(), columns[v].end(), K.innerIndexPtr() + K.outerIndexPtr()[v]);
+        std::fill_n(K.valuePtr() + K.outerIndexPtr()[v], columns[v].size(), 0.0);
+    });
+    return K;
+}
+
+/// Adds rows^T stiffness rows. Into the matrix, not to a list of entries that is added up at the end: that
+/// would be four times as long as the matrix.
+void add_block(const Bending::Term& term, SparseMatrix& K)
 {
     const CurvatureStencil& stencil = term.stencil;
     const Eigen::MatrixXd block = stencil.weights.transpose() * term.stiffness.asDiagonal() * stencil.weights;
     const int size = int(stencil.vertex.size());
-    for (int i = 0; i < size; ++i)
-        for (int j = 0; j < size; ++j)
-            entries.emplace_back(stencil.vertex[i], stencil.vertex[j], block(i, j));
+    for (int i = 0; i < size; ++i) {
+        const int begin = K.outerIndexPtr()[stencil.vertex[i]],
+                  end = K.outerIndexPtr()[stencil.vertex[i] + 1];
+        for (int j = 0; j < size; ++j) {
+            const int* columns = K.innerIndexPtr();
+            const int* at = std::lower_bound(columns + begin, columns + end, stencil.vertex[j]);
+            K.valuePtr()[at - columns] += block(i, j);
+        }
+    }
 }
 
 } // namespace
@@ -74,11 +128,10 @@ Bending::Bending(const std::shared_ptr<const RestShape>& rest, const Settings& s
                  const std::string& source)
 {
     const int n = rest->vertex_count();
-    Triplets entries;
-    for (const Term& term : terms(*rest, settings, source))
-        add_block(term, entries);
-    K_.resize(n, n);
-    K_.setFromTriplets(entries.begin(), entries.end());
+    const std::vector<Term> terms = Bending::terms(*rest, settings, source);
+    K_ = pattern_of(terms, n);
+    for (const Term& term : terms)
+        add_block(term, K_);
     vertex_energy_.resize(n);
 }
 

@@ -93,14 +93,14 @@ TEST(SceneFiles, ReadsTheDemoScenes)
 {
     EXPECT_EQ(read_all(kSource / "scenes/demo"), 2);
     EXPECT_EQ(read_all(kSource / "scenes/contact"), 7);
-    EXPECT_EQ(read_all(kSource / "scenes/benchmarks"), 2);
+    EXPECT_EQ(read_all(kSource / "scenes/benchmarks"), 3);
 }
 
 TEST(SceneFiles, ReadsTheScenesOfRealData)
 {
     if (!std::filesystem::is_directory(TOILE_DATA_DIR))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no data";
-    EXPECT_EQ(read_all(kSource / "scenes/data"), 9);
+    EXPECT_EQ(read_all(kSource / "scenes/data"), 10);
 }
 
 TEST(SceneFiles, TheRoundTableIsClosedAndStandsOnTheFloor)
