@@ -164,7 +164,7 @@ void DeviceColliderPairs::sort_planes()
     plane_pairs_.resize(count);
     parallel_for(space_, "contact/key_planes", count,
                  KeyPlane{pairs_.view(), planes_.keys.view(), planes_.values.view()});
-    sort_by_key(space_, "contact/sort_planes", planes_, plane_pairs_.view());
+    sort_by_key(space_, "contact/sort_planes", planes_, plane_pairs_.view(), key_bits(first_plane_.size()));
     first_plane_.fill_zero();
     parallel_for(space_, "contact/begin_planes", count,
                  BeginPlanes{planes_.sorted_keys.view(), first_plane_.view()});

@@ -61,7 +61,7 @@ void DeviceContactEnergy::touch(int vertex_count)
     const View<std::uint64_t> keys = sort_.keys.view();
     parallel_for(space_, "contact/key_touches", keys.size(),
                  KeyTouch{terms_.view(), keys, sort_.values.view()});
-    sort_by_key(space_, "contact/sort_touches", sort_, entries_.view());
+    sort_by_key(space_, "contact/sort_touches", sort_, entries_.view(), key_bits(vertex_count));
     parallel_for(space_, "contact/flag_lists", flags_.size(),
                  FlagLists{sort_.sorted_keys.view(), flags_.view()});
     const int lists =

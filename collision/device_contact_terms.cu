@@ -6,20 +6,6 @@
 
 namespace toile {
 
-namespace {
-
-/// Uploads what differs from what was uploaded before.
-template <typename T>
-void follow(View<const T> values, std::vector<T>& uploaded, DeviceArray<T>& there)
-{
-    if (std::equal(values.begin(), values.end(), uploaded.begin(), uploaded.end()))
-        return;
-    uploaded.assign(values.begin(), values.end());
-    there.upload(uploaded);
-}
-
-} // namespace
-
 DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triangle> triangles,
                                        View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                        const std::vector<ContactPartner>& partners, const Settings& settings)
@@ -28,8 +14,7 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
                  {largest_gap(cloths), settings.face_vertex, settings.edge_edge}),
       energy_(space), memory_(space), cloth_of_(space, "terms/cloth_of"), gap_(space, "terms/gap"),
       partner_friction_(space, "terms/partner_friction"), cloth_friction_(space, "terms/cloth_friction"),
-      half_thickness_(space, "terms/half_thickness"), diagonal_(space, "terms/diagonal"),
-      fixed_(space, "terms/fixed"), room_(space, "terms/room"),
+      half_thickness_(space, "terms/half_thickness"), room_(space, "terms/room"),
       overlap_(space, "terms/overlap", positions.size()), pair_flags_(space, "terms/pair_flags"),
       flags_(space, "terms/flags"), leans_(space, "terms/leans", positions.size()),
       list_(space, "terms/list"), near_(space, "terms/near"), near_here_(space, "terms/near_here"),
@@ -45,16 +30,14 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
 void DeviceContactTerms::begin_step(const StepStart& start)
 {
     TOILE_ASSERT(start.there.x.size() == overlap_.size());
-    follow(start.diagonal, host_diagonal_, diagonal_);
-    follow(start.fixed, host_fixed_, fixed_);
     rules_ = rules_of(start, settings_);
     rules_.cloth_of = cloth_of_.view();
     rules_.gap = gap_.view();
     rules_.partner_friction = partner_friction_.view();
     rules_.cloth_friction = cloth_friction_.view();
     rules_.x = start.there.x;
-    rules_.diagonal = diagonal_.view();
-    rules_.fixed = fixed_.view();
+    rules_.diagonal = start.there.diagonal;
+    rules_.fixed = start.there.fixed;
     colliders_.find(start.there.x, start.there.prediction, start.dt);
 }
 

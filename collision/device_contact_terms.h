@@ -54,10 +54,7 @@ private:
 
     DeviceArray<int> cloth_of_; ///< see ContactTables
     DeviceArray<double> gap_, partner_friction_, cloth_friction_;
-    DeviceArray<double> half_thickness_, diagonal_; ///< [vertices]
-    DeviceArray<unsigned char> fixed_;              ///< [vertices]
-    std::vector<double> host_diagonal_;             ///< as they were uploaded
-    std::vector<unsigned char> host_fixed_;
+    DeviceArray<double> half_thickness_; ///< [vertices]
 
     DeviceArray<double> room_, overlap_;       ///< see FindRoom
     DeviceArray<unsigned char> pair_flags_;    ///< [pairs]

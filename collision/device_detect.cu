@@ -189,6 +189,8 @@ void DeviceContactDetector::find_sheets(const DeviceMeshCollider& mesh, int coll
                             sheets_.found.view()},
                  kBlock);
 
+    const int bits = key_bits(long(search.mesh.surface.positions.size()) * sheets_.queries);
+
     // Those of one vertex of the mesh come together, are tested, and are put into the order of the pairs.
     const View<std::uint64_t> keys = sort_.keys.view();
     const View<int> slots = sort_.values.view();
@@ -198,12 +200,12 @@ void DeviceContactDetector::find_sheets(const DeviceMeshCollider& mesh, int coll
     parallel_for(space_, "collision/device_clear_keys", keys.size(), ClearSheetKeys{keys, slots});
     parallel_for(space_, "collision/device_keys", sheets_.queries,
                  KeySheets{first, sheets_.slots(), keys, slots});
-    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
+    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view(), bits);
     parallel_for(space_, "collision/device_keep_sheets", sheet_room_,
                  KeepSheets{search, cloth, sheets_.slots(), sorted_sheets_.view(), rank_.view(),
                             counts_of_sheets(), keys, slots},
                  kBlock);
-    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view());
+    sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view(), bits);
 }
 
 void DeviceContactDetector::find_ridges(const DeviceMeshCollider& mesh, int collider)

@@ -65,7 +65,7 @@ struct KeySheets {
         const int count = std::min(int(first[t + 1] - first[t]), sheets.room());
         for (int k = 0; k < count && first[t] + k < keys.size(); ++k) {
             const int place = int(first[t] + k);
-            keys[place] = std::uint64_t(sheets.of(t, k)) << 32U | unsigned(t);
+            keys[place] = std::uint64_t(sheets.of(t, k)) * sheets.queries + t;
             slots[place] = k * sheets.queries + t;
         }
     }
@@ -87,7 +87,9 @@ struct KeepSheets {
     {
         const bool is_kept = sorted[i] >= 0 && is_first(i) && is_pair(i);
         counts[i] = int(is_kept);
-        keys[i] = is_kept ? std::uint64_t(rank[triangle(i)]) << 32U | unsigned(vertex(i)) : kNoSheet;
+        keys[i] = is_kept
+                      ? std::uint64_t(rank[triangle(i)]) * search.mesh.surface.positions.size() + vertex(i)
+                      : kNoSheet;
         slots[i] = sorted[i];
     }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "collision/crossings/find_crossings.h"
-#include "core/linear/field.h"
 #include "scenes/contact_setup.h"
 
 namespace toile {
@@ -16,7 +15,7 @@ constexpr double kSleepDelay = 0.5;
 
 } // namespace
 
-std::vector<Vec3> ClothGroup::positions() const
+std::vector<Vec3> ClothGroup::start_positions() const
 {
     std::vector<Vec3> all;
     for (const SceneCloth& cloth : cloths_)
@@ -24,10 +23,11 @@ std::vector<Vec3> ClothGroup::positions() const
     return all;
 }
 
-/// positions() and then the surfaces of solids.
+/// Positions of cloths now and then of the surfaces of solids.
 std::vector<Vec3> ClothGroup::surfaces() const
 {
-    std::vector<Vec3> all = positions();
+    const View<const Vec3> cloths = body_->positions().subview(0, first_.back());
+    std::vector<Vec3> all(cloths.begin(), cloths.end());
     if (solids_)
         all.insert(all.end(), solids_->bodies().surface().begin(), solids_->bodies().surface().end());
     return all;
@@ -38,6 +38,8 @@ View<T> ClothGroup::part(View<T> all, int cloth) const
 {
     return all.subview(first_[cloth], first_[cloth + 1] - first_[cloth]);
 }
+
+View<const Vec3> ClothGroup::positions_of(int cloth) const { return part(body_->positions(), cloth); }
 
 void ClothGroup::mark_fixed(double t_t1)
 {
@@ -61,30 +63,39 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Obstacle>&
     if (may_cross_ && contact_ && contact_->keeps_cloth_apart())
         look_for_crossings();
     mark_fixed(t_t1);
-    const View<const Vec3> x = body_->positions(), v = body_->velocities();
-    for (int i = 0; i < int(cloths_.size()); ++i) {
+    for (int i = 0; i < int(cloths_.size()); ++i)
         cloths_[i].hold(t_t1, obstacles, part(View<Vec3>(targets_), i));
-        cloths_[i].accelerate(dt, t_t1, part(x, i), part(v, i), part(View<Vec3>(acceleration_), i));
-        cloths_[i].begin_step(part(x, i));
-    }
+    if (loads_)
+        loads_->set_time(t_t1);
+    else
+        accelerate(dt, t_t1);
     begin_solids(dt);
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
     if (report.status != StepReport::Status::NonFinite)
         end_solids();
-    take_positions();
     if (contact_) {
         report.contacts = contact_->active_count();
         report.min_gap = contact_->min_gap();
     }
     if (report.status == StepReport::Status::NonFinite)
         report.message = names() + ": " + report.message;
-    report.max_strain = limits_->max_strain(body_->positions());
+    report.max_strain = loads_ ? limits_->max_strain_there() : limits_->max_strain(body_->positions());
 
     // A solver whose every direction was refused leaves the cloth standing: that is no rest.
     const bool is_stuck = report.status == StepReport::Status::IterationLimit && report.iterations == 0;
-    const bool is_slow = max_norm(body_->velocities()) < sleep_.speed;
+    const bool is_slow = body_->max_speed() < sleep_.speed;
     rest_time_ = is_slow && !is_stuck ? rest_time_ + dt : 0.0;
     return report;
+}
+
+/// On the CPU.
+void ClothGroup::accelerate(double dt, double t_t1)
+{
+    const View<const Vec3> x = body_->positions(), v = body_->velocities();
+    for (int i = 0; i < int(cloths_.size()); ++i) {
+        cloths_[i].accelerate(dt, t_t1, part(x, i), part(v, i), part(View<Vec3>(acceleration_), i));
+        cloths_[i].begin_step(part(x, i));
+    }
 }
 
 /// Exactly, at the first step and then as long as there are any. A solid that crosses itself stays as it is.
@@ -141,12 +152,6 @@ void ClothGroup::end_solids()
     const int first = first_.back(), count = solids_->bodies().unknown_count();
     solids_->bodies().end_step(body_->positions().subview(first, count),
                                body_->velocities().subview(first, count));
-}
-
-void ClothGroup::take_positions()
-{
-    for (int i = 0; i < int(cloths_.size()); ++i)
-        cloths_[i].take(part(body_->positions(), i));
 }
 
 /// cloth "skirt", or cloths "skirt", "vest" and solids "bowl".

@@ -22,7 +22,12 @@ public:
     ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, std::unique_ptr<SceneSolids> solids,
                const std::vector<Obstacle>& obstacles, const WorldOptions& options, const CudaSpace* space);
 
+    /// Their states have the positions of the start and what place() puts elsewhere.
     const std::vector<SceneCloth>& cloths() const { return cloths_; }
+
+    /// Positions of one cloth now, good until the next step [m]. They are copied from the GPU that has them.
+    View<const Vec3> positions_of(int cloth) const;
+
     const SceneSolids* solids() const { return solids_.get(); } ///< null: none
 
     /// Prepares the global solvers for a step of dt [s] that ends at time t_t1 [s].
@@ -40,17 +45,18 @@ private:
                                                   const CudaSpace& space);
     std::vector<double> masses() const;
     std::vector<std::shared_ptr<Energy>> make_energies();
+    std::unique_ptr<DeviceLoads> make_loads(const Scene& scene, const CudaSpace& space) const;
     std::unique_ptr<Contact> make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles,
                                           const CudaSpace* space);
-    std::vector<Vec3> positions() const;
+    std::vector<Vec3> start_positions() const;
     std::vector<Vec3> surfaces() const;
     template <typename T>
     View<T> part(View<T> all, int cloth) const;
     void mark_fixed(double t_t1);
+    void accelerate(double dt, double t_t1);
     ActiveSetEnergy* active() const;
     void begin_solids(double dt);
     void end_solids();
-    void take_positions();
     void look_for_crossings();
     int solid_of(int triangle) const;
     std::string names() const;
@@ -65,6 +71,7 @@ private:
     std::unique_ptr<RigidActiveSet>
         rigid_contact_; ///< contact_ as the minimiser sees it; null without solids
     std::unique_ptr<PointMasses> body_;
+    DeviceLoads* loads_ = nullptr; ///< body_'s, on a GPU; null: accelerate()
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;
     std::vector<Triangle> triangles_; ///< of all cloths and then all solids

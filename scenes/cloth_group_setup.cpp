@@ -41,7 +41,7 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
     if (solids_)
         solids_->append_triangles(first_.back(), triangles_);
     if (is_rival(scene.solver.method))
-        body_ = make_rival(scene.solver, positions(), cloths_.front().model());
+        body_ = make_rival(scene.solver, start_positions(), cloths_.front().model());
     else
         body_ = space != nullptr ? make_device_body(scene, options, *space) : make_body(scene, options);
     contact_ = make_contact(scene, obstacles, space);
@@ -54,7 +54,7 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
     const size_t unknowns = body_->positions().size();
     fixed_.assign(unknowns, 0);
     targets_.assign(unknowns, Vec3::Zero());
-    acceleration_.assign(unknowns, Vec3::Zero());
+    acceleration_.assign(loads_ ? 0 : unknowns, Vec3::Zero());
     if (solids_)
         for (int i = 0; i < solids_->count(); ++i)
             acceleration_[first_.back() + 2 * i] = scene.gravity;
@@ -93,7 +93,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
              make_global_solver(scene.solver.method, cloth.rest_shape(), {state.positions, state.triangles},
                                 cloth.source(), source_of_tables(options, state.name))});
     }
-    std::vector<Vec3> unknowns = positions();
+    std::vector<Vec3> unknowns = start_positions();
     if (solids_) {
         const std::vector<double> own = solids_->bodies().masses();
         masses.insert(masses.end(), own.begin(), own.end());
@@ -127,13 +127,27 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
     DeviceBody::Settings settings;
     settings.tolerance = scene.solver.tolerance;
     settings.max_iterations = scene.solver.max_iterations;
-    return std::make_unique<DeviceBody>(
-        space, positions(),
+    auto body = std::make_unique<DeviceBody>(
+        space, start_positions(),
         std::make_unique<System>(
             masses(), make_energies(),
             std::make_unique<DeviceQuadratureSolver>(space, std::move(parts), QuadratureTables::Settings{},
                                                      source_of_tables(options, "").store)),
         settings);
+    auto loads = make_loads(scene, space);
+    loads_ = loads.get();
+    body->accelerate_by(std::move(loads));
+    return body;
+}
+
+std::unique_ptr<DeviceLoads> ClothGroup::make_loads(const Scene& scene, const CudaSpace& space) const
+{
+    auto loads = std::make_unique<DeviceLoads>(
+        space, DeviceLoads::Settings{scene.gravity, air_of(scene), scene.wind.velocity},
+        gusts_of(scene.wind));
+    for (size_t i = 0; i < cloths_.size(); ++i)
+        cloths_[i].add_loads(*loads, first_[i]);
+    return loads;
 }
 
 std::unique_ptr<Contact> ClothGroup::make_contact(const Scene& scene, const std::vector<Obstacle>& obstacles,

@@ -6,6 +6,7 @@
 
 #include "core/backend/parallel.h"
 #include "garment/energy/bending.h"
+#include "garment/energy/loads_kernels.h"
 #include "garment/energy/membrane.h"
 #include "scenes/cloth_mesh.h"
 #include "scenes/format/scene_fabric.h"
@@ -14,14 +15,6 @@
 namespace toile {
 
 namespace {
-
-Gusts::Settings gusts_of(const scene::Wind& wind)
-{
-    Gusts::Settings settings;
-    settings.intensity = wind.turbulence;
-    settings.seed = std::uint64_t(wind.seed);
-    return settings;
-}
 
 /// @param unmoved  [vertices] positions before the cloth's translation [m]
 std::shared_ptr<const RestShape> rest_shape_of(const std::vector<Vec3>& unmoved,
@@ -36,10 +29,19 @@ std::shared_ptr<const RestShape> rest_shape_of(const std::vector<Vec3>& unmoved,
 
 } // namespace
 
+AirSettings air_of(const Scene& scene) { return {scene.air.density, scene.air.normal, scene.air.tangential}; }
+
+Gusts gusts_of(const scene::Wind& wind)
+{
+    Gusts::Settings settings;
+    settings.intensity = wind.turbulence;
+    settings.seed = std::uint64_t(wind.seed);
+    return {wind.velocity, settings};
+}
+
 SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
                        const std::vector<Obstacle>& obstacles, const WorldOptions& options)
-    : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind),
-      gusts_(scene.wind.velocity, gusts_of(scene.wind))
+    : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind), gusts_(gusts_of(scene.wind))
 {
     state_.name = settings.name;
     state_.fabric = fabric_of(scene, settings);
@@ -62,8 +64,7 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     masses_ = rest_->vertex_areas();
     for (double& mass : masses_)
         mass *= state_.fabric.areal_density;
-    air_ = std::make_unique<Aerodynamics>(
-        rest_, Aerodynamics::Settings{scene.air.density, scene.air.normal, scene.air.tangential});
+    air_ = std::make_unique<Aerodynamics>(rest_, air_of(scene));
     StrainLimit::Settings limit;
     limit.limit = state_.fabric.strain_limit;
     strain_limit_ = std::make_unique<StrainLimit>(rest_, limit, source_);
@@ -172,9 +173,9 @@ void SceneCloth::hold(double t_t1, const std::vector<Obstacle>& obstacles, View<
 void SceneCloth::accelerate(double dt, double t_t1, View<const Vec3> x, View<const Vec3> v,
                             View<Vec3> acceleration)
 {
-    const double decay = state_.fabric.damping / (1.0 + dt * state_.fabric.damping);
-    parallel_for(kCpu, "scenes/accelerate", v.size(),
-                 [&](int i) { acceleration[i] = gravity_ - decay * v[i]; });
+    const FallDamped fall{gravity_, v, acceleration};
+    const double decay = FallDamped::decay(state_.fabric.damping, dt);
+    parallel_for(kCpu, "scenes/accelerate", v.size(), [&](int i) { fall.at(i, decay); });
     if (!air_->is_active())
         return;
     if (gusts_.are_active()) {

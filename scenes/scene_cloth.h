@@ -5,6 +5,7 @@
 
 #include "core/pd/energy.h"
 #include "garment/energy/aerodynamics.h"
+#include "garment/energy/device_loads.h"
 #include "garment/energy/gusts.h"
 #include "garment/energy/springs.h"
 #include "garment/energy/strain_limit.h"
@@ -13,6 +14,10 @@
 #include "scenes/world.h"
 
 namespace toile {
+
+// The air of a scene.
+AirSettings air_of(const Scene& scene);
+Gusts gusts_of(const scene::Wind& wind);
 
 /// One cloth of a running scene: its fabric as energies, what holds it, the air around it, its strain limit.
 /// It is moved by the ClothGroup that it belongs to; all arrays here are the cloth's own vertices.
@@ -31,6 +36,12 @@ public:
 
     /// The terms of projective dynamics. Once: the limit on strain learns of the tension among them.
     std::vector<std::shared_ptr<Energy>> make_energies();
+
+    /// Adds what accelerate() finds to the loads of a body on a GPU.
+    void add_loads(DeviceLoads& loads, int first_vertex) const
+    {
+        loads.add(*rest_, masses_, state_.fabric.damping, first_vertex);
+    }
 
     /// The same cloth for a rival method.
     ClothModel model() const;
@@ -51,7 +62,7 @@ public:
     /// Picks what is taut at the start of a step.
     void begin_step(View<const Vec3> x);
 
-    /// Takes over the positions that the cloth has come to.
+    /// Takes positions that the cloth has come to or was put to.
     void take(View<const Vec3> x);
 
     /// Drops what earlier steps left, for cloth that was put elsewhere.

@@ -17,6 +17,7 @@ struct World::Parts {
     std::vector<ClothState> states;
     StartReport start;
     Stages stages;
+    bool is_shown = true; ///< states are as everything is
     int frame = 0;
 
     double dt() const { return scene.frame_duration() / scene.solver.substeps; }
@@ -44,15 +45,28 @@ struct World::Parts {
             if (total.status == StepReport::Status::NonFinite)
                 break;
         }
+        is_shown = false;
+        if (!space)
+            show();
+        return total;
+    }
+
+    /// Brings states to where everything is now: what a GPU has is copied when somebody asks and not before.
+    void show()
+    {
+        if (is_shown)
+            return;
         int cloth = 0;
         for (const ClothGroup& group : groups)
-            for (const SceneCloth& member : group.cloths())
-                states[cloth++].positions = member.state().positions;
+            for (int i = 0; i < int(group.cloths().size()); ++i) {
+                const View<const Vec3> x = group.positions_of(i);
+                states[cloth++].positions.assign(x.begin(), x.end());
+            }
         for (const ClothGroup& group : groups)
             if (const SceneSolids* solids = group.solids())
                 for (int i = 0; i < solids->count(); ++i)
                     states[cloth++].positions = solids->positions(i);
-        return total;
+        is_shown = true;
     }
 };
 
@@ -90,7 +104,8 @@ void World::place(int cloth, View<const Vec3> positions)
         }
         member -= int(group.cloths().size());
     }
-    parts_->states[cloth].positions.assign(positions.begin(), positions.end());
+    parts_->is_shown = false;
+    parts_->show();
 }
 
 void World::prepare()
@@ -115,7 +130,12 @@ StepReport World::advance_frame()
 
 int World::frame() const { return parts_->frame; }
 int World::frame_count() const { return parts_->scene.frames; }
-View<const ClothState> World::surfaces() const { return parts_->states; }
+View<const ClothState> World::surfaces() const
+{
+    const Stages::Activate recording(parts_->stages);
+    parts_->show();
+    return parts_->states;
+}
 View<const ClothState> World::cloths() const
 {
     return surfaces().subview(0, int(parts_->scene.cloths.size()));

@@ -77,6 +77,9 @@ public:
 
     int frame() const;       ///< sample that positions belong to; starts at 0
     int frame_count() const; ///< samples of the scene
+
+    /// Where a GPU makes the steps, a sample's positions are copied when they are asked for: states from
+    /// before it show nothing of it until then.
     View<const ClothState> cloths() const;
 
     /// All cloths and then all solids, each in the order of the scene.

@@ -33,7 +33,8 @@ int with_headroom(long needed)
 
 DeviceNearPairs::DeviceNearPairs(const CudaSpace& space, View<const Triangle> triangles,
                                  View<const Vec3> positions, View<const int> rigid, int room)
-    : space_(space), surface_(space, triangles, positions), rigid_(space, "near_pairs/rigid"),
+    : space_(space), surface_(space, triangles, positions), rigid_(space, "near_pairs/rigid"), all_(space),
+      around_(space),
       counts_(space, "near_pairs/counts", positions.size() + surface_.edges().vertex.size() + 1),
       first_(space, "near_pairs/first", counts_.size()),
       kept_for_vertices_(space, "near_pairs/kept_for_vertices",
@@ -60,6 +61,8 @@ void DeviceNearPairs::make_room(long candidates, long pairs)
     }
     if (pairs > pairs_.size())
         pairs_.resize(with_headroom(pairs));
+    all_.forget();
+    around_.forget();
 }
 
 View<const NearPair> DeviceNearPairs::find(View<const Vec3> x, const Ways& ways, double margin)
@@ -70,9 +73,26 @@ View<const NearPair> DeviceNearPairs::find(View<const Vec3> x, const Ways& ways,
         is_worn_out_ = false;
     }
     do
-        search(x, ways, margin);
+        search_again(ways.around.empty() ? all_ : around_, x, ways, margin);
     while (!settle());
     return pairs().subview(0, read_[0].pairs);
+}
+
+/// A search that is asked for a second time has grown all that it needs, so it is recorded then.
+void DeviceNearPairs::search_again(Asked& last, View<const Vec3> x, const Ways& ways, double margin)
+{
+    if (!last.is(x, ways, margin)) {
+        search(x, ways, margin);
+        last.x = x;
+        last.ways = ways;
+        last.margin = margin;
+        last.is_recorded = false;
+        return;
+    }
+    if (!last.is_recorded)
+        last.graph.record([&] { search(x, ways, margin); });
+    last.is_recorded = true;
+    last.graph.launch();
 }
 
 void DeviceNearPairs::search(View<const Vec3> x, const Ways& ways, double margin)

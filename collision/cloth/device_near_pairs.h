@@ -2,6 +2,7 @@
 
 #include "collision/cloth/device_near_kernels.h"
 #include "collision/device_surface.h"
+#include "core/backend/cuda/graph.h"
 
 namespace toile {
 
@@ -23,7 +24,8 @@ public:
 
     /// All pairs as NearPairs::find has them, on the device until the next search. Waits for their number.
     /// Where there was not enough room it grows and searches again; where the order of the trees was worn out
-    /// by the search before, it is chosen anew.
+    /// by the search before, it is chosen anew. What is asked for again, of the same arrays, goes to the
+    /// device as one graph.
     /// @param x, ways  on the device
     /// @throws DeviceError where the device has not the memory, or there are 2^31 candidates
     View<const NearPair> find(View<const Vec3> x, const Ways& ways, double margin);
@@ -54,12 +56,32 @@ private:
     VertexQueries vertex_queries() const;
     EdgeQueries edge_queries() const;
     PairCorners corners() const { return {surface_.triangles(), surface_.edges().vertex}; }
+    /// What search() was asked for last, and its recording.
+    struct Asked {
+        Asked(const CudaSpace& space) : graph(space, "collision/device_search") {}
+        bool is(View<const Vec3> other_x, const Ways& other_ways, double other_margin) const
+        {
+            return x.data() == other_x.data() && ways.motion.data() == other_ways.motion.data() &&
+                   ways.slack.data() == other_ways.slack.data() &&
+                   ways.around.data() == other_ways.around.data() && margin == other_margin;
+        }
+        void forget() { x = {}; }
+
+        View<const Vec3> x;
+        Ways ways;
+        double margin = 0.0;
+        bool is_recorded = false;
+        CudaGraph graph;
+    };
+
+    void search_again(Asked& last, View<const Vec3> x, const Ways& ways, double margin);
     void list_candidates();
     void make_room(long candidates, long pairs);
 
     const CudaSpace& space_;
     DeviceSurface surface_;
     DeviceArray<int> rigid_;
+    Asked all_, around_;           ///< of find(): without and with Ways::around
     double ordered_surface_ = 0.0; ///< [m^2] of the first search after the order was chosen; 0: none yet
     bool is_worn_out_ = false;
 

@@ -17,9 +17,11 @@ struct StepStart {
     View<const double> masses;       ///< [vertices] [kg]; of unknowns that are no vertices: unspecified
     double dt = 0.0;                 ///< [s]
 
-    /// The first two as the device has them, until the end of the step; empty where no GPU makes it.
+    /// The first four as the device has them, until the end of the step; empty where no GPU makes it.
     struct There {
         View<const Vec3> x, prediction;
+        View<const double> diagonal;
+        View<const unsigned char> fixed;
     } there = {};
 };
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/backend/types.h"
+#include "core/linear/field.h"
 #include "core/pd/active_set_energy.h"
 #include "core/pd/step_projection.h"
 #include "core/pd/step_report.h"
@@ -36,6 +37,9 @@ public:
     virtual View<const Vec3> velocities() const = 0;
     virtual void set_positions(View<const Vec3> x) = 0;
     virtual void set_velocities(View<const Vec3> v) = 0;
+
+    /// Largest velocity of a vertex now [m/s]; NaN where one is.
+    virtual double max_speed() const { return max_norm(velocities()); }
 
     /// [vertices] [kg], positive
     virtual View<const double> masses() const = 0;

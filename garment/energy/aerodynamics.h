@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "garment/energy/aerodynamics_kernels.h"
 #include "garment/energy/rest_shape.h"
 
 namespace toile {
@@ -19,19 +20,12 @@ namespace toile {
 /// cloth that is held against the wind: the elastic forces that hold it are not part of that equation.
 class Aerodynamics {
 public:
-    struct Settings {
-        double density = 1.2;     ///< [kg/m^3] 0 switches the air off
-        double normal = 1.0;      ///< [-] drag coefficient of a plate across the flow
-        double tangential = 0.05; ///< [-] skin friction along the flow
-    };
+    using Settings = AirSettings;
 
     Aerodynamics(std::shared_ptr<const RestShape> rest, const Settings& settings);
 
     /// True when it can act at all; otherwise callers skip the stage.
-    bool is_active() const
-    {
-        return settings_.density > 0.0 && (settings_.normal > 0.0 || settings_.tangential > 0.0);
-    }
+    bool is_active() const { return settings_.is_active(); }
 
     /// Adds the acceleration over a step of dt [s] to acceleration [vertices] [m/s^2].
     /// @param wind   mean velocity of the air [m/s]

@@ -23,6 +23,7 @@ DeviceStrainLimit::DeviceStrainLimit(const CudaSpace& space)
       violates_(space, "strain_limit/violates"), violating_(space, "strain_limit/violating", 1),
       sums_(space, "strain_limit/sums"), violating_on_host_(space, "strain_limit/violating_on_host", 1),
       stretch_t0_(space, "strain_limit/stretch_t0"), stretch_t1_(space, "strain_limit/stretch_t1"),
+      stretch_on_host_(space, "strain_limit/stretch_on_host"),
       stretch_of_chunk_(space, "strain_limit/stretch_of_chunk"), kept_(space, "strain_limit/kept"),
       forward_(space, "garment/strain_limit"), backward_(space, "garment/strain_limit")
 {
@@ -87,6 +88,8 @@ void DeviceStrainLimit::upload()
     violates_.resize(triangles_.size());
     stretch_t0_.resize(first_chunk_.size() - 1);
     stretch_t1_.resize(first_chunk_.size() - 1);
+    stretch_on_host_.resize(first_chunk_.size() - 1);
+    std::fill(stretch_on_host_.view().begin(), stretch_on_host_.view().end(), 1.0);
     stretch_of_chunk_.resize(first_of_chunk_.size() - 1);
     kept_.resize(cloth_.size());
     recorded_x_ = {};
@@ -124,10 +127,15 @@ void DeviceStrainLimit::find_largest(View<const Vec3> x, View<double> of_cloth)
         LargestOfRange<ItemOf<double>>{{stretch_of_chunk_.view()}, first_chunk_.view(), of_cloth});
 }
 
-double DeviceStrainLimit::max_strain(View<const Vec3> x)
+void DeviceStrainLimit::end_step(View<const Vec3> x)
 {
     find_largest(x, stretch_t1_.view());
-    const std::vector<double> stretch = stretch_t1_.downloaded();
+    stretch_t1_.download(stretch_on_host_.view());
+}
+
+double DeviceStrainLimit::max_strain() const
+{
+    const View<const double> stretch = stretch_on_host_.view();
     return stretch.empty() ? -1.0 : *std::max_element(stretch.begin(), stretch.end()) - 1.0;
 }
 

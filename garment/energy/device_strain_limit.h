@@ -31,8 +31,12 @@ public:
     void project(View<Vec3> x, View<const double> inverse_masses,
                  const std::function<bool()>& clear_contacts) override;
 
-    /// Largest principal stretch of all cloths minus one at x [vertices], of slivers too [-]. Waits.
-    double max_strain(View<const Vec3> x);
+    /// Looks for max_strain() at x.
+    void end_step(View<const Vec3> x) override;
+
+    /// Largest principal stretch of all cloths minus one, of slivers too, where the last end_step() was that
+    /// has been waited for [-]; 0 before the first.
+    double max_strain() const;
 
 private:
     /// What is on the device, of all cloths so far.
@@ -78,6 +82,7 @@ private:
     DeviceArray<int> violating_, sums_;           ///< [1] how many; scratch
     PinnedArray<int> violating_on_host_;          ///< [1]
     DeviceArray<double> stretch_t0_, stretch_t1_; ///< [cloths] largest, before and after [-]
+    PinnedArray<double> stretch_on_host_;         ///< [cloths] stretch_t1_ of the last end_step()
     DeviceArray<double> stretch_of_chunk_;        ///< [chunks]
     DeviceArray<Vec3> kept_;                      ///< [vertices] positions before the first sweep [m]
     View<Vec3> recorded_x_;                       ///< that the graphs are of

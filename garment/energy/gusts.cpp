@@ -63,17 +63,9 @@ Gusts::Gusts(const Vec3& mean, const Settings& settings)
     }
 }
 
-Vec3 Gusts::at(const Vec3& x, double t) const
-{
-    Vec3 sum = Vec3::Zero();
-    for (const Mode& mode : modes_)
-        sum += std::cos(mode.wave.dot(x) + mode.frequency * t + mode.phase) * mode.velocity;
-    return sum;
-}
-
 void Gusts::sample(View<const Vec3> x, double t, View<Vec3> out) const
 {
-    parallel_for(kCpu, "garment/gusts", x.size(), [&](int i) { out[i] = at(x[i], t); });
+    parallel_for(kCpu, "garment/gusts", x.size(), SampleGusts{modes_, x, t, out});
 }
 
 } // namespace toile

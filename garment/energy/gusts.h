@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/backend/types.h"
+#include "garment/energy/gusts_kernels.h"
 
 namespace toile {
 
@@ -33,19 +33,15 @@ public:
     bool are_active() const { return !modes_.empty(); }
 
     /// u' at a point [m] and time [s], in [m/s].
-    Vec3 at(const Vec3& x, double t) const;
+    Vec3 at(const Vec3& x, double t) const { return gust_at(modes_, x, t); }
 
     /// The same at every vertex. O(vertices * octaves); stage "garment/gusts".
     void sample(View<const Vec3> x, double t, View<Vec3> out) const;
 
+    View<const GustMode> modes() const { return modes_; }
+
 private:
-    struct Mode {
-        Vec3 wave;        ///< k_m [rad/m]
-        Vec3 velocity;    ///< a_m e_m [m/s]
-        double frequency; ///< w_m - k_m . U [rad/s]
-        double phase;     ///< p_m [rad]
-    };
-    std::vector<Mode> modes_;
+    std::vector<GustMode> modes_;
 };
 
 } // namespace toile

@@ -26,6 +26,13 @@ public:
     /// As StrainLimit's, the largest of all.
     double max_strain(View<const Vec3> x) const;
 
+    /// The same at the end of the last step that a GPU has made.
+    double max_strain_there() const
+    {
+        TOILE_ASSERT(there_ != nullptr);
+        return there_->max_strain();
+    }
+
 private:
     std::vector<Part> parts_;
     std::unique_ptr<DeviceStrainLimit> there_; ///< null before a GPU asks

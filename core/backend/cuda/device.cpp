@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/backend/error.h"
+#include "core/backend/stages.h"
 
 namespace toile {
 
@@ -58,6 +59,7 @@ void CudaSpace::synchronise(CallSite where) const
     if (is_recording())
         throw DeviceError(at(where) + ": nothing can be waited for while a graph is recorded on " +
                           described());
+    const StageScope stage("cuda/wait");
     const cuda::Status status = cuda::wait_for(device_.index, stream_);
     if (status != cuda::Status::Good)
         throw DeviceError(pending_kernels() + " failed on " + described() + ": " + cuda::reason_of(status) +

@@ -37,7 +37,7 @@ public:
     const CudaDevice& device() const { return device_; }
     CUstream_st* stream() const { return stream_; }
 
-    /// Waits until all that the stream was given is done.
+    /// Waits until all that the stream was given is done. A call of stage "cuda/wait".
     /// @throws DeviceError naming the kernels launched since the last wait with file and line, and what CUDA
     ///         said, when one of them failed. The device is of no use to this process from then on.
     void synchronise(CallSite where = CallSite::here()) const;

@@ -3,11 +3,13 @@
 #include <string>
 
 #include "core/backend/cuda/array.h"
+#include "core/backend/stages.h"
 
 namespace toile {
 
 /// An array that host and device both work on. It is copied when the other side asks for it and only where it
-/// has changed since, so work that moves from one side to the other takes its copies with it.
+/// has changed since, so work that moves from one side to the other takes its copies with it. A copy to the
+/// host is a call of stage "cuda/to_host".
 template <typename T>
 class MirroredArray {
 public:
@@ -68,6 +70,7 @@ private:
     {
         if (newer_ != Newer::Device)
             return;
+        const StageScope stage("cuda/to_host");
         there_.download(on_host_.view());
         space_->synchronise();
         newer_ = Newer::None;

@@ -11,7 +11,7 @@
 namespace toile {
 
 void sort_by_key(const CudaSpace& space, std::string_view name, SortArrays& arrays,
-                 [[maybe_unused]] View<int> sorted, CallSite where)
+                 [[maybe_unused]] View<int> sorted, [[maybe_unused]] int bits, CallSite where)
 {
     const StageScope stage(name);
     if (arrays.values.size() == 0)
@@ -21,7 +21,7 @@ void sort_by_key(const CudaSpace& space, std::string_view name, SortArrays& arra
     with_scratch(arrays.scratch, [&](void* memory, std::size_t& bytes) {
         return cub::DeviceRadixSort::SortPairs(memory, bytes, arrays.keys.view().data(),
                                                arrays.sorted_keys.view().data(), arrays.values.view().data(),
-                                               sorted.data(), arrays.values.size(), 0, 64, space.stream());
+                                               sorted.data(), arrays.values.size(), 0, bits, space.stream());
     });
 #endif
     launch.done();

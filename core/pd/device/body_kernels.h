@@ -23,6 +23,15 @@ struct StepSums {
     }
 };
 
+/// Puts the k-th held vertex where it is to be.
+struct PlaceTarget {
+    View<const int> held;     ///< vertices
+    View<const Vec3> targets; ///< [held] [m]
+    View<Vec3> to;            ///< [vertices] written where held [m]
+
+    TOILE_HD void operator()(int k) const { to[held[k]] = targets[k]; }
+};
+
 /// Predicts vertex i.
 struct BeginVertex {
     PredictVertex predict;
@@ -115,27 +124,42 @@ struct BeginAgain {
     }
 };
 
-/// What a step reports of all vertices: largest values.
-struct FinishSums {
-    double gradient_square = 0.0; ///< [N^2]
+/// What a step reports of all vertices: a largest value, which no NaN among them is lost to.
+struct LargestSquare {
+    double value = 0.0;
 
-    TOILE_HD FinishSums& operator+=(const FinishSums& other)
+    TOILE_HD LargestSquare& operator+=(const LargestSquare& other)
     {
-        gradient_square = std::fmax(gradient_square, other.gradient_square);
+        if (value < other.value || std::isnan(other.value))
+            value = other.value;
         return *this;
     }
 };
 
-/// The end of the step at vertex i.
+/// The minimiser at vertex i becomes velocity.
 struct FinishVertex {
     View<const Vec3> x, x_t1, gradient; ///< [vertices] at t0 and t1 [m], [N]
     double dt;                          ///< [s]
     View<Vec3> v;                       ///< [vertices] out [m/s]
 
-    TOILE_HD FinishSums operator()(int i) const
+    /// @return squared length of the gradient [N^2]
+    TOILE_HD LargestSquare operator()(int i) const
     {
         v[i] = (x_t1[i] - x[i]) / dt;
         return {gradient[i].squaredNorm()};
+    }
+};
+
+/// The end of the step at vertex i.
+struct EndVertex {
+    CopyPositions take;
+    View<const Vec3> v; ///< [vertices] [m/s]
+
+    /// @return squared speed [m^2/s^2]
+    TOILE_HD LargestSquare operator()(int i) const
+    {
+        take(i);
+        return {v[i].squaredNorm()};
     }
 };
 

@@ -41,25 +41,23 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       settings_(settings), energies_(energies_of(space, *system_)),
       x_(space, "body/x", int(positions.size())), v_(space, "body/v", x_.size()),
       x_t1_(space, "body/x_t1", x_.size()), acceleration_(space, "body/acceleration", x_.size()),
-      targets_(space, "body/targets", x_.size()), prediction_(space, "body/prediction", x_.size()),
-      drive_(space, "body/drive", x_.size()), found_(space, "body/found", x_.size()),
-      found_gradient_(space, "body/found_gradient", x_.size()), masses_(space, "body/masses"),
+      prediction_(space, "body/prediction", x_.size()), targets_(space, "body/targets", x_.size()),
+      held_(space, "body/held"), held_targets_(space, "body/held_targets"),
+      held_targets_on_host_(space, "body/held_targets_on_host"), drive_(space, "body/drive", x_.size()),
+      found_(space, "body/found", x_.size()), found_gradient_(space, "body/found_gradient", x_.size()),
+      masses_(space, "body/masses"), diagonal_(space, "body/diagonal"),
       inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
       begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
-      finish_sums_(space, "body/finish_sums", block_count(x_.size(), kSumItems)),
-      finish_(space, "body/finish", 1), finish_on_host_(space, "body/finish_on_host", 1),
+      end_sums_(space, "body/end_sums", block_count(x_.size(), kSumItems)),
+      gradient_(space, "body/largest_gradient", 1), speed_(space, "body/largest_speed", 1),
+      gradient_on_host_(space, "body/largest_gradient_on_host", 1),
+      speed_on_host_(space, "body/largest_speed_on_host", 1),
       descent_(space, x_.size(), energies_.share_count())
 {
     TOILE_ASSERT(x_.size() == system_->vertex_count());
     masses_.upload(system_->masses());
     set_positions(positions);
     set_velocities(std::vector<Vec3>(positions.size(), Vec3::Zero()));
-}
-
-void DeviceBody::overwrite(MirroredArray<Vec3>& field, View<const Vec3> values)
-{
-    TOILE_ASSERT(values.size() == field.size());
-    std::copy(values.begin(), values.end(), field.overwrite_on_host().begin());
 }
 
 void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
@@ -69,12 +67,7 @@ void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
     dt_ = 0.0; // not prepared, should the solver refuse H
     system_->prepare(dt, fixed);
     if (is_new) {
-        fixed_.upload(fixed);
-        std::vector<double> inverse_masses(fixed.size(), 0.0);
-        for (size_t i = 0; i < fixed.size(); ++i)
-            if (!fixed[i])
-                inverse_masses[i] = 1.0 / masses()[int(i)];
-        inverse_masses_.upload(inverse_masses);
+        hold(fixed);
         const DeviceDescent::Problem problem = this->problem(dt);
         descent_.record(problem);
         is_touching_prepared_ = false;
@@ -104,8 +97,8 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
     if (active && active->on_device(space_) == nullptr)
         throw InvalidInput("this contact does not run on a GPU");
     prepare(dt, fixed);
-    overwrite(acceleration_, acceleration);
-    overwrite(targets_, targets);
+    begin_forces(acceleration);
+    begin_targets(targets);
     for (const auto& energy : energies_.all())
         energy->begin_step(x_.there());
     predict();
@@ -118,11 +111,11 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
     if (report.status == StepReport::Status::NonFinite)
         return report;
 
-    finish(report);
+    finish();
     satisfy(active, limits);
     if (active)
         active->end_step(x_t1_);
-    parallel_for(space_, "pd/end", x_.size(), CopyPositions{x_t1_.there(), x_.overwrite_there()});
+    end(limits, report);
     return report;
 }
 
@@ -157,18 +150,6 @@ void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* ac
                  AddProjected{found_.view(), x_t1_.there(), dt_, v_.change_there()});
 }
 
-/// Where everything would go alone, which is where the step begins; and tells the descent what is asked.
-void DeviceBody::predict()
-{
-    const View<Vec3> prediction = prediction_.overwrite_there();
-    const PredictVertex predict{
-        x_.there(), v_.there(), acceleration_.there(), fixed_.view(), targets_.there(), dt_, prediction};
-    parallel_sum_then(
-        space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, masses_.view(), drive_.view()},
-        BeginDescent{fields().descent, {settings_.tolerance}, settings_.max_iterations, dt_}, begin_sums_);
-    parallel_for(space_, "pd/begin", x_.size(), CopyPositions{prediction, x_t1_.overwrite_there()});
-}
-
 void DeviceBody::begin_contact(ActiveSetEnergy& active)
 {
     active.begin_step({{},
@@ -177,9 +158,8 @@ void DeviceBody::begin_contact(ActiveSetEnergy& active)
                        system_->fixed(),
                        system_->masses(),
                        dt_,
-                       {x_.there(), prediction_.there()}});
+                       {x_.there(), prediction_.there(), diagonal_.view(), fixed_.view()}});
     active.make_feasible(x_t1_);
-    asked_ = descent_.state();
 }
 
 void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
@@ -225,6 +205,8 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
         parallel_for(space_, "pd/begin_again", 1, BeginAgain{fields.descent, asked_.tolerance});
     begin_at(x_t1_.there());
     const Descent found = descent_.run();
+    if (is_first)
+        asked_ = found;
     const OuterLoop::Outcome first = outcome_of(found);
     if (!is_first || found.search.value <= inertia_of_standing(found))
         return first;
@@ -249,6 +231,8 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
 OuterLoop::Outcome DeviceBody::minimise_touching(DeviceActiveSet& contact, int limit, bool is_first)
 {
     prepare_touching();
+    if (is_first)
+        asked_ = descent_.state();
     OuterLoop::Settings settings{asked_.tolerance, limit};
     begin_at(x_t1_.there());
     const OuterLoop::Outcome found =
@@ -308,18 +292,6 @@ void DeviceBody::take_found()
 {
     parallel_for(space_, "pd/take_found", x_.size(),
                  CopyFound{found_.view(), found_gradient_.view(), descent_.x(), descent_.gradient()});
-}
-
-void DeviceBody::finish(StepReport& report)
-{
-    for (const auto& energy : energies_.all())
-        energy->end_minimisation(x_t1_.there());
-    parallel_sum(space_, "pd/finish", x_.size(), FinishSums{},
-                 FinishVertex{x_.there(), x_t1_.there(), descent_.gradient(), dt_, v_.overwrite_there()},
-                 finish_.view(), finish_sums_);
-    finish_.download(finish_on_host_.view());
-    space_.synchronise();
-    report.gradient_norm = std::sqrt(finish_on_host_[0].gradient_square);
 }
 
 } // namespace toile

@@ -6,6 +6,7 @@
 #include "core/backend/cuda/mirrored_array.h"
 #include "core/linear/device_solver.h"
 #include "core/pd/device/body_kernels.h"
+#include "core/pd/device/device_acceleration.h"
 #include "core/pd/device/device_contact_descent.h"
 #include "core/pd/device/device_descent.h"
 #include "core/pd/device/device_projection.h"
@@ -38,7 +39,11 @@ public:
     /// and the graphs of a minimisation.
     void prepare(double dt, const std::vector<unsigned char>& fixed) override;
 
-    /// Waits for the end. Same bits in every run.
+    /// What accelerates the vertices in every step from now on, instead of step()'s `acceleration`, which is
+    /// empty then: nothing of the body has to come to the host for it.
+    void accelerate_by(std::unique_ptr<DeviceAcceleration> loads) { loads_ = std::move(loads); }
+
+    /// Waits for the end. Same bits in every run. Of `targets` only what is fixed is copied.
     /// @param active, projection  have forms for a GPU (on_device), or are null
     /// @throws InvalidInput where one has none
     StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
@@ -47,13 +52,17 @@ public:
     View<const Vec3> positions() const override { return x_.host(); }
     View<const Vec3> velocities() const override { return v_.host(); }
     void set_positions(View<const Vec3> x) override { overwrite(x_, x); }
-    void set_velocities(View<const Vec3> v) override { overwrite(v_, v); }
+    void set_velocities(View<const Vec3> v) override;
+    double max_speed() const override;
     View<const double> masses() const override { return system_->masses(); }
 
     const System& system() const { return *system_; }
 
 private:
     static void overwrite(MirroredArray<Vec3>& field, View<const Vec3> values);
+    void hold(const std::vector<unsigned char>& fixed);
+    void begin_forces(View<const Vec3> acceleration);
+    void begin_targets(View<const Vec3> targets);
     DeviceDescent::Problem problem(double dt);
     DescentFields fields() { return descent_.fields(problem(dt_)); }
     void predict();
@@ -68,7 +77,8 @@ private:
     void stand_still();
     void keep_found();
     void take_found();
-    void finish(StepReport& report);
+    void finish();
+    void end(DeviceStepProjection* limits, StepReport& report);
     void satisfy(ActiveSetEnergy* active, DeviceStepProjection* limits);
     void project(DeviceStepProjection& limits, const ActiveSetEnergy* active);
 
@@ -81,13 +91,21 @@ private:
     Descent asked_; ///< of this step, where contact asks too
     std::vector<unsigned char> host_fixed_;
 
-    MirroredArray<Vec3> x_, v_, x_t1_, acceleration_, targets_, prediction_;
+    std::unique_ptr<DeviceAcceleration> loads_; ///< null: the caller's acceleration
+    MirroredArray<Vec3> x_, v_, x_t1_, acceleration_, prediction_;
+    DeviceArray<Vec3> targets_; ///< [vertices] where held
+    DeviceArray<int> held_;     ///< vertices that are fixed
+    std::vector<int> host_held_;
+    DeviceArray<Vec3> held_targets_; ///< [held]
+    PinnedArray<Vec3> held_targets_on_host_;
     DeviceArray<Vec3> drive_, found_, found_gradient_;
-    DeviceArray<double> masses_, inverse_masses_; ///< [1/kg] 0 where fixed
+    DeviceArray<double> masses_, diagonal_; ///< [kg]; of H [N/m]
+    DeviceArray<double> inverse_masses_;    ///< [1/kg] 0 where fixed
     DeviceArray<unsigned char> fixed_;
     DeviceArray<StepSums> begin_sums_;
-    DeviceArray<FinishSums> finish_sums_, finish_;
-    PinnedArray<FinishSums> finish_on_host_;
+    DeviceArray<LargestSquare> end_sums_, gradient_, speed_; ///< scratch; [1] squares of what is largest
+    PinnedArray<LargestSquare> gradient_on_host_, speed_on_host_;
+    bool knows_speed_ = false; ///< speed_on_host_ is of the velocities as they are
     DeviceDescent descent_;
     std::unique_ptr<DeviceContactDescent> contact_descent_; ///< null before contact first acts
     bool is_touching_prepared_ = false;                     ///< contact_descent_ knows H

@@ -10,6 +10,9 @@ namespace {
 /// half a turn; turns after its end cost as much as others.
 constexpr int kTurnsAtOnce = 4;
 
+/// The fewest that a descent takes: it begins, and sees that its first direction is nothing.
+constexpr int kFewestTurns = 2;
+
 } // namespace
 
 DeviceDescent::DeviceDescent(const CudaSpace& space, int vertex_count, int share_count)
@@ -21,7 +24,7 @@ DeviceDescent::DeviceDescent(const CudaSpace& space, int vertex_count, int share
       direction_(space, "descent/direction", vertex_count), s_(space, "descent/s", kHistory * vertex_count),
       y_(space, "descent/y", kHistory * vertex_count), w_(space, "descent/w", kHistory * vertex_count),
       descent_(space, "descent/state"), sums_(space), on_host_(space, "descent/on_host", 1),
-      turns_(space, "descent/turns"), expected_turns_(kTurnsAtOnce)
+      turns_(space, "descent/turns"), few_turns_(space, "descent/turns"), expected_turns_(kTurnsAtOnce)
 {
     descent_.upload(std::vector<Descent>(1));
     for (DeviceArray<PaddedVec3>* pairs : {&s_, &y_, &w_})
@@ -59,10 +62,12 @@ void DeviceDescent::enqueue_turn(const Problem& problem)
 
 void DeviceDescent::record(const Problem& problem)
 {
-    turns_.record([&] {
-        for (int turn = 0; turn < kTurnsAtOnce; ++turn)
+    const auto enqueue = [&](int turns) {
+        for (int turn = 0; turn < turns; ++turn)
             enqueue_turn(problem);
-    });
+    };
+    turns_.record([&] { enqueue(kTurnsAtOnce); });
+    few_turns_.record([&] { enqueue(kFewestTurns); });
 }
 
 const Descent& DeviceDescent::state()
@@ -74,7 +79,7 @@ const Descent& DeviceDescent::state()
 
 Descent DeviceDescent::run_briefly()
 {
-    turns_.launch();
+    few_turns_.launch();
     return state();
 }
 
@@ -83,7 +88,8 @@ Descent DeviceDescent::run()
     const StageScope stage("descent/run");
     TOILE_ASSERT(turns_.node_count() > 0);
     int turns = 0;
-    for (bool is_over = false; !is_over;) {
+    bool is_over = expected_turns_ <= kFewestTurns && run_briefly().is_over;
+    while (!is_over) {
         do {
             turns_.launch();
             turns += kTurnsAtOnce;

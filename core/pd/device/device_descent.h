@@ -60,7 +60,7 @@ private:
     DeviceArray<Descent> descent_;
     RecordScratch sums_;
     PinnedArray<Descent> on_host_;
-    CudaGraph turns_;
+    CudaGraph turns_, few_turns_;
     int expected_turns_;
 };
 

@@ -23,6 +23,10 @@ public:
     ///                        turn, true when anything moved; may be empty
     virtual void project(View<Vec3> x, View<const double> inverse_masses,
                          const std::function<bool()>& clear_contacts) = 0;
+
+    /// Enqueues what is to be told of the positions x [vertices] [m] that a step has ended with. The body
+    /// waits after it.
+    virtual void end_step([[maybe_unused]] View<const Vec3> x) {}
 };
 
 } // namespace toile

@@ -130,7 +130,8 @@ protected:
     struct OnBoard {
         OnBoard(const CudaSpace& space, int count)
             : x(space, "test/x", count), prediction(space, "test/prediction", count),
-              found(space, "test/found", count), v(space, "test/v", count)
+              found(space, "test/found", count), v(space, "test/v", count), diagonal(space, "test/diagonal"),
+              fixed(space, "test/fixed")
         {
         }
         static void fill(MirroredArray<Vec3>& field, View<const Vec3> values)
@@ -143,10 +144,14 @@ protected:
             fill(prediction, made.prediction);
             fill(found, made.found);
             StepStart start{made.x, made.prediction, made.diagonal, made.fixed, made.masses, kDt};
-            start.there = {x.there(), prediction.there()};
+            diagonal.upload(made.diagonal);
+            fixed.upload(made.fixed);
+            start.there = {x.there(), prediction.there(), diagonal.view(), fixed.view()};
             return start;
         }
         MirroredArray<Vec3> x, prediction, found, v;
+        DeviceArray<double> diagonal;
+        DeviceArray<unsigned char> fixed;
     };
 
     std::vector<ContactTerm> downloaded(const DeviceContactTerms& terms)

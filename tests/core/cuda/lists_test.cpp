@@ -73,5 +73,26 @@ TEST_F(CudaLists, SortByKeyLeavesEqualKeysAsTheyWere)
     }
 }
 
+TEST_F(CudaLists, SortByKeyLooksAtTheBitsThatItIsTold)
+{
+    // Numbers below a count, and all ones, which come after them.
+    SortArrays arrays(space());
+    std::mt19937 random(2);
+    for (const int below : {1, 31, 32, 1000}) {
+        std::vector<std::uint64_t> keys(5000);
+        for (std::uint64_t& key : keys)
+            key = random() % 4 == 0 ? ~std::uint64_t(0) : random() % below;
+        std::vector<int> values(keys.size());
+        std::iota(values.begin(), values.end(), 0);
+        arrays.keys.upload(keys);
+        arrays.sorted_keys.resize(int(keys.size()));
+        arrays.values.upload(values);
+        DeviceArray<int> sorted(space(), "test/sorted", int(keys.size()));
+        sort_by_key(space(), "test/sort", arrays, sorted.view(), key_bits(below));
+        std::stable_sort(values.begin(), values.end(), [&](int a, int b) { return keys[a] < keys[b]; });
+        EXPECT_EQ(sorted.downloaded(), values) << below;
+    }
+}
+
 } // namespace
 } // namespace toile::test

@@ -85,7 +85,9 @@ protected:
     double max_strain(DeviceStrainLimit& limit, const std::vector<Vec3>& x)
     {
         x_->upload(x);
-        return limit.max_strain(x_->view());
+        limit.end_step(x_->view());
+        space().synchronise();
+        return limit.max_strain();
     }
     DeviceArray<Vec3>& x() { return *x_; }
 
