@@ -9,15 +9,13 @@ namespace toile {
 
 /// Contact and friction of cloth, with colliders and with cloth, as an energy of its positions.
 ///
-/// Normal, with the gap g = n . (sum_k b_k x_k - p) - offset:
-///
-///   W_n = w/2 min(g, 0)^2
+/// Normal, with the gap g = n . (sum_k b_k x_k - p) - offset: W_n is ContactSpring's at the depth -g.
 ///
 /// Friction is elastic up to Coulomb's limit L = mu |f_n| with the lagged normal force f_n, then slides: with
-/// u = (I - n n^T)(sum_k b_k x_k - anchor),
+/// u = (I - n n^T)(sum_k b_k x_k - anchor) and the stiffness k = min(w, L / u_s) of sticking,
 ///
-///   W_t = w/2 |u|^2            while w |u| <= L
-///         L |u| - L^2 / (2 w)  beyond (Huber), so that the force w u is projected onto the disc of radius L
+///   W_t = k/2 |u|^2            while k |u| <= L
+///         L |u| - L^2 / (2 k)  beyond (Huber), so that the force k u is projected onto the disc of radius L
 ///
 /// Both are convex. The frozen Hessian replaces the sliding part by its reweighted majoriser L/|u|.
 class ContactEnergy {

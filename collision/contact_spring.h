@@ -12,8 +12,8 @@ namespace toile {
 ///   force   w d^2 / (2 D)    d <= D
 ///           w (d - D / 2)    beyond
 ///
-/// A linear spring as stiff as cloth has its whole stiffness at once. What an unfinished minimisation leaves of
-/// errors in depth, micrometres, is then more force than the cloth's weight, friction's limits are made of
+/// A linear spring as stiff as cloth has its whole stiffness at once. What an unfinished minimisation leaves
+/// of errors in depth, micrometres, is then more force than the cloth's weight, friction's limits are made of
 /// that, and every iteration switches springs on and off (docs/collision/contact.md).
 struct ContactSpring {
     double stiffness = 0.0; ///< [N/m] w

@@ -39,8 +39,9 @@ struct ContactTerm {
 
     TOILE_HD double friction_limit() const { return friction * normal_force; } ///< Coulomb's L [N]
 
-    /// Friction's stiffness while it sticks: as soft as the slip allows at which it has its limit, so that
-    /// what is far below the tolerance of a step does not tell sticking from sliding [N/m].
+    /// Friction's stiffness while it sticks, k: no more than what has the limit at the slip
+    /// u_s = kSlipPerRamp ramp, or errors far below the tolerance of a step would turn sticking into sliding
+    /// [N/m].
     TOILE_HD double sticking_stiffness() const
     {
         const double limit = friction_limit(), slip = kSlipPerRamp * spring.ramp;

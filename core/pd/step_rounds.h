@@ -8,8 +8,8 @@ namespace toile {
 
 /// How the iterations of a step are shared out among its minimisations. Each begins where the last has ended,
 /// with what contact has then looked at anew. The first ones are cut short where something touches: what they
-/// find is near enough to see what will touch what and how hard, and what is minimised before that is known is
-/// for nothing.
+/// find is near enough to see what will touch what and how hard, and what is minimised before that is known
+/// is for nothing.
 class StepRounds {
 public:
     /// Minimisations cut short, and their iterations, which do not count as the step's.

@@ -45,6 +45,7 @@ ContactEnergy sample_energy()
         term.offset = 0.002;
         term.spring.stiffness = 500.0;
     }
+    terms[1].spring.ramp = 0.05;
     ContactEnergy energy;
     energy.set_terms(terms, 5);
     return energy;

@@ -93,7 +93,8 @@ TEST(Solids, HoldOnAnInclineBelowTheFrictionAngle) { EXPECT_LT(slide(0.49, 0.5, 
 TEST(Solids, SlideAtCoulombsAcceleration)
 {
     const double angle = std::atan(0.6);
-    const double dt = 1.0 / 120.0, exact = 0.5 * 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)) * (1.0 + dt);
+    const double dt = 1.0 / 120.0,
+                 exact = 0.5 * 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)) * (1.0 + dt);
     const Slide found = slide(0.6, 0.5, 0.05);
     EXPECT_NEAR(found.way, exact, 0.02 * exact);
     EXPECT_LT(found.lean, 0.01);

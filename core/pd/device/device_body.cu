@@ -170,8 +170,8 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
         DeviceActiveSet* contact = active ? active->on_device(space_) : nullptr;
         const bool touches = contact != nullptr && contact->has_terms();
         const int limit = rounds.next(touches);
-        const OuterLoop::Outcome outcome =
-            touches ? minimise_touching(*contact, limit, rounds.is_first()) : minimise_free(rounds.is_first());
+        const OuterLoop::Outcome outcome = touches ? minimise_touching(*contact, limit, rounds.is_first())
+                                                   : minimise_free(rounds.is_first());
         parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_there()});
         report.iterations += outcome.iterations;
         report.linear_iterations += outcome.linear_iterations;

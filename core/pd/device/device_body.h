@@ -21,9 +21,9 @@ namespace toile {
 class DeviceBody : public PointMasses {
 public:
     struct Settings {
-        double tolerance = 1e-5; ///< [m] as Body's
-        int max_iterations = 50; ///< outer iterations of a step
-        int max_rounds = 3;      ///< see StepRounds
+        double tolerance = 1e-5;                                 ///< [m] as Body's
+        int max_iterations = 50;                                 ///< outer iterations of a step
+        int max_rounds = 3;                                      ///< see StepRounds
         Pcg::Settings contact_solve = NestedPcg::Settings{}.pcg; ///< while contacts are active
     };
 

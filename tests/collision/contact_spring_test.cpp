@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include "collision/contact_spring.h"
+
+namespace toile {
+namespace {
+
+constexpr ContactSpring kSprings[] = {{800.0, 0.0}, {800.0, 3e-4}, {2e5, 1e-3}};
+
+TEST(ContactSpring, HasTheSlopesOfItsEnergy)
+{
+    for (const ContactSpring& spring : kSprings)
+        for (const double depth : {-1e-3, 5e-5, 2e-4, 7e-4, 1.5e-3, 1e-2}) {
+            const double h = 1e-8;
+            const double slope = (spring.energy(depth + h) - spring.energy(depth - h)) / (2.0 * h);
+            const double bend = (spring.force(depth + h) - spring.force(depth - h)) / (2.0 * h);
+            EXPECT_NEAR(spring.force(depth), slope, 1e-5 * spring.force(depth)) << depth;
+            EXPECT_NEAR(spring.stiffness_at(depth), bend, 1e-5 * spring.stiffness) << depth;
+        }
+}
+
+TEST(ContactSpring, IsSmoothWhereItBeginsAndWhereItsRampEnds)
+{
+    for (const ContactSpring& spring : kSprings)
+        for (const double depth : {0.0, spring.ramp}) {
+            const double h = 1e-12;
+            EXPECT_NEAR(spring.energy(depth + h), spring.energy(depth - h), 1e-9 * spring.stiffness * h);
+            EXPECT_NEAR(spring.force(depth + h), spring.force(depth - h), 3.0 * spring.stiffness * h);
+            if (spring.ramp > 0.0) {
+                EXPECT_NEAR(spring.stiffness_at(depth + h), spring.stiffness_at(depth - h),
+                            1e-6 * spring.stiffness);
+            }
+        }
+}
+
+TEST(ContactSpring, FindsTheDepthOfAForce)
+{
+    for (const ContactSpring& spring : kSprings) {
+        EXPECT_EQ(spring.depth_of(0.0), 0.0);
+        for (const double depth : {1e-6, 2e-4, 3e-3})
+            EXPECT_NEAR(spring.depth_of(spring.force(depth)), depth, 1e-12);
+    }
+}
+
+TEST(ContactSpring, RestsWhereItsForceHasPushedOutWhatItCan)
+{
+    for (const ContactSpring& spring : kSprings) {
+        EXPECT_EQ(spring.depth_at_rest(-1e-3, 1.0), 0.0);
+        for (const double mobility : {0.0, 1e-4, 0.3, 50.0})
+            for (const double reach : {1e-6, 4e-4, 2e-2}) {
+                const double depth = spring.depth_at_rest(reach, mobility);
+                EXPECT_NEAR(depth + mobility * spring.force(depth), reach, 1e-9 * reach);
+            }
+    }
+}
+
+} // namespace
+} // namespace toile
