@@ -192,6 +192,7 @@ void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
 /// As Body's: begins again where the cloth stands where that is better than what was found.
 OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
 {
+    const StageScope stage("pd/descend");
     const auto outcome_of = [](const Descent& found) {
         OuterLoop::Outcome outcome;
         outcome.iterations = found.iterations;
@@ -230,6 +231,7 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
 /// The same while contact may act.
 OuterLoop::Outcome DeviceBody::minimise_touching(DeviceActiveSet& contact, int limit, bool is_first)
 {
+    const StageScope stage("pd/descend");
     prepare_touching();
     if (is_first)
         asked_ = descent_.state();
