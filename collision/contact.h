@@ -19,7 +19,7 @@ class Contact : public ActiveSetEnergy {
 public:
     struct Settings {
         /// [-] Stiffness of a pair relative to diag(H) at its vertices. Above 25 PCG slows down; at 1 a
-        /// resting vertex sinks by micrometres, far less than the gap.
+        /// resting vertex sinks by tens of micrometres, far less than the gap.
         double stiffness = 2.0;
 
         /// [m/s] Speed at which cloth found inside a collider is brought out. Bounds the force on cloth

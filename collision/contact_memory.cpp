@@ -4,7 +4,7 @@ namespace toile {
 
 void ContactMemory::keep(const ContactTerm& term, const Vec3& slip)
 {
-    if (term.normal_force == 0.0)
+    if (!term.has_pressed())
         return;
     const ContactRecord record = ContactRecord::of(term, slip);
     known_.emplace(key_of(record), record);

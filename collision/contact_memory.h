@@ -17,6 +17,7 @@ struct ContactRecord {
     int collider = -1;
     std::array<int, 4> vertex{-1, -1, -1, -1};
     double normal_force = 0.0;  ///< [N]
+    double pressing = 0.0;      ///< [N] its successor
     Vec3 normal = Vec3::Zero(); ///< unit
     Vec3 stick = Vec3::Zero();  ///< [m] elastic part of the slip
 
@@ -34,12 +35,13 @@ struct ContactRecord {
         return record;
     }
 
-    /// Of a term that presses; friction holds no more of its slip than Coulomb allows.
+    /// Of a term that presses or did; friction holds no more of its slip than Coulomb allows.
     /// @param slip  what has slipped since the anchor [m]
     TOILE_HD static ContactRecord of(const ContactTerm& term, const Vec3& slip)
     {
         ContactRecord record = of(term.pair);
         record.normal_force = term.normal_force;
+        record.pressing = term.pressing;
         record.normal = term.pair.normal;
         record.stick = slip;
         if (const double pull = term.sticking_stiffness() * record.stick.norm();
@@ -61,7 +63,8 @@ struct ContactRecord {
         const Vec3& n = term.pair.normal;
         if (normal.dot(n) < kSameContact)
             return false;
-        term.normal_force = term.pressing = normal_force;
+        term.normal_force = normal_force;
+        term.pressing = pressing;
         term.anchor -= stick - n.dot(stick) * n;
         return true;
     }

@@ -37,6 +37,9 @@ struct ContactTerm {
         return moved - pair.normal.dot(moved) * pair.normal;
     }
 
+    /// True where it pressed at the last look or at the one that bounds friction.
+    TOILE_HD bool has_pressed() const { return normal_force != 0.0 || pressing != 0.0; }
+
     TOILE_HD double friction_limit() const { return friction * normal_force; } ///< Coulomb's L [N]
 
     /// Friction's stiffness while it sticks, k: no more than what has the limit at the slip

@@ -57,7 +57,7 @@ struct KnownContacts {
 struct FlagPressing {
     View<const ContactTerm> terms;
     View<unsigned char> flags; ///< [terms] out
-    TOILE_HD void operator()(int i) const { flags[i] = terms[i].normal_force != 0.0 ? 1 : 0; }
+    TOILE_HD void operator()(int i) const { flags[i] = terms[i].has_pressed() ? 1 : 0; }
 };
 
 /// Keeps record i, of a term that presses.

@@ -4,6 +4,8 @@
 #include <limits>
 #include <map>
 
+#include "core/backend/stages.h"
+
 namespace toile {
 
 namespace {
@@ -69,6 +71,7 @@ std::vector<double> HostContactTerms::room_of(const std::vector<ContactPair>& pa
 
 void HostContactTerms::make(const ClothContact* between)
 {
+    const StageScope stage("contact/make");
     std::vector<ContactPair> pairs = colliders_.all();
     if (between) {
         rules_.thickness = between->thickness();

@@ -32,7 +32,7 @@ public:
     /// Finds the candidates of this step.
     virtual void begin_step(const StepStart& start) = 0;
 
-    /// False where it has no candidates: nothing can make it act.
+    /// False where it has no candidates: nothing can make it act before it has looked for others.
     virtual bool may_act() const { return true; }
 
     /// Moves a start guess out of the candidates' forbidden half-spaces as contact without anything else

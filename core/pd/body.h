@@ -16,7 +16,7 @@ public:
         /// [m] Error that a step may end with: what StepError estimates, and the next move of any vertex.
         /// Lowered to a tenth of the farthest predicted move, but never below a five-hundredth of this.
         double tolerance = 1e-5;
-        int max_iterations = 50; ///< outer iterations of a step
+        int max_iterations = 50; ///< outer iterations per minimisation
         int max_rounds = 3;      ///< see StepRounds
         int history = 5;         ///< pairs of L-BFGS, moves of Anderson acceleration
         OuterMethod outer = OuterMethod::Lbfgs;

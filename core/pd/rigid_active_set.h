@@ -32,6 +32,7 @@ public:
     /// Preconditioners made of terms then know less of bodies than those made of diagonal_blocks().
     void append_terms(std::vector<FrozenTerm>& terms) const override;
 
+    bool may_act() const override { return surface_.may_act(); }
     bool revise(StepField q, bool is_settled) override;
     void clear(StepField q, StepField v) override;
     bool keep_apart(StepField q, StepField v) override;

@@ -6,24 +6,26 @@
 
 namespace toile {
 
-/// How the iterations of a step are shared out among its minimisations. Each begins where the last has ended,
-/// with what contact has then looked at anew. The first ones are cut short where something touches: what they
-/// find is near enough to see what will touch what and how hard, and what is minimised before that is known
-/// is for nothing.
+/// How the minimisations of a step follow each other. Each begins where the last has ended, with what contact
+/// has then looked at anew. The first ones are cut short where something touches: what they find is near
+/// enough to see what will touch what, and what is minimised before that is known is for nothing.
 class StepRounds {
 public:
-    /// Minimisations cut short, and their iterations, which do not count as the step's.
+    /// Minimisations that are looks, and the iterations they are cut short at.
     static constexpr int kLooks = 2, kIterationsOfLook = 6;
 
-    /// @param max_iterations  of all minimisations of the step that are not cut short
-    /// @param max_rounds      minimisations that are not cut short
-    StepRounds(int max_iterations, int max_rounds) : left_(max_iterations), rounds_(max_rounds + kLooks) {}
+    /// @param max_iterations  of a minimisation
+    /// @param max_rounds      minimisations besides two looks, which are whole ones where nothing touches
+    StepRounds(int max_iterations, int max_rounds)
+        : max_iterations_(max_iterations), max_rounds_(max_rounds + kLooks)
+    {
+    }
 
     /// Limit of the next minimisation.
     int next(bool touches)
     {
-        touches_ = touches;
-        limit_ = touches && round_ < kLooks ? std::min(kIterationsOfLook, left_) : left_;
+        is_look_ = touches && round_ < kLooks;
+        limit_ = is_look_ ? std::min(kIterationsOfLook, max_iterations_) : max_iterations_;
         return limit_;
     }
     bool is_first() const { return round_ == 0; }
@@ -38,14 +40,13 @@ public:
     /// @return true where another minimisation is to follow
     bool goes_on(const OuterLoop::Outcome& outcome, bool has_changed)
     {
-        if (round_++ >= kLooks || !touches_)
-            left_ -= outcome.iterations;
-        return left_ > 0 && round_ < rounds_ && (has_changed || !is_settled(outcome));
+        ++round_;
+        return round_ < max_rounds_ && (has_changed || (is_look_ && !is_settled(outcome)));
     }
 
 private:
-    int left_, rounds_, round_ = 0, limit_ = 0;
-    bool touches_ = false;
+    int max_iterations_, max_rounds_, round_ = 0, limit_ = 0;
+    bool is_look_ = false;
 };
 
 } // namespace toile

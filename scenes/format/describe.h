@@ -276,9 +276,9 @@ void describe(V& v, Solver& s)
             "vertex. xpbd and vbd do not ask.");
     v.field(
         "max_iterations", s.max_iterations, between(1, 10000),
-        "Iterations after which a step ends anyway; where cloth may touch something, two times six more come "
-        "first, each followed by a look at what it touches. With vbd the sweeps of a step, with xpbd the "
-        "substeps of one pass: all of them are done.");
+        "Iterations after which a minimisation ends anyway. Where cloth may touch something a step has two "
+        "short ones of six, each followed by a look at what it touches, and up to three whole ones. With vbd "
+        "the sweeps of a step, with xpbd the substeps of one pass: all of them are done.");
     v.field("method", s.method,
             "How the global linear system is solved: exactly (direct), by quadrature of its kernel, by "
             "whichever of the two is faster (auto), or by a baseline to compare with. xpbd and vbd replace "

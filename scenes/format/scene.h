@@ -250,7 +250,7 @@ struct Sleep {
 struct Solver {
     int substeps = 4;        ///< time steps per sample
     double tolerance = 1e-3; ///< [m] error that a step may end with
-    int max_iterations = 30; ///< outer iterations of a step besides contact's looks (StepRounds)
+    int max_iterations = 30; ///< outer iterations per minimisation; see StepRounds
     SolverMethod method = SolverMethod::Auto;
     OuterMethod outer = OuterMethod::Lbfgs;
     ContactPreconditioner contact_preconditioner = ContactPreconditioner::Block;

@@ -216,5 +216,33 @@ TEST(Contact, KeepsTheAnchorOfTheStartWhenItLooksAgain)
     EXPECT_EQ(term.anchor.x(), 0.0);
 }
 
+TEST(Contact, BoundsNoFrictionByForcesOfWhatWasCutShortButHandsThemOn)
+{
+    RisingPlate scene;
+    std::vector<Vec3> x = scene.start;
+    x[0] = Vec3(0.02, scene.rise + 0.5 * kGap, 0.0); // slid 2 cm, pressing
+    ASSERT_TRUE(scene.contact.revise(x, false));
+    ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
+    EXPECT_EQ(scene.contact.energy().terms()[0].normal_force, 0.0);
+
+    scene.contact.end_step(x);
+    const Eigen::Isometry3d risen(Eigen::Translation3d(0.0, scene.rise, 0.0));
+    scene.plate.move(risen, risen);
+    scene.contact.begin_step({x, x, scene.diagonal, scene.fixed, scene.masses, RisingPlate::kDt});
+    ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
+    EXPECT_GT(scene.contact.energy().terms()[0].normal_force, 0.0);
+}
+
+TEST(Contact, ClearsNothingOfTheDepthThatAPairRestsAt)
+{
+    RisingPlate scene;
+    const double depth = 6e-5; // [m]
+    std::vector<Vec3> x = scene.start, v(3, Vec3::Zero());
+    x[0] = Vec3(0.003, scene.rise + kGap - depth, 0.0); // slid far enough to be looked at
+    scene.contact.revise(x, true);
+    scene.contact.clear(x, v);
+    EXPECT_NEAR(x[0].y(), scene.rise + kGap - depth, 1e-12);
+}
+
 } // namespace
 } // namespace toile

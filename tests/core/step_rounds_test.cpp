@@ -13,7 +13,7 @@ OuterLoop::Outcome ended_after(int iterations, bool converged)
     return outcome;
 }
 
-TEST(StepRounds, GiveAllToOneMinimisationWhereNothingTouches)
+TEST(StepRounds, AreOneMinimisationWhereNothingTouches)
 {
     StepRounds rounds(30, 3);
     EXPECT_EQ(rounds.next(false), 30);
@@ -32,8 +32,8 @@ TEST(StepRounds, LookTwiceBeforeTheyMinimise)
     }
     EXPECT_EQ(rounds.next(true), 30);
     EXPECT_TRUE(rounds.goes_on(ended_after(20, true), true));
-    EXPECT_EQ(rounds.next(true), 10);
-    EXPECT_FALSE(rounds.goes_on(ended_after(10, false), true)) << "nothing is left";
+    EXPECT_EQ(rounds.next(true), 30);
+    EXPECT_FALSE(rounds.goes_on(ended_after(30, false), false)) << "no look, and nothing has changed";
 }
 
 TEST(StepRounds, EndWhereWhatIsFoundChangesNothing)

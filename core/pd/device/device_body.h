@@ -22,7 +22,7 @@ class DeviceBody : public PointMasses {
 public:
     struct Settings {
         double tolerance = 1e-5;                                 ///< [m] as Body's
-        int max_iterations = 50;                                 ///< outer iterations of a step
+        int max_iterations = 50;                                 ///< outer iterations per minimisation
         int max_rounds = 3;                                      ///< see StepRounds
         Pcg::Settings contact_solve = NestedPcg::Settings{}.pcg; ///< while contacts are active
     };
@@ -88,7 +88,7 @@ private:
     Settings settings_;
     DeviceEnergies energies_;
     double dt_ = 0.0;
-    Descent asked_; ///< of this step, where contact asks too
+    Descent asked_; ///< as the step began: tolerance, mass, driving
     std::vector<unsigned char> host_fixed_;
 
     std::unique_ptr<DeviceAcceleration> loads_; ///< null: the caller's acceleration

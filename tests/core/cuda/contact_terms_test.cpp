@@ -113,8 +113,9 @@ struct TermDifferences {
     void add(const ContactTerm& a, const ContactTerm& b)
     {
         for (const double difference :
-             {a.offset - b.offset, a.spring.stiffness - b.spring.stiffness, a.friction - b.friction, a.give - b.give,
-              a.normal_force - b.normal_force, (a.anchor - b.anchor).norm()})
+             {a.offset - b.offset, a.spring.stiffness - b.spring.stiffness, a.spring.ramp - b.spring.ramp,
+              a.friction - b.friction, a.give - b.give, a.normal_force - b.normal_force,
+              a.pressing - b.pressing, (a.anchor - b.anchor).norm()})
             if (!(std::abs(difference) <= numbers)) // NaN is kept too
                 numbers = std::abs(difference);
         gripped += a.give > 0.0;
