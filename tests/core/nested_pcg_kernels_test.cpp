@@ -44,7 +44,7 @@ struct Chain {
     }
 
     SystemRows rows() const { return {first, column, value, diagonal, fixed}; }
-    BlocksInverse E() const { return {list_of, inverse, diagonal}; }
+    BlocksInverse blocks_inverse() const { return {list_of, inverse, diagonal}; }
 
     void multiply(View<const Vec3> p, View<Vec3> out) const
     {
@@ -67,10 +67,10 @@ struct Chain {
     {
         std::vector<Vec3> scaled(kCount), solved(kCount);
         for (int i = 0; i < kCount; ++i)
-            scaled[i] = diagonal[i] * E()(i, r[i]);
+            scaled[i] = diagonal[i] * blocks_inverse()(i, r[i]);
         solve(scaled, solved);
         for (int i = 0; i < kCount; ++i)
-            z[i] = E()(i, r[i] + diagonal[i] * solved[i]);
+            z[i] = blocks_inverse()(i, r[i] + diagonal[i] * solved[i]);
     }
 };
 
@@ -96,11 +96,11 @@ PcgScalars iterate(const Chain& chain, View<const Vec3> b, int iterations, std::
     std::vector<PcgScalars> scalars(1);
     const PcgFields fields{x, field[0], field[1], field[2], field[3], field[4], field[5], field[6], field[7]};
     for (int i = 0; i < kCount; ++i)
-        BeginPcg{b, fields, chain.E(), scalars}(i);
+        BeginPcg{b, fields, chain.blocks_inverse(), scalars}(i);
     for (int k = 0; k < iterations; ++k) {
         Chain::solve(fields.scaled, fields.solved);
         for (int i = 0; i < kCount; ++i)
-            FinishPrecondition{fields, chain.E()}(i);
+            FinishPrecondition{fields, chain.blocks_inverse()}(i);
         for (int l = 0; l < kPressing; ++l)
             product[l] = chain.blocks[l] * fields.z[chain.vertices[l]];
         PcgSums sums;
@@ -108,7 +108,7 @@ PcgScalars iterate(const Chain& chain, View<const Vec3> b, int iterations, std::
             sums += MultiplySystem{fields, chain.rows(), chain.list_of, product}(i);
         FindStep{scalars, settings}(sums);
         for (int i = 0; i < kCount; ++i)
-            TakeStep{fields, chain.E(), scalars}(i);
+            TakeStep{fields, chain.blocks_inverse(), scalars}(i);
     }
     return scalars[0];
 }
