@@ -15,8 +15,9 @@
 
 namespace toile {
 
-// The air of a scene.
+/// What the air of a scene does to cloth, without its gusts.
 AirSettings air_of(const Scene& scene);
+/// Those of a wind; still where it has none.
 Gusts gusts_of(const scene::Wind& wind);
 
 /// One cloth of a running scene: its fabric as energies, what holds it, the air around it, its strain limit.

@@ -78,11 +78,12 @@ public:
     int frame() const;       ///< sample that positions belong to; starts at 0
     int frame_count() const; ///< samples of the scene
 
-    /// Where a GPU makes the steps, a sample's positions are copied when they are asked for: states from
-    /// before it show nothing of it until then.
+    /// Where a GPU makes the steps, a sample's positions are copied when they are asked for, which waits for
+    /// it: states from before it show nothing of it until then, and only one thread may ask at a time.
+    /// @throws DeviceError where the GPU no longer answers
     View<const ClothState> cloths() const;
 
-    /// All cloths and then all solids, each in the order of the scene.
+    /// All cloths and then all solids, each in the order of the scene. As cloths().
     View<const ClothState> surfaces() const;
 
     /// What the start pose had inside avatars and through cloth, and what its repair left. Cloths and bodies

@@ -56,14 +56,18 @@ private:
     VertexQueries vertex_queries() const;
     EdgeQueries edge_queries() const;
     PairCorners corners() const { return {surface_.triangles(), surface_.edges().vertex}; }
+
     /// What search() was asked for last, and its recording.
     struct Asked {
-        Asked(const CudaSpace& space) : graph(space, "collision/device_search") {}
+        explicit Asked(const CudaSpace& space) : graph(space, "collision/device_search") {}
         bool is(View<const Vec3> other_x, const Ways& other_ways, double other_margin) const
         {
-            return x.data() == other_x.data() && ways.motion.data() == other_ways.motion.data() &&
-                   ways.slack.data() == other_ways.slack.data() &&
-                   ways.around.data() == other_ways.around.data() && margin == other_margin;
+            const auto are_same = [](const auto& a, const auto& b) {
+                return a.data() == b.data() && a.size() == b.size();
+            };
+            return are_same(x, other_x) && are_same(ways.motion, other_ways.motion) &&
+                   are_same(ways.slack, other_ways.slack) && are_same(ways.around, other_ways.around) &&
+                   margin == other_margin;
         }
         void forget() { x = {}; }
 

@@ -43,8 +43,7 @@ struct WeightedRows {
     }
 };
 
-/// x_i by the rule, from b.                                              [multilevel quadrature for PD, eq.
-/// 7]
+/// x_i by the rule, from b [multilevel quadrature for PD, eq. 7].
 struct ApplyRule {
     WeightedRows rule;
     View<const Vec3> b;
