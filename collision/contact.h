@@ -35,9 +35,8 @@ public:
     /// @param triangles  [triangles] of all cloths
     /// @param positions  [vertices] start positions [m]
     /// @param cloths     whose vertices follow each other
-    /// @param space      where pairs are looked for and terms made, borrowed: for a DeviceBody there; null:
-    /// on
-    ///                   the CPU, for all others
+    /// @param space      where pairs are looked for and terms made, borrowed: for a DeviceBody
+    ///                   there; null: on the CPU, for all others
     Contact(View<const Triangle> triangles, View<const Vec3> positions,
             const std::vector<ContactCloth>& cloths, const std::vector<ContactPartner>& partners,
             const Settings& settings, const CudaSpace* space = nullptr);

@@ -148,6 +148,14 @@ struct RisingPlate {
         plate.move(Eigen::Isometry3d::Identity(), Eigen::Isometry3d(Eigen::Translation3d(0.0, rise, 0.0)));
         contact.begin_step({start, start, diagonal, fixed, masses, kDt});
     }
+
+    /// Slid by 2 cm, pressing.
+    std::vector<Vec3> slid() const
+    {
+        std::vector<Vec3> x = start;
+        x[0] = Vec3(0.02, rise + 0.5 * kGap, 0.0);
+        return x;
+    }
 };
 
 TEST(Contact, ClearsWhatTheMinimiserLeavesInsideWithoutThrowingIt)
@@ -207,8 +215,7 @@ TEST(Contact, FollowsATurningShapeByThePointItStartedFrom)
 TEST(Contact, KeepsTheAnchorOfTheStartWhenItLooksAgain)
 {
     RisingPlate scene;
-    std::vector<Vec3> x = scene.start;
-    x[0] = Vec3(0.02, scene.rise + 0.5 * kGap, 0.0); // slid 2 cm, pressing
+    std::vector<Vec3> x = scene.slid();
     ASSERT_TRUE(scene.contact.revise(x, true));
     ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
     const ContactTerm& term = scene.contact.energy().terms()[0];
@@ -219,8 +226,7 @@ TEST(Contact, KeepsTheAnchorOfTheStartWhenItLooksAgain)
 TEST(Contact, BoundsNoFrictionByForcesOfWhatWasCutShortButHandsThemOn)
 {
     RisingPlate scene;
-    std::vector<Vec3> x = scene.start;
-    x[0] = Vec3(0.02, scene.rise + 0.5 * kGap, 0.0); // slid 2 cm, pressing
+    std::vector<Vec3> x = scene.slid();
     ASSERT_TRUE(scene.contact.revise(x, false));
     ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
     EXPECT_EQ(scene.contact.energy().terms()[0].normal_force, 0.0);
