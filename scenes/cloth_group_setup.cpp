@@ -108,6 +108,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
 
     Body::Settings settings;
     settings.tolerance = scene.solver.tolerance;
+    settings.stop = scene.solver.stop;
     settings.max_iterations = scene.solver.max_iterations;
     settings.outer = scene.solver.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
@@ -126,6 +127,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
             {places_of(*cloth.rest_shape()), source_of_tables(options, cloth.state().name).listener});
     DeviceBody::Settings settings;
     settings.tolerance = scene.solver.tolerance;
+    settings.stop = scene.solver.stop;
     settings.max_iterations = scene.solver.max_iterations;
     auto body = std::make_unique<DeviceBody>(
         space, start_positions(),

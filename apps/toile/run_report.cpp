@@ -21,6 +21,7 @@ Json settings_of(const Scene& scene)
             {"settle_s", scene.settle},
             {"substeps", solver.substeps},
             {"tolerance_m", solver.tolerance},
+            {"stop", scene_format::word_of(solver.stop)},
             {"max_iterations", solver.max_iterations},
             {"method", scene_format::word_of(solver.method)},
             {"outer", scene_format::word_of(solver.outer)},

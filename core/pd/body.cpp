@@ -91,7 +91,7 @@ OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& object
 
 void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
 {
-    StepObjective objective(*system_, start_of(dt), active, settings_.contact_solve);
+    StepObjective objective(*system_, start_of(dt), active, settings_.contact_solve, settings_.stop);
     OuterLoop::Settings settings{tolerance(), settings_.max_iterations};
     StepRounds rounds(settings_.max_iterations, settings_.max_rounds);
     for (bool goes_on = true; goes_on;) {

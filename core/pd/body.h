@@ -21,6 +21,7 @@ public:
         int history = 5;         ///< pairs of L-BFGS, moves of Anderson acceleration
         OuterMethod outer = OuterMethod::Lbfgs;
         NestedPcg::Settings contact_solve; ///< while contacts are active
+        StepStop stop = StepStop::Error;   ///< what the tolerance bounds
     };
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);

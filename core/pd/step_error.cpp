@@ -10,9 +10,10 @@ StepError::StepError(View<const double> masses, View<const unsigned char> fixed,
 {
 }
 
-bool StepError::is_within(double tolerance, View<const Vec3> gradient, View<const Vec3> move) const
+bool StepError::is_within(double tolerance, View<const Vec3> gradient, View<const Vec3> move,
+                          StepStop stop) const
 {
-    return sums(gradient, move).are_within(tolerance, dt2_);
+    return sums(gradient, move).are_within(tolerance, dt2_, stop);
 }
 
 StepError::Sums StepError::sums(View<const Vec3> gradient, View<const Vec3> move) const

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/backend/types.h"
+#include "core/pd/step_stop.h"
 
 namespace toile {
 
@@ -33,10 +34,10 @@ public:
         }
 
         /// StepError::is_within().
-        TOILE_HD bool are_within(double tolerance, double dt2) const
+        TOILE_HD bool are_within(double tolerance, double dt2, StepStop stop) const
         {
             const double least = std::sqrt(move), most = dt2 * std::sqrt(force);
-            return least * most <= tolerance * tolerance * mass &&
+            return (stop == StepStop::Move || least * most <= tolerance * tolerance * mass) &&
                    dt2 * std::fabs(opposing) <= kMostUnanswered * driving;
         }
     };
@@ -60,7 +61,9 @@ public:
     /// too small to see is no sign of rest while most of the weight hangs in the air.
     /// @param gradient  [vertices] [N]
     /// @param move      [vertices] that the method wants next [m]
-    bool is_within(double tolerance, View<const Vec3> gradient, View<const Vec3> move) const;
+    /// @param stop      Move: of the error, only that
+    bool is_within(double tolerance, View<const Vec3> gradient, View<const Vec3> move,
+                   StepStop stop = StepStop::Error) const;
 
 private:
     /// Share [-] of what drives a step, M (q* - x0) / dt^2, that may be left in the gradient.

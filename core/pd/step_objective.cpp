@@ -7,8 +7,8 @@
 namespace toile {
 
 StepObjective::StepObjective(const System& system, const StepStart& start, ActiveSetEnergy* active,
-                             const NestedPcg::Settings& contact_solve)
-    : system_(system), start_(start), active_(active), contact_solve_(contact_solve)
+                             const NestedPcg::Settings& contact_solve, StepStop stop)
+    : system_(system), start_(start), active_(active), contact_solve_(contact_solve), stop_(stop)
 {
     for (int i = 0; active_ && i < start.masses.size(); ++i)
         free_mass_ += start.fixed[i] ? 0.0 : start.masses[i];
@@ -46,7 +46,7 @@ Hessian* StepObjective::hessian()
 bool StepObjective::is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const
 {
     const StepError error(system_.masses(), system_.fixed(), start_.x, start_.prediction, start_.dt);
-    return error.is_within(tolerance, gradient, move);
+    return error.is_within(tolerance, gradient, move, stop_);
 }
 
 /// While contact acts: minimisations end at their limit of iterations there, most of which change the error

@@ -6,6 +6,7 @@
 #include "core/pd/nested/nested_pcg.h"
 #include "core/pd/objective.h"
 #include "core/pd/step_hessian.h"
+#include "core/pd/step_stop.h"
 
 namespace toile {
 
@@ -15,7 +16,7 @@ public:
     /// @param start   borrowed fields
     /// @param active  may be null: then the inverse is one direct solve and PCG never runs
     StepObjective(const System& system, const StepStart& start, ActiveSetEnergy* active,
-                  const NestedPcg::Settings& contact_solve = {});
+                  const NestedPcg::Settings& contact_solve = {}, StepStop stop = StepStop::Error);
 
     double evaluate(View<const Vec3> x, View<Vec3> gradient) override;
     void precondition(View<const Vec3> g, View<Vec3> z) override;
@@ -34,6 +35,7 @@ private:
     StepStart start_;
     ActiveSetEnergy* active_;
     NestedPcg::Settings contact_solve_;
+    StepStop stop_;
     std::optional<NestedPcg> pcg_; ///< none before the active set first acts
     double free_mass_ = 0.0;       ///< [kg] where there may be an active set
     bool has_active_set_ = false;

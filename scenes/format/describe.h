@@ -274,6 +274,9 @@ void describe(V& v, Solver& s)
             "Error that a step may end with: the estimated RMS distance to its solution, and the next move "
             "of any "
             "vertex. xpbd and vbd do not ask.");
+    v.field("stop", s.stop,
+            "What the tolerance bounds: error and move, or the move alone, as papers state it. Then a step "
+            "takes a third to a fifth of the iterations, and most of what it leaves out is small.");
     v.field(
         "max_iterations", s.max_iterations, between(1, 10000),
         "Iterations after which a minimisation ends anyway. Where cloth may touch something a step has two "

@@ -96,6 +96,12 @@ struct Words<OuterMethod> {
 };
 
 template <>
+struct Words<StepStop> {
+    static constexpr std::array<std::pair<const char*, StepStop>, 2> kAll{
+        {{"error", StepStop::Error}, {"move", StepStop::Move}}};
+};
+
+template <>
 struct Words<ContactPreconditioner> {
     static constexpr std::array<std::pair<const char*, ContactPreconditioner>, 5> kAll{
         {{"block", ContactPreconditioner::Block},

@@ -10,6 +10,7 @@
 #include "core/backend/types.h"
 #include "core/pd/nested/contact_preconditioner.h"
 #include "core/pd/outer_method.h"
+#include "core/pd/step_stop.h"
 
 /// A scene as its JSON file says it: plain values, checked on reading, nothing loaded yet.
 ///
@@ -250,6 +251,7 @@ struct Sleep {
 struct Solver {
     int substeps = 4;        ///< time steps per sample
     double tolerance = 1e-3; ///< [m] error that a step may end with
+    StepStop stop = StepStop::Error;
     int max_iterations = 30; ///< outer iterations per minimisation; see StepRounds
     SolverMethod method = SolverMethod::Auto;
     OuterMethod outer = OuterMethod::Lbfgs;

@@ -57,6 +57,7 @@ struct BeginVertex {
 struct BeginDescent {
     View<Descent> descent; ///< [1]
     StepTolerance tolerance;
+    StepStop stop;
     int max_iterations; ///< of a minimisation
     double dt;          ///< [s]
 
@@ -64,6 +65,7 @@ struct BeginDescent {
     {
         Descent& task = descent[0];
         task.tolerance = tolerance.of_step(std::sqrt(sums.farthest_square));
+        task.stop = stop;
         task.max_iterations = max_iterations;
         task.dt2 = dt * dt;
         task.mass = sums.mass;

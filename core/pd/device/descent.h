@@ -53,6 +53,7 @@ struct Descent {
 
     // What is asked.
     double tolerance = 0.0; ///< [m]
+    StepStop stop = StepStop::Error;
     int max_iterations = 0;
     double dt2 = 0.0;     ///< [s^2]
     double mass = 0.0;    ///< [kg] of the free vertices
@@ -143,7 +144,7 @@ private:
         StepError::Sums error = sums.error;
         error.mass = mass;
         error.driving = driving;
-        converged = displacement <= tolerance && error.are_within(tolerance, dt2);
+        converged = displacement <= tolerance && error.are_within(tolerance, dt2, stop);
         if (converged && displacement <= kNegligibleMove * tolerance) {
             action = Action::Rest;
             is_over = true;

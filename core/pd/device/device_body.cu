@@ -268,7 +268,8 @@ void DeviceBody::prepare_touching()
 OuterLoop::Outcome DeviceBody::run_touching(DeviceActiveSet& contact, const OuterLoop::Settings& settings,
                                             double value)
 {
-    return contact_descent_->minimise(fields(), contact, {settings, asked_.mass, asked_.driving, dt_}, value);
+    return contact_descent_->minimise(fields(), contact,
+                                      {settings, settings_.stop, asked_.mass, asked_.driving, dt_}, value);
 }
 
 void DeviceBody::begin_at(View<const Vec3> x)

@@ -25,6 +25,7 @@ public:
         int max_iterations = 50;                                 ///< outer iterations per minimisation
         int max_rounds = 3;                                      ///< see StepRounds
         Pcg::Settings contact_solve = NestedPcg::Settings{}.pcg; ///< while contacts are active
+        StepStop stop = StepStop::Error;                         ///< what the tolerance bounds
     };
 
     /// @param space      borrowed; the solver's too

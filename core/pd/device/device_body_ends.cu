@@ -71,7 +71,8 @@ void DeviceBody::predict()
                                 dt_,        prediction};
     parallel_sum_then(
         space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, masses_.view(), drive_.view()},
-        BeginDescent{fields().descent, {settings_.tolerance}, settings_.max_iterations, dt_}, begin_sums_);
+        BeginDescent{fields().descent, {settings_.tolerance}, settings_.stop, settings_.max_iterations, dt_},
+        begin_sums_);
     parallel_for(space_, "pd/begin", x_.size(), CopyPositions{prediction, x_t1_.overwrite_there()});
 }
 

@@ -33,13 +33,15 @@ double DeviceContactDescent::evaluate(const DescentFields& fields, DeviceActiveS
     return measure(fields, active, 0.0).value;
 }
 
-/// Evaluates the trial point at `step` [-] of the direction, and waits.
+/// Evaluates the trial point at `step` [-] of the direction, and freezes the terms that act there, since most
+/// trials are taken. Waits.
 ContactTrialSums DeviceContactDescent::measure(const DescentFields& fields, DeviceActiveSet& active,
                                                double step)
 {
     const int n = fields.direction.size();
     energies_.launch();
     active.add_gradient(fields.trial.x, fields.trial.gradient, fields.energy.subview(0, n));
+    active.activate(fields.trial.x);
     parallel_sum_record_then<ContactTrialSums>(space_, "descent/measure", n,
                                                MeasureContactTrial{fields, pairs_.pairs(), step},
                                                KeepTotal<ContactTrialSums>{trial_.view()}, sums_);
@@ -58,16 +60,15 @@ OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, D
     recent.begin(value);
     pairs_.clear();
     take(fields, nullptr);
-    bool presses = active.activate(fields.here.x);
     while (is_finite(outcome.value) && outcome.iterations < task.settings.max_iterations) {
-        find_direction(fields, active, presses, outcome);
+        find_direction(fields, active, outcome);
         parallel_for(space_, "descent/try", fields.direction.size(), TryStep{fields, 1.0});
         ContactTrialSums trial = measure(fields, active, 1.0);
         outcome.displacement = std::sqrt(trial.largest_square);
         trial.error.mass = task.mass;
         trial.error.driving = task.driving;
         outcome.converged = outcome.displacement <= task.settings.tolerance &&
-                            trial.error.are_within(task.settings.tolerance, task.dt * task.dt);
+                            trial.error.are_within(task.settings.tolerance, task.dt * task.dt, task.stop);
         if (outcome.converged && outcome.displacement <= kNegligibleMove * task.settings.tolerance)
             break;
 
@@ -76,17 +77,19 @@ OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, D
             if (outcome.converged || pairs_.count() == 0)
                 break;
             pairs_.clear();
+            active.activate(fields.here.x);
+            space_.synchronise();
             continue;
         }
         outcome.value = trial.value;
         take(fields, outcome.converged ? nullptr : &trial.products);
         if (outcome.converged)
             break;
-        presses = active.activate(fields.here.x);
         ++outcome.iterations;
         outcome.displacement *= line.step;
         outcome.converged = recent.add_and_tell_stall(
-            outcome.value, presses ? StepError::energy_of(task.settings.tolerance, task.mass, task.dt) : 0.0);
+            outcome.value,
+            active.acts() ? StepError::energy_of(task.settings.tolerance, task.mass, task.dt) : 0.0);
         if (outcome.converged)
             break;
     }
@@ -116,28 +119,32 @@ void DeviceContactDescent::take(const DescentFields& fields, const StepProducts*
     parallel_for(space_, "descent/take_point", fields.direction.size(), TakePoint{fields, slot});
 }
 
-void DeviceContactDescent::find_direction(const DescentFields& fields, DeviceActiveSet& active, bool presses,
+void DeviceContactDescent::find_direction(const DescentFields& fields, DeviceActiveSet& active,
                                           OuterLoop::Outcome& outcome)
 {
     const int n = fields.direction.size();
     const PairCoefficients alpha = pairs_.before();
     parallel_for(space_, "descent/before_inverse", n, BeforeInverse{fields, alpha});
-    if (presses) {
-        pcg_.update(active);
-        outcome.linear_iterations += pcg_.solve(fields.trial.z, fields.here.z).iterations;
-    } else {
-        solver_->solve_there(fields.trial.z, fields.here.z);
-    }
-
-    std::array<double, kHistory> y_z{};
-    if (pairs_.count() > 0) {
+    const auto measure_inverse = [&] {
+        if (pairs_.count() == 0)
+            return;
         parallel_sum_record_then<InverseProducts>(space_, "descent/measure_inverse", n,
                                                   MeasureInverse{fields, pairs_.pairs()},
                                                   KeepTotal<InverseProducts>{inverse_.view()}, sums_);
         inverse_.download(inverse_on_host_.view());
+    };
+    if (active.acts()) {
+        pcg_.update(active);
+        outcome.linear_iterations += pcg_.solve(fields.trial.z, fields.here.z, measure_inverse).iterations;
+    } else {
+        solver_->solve_there(fields.trial.z, fields.here.z);
+        measure_inverse();
         space_.synchronise();
-        std::copy(std::begin(inverse_on_host_[0].y_z), std::end(inverse_on_host_[0].y_z), y_z.begin());
     }
+
+    std::array<double, kHistory> y_z{};
+    if (pairs_.count() > 0)
+        std::copy(std::begin(inverse_on_host_[0].y_z), std::end(inverse_on_host_[0].y_z), y_z.begin());
     parallel_for(space_, "descent/after_inverse", n, AfterInverse{fields, pairs_.after(alpha, y_z)});
 }
 

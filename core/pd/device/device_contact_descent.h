@@ -19,6 +19,7 @@ public:
     /// What the step asks.
     struct Task {
         OuterLoop::Settings settings;
+        StepStop stop = StepStop::Error;
         double mass = 0.0;    ///< [kg] of the free vertices
         double driving = 0.0; ///< StepError::Sums::driving of the step
         double dt = 0.0;      ///< [s]
@@ -41,8 +42,7 @@ public:
 
 private:
     ContactTrialSums measure(const DescentFields& fields, DeviceActiveSet& active, double step);
-    void find_direction(const DescentFields& fields, DeviceActiveSet& active, bool presses,
-                        OuterLoop::Outcome& outcome);
+    void find_direction(const DescentFields& fields, DeviceActiveSet& active, OuterLoop::Outcome& outcome);
     bool search(const DescentFields& fields, DeviceActiveSet& active, ContactTrialSums& trial,
                 LineSearch& line);
     void take(const DescentFields& fields, const StepProducts* products);
