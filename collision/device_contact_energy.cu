@@ -84,23 +84,19 @@ void DeviceContactEnergy::add_gradient(View<const Vec3> x, View<Vec3> gradient, 
         AddContact{touches(), vertices_.view(), force_.view(), term_energy_.view(), gradient, energy});
 }
 
-bool DeviceContactEnergy::activate(View<const Vec3> x)
+void DeviceContactEnergy::activate(View<const Vec3> x)
 {
     parallel_sum(space_, "contact/freeze", terms_.size(), 0,
                  FreezeAndCount{{terms_.view(), x, frozen_.view()}}, acting_.view(), acting_sums_);
     parallel_for_teams<kListThreads>(space_, "contact/blocks", vertices_.size(),
                                      BoundList{touches(), frozen_.view(), blocks_.view()});
     acting_.download(acting_on_host_.view());
-    space_.synchronise();
-    return acting_on_host_[0] > 0;
 }
 
-void DeviceContactEnergy::multiply(View<const Vec3> p)
+void DeviceContactEnergy::multiply(View<const PaddedVec3> p)
 {
-    parallel_for(space_, "contact/multiply", terms_.size(),
-                 MultiplyContact{terms_.view(), frozen_.view(), p, force_.view()});
-    parallel_for_teams<kListThreads>(space_, "contact/gather", vertices_.size(),
-                                     GatherList{touches(), force_.view(), product_.view()});
+    parallel_for_teams<kListThreads>(space_, "contact/multiply", vertices_.size(),
+                                     MultiplyList{touches(), frozen_.view(), p, product_.view()});
 }
 
 DeviceActiveSet::Frozen DeviceContactEnergy::frozen() const

@@ -28,8 +28,9 @@ public:
 
     bool has_terms() const override { return terms_.size() > 0; }
     void add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy) override;
-    bool activate(View<const Vec3> x) override;
-    void multiply(View<const Vec3> p) override;
+    void activate(View<const Vec3> x) override;
+    bool acts() const override { return acting_on_host_[0] > 0; }
+    void multiply(View<const PaddedVec3> p) override;
     Frozen frozen() const override;
 
 private:

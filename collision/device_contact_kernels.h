@@ -248,18 +248,38 @@ struct BoundList {
     }
 };
 
-/// The forces on the vertex of list k.
-struct GatherList {
+/// What the frozen terms at the vertex of list k answer to a move p of all. Every term is multiplied once for
+/// each of its vertices: that takes less than a kernel before this one.
+struct MultiplyList {
     ContactTouches touches;
-    View<const Vec3> force; ///< [terms] [N]
-    View<Vec3> product;     ///< [lists] out [N]
+    View<const FrozenContact> frozen; ///< [terms]
+    View<const PaddedVec3> p;         ///< [vertices] [m]
+    View<Vec3> product;               ///< [lists] out [N]
 
     template <typename Team>
     TOILE_HD void operator()(int k, const Team& team, bool is_own) const
     {
-        const Vec3 sum = team_sum(team, touches.force(k, force, team.thread, Team::kThreads));
+        Vec3 sum(0.0, 0.0, 0.0);
+        for (int e = touches.first[k] + team.thread; e < touches.first[k + 1]; e += Team::kThreads) {
+            const int term = touches.entries[e] / 4;
+            const FrozenContact at = frozen[term];
+            if (!at.acts())
+                continue;
+            const ContactPair& pair = touches.terms[term].pair;
+            sum += pair.weight[touches.entries[e] % 4] * at.times(pair.normal, move_of(pair));
+        }
+        sum = team_sum(team, sum);
         if (team.thread == 0 && is_own)
             product[k] = sum;
+    }
+
+private:
+    TOILE_HD Vec3 move_of(const ContactPair& pair) const
+    {
+        Vec3 sum(0.0, 0.0, 0.0);
+        for (int k = 0; k < 4 && pair.vertex[k] >= 0; ++k)
+            sum += pair.weight[k] * unpadded(p[pair.vertex[k]]);
+        return sum;
     }
 };
 

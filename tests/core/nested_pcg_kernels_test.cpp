@@ -13,7 +13,8 @@ constexpr int kCount = 60, kPressing = 7;
 /// H of a chain whose last vertex is held, some vertices of which press.
 struct Chain {
     std::vector<int> first, column;
-    std::vector<double> value, diagonal;
+    std::vector<float> value;
+    std::vector<double> diagonal;
     std::vector<unsigned char> fixed = std::vector<unsigned char>(kCount, 0);
     std::vector<int> list_of = std::vector<int>(kCount, 0);
     std::vector<int> vertices;
@@ -28,7 +29,7 @@ struct Chain {
                 if (j < 0 || j >= kCount)
                     continue;
                 column.push_back(j);
-                value.push_back(i == j ? 2.1 : -1.0);
+                value.push_back(i == j ? 2.1F : -1.0F);
             }
             diagonal.push_back(2.1);
         }
@@ -49,8 +50,13 @@ struct Chain {
     void multiply(View<const Vec3> p, View<Vec3> out) const
     {
         for (int i = 0; i < kCount; ++i) {
-            out[i] = fixed[i] ? p[i] : rows().times(i, p);
-            if (!fixed[i] && list_of[i] > 0)
+            out[i] = p[i];
+            if (fixed[i])
+                continue;
+            out[i].setZero();
+            for (int k = first[i]; k < first[i + 1]; ++k)
+                out[i] += double(value[k]) * p[column[k]];
+            if (list_of[i] > 0)
                 out[i] += blocks[list_of[i] - 1] * p[i];
         }
     }
@@ -90,11 +96,11 @@ std::vector<Vec3> random_forces()
 PcgScalars iterate(const Chain& chain, View<const Vec3> b, int iterations, std::vector<Vec3>& x,
                    const Pcg::Settings& settings = {.tolerance = 0.0, .max_iterations = 100})
 {
-    std::vector<std::vector<Vec3>> field(8, std::vector<Vec3>(kCount));
+    std::vector<std::vector<PaddedVec3>> field(6, std::vector<PaddedVec3>(kCount, PaddedVec3(0.0F)));
     x.resize(kCount);
-    std::vector<Vec3> product(kPressing);
+    std::vector<Vec3> product(kPressing), scaled(kCount), solved(kCount);
     std::vector<PcgScalars> scalars(1);
-    const PcgFields fields{x, field[0], field[1], field[2], field[3], field[4], field[5], field[6], field[7]};
+    const PcgFields fields{x, field[0], field[1], field[2], field[3], field[4], field[5], scaled, solved};
     for (int i = 0; i < kCount; ++i)
         BeginPcg{b, fields, chain.blocks_inverse(), scalars}(i);
     for (int k = 0; k < iterations; ++k) {
@@ -102,7 +108,7 @@ PcgScalars iterate(const Chain& chain, View<const Vec3> b, int iterations, std::
         for (int i = 0; i < kCount; ++i)
             FinishPrecondition{fields, chain.blocks_inverse()}(i);
         for (int l = 0; l < kPressing; ++l)
-            product[l] = chain.blocks[l] * fields.z[chain.vertices[l]];
+            product[l] = chain.blocks[l] * unpadded(fields.z[chain.vertices[l]]);
         PcgSums sums;
         for (int i = 0; i < kCount; ++i)
             sums += MultiplySystem{fields, chain.rows(), chain.list_of, product}(i);
@@ -126,8 +132,8 @@ TEST(NestedPcgKernels, TakeTheIterationsOfPcg)
                       {.tolerance = 0.0, .max_iterations = iterations, .is_flexible = true});
         const PcgScalars found = iterate(chain, b, iterations, x);
         for (int i = 0; i < kCount; ++i)
-            EXPECT_LT((x[i] - expected[i]).norm(), 1e-9) << i;
-        EXPECT_NEAR(found.residual, outcome.residual, 1e-7 * outcome.residual);
+            EXPECT_LT((x[i] - expected[i]).norm(), 1e-6) << i;
+        EXPECT_NEAR(found.residual, outcome.residual, 1e-6);
         EXPECT_EQ(found.iterations, iterations);
         EXPECT_GT(found.gain, 0.0);
     }
@@ -143,7 +149,7 @@ TEST(NestedPcgKernels, GainsAddUpToWhatTheQuadraticLoses)
         gain += iterate(chain, b, k, x).gain;
         chain.multiply(x, product);
         const double value = 0.5 * dot(x, product) - dot(b, x);
-        EXPECT_NEAR(value, -0.5 * gain, 1e-10 * gain) << k;
+        EXPECT_NEAR(value, -0.5 * gain, 1e-6 * gain) << k;
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/backend/types.h"
+#include "core/backend/lanes.h"
 
 namespace toile {
 
@@ -24,11 +24,14 @@ public:
     /// Adds the gradient [N] and shares of the energy [J] at x [vertices] [m].
     virtual void add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy) = 0;
 
-    /// Freezes the terms active at x. Waits, to tell whether there is any.
-    virtual bool activate(View<const Vec3> x) = 0;
+    /// Freezes the terms active at x.
+    virtual void activate(View<const Vec3> x) = 0;
+
+    /// Whether any was at the last activate(), for who has waited since.
+    virtual bool acts() const = 0;
 
     /// Product of the frozen Hessian with p [vertices] [m].
-    virtual void multiply(View<const Vec3> p) = 0;
+    virtual void multiply(View<const PaddedVec3> p) = 0;
 
     virtual Frozen frozen() const = 0;
 };

@@ -1,6 +1,7 @@
 #include "core/pd/device/device_nested_pcg.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "core/backend/cuda/record_sum.cuh"
 
@@ -22,7 +23,7 @@ void DeviceNestedPcg::prepare(const System& system, DeviceSolver& solver)
     solver_ = &solver;
     first_.upload({H.outerIndexPtr(), int(H.rows()) + 1});
     column_.upload({H.innerIndexPtr(), int(H.nonZeros())});
-    value_.upload({H.valuePtr(), int(H.nonZeros())});
+    value_.upload(std::vector<float>(H.valuePtr(), H.valuePtr() + H.nonZeros()));
     diagonal_.upload(system.diagonal());
     fixed_.upload(system.fixed());
 }
@@ -53,7 +54,7 @@ SystemRows DeviceNestedPcg::rows() const
     return {first_.view(), column_.view(), value_.view(), diagonal_.view(), fixed_.view()};
 }
 
-Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z)
+Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z, const std::function<void()>& then)
 {
     const StageScope stage("pd/pcg");
     const PcgFields fields = this->fields(z);
@@ -62,6 +63,7 @@ Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z)
     for (int count = expected_iterations_; now == nullptr || !now->is_over; count = 1) {
         for (int k = 0; k < count; ++k)
             iterate(fields);
+        then();
         now = &read_back();
     }
     expected_iterations_ = std::max(1, now->iterations);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "core/backend/cuda/array.h"
 #include "core/backend/cuda/sum_scratch.h"
 #include "core/linear/device_solver.h"
@@ -25,7 +27,8 @@ public:
     /// solve before took, and then after each; what is too much changes nothing. Takes at least
     /// one.
     /// @param g, z  [vertices] on the device [N], [m]
-    Pcg::Outcome solve(View<const Vec3> g, View<Vec3> z);
+    /// @param then  enqueues what is to be known of z beside it, before each wait: the last time counts
+    Pcg::Outcome solve(View<const Vec3> g, View<Vec3> z, const std::function<void()>& then);
 
 private:
     PcgFields fields(View<Vec3> x);
@@ -39,10 +42,12 @@ private:
     DeviceSolver* solver_ = nullptr;
     DeviceActiveSet* active_ = nullptr;
     DeviceArray<int> first_, column_;
-    DeviceArray<double> value_, diagonal_;
+    DeviceArray<float> value_;
+    DeviceArray<double> diagonal_;
     DeviceArray<unsigned char> fixed_;
     DeviceArray<Mat3> inverse_; ///< [lists]
-    DeviceArray<Vec3> r_, r_previous_, z_, p_, Kz_, Kp_, scaled_, solved_;
+    DeviceArray<PaddedVec3> r_, r_previous_, z_, p_, Kz_, Kp_;
+    DeviceArray<Vec3> scaled_, solved_;
     DeviceArray<PcgScalars> scalars_;
     PinnedArray<PcgScalars> on_host_;
     int expected_iterations_ = 1;

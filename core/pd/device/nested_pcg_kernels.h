@@ -12,12 +12,14 @@ namespace toile {
 
 /// NestedPcg with BlockInverse as a GPU runs it: the steps of an iteration that lie between applications of
 /// H^-1. Flexible conjugate gradients [Notay 2000], rearranged so that all sums of an iteration are known at
-/// once [Chronopoulos & Gear 1989]: K z is taken instead of K p = K z + beta K p', K = H + dH.
+/// once [Chronopoulos & Gear 1989]: K z is taken instead of K p = K z + beta K p', K = H + dH. In single
+/// precision: what is wanted is a direction, a tenth of the residual away.
 struct PcgFields {
-    View<Vec3> x, r, r_previous, z, p; ///< [vertices]
-    View<Vec3> Kz, Kp;                 ///< [vertices] [N]
-    View<Vec3> scaled;                 ///< [vertices] D E r [N]
-    View<Vec3> solved;                 ///< [vertices] H^-1 D E r [m]
+    View<Vec3> x;                         ///< [vertices] [m]
+    View<PaddedVec3> r, r_previous, z, p; ///< [vertices] [N], [m]
+    View<PaddedVec3> Kz, Kp;              ///< [vertices] [N]
+    View<Vec3> scaled;                    ///< [vertices] D E r [N]
+    View<Vec3> solved;                    ///< [vertices] H^-1 D E r [m]
 };
 
 /// What an iteration sums up, p and K p being those of the one before.
@@ -63,13 +65,13 @@ struct PcgScalars {
 /// H [vertices x vertices] as rows of numbers, and what is constant beside it.
 struct SystemRows {
     View<const int> first, column;   ///< [vertices + 1], [entries]
-    View<const double> value;        ///< [entries] [N/m]
+    View<const float> value;         ///< [entries] [N/m]
     View<const double> diagonal;     ///< [vertices] D [N/m]
     View<const unsigned char> fixed; ///< [vertices]
 
-    TOILE_HD Vec3 times(int i, View<const Vec3> x) const
+    TOILE_HD PaddedVec3 times(int i, View<const PaddedVec3> x) const
     {
-        Vec3 sum(0.0, 0.0, 0.0);
+        PaddedVec3 sum(0.0F);
         for (int k = first[i]; k < first[i + 1]; ++k)
             sum += value[k] * x[column[k]];
         return sum;
@@ -113,8 +115,9 @@ struct BeginPcg {
         if (i == 0)
             scalars[0] = {};
         const Vec3 r = b[i];
-        fields.x[i] = fields.p[i] = fields.Kp[i] = fields.r_previous[i] = Vec3(0.0, 0.0, 0.0);
-        fields.r[i] = r;
+        fields.x[i] = Vec3(0.0, 0.0, 0.0);
+        fields.p[i] = fields.Kp[i] = fields.r_previous[i] = PaddedVec3(0.0F);
+        fields.r[i] = padded(r);
         fields.scaled[i] = E.diagonal[i] * E(i, r);
     }
 };
@@ -126,7 +129,7 @@ struct FinishPrecondition {
 
     TOILE_HD void operator()(int i) const
     {
-        fields.z[i] = E(i, fields.r[i] + E.diagonal[i] * fields.solved[i]);
+        fields.z[i] = padded(E(i, unpadded(fields.r[i]) + E.diagonal[i] * fields.solved[i]));
     }
 };
 
@@ -139,27 +142,34 @@ struct MultiplySystem {
 
     TOILE_HD PcgSums operator()(int i) const
     {
-        const Vec3 z = fields.z[i], r = fields.r[i], Kp = fields.Kp[i];
-        Vec3 Kz = z;
+        const PaddedVec3 z = fields.z[i], r = fields.r[i], Kp = fields.Kp[i], p = fields.p[i];
+        const PaddedVec3 previous = fields.r_previous[i];
+        PaddedVec3 Kz = z;
         if (!H.fixed[i]) {
             Kz = H.times(i, fields.z);
             if (list_of[i] > 0)
-                Kz += frozen_product[list_of[i] - 1];
+                Kz += padded(frozen_product[list_of[i] - 1]);
         }
         fields.Kz[i] = Kz;
         PcgSums sums;
-        sums.r_z = r.dot(z);
-        sums.previous_z = fields.r_previous[i].dot(z);
-        sums.z_Kz = z.dot(Kz);
-        sums.z_Kp = z.dot(Kp);
-        sums.p_r = fields.p[i].dot(r);
-        sums.r_r = r.squaredNorm();
-        sums.r_Kz = r.dot(Kz);
-        sums.r_Kp = r.dot(Kp);
-        sums.Kz_Kz = Kz.squaredNorm();
-        sums.Kz_Kp = Kz.dot(Kp);
-        sums.Kp_Kp = Kp.squaredNorm();
+        sums.r_z = dot(r, z);
+        sums.previous_z = dot(previous, z);
+        sums.z_Kz = dot(z, Kz);
+        sums.z_Kp = dot(z, Kp);
+        sums.p_r = dot(p, r);
+        sums.r_r = dot(r, r);
+        sums.r_Kz = dot(r, Kz);
+        sums.r_Kp = dot(r, Kp);
+        sums.Kz_Kz = dot(Kz, Kz);
+        sums.Kz_Kp = dot(Kz, Kp);
+        sums.Kp_Kp = dot(Kp, Kp);
         return sums;
+    }
+
+private:
+    TOILE_HD static double dot(const PaddedVec3& a, const PaddedVec3& b)
+    {
+        return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
     }
 };
 
@@ -209,13 +219,15 @@ struct TakeStep {
         if (scalars[0].is_past)
             return;
         const double step = scalars[0].step, beta = scalars[0].beta;
-        const Vec3 p = fields.z[i] + beta * fields.p[i], Kp = fields.Kz[i] + beta * fields.Kp[i];
-        const Vec3 before = fields.r[i], r = before - step * Kp;
-        fields.p[i] = p;
-        fields.Kp[i] = Kp;
+        const PaddedVec3 before = fields.r[i];
+        const Vec3 p = unpadded(fields.z[i]) + beta * unpadded(fields.p[i]);
+        const Vec3 Kp = unpadded(fields.Kz[i]) + beta * unpadded(fields.Kp[i]);
+        const Vec3 r = unpadded(before) - step * Kp;
+        fields.p[i] = padded(p);
+        fields.Kp[i] = padded(Kp);
         fields.x[i] += step * p;
         fields.r_previous[i] = before;
-        fields.r[i] = r;
+        fields.r[i] = padded(r);
         fields.scaled[i] = E.diagonal[i] * E(i, r);
     }
 };
