@@ -1,5 +1,8 @@
 #include "collision/cloth/device_cloth_contact.h"
 
+#include <algorithm>
+
+#include "collision/surface_edges.h"
 #include "core/backend/cuda/parallel.cuh"
 #include "core/pd/device/body_kernels.h"
 
@@ -7,8 +10,10 @@ namespace toile {
 
 namespace {
 
-/// Room is made for this much more than is needed [-].
-constexpr double kHeadroom = 1.25;
+ExemptPairs exempt_pairs(View<const Vec3> positions, View<const double> altitude)
+{
+    return {positions, altitude, SafeStep::Settings{}.least_gap};
+}
 
 } // namespace
 
@@ -16,10 +21,9 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triang
                                        View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                        View<const double> altitude)
     : ClothContact({triangles, positions, cloths, altitude}), space_(space),
-      near_(triangles, positions, rigid_bodies_of(cloths), &space),
-      exempt_(positions, altitude, SafeStep::Settings{}.least_gap),
-      safe_(near_, exempt_, rules().safe_step(), rules().bodies()), exempt_there_(space, exempt_),
-      safe_there_(space, *near_.on_device(), exempt_there_, safe_.least_gap(), positions.size()),
+      near_(space, triangles, positions, rigid_bodies_of(cloths)),
+      exempt_(space, exempt_pairs(positions, altitude)),
+      safe_(space, near_, exempt_, rules().safe_step().gap(), positions.size()),
       half_thickness_(space, "cloth_contact/half_thickness"),
       slack_(space, "cloth_contact/slack", positions.size()),
       base_(space, "cloth_contact/base", positions.size()),
@@ -29,20 +33,16 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triang
       pressing_(space, "cloth_contact/pressing"), marks_(space, "cloth_contact/marks"),
       places_(space, "cloth_contact/places"), count_(space), sum_(space),
       scratch_(space, "cloth_contact/scratch"),
+      bring_back_(build_surface_edges(triangles, positions.size()),
+                  {rules().safe_step().gap(), rules().safe_step().most_deflection}, rules().bodies()),
       host_base_(space, "cloth_contact/host_base", positions.size()),
-      host_expected_(space, "cloth_contact/host_expected", positions.size()),
-      host_slack_(space, "cloth_contact/host_slack", positions.size()),
-      host_pairs_(space, "cloth_contact/host_pairs")
+      host_wanted_(space, "cloth_contact/host_wanted", positions.size())
 {
     half_thickness_.upload(rules().thickness().half);
     forget();
 }
 
-void DeviceClothContact::set_crossing(View<const unsigned char> crosses)
-{
-    exempt_.set_crossing(crosses);
-    exempt_there_.set_crossing(crosses);
-}
+void DeviceClothContact::set_crossing(View<const unsigned char> crosses) { exempt_.set_crossing(crosses); }
 
 void DeviceClothContact::forget()
 {
@@ -63,27 +63,27 @@ void DeviceClothContact::begin_step(const StepStart& start)
 void DeviceClothContact::look(View<const Vec3> x)
 {
     const StageScope stage("collision/near_pairs");
-    is_begun_ = false;
+    has_base_ = false;
     parallel_for(space_, "collision/keep_base", x.size(), CopyPositions{x, base_.view()});
     parallel_for(space_, "collision/expect", x.size(),
                  ExpectEnd{base_.view(), motion_.view(), expected_.view()});
     const View<const NearPair> found =
-        near_.on_device()->find(base_.view(), {motion_.view(), slack_.view()}, rules().thickest());
-    safe_there_.begin(base_.view(), expected_.view(), slack_.view(), found);
+        near_.find(base_.view(), {motion_.view(), slack_.view()}, rules().thickest());
+    safe_.begin(base_.view(), expected_.view(), slack_.view(), found);
     list_pressing();
 }
 
 FindPressing DeviceClothContact::find_pressing() const
 {
-    return {near_.on_device()->soup(), base_.view(),  motion_.view(),
-            expected_.view(),          slack_.view(), {half_thickness_.view()}};
+    return {near_.soup(),     base_.view(),  motion_.view(),
+            expected_.view(), slack_.view(), {half_thickness_.view()}};
 }
 
 /// Waits for their number.
 void DeviceClothContact::list_pressing()
 {
     const StageScope stage("collision/cloth_terms");
-    const View<const NearPair> pairs = safe_there_.pairs();
+    const View<const NearPair> pairs = safe_.pairs();
     marks_.resize(pairs.size());
     parallel_for(space_, "collision/device_mark_pressing", pairs.size(),
                  MarkPressing{find_pressing(), pairs, marks_.view()});
@@ -115,7 +115,7 @@ bool DeviceClothContact::hold_back(StepField x, StepField v, double dt, const Le
     if (held > 0.0) {
         const View<const Vec3> reached = x.host();
         const View<Vec3> velocity = v.change_on_host();
-        for (int i = 0; i < reached.size(); ++i)
+        for (const int i : bring_back_.moved())
             velocity[i] += (reached[i] - host_wanted_[i]) / dt;
     }
     if (held <= rules().held_aside())
@@ -127,37 +127,32 @@ bool DeviceClothContact::hold_back(StepField x, StepField v, double dt, const Le
 /// As SafeStep::limit. Where that changes x, host_wanted_ has what it was.
 double DeviceClothContact::limit(StepField x, const Leaning& leans)
 {
-    if (safe_there_.leaves_alone(x.there()))
+    const StageScope stage("collision/safe_step");
+    const View<const BlockedPair> in_the_way = safe_.look_at_all(x.there());
+    if (in_the_way.empty())
         return 0.0;
-    if (!is_begun_)
-        begin_on_host();
+    if (!has_base_)
+        copy_base();
     const View<const Vec3> wanted = x.host();
-    host_wanted_.assign(wanted.begin(), wanted.end());
+    std::copy(wanted.begin(), wanted.end(), host_wanted_.view().begin());
     const std::vector<unsigned char> leaning = leans();
-    return safe_.limit(x.change_on_host(), leaning);
+    return bring_back_.limit(x.change_on_host(), leaning, safe_, in_the_way);
 }
 
-void DeviceClothContact::begin_on_host()
+void DeviceClothContact::copy_base()
 {
     const StageScope stage("collision/safe_step_to_host");
-    const int count = safe_there_.pairs().size();
-    if (count > host_pairs_.size())
-        host_pairs_.resize(int(kHeadroom * count));
-    const View<NearPair> pairs = host_pairs_.view().subview(0, count);
-    safe_there_.download_pairs(pairs);
     base_.download(host_base_.view());
-    expected_.download(host_expected_.view());
-    slack_.download(host_slack_.view());
     space_.synchronise();
-    safe_.begin(host_base_.view(), host_expected_.view(), host_slack_.view(), fixed_, pairs);
-    is_begun_ = true;
+    bring_back_.begin(host_base_.view(), fixed_);
+    has_base_ = true;
 }
 
 /// @param was_held  host_wanted_ is where the cloth wanted to be
 void DeviceClothContact::look_on(View<const Vec3> x, bool was_held, bool goes_on)
 {
     if (was_held)
-        wanted_.upload(host_wanted_);
+        wanted_.upload(host_wanted_.view());
     parallel_for(space_, "collision/look_on", x.size(),
                  LookOn{x, was_held ? View<const Vec3>(wanted_.view()) : x, goes_on, rules().slack(),
                         motion_.view(), slack_.view()});
@@ -166,15 +161,11 @@ void DeviceClothContact::look_on(View<const Vec3> x, bool was_held, bool goes_on
 
 bool DeviceClothContact::has_slid(View<const Vec3> x)
 {
-    const View<const NearPair> pairs = safe_there_.pairs();
-    return parallel_sum(space_, "collision/device_slid", pairs.size(), 0,
-                        CountSlid{near_.on_device()->soup(),
-                                  pairs,
-                                  x,
-                                  expected_.view(),
-                                  {half_thickness_.view()},
-                                  rules().slid()},
-                        sum_) > 0;
+    const View<const NearPair> pairs = safe_.pairs();
+    return parallel_sum(
+               space_, "collision/device_slid", pairs.size(), 0,
+               CountSlid{near_.soup(), pairs, x, expected_.view(), {half_thickness_.view()}, rules().slid()},
+               sum_) > 0;
 }
 
 void DeviceClothContact::end_step(StepField x)

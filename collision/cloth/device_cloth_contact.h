@@ -1,5 +1,6 @@
 #pragma once
 
+#include "collision/cloth/bring_back.h"
 #include "collision/cloth/cloth_contact.h"
 #include "collision/cloth/device_safe_step.h"
 #include "core/backend/cuda/sum_scratch.h"
@@ -7,7 +8,7 @@
 namespace toile {
 
 /// ClothContact on a GPU. Pairs, ways and what is learnt of them stay there; where something is to be brought
-/// back the host does that with a copy of the pairs.
+/// back the host does that with a copy of the positions.
 class DeviceClothContact : public ClothContact {
 public:
     /// See make_cloth_contact.
@@ -26,7 +27,7 @@ public:
 
 private:
     double limit(StepField x, const Leaning& leans);
-    void begin_on_host();
+    void copy_base();
     void look(View<const Vec3> x);
     void look_on(View<const Vec3> x, bool was_held, bool goes_on);
     void list_pressing();
@@ -34,11 +35,9 @@ private:
     FindPressing find_pressing() const;
 
     const CudaSpace& space_;
-    NearPairs near_;
-    ExemptPairs exempt_;
-    SafeStep safe_; ///< of the host, where something is brought back
-    DeviceExemptPairs exempt_there_;
-    DeviceSafeStep safe_there_;
+    DeviceNearPairs near_;
+    DeviceExemptPairs exempt_;
+    DeviceSafeStep safe_;
     DeviceArray<double> half_thickness_, slack_;                      ///< [vertices] [m]
     View<const Vec3> prediction_;                                     ///< [vertices] on the device [m]
     DeviceArray<Vec3> base_, deviation_, motion_, expected_, wanted_; ///< [vertices] [m]
@@ -49,13 +48,12 @@ private:
     SumScratch<int> sum_;
     DeviceScratch scratch_;
 
-    // What safe_ borrows, and where x wanted to go before it was brought back.
+    // Of the host, where something is brought back.
+    BringBack bring_back_;
     View<const unsigned char> fixed_;
-    bool is_begun_ = false; ///< safe_ knows the pairs
-    PinnedArray<Vec3> host_base_, host_expected_;
-    PinnedArray<double> host_slack_;
-    PinnedArray<NearPair> host_pairs_; ///< the first of them, as many as there are
-    std::vector<Vec3> host_wanted_;
+    bool has_base_ = false;         ///< host_base_ is that of the last look
+    PinnedArray<Vec3> host_base_;   ///< [vertices] [m]
+    PinnedArray<Vec3> host_wanted_; ///< [vertices] where x wanted to go before it was brought back [m]
 };
 
 } // namespace toile

@@ -1,17 +1,37 @@
 #include "collision/cloth/device_safe_step.h"
 
+#include <algorithm>
+
 #include "core/backend/cuda/parallel.cuh"
 
 namespace toile {
+
+namespace {
+
+/// Room is made for this much more than is needed [-].
+constexpr double kHeadroom = 1.25;
+
+template <typename Array>
+void make_room(Array& array, int size)
+{
+    if (size > array.size())
+        array.resize(int(kHeadroom * double(size)));
+}
+
+} // namespace
 
 DeviceSafeStep::DeviceSafeStep(const CudaSpace& space, DeviceNearPairs& near, DeviceExemptPairs& exempt,
                                const LeastGap& gap, int vertex_count)
     : space_(space), near_(near), exempt_(exempt), gap_(gap),
       known_motion_(space, "safe_step/known_motion", vertex_count),
       known_radius_(space, "safe_step/known_radius", vertex_count), pairs_(space, "safe_step/pairs"),
-      way_(space, "safe_step/way", vertex_count), marks_(space, "safe_step/marks", vertex_count),
+      way_(space, "safe_step/way", vertex_count), is_in_the_way_(space, "safe_step/is_in_the_way"),
+      is_stale_(space, "safe_step/is_stale", vertex_count), marks_(space, "safe_step/marks", vertex_count),
       counts_(space, "safe_step/counts", 2), block_sums_(space, "safe_step/block_sums"),
-      read_(space, "safe_step/read", 2)
+      read_(space, "safe_step/read", 2), places_(space, "safe_step/places"), listed_(space),
+      scratch_(space, "safe_step/scratch"), changed_(space, "safe_step/changed"),
+      host_changed_(space, "safe_step/host_changed"), blocked_(space, "safe_step/blocked"),
+      host_blocked_(space, "safe_step/host_blocked")
 {
 }
 
@@ -26,34 +46,64 @@ void DeviceSafeStep::begin(View<const Vec3> x, View<const Vec3> expected, View<c
     expected_count_ = count_;
 }
 
-bool DeviceSafeStep::leaves_alone(View<const Vec3> x)
+View<const BlockedPair> DeviceSafeStep::look_at_all(View<const Vec3> x)
 {
-    const StageScope stage("collision/safe_step");
     parallel_sum(space_, "collision/device_strays", x.size(), 0,
                  CountStrays{base_, x, known(), way_.view(), marks_.view()}, counts_.view().subview(0, 1),
                  block_sums_);
+    is_stale_.fill_zero();
     count_in_the_way(0);
-    const auto [strays, in_the_way] = read_counts();
-    if (strays == 0 || in_the_way > 0)
-        return in_the_way == 0;
+    Counts counts = read_counts();
+    if (counts.strays > 0) {
+        parallel_for(space_, "collision/know_strays", x.size(),
+                     KnowStrays{marks_.view(), way_.view(), slack_, known()});
+        const int before = count_;
+        look_around_marked();
+        count_in_the_way(before);
+        counts = read_counts();
+    }
+    return counts.in_the_way == 0 ? View<const BlockedPair>() : list_in_the_way();
+}
 
-    const StageScope again("collision/look_again");
-    parallel_for(space_, "collision/know_strays", x.size(),
-                 KnowStrays{marks_.view(), way_.view(), slack_, known()});
+View<const BlockedPair> DeviceSafeStep::look(View<const ChangedWay> changed)
+{
+    make_room(host_changed_, changed.size());
+    const View<ChangedWay> sent = host_changed_.view().subview(0, changed.size());
+    std::copy(changed.begin(), changed.end(), sent.begin());
+    changed_.upload(sent);
+    is_stale_.fill_zero();
+    marks_.fill_zero();
+    parallel_sum(space_, "collision/device_know_changed", changed.size(), 0,
+                 KnowChanged{changed_.view(), slack_, known(), way_.view(), is_stale_.view(), marks_.view()},
+                 counts_.view().subview(0, 1), block_sums_);
     const int before = count_;
+    if (read_counts().strays > 0)
+        look_around_marked();
+    count_in_the_way(before);
+    return list_in_the_way();
+}
+
+/// Appends the pairs of marked vertices.
+void DeviceSafeStep::look_around_marked()
+{
+    const StageScope stage("collision/look_again");
     exempt_.append_kept(
         near_.find(base_, {known_motion_.view(), known_radius_.view(), marks_.view()}, gap_.most()), pairs_,
         count_);
-    count_in_the_way(before);
-    return read_counts().in_the_way == 0;
 }
 
-/// Of the pairs from the first on.
-void DeviceSafeStep::count_in_the_way(int first)
+/// @param known  pairs before this one are looked at where they have a stale vertex
+void DeviceSafeStep::count_in_the_way(int known)
 {
-    const View<const NearPair> pairs = pairs_.view().subview(first, count_ - first);
-    parallel_sum(space_, "collision/device_in_the_way", pairs.size(), 0,
-                 CountInTheWay{pairs, {base_, way_.view(), gap_}}, counts_.view().subview(1, 1), block_sums_);
+    if (is_in_the_way_.size() < count_)
+        is_in_the_way_.resize_keeping(pairs_.size());
+    parallel_sum(space_, "collision/device_in_the_way", count_, 0,
+                 CountInTheWay{pairs_.view().subview(0, count_),
+                               {base_, way_.view(), gap_},
+                               is_stale_.view(),
+                               known,
+                               is_in_the_way_.view().subview(0, count_)},
+                 counts_.view().subview(1, 1), block_sums_);
 }
 
 DeviceSafeStep::Counts DeviceSafeStep::read_counts()
@@ -61,6 +111,23 @@ DeviceSafeStep::Counts DeviceSafeStep::read_counts()
     counts_.download(read_.view());
     space_.synchronise();
     return {read_[0], read_[1]};
+}
+
+/// To the host.
+View<const BlockedPair> DeviceSafeStep::list_in_the_way()
+{
+    const int number = list_flagged(space_, "collision/device_list_in_the_way",
+                                    is_in_the_way_.view().subview(0, count_), places_, listed_, scratch_);
+    make_room(blocked_, number);
+    make_room(host_blocked_, number);
+    parallel_for(
+        space_, "collision/device_report_in_the_way", number,
+        ReportInTheWay{
+            pairs_.view().subview(0, count_), {base_, way_.view(), gap_}, places_.view(), blocked_.view()});
+    const View<BlockedPair> read = host_blocked_.view().subview(0, number);
+    blocked_.download_first(read);
+    space_.synchronise();
+    return read;
 }
 
 } // namespace toile

@@ -6,14 +6,14 @@
 
 namespace toile {
 
-/// The first look of SafeStep on a GPU: whether all may go straight on, which is what cloth does nearly
-/// always. Who may not is brought back on the host.
-class DeviceSafeStep {
+/// PairWatch on a GPU, where all pairs, ways and searches stay. The first look of a step says whether all may
+/// go straight on, which is what cloth does nearly always. Where not, BringBack on the host asks on: over the
+/// bus go the ways that it changes and the pairs that are in the way.
+class DeviceSafeStep : public PairWatch {
 public:
     /// @param space   borrowed
     /// @param near    searches for those who stray; borrowed
     /// @param exempt  borrowed
-    /// @param gap     SafeStep::least_gap()
     DeviceSafeStep(const CudaSpace& space, DeviceNearPairs& near, DeviceExemptPairs& exempt,
                    const LeastGap& gap, int vertex_count);
 
@@ -22,21 +22,25 @@ public:
     void begin(View<const Vec3> x, View<const Vec3> expected, View<const double> slack,
                View<const NearPair> found);
 
-    /// True where SafeStep::limit would leave x [vertices] [m] as it is, up to the rounding of shares. Waits.
-    bool leaves_alone(View<const Vec3> x);
+    /// The first look, where all go to x [vertices] [m], on the device: empty where SafeStep::limit would
+    /// leave x as it is, up to the rounding of shares. Waits.
+    View<const BlockedPair> look_at_all(View<const Vec3> x);
+
+    /// Waits.
+    View<const BlockedPair> look(View<const ChangedWay> changed) override;
 
     /// Those of begin(), without the exempt ones, on the device.
     View<const NearPair> pairs() const { return pairs_.view().subview(0, expected_count_); }
-    /// The same, to `out` [pairs] of the host: as DeviceArray::download.
-    void download_pairs(View<NearPair> out) const { pairs_.download_first(out); }
 
 private:
     KnownWays known() { return {known_motion_.view(), known_radius_.view()}; }
     struct Counts {
         int strays, in_the_way; ///< vertices; pairs
     };
-    void count_in_the_way(int first);
+    void look_around_marked();
+    void count_in_the_way(int known);
     Counts read_counts();
+    View<const BlockedPair> list_in_the_way();
 
     const CudaSpace& space_;
     DeviceNearPairs& near_;
@@ -49,11 +53,22 @@ private:
     DeviceArray<NearPair> pairs_; ///< of begin(), then those that the list of begin() does not have
     int expected_count_ = 0, count_ = 0;
 
+    // Of one look and those after it.
+    DeviceArray<Vec3> way_;                    ///< [vertices] [m]
+    DeviceArray<unsigned char> is_in_the_way_; ///< [pairs]
+
     // Of one look.
-    DeviceArray<Vec3> way_;                ///< [vertices] [m]
+    DeviceArray<unsigned char> is_stale_;  ///< [vertices] 1: goes elsewhere than in the look before
     DeviceArray<unsigned char> marks_;     ///< [vertices] 1: strays
     DeviceArray<int> counts_, block_sums_; ///< Counts; scratch
     PinnedArray<int> read_;                ///< Counts
+    DeviceArray<int> places_;              ///< of pairs in the way
+    SumScratch<int> listed_;
+    DeviceScratch scratch_;
+    DeviceArray<ChangedWay> changed_;
+    PinnedArray<ChangedWay> host_changed_; ///< the first of them, as many as there are
+    DeviceArray<BlockedPair> blocked_;
+    PinnedArray<BlockedPair> host_blocked_; ///< the first of them
 };
 
 } // namespace toile

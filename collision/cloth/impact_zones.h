@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/backend/types.h"
+#include "collision/cloth/vertex_set.h"
 
 namespace toile {
 
@@ -13,6 +13,8 @@ namespace toile {
 /// rigid body, is one vertex here, its first, with a weight.
 /// [Provot 1997, Collision and self-collision handling in cloth model dedicated to design garments: impact
 /// zones]. Deviation: theirs are rigid at once; here by as much as is needed.
+///
+/// All but the first reset() costs what is in zones, not what is not.
 class ImpactZones {
 public:
     /// What holds a vertex: cloth that lies on a body goes where that lets it, held cloth where it is led.
@@ -27,17 +29,27 @@ public:
 
     /// @param way     of all of a body whose first vertex is v [m]
     /// @param weight  against that of a vertex of cloth [-]
-    void set_body(int v, const Vec3& way, double weight) { sum_[v] = {weight * way, weight, Hold::kNone}; }
+    void set_body(int v, const Vec3& way, double weight);
 
     /// Makes the zones of two vertices one.
-    void join(int a, int b);
+    void join(int a, int b) { unite(a, b, true); }
+    /// The same, but where only one of them is more than a vertex it goes where it went, until settle(): a
+    /// zone that grows by many vertices one after the other need not move with each.
+    void attach(int a, int b) { unite(a, b, false); }
 
-    /// After close_round() v goes at most this factor of the share that it goes now.
-    void bring_back(int v, double factor) { next_share_[v] = std::min(next_share_[v], factor * share_[v]); }
-    void close_round();
+    /// After close_round() v goes at most this factor of the share that it goes now, or this share.
+    void bring_back(int v, double factor) { bring_back_to(v, factor * share_[v]); }
+    void bring_back_to(int v, double share);
 
-    double share(int v) const { return share_[v]; }                        ///< [-]
-    bool leans(int v) const { return sum_[zone(v)].hold == Hold::kLeans; } ///< the zone of v goes with a body
+    /// All zones go where their vertices let them. False when they did.
+    bool settle();
+    /// Whose motion may have changed since the last round was closed; borrowed until the next.
+    View<const int> close_round();
+    bool has_changed(int v) const { return changed_.has(v); } ///< is among these
+
+    double share(int v) const { return share_[v]; } ///< [-]
+    /// The zone of v goes with a body.
+    bool leans(int v) const { return sum_of(zone(v)).hold == Hold::kLeans; }
 
     Vec3 common(int v) const; ///< where the zone of v goes [m]
     Vec3 motion(int v) const; ///< of v, a vertex of cloth [m]
@@ -52,12 +64,26 @@ private:
 
     int zone(int v) const;
     void shorten_path(int v);
+    void touch(int v);
+    void unite(int a, int b, bool at_once);
+    void add(Sum& sum, const Sum& other) const;
+    Sum sum_of(int root) const;
+    Vec3 common_of(const Sum& sum) const;
+    void go_on(int root);
 
     double slow_ = 0.0; ///< [m]
     View<const Vec3> ways_;
+    std::vector<Hold> hold_;                 ///< [vertices]
+    VertexSet touched_;                      ///< the others are by themselves, with all of their ways
     std::vector<double> share_, next_share_; ///< [vertices]
     std::vector<int> parent_;                ///< [vertices] a forest; roots name zones
-    std::vector<Sum> sum_;                   ///< [vertices] of roots
+    std::vector<int> next_;                  ///< [vertices] of the same zone, in a ring
+    std::vector<Sum> sum_;                   ///< [vertices] of touched roots
+    std::vector<Vec3> common_;               ///< [vertices] of touched roots: where they go [m]
+    VertexSet unsettled_;                    ///< roots, some of them former ones, whose sum has changed since
+    VertexSet redirected_;                   ///< those whose common_ has changed since the last round
+    VertexSet brought_back_;                 ///< since the last round
+    VertexSet renewed_, changed_;            ///< by the last round: roots; vertices
 };
 
 } // namespace toile

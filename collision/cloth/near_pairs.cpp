@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "collision/cloth/candidates.h"
-#include "collision/cloth/hosted_near_pairs.h"
 #include "collision/cloth/ordered_records.h"
 #include "collision/cloth/pair_rules.h"
 #include "core/backend/parallel.h"
@@ -131,10 +130,8 @@ void NearPairs::Search::report(std::vector<NearPair>& out)
     });
 }
 
-NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid,
-                     const CudaSpace* space)
-    : search_(std::make_unique<Search>(triangles, positions, rigid)),
-      there_(space ? std::make_unique<HostedNearPairs>(*space, triangles, positions, rigid) : nullptr)
+NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid)
+    : search_(std::make_unique<Search>(triangles, positions, std::move(rigid)))
 {
 }
 NearPairs::~NearPairs() = default;
@@ -143,11 +140,10 @@ NearPairs& NearPairs::operator=(NearPairs&&) noexcept = default;
 
 const SurfaceEdges& NearPairs::edges() const { return search_->edges(); }
 SoupView NearPairs::soup() const { return search_->soup(); }
-DeviceNearPairs* NearPairs::on_device() const { return there_ ? &there_->there() : nullptr; }
 
 void NearPairs::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {
-    there_ ? there_->find(x, ways, margin, out) : search_->find(x, ways, margin, out);
+    search_->find(x, ways, margin, out);
 }
 
 } // namespace toile

@@ -10,9 +10,6 @@
 
 namespace toile {
 
-class CudaSpace;
-class DeviceNearPairs;
-class HostedNearPairs;
 struct SoupView;
 
 /// Two primitives of one triangle soup that share no vertex and are near each other: a vertex and a
@@ -51,9 +48,7 @@ public:
     /// @param positions  [vertices x 3] [m] the first pose
     /// @param rigid      [vertices] number of the rigid body, -1 for none: no pairs within one body. Empty:
     ///                   none at all
-    /// @param space      where find() searches, borrowed; null: on the CPU
-    NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {},
-              const CudaSpace* space = nullptr);
+    NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {});
     ~NearPairs();
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;
@@ -72,13 +67,9 @@ public:
 
     SoupView soup() const; ///< borrowed
 
-    /// What searches on a GPU; null: find() searches on the CPU.
-    DeviceNearPairs* on_device() const;
-
 private:
     class Search;
     std::unique_ptr<Search> search_;
-    std::unique_ptr<HostedNearPairs> there_; ///< null: on the CPU
 };
 
 } // namespace toile

@@ -35,12 +35,13 @@ void RigidWays::begin(View<const Vec3> x, View<const Vec3> way)
     }
 }
 
-void RigidWays::go(int body, const Vec3& move, double share, View<Vec3> motion) const
+void RigidWays::go(int body, const Vec3& move, double share, std::vector<Vec3>& motion) const
 {
     const Body& b = bodies_[body];
     const Mat3 turned = turned_by(share * b.turn) - Mat3::Identity();
+    motion.clear();
     for (const int v : b.vertices)
-        motion[v] = move + turned * (x_[v] - b.middle);
+        motion.emplace_back(move + turned * (x_[v] - b.middle));
 }
 
 } // namespace toile

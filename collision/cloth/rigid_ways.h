@@ -18,6 +18,7 @@ public:
 
     int count() const { return int(bodies_.size()); }
     int leader(int body) const { return bodies_[body].vertices.front(); } ///< its first vertex
+    const std::vector<int>& vertices(int body) const { return bodies_[body].vertices; }
     double weight(int body) const { return bodies_[body].weight; }
     const Vec3& move(int body) const { return bodies_[body].move; } ///< of its middle, all the way [m]
 
@@ -31,8 +32,8 @@ public:
     void begin(View<const Vec3> x, View<const Vec3> way);
 
     /// Displacements of one body where its middle goes only so far and turns by a share of its turn.
-    /// @param motion  [vertices] out, those of the body only [m]
-    void go(int body, const Vec3& move, double share, View<Vec3> motion) const;
+    /// @param motion  [vertices(body)] out [m]
+    void go(int body, const Vec3& move, double share, std::vector<Vec3>& motion) const;
 
 private:
     struct Body {

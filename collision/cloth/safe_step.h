@@ -1,14 +1,9 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
-#include "collision/cloth/exempt_pairs.h"
-#include "collision/cloth/impact_zones.h"
-#include "collision/cloth/near_pairs.h"
-#include "collision/cloth/rigid_ways.h"
-#include "collision/cloth/safe_step_kernels.h"
-#include "collision/cloth/tethers.h"
+#include "collision/cloth/bring_back.h"
+#include "collision/cloth/host_pair_watch.h"
 
 namespace toile {
 
@@ -39,6 +34,8 @@ public:
         double least_share = 0.1; ///< [-] of a pair's distance at the start, or of `thickness`, that is left
         double thickness = 5e-4;  ///< [m] of the thinnest cloth
         double most_deflection = 1e-3; ///< [m] missing distance up to which both sides of a pair give way
+
+        LeastGap gap() const { return {least_gap, least_share, thickness}; }
     };
 
     /// @param near    of all the vertices; used again by limit()
@@ -61,55 +58,12 @@ public:
     double limit(View<Vec3> x, View<const unsigned char> leans = {});
 
     View<const Vec3> base() const { return base_; } ///< [vertices] the pose of begin() [m]
-
-    LeastGap least_gap() const { return {settings_.least_gap, settings_.least_share, settings_.thickness}; }
+    LeastGap least_gap() const { return watch_.gap(); }
 
 private:
-    KnownWays known() { return {known_motion_, known_radius_}; }
-    bool mark_strays();
-    void look_around_marked();
-    const NearPair& pair(int i) const
-    {
-        return i < expected_pairs_.size() ? expected_pairs_[i] : more_pairs_[i - expected_pairs_.size()];
-    }
-    int pair_count() const { return expected_pairs_.size() + int(more_pairs_.size()); }
-    void look_at_pairs();
-    void deflect();
-    bool give_way();
-    double mobility_of(const NearPair& pair, bool is_first_side) const;
-    bool may_give_way(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
-    bool shorten(bool for_good);
-    void find_shares(View<const unsigned char> leans);
-    void take_along();
-    void follow_zones();
-    bool hold_together(bool for_good);
-
-    NearPairs& near_;
-    const ExemptPairs& exempt_;
-    Settings settings_;
-    RigidWays bodies_;
-    Tethers tethers_; ///< edges of cloth
-    View<const double> slack_;
-    View<const unsigned char> fixed_;
-    View<const NearPair> expected_pairs_;
+    HostPairWatch watch_;
+    BringBack bring_back_;
     std::vector<Vec3> base_;
-
-    // Of all limit() since begin().
-    std::vector<NearPair> more_pairs_; ///< that the list of begin() does not have
-    std::vector<Vec3> known_motion_;   ///< [vertices] that the lists are complete for [m]
-    std::vector<double> known_radius_; ///< [vertices] around it [m]
-
-    // Of one limit().
-    std::vector<NearPair> found_pairs_;       ///< by the last look
-    std::vector<Vec3> way_;                   ///< [vertices] from base_ to where they want to go [m]
-    std::vector<Vec3> motion_;                ///< [vertices] from base_ to where they may go [m]
-    std::vector<double> pair_share_;          ///< [pairs] that one allows
-    std::vector<int> in_the_way_;             ///< pairs that allow less than all, by the last look
-    std::vector<int> torn_;                   ///< edges of tethers_
-    std::vector<unsigned char> is_deflected_; ///< [vertices] way_ is not the one that was asked for
-    std::vector<unsigned char> is_marked_;    ///< [vertices] for look_around_marked()
-    std::vector<unsigned char> is_stale_; ///< [vertices] motion_ has changed since its pairs were looked at
-    ImpactZones zones_;
 };
 
 } // namespace toile

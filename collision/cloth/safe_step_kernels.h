@@ -6,6 +6,7 @@
 #include <array>
 
 #include "collision/cloth/pair_rules.h"
+#include "collision/cloth/pair_watch.h"
 #include "collision/cloth/safe_motion.h"
 
 namespace toile {
@@ -113,11 +114,63 @@ struct KnowStrays {
     }
 };
 
-/// 1 where a pair is in its own way; a term of how many are.
+/// Where a vertex goes now, marked, and widens what is known of it where the lists don't hold for that; a
+/// term of how many vertices these are.
+struct KnowChanged {
+    View<const ChangedWay> changed;
+    View<const double> slack;     ///< [vertices] [m]
+    KnownWays known;              ///< changed
+    View<Vec3> way;               ///< [vertices] in, out [m]
+    View<unsigned char> is_stale; ///< [vertices] in, out
+    View<unsigned char> strays;   ///< [vertices] in, out
+
+    TOILE_HD int operator()(int i) const
+    {
+        const ChangedWay& now = changed[i];
+        way[now.vertex] = now.way;
+        is_stale[now.vertex] = 1;
+        if (known.hold(now.vertex, now.way))
+            return 0;
+        known.widen(now.vertex, now.way, now.strayed, slack[now.vertex]);
+        strays[now.vertex] = 1;
+        return 1;
+    }
+};
+
+TOILE_HD inline bool is_any_marked(const NearPair& pair, View<const unsigned char> marks)
+{
+    return marks[pair.vertex[0]] != 0 || marks[pair.vertex[1]] != 0 || marks[pair.vertex[2]] != 0 ||
+           marks[pair.vertex[3]] != 0;
+}
+
+/// Flags a pair that is in its own way where it has a stale vertex or is not among the `known` first; a term
+/// of how many are.
 struct CountInTheWay {
     View<const NearPair> pairs;
     PairShare share;
-    TOILE_HD int operator()(int i) const { return share(pairs[i]) < 1.0 ? 1 : 0; }
+    View<const unsigned char> is_stale; ///< [vertices]
+    int known;
+    View<unsigned char> flags; ///< [pairs] in, out
+
+    TOILE_HD int operator()(int i) const
+    {
+        if (i >= known || is_any_marked(pairs[i], is_stale))
+            flags[i] = (unsigned char)(share(pairs[i]) < 1.0 ? 1 : 0);
+        return flags[i];
+    }
+};
+
+/// The k-th pair that is in its own way.
+struct ReportInTheWay {
+    View<const NearPair> pairs;
+    PairShare share;
+    View<const int> places;    ///< of the flagged pairs
+    View<BlockedPair> blocked; ///< out
+    TOILE_HD void operator()(int k) const
+    {
+        const NearPair& pair = pairs[places[k]];
+        blocked[k] = {pair, share(pair)};
+    }
 };
 
 } // namespace toile

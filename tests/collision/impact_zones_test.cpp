@@ -61,5 +61,42 @@ TEST(ImpactZones, LeaveOthersAloneAndShortenByShares)
     EXPECT_EQ(zones.share(0), 0.25);
 }
 
+TEST(ImpactZones, GrowByVerticesWithoutTurningUntilTheySettle)
+{
+    const std::vector<Vec3> ways{Vec3(4, 0, 0), Vec3(0, 0, 0), Vec3(0, 9, 0), Vec3(0, 0, 5)};
+    ImpactZones zones;
+    zones.reset(ways, std::vector<Hold>{Hold::kNone, Hold::kNone, Hold::kNone, Hold::kLeans}, 0.0);
+    zones.join(0, 1);
+    zones.attach(2, 0);
+    zones.bring_back_to(1, 0.0);
+    zones.close_round();
+    EXPECT_EQ(zones.common(2), Vec3(2, 0, 0));
+    EXPECT_TRUE(zones.settle());
+    EXPECT_FALSE(zones.settle());
+    EXPECT_EQ(zones.close_round().size(), 3);
+    EXPECT_EQ(zones.motion(1), Vec3(4.0 / 3.0, 3, 0));
+
+    // Who holds more leads at once.
+    zones.attach(3, 0);
+    EXPECT_TRUE(zones.leans(0));
+    EXPECT_EQ(zones.common(0), ways[3]);
+    EXPECT_FALSE(zones.settle());
+}
+
+TEST(ImpactZones, ForgetWhatWasJoined)
+{
+    const std::vector<Vec3> ways{Vec3(4, 0, 0), Vec3(0, 0, 0)};
+    ImpactZones zones;
+    for (int time = 0; time < 2; ++time) {
+        zones.reset(ways, std::vector<Hold>(2, Hold::kNone), 0.0);
+        EXPECT_EQ(zones.common(0), ways[0]);
+        EXPECT_EQ(zones.share(1), 1.0);
+        zones.join(0, 1);
+        zones.bring_back(1, 0.5);
+        zones.close_round();
+        EXPECT_EQ(zones.motion(1), Vec3(1, 0, 0));
+    }
+}
+
 } // namespace
 } // namespace toile

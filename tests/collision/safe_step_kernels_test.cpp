@@ -45,7 +45,8 @@ private:
     }
     bool any_in_the_way(const std::vector<NearPair>& pairs) const
     {
-        const CountInTheWay count{pairs, {made_.x, way_, gap_}};
+        std::vector<unsigned char> flags(pairs.size());
+        const CountInTheWay count{pairs, {made_.x, way_, gap_}, {}, 0, flags};
         int sum = 0;
         for (int i = 0; i < int(pairs.size()); ++i)
             sum += count(i);

@@ -212,6 +212,32 @@ TEST(SafeStep, DoesNotTearClothThatIsStoppedInPart)
         }
 }
 
+/// As many rings of edges as it takes for each to give in a little, not all of the sheet.
+TEST(SafeStep, TakesAlongNoMoreThanEdgesAskFor)
+{
+    // A large sheet falls on a small one below its middle.
+    constexpr int kLarge = 61, kSmall = 5;
+    Layers layers(1, kLarge, 0.0);
+    const Layers small(1, kSmall, 0.0);
+    const int large_count = int(layers.x.size());
+    for (const Vec3& p : small.x)
+        layers.x.push_back(p + Vec3(28.3 * kEdge, -0.002, 28.4 * kEdge));
+    for (const Triangle& corners : small.triangles)
+        layers.triangles.emplace_back(corners + Triangle::Constant(large_count));
+    const std::vector<Vec3>& from = layers.x;
+    std::vector<Vec3> wanted = from;
+    for (int v = 0; v < large_count; ++v)
+        wanted[v] += Vec3(0.016, -0.004, 0.0);
+    Stepper stepper(layers);
+    const std::vector<Vec3> to = stepper.step(from, wanted, wanted);
+    stepper.expect_free(from, to);
+    int held = 0;
+    for (int v = 0; v < large_count; ++v)
+        held += to[v] != wanted[v];
+    EXPECT_GT(held, 50);
+    EXPECT_LT(held, 500);
+}
+
 /// Two sheets with columns of needles, edges of 4 micrometres, one of which stands across the border of the
 /// sheet below: one end meets it, the other passes.
 Layers needle_sheets()

@@ -190,21 +190,22 @@ TEST_F(DeviceClothContactTest, LeavesAloneWhatTheCpuLeavesAlone)
         slack.upload(made.slack);
         safe_there.begin(x.there(), expected.there(), slack.view(),
                          near_there.find(x.there(), {motion_there.view(), slack.view()}, margin));
-        std::vector<NearPair> listed(safe_there.pairs().size());
-        safe_there.download_pairs(listed);
-        expect_same(pairs, listed, "of trial " + std::to_string(trial));
+        DeviceArray<NearPair> listed(space(), "test/listed");
+        listed.upload(safe_there.pairs());
+        expect_same(pairs, listed.downloaded(), "of trial " + std::to_string(trial));
 
         Stages stages;
         const Stages::Activate activate(stages);
         std::vector<Vec3> limited = made.wanted;
         const bool is_free = safe.limit(limited) == 0.0;
         const long looked_here = stages.calls("collision/look_again");
-        EXPECT_EQ(safe_there.leaves_alone(wanted.there()), is_free) << trial;
+        EXPECT_EQ(safe_there.look_at_all(wanted.there()).empty(), is_free) << trial;
         const long looked_there = stages.calls("collision/look_again") - looked_here;
         EXPECT_LE(looked_there, looked_here) << trial;
         looked += int(looked_there);
-        EXPECT_EQ(safe_there.leaves_alone(wanted.there()), is_free) << trial; // strays are known by now
-        EXPECT_TRUE(safe_there.leaves_alone(x.there())) << trial;
+        EXPECT_EQ(safe_there.look_at_all(wanted.there()).empty(), is_free)
+            << trial; // strays are known by now
+        EXPECT_TRUE(safe_there.look_at_all(x.there()).empty()) << trial;
         (is_free ? alone : held)++;
     }
     EXPECT_GE(alone, 15);
