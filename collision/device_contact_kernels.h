@@ -7,6 +7,7 @@
 #include "collision/contact_kernels.h"
 #include "collision/contact_memory.h"
 #include "collision/device_pair_kernels.h"
+#include "core/backend/lanes.h"
 
 namespace toile {
 
