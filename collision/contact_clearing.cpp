@@ -62,7 +62,7 @@ bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) 
 /// has moved.
 void Contact::rub(StepField positions, StepField velocities) const
 {
-    const NearTerms all = terms_->near(std::numeric_limits<double>::infinity()); // sees x before it changes
+    const NearTerms all = terms_->near(std::numeric_limits<double>::infinity(), false); // sees x before it changes
     const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
     const auto at_most = [](const Vec3& move, double limit) {
         const double length = move.norm();
@@ -117,7 +117,7 @@ Vec3 Contact::surface_velocity(const ContactPair& pair) const
 /// Cloth inside moves at least as fast out of a surface as that does.
 void Contact::stop_at_surfaces(StepField velocities) const
 {
-    const NearTerms near = terms_->near(0.0, velocities);
+    const NearTerms near = terms_->near(0.0, false, velocities);
     std::vector<int> changed;
     for (int i = 0; i < near.terms.size(); ++i) {
         const ContactTerm& term = near.terms[i];

@@ -21,8 +21,8 @@ struct NearVertices {
     std::array<unsigned char, 8> has_all{}; ///< 1: all terms of this vertex are among the near ones
 };
 
-/// Terms that are nearer than a margin or share a vertex with one that is, in their order, and the positions
-/// and velocities of their vertices, on the host.
+/// Terms that are nearer than a margin, or share a vertex with one that is where those were asked for, in
+/// their order, and the positions and velocities of their vertices, on the host.
 struct NearTerms {
     View<const ContactTerm> terms;
     double margin = 0.0;            ///< [m]; infinite where these are all
@@ -77,10 +77,10 @@ public:
     /// How deep a step would end in colliders [m]; 0 where it would not.
     virtual double deepest() = 0;
 
-    /// Terms with gap + give below the margin [m], and all of their vertices, good until the next call of any
-    /// function.
-    /// @param v  velocities that are wanted too; may be none
-    virtual NearTerms near(double margin, StepField v = View<Vec3>()) = 0;
+    /// Terms with gap + give below the margin [m], good until the next call of any function.
+    /// @param with_beside  all that share a vertex with one of them too
+    /// @param v            velocities that are wanted too; may be none
+    virtual NearTerms near(double margin, bool with_beside, StepField v = View<Vec3>()) = 0;
 
     /// Takes over what was changed of the vertices of some near terms, in the fields that they are of.
     virtual void take(const NearTerms& near, View<const int> changed) = 0;

@@ -107,9 +107,9 @@ double DeviceContactTerms::deepest()
     return std::max(0.0, -height.value);
 }
 
-NearTerms DeviceContactTerms::near(double margin, StepField v)
+NearTerms DeviceContactTerms::near(double margin, bool with_beside, StepField v)
 {
-    return near_.find(energy_.touches(), energy_.vertices().size(), margin, x_, v);
+    return near_.find(energy_.touches(), energy_.vertices().size(), margin, with_beside, x_, v);
 }
 
 void DeviceContactTerms::take(const NearTerms& near, View<const int> changed) { near_.take(near, changed); }

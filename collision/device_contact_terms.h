@@ -30,7 +30,7 @@ public:
     bool has_left(double trust) override;
     void find_again() override { colliders_.find_again(x_.there()); }
     double deepest() override;
-    NearTerms near(double margin, StepField v) override;
+    NearTerms near(double margin, bool with_beside, StepField v) override;
     void take(const NearTerms& near, View<const int> changed) override;
     void remember(Slip slip) override;
     int remembered() const override { return memory_.size(); }

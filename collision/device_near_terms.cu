@@ -1,5 +1,7 @@
 #include "collision/device_near_terms.h"
 
+#include <algorithm>
+
 #include "core/backend/cuda/parallel.cuh"
 #include "core/backend/cuda/roomy.h"
 
@@ -23,19 +25,19 @@ DeviceNearTerms::DeviceNearTerms(const CudaSpace& space, int vertex_count)
 {
 }
 
-NearTerms DeviceNearTerms::find(const ContactTouches& touches, int list_count, double margin, StepField x,
-                                StepField v)
+NearTerms DeviceNearTerms::find(const ContactTouches& touches, int list_count, double margin,
+                                bool with_beside, StepField x, StepField v)
 {
     x_ = x;
     v_ = v;
     int count = 0;
     if (!touches.terms.empty()) {
-        list(touches, list_count, margin);
+        list(touches, list_count, margin, with_beside);
         copy(touches.terms, expected_);
         count = count_.value[0];
         if (count > expected_)
             copy(touches.terms, count);
-        expected_ = count + count / 4 + kFewTerms;
+        expected_ = std::max(count + count / 4 + kFewTerms, expected_ - expected_ / 8);
     }
     const View<const ContactTerm> terms = View<const ContactTerm>(terms_here_.view()).subview(0, count);
     spread(terms);
@@ -45,14 +47,15 @@ NearTerms DeviceNearTerms::find(const ContactTouches& touches, int list_count, d
     return near;
 }
 
-void DeviceNearTerms::list(const ContactTouches& touches, int list_count, double margin)
+void DeviceNearTerms::list(const ContactTouches& touches, int list_count, double margin, bool with_beside)
 {
     const int count = touches.terms.size();
     const View<unsigned char> near = first_items(near_, count), or_beside = first_items(or_beside_, count),
                               has_all = first_items(has_all_, 4 * count);
     parallel_for(space_, "contact/flag_near", count,
                  FlagNear{touches.terms, x_.there(), margin, near, or_beside, has_all});
-    parallel_for(space_, "contact/flag_beside", list_count, FlagBeside{touches, near, or_beside, has_all});
+    parallel_for(space_, "contact/flag_beside", with_beside ? list_count : 0,
+                 FlagBeside{touches, near, or_beside, has_all});
     list_flagged(space_, "contact/list_near", or_beside, first_items(list_, count), count_.total.view(),
                  scratch_);
 }

@@ -15,11 +15,12 @@ public:
     /// @param space  borrowed
     DeviceNearTerms(const CudaSpace& space, int vertex_count);
 
-    /// The terms with a gap below the margin [m] and those that share a vertex with one, in their order.
-    /// Waits once, and again where there are many more than last time.
+    /// The terms with a gap below the margin [m], and those that share a vertex with one where with_beside,
+    /// in their order. Waits once, and again where there are many more than last time.
     /// @param touches  all terms, by vertex; on the device
     /// @param x, v     [vertices] fields that a GPU works on [m], [m/s]; v may be empty
-    NearTerms find(const ContactTouches& touches, int list_count, double margin, StepField x, StepField v);
+    NearTerms find(const ContactTouches& touches, int list_count, double margin, bool with_beside,
+                   StepField x, StepField v);
 
     /// Takes what near.x and near.v, where it was asked for, have at the vertices of some of its terms to the
     /// fields of the last find().
@@ -27,13 +28,13 @@ public:
     void take(const NearTerms& near, View<const int> changed);
 
 private:
-    void list(const ContactTouches& touches, int list_count, double margin);
+    void list(const ContactTouches& touches, int list_count, double margin, bool with_beside);
     void copy(View<const ContactTerm> terms, int most);
     void spread(View<const ContactTerm> terms);
 
     const CudaSpace& space_;
     StepField x_{View<Vec3>()}, v_{View<Vec3>()};
-    int expected_ = 256;                          ///< near terms: somewhat more than last time
+    int expected_ = 256;                          ///< near terms: somewhat more than the last times
     DeviceArray<unsigned char> near_, or_beside_; ///< [terms]
     DeviceArray<unsigned char> has_all_;          ///< [4 x terms]
     DeviceArray<int> list_;                       ///< [terms]

@@ -146,7 +146,7 @@ double HostContactTerms::deepest()
     return depth;
 }
 
-NearTerms HostContactTerms::near(double, StepField v)
+NearTerms HostContactTerms::near(double, bool, StepField v)
 {
     return {energy_.terms(), kPlenty, {}, seen_.change_on_host(), v.change_on_host()};
 }

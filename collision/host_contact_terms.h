@@ -31,7 +31,7 @@ public:
     bool has_left(double trust) override;
     void find_again() override;
     double deepest() override;
-    NearTerms near(double margin, StepField v) override;
+    NearTerms near(double margin, bool with_beside, StepField v) override;
     void take(const NearTerms&, View<const int>) override {} // changed where they are
     void remember(Slip slip) override;
     int remembered() const override { return memory_.size(); }

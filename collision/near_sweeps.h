@@ -38,20 +38,24 @@ private:
 };
 
 /// Sweeps over terms that push where they are pressed, moving near.x, as if over all of them: where a vertex
-/// comes so far that others might push it begins anew with more.
+/// comes so far that others might push it begins anew with more. First with the terms that are very near,
+/// which is enough where little is moved; then with those beside them, which may be several times as many.
 /// @param sweeps  (near, moves) -> false where moves.note() was after a push
 template <typename Sweeps>
 void Contact::sweep_near(StepField positions, const Sweeps& sweeps) const
 {
-    constexpr double kMargin = 0.0005; // [m]
+    constexpr double kMargin = 0.0003; // [m]
     terms_->see(positions);
-    for (double margin = kMargin;; margin = margin < 1.0 ? 4.0 * margin : HUGE_VAL) {
-        const NearTerms near = terms_->near(margin);
+    double margin = kMargin;
+    for (bool with_beside = false;; with_beside = true) {
+        const NearTerms near = terms_->near(margin, with_beside);
         if (near.terms.empty())
             return;
         NearMoves moves(near);
         if (sweeps(near, moves))
             return terms_->take(near, moves.moved());
+        if (with_beside)
+            margin = margin < 1.0 ? 4.0 * margin : HUGE_VAL;
     }
 }
 

@@ -283,7 +283,7 @@ TEST_F(DeviceContactTermsTest, TellsWhichTermsAreNear)
             if (is_expected)
                 expected.push_back(term.pair);
         }
-        const NearTerms near = there.near(margin, board.v);
+        const NearTerms near = there.near(margin, true, board.v);
         for (int i = 0; i < near.terms.size(); ++i) {
             const ContactPair& pair = near.terms[i].pair;
             found.push_back(pair);
@@ -310,7 +310,7 @@ TEST_F(DeviceContactTermsTest, TakeBackWhatIsMovedOfNearOnes)
     there.make(nullptr);
     there.see(board.found);
     OnBoard::fill(board.v, std::vector<Vec3>(made.x.size(), Vec3(0.1, 0.0, 0.0)));
-    const NearTerms near = there.near(0.0, board.v);
+    const NearTerms near = there.near(0.0, false, board.v);
     ASSERT_GT(near.terms.size(), 10);
     std::vector<Vec3> x = made.found, v(made.x.size(), Vec3(0.1, 0.0, 0.0));
     std::vector<int> changed;
@@ -391,7 +391,7 @@ TEST_F(DeviceContactTermsTest, LookForNothingThatIsBeyondAllCloth)
     EXPECT_EQ(far.calls("collision/device_count_shape"), 0);
     EXPECT_TRUE(terms.empty());
     begin_at(Vec3(0.0, 0.0, 0.0), near);
-    EXPECT_EQ(near.calls("collision/device_planes"), 1);
+    EXPECT_GT(near.calls("collision/device_planes"), 0);
     EXPECT_GT(near.calls("collision/device_count_shape"), 3);
     EXPECT_FALSE(terms.empty());
 }
