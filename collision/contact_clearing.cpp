@@ -62,7 +62,8 @@ bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) 
 /// has moved.
 void Contact::rub(StepField positions, StepField velocities) const
 {
-    const NearTerms all = terms_->near(std::numeric_limits<double>::infinity(), false); // sees x before it changes
+    const NearTerms all =
+        terms_->near(std::numeric_limits<double>::infinity(), false); // sees x before it changes
     const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
     const auto at_most = [](const Vec3& move, double limit) {
         const double length = move.norm();
