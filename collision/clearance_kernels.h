@@ -59,4 +59,14 @@ struct LearnClearance {
     }
 };
 
+/// What is known where nothing of a mesh is within `distance` of any vertex.
+struct LearnFar {
+    double distance;    ///< [m]
+    View<double> bound; ///< [vertices] out [m]
+    TOILE_HD void operator()(int v) const
+    {
+        bound[v] = distance < MotionView::kReach ? distance : MotionView::kReach;
+    }
+};
+
 } // namespace toile

@@ -148,7 +148,7 @@ void Contact::clear(StepField x, StepField v)
     has_cleared_ = true;
     find_again();
     const StageScope stage("collision/clear");
-    stop_at_surfaces(x, v);
+    stop_at_surfaces(v);
     push_out(x, kLeftOver);
 }
 

@@ -86,7 +86,7 @@ private:
     bool push(const ContactPair& pair, const Vec3& move, View<Vec3> field) const;
     double clearance_of(const ContactPair& pair) const;
     Vec3 surface_velocity(const ContactPair& pair) const;
-    void stop_at_surfaces(StepField x, StepField v) const;
+    void stop_at_surfaces(StepField v) const;
     void rub(StepField x, StepField v) const;
     void push_out(StepField x, double most) const;
 

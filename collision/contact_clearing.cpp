@@ -62,7 +62,8 @@ bool Contact::push(const ContactPair& pair, const Vec3& move, View<Vec3> field) 
 /// has moved.
 void Contact::rub(StepField positions, StepField velocities) const
 {
-    const NearTerms all = terms_->near(std::numeric_limits<double>::infinity()); // sees x before it changes
+    const NearTerms all =
+        terms_->near(std::numeric_limits<double>::infinity(), false); // sees x before it changes
     const View<Vec3> x = positions.change_on_host(), v = velocities.change_on_host();
     const auto at_most = [](const Vec3& move, double limit) {
         const double length = move.norm();
@@ -88,17 +89,21 @@ void Contact::rub(StepField positions, StepField velocities) const
 /// @param most  depth that is left to a pair which rests there [m]
 void Contact::push_out(StepField positions, double most) const
 {
-    sweep_near(positions, [&](const NearTerms& near, const NearMoves& moves, View<Vec3> x) {
-        for (int sweep = 0; sweep < kClearSweeps; ++sweep)
+    sweep_near(positions, [&](const NearTerms& near, NearMoves& moves) {
+        bool is_still = false; // a sweep that changes nothing would change nothing again
+        for (int sweep = 0; sweep < kClearSweeps && !is_still; ++sweep) {
+            is_still = true;
             for (int i = 0; i < near.terms.size(); ++i) {
                 const ContactTerm& term = near.terms[i];
-                const double depth = -term.gap(x) - term.give - std::min(most, term.rest_depth());
+                const double depth = -term.gap(near.x) - term.give - std::min(most, term.rest_depth());
                 if (depth <= 0.0)
                     continue;
-                push(term.pair, std::min(depth, clearance_of(term.pair)) * term.pair.normal, x);
-                if (moves.are_far(i, x))
+                push(term.pair, std::min(depth, clearance_of(term.pair)) * term.pair.normal, near.x);
+                is_still = false;
+                if (!moves.note(i))
                     return false;
             }
+        }
         return true;
     });
 }
@@ -111,23 +116,22 @@ Vec3 Contact::surface_velocity(const ContactPair& pair) const
 }
 
 /// Cloth inside moves at least as fast out of a surface as that does.
-void Contact::stop_at_surfaces(StepField positions, StepField velocities) const
+void Contact::stop_at_surfaces(StepField velocities) const
 {
-    const NearTerms near = terms_->near(0.0);
-    if (near.terms.empty())
-        return;
-    const View<const Vec3> x = positions.host();
-    const View<Vec3> v = velocities.change_on_host();
-    for (const ContactTerm& term : near.terms) {
-        if (term.gap(x) >= 0.0)
+    const NearTerms near = terms_->near(0.0, false, velocities);
+    std::vector<int> changed;
+    for (int i = 0; i < near.terms.size(); ++i) {
+        const ContactTerm& term = near.terms[i];
+        if (term.gap(near.x) >= 0.0)
             continue;
         const ContactPair& pair = term.pair;
         if (clearance_of(pair) < kThinnest)
             continue;
-        if (const double approach = pair.normal.dot(surface_velocity(pair) - pair.cloth_point(v));
-            approach > 0.0)
-            push(pair, approach * pair.normal, v);
+        if (const double approach = pair.normal.dot(surface_velocity(pair) - pair.cloth_point(near.v));
+            approach > 0.0 && push(pair, approach * pair.normal, near.v))
+            changed.push_back(i);
     }
+    terms_->take(near, changed);
 }
 
 /// How far a pair may be pushed in a sweep without crushing a triangle [m].

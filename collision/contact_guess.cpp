@@ -31,28 +31,36 @@ double Contact::mobility_of(const ContactPair& pair) const
 /// as their force asks for: friction reads it from there.
 bool Contact::make_feasible(StepField positions) const
 {
+    constexpr double kUnknown = -1.0;
     bool moved = false;
     std::vector<double> mobility, force;
-    sweep_near(positions, [&](const NearTerms& near, const NearMoves& moves, View<Vec3> x) {
+    sweep_near(positions, [&](const NearTerms& near, NearMoves& moves) {
         moved = false;
         force.assign(near.terms.size(), 0.0);
-        mobility.clear();
-        for (const ContactTerm& term : near.terms)
-            mobility.push_back(mobility_of(term.pair));
-        for (int sweep = 0; sweep < kSweeps; ++sweep)
+        mobility.assign(near.terms.size(), kUnknown);
+        bool is_still = false; // a sweep that changes nothing would change nothing again
+        for (int sweep = 0; sweep < kSweeps && !is_still; ++sweep) {
+            is_still = true;
             for (int i = 0; i < near.terms.size(); ++i) {
                 const ContactTerm& term = near.terms[i];
-                const double reach = -term.gap(x) - term.give + mobility[i] * force[i];
+                const double depth = -term.gap(near.x) - term.give;
+                if (depth <= 0.0 && force[i] == 0.0)
+                    continue;
+                if (mobility[i] == kUnknown)
+                    mobility[i] = mobility_of(term.pair);
+                const double reach = depth + mobility[i] * force[i];
                 const double change =
                     term.spring.force(term.spring.depth_at_rest(reach, mobility[i])) - force[i];
                 if (mobility[i] == 0.0 || change == 0.0)
                     continue;
                 force[i] += change;
-                accelerate(term.pair, change, x);
+                accelerate(term.pair, change, near.x);
                 moved = true;
-                if (moves.are_far(i, x))
+                is_still = false;
+                if (!moves.note(i))
                     return false;
             }
+        }
         return true;
     });
     return moved;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -14,10 +15,20 @@ namespace toile {
 class CudaSpace;
 class DeviceActiveSet;
 
-/// Terms that are nearer than a margin, in their order, on the host.
+/// Where the vertices of a near term are.
+struct NearVertices {
+    std::array<Vec3, 4> x{};                ///< [m] undefined where unused
+    std::array<unsigned char, 8> has_all{}; ///< 1: all terms of this vertex are among the near ones
+};
+
+/// Terms that are nearer than a margin, or share a vertex with one that is where those were asked for, in
+/// their order, and the positions and velocities of their vertices, on the host.
 struct NearTerms {
     View<const ContactTerm> terms;
-    double margin = 0.0; ///< [m]; infinite where these are all
+    double margin = 0.0;            ///< [m]; infinite where these are all
+    View<const NearVertices> start; ///< [terms] as they were found; empty where these are all
+    View<Vec3> x = {}; ///< [vertices] to be changed [m]; elsewhere than at those of terms undefined
+    View<Vec3> v = {}; ///< [vertices] likewise, where they were asked for [m/s]
 };
 
 /// The terms of Contact during a step: made of the pairs with colliders, which it finds, and of those of
@@ -67,7 +78,12 @@ public:
     virtual double deepest() = 0;
 
     /// Terms with gap + give below the margin [m], good until the next call of any function.
-    virtual NearTerms near(double margin) const = 0;
+    /// @param with_beside  all that share a vertex with one of them too
+    /// @param v            velocities that are wanted too; may be none
+    virtual NearTerms near(double margin, bool with_beside, StepField v = View<Vec3>()) = 0;
+
+    /// Takes over what was changed of the vertices of some near terms, in the fields that they are of.
+    virtual void take(const NearTerms& near, View<const int> changed) = 0;
 
     /// Keeps forces and sticking of the pairs that press, for their successors. The forces are the
     /// minimiser's: clearing and the strain limit move cloth afterwards, out of pairs to the last bit.

@@ -51,7 +51,7 @@ DeviceColliderPairs::DeviceColliderPairs(const CudaSpace& space, View<const Tria
       nearest_(space, "pairs/nearest"), strays_(space, "pairs/strays", positions.size()),
       flags_(space, "pairs/flags"), list_(space, "pairs/list"), planes_(space),
       plane_pairs_(space, "pairs/planes"), first_plane_(space, "pairs/first_plane", positions.size()),
-      largest_(space), count_(space), scratch_(space, "pairs/scratch")
+      surroundings_(space), count_(space), scratch_(space, "pairs/scratch")
 {
     for (const ContactPartner& partner : partners)
         meshes_.push_back(partner.mesh ? std::make_unique<Mesh>(space, *partner.mesh, positions.size())
@@ -95,11 +95,12 @@ void DeviceColliderPairs::find(View<const Vec3> x, View<const Vec3> prediction, 
     follow_partners();
     parallel_for(space_, "contact/carry", x.size(),
                  CarryVertex{carrying_.view(), nearest_.view(), x, farthest_motion_, found_at_.view()});
-    const Largest reach = parallel_sum(
-        space_, "contact/reach", x.size(), Largest{},
-        KeepReach{{prediction, found_at_.view(), settings_.gap}, reach_.view(), wanted_.view()}, largest_);
+    const Surroundings around =
+        parallel_sum(space_, "contact/reach", x.size(), Surroundings{},
+                     KeepReach{{prediction, found_at_.view(), settings_.gap}, reach_.view(), wanted_.view()},
+                     surroundings_);
     pairs_.resize(0);
-    look(found_at_.view(), reach.value);
+    look(found_at_.view(), around.reach, &around);
 }
 
 void DeviceColliderPairs::find_again(View<const Vec3> x)
@@ -117,11 +118,12 @@ void DeviceColliderPairs::find_again(View<const Vec3> x)
     parallel_for(space_, "contact/copy_kept", kept,
                  CopyListed<ContactPair>{pairs_.view(), list_.view(), kept_.view()});
     std::swap(pairs_, kept_);
-    look(x, distance);
+    look(x, distance, nullptr);
 }
 
 /// Adds the pairs that are wanted.
-void DeviceColliderPairs::look(View<const Vec3> x, double radius)
+/// @param around  of all vertices that look; null: not known
+void DeviceColliderPairs::look(View<const Vec3> x, double radius, const Surroundings* around)
 {
     const StageScope stage("collision/detect");
     DetectSettings settings;
@@ -132,21 +134,47 @@ void DeviceColliderPairs::look(View<const Vec3> x, double radius)
     {
         const StageScope there("collision/detect_there");
         detector_.move(x, wanted_.view(), settings);
-        for (int c = 0; c < int(partners_.size()); ++c) {
-            if (!meshes_[c]) {
-                detector_.detect(*partners_[c].shape, c);
-                continue;
-            }
-            detector_.detect(meshes_[c]->there, c, &sides_);
-            follow_clearance(c, x);
-            parallel_for(space_, "collision/learn_clearance", x.size(),
-                         LearnClearance{detector_.in_front().view(), meshes_[c]->clearance.view()});
-        }
+        for (int c = 0; c < int(partners_.size()); ++c)
+            look_at(c, x, around, settings);
     }
     append(detector_.pairs());
     sort_planes();
     parallel_for(space_, "contact/take_nearest", x.size(),
                  TakeNearest{planes(), found_at_.view(), nearest_.view()});
+}
+
+/// The same of one partner; nothing is launched for one that is too far away.
+void DeviceColliderPairs::look_at(int c, View<const Vec3> x, const Surroundings* around,
+                                  const DetectSettings& settings)
+{
+    const bool is_far = around != nullptr && is_beyond(c, *around, settings);
+    if (!meshes_[c]) {
+        if (!is_far)
+            detector_.detect(*partners_[c].shape, c);
+        return;
+    }
+    Mesh& mesh = *meshes_[c];
+    follow_clearance(c, x);
+    if (is_far) {
+        parallel_for(space_, "collision/learn_far", x.size(),
+                     LearnFar{settings.max_depth, mesh.clearance.view()});
+        return;
+    }
+    detector_.detect(mesh.there, c, &sides_, mesh.clearance.view());
+    parallel_for(space_, "collision/learn_clearance", x.size(),
+                 LearnClearance{detector_.in_front().view(), mesh.clearance.view()});
+}
+
+/// True where a partner is farther from all of the vertices than a search looks for it.
+bool DeviceColliderPairs::is_beyond(int c, const Surroundings& around, const DetectSettings& settings) const
+{
+    constexpr double kRounding = 1e-6; // [m]
+    const Vec3 middle = 0.5 * (around.lower + around.upper), half = 0.5 * (around.upper - around.lower);
+    if (const ShapeCollider* const shape = partners_[c].shape)
+        return shape->closest(middle).signed_distance > half.norm() + settings.radius + kRounding;
+    const Bounds& box = partners_[c].mesh->bounds();
+    const Vec3 apart = (box.lower - around.upper).cwiseMax(around.lower - box.upper).cwiseMax(0.0);
+    return apart.norm() > std::max(settings.radius, settings.max_depth) + kRounding;
 }
 
 void DeviceColliderPairs::append(View<const ContactPair> found)
@@ -203,9 +231,12 @@ bool DeviceColliderPairs::mark_unseen(View<const Vec3> x)
 
 void DeviceColliderPairs::learn_sides(View<const Vec3> x)
 {
-    for (int c = 0; c < int(partners_.size()); ++c)
-        if (meshes_[c] && partners_[c].mesh->move_count() > 0)
-            detector_.learn_sides(x, meshes_[c]->there, c, sides_);
+    for (int c = 0; c < int(partners_.size()); ++c) {
+        if (!meshes_[c] || partners_[c].mesh->move_count() == 0)
+            continue;
+        follow_clearance(c, x);
+        detector_.learn_sides(x, meshes_[c]->there, c, sides_, meshes_[c]->clearance.view());
+    }
 }
 
 } // namespace toile

@@ -66,7 +66,9 @@ private:
     };
     void follow_partners();
     void follow_clearance(int c, View<const Vec3> x);
-    void look(View<const Vec3> x, double radius);
+    void look(View<const Vec3> x, double radius, const Surroundings* around);
+    void look_at(int c, View<const Vec3> x, const Surroundings* around, const DetectSettings& settings);
+    bool is_beyond(int c, const Surroundings& around, const DetectSettings& settings) const;
     void append(View<const ContactPair> found);
     void sort_planes();
 
@@ -89,7 +91,7 @@ private:
     DeviceArray<int> list_;               ///< [pairs] scratch
     SortArrays planes_;                   ///< [pairs] by vertex
     DeviceArray<int> plane_pairs_, first_plane_;
-    SumScratch<Largest> largest_;
+    SumScratch<Surroundings> surroundings_;
     SumScratch<int> count_;
     DeviceScratch scratch_;
 };

@@ -17,8 +17,8 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
       half_thickness_(space, "terms/half_thickness"), room_(space, "terms/room"),
       overlap_(space, "terms/overlap", positions.size()), pair_flags_(space, "terms/pair_flags"),
       flags_(space, "terms/flags"), leans_(space, "terms/leans", positions.size()),
-      list_(space, "terms/list"), near_(space, "terms/near"), near_here_(space, "terms/near_here"),
-      count_(space), limits_(space), least_(space), scratch_(space, "terms/scratch")
+      list_(space, "terms/list"), near_(space, positions.size()), count_(space), limits_(space),
+      least_(space), scratch_(space, "terms/scratch")
 {
     TOILE_ASSERT(int(tables_.cloth_of.size()) == positions.size());
     cloth_of_.upload(tables_.cloth_of);
@@ -107,22 +107,12 @@ double DeviceContactTerms::deepest()
     return std::max(0.0, -height.value);
 }
 
-NearTerms DeviceContactTerms::near(double margin) const
+NearTerms DeviceContactTerms::near(double margin, bool with_beside, StepField v)
 {
-    parallel_for(space_, "contact/flag_near", energy_.terms().size(), FlagNear{look(), margin, flags()});
-    const int count = list_flagged(space_, "contact/list_near", flags(), list_, count_, scratch_);
-    const View<ContactTerm> near = first_items(near_, count);
-    parallel_for(space_, "contact/copy_near", count,
-                 CopyListed<ContactTerm>{energy_.terms(), list_.view(), near});
-    if (near_here_.size() < near_.size())
-        near_here_.resize(near_.size());
-    if (count > 0) {
-        near_.download_first(near_here_.view().subview(0, count));
-        space_.synchronise();
-    }
-    const PinnedArray<ContactTerm>& here = near_here_;
-    return {here.view().subview(0, count), margin};
+    return near_.find(energy_.touches(), energy_.vertices().size(), margin, with_beside, x_, v);
 }
+
+void DeviceContactTerms::take(const NearTerms& near, View<const int> changed) { near_.take(near, changed); }
 
 void DeviceContactTerms::remember(Slip slip) { memory_.keep(energy_.terms(), rules_, slip, x_.there()); }
 

@@ -5,6 +5,7 @@
 #include "collision/device_contact_energy.h"
 #include "collision/device_contact_memory.h"
 #include "collision/device_look_kernels.h"
+#include "collision/device_near_terms.h"
 #include "core/backend/cuda/roomy.h"
 
 namespace toile {
@@ -29,7 +30,8 @@ public:
     bool has_left(double trust) override;
     void find_again() override { colliders_.find_again(x_.there()); }
     double deepest() override;
-    NearTerms near(double margin) const override;
+    NearTerms near(double margin, bool with_beside, StepField v) override;
+    void take(const NearTerms& near, View<const int> changed) override;
     void remember(Slip slip) override;
     int remembered() const override { return memory_.size(); }
     double end_step() override;
@@ -40,7 +42,7 @@ public:
 
 private:
     void mark_flagged(View<unsigned char> marks);
-    View<unsigned char> flags() const { return first_items(flags_, energy_.terms().size()); }
+    View<unsigned char> flags() { return first_items(flags_, energy_.terms().size()); }
     ContactLook look() const { return {energy_.terms(), x_.there()}; }
 
     const CudaSpace& space_;
@@ -56,17 +58,16 @@ private:
     DeviceArray<double> gap_, partner_friction_, cloth_friction_;
     DeviceArray<double> half_thickness_; ///< [vertices]
 
-    DeviceArray<double> room_, overlap_;       ///< see FindRoom
-    DeviceArray<unsigned char> pair_flags_;    ///< [pairs]
-    mutable DeviceArray<unsigned char> flags_; ///< [terms]
-    DeviceArray<unsigned char> leans_;         ///< [vertices]
-    mutable DeviceArray<int> list_;            ///< of what is flagged
-    mutable DeviceArray<ContactTerm> near_;
-    mutable PinnedArray<ContactTerm> near_here_;
-    mutable SumScratch<int> count_;
+    DeviceArray<double> room_, overlap_;    ///< see FindRoom
+    DeviceArray<unsigned char> pair_flags_; ///< [pairs]
+    DeviceArray<unsigned char> flags_;      ///< [terms]
+    DeviceArray<unsigned char> leans_;      ///< [vertices]
+    DeviceArray<int> list_;                 ///< of what is flagged
+    DeviceNearTerms near_;
+    SumScratch<int> count_;
     SumScratch<FrictionLimits> limits_;
     SumScratch<Least> least_;
-    mutable DeviceScratch scratch_;
+    DeviceScratch scratch_;
 };
 
 } // namespace toile

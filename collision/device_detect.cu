@@ -88,19 +88,20 @@ void DeviceContactDetector::move(View<const Vec3> x, View<const double> reach, c
 }
 
 View<const ContactPair> DeviceContactDetector::detect(const DeviceMeshCollider& mesh, int collider,
-                                                      const DeviceSideMemory* sides)
+                                                      const DeviceSideMemory* sides,
+                                                      View<const double> clearance)
 {
     do
-        search(mesh, collider, sides);
+        search(mesh, collider, sides, clearance);
     while (!settle());
     return pairs_.view().subview(count_ - last_count_, last_count_);
 }
 
 void DeviceContactDetector::search(const DeviceMeshCollider& mesh, int collider,
-                                   const DeviceSideMemory* sides)
+                                   const DeviceSideMemory* sides, View<const double> clearance)
 {
     clear_counts();
-    find_planes(mesh, collider, sides);
+    find_planes(mesh, collider, sides, clearance);
     if (settings_.face_vertex)
         find_sheets(mesh, collider);
     if (settings_.edge_edge)
@@ -166,7 +167,7 @@ void DeviceContactDetector::clear_counts()
 }
 
 void DeviceContactDetector::find_planes(const DeviceMeshCollider& mesh, int collider,
-                                        const DeviceSideMemory* sides)
+                                        const DeviceSideMemory* sides, View<const double> clearance)
 {
     parallel_for(space_, "collision/device_planes", x_.size(),
                  FindPlanes{search_of(mesh, collider),
@@ -175,7 +176,8 @@ void DeviceContactDetector::find_planes(const DeviceMeshCollider& mesh, int coll
                             nearest_of(collider),
                             {planes_.view(), x_.size()},
                             counts_of_vertices(),
-                            in_front_.view()},
+                            in_front_.view(),
+                            clearance},
                  kBlock);
 }
 
@@ -255,12 +257,13 @@ void DeviceContactDetector::report(const DeviceMeshCollider& mesh, int collider)
 }
 
 void DeviceContactDetector::learn_sides(View<const Vec3> x, const DeviceMeshCollider& mesh, int collider,
-                                        DeviceSideMemory& sides)
+                                        DeviceSideMemory& sides, View<const double> clearance)
 {
     TOILE_ASSERT(x.size() == order_.size());
-    parallel_for(space_, "collision/device_learn_sides", x.size(),
-                 LearnSides{x, mesh.search(), collider, order_.view(), nearest_of(collider), sides.sides()},
-                 kBlock);
+    parallel_for(
+        space_, "collision/device_learn_sides", x.size(),
+        LearnSides{x, mesh.search(), collider, order_.view(), nearest_of(collider), sides.sides(), clearance},
+        kBlock);
 }
 
 } // namespace toile

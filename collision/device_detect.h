@@ -49,17 +49,22 @@ public:
 
     /// Appends the pairs against one mesh as ContactDetector::detect does; returns those, on the device until
     /// the next call. Waits for their number. Where there was not enough room it grows and searches again.
-    /// @param sides  may be null
+    /// @param sides      may be null
+    /// @param clearance  [vertices] see Clearance::of, of the device [m]: vertices that are clear by more
+    /// than
+    ///                   they look for are not looked for; may be empty
     /// @throws DeviceError where the device has not the memory
     View<const ContactPair> detect(const DeviceMeshCollider& mesh, int collider,
-                                   const DeviceSideMemory* sides = nullptr);
+                                   const DeviceSideMemory* sides = nullptr,
+                                   View<const double> clearance = {});
 
     /// The same against a solid.
     View<const ContactPair> detect(const ShapeCollider& shape, int collider);
 
     /// detect() in two parts, of which the first can be recorded in a graph: enqueues a search with the room
     /// that there is.
-    void search(const DeviceMeshCollider& mesh, int collider, const DeviceSideMemory* sides = nullptr);
+    void search(const DeviceMeshCollider& mesh, int collider, const DeviceSideMemory* sides = nullptr,
+                View<const double> clearance = {});
     void search(const ShapeCollider& shape, int collider);
     /// Waits. False where there was not enough room: it has grown, and the same search, recorded anew, finds
     /// all pairs; else these are appended.
@@ -75,11 +80,13 @@ public:
 
     /// Enqueues: SideMemory::learn at positions x [vertices] [m] of the device, for a mesh that has ever
     /// moved.
+    /// @param clearance  as detect()'s, at x
     void learn_sides(View<const Vec3> x, const DeviceMeshCollider& mesh, int collider,
-                     DeviceSideMemory& sides);
+                     DeviceSideMemory& sides, View<const double> clearance = {});
 
     /// The parts of search(), for whoever times them.
-    void find_planes(const DeviceMeshCollider& mesh, int collider, const DeviceSideMemory* sides = nullptr);
+    void find_planes(const DeviceMeshCollider& mesh, int collider, const DeviceSideMemory* sides = nullptr,
+                     View<const double> clearance = {});
     void find_sheets(const DeviceMeshCollider& mesh, int collider);
     void find_ridges(const DeviceMeshCollider& mesh, int collider);
     void report(const DeviceMeshCollider& mesh, int collider);

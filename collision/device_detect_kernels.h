@@ -55,12 +55,13 @@ struct Slots {
 /// Finds the planes of a cloth vertex.
 struct FindPlanes {
     DeviceSearch search;
-    View<const int> order;         ///< [vertices] neighbours side by side
-    View<const VertexSides> sides; ///< [vertices] or empty: not known
-    View<int> nearest;             ///< [vertices] in: triangle that is probably near, or -1; out
-    Slots planes;                  ///< out: triangles
-    View<int> counts;              ///< [vertices] out
-    View<double> in_front;         ///< [vertices] out: see Clearance::learn [m]; negative: not looked for
+    View<const int> order;             ///< [vertices] neighbours side by side
+    View<const VertexSides> sides;     ///< [vertices] or empty: not known
+    View<int> nearest;                 ///< [vertices] in: triangle that is probably near, or -1; out
+    Slots planes;                      ///< out: triangles
+    View<int> counts;                  ///< [vertices] out
+    View<double> in_front;             ///< [vertices] out: see Clearance::learn [m]; negative: not looked for
+    View<const double> clearance = {}; ///< [vertices] see Clearance::of [m]; empty: not known
 
     TOILE_HD void operator()(int i) const
     {
@@ -69,7 +70,7 @@ struct FindPlanes {
         in_front[v] = -1.0;
         const Vec3& x = search.x[v];
         const double radius = search.radius_of(v);
-        if (radius < 0.0)
+        if (radius < 0.0 || (!clearance.empty() && clearance[v] > radius))
             return;
         const double reach = std::max(radius, search.max_depth);
         const SurfacePoint at = search.mesh.closest(x, reach, nearest[v]);

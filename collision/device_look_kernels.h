@@ -26,13 +26,6 @@ struct FlagSlid {
     TOILE_HD void operator()(int i) const { flags[i] = look.has_slid(i, rules, found_at, trust) ? 1 : 0; }
 };
 
-struct FlagNear {
-    ContactLook look;
-    double margin;             ///< [m]
-    View<unsigned char> flags; ///< [terms] out
-    TOILE_HD void operator()(int i) const { flags[i] = look.terms[i].gap(look.x) < margin ? 1 : 0; }
-};
-
 /// Marks the vertex of list k where one of its terms is flagged.
 struct MarkFlagged {
     ContactTouches touches;

@@ -13,14 +13,29 @@ namespace toile {
 /// The key of what belongs to no vertex: after all that do.
 inline constexpr std::uint64_t kNoVertex = ~std::uint64_t(0);
 
-/// ReachVertex, kept; the largest as a sum.
+/// Where vertices are and how far the farthest looks around, as a sum.
+struct Surroundings {
+    Vec3 lower = Vec3::Constant(std::numeric_limits<double>::max()); ///< [m]
+    Vec3 upper = -lower;                                             ///< [m]
+    double reach = 0.0;                                              ///< [m]
+
+    TOILE_HD Surroundings& operator+=(const Surroundings& other)
+    {
+        lower = lower.cwiseMin(other.lower);
+        upper = upper.cwiseMax(other.upper);
+        reach = std::max(reach, other.reach);
+        return *this;
+    }
+};
+
+/// ReachVertex, kept; the surroundings as a sum.
 struct KeepReach {
     ReachVertex rule;
     View<double> reach, wanted; ///< [vertices] out [m]
-    TOILE_HD Largest operator()(int v) const
+    TOILE_HD Surroundings operator()(int v) const
     {
         reach[v] = wanted[v] = rule(v);
-        return {reach[v]};
+        return {rule.found_at[v], rule.found_at[v], reach[v]};
     }
 };
 

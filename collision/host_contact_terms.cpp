@@ -146,7 +146,10 @@ double HostContactTerms::deepest()
     return depth;
 }
 
-NearTerms HostContactTerms::near(double) const { return {energy_.terms(), kPlenty}; }
+NearTerms HostContactTerms::near(double, bool, StepField v)
+{
+    return {energy_.terms(), kPlenty, {}, seen_.change_on_host(), v.change_on_host()};
+}
 
 void HostContactTerms::remember(Slip slip)
 {

@@ -20,14 +20,19 @@ public:
     void begin_step(const StepStart& start) override;
     void make(const ClothContact* between) override;
     bool empty() const override { return energy_.terms().empty(); }
-    void see(StepField x) override { x_ = x.host(); }
+    void see(StepField x) override
+    {
+        seen_ = x;
+        x_ = x.host();
+    }
     FrictionLimits look_at_forces() override;
     void adopt_forces() override;
     std::vector<unsigned char> leaning() override;
     bool has_left(double trust) override;
     void find_again() override;
     double deepest() override;
-    NearTerms near(double margin) const override;
+    NearTerms near(double margin, bool with_beside, StepField v) override;
+    void take(const NearTerms&, View<const int>) override {} // changed where they are
     void remember(Slip slip) override;
     int remembered() const override { return memory_.size(); }
     double end_step() override;
@@ -42,7 +47,8 @@ private:
     Settings settings_;
     ColliderPairs colliders_;
     ContactRules rules_; ///< of this step
-    View<const Vec3> x_;
+    StepField seen_{View<Vec3>()};
+    View<const Vec3> x_;                ///< of seen_
     std::vector<unsigned char> strays_; ///< [vertices] 1 where pairs with colliders are to be found again
     ContactMemory memory_;
 };

@@ -7,63 +7,55 @@
 
 namespace toile {
 
-/// Where vertices of near terms began, so that it is noticed when they have come so far that other terms may
-/// push. Does nothing where the near terms are all.
+/// What sweeps over near terms have moved, so that it is noticed when a vertex has come so far that other
+/// terms may push.
 class NearMoves {
 public:
-    /// @param x  [vertices] where the terms are near [m]
-    NearMoves(const NearTerms& near, View<const Vec3> x) : near_(near)
-    {
-        if (std::isinf(near.margin))
-            return;
-        start_.resize(4 * size_t(near.terms.size()));
-        for (int i = 0; i < near.terms.size(); ++i)
-            for (int k = 0; k < near.terms[i].pair.count(); ++k)
-                start_[4 * i + k] = x[near.terms[i].pair.vertex[k]];
-    }
+    explicit NearMoves(const NearTerms& near) : near_(near), has_moved_(near.terms.size(), 0) {}
 
-    /// True where a vertex of term i has moved by nearly half of the margin or more: the weights of cloth
-    /// with cloth sum to 2.
-    bool are_far(int i, View<const Vec3> x) const
+    /// Takes note that term i has moved its vertices in near.x. False where others may push them then: one
+    /// whose terms are not all here has gone by nearly half of the margin or more. The weights of cloth with
+    /// cloth sum to 2.
+    bool note(int i)
     {
-        if (start_.empty())
-            return false;
+        if (!has_moved_[i])
+            moved_.push_back(i);
+        has_moved_[i] = 1;
         const ContactPair& pair = near_.terms[i].pair;
-        bool is_far = false;
-        for (int k = 0; k < pair.count(); ++k)
-            is_far = is_far || !((x[pair.vertex[k]] - start_[4 * i + k]).norm() < 0.49 * near_.margin);
-        return is_far;
+        for (int k = 0; k < pair.count() && !near_.start.empty(); ++k)
+            if (!near_.start[i].has_all[k] &&
+                !((near_.x[pair.vertex[k]] - near_.start[i].x[k]).norm() < 0.49 * near_.margin))
+                return false;
+        return true;
     }
 
-    void undo(View<Vec3> x) const
-    {
-        for (int i = 0; !start_.empty() && i < near_.terms.size(); ++i)
-            for (int k = 0; k < near_.terms[i].pair.count(); ++k)
-                x[near_.terms[i].pair.vertex[k]] = start_[4 * i + k];
-    }
+    View<const int> moved() const { return moved_; } ///< terms
 
 private:
     const NearTerms& near_;
-    std::vector<Vec3> start_; ///< [4 x terms] by term and vertex [m]
+    std::vector<unsigned char> has_moved_; ///< [terms]
+    std::vector<int> moved_;
 };
 
-/// Sweeps over terms that push where they are pressed, moving x, as if over all of them: where a vertex comes
-/// so far that others might push it begins anew with more.
-/// @param sweeps  (near, moves, x) -> false where moves.are_far() after a push
+/// Sweeps over terms that push where they are pressed, moving near.x, as if over all of them: where a vertex
+/// comes so far that others might push it begins anew with more. First with the terms that are very near,
+/// which is enough where little is moved; then with those beside them, which may be several times as many.
+/// @param sweeps  (near, moves) -> false where moves.note() was after a push
 template <typename Sweeps>
 void Contact::sweep_near(StepField positions, const Sweeps& sweeps) const
 {
-    constexpr double kMargin = 0.002; // [m]
+    constexpr double kMargin = 0.0003; // [m]
     terms_->see(positions);
-    for (double margin = kMargin;; margin = margin < 1.0 ? 4.0 * margin : HUGE_VAL) {
-        const NearTerms near = terms_->near(margin);
+    double margin = kMargin;
+    for (bool with_beside = false;; with_beside = true) {
+        const NearTerms near = terms_->near(margin, with_beside);
         if (near.terms.empty())
             return;
-        const View<Vec3> x = positions.change_on_host();
-        const NearMoves moves(near, x);
-        if (sweeps(near, moves, x))
-            return;
-        moves.undo(x);
+        NearMoves moves(near);
+        if (sweeps(near, moves))
+            return terms_->take(near, moves.moved());
+        if (with_beside)
+            margin = margin < 1.0 ? 4.0 * margin : HUGE_VAL;
     }
 }
 

@@ -27,6 +27,11 @@ public:
         TOILE_ASSERT(mirrored_ != nullptr);
         return mirrored_->there();
     }
+    View<Vec3> change_there() const
+    {
+        TOILE_ASSERT(mirrored_ != nullptr);
+        return mirrored_->change_there();
+    }
 
 private:
     View<Vec3> of_host_;

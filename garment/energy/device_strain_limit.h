@@ -58,7 +58,7 @@ private:
     LimitedTriangles triangles() const;
     CountViolating count(View<const Vec3> x);
     int look(View<const Vec3> x);
-    int read_back();
+    int how_many();
     void find_largest(View<const Vec3> x, View<double> of_cloth);
     void record(View<Vec3> x, View<const double> inverse_masses);
     void enqueue_clamp(View<Vec3> x, View<const double> inverse_masses, int colour);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "collision/clearance_kernels.h"
 #include "collision/device_sides_kernels.h"
 #include "tests/collision/collider_cases.h"
 #include "tests/collision/contact_pairs_compared.h"
@@ -41,12 +42,22 @@ public:
 
     bool had_room() const { return most_ <= room_; }
 
+    /// What the last search has found in front of the mesh, to be left out by the next [m].
+    void learn_clearance()
+    {
+        clearance_.resize(in_front_.size(), 0.0);
+        parallel_for(kCpu, "test/learn_clearance", int(in_front_.size()),
+                     LearnClearance{in_front_, clearance_});
+    }
+    auto left_out() const { return std::count(in_front_.begin(), in_front_.end(), -1.0); }
+    const std::vector<VertexSides>& sides() const { return sides_; }
+
     void learn(View<const Vec3> x, const MovingMesh& moving, int collider)
     {
         const SurfaceOnCpu mesh(moving.triangles, moving.x_t1, {}, 0.0);
         nearest_.assign(x.size(), -1);
         parallel_for(kCpu, "test/learn", x.size(),
-                     LearnSides{x, search_of(mesh), collider, order_, nearest_, sides_});
+                     LearnSides{x, search_of(mesh), collider, order_, nearest_, sides_, clearance_});
     }
 
 private:
@@ -66,8 +77,9 @@ private:
         planes_ = {plane_items_, vertices};
         plane_counts_.resize(vertices);
         in_front_.resize(vertices);
-        parallel_for(kCpu, "test/planes", vertices,
-                     FindPlanes{search, order_, sides_, nearest_, planes_, plane_counts_, in_front_});
+        parallel_for(
+            kCpu, "test/planes", vertices,
+            FindPlanes{search, order_, sides_, nearest_, planes_, plane_counts_, in_front_, clearance_});
         find_sheets(search, cloth);
         find_ridges(search, cloth);
     }
@@ -126,7 +138,6 @@ private:
     std::vector<ContactPair> report(const DeviceSearch& search, const SurfaceOnCpu& cloth)
     {
         std::vector<int> counts = plane_counts_;
-        std::vector<double> in_front_;
         counts.insert(counts.end(), sheet_counts_.begin(), sheet_counts_.end());
         counts.insert(counts.end(), ridge_counts_.begin(), ridge_counts_.end());
         counts.push_back(0);
@@ -153,7 +164,7 @@ private:
     std::vector<VertexSides> sides_;
     std::vector<int> plane_items_, sheet_items_, ridge_items_, sorted_sheets_;
     std::vector<int> plane_counts_, sheet_counts_, ridge_counts_;
-    std::vector<double> in_front_;
+    std::vector<double> in_front_, clearance_;
     Slots planes_, sheets_, ridges_;
 };
 
@@ -215,6 +226,26 @@ TEST(DeviceDetectKernels, FindFewerPairsWhereTheyHaveNotTheRoom)
               with.detect(made.cloth.positions, made, 3).size());
     EXPECT_TRUE(with.had_room());
     EXPECT_FALSE(without.had_room());
+}
+
+TEST(DeviceDetectKernels, LeaveOutWhatIsKnownToBeClear)
+{
+    Random random(57);
+    ColliderCase made = test::around_a_ball(random, 40, 4);
+    add_reach(made, random);
+    DetectOnCpu plain(made.cloth), knowing(made.cloth);
+    const View<const Vec3> x = made.cloth.positions;
+    const std::vector<ContactPair> expected = plain.detect(x, made, 3);
+    knowing.detect(x, made, 3);
+    const auto first = knowing.left_out();
+    knowing.learn_clearance();
+    EXPECT_TRUE(test::are_same_bits(expected, knowing.detect(x, made, 3)));
+    EXPECT_GT(knowing.left_out(), first + 100);
+    plain.learn(x, made.mesh, 3);
+    knowing.learn(x, made.mesh, 3);
+    for (size_t v = 0; v < plain.sides().size(); ++v)
+        for (int k = 0; k < kMostSides; ++k)
+            EXPECT_EQ(plain.sides()[v][k].triangle, knowing.sides()[v][k].triangle);
 }
 
 TEST(DeviceDetectKernels, FindNothingInNothing)

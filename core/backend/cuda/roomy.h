@@ -14,5 +14,12 @@ View<T> first_items(DeviceArray<T>& array, int count)
         array.resize(count + count / 4);
     return array.view().subview(0, count);
 }
+template <typename T>
+View<T> first_items(PinnedArray<T>& array, int count)
+{
+    if (array.size() < count)
+        array.resize(count + count / 4);
+    return array.view().subview(0, count);
+}
 
 } // namespace toile

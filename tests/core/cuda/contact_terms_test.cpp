@@ -265,15 +265,65 @@ TEST_F(DeviceContactTermsTest, TellsWhichTermsAreNear)
     there.begin_step(board.begin(made));
     there.make(nullptr);
     there.see(board.found);
+    std::vector<Vec3> velocities;
+    for (size_t v = 0; v < made.x.size(); ++v)
+        velocities.emplace_back(double(v), 2.0, -1.0);
+    OnBoard::fill(board.v, velocities);
     const std::vector<ContactTerm> all = downloaded(there);
     for (const double margin : {0.0, 0.001, 1.0}) {
-        std::vector<ContactPair> expected, found;
+        std::vector<unsigned char> has_near(made.x.size(), 0);
         for (const ContactTerm& term : all)
-            if (term.gap(made.found) < margin)
+            for (int k = 0; term.gap(made.found) < margin && k < term.pair.count(); ++k)
+                has_near[term.pair.vertex[k]] = 1;
+        std::vector<ContactPair> expected, found;
+        for (const ContactTerm& term : all) {
+            bool is_expected = false;
+            for (int k = 0; k < term.pair.count(); ++k)
+                is_expected = is_expected || has_near[term.pair.vertex[k]];
+            if (is_expected)
                 expected.push_back(term.pair);
-        for (const ContactTerm& term : there.near(margin).terms)
-            found.push_back(term.pair);
+        }
+        const NearTerms near = there.near(margin, true, board.v);
+        for (int i = 0; i < near.terms.size(); ++i) {
+            const ContactPair& pair = near.terms[i].pair;
+            found.push_back(pair);
+            for (int k = 0; k < pair.count(); ++k) {
+                const int v = pair.vertex[k];
+                EXPECT_EQ(near.start[i].has_all[k], has_near[v]);
+                EXPECT_EQ(near.start[i].x[k], made.found[v]);
+                EXPECT_EQ(near.x[v], made.found[v]);
+                EXPECT_EQ(near.v[v], velocities[v]);
+            }
+        }
         expect_same(expected, found, made.x, "near");
+    }
+}
+
+TEST_F(DeviceContactTermsTest, TakeBackWhatIsMovedOfNearOnes)
+{
+    Dressed made;
+    DeviceContactTerms there(space(), made.mesh.triangles, made.x, made.cloths, made.partners,
+                             made.settings());
+    OnBoard board(space(), int(made.x.size()));
+    made.advance();
+    there.begin_step(board.begin(made));
+    there.make(nullptr);
+    there.see(board.found);
+    OnBoard::fill(board.v, std::vector<Vec3>(made.x.size(), Vec3(0.1, 0.0, 0.0)));
+    const NearTerms near = there.near(0.0, false, board.v);
+    ASSERT_GT(near.terms.size(), 10);
+    std::vector<Vec3> x = made.found, v(made.x.size(), Vec3(0.1, 0.0, 0.0));
+    std::vector<int> changed;
+    for (int i = 0; i < near.terms.size(); i += 3) {
+        const int vertex = near.terms[i].pair.vertex[0];
+        x[vertex] = near.x[vertex] = Vec3(1.0, i, 2.0);
+        v[vertex] = near.v[vertex] = Vec3(3.0, 4.0, i);
+        changed.push_back(i);
+    }
+    there.take(near, changed);
+    for (size_t i = 0; i < x.size(); ++i) {
+        EXPECT_EQ(board.found.host()[i], x[i]);
+        EXPECT_EQ(board.v.host()[i], v[i]);
     }
 }
 
@@ -316,6 +366,34 @@ TEST_F(DeviceContactTermsTest, MoveClothAsOnTheCpu)
         EXPECT_NEAR(there.min_gap(), here.min_gap(), 1e-8);
         made.x = x;
     }
+}
+
+/// Far from a mesh and above a floor nothing is launched to look for pairs; come near, they are found.
+TEST_F(DeviceContactTermsTest, LookForNothingThatIsBeyondAllCloth)
+{
+    Dressed made;
+    const std::vector<Vec3> there = made.x;
+    DeviceContactTerms terms(space(), made.mesh.triangles, made.x, made.cloths, made.partners,
+                             made.settings());
+    OnBoard board(space(), int(made.x.size()));
+    const auto begin_at = [&](const Vec3& offset, Stages& stages) {
+        const Stages::Activate activate(stages);
+        made.x = there;
+        for (Vec3& v : made.x)
+            v += offset;
+        made.advance();
+        terms.begin_step(board.begin(made));
+        terms.make(nullptr);
+    };
+    Stages far, near;
+    begin_at(Vec3(0.0, 5.0, 0.0), far);
+    EXPECT_EQ(far.calls("collision/device_planes"), 0);
+    EXPECT_EQ(far.calls("collision/device_count_shape"), 0);
+    EXPECT_TRUE(terms.empty());
+    begin_at(Vec3(0.0, 0.0, 0.0), near);
+    EXPECT_GT(near.calls("collision/device_planes"), 0);
+    EXPECT_GT(near.calls("collision/device_count_shape"), 3);
+    EXPECT_FALSE(terms.empty());
 }
 
 /// Nothing near, nothing there, and a mesh that stands still.
