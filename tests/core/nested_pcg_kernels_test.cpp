@@ -93,49 +93,71 @@ std::vector<Vec3> random_forces()
 }
 
 /// Iterations as a GPU does them.
-PcgScalars iterate(const Chain& chain, View<const Vec3> b, int iterations, std::vector<Vec3>& x,
-                   const Pcg::Settings& settings = {.tolerance = 0.0, .max_iterations = 100})
-{
-    std::vector<std::vector<PaddedVec3>> field(6, std::vector<PaddedVec3>(kCount, PaddedVec3(0.0F)));
-    x.resize(kCount);
-    std::vector<Vec3> product(kPressing), scaled(kCount), solved(kCount);
-    std::vector<PcgScalars> scalars(1);
-    const PcgFields fields{x, field[0], field[1], field[2], field[3], field[4], field[5], scaled, solved};
-    for (int i = 0; i < kCount; ++i)
-        BeginPcg{b, fields, chain.blocks_inverse(), scalars}(i);
-    for (int k = 0; k < iterations; ++k) {
-        Chain::solve(fields.scaled, fields.solved);
+class Iterations {
+public:
+    Iterations(const Chain& chain, View<const Vec3> b, const Pcg::Settings& settings = kEndless)
+        : chain_(chain), settings_(settings)
+    {
         for (int i = 0; i < kCount; ++i)
-            FinishPrecondition{fields, chain.blocks_inverse()}(i);
-        for (int l = 0; l < kPressing; ++l)
-            product[l] = chain.blocks[l] * unpadded(fields.z[chain.vertices[l]]);
-        PcgSums sums;
-        for (int i = 0; i < kCount; ++i)
-            sums += MultiplySystem{fields, chain.rows(), chain.list_of, product}(i);
-        FindStep{scalars, settings}(sums);
-        for (int i = 0; i < kCount; ++i)
-            TakeStep{fields, chain.blocks_inverse(), scalars}(i);
+            BeginPcg{b, fields(), chain_.blocks_inverse(), scalars_}(i);
     }
-    return scalars[0];
-}
+
+    void take(int count)
+    {
+        const PcgFields fields = this->fields();
+        for (int k = 0; k < count; ++k) {
+            Chain::solve(fields.scaled, fields.solved);
+            for (int i = 0; i < kCount; ++i)
+                FinishPrecondition{fields, chain_.blocks_inverse()}(i);
+            for (int l = 0; l < kPressing; ++l)
+                product_[l] = chain_.blocks[l] * unpadded(fields.z[chain_.vertices[l]]);
+            PcgSums sums;
+            for (int i = 0; i < kCount; ++i)
+                sums += MultiplySystem{fields, chain_.rows(), chain_.list_of, product_}(i);
+            FindStep{scalars_, settings_}(sums);
+            for (int i = 0; i < kCount; ++i)
+                TakeStep{fields, chain_.blocks_inverse(), scalars_}(i);
+        }
+    }
+
+    const std::vector<Vec3>& x() const { return x_; }
+    const PcgScalars& scalars() const { return scalars_[0]; }
+
+private:
+    static constexpr Pcg::Settings kEndless{.tolerance = 0.0, .max_iterations = 100};
+    using Field = std::vector<PaddedVec3>;
+
+    PcgFields fields()
+    {
+        return {x_, field_[0], field_[1], field_[2], field_[3], field_[4], field_[5], scaled_, solved_};
+    }
+
+    const Chain& chain_;
+    Pcg::Settings settings_;
+    std::vector<Field> field_ = std::vector<Field>(6, Field(kCount, PaddedVec3(0.0F)));
+    std::vector<Vec3> x_ = std::vector<Vec3>(kCount), scaled_ = x_, solved_ = x_;
+    std::vector<Vec3> product_ = std::vector<Vec3>(kPressing);
+    std::vector<PcgScalars> scalars_ = std::vector<PcgScalars>(1);
+};
 
 TEST(NestedPcgKernels, TakeTheIterationsOfPcg)
 {
     const Chain chain;
     const std::vector<Vec3> b = random_forces();
     for (const int iterations : {1, 2, 5, 9}) {
-        std::vector<Vec3> expected(kCount), x;
+        std::vector<Vec3> expected(kCount);
         Pcg pcg;
         const Pcg::Outcome outcome =
             pcg.solve([&](View<const Vec3> p, View<Vec3> out) { chain.multiply(p, out); },
                       [&](View<const Vec3> r, View<Vec3> z) { chain.precondition(r, z); }, b, expected,
                       {.tolerance = 0.0, .max_iterations = iterations, .is_flexible = true});
-        const PcgScalars found = iterate(chain, b, iterations, x);
+        Iterations solve(chain, b);
+        solve.take(iterations);
         for (int i = 0; i < kCount; ++i)
-            EXPECT_LT((x[i] - expected[i]).norm(), 1e-6) << i;
-        EXPECT_NEAR(found.residual, outcome.residual, 1e-6);
-        EXPECT_EQ(found.iterations, iterations);
-        EXPECT_GT(found.gain, 0.0);
+            EXPECT_LT((solve.x()[i] - expected[i]).norm(), 1e-6) << i;
+        EXPECT_NEAR(solve.scalars().residual, outcome.residual, 1e-6);
+        EXPECT_EQ(solve.scalars().iterations, iterations);
+        EXPECT_GT(solve.scalars().gain, 0.0);
     }
 }
 
@@ -143,12 +165,14 @@ TEST(NestedPcgKernels, GainsAddUpToWhatTheQuadraticLoses)
 {
     const Chain chain;
     const std::vector<Vec3> b = random_forces();
+    std::vector<Vec3> product(kCount);
+    Iterations solve(chain, b);
     double gain = 0.0;
     for (int k = 1; k <= 6; ++k) {
-        std::vector<Vec3> x, product(kCount);
-        gain += iterate(chain, b, k, x).gain;
-        chain.multiply(x, product);
-        const double value = 0.5 * dot(x, product) - dot(b, x);
+        solve.take(1);
+        gain += solve.scalars().gain;
+        chain.multiply(solve.x(), product);
+        const double value = 0.5 * dot(solve.x(), product) - dot(b, solve.x());
         EXPECT_NEAR(value, -0.5 * gain, 1e-6 * gain) << k;
     }
 }
@@ -161,12 +185,16 @@ TEST(NestedPcgKernels, ChangeNothingPastTheEnd)
          {Pcg::Settings{.tolerance = 0.0, .max_iterations = 3},
           Pcg::Settings{.tolerance = 0.1, .max_iterations = 100},
           Pcg::Settings{.tolerance = 0.0, .max_iterations = 100, .least_gain = 0.5}}) {
-        std::vector<Vec3> expected, x;
-        const int last = iterate(chain, b, 30, expected, settings).iterations;
+        Iterations solve(chain, b, settings);
+        int last = 0;
+        for (; !solve.scalars().is_over && last < 20; ++last)
+            solve.take(1);
         ASSERT_LT(last, 20);
-        EXPECT_FALSE(iterate(chain, b, last - 1, x, settings).is_over);
-        EXPECT_TRUE(iterate(chain, b, last, x, settings).is_over);
-        EXPECT_EQ(x, expected);
+        EXPECT_EQ(solve.scalars().iterations, last);
+        const std::vector<Vec3> x = solve.x();
+        solve.take(20);
+        EXPECT_EQ(solve.x(), x);
+        EXPECT_EQ(solve.scalars().iterations, last);
     }
 }
 
@@ -174,9 +202,10 @@ TEST(NestedPcgKernels, StandStillWhereNothingIsAsked)
 {
     const Chain chain;
     const std::vector<Vec3> nothing(kCount, Vec3::Zero());
-    std::vector<Vec3> x;
-    EXPECT_EQ(iterate(chain, nothing, 2, x).iterations, 0);
-    EXPECT_EQ(x, nothing);
+    Iterations solve(chain, nothing);
+    solve.take(2);
+    EXPECT_EQ(solve.scalars().iterations, 0);
+    EXPECT_EQ(solve.x(), nothing);
 }
 
 } // namespace
