@@ -206,13 +206,10 @@ private:
     TOILE_HD int count_from(int first) const { return moments.nodes_of(level, first, 1 << levels); }
 };
 
-/// Second pass by a team per leaf: a thread has half of the eight targets, four numbers as it loads them at
-/// once, and every so many-th entry of the lists. Teams after those of the leaves copy x = b where the table
-/// knows nothing: at fixed nodes.
+/// Second pass by a team per leaf: its threads share the lists, and have all targets each. Teams after those
+/// of the leaves copy x = b where the table knows nothing: at fixed nodes.
 template <int Rank>
 struct GatherLeafByTeam {
-    static constexpr int kWidth = PackedView::kHalf, kThreadsPerEntry = KernelView::kTargets / kWidth;
-
     PackedView packed;
     KernelView rest;                ///< entries that are not packed
     View<const PaddedVec3> sources; ///< [bodies * slots]
@@ -239,23 +236,24 @@ struct GatherLeafByTeam {
         }
         const int leaves = nodes.size() / ClusterTree::kLeaf, body = k / leaves, leaf = k % leaves;
         const int clusters = moments.size() / first.size();
-        const int half = team.thread % kThreadsPerEntry, group = team.thread / kThreadsPerEntry;
-        constexpr int kGroups = Team::kThreads / kThreadsPerEntry;
         const auto own_sources = sources.subview(body * nodes.size(), nodes.size());
         const auto own_moments = moments.subview(body * clusters, clusters);
         PackedSum<Rank> bytes;
-        bytes.add(packed, own_sources, own_moments, leaf, {half, group, kGroups});
-        LeafSum<Rank, Floats<kWidth>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
-        sum.add(rest, own_sources, own_moments, leaf, {half * kWidth, group, kGroups});
-        for (int a = 0; a < 3; ++a)
-            for (int t = 0; t < kWidth; ++t)
-                sum.axis[a].value[t] = team.sum(kThreadsPerEntry, sum.axis[a][t]);
+        bytes.add(packed, own_sources, own_moments, leaf, team.thread, Team::kThreads);
+        LeafSum<Rank, Floats<KernelView::kTargets>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
+        sum.add(rest, own_sources, own_moments, leaf, {0, team.thread, Team::kThreads});
 
-        // All threads of a target hold its sums; the first group writes.
-        for (int t = 0; t < kWidth && group == 0 && is_own; ++t)
-            if (const int v = nodes[leaf * ClusterTree::kLeaf + half * kWidth + t]; v >= 0)
-                x[first[body] + v] =
-                    Vec3(double(sum.axis[0][t]), double(sum.axis[1][t]), double(sum.axis[2][t]));
+        // Thread 3 t + a gets and writes axis a of target t.
+        float numbers[3 * KernelView::kTargets];
+        for (int t = 0; t < KernelView::kTargets; ++t)
+            for (int a = 0; a < 3; ++a)
+                numbers[3 * t + a] = sum.axis[a][t];
+        const float own = team.sum_each(numbers);
+        const int target = team.thread / 3;
+        if (target >= KernelView::kTargets || !is_own)
+            return;
+        if (const int v = nodes[leaf * ClusterTree::kLeaf + target]; v >= 0)
+            x[first[body] + v][team.thread % 3] = double(own);
     }
 
 private:
