@@ -26,23 +26,35 @@ struct MomentsOfBodies {
         return left < most ? left : most;
     }
 
-    /// Climbs `levels` levels from clusters [first, first + count) of `level`, whose moments are in
-    /// block.memory [count * Rank], to their common ancestors: children before parents, a thread for
-    /// every function of a cluster, so at most 2 kThreads / Rank clusters. What it takes of the basis is
-    /// loaded before the climb begins: level by level it would be waited for.
-    template <int Levels, typename Block>
-    TOILE_HD void climb(const Block& block, int body, int level, int first, int count, int levels) const
+    /// What a thread takes of the basis where its block climbs: loaded before that begins, since level by
+    /// level it would be waited for.
+    template <int Levels>
+    struct Transfers {
+        float of[Levels][2 * Rank];
+    };
+    template <int Levels>
+    TOILE_HD Transfers<Levels> transfers(int thread, int level, int first, int count, int levels) const
     {
-        const int c = block.thread / Rank, r = block.thread % Rank;
-        float transfers[Levels][2 * Rank] = {};
+        const int c = thread / Rank, r = thread % Rank;
+        Transfers<Levels> own = {};
         for (int k = 0; k < Levels; ++k)
             for (int child = 0; child < 2; ++child)
                 if (k < levels && 2 * c + child < level_size(count, k)) {
                     const int id = basis.first_of_level[level + k] + (first >> k) + 2 * c + child;
                     for (int s = 0; s < Rank; ++s)
-                        transfers[k][child * Rank + s] = basis.transfers[(id * Rank + s) * Rank + r];
+                        own.of[k][child * Rank + s] = basis.transfers[(id * Rank + s) * Rank + r];
                 }
+        return own;
+    }
 
+    /// Climbs `levels` levels from clusters [first, first + count) of `level`, whose moments are in
+    /// block.memory [count * Rank], to their common ancestors: children before parents, a thread for
+    /// every function of a cluster, so at most 2 kThreads / Rank clusters.
+    template <int Levels, typename Block>
+    TOILE_HD void climb(const Block& block, int body, int level, int first, int count, int levels,
+                        const Transfers<Levels>& transfers) const
+    {
+        const int c = block.thread / Rank, r = block.thread % Rank;
         auto* below = static_cast<PaddedVec3*>(block.memory);
         for (int k = 0; k < Levels; ++k) {
             if (k == levels)
@@ -53,7 +65,7 @@ struct MomentsOfBodies {
                 PaddedVec3 sum(0.0F);
                 for (int s = 0; s < 2 * Rank; ++s)
                     if (2 * c + s / Rank < children)
-                        sum += transfers[k][s] * below[2 * c * Rank + s];
+                        sum += transfers.of[k][s] * below[2 * c * Rank + s];
                 above[c * Rank + r] = sum;
                 of(body, level + k + 1, (first >> (k + 1)) + c)[r] = sum;
             }
@@ -80,20 +92,47 @@ struct ClimbFromLeaves {
 
     TOILE_HD int blocks_of_body() const { return (moments.basis.leaf_count + kLeaves - 1) / kLeaves; }
 
+    /// What no launch changes: leaves of a block, a thread's slot and node, its weights.
+    struct Early {
+        int body, first_leaf, leaves, slot;
+        bool exists;
+        int node; ///< among those of all bodies, -1 where padded
+        float weights[Rank];
+        typename MomentsOfBodies<Rank>::template Transfers<kLevels> transfers;
+    };
+    template <typename Block>
+    TOILE_HD Early early(int k, const Block& block) const
+    {
+        Early own;
+        own.body = k / blocks_of_body();
+        own.first_leaf = k % blocks_of_body() * kLeaves;
+        own.leaves = moments.nodes_of(0, own.first_leaf, kLeaves);
+        own.slot = own.first_leaf * ClusterTree::kLeaf + block.thread;
+        own.exists = block.thread < own.leaves * ClusterTree::kLeaf;
+        const int v = own.exists ? nodes[own.slot] : -1;
+        own.node = v >= 0 ? first[own.body] + v : -1;
+        for (int r = 0; r < Rank; ++r)
+            own.weights[r] = own.exists ? moments.basis.leaves[own.slot * Rank + r] : 0.0F;
+        own.transfers =
+            moments.template transfers<kLevels>(block.thread, 0, own.first_leaf, own.leaves, levels());
+        return own;
+    }
+
     template <typename Block>
     TOILE_HD void operator()(int k, const Block& block) const
     {
-        const int body = k / blocks_of_body(), first_leaf = k % blocks_of_body() * kLeaves;
-        const int leaves = moments.nodes_of(0, first_leaf, kLeaves);
-        const int slot = first_leaf * ClusterTree::kLeaf + block.thread;
-        const bool exists = block.thread < leaves * ClusterTree::kLeaf;
-        const int v = exists ? nodes[slot] : -1;
-        const PaddedVec3 source = v >= 0 ? padded(b[first[body] + v]) : PaddedVec3(0.0F);
-        if (exists)
-            sources[body * nodes.size() + slot] = source;
-        gather_leaf(block, body, first_leaf, slot, exists, source);
+        (*this)(k, block, early(k, block));
+    }
+    template <typename Block>
+    TOILE_HD void operator()(int, const Block& block, const Early& own) const
+    {
+        const PaddedVec3 source = own.node >= 0 ? padded(b[own.node]) : PaddedVec3(0.0F);
+        if (own.exists)
+            sources[own.body * nodes.size() + own.slot] = source;
+        gather_leaf(block, own, source);
         block.wait();
-        moments.template climb<kLevels>(block, body, 0, first_leaf, leaves, levels());
+        moments.template climb<kLevels>(block, own.body, 0, own.first_leaf, own.leaves, levels(),
+                                        own.transfers);
     }
 
     TOILE_HD int levels() const
@@ -106,19 +145,18 @@ struct ClimbFromLeaves {
 
 private:
     template <typename Block>
-    TOILE_HD void gather_leaf(const Block& block, int body, int first_leaf, int slot, bool exists,
-                              const PaddedVec3& source) const
+    TOILE_HD void gather_leaf(const Block& block, const Early& own, const PaddedVec3& source) const
     {
         const TeamOf<ClusterTree::kLeaf> team{block.thread % ClusterTree::kLeaf};
         const int leaf = block.thread / ClusterTree::kLeaf;
         auto* const of_leaves = static_cast<PaddedVec3*>(block.memory);
         for (int r = 0; r < Rank; ++r) {
-            PaddedVec3 moment = (exists ? moments.basis.leaves[slot * Rank + r] : 0.0F) * source;
+            PaddedVec3 moment = own.weights[r] * source;
             for (int a = 0; a < 3; ++a)
                 moment.value[a] = team.sum(1, moment[a]);
-            if (exists && team.thread == r) {
+            if (own.exists && team.thread == r) {
                 of_leaves[leaf * Rank + r] = moment;
-                moments.of(body, 0, first_leaf + leaf)[r] = moment;
+                moments.of(own.body, 0, own.first_leaf + leaf)[r] = moment;
             }
         }
     }
@@ -138,26 +176,40 @@ struct ClimbFromLevel {
 
     TOILE_HD int blocks_of_body() const { return level_size(moments.basis.leaf_count, level + levels); }
 
+    /// What no launch changes.
+    using Early = typename MomentsOfBodies<Rank>::template Transfers<kLevels>;
+    template <typename Block>
+    TOILE_HD Early early(int k, const Block& block) const
+    {
+        const int first = first_of(k);
+        return moments.template transfers<kLevels>(block.thread, level, first, count_from(first), levels);
+    }
+
     template <typename Block>
     TOILE_HD void operator()(int k, const Block& block) const
     {
-        const int body = k / blocks_of_body(), first = k % blocks_of_body() << levels;
-        const int count = moments.nodes_of(level, first, 1 << levels);
+        (*this)(k, block, early(k, block));
+    }
+    template <typename Block>
+    TOILE_HD void operator()(int k, const Block& block, const Early& transfers) const
+    {
+        const int body = k / blocks_of_body(), first = first_of(k), count = count_from(first);
         auto* const lowest = static_cast<PaddedVec3*>(block.memory);
         for (int item = block.thread; item < count * Rank; item += Block::kThreads)
             lowest[item] = moments.of(body, level, first)[item];
         block.wait();
-        moments.template climb<kLevels>(block, body, level, first, count, levels);
+        moments.template climb<kLevels>(block, body, level, first, count, levels, transfers);
     }
+
+private:
+    TOILE_HD int first_of(int k) const { return k % blocks_of_body() << levels; }
+    TOILE_HD int count_from(int first) const { return moments.nodes_of(level, first, 1 << levels); }
 };
 
-/// Second pass by a team per leaf: a thread has half of the eight targets, four numbers as it loads them at
-/// once, and every so many-th entry of the lists. Teams after those of the leaves copy x = b where the table
-/// knows nothing: at fixed nodes.
+/// Second pass by a team per leaf: its threads share the lists, and have all targets each. Teams after those
+/// of the leaves copy x = b where the table knows nothing: at fixed nodes.
 template <int Rank>
 struct GatherLeafByTeam {
-    static constexpr int kWidth = PackedView::kHalf, kThreadsPerEntry = KernelView::kTargets / kWidth;
-
     PackedView packed;
     KernelView rest;                ///< entries that are not packed
     View<const PaddedVec3> sources; ///< [bodies * slots]
@@ -184,23 +236,24 @@ struct GatherLeafByTeam {
         }
         const int leaves = nodes.size() / ClusterTree::kLeaf, body = k / leaves, leaf = k % leaves;
         const int clusters = moments.size() / first.size();
-        const int half = team.thread % kThreadsPerEntry, group = team.thread / kThreadsPerEntry;
-        constexpr int kGroups = Team::kThreads / kThreadsPerEntry;
         const auto own_sources = sources.subview(body * nodes.size(), nodes.size());
         const auto own_moments = moments.subview(body * clusters, clusters);
         PackedSum<Rank> bytes;
-        bytes.add(packed, own_sources, own_moments, leaf, {half, group, kGroups});
-        LeafSum<Rank, Floats<kWidth>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
-        sum.add(rest, own_sources, own_moments, leaf, {half * kWidth, group, kGroups});
-        for (int a = 0; a < 3; ++a)
-            for (int t = 0; t < kWidth; ++t)
-                sum.axis[a].value[t] = team.sum(kThreadsPerEntry, sum.axis[a][t]);
+        bytes.add(packed, own_sources, own_moments, leaf, team.thread, Team::kThreads);
+        LeafSum<Rank, Floats<KernelView::kTargets>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
+        sum.add(rest, own_sources, own_moments, leaf, {0, team.thread, Team::kThreads});
 
-        // All threads of a target hold its sums; the first group writes.
-        for (int t = 0; t < kWidth && group == 0 && is_own; ++t)
-            if (const int v = nodes[leaf * ClusterTree::kLeaf + half * kWidth + t]; v >= 0)
-                x[first[body] + v] =
-                    Vec3(double(sum.axis[0][t]), double(sum.axis[1][t]), double(sum.axis[2][t]));
+        // Thread 3 t + a gets and writes axis a of target t.
+        float numbers[3 * KernelView::kTargets];
+        for (int t = 0; t < KernelView::kTargets; ++t)
+            for (int a = 0; a < 3; ++a)
+                numbers[3 * t + a] = sum.axis[a][t];
+        const float own = team.sum_each(numbers);
+        const int target = team.thread / 3;
+        if (target >= KernelView::kTargets || !is_own)
+            return;
+        if (const int v = nodes[leaf * ClusterTree::kLeaf + target]; v >= 0)
+            x[first[body] + v][team.thread % 3] = double(own);
     }
 
 private:

@@ -52,7 +52,7 @@ void pack_near(const CudaSpace& space, const DeviceKernelTable& table, const Pac
     const EntryList list = EntryList::near(table.view());
     const Split split(space, list, rule);
     out.packed.near_leaf.resize(split.packed_count());
-    out.packed.near_codes.resize(split.packed_count() * PackedView::kNearWords);
+    out.packed.near_codes.resize(split.packed_count() * ClusterTree::kLeaf * PackedView::kWords);
     out.packed.near_scales.resize(split.packed_count() * 2);
     out.rest.near_leaf.resize(split.rest_count());
     out.rest.near_weights.resize(split.rest_count() * KernelTable::kNearWeights);
@@ -72,7 +72,7 @@ void pack_far(const CudaSpace& space, const DeviceKernelTable& table, const Pack
     const EntryList list = EntryList::far(table.view(), table.rank);
     const Split split(space, list, rule);
     out.packed.far_cluster.resize(split.packed_count());
-    out.packed.far_codes.resize(split.packed_count() * 2 * table.rank);
+    out.packed.far_codes.resize(split.packed_count() * table.rank * PackedView::kWords);
     out.packed.far_scales.resize(split.packed_count() * (table.rank + 1));
     out.rest.far_cluster.resize(split.rest_count());
     out.rest.far_weights.resize(split.rest_count() * table.rank * KernelTable::kTargets);

@@ -15,18 +15,16 @@ namespace toile {
 /// one scale. What a kernel has in common between neighbours, its largest part by far where a body is free or
 /// stiff, is in the base and so in single precision.
 struct PackedView {
-    static constexpr int kHalf = KernelView::kTargets / 2; ///< of targets, or of a leaf's sources
+    static constexpr int kWords = KernelView::kTargets / 4; ///< of four bytes, of the targets
 
     View<const int> near_first;           ///< [leaves + 1] into near_leaf
     View<const int> near_leaf;            ///< source leaves
-    View<const std::uint32_t> near_codes; ///< [near_leaf][half of sources][half of targets][kHalf sources]
+    View<const std::uint32_t> near_codes; ///< [near_leaf][source node][kWords]
     View<const float> near_scales;        ///< [near_leaf][2] base and scale [m/N]
     View<const int> far_first;            ///< [leaves + 1] into far_cluster
     View<const int> far_cluster;          ///< source clusters
-    View<const std::uint32_t> far_codes;  ///< [far_cluster][half of targets][rank]
+    View<const std::uint32_t> far_codes;  ///< [far_cluster][rank][kWords]
     View<const float> far_scales;         ///< [far_cluster][rank + 1] bases of the functions, scale [m/N]
-
-    static constexpr int kNearWords = 4 * kHalf;
 };
 
 /// Numbers that a thread loads at once.
@@ -43,59 +41,56 @@ struct alignas(sizeof(Number) * (Count % 4 == 0   ? 4
     }
 };
 
-/// What one of several adds up of a leaf from packed lists: a half of the targets, every `groups`-th entry
-/// from `group` on (near ones by halves of their sources).
-struct PackedPart {
-    int half = 0;
-    int group = 0;
-    int groups = 1;
-};
-
-/// LeafSum over packed lists, for half of the targets.
+/// LeafSum over packed lists: of all targets, from every `step`-th source node and function of a cluster.
+///
+/// A thread has one of those at a time, and its neighbour the next: what they load is side by side. Threads
+/// that take whole entries load three times as often from places far apart.
 template <int Rank>
 struct PackedSum {
-    using Targets = Floats<PackedView::kHalf>;
+    using Targets = Floats<KernelView::kTargets>;
     Targets axis[3] = {Targets(0.0F), Targets(0.0F), Targets(0.0F)}; ///< x, y and z of the targets
 
     /// @param sources  [slots] r
     /// @param moments  [Rank * clusters] m
+    /// @param begin    the first node or function of a list that is taken
     template <typename Vector>
     TOILE_HD void add(const PackedView& table, View<const Vector> sources, View<const Vector> moments,
-                      int leaf, const PackedPart& part)
+                      int leaf, int begin, int step)
     {
-        constexpr int kHalf = PackedView::kHalf;
+        constexpr int kNodes = ClusterTree::kLeaf;
         TOILE_UNROLL(2)
-        for (int e = 2 * table.near_first[leaf] + part.group; e < 2 * table.near_first[leaf + 1];
-             e += part.groups) {
-            const auto codes = LoadedNumbers<std::uint32_t, kHalf>::from(
-                table.near_codes.data() + std::size_t(2 * e + part.half) * kHalf);
-            const auto scale = LoadedNumbers<float, 2>::from(&table.near_scales[e / 2 * 2]);
-            const Vector* const values =
-                &sources[table.near_leaf[e / 2] * ClusterTree::kLeaf + e % 2 * kHalf];
-            for (int k = 0; k < kHalf; ++k)
-                add_weights(codes.number[k], scale.number[0], scale.number[1], values[k]);
+        for (int k = table.near_first[leaf] * kNodes + begin; k < table.near_first[leaf + 1] * kNodes;
+             k += step) {
+            const int entry = k / kNodes;
+            const auto scale = LoadedNumbers<float, 2>::from(&table.near_scales[2 * entry]);
+            add_weights(codes(table.near_codes, k), scale.number[0], scale.number[1],
+                        sources[table.near_leaf[entry] * kNodes + k % kNodes]);
         }
-        TOILE_UNROLL(2)
-        for (int e = table.far_first[leaf] + part.group; e < table.far_first[leaf + 1]; e += part.groups) {
-            const auto codes = LoadedNumbers<std::uint32_t, Rank>::from(
-                table.far_codes.data() + std::size_t(2 * e + part.half) * Rank);
-            const auto scale =
-                LoadedNumbers<float, Rank + 1>::from(table.far_scales.data() + std::size_t(e) * (Rank + 1));
-            const Vector* const values = &moments[table.far_cluster[e] * Rank];
-            for (int k = 0; k < Rank; ++k)
-                add_weights(codes.number[k], scale.number[k], scale.number[Rank], values[k]);
+        TOILE_UNROLL(4)
+        for (int k = table.far_first[leaf] * Rank + begin; k < table.far_first[leaf + 1] * Rank; k += step) {
+            const int entry = k / Rank, function = k % Rank;
+            const float* const scales = table.far_scales.data() + std::size_t(entry) * (Rank + 1);
+            add_weights(codes(table.far_codes, k), scales[function], scales[Rank],
+                        moments[table.far_cluster[entry] * Rank + function]);
         }
         for (int a = 0; a < 3; ++a)
             axis[a] += Targets(common_[a]);
     }
 
 private:
+    using Codes = LoadedNumbers<std::uint32_t, PackedView::kWords>;
+
+    TOILE_HD static Codes codes(const View<const std::uint32_t>& all, int k)
+    {
+        return Codes::from(all.data() + std::size_t(k) * PackedView::kWords);
+    }
+
     template <typename Vector>
-    TOILE_HD void add_weights(std::uint32_t codes, float base, float scale, const Vector& value)
+    TOILE_HD void add_weights(const Codes& codes, float base, float scale, const Vector& value)
     {
         Targets code(0.0F);
-        for (int t = 0; t < PackedView::kHalf; ++t)
-            code.value[t] = byte_minus_128(codes, t);
+        for (int t = 0; t < KernelView::kTargets; ++t)
+            code.value[t] = byte_minus_128(codes.number[t / 4], t % 4);
         for (int a = 0; a < 3; ++a) {
             axis[a] += code * (scale * value[a]);
             common_[a] += base * value[a];

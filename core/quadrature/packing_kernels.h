@@ -166,33 +166,29 @@ struct SplitEntry {
     }
 
 private:
-    static constexpr int kHalf = PackedView::kHalf, kTargets = KernelView::kTargets;
-
+    /// One base for all weights.
     TOILE_HD void pack_near(int e, int to) const
     {
         const EntryPacking packing = list.packing(e);
         const float base = packing.base(0);
         packed_scales[2 * to] = base;
         packed_scales[2 * to + 1] = packing.scale();
-        for (int source = 0; source < ClusterTree::kLeaf; ++source)
-            for (int half = 0; half < 2; ++half)
-                packed_codes[std::size_t(to) * PackedView::kNearWords +
-                             ((source / kHalf) * 2 + half) * kHalf + source % kHalf] =
-                    packing.codes(list.of(e) + source * kTargets + half * kHalf, base);
+        constexpr int kWords = ClusterTree::kLeaf * PackedView::kWords;
+        for (int word = 0; word < kWords; ++word)
+            packed_codes[to * kWords + word] = packing.codes(list.of(e) + 4 * word, base);
     }
 
+    /// A base for each function.
     TOILE_HD void pack_far(int e, int to) const
     {
         const EntryPacking packing = list.packing(e);
-        const int rank = list.rows;
+        const int rank = list.rows, words = rank * PackedView::kWords;
         packed_scales[to * (rank + 1) + rank] = packing.scale();
-        for (int r = 0; r < rank; ++r) {
-            const float base = packing.base(r);
-            packed_scales[to * (rank + 1) + r] = base;
-            for (int half = 0; half < 2; ++half)
-                packed_codes[(2 * to + half) * rank + r] =
-                    packing.codes(list.of(e) + r * kTargets + half * kHalf, base);
-        }
+        for (int r = 0; r < rank; ++r)
+            packed_scales[to * (rank + 1) + r] = packing.base(r);
+        for (int word = 0; word < words; ++word)
+            packed_codes[to * words + word] =
+                packing.codes(list.of(e) + 4 * word, packing.base(word / PackedView::kWords));
     }
 };
 

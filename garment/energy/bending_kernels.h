@@ -40,17 +40,40 @@ struct AddBending {
     View<Vec3> gradient;          ///< [vertices] added to [N]
     View<double> energy;          ///< [vertices] added to [J]
 
+    /// Where a thread's entries are, and the first of them: what no launch changes.
+    struct Early {
+        int begin, end;
+        RowEntry some[kAtOnce];
+    };
+    template <typename Team>
+    TOILE_HD Early early(int i, const Team& team, bool) const
+    {
+        const int slice = i / SlicedRows::kRows;
+        Early own{
+            first[slice] + i % SlicedRows::kRows * SlicedRows::kThreads + team.thread, first[slice + 1], {}};
+        load_some(i, own.begin, own.end, own.some);
+        return own;
+    }
+
     template <typename Team>
     TOILE_HD void operator()(int i, const Team& team, bool is_own) const
+    {
+        (*this)(i, team, is_own, early(i, team, is_own));
+    }
+    template <typename Team>
+    TOILE_HD void operator()(int i, const Team& team, bool is_own, const Early& own_entries) const
     {
         const bool writes = team.thread == 0 && is_own;
         const Vec3 here = x[i], before = writes ? gradient[i] : Vec3(0.0, 0.0, 0.0);
         const double energy_before = writes ? energy[i] : 0.0;
-        const int slice = i / SlicedRows::kRows, end = first[slice + 1];
         Vec3 sum(0.0, 0.0, 0.0);
-        for (int k = first[slice] + i % SlicedRows::kRows * SlicedRows::kThreads + team.thread; k < end;
-             k += kAtOnce * kWarp)
-            add_some(k, end, here, sum);
+        if (own_entries.begin < own_entries.end)
+            add_some(own_entries.some, here, sum);
+        for (int k = own_entries.begin + kAtOnce * kWarp; k < own_entries.end; k += kAtOnce * kWarp) {
+            RowEntry some[kAtOnce];
+            load_some(i, k, own_entries.end, some);
+            add_some(some, here, sum);
+        }
 
         const double own = team.sum(1, 0.5 * here.dot(sum)); // where digits cancel, before they are dropped
         for (int a = 0; a < 3; ++a)
@@ -62,15 +85,16 @@ struct AddBending {
     }
 
 private:
-    /// Entries k, k + kWarp and so on, all of which are loaded before any is waited for.
-    TOILE_HD void add_some(int k, int end, const Vec3& here, Vec3& sum) const
+    /// Entries k, k + kWarp and so on of row i, all of which are loaded before any is waited for.
+    TOILE_HD void load_some(int i, int k, int end, RowEntry (&some)[kAtOnce]) const
     {
-        RowEntry some[kAtOnce];
         for (int n = 0; n < kAtOnce; ++n) {
             const bool exists = k + n * kWarp < end;
-            some[n] = entries[exists ? k + n * kWarp : k];
-            some[n].value = exists ? some[n].value : 0.0F;
+            some[n] = exists ? entries[k + n * kWarp] : RowEntry{i, 0.0F};
         }
+    }
+    TOILE_HD void add_some(const RowEntry (&some)[kAtOnce], const Vec3& here, Vec3& sum) const
+    {
         for (const RowEntry& entry : some)
             sum += double(entry.value) * (x[entry.column] - here);
     }

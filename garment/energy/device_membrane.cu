@@ -55,6 +55,8 @@ void DeviceMembrane::upload()
 
 void DeviceMembrane::add_gradient(const DeviceEvaluation& at)
 {
+    if (triangles_.size() == 0)
+        return; // corners' early part counts on the launch before
     parallel_for(space_, "membrane/project", triangles_.size(),
                  ProjectMembraneTriangle<CornerPair>{at.x, triangles_.view(), rest_inv_.view(), area_.view(),
                                                      fabric_.view(), weights_.view(), corner_gradient_.view(),

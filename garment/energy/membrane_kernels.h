@@ -106,14 +106,24 @@ struct ProjectMembraneTriangle {
     View<Corners> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
     View<double> energy;           ///< [triangles] out: [J]
 
-    TOILE_HD void operator()(int t) const
+    /// What no launch changes.
+    struct Early {
+        Triangle tri;
+        Mat2 rest_inv;
+        double area;
+        MembraneWeights weights;
+    };
+    TOILE_HD Early early(int t) const { return {tri[t], rest_inv[t], area[t], weights[fabric[t]]}; }
+
+    TOILE_HD void operator()(int t) const { (*this)(t, early(t)); }
+    TOILE_HD void operator()(int t, const Early& own) const
     {
         Mat32 edges;
-        edges.col(0) = x[tri[t][1]] - x[tri[t][0]];
-        edges.col(1) = x[tri[t][2]] - x[tri[t][0]];
-        const Mat32 F = edges.lazyProduct(rest_inv[t]);
+        edges.col(0) = x[own.tri[1]] - x[own.tri[0]];
+        edges.col(1) = x[own.tri[2]] - x[own.tri[0]];
+        const Mat32 F = edges.lazyProduct(own.rest_inv);
         const MembraneResponse<double> response =
-            project_membrane<double>(F, rest_inv[t], area[t], weights[fabric[t]]);
+            project_membrane<double>(F, own.rest_inv, own.area, own.weights);
         energy[t] = response.energy;
         corner_gradient[t] = response.corner_gradient;
     }

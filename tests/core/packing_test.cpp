@@ -45,7 +45,7 @@ struct SplitList {
     }
 };
 
-/// Quadrature with packed lists: moments and sums as on a GPU, one thread a leaf's half.
+/// Quadrature with packed lists: moments and sums as on a GPU, one thread a leaf.
 template <int Rank>
 class PackedQuadrature : public GlobalSolver {
 public:
@@ -53,8 +53,8 @@ public:
         : tables_(std::move(tables)), diagonal_(H.diagonal()),
           limits_(far_limits(tables_->tree, {diagonal_.data(), int(diagonal_.size())}, tolerance)),
           largest_(tables_->tree.leaf_count(), 0.0),
-          near_(EntryList::near(table()), rule(), true, PackedView::kNearWords, 2),
-          far_(EntryList::far(table(), Rank), rule(), false, 2 * Rank, Rank + 1)
+          near_(EntryList::near(table()), rule(), true, ClusterTree::kLeaf * PackedView::kWords, 2),
+          far_(EntryList::far(table(), Rank), rule(), false, Rank * PackedView::kWords, Rank + 1)
     {
     }
 
@@ -82,8 +82,7 @@ public:
         for (int slot = 0; slot < tree.nodes().size(); ++slot)
             sources.push_back(padded(value(slot)));
         for (int leaf = 0; leaf < tree.leaf_count(); ++leaf)
-            for (int half = 0; half < 2; ++half)
-                sum_half(leaf, half, sources, moments, x);
+            sum_leaf(leaf, sources, moments, x);
     }
 
 private:
@@ -97,19 +96,19 @@ private:
         return {limits_, largest_};
     }
 
-    void sum_half(int leaf, int half, View<const PaddedVec3> sources, View<const PaddedVec3> moments,
+    void sum_leaf(int leaf, View<const PaddedVec3> sources, View<const PaddedVec3> moments,
                   View<Vec3> x) const
     {
         PackedSum<Rank> bytes;
         bytes.add({near_.packed_first, near_.packed_source, near_.codes, near_.scales, far_.packed_first,
                    far_.packed_source, far_.codes, far_.scales},
-                  sources, moments, leaf, {half, 0, 1});
-        LeafSum<Rank, Floats<4>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
+                  sources, moments, leaf, 0, 1);
+        LeafSum<Rank, Floats<8>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
         sum.add({near_.rest_first, near_.rest_source, near_.rest_weights, far_.rest_first, far_.rest_source,
                  far_.rest_weights},
-                sources, moments, leaf, {4 * half, 0, 1});
-        for (int t = 0; t < 4; ++t)
-            if (const int v = tables_->tree.nodes()[8 * leaf + 4 * half + t]; v >= 0)
+                sources, moments, leaf, {});
+        for (int t = 0; t < 8; ++t)
+            if (const int v = tables_->tree.nodes()[8 * leaf + t]; v >= 0)
                 x[v] = Vec3(sum.axis[0][t], sum.axis[1][t], sum.axis[2][t]);
     }
 

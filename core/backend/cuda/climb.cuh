@@ -28,6 +28,7 @@ struct Climb {
 template <typename Kernel>
 __global__ void climb(int lowest, int begin, int end, int summit, const Kernel kernel)
 {
+    wait_for_turn();
     for (int level = begin; level < end; ++level) {
         const int count = Climb::nodes_below(summit - level);
         const int first = int(blockIdx.x) * count;
@@ -58,10 +59,11 @@ void parallel_climb(const CudaSpace& space, std::string_view name, int lowest,
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
     const int below = std::min(levels, Climb::kLevels + 1);
-    climb<<<block_count(lowest, Climb::nodes_below(Climb::kLevels)), Climb::kThreads, 0, space.stream()>>>(
-        lowest, 1, below, Climb::kLevels, kernel);
+    launch_kernel(space, climb<Kernel>, block_count(lowest, Climb::nodes_below(Climb::kLevels)),
+                  Climb::kThreads, 0, lowest, 1, below, Climb::kLevels, kernel);
     if (levels > below)
-        climb<<<1, Climb::kTopThreads, 0, space.stream()>>>(lowest, below, levels, levels - 1, kernel);
+        launch_kernel(space, climb<Kernel>, 1, Climb::kTopThreads, 0, lowest, below, levels, levels - 1,
+                      kernel);
 #endif
     launch.done();
 }

@@ -16,6 +16,7 @@
 
 #include "core/backend/cuda/array.h"
 #include "core/backend/cuda/device.h"
+#include "core/backend/cuda/launch.cuh"
 #include "core/backend/cuda/layout.h"
 #include "core/backend/cuda/sum_scratch.h"
 #include "core/backend/cuda/team.h"
@@ -45,7 +46,7 @@ __global__ void run_each(int count, const Kernel kernel)
 {
     const long i = long(blockIdx.x) * blockDim.x + threadIdx.x;
     if (i < count)
-        kernel(int(i));
+        run_in_turn(kernel, int(i));
 }
 
 /// The value of the thread whose number differs in the bits of `mask`.
@@ -75,6 +76,7 @@ __global__ void __launch_bounds__(kSumThreads, kSumBlocksAtOnce)
     alignas(T) __shared__ unsigned char memory[kWarps * sizeof(T)];
     T* const of_warp = reinterpret_cast<T*>(memory);
 
+    wait_for_turn();
     const int thread = int(threadIdx.x);
     const long first = long(blockIdx.x) * items;
     const long end = first + items < count ? first + items : count;
@@ -115,7 +117,7 @@ void parallel_for(const CudaSpace& space, std::string_view name, int count,
         return;
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-    run_each<<<block_count(count, block), block, 0, space.stream()>>>(count, kernel);
+    launch_kernel(space, run_each<Kernel>, block_count(count, block), block, 0, count, kernel);
 #endif
     launch.done();
 }
@@ -128,8 +130,8 @@ void launch_sum(const CudaSpace& space, std::string_view name, [[maybe_unused]] 
 {
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-    sum_blocks<<<std::max(block_count(count, items), 1), kSumThreads, 0, space.stream()>>>(count, items, zero,
-                                                                                           term, then);
+    launch_kernel(space, sum_blocks<T, Term, Then>, std::max(block_count(count, items), 1), kSumThreads, 0,
+                  count, items, zero, term, then);
 #endif
     launch.done();
 }

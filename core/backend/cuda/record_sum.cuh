@@ -82,8 +82,18 @@ __global__ void __launch_bounds__(kRecordThreads)
     __shared__ bool is_last;
     const int lane = int(threadIdx.x) % kWarp, warp = int(threadIdx.x) / kWarp;
     T record{};
-    for (long i = long(blockIdx.x) * kRecordThreads + threadIdx.x; i < count;
-         i += long(gridDim.x) * kRecordThreads)
+    long i = long(blockIdx.x) * kRecordThreads + threadIdx.x;
+    const long stride = long(gridDim.x) * kRecordThreads;
+    if constexpr (LoadsEarly<Term, int>) {
+        const auto own = term.early(int(i < count ? i : 0));
+        wait_for_turn();
+        if (i < count)
+            record = term(int(i), own);
+        i += stride;
+    } else {
+        wait_for_turn();
+    }
+    for (; i < count; i += stride)
         record += term(int(i));
     const double own = Lanes::of_block(Lanes::of_warp(record, lane), of_warps);
     if (warp == 0) {
@@ -131,8 +141,8 @@ void parallel_sum_record_then(const CudaSpace& space, std::string_view name, int
     [[maybe_unused]] const int blocks = std::clamp(block_count(count, kRecordThreads), 1, kRecordBlocks);
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-    sum_records<T><<<blocks, kRecordThreads, 0, space.stream()>>>(
-        count, term, then, scratch.block_sums.view().data(), scratch.finished.view().data());
+    launch_kernel(space, sum_records<T, Term, Then>, blocks, kRecordThreads, 0, count, term, then,
+                  scratch.block_sums.view().data(), scratch.finished.view().data());
 #endif
     launch.done();
 }

@@ -17,14 +17,15 @@ __global__ void run_teams(int count, const Kernel kernel)
 {
     // No thread leaves early: sums of a warp take all of its threads.
     const long item = (long(blockIdx.x) * blockDim.x + threadIdx.x) / Threads;
-    kernel(int(item < count ? item : count - 1), TeamOf<Threads>{int(threadIdx.x) % Threads}, item < count);
+    run_in_turn(kernel, int(item < count ? item : count - 1), TeamOf<Threads>{int(threadIdx.x) % Threads},
+                item < count);
 }
 
 template <int Threads, typename Kernel>
 __global__ void __launch_bounds__(Threads) run_blocks(const Kernel kernel)
 {
     extern __shared__ float4 memory[];
-    kernel(int(blockIdx.x), Block<Threads>{int(threadIdx.x), memory});
+    run_in_turn(kernel, int(blockIdx.x), Block<Threads>{int(threadIdx.x), memory});
 }
 
 #endif
@@ -43,7 +44,8 @@ void parallel_for_teams(const CudaSpace& space, std::string_view name, int count
         return;
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-    run_teams<Threads><<<block_count(count, block / Threads), block, 0, space.stream()>>>(count, kernel);
+    launch_kernel(space, run_teams<Threads, Kernel>, block_count(count, block / Threads), block, 0, count,
+                  kernel);
 #endif
     launch.done();
 }
@@ -61,7 +63,7 @@ void parallel_for_blocks(const CudaSpace& space, std::string_view name, [[maybe_
         return;
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-    run_blocks<Threads><<<count, Threads, shared_bytes, space.stream()>>>(kernel);
+    launch_kernel(space, run_blocks<Threads, Kernel>, count, Threads, shared_bytes, kernel);
 #endif
     launch.done();
 }

@@ -21,6 +21,7 @@ __global__ void __launch_bounds__(Kernel::kThreads, kTileBlocks)
     run_tiles(const __grid_constant__ Kernel kernel)
 {
     __shared__ typename Kernel::Stage stages[kTileStages];
+    wait_for_turn();
     const auto work = kernel.work(int(blockIdx.x), int(threadIdx.x));
     const int steps = work.steps();
     for (int step = 0; step < kTileStages - 1; ++step) {
@@ -60,7 +61,7 @@ void parallel_tiles(const CudaSpace& space, std::string_view name, int count,
         return;
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-    run_tiles<<<count, Kernel::kThreads, 0, space.stream()>>>(kernel);
+    launch_kernel(space, run_tiles<Kernel>, count, Kernel::kThreads, 0, kernel);
 #endif
     launch.done();
 }

@@ -54,49 +54,71 @@ struct DescentFields {
 struct MeasureTrial {
     DescentFields fields;
 
-    TOILE_HD TrialSums operator()(int i) const
+    /// All that vertex i has but z of the trial point, which the launch before finds: loaded before anything
+    /// is waited for, pairs that are not in use too.
+    struct Early {
+        Vec3 gradient, z, new_gradient;
+        PaddedVec3 direction, drive;
+        PaddedVec3 s[kHistory], w[kHistory], y[kHistory];
+        float mass;
+        bool is_fixed;
+        double value;
+    };
+    TOILE_HD Early early(int i) const
     {
-        // Everything is loaded before anything is waited for: pairs that are not in use too.
         const Descent& descent = fields.descent[0];
-        const Vec3 gradient = fields.here.gradient[i], z = fields.here.z[i];
-        const Vec3 new_gradient = fields.free_part(fields.trial.gradient, i);
-        const Vec3 new_z = fields.free_part(fields.trial.z, i);
-        const Vec3 d = unpadded(fields.direction[i]);
-        PaddedVec3 pairs[3][kHistory];
+        Early own{fields.here.gradient[i],
+                  fields.here.z[i],
+                  fields.free_part(fields.trial.gradient, i),
+                  fields.direction[i],
+                  padded(fields.drive[i]),
+                  {},
+                  {},
+                  {},
+                  float(fields.masses[i]),
+                  fields.fixed[i] != 0,
+                  fields.shares_of(i)};
         for (int j = 0; j < kHistory; ++j) {
             const int pair = fields.pair_of(descent.pairs.slot_of(j), i);
-            pairs[0][j] = fields.s[pair];
-            pairs[1][j] = fields.w[pair];
-            pairs[2][j] = fields.y[pair];
+            own.s[j] = fields.s[pair];
+            own.w[j] = fields.w[pair];
+            own.y[j] = fields.y[pair];
         }
+        return own;
+    }
 
+    TOILE_HD TrialSums operator()(int i) const { return (*this)(i, early(i)); }
+    TOILE_HD TrialSums operator()(int i, const Early& own) const
+    {
+        const Descent& descent = fields.descent[0];
+        const Vec3 trial_z = fields.trial.z[i], new_z = own.is_fixed ? Vec3(0.0, 0.0, 0.0) : trial_z;
         TrialSums sums;
-        sums.value = fields.shares_of(i);
+        sums.value = own.value;
         if (descent.action == Descent::Action::Start || descent.is_over)
             return sums;
-        sums.slope = gradient.dot(d);
+        const Vec3 d = unpadded(own.direction);
+        sums.slope = own.gradient.dot(d);
 
         // Products in single precision, as the pairs are; what cancels, y and w, has been subtracted before.
-        const float mass = float(fields.masses[i]);
-        const PaddedVec3 move = fields.direction[i], force = padded(gradient);
-        sums.largest_square = dot(move, move);
-        sums.error.move = double(mass) * sums.largest_square;
-        sums.error.force = dot(force, force) / double(mass);
-        sums.error.opposing = dot(force, padded(fields.drive[i]));
+        const PaddedVec3 force = padded(own.gradient);
+        sums.largest_square = dot(own.direction, own.direction);
+        sums.error.move = double(own.mass) * sums.largest_square;
+        sums.error.force = dot(force, force) / double(own.mass);
+        sums.error.opposing = dot(force, own.drive);
 
-        const PaddedVec3 s = padded(descent.search.step * d), y = padded(new_gradient - gradient);
-        const PaddedVec3 w = padded(new_z - z);
+        const PaddedVec3 s = padded(descent.search.step * d), y = padded(own.new_gradient - own.gradient);
+        const PaddedVec3 w = padded(new_z - own.z);
         PairProducts<kHistory>& products = sums.products;
         products.sy = dot(s, y);
         products.ss = dot(s, s);
         products.yy = dot(y, y);
         products.yw = dot(y, w);
-        products.sg = dot(s, padded(new_gradient));
+        products.sg = dot(s, padded(own.new_gradient));
         products.yz = dot(y, padded(new_z));
         for (int j = 0; j < kHistory; ++j) {
-            products.s_y[j] = dot(pairs[0][j], y);
-            products.y_w[j] = dot(pairs[1][j], y);
-            products.w_y[j] = dot(pairs[2][j], w);
+            products.s_y[j] = dot(own.s[j], y);
+            products.y_w[j] = dot(own.w[j], y);
+            products.w_y[j] = dot(own.y[j], w);
         }
         return sums;
     }
@@ -123,18 +145,36 @@ struct DecideOnTrial {
 struct TakeTrial {
     DescentFields fields;
 
-    TOILE_HD void operator()(int i) const
+    /// All that vertex i has, which is loaded while the launch before still decides; also what is seldom left
+    /// out. Pairs slot after slot: no address waits for what is decided.
+    struct Early {
+        Vec3 x, gradient, z, trial_x, trial_gradient, trial_z, prediction;
+        double mass;
+        PaddedVec3 s[kHistory], w[kHistory];
+    };
+    TOILE_HD Early early(int i) const
     {
-        // Everything is loaded before anything is waited for, also what is seldom left out.
+        Early own{fields.here.x[i],
+                  fields.here.gradient[i],
+                  fields.here.z[i],
+                  fields.trial.x[i],
+                  fields.free_part(fields.trial.gradient, i),
+                  fields.free_part(fields.trial.z, i),
+                  fields.inertia.prediction[i],
+                  fields.masses[i],
+                  {},
+                  {}};
+        for (int slot = 0; slot < kHistory; ++slot) {
+            own.s[slot] = fields.s[fields.pair_of(slot, i)];
+            own.w[slot] = fields.w[fields.pair_of(slot, i)];
+        }
+        return own;
+    }
+
+    TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
+    TOILE_HD void operator()(int i, const Early& own) const
+    {
         const Descent& descent = fields.descent[0];
-        const Own own{fields.here.x[i],
-                      fields.here.gradient[i],
-                      fields.here.z[i],
-                      fields.trial.x[i],
-                      fields.free_part(fields.trial.gradient, i),
-                      fields.free_part(fields.trial.z, i),
-                      fields.inertia.prediction[i],
-                      fields.masses[i]};
         if (descent.action == Descent::Action::Rest)
             return;
         Vec3 x = own.x, d;
@@ -153,16 +193,10 @@ struct TakeTrial {
     }
 
 private:
-    /// What vertex i has.
-    struct Own {
-        Vec3 x, gradient, z, trial_x, trial_gradient, trial_z, prediction;
-        double mass;
-    };
-
     /// @return the direction from the trial point
-    TOILE_HD Vec3 take(const Descent& descent, int i, const Own& own) const
+    TOILE_HD Vec3 take(const Descent& descent, int i, const Early& own) const
     {
-        Vec3 d = direction(descent, i) - own.trial_z;
+        Vec3 d = direction(descent, own) - own.trial_z;
         if (descent.kept_slot >= 0) {
             // The newest pair is not in memory yet.
             const PaddedVec3 s = padded(own.trial_x - own.x), w = padded(own.trial_z - own.z);
@@ -180,19 +214,15 @@ private:
         return unpadded(rounded);
     }
 
-    /// What the pairs in memory add to it, slot after slot: no address waits for what was decided.
-    TOILE_HD Vec3 direction(const Descent& descent, int i) const
+    /// What the pairs in memory add to it.
+    TOILE_HD static Vec3 direction(const Descent& descent, const Early& own)
     {
-        PaddedVec3 s[kHistory], w[kHistory];
-        for (int slot = 0; slot < kHistory; ++slot) {
-            s[slot] = fields.s[fields.pair_of(slot, i)];
-            w[slot] = fields.w[fields.pair_of(slot, i)];
-        }
         Vec3 sum(0.0, 0.0, 0.0);
         for (int slot = 0; slot < kHistory; ++slot) {
             const int k = descent.pairs.pair_in(slot);
             if (k < descent.pairs.count() && slot != descent.kept_slot)
-                sum += descent.pairs.of_s(k) * unpadded(s[slot]) - descent.pairs.of_w(k) * unpadded(w[slot]);
+                sum += descent.pairs.of_s(k) * unpadded(own.s[slot]) -
+                       descent.pairs.of_w(k) * unpadded(own.w[slot]);
         }
         return sum;
     }

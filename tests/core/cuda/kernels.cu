@@ -23,6 +23,11 @@ void launch(const CudaSpace& space, const ScaleBySlot& kernel)
     parallel_for(space, "test/scale", kernel.items.size(), kernel);
 }
 
+void launch(const CudaSpace& space, const AddLastTwo& kernel)
+{
+    parallel_for(space, "test/add_last_two", kernel.next.size(), kernel);
+}
+
 void launch(const CudaSpace& space, const WriteWild& kernel)
 {
     parallel_for(space, "test/wild", kernel.nowhere.size(), kernel);

@@ -40,6 +40,15 @@ struct ScaleBySlot {
     TOILE_HD void operator()(int i) const { items[i] *= slot[0]; }
 };
 
+/// next_i = last_(n - 1 - i) + older_i, of which the older may be loaded before its turn.
+struct AddLastTwo {
+    View<const unsigned> older, last;
+    View<unsigned> next;
+
+    TOILE_HD unsigned early(int i) const { return older[i]; }
+    TOILE_HD void operator()(int i, unsigned own) const { next[i] = last[last.size() - 1 - i] + own; }
+};
+
 /// Writes item i where it is told to: the test says, nowhere.
 struct WriteWild {
     View<int> nowhere;
@@ -91,6 +100,7 @@ void launch(const CudaSpace& space, const CountVisits& kernel, int block = 256);
 void launch(const CudaSpace& space, const CountEndVisits& kernel);
 void launch(const CudaSpace& space, const AddScaled& kernel);
 void launch(const CudaSpace& space, const ScaleBySlot& kernel);
+void launch(const CudaSpace& space, const AddLastTwo& kernel);
 void launch(const CudaSpace& space, const WriteWild& kernel);
 void launch(const CudaSpace& space, const WriteLayout& kernel);
 void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel);

@@ -44,6 +44,22 @@ TEST_F(CudaParallelFor, RunsInTheOrderOfItsLaunches)
     EXPECT_EQ(sum.downloaded(), std::vector<double>(1000, 60466176.0)); // 6^10
 }
 
+/// Fibonacci's numbers: what is loaded early is of the launch before the last, and complete.
+TEST_F(CudaParallelFor, LoadsEarlyOnlyWhatIsDone)
+{
+    for (const int count : {1, 1000, 1000000}) {
+        DeviceArray<unsigned> fields[3]{{space(), "test/fields", count},
+                                        {space(), "test/fields", count},
+                                        {space(), "test/fields", count}};
+        fields[0].upload(std::vector<unsigned>(count, 0));
+        fields[1].upload(std::vector<unsigned>(count, 1));
+        for (int k = 2; k <= 46; ++k)
+            launch(space(),
+                   AddLastTwo{fields[(k - 2) % 3].view(), fields[(k - 1) % 3].view(), fields[k % 3].view()});
+        ASSERT_EQ(fields[46 % 3].downloaded(), std::vector<unsigned>(count, 1836311903U)) << count;
+    }
+}
+
 TEST_F(CudaParallelFor, IsOneCallOfItsStage)
 {
     Stages stages;
