@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/backend/cuda/device.h"
+#include "core/pd/step_stop.h"
 
 namespace toile::gpu {
 
@@ -15,6 +16,7 @@ struct SceneCase {
     int frames = 0;             ///< after the start
     int cpu_frames = 0;         ///< so many of them on the CPU too; then the GPU has a row of these as well
     int substeps = 0;           ///< of a frame, instead of the scene's; 0: the scene's
+    StepStop stop = StepStop::Error;
     bool needs_data = false;    ///< skipped where TOILE_DATA_DIR has not what the scene reads
 };
 

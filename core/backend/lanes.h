@@ -68,6 +68,12 @@ TOILE_HD inline PaddedVec3 padded(const Vec3& v)
 }
 TOILE_HD inline Vec3 unpadded(const PaddedVec3& v) { return Vec3(double(v[0]), double(v[1]), double(v[2])); }
 
+/// In single precision, for sums in double.
+TOILE_HD inline double dot(const PaddedVec3& a, const PaddedVec3& b)
+{
+    return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+
 /// Numbers from memory that is aligned as T.
 template <typename T>
 TOILE_HD T load_as(const float* numbers)

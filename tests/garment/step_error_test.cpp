@@ -26,7 +26,8 @@ struct Thrown {
     std::vector<unsigned char> fixed = std::vector<unsigned char>(x.size(), 0);
 
     /// Where a step ends.
-    std::vector<Vec3> step(double tolerance, OuterMethod outer, std::unique_ptr<GlobalSolver> solver)
+    std::vector<Vec3> step(double tolerance, OuterMethod outer, std::unique_ptr<GlobalSolver> solver,
+                           StepStop stop = StepStop::Error)
     {
         fixed[sheet.at(0, 0)] = fixed[sheet.at(24, 0)] = 1;
         const auto rest = sheet.rest();
@@ -38,6 +39,7 @@ struct Thrown {
         settings.tolerance = tolerance;
         settings.max_iterations = 20000;
         settings.outer = outer;
+        settings.stop = stop;
         Body body(x, std::make_unique<System>(masses_of(*rest, kDensity), energies, std::move(solver)),
                   settings);
         std::vector<Vec3> v;
@@ -82,6 +84,22 @@ TEST(StepError, ToleranceIsTheErrorWhateverTheSolverTheMethodAndTheStiffness)
     }
 }
 
+/// Local/global iterations of stiff cloth move little and are far: the move tells nothing, the error does.
+TEST(StepError, StepsThatStopByTheirMoveAreFartherAway)
+{
+    constexpr double kTolerance = 1e-4;
+    Thrown thrown{1000.0, 1.0 / 120};
+    const std::vector<Vec3> minimiser =
+        thrown.step(1e-8, OuterMethod::NewtonPcg, std::make_unique<DirectSolver>());
+    const auto error = [&](StepStop stop) {
+        return rms(
+            thrown.step(kTolerance, OuterMethod::LocalGlobal, std::make_unique<DirectSolver>(), stop),
+            minimiser);
+    };
+    EXPECT_LT(error(StepStop::Error), 3.0 * kTolerance);
+    EXPECT_GT(error(StepStop::Move), 3.0 * kTolerance);
+}
+
 /// One vertex of 1 kg that begins to fall, its weight still in the gradient.
 TEST(StepError, WeightThatHangsInTheAirIsNoRest)
 {
@@ -90,13 +108,16 @@ TEST(StepError, WeightThatHangsInTheAirIsNoRest)
     const std::vector<Vec3> start{Vec3::Zero()}, prediction{Vec3(0.0, -kWeight * kDt * kDt, 0.0)};
     const std::vector<Vec3> tiny_move{Vec3(0.0, -1e-12, 0.0)};
     const std::vector<unsigned char> free{0}, held{1};
-    const auto is_within = [&](const std::vector<unsigned char>& fixed, double share) {
-        const std::vector<Vec3> gradient{Vec3(0.0, share * kWeight, 0.0)};
-        return StepError(masses, fixed, start, prediction, kDt).is_within(1e-3, gradient, tiny_move);
-    };
-    EXPECT_FALSE(is_within(free, 1.0));
-    EXPECT_TRUE(is_within(free, 0.1));
-    EXPECT_TRUE(is_within(held, 1.0));
+    for (const StepStop stop : {StepStop::Error, StepStop::Move}) {
+        const auto is_within = [&](const std::vector<unsigned char>& fixed, double share) {
+            const std::vector<Vec3> gradient{Vec3(0.0, share * kWeight, 0.0)};
+            return StepError(masses, fixed, start, prediction, kDt)
+                .is_within(1e-3, gradient, tiny_move, stop);
+        };
+        EXPECT_FALSE(is_within(free, 1.0));
+        EXPECT_TRUE(is_within(free, 0.1));
+        EXPECT_TRUE(is_within(held, 1.0));
+    }
 }
 
 TEST(StepError, LongMovesAndLargeForcesTogetherAreFar)
@@ -105,13 +126,14 @@ TEST(StepError, LongMovesAndLargeForcesTogetherAreFar)
     const std::vector<Vec3> here{Vec3::Zero()};
     const std::vector<unsigned char> free{0};
     const StepError error(masses, free, here, here, 0.1);
-    const auto is_within = [&](double force, double move) {
+    const auto is_within = [&](double force, double move, StepStop stop = StepStop::Error) {
         return error.is_within(1e-3, std::vector<Vec3>{Vec3(force, 0.0, 0.0)},
-                               std::vector<Vec3>{Vec3(move, 0.0, 0.0)});
+                               std::vector<Vec3>{Vec3(move, 0.0, 0.0)}, stop);
     };
     // dt^2 f / m = 1e-2 m: the geometric mean with the move passes 1e-3 m at 1e-4 m.
     EXPECT_TRUE(is_within(2.0, 0.9e-4));
     EXPECT_FALSE(is_within(2.0, 1.1e-4));
+    EXPECT_TRUE(is_within(2.0, 1.1e-4, StepStop::Move)) << "which does not ask";
 }
 
 } // namespace

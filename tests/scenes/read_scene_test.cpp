@@ -18,6 +18,7 @@ TEST(ReadScene, GivesTheDocumentedDefaultsToAMinimalScene)
     EXPECT_EQ(scene.gravity, Vec3(0.0, -9.81, 0.0));
     EXPECT_EQ(scene.solver.substeps, 4);
     EXPECT_EQ(scene.solver.tolerance, 1e-3);
+    EXPECT_EQ(scene.solver.stop, StepStop::Error);
     EXPECT_TRUE(scene.avatars.empty());
     EXPECT_EQ(scene.render.ground, 0.0);
     EXPECT_EQ(std::get<scene::Disc>(scene.cloths.at(0).shape).radius, 0.5);
@@ -45,7 +46,7 @@ TEST(ReadScene, ReadsEveryKindOfValue)
             {"cloth": "sheet", "select": {"nearest": [[0, 1, 0], [1, 1, 1]]}, "to": "ball", "release": 0.5},
             {"cloth": "round", "select": {"all_within": {"avatar": "figure", "distance": 0.01}},
              "to": "figure", "stiffness": 100}],
-        "solver": {"method": "direct", "sleep": {"enabled": false}},
+        "solver": {"method": "direct", "stop": "move", "sleep": {"enabled": false}},
         "export": [{"file": "sheet.mdd", "cloth": "sheet"}],
         "render": {"ground": "off", "width": 320}})",
                                     "all.json");
@@ -63,6 +64,7 @@ TEST(ReadScene, ReadsEveryKindOfValue)
     EXPECT_EQ(std::get<scene::SelectNearAvatar>(scene.attachments[2].select.by).distance, 0.01);
     EXPECT_EQ(scene.attachments[2].stiffness, 100.0);
     EXPECT_EQ(scene.solver.method, scene::SolverMethod::Direct);
+    EXPECT_EQ(scene.solver.stop, StepStop::Move);
     EXPECT_FALSE(scene.solver.sleep.enabled);
     EXPECT_EQ(scene.exports[0].file, "sheet.mdd");
     EXPECT_FALSE(scene.render.ground.has_value());

@@ -97,6 +97,21 @@ TEST_P(OuterMethods, PutTheClothWhereLbfgsDoes)
 INSTANTIATE_TEST_SUITE_P(Scene, OuterMethods, testing::ValuesIn(scene_format::words_of<OuterMethod>()),
                          [](const auto& method) { return to_name(method.param); });
 
+/// The key reaches the steps: they end sooner.
+TEST(StopByMove, TakesFewerIterations)
+{
+    const auto iterations = [](const std::string& stop) {
+        World world = world_of(kSwing, R"("tolerance": 1e-4, "stop": ")" + stop + '"');
+        int sum = 0;
+        for (int frame = 0; frame < 3; ++frame)
+            sum += world.advance_frame().iterations;
+        return sum;
+    };
+    const int by_move = iterations("move");
+    EXPECT_GT(by_move, 0);
+    EXPECT_LT(by_move, iterations("error"));
+}
+
 /// XPBD knows no time step that it would solve: many substeps lead to the motion that small steps find.
 TEST(XpbdMethod, PutsTheClothWhereSmallStepsDo)
 {

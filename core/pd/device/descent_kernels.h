@@ -122,12 +122,6 @@ struct MeasureTrial {
         }
         return sums;
     }
-
-private:
-    TOILE_HD static double dot(const PaddedVec3& a, const PaddedVec3& b)
-    {
-        return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
-    }
 };
 
 /// What becomes of the sums of a turn.

@@ -84,10 +84,18 @@ struct BlocksInverse {
     View<const Mat3> inverse;    ///< [lists]
     View<const double> diagonal; ///< [vertices]
 
-    TOILE_HD Vec3 operator()(int i, const Vec3& r) const
+    /// What vertex i has of it.
+    struct Early {
+        int list;
+        double diagonal;
+    };
+    TOILE_HD Early early(int i) const { return {list_of[i], diagonal[i]}; }
+
+    TOILE_HD Vec3 operator()(const Early& own, const Vec3& r) const
     {
-        return list_of[i] > 0 ? Vec3(inverse[list_of[i] - 1] * r) : Vec3(r / diagonal[i]);
+        return own.list > 0 ? Vec3(inverse[own.list - 1] * r) : Vec3(r / own.diagonal);
     }
+    TOILE_HD Vec3 operator()(int i, const Vec3& r) const { return (*this)(early(i), r); }
 };
 
 /// Inverts the block of list k.
@@ -127,9 +135,17 @@ struct FinishPrecondition {
     PcgFields fields;
     BlocksInverse E;
 
-    TOILE_HD void operator()(int i) const
+    /// What H^-1 leaves as it is.
+    struct Early {
+        Vec3 r;
+        BlocksInverse::Early E;
+    };
+    TOILE_HD Early early(int i) const { return {unpadded(fields.r[i]), E.early(i)}; }
+
+    TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
+    TOILE_HD void operator()(int i, const Early& own) const
     {
-        fields.z[i] = padded(E(i, unpadded(fields.r[i]) + E.diagonal[i] * fields.solved[i]));
+        fields.z[i] = padded(E(own.E, own.r + own.E.diagonal * fields.solved[i]));
     }
 };
 
@@ -140,15 +156,27 @@ struct MultiplySystem {
     View<const int> list_of;         ///< [vertices]
     View<const Vec3> frozen_product; ///< [lists] dH z [N]
 
-    TOILE_HD PcgSums operator()(int i) const
+    /// What neither the preconditioner nor the product of frozen terms writes.
+    struct Early {
+        PaddedVec3 r, Kp, p, previous;
+        int list;
+        unsigned char fixed;
+    };
+    TOILE_HD Early early(int i) const
     {
-        const PaddedVec3 z = fields.z[i], r = fields.r[i], Kp = fields.Kp[i], p = fields.p[i];
-        const PaddedVec3 previous = fields.r_previous[i];
+        return {fields.r[i], fields.Kp[i], fields.p[i], fields.r_previous[i], list_of[i], H.fixed[i]};
+    }
+
+    TOILE_HD PcgSums operator()(int i) const { return (*this)(i, early(i)); }
+    TOILE_HD PcgSums operator()(int i, const Early& own) const
+    {
+        const auto& [r, Kp, p, previous, list, fixed] = own;
+        const PaddedVec3 z = fields.z[i];
         PaddedVec3 Kz = z;
-        if (!H.fixed[i]) {
+        if (!fixed) {
             Kz = H.times(i, fields.z);
-            if (list_of[i] > 0)
-                Kz += padded(frozen_product[list_of[i] - 1]);
+            if (list > 0)
+                Kz += padded(frozen_product[list - 1]);
         }
         fields.Kz[i] = Kz;
         PcgSums sums;
@@ -164,12 +192,6 @@ struct MultiplySystem {
         sums.Kz_Kp = dot(Kz, Kp);
         sums.Kp_Kp = dot(Kp, Kp);
         return sums;
-    }
-
-private:
-    TOILE_HD static double dot(const PaddedVec3& a, const PaddedVec3& b)
-    {
-        return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
     }
 };
 
@@ -214,21 +236,32 @@ struct TakeStep {
     BlocksInverse E;
     View<const PcgScalars> scalars;
 
-    TOILE_HD void operator()(int i) const
+    /// All but K z and what the sums decide.
+    struct Early {
+        Vec3 x;
+        PaddedVec3 r, z, p, Kp;
+        BlocksInverse::Early E;
+    };
+    TOILE_HD Early early(int i) const
+    {
+        return {fields.x[i], fields.r[i], fields.z[i], fields.p[i], fields.Kp[i], E.early(i)};
+    }
+
+    TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
+    TOILE_HD void operator()(int i, const Early& own) const
     {
         if (scalars[0].is_past)
             return;
         const double step = scalars[0].step, beta = scalars[0].beta;
-        const PaddedVec3 before = fields.r[i];
-        const Vec3 p = unpadded(fields.z[i]) + beta * unpadded(fields.p[i]);
-        const Vec3 Kp = unpadded(fields.Kz[i]) + beta * unpadded(fields.Kp[i]);
-        const Vec3 r = unpadded(before) - step * Kp;
+        const Vec3 p = unpadded(own.z) + beta * unpadded(own.p);
+        const Vec3 Kp = unpadded(fields.Kz[i]) + beta * unpadded(own.Kp);
+        const Vec3 r = unpadded(own.r) - step * Kp;
         fields.p[i] = padded(p);
         fields.Kp[i] = padded(Kp);
-        fields.x[i] += step * p;
-        fields.r_previous[i] = before;
+        fields.x[i] = own.x + step * p;
+        fields.r_previous[i] = own.r;
         fields.r[i] = padded(r);
-        fields.scaled[i] = E.diagonal[i] * E(i, r);
+        fields.scaled[i] = own.E.diagonal * E(own.E, r);
     }
 };
 

@@ -185,6 +185,29 @@ TEST_F(DeviceBodyTest, TakesTheIterationsOfTheCpu)
     }
 }
 
+TEST_F(DeviceBodyTest, StopsByItsMoveWhereTheCpuDoes)
+{
+    const Swings swings(2);
+    Body::Settings settings = exact();
+    settings.tolerance = 1e-3;
+    settings.stop = StepStop::Move;
+    DeviceBody::Settings settings_there{settings.tolerance, settings.max_iterations};
+    settings_there.stop = StepStop::Move;
+    Body here(swings.start(), swings.system(swings.solver()), settings);
+    const auto there = make_body(swings, settings_there);
+    int iterations = 0, by_error = 0;
+    for (int k = 0; k < 10; ++k) {
+        start_where(here, *there);
+        const StepReport expected = step(here, swings), report = step(*there, swings);
+        EXPECT_EQ(report.iterations, expected.iterations) << k;
+        iterations += report.iterations;
+    }
+    const auto by_its_error = make_body(swings, {settings.tolerance, settings.max_iterations});
+    for (int k = 0; k < 10; ++k)
+        by_error += step(*by_its_error, swings).iterations;
+    EXPECT_LT(iterations, by_error);
+}
+
 /// On a rough floor through the middle of the sheets.
 TEST_F(DeviceBodyTest, TouchesAsOnTheCpu)
 {

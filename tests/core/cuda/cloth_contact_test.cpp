@@ -75,8 +75,8 @@ void expect_same_pressing(const std::vector<ContactPair>& cpu, const std::vector
 
 /// Both sides of a step, which begin at the same.
 struct Sides {
-    Sides(const CudaSpace& space, const ClothCase& made)
-        : space(space), altitude(made.x.size(), kAltitude), fixed(made.x.size(), 0), ones(made.x.size(), 1.0),
+    Sides(const CudaSpace& on, const ClothCase& made)
+        : space(on), altitude(made.x.size(), kAltitude), fixed(made.x.size(), 0), ones(made.x.size(), 1.0),
           host(made.triangles, made.x, {cloth(made)}, altitude),
           there(space, made.triangles, made.x, {cloth(made)}, altitude)
     {
@@ -95,7 +95,7 @@ struct Sides {
         x = std::make_unique<Field>(space, made.x);
         prediction = std::make_unique<Field>(space, made.expected);
         host.begin_step({x->host(), prediction->host(), ones, fixed, ones, kDt, {}});
-        there.begin_step({{}, {}, ones, fixed, ones, kDt, {x->there(), prediction->there()}});
+        there.begin_step({{}, {}, ones, fixed, ones, kDt, {x->there(), prediction->there(), {}, {}}});
     }
 
     const CudaSpace& space;
