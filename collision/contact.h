@@ -43,7 +43,7 @@ public:
 
     void begin_step(const StepStart& start) override;
     bool may_act() const override { return !terms_->empty(); }
-    bool make_feasible(StepField x) const override;
+    bool make_feasible(StepField x, ExpectedMoves expected) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
@@ -78,7 +78,7 @@ private:
     void find_again();
     void remember_end();
     template <typename Sweeps>
-    void sweep_near(StepField x, const Sweeps& sweeps) const;
+    void sweep_near(StepField x, ExpectedMoves expected, const Sweeps& sweeps) const;
     double mobility_of(const ContactPair& pair) const;
     void accelerate(const ContactPair& pair, double force, View<Vec3> x) const;
     bool is_held(int vertex) const;

@@ -89,7 +89,7 @@ void Contact::rub(StepField positions, StepField velocities) const
 /// @param most  depth that is left to a pair which rests there [m]
 void Contact::push_out(StepField positions, double most) const
 {
-    sweep_near(positions, [&](const NearTerms& near, NearMoves& moves) {
+    sweep_near(positions, ExpectedMoves::Short, [&](const NearTerms& near, NearMoves& moves) {
         bool is_still = false; // a sweep that changes nothing would change nothing again
         for (int sweep = 0; sweep < kClearSweeps && !is_still; ++sweep) {
             is_still = true;

@@ -29,12 +29,12 @@ double Contact::mobility_of(const ContactPair& pair) const
 /// Gauss-Seidel over the pairs, with masses and the compliance of their springs [Macklin et al. 2016, eq. 18]
 /// and forces that never pull. Momentum goes where contact sends it, and pairs that press begin as deep
 /// as their force asks for: friction reads it from there.
-bool Contact::make_feasible(StepField positions) const
+bool Contact::make_feasible(StepField positions, ExpectedMoves expected) const
 {
     constexpr double kUnknown = -1.0;
     bool moved = false;
     std::vector<double> mobility, force;
-    sweep_near(positions, [&](const NearTerms& near, NearMoves& moves) {
+    sweep_near(positions, expected, [&](const NearTerms& near, NearMoves& moves) {
         moved = false;
         force.assign(near.terms.size(), 0.0);
         mobility.assign(near.terms.size(), kUnknown);

@@ -38,16 +38,17 @@ private:
 };
 
 /// Sweeps over terms that push where they are pressed, moving near.x, as if over all of them: where a vertex
-/// comes so far that others might push it begins anew with more. First with the terms that are very near,
-/// which is enough where little is moved; then with those beside them, which may be several times as many.
+/// comes so far that others might push it begins anew with more.
+/// Short moves need no more than the terms that are very near; long ones those beside them too, which may be
+/// several times as many.
 /// @param sweeps  (near, moves) -> false where moves.note() was after a push
 template <typename Sweeps>
-void Contact::sweep_near(StepField positions, const Sweeps& sweeps) const
+void Contact::sweep_near(StepField positions, ExpectedMoves expected, const Sweeps& sweeps) const
 {
-    constexpr double kMargin = 0.0003; // [m]
+    constexpr double kMargin = 0.0001; // [m]
     terms_->see(positions);
     double margin = kMargin;
-    for (bool with_beside = false;; with_beside = true) {
+    for (bool with_beside = expected == ExpectedMoves::Long;; with_beside = true) {
         const NearTerms near = terms_->near(margin, with_beside);
         if (near.terms.empty())
             return;

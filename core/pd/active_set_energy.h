@@ -25,6 +25,10 @@ struct StepStart {
     } there = {};
 };
 
+/// How far vertices are from where contact puts them, as far as one can tell: as a step predicts them, or
+/// moved a little from where contact had put them.
+enum class ExpectedMoves { Long, Short };
+
 /// A convex energy that acts on changing places, contact above all. It stays out of H; while it is active the
 /// solver inverts H + dH by preconditioned CG instead of H directly.
 class ActiveSetEnergy : public FrozenHessian {
@@ -37,7 +41,8 @@ public:
 
     /// Moves a start guess out of the candidates' forbidden half-spaces as contact without anything else
     /// would. True when anything moved.
-    virtual bool make_feasible(StepField x) const = 0;
+    /// @param expected  what is looked at first, no more
+    virtual bool make_feasible(StepField x, ExpectedMoves expected) const = 0;
 
     /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) const = 0;

@@ -228,8 +228,8 @@ TEST_F(DeviceBodyTest, TouchesAsOnTheCpu)
         EXPECT_GT(plane.pressing(copy_of(here.positions())), 5) << k;
         EXPECT_EQ(report.iterations, expected.iterations) << k;
         EXPECT_NEAR(report.linear_iterations, expected.linear_iterations, 2) << k;
-        // Cut off after 15 iterations, in which some hundred of PCG enlarge what rounding tells apart.
-        EXPECT_LT(farthest_apart(there->positions(), here.positions()), 5e-6) << k;
+        // Cut off after 15 iterations; PCG is in single precision there.
+        EXPECT_LT(farthest_apart(there->positions(), here.positions()), 5e-5) << k;
     }
 }
 

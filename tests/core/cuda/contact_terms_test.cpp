@@ -348,8 +348,9 @@ TEST_F(DeviceContactTermsTest, MoveClothAsOnTheCpu)
         here.begin_step(start);
         there.begin_step(start);
         std::vector<Vec3> guess = made.prediction, x = made.found, v(made.x.size(), Vec3(0.1, -0.3, 0.0));
-        EXPECT_TRUE(here.make_feasible(guess));
-        EXPECT_TRUE(there.make_feasible(board.prediction));
+        const auto expected = step % 2 == 0 ? ExpectedMoves::Long : ExpectedMoves::Short;
+        EXPECT_TRUE(here.make_feasible(guess, expected));
+        EXPECT_TRUE(there.make_feasible(board.prediction, expected));
         expect_same_field(guess, board.prediction.host(), 1e-8);
 
         EXPECT_TRUE(here.revise(x, true));
@@ -408,7 +409,7 @@ TEST_F(DeviceContactTermsTest, AreNoneWhereNothingIsNear)
     OnBoard board(space(), int(made.x.size()));
     made.advance();
     contact.begin_step(board.begin(made));
-    EXPECT_FALSE(contact.make_feasible(board.prediction));
+    EXPECT_FALSE(contact.make_feasible(board.prediction, ExpectedMoves::Long));
     EXPECT_FALSE(contact.on_device(space())->has_terms());
     EXPECT_FALSE(contact.revise(board.found, true));
     contact.clear(board.found, board.v);
