@@ -14,6 +14,17 @@ public:
         double tolerance = 0.1; ///< [-] of |r| / |b|
         int max_iterations = 4;
         bool is_flexible = false; ///< for a preconditioner that is not symmetric: Polak-Ribiere's beta
+
+        /// Ends with an iteration that gains less than this share [-] of what one has gained on average, of
+        /// the quadratic 1/2 x . A x - b . x [Nash & Sofer 1990]; 0: never.
+        double least_gain = 0.0;
+        int least_iterations = 0; ///< before that counts
+
+        TOILE_HD bool is_worth_more(int iterations, double gain, double total_gain) const
+        {
+            return iterations < least_iterations || least_gain == 0.0 ||
+                   iterations * gain > least_gain * total_gain;
+        }
     };
     struct Outcome {
         int iterations = 0;
@@ -38,7 +49,7 @@ public:
         const double b_norm = std::sqrt(dot(b, b));
         if (!(b_norm > 0.0))
             return outcome;
-        double rz_previous = 0.0;
+        double rz_previous = 0.0, total_gain = 0.0;
         outcome.residual = 1.0;
         while (outcome.iterations < settings.max_iterations && outcome.residual > settings.tolerance) {
             precondition(View<const Vec3>(r_), View<Vec3>(z_));
@@ -59,6 +70,10 @@ public:
             rz_previous = rz;
             outcome.residual = std::sqrt(dot(r_, r_)) / b_norm;
             ++outcome.iterations;
+            const double gain = step * step * curvature;
+            total_gain += gain;
+            if (!settings.is_worth_more(outcome.iterations, gain, total_gain))
+                break;
         }
         return outcome;
     }

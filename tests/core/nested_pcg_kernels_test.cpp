@@ -157,6 +157,23 @@ TEST(NestedPcgKernels, TakeTheIterationsOfPcg)
             EXPECT_LT((solve.x()[i] - expected[i]).norm(), 1e-6) << i;
         EXPECT_NEAR(solve.scalars().residual, outcome.residual, 1e-6);
         EXPECT_EQ(solve.scalars().iterations, iterations);
+        EXPECT_GT(solve.scalars().gain, 0.0);
+    }
+}
+
+TEST(NestedPcgKernels, GainsAddUpToWhatTheQuadraticLoses)
+{
+    const Chain chain;
+    const std::vector<Vec3> b = random_forces();
+    std::vector<Vec3> product(kCount);
+    Iterations solve(chain, b);
+    double gain = 0.0;
+    for (int k = 1; k <= 6; ++k) {
+        solve.take(1);
+        gain += solve.scalars().gain;
+        chain.multiply(solve.x(), product);
+        const double value = 0.5 * dot(solve.x(), product) - dot(b, solve.x());
+        EXPECT_NEAR(value, -0.5 * gain, 1e-6 * gain) << k;
     }
 }
 
@@ -166,7 +183,8 @@ TEST(NestedPcgKernels, ChangeNothingPastTheEnd)
     const std::vector<Vec3> b = random_forces();
     for (const Pcg::Settings& settings :
          {Pcg::Settings{.tolerance = 0.0, .max_iterations = 3},
-          Pcg::Settings{.tolerance = 0.1, .max_iterations = 100}}) {
+          Pcg::Settings{.tolerance = 0.1, .max_iterations = 100},
+          Pcg::Settings{.tolerance = 0.0, .max_iterations = 100, .least_gain = 0.5}}) {
         Iterations solve(chain, b, settings);
         int last = 0;
         for (; !solve.scalars().is_over && last < 20; ++last)

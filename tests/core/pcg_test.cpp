@@ -115,6 +115,42 @@ TEST(Pcg, StopsAtTheTolerance)
     EXPECT_GT(problem.residual(before), 0.1) << "one iteration fewer was not enough";
 }
 
+TEST(Pcg, StopsWhereAnIterationGainsLittle)
+{
+    Problem problem;
+    Pcg pcg;
+    const auto value = [&] {
+        std::vector<Vec3> product(300);
+        problem.multiply()(problem.x, product);
+        return 0.5 * dot(problem.x, product) - dot(problem.b, problem.x);
+    };
+    std::vector<double> gains;
+    double before = 0.0;
+    for (const int limit : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
+        pcg.solve(problem.multiply(), copy, problem.b, problem.x, Pcg::Settings{0.0, limit});
+        gains.push_back(before - value());
+        before = value();
+    }
+    for (const double least : {0.3, 0.6, 0.9}) {
+        const int taken = pcg.solve(problem.multiply(), copy, problem.b, problem.x,
+                                    {.tolerance = 0.0, .max_iterations = 10, .least_gain = least})
+                              .iterations;
+        double total = 0.0;
+        int expected = 0;
+        do
+            total += gains[expected++];
+        while (expected < 10 && gains[expected - 1] > least * total / expected);
+        EXPECT_EQ(taken, expected) << least;
+        const int late = pcg.solve(problem.multiply(), copy, problem.b, problem.x,
+                                   {.tolerance = 0.0,
+                                    .max_iterations = 10,
+                                    .least_gain = least,
+                                    .least_iterations = expected + 2})
+                             .iterations;
+        EXPECT_GE(late, expected + 2) << least;
+    }
+}
+
 TEST(Pcg, KeepsItsIterateWhereTheMatrixIsNotPositiveDefinite)
 {
     Problem problem;

@@ -50,12 +50,13 @@ struct PcgSums {
 
 /// Numbers of an iteration, and how the solve goes.
 struct PcgScalars {
-    double b_square = 0.0; ///< [N^2] |b|^2
-    double rz = 0.0;       ///< r . z [J]
-    double pKp = 0.0;      ///< p . K p [J]
-    double beta = 0.0;     ///< [-] of p in its successor
-    double step = 0.0;     ///< [-] along p
-    double residual = 1.0; ///< [-] |r| / |b|
+    double b_square = 0.0;               ///< [N^2] |b|^2
+    double rz = 0.0;                     ///< r . z [J]
+    double pKp = 0.0;                    ///< p . K p [J]
+    double beta = 0.0;                   ///< [-] of p in its successor
+    double step = 0.0;                   ///< [-] along p
+    double gain = 0.0, total_gain = 0.0; ///< [J] twice what the quadratic loses by a step, by all
+    double residual = 1.0;               ///< [-] |r| / |b|
     int iterations = 0;
     bool is_over = false; ///< this iteration is the last
     bool is_past = false; ///< it was: x stays
@@ -218,11 +219,14 @@ struct FindStep {
             return;
         ++all.iterations;
         all.step = (sums.r_z + beta * sums.p_r) / all.pKp;
+        all.gain = all.step * all.step * all.pKp;
+        all.total_gain += all.gain;
         const double r_Kp = sums.r_Kz + beta * sums.r_Kp;
         const double Kp_Kp = sums.Kz_Kz + beta * (2.0 * sums.Kz_Kp + beta * sums.Kp_Kp);
         const double r_square = sums.r_r + all.step * (all.step * Kp_Kp - 2.0 * r_Kp);
         all.residual = std::sqrt(std::fmax(0.0, r_square) / all.b_square);
-        all.is_over = all.iterations >= settings.max_iterations || all.residual <= settings.tolerance;
+        all.is_over = all.iterations >= settings.max_iterations || all.residual <= settings.tolerance ||
+                      !settings.is_worth_more(all.iterations, all.gain, all.total_gain);
     }
 };
 
