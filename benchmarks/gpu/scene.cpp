@@ -85,7 +85,7 @@ Scene scene_of(const SceneCase& what)
 {
     Scene scene = read_scene(what.file);
     scene.solver.method = scene::SolverMethod::Quadrature;
-    scene.solver.stop = what.stop;
+    scene.solver.stop = what.stop.value_or(scene.solver.stop);
     if (what.substeps > 0)
         scene.solver.substeps = what.substeps;
     return scene;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,8 @@ struct SceneCase {
     int frames = 0;             ///< after the start
     int cpu_frames = 0;         ///< so many of them on the CPU too; then the GPU has a row of these as well
     int substeps = 0;           ///< of a frame, instead of the scene's; 0: the scene's
-    StepStop stop = StepStop::Error;
-    bool needs_data = false;    ///< skipped where TOILE_DATA_DIR has not what the scene reads
+    std::optional<StepStop> stop = {}; ///< instead of the scene's
+    bool needs_data = false;           ///< skipped where TOILE_DATA_DIR has not what the scene reads
 };
 
 /// What the first frames of a scene cost on one backend: milliseconds of a step, on average.

@@ -47,6 +47,8 @@ struct PairShare {
     TOILE_HD double operator()(const NearPair& pair) const
     {
         const std::array<Vec3, 4> x = corners_of(pair.vertex, base), move = corners_of(pair.vertex, motion);
+        if (move[1] == move[0] && move[2] == move[0] && move[3] == move[0])
+            return 1.0; // whatever rounding would say: there is nothing left to bring back
         const double least = gap.of(pair);
         return stays_apart(pair, x, move, least) ? 1.0 : safe_share(pair.is_edge_edge, x, move, least);
     }

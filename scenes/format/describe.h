@@ -271,12 +271,12 @@ void describe(V& v, Solver& s)
 {
     v.field("substeps", s.substeps, between(1, 1000), "Time steps from one sample to the next.");
     v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
-            "Error that a step may end with: the estimated RMS distance to its solution, and the next move "
-            "of any "
-            "vertex. xpbd and vbd do not ask.");
+            "Error that a step may end with: the estimated RMS distance to its solution (see stop), and the "
+            "next move of any vertex. xpbd and vbd do not ask.");
     v.field("stop", s.stop,
-            "What the tolerance bounds: error and move, or the move alone, as papers state it. Then a step "
-            "takes a third to a fifth of the iterations, and most of what it leaves out is small.");
+            "What the tolerance bounds: error and move, or the move alone, as papers state it. That is to "
+            "compare with them: cloth that has landed on others then hangs in the air. xpbd and vbd do not "
+            "ask.");
     v.field(
         "max_iterations", s.max_iterations, between(1, 10000),
         "Iterations after which a minimisation ends anyway. Where cloth may touch something a step has two "

@@ -13,7 +13,7 @@ constexpr int kCount = 60, kPressing = 7;
 /// H of a chain whose last vertex is held, some vertices of which press.
 struct Chain {
     std::vector<int> first, column;
-    std::vector<float> value;
+    std::vector<float> value, sum;
     std::vector<double> diagonal;
     std::vector<unsigned char> fixed = std::vector<unsigned char>(kCount, 0);
     std::vector<int> list_of = std::vector<int>(kCount, 0);
@@ -29,9 +29,10 @@ struct Chain {
                 if (j < 0 || j >= kCount)
                     continue;
                 column.push_back(j);
-                value.push_back(i == j ? 2.1F : -1.0F);
+                value.push_back(i == j ? 2.125F : -1.0F);
             }
-            diagonal.push_back(2.1);
+            diagonal.push_back(2.125);
+            sum.push_back(i == 0 || i + 1 == kCount ? 1.125F : 0.125F);
         }
         first.push_back(int(column.size()));
         for (int k = 0; k < kPressing; ++k) {
@@ -44,7 +45,7 @@ struct Chain {
             InvertBlock{vertices, blocks, diagonal, inverse}(k);
     }
 
-    SystemRows rows() const { return {first, column, value, diagonal, fixed}; }
+    SystemRows rows() const { return {first, column, value, sum, diagonal, fixed}; }
     BlocksInverse blocks_inverse() const { return {list_of, inverse, diagonal}; }
 
     void multiply(View<const Vec3> p, View<Vec3> out) const
@@ -175,6 +176,22 @@ TEST(NestedPcgKernels, GainsAddUpToWhatTheQuadraticLoses)
         const double value = 0.5 * dot(solve.x(), product) - dot(b, solve.x());
         EXPECT_NEAR(value, -0.5 * gain, 1e-6 * gain) << k;
     }
+}
+
+/// Elastic rows in which inertia is less than the rounding of the diagonal, moved as a whole.
+TEST(NestedPcgKernels, KeepInertiaBesideStiffness)
+{
+    constexpr double kStiffness = 1e5, kInertia = 1e-3;
+    const std::vector<int> first{0, 3}, column{0, 1, 2};
+    const double diagonal = 2.0 * kStiffness / 3.0 + kInertia;
+    const std::vector<float> value{float(diagonal), float(-kStiffness / 3.0), float(-kStiffness / 3.0)};
+    const std::vector<float> sum{float(kInertia)};
+    const std::vector<double> diagonals{diagonal};
+    const std::vector<unsigned char> fixed{0};
+    const std::vector<PaddedVec3> move(3, padded(Vec3(0.3, -1.7, 2.9)));
+    const PaddedVec3 product = SystemRows{first, column, value, sum, diagonals, fixed}.times(0, move);
+    for (int a = 0; a < 3; ++a)
+        EXPECT_FLOAT_EQ(product[a], float(kInertia) * move[0][a]);
 }
 
 TEST(NestedPcgKernels, ChangeNothingPastTheEnd)

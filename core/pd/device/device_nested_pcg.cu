@@ -1,18 +1,35 @@
 #include "core/pd/device/device_nested_pcg.h"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "core/backend/cuda/record_sum.cuh"
 
 namespace toile {
 
+namespace {
+
+std::vector<float> row_sums(const SparseMatrix& H)
+{
+    std::vector<float> sums(H.rows());
+    for (int i = 0; i < int(sums.size()); ++i) {
+        const double* values = H.valuePtr();
+        sums[i] =
+            float(std::accumulate(values + H.outerIndexPtr()[i], values + H.outerIndexPtr()[i + 1], 0.0));
+    }
+    return sums;
+}
+
+} // namespace
+
 DeviceNestedPcg::DeviceNestedPcg(const CudaSpace& space, int n, const Pcg::Settings& settings)
     : space_(space), settings_(settings), first_(space, "pcg/first"), column_(space, "pcg/column"),
-      value_(space, "pcg/value"), diagonal_(space, "pcg/diagonal"), fixed_(space, "pcg/fixed"),
-      inverse_(space, "pcg/inverse"), r_(space, "pcg/r", n), r_previous_(space, "pcg/r_previous", n),
-      z_(space, "pcg/z", n), p_(space, "pcg/p", n), Kz_(space, "pcg/Kz", n), Kp_(space, "pcg/Kp", n),
-      scaled_(space, "pcg/scaled", n), solved_(space, "pcg/solved", n), scalars_(space, "pcg/scalars", 1),
+      value_(space, "pcg/value"), sum_(space, "pcg/sum"), diagonal_(space, "pcg/diagonal"),
+      fixed_(space, "pcg/fixed"), inverse_(space, "pcg/inverse"), r_(space, "pcg/r", n),
+      r_previous_(space, "pcg/r_previous", n), z_(space, "pcg/z", n), p_(space, "pcg/p", n),
+      Kz_(space, "pcg/Kz", n), Kp_(space, "pcg/Kp", n), scaled_(space, "pcg/scaled", n),
+      solved_(space, "pcg/solved", n), scalars_(space, "pcg/scalars", 1),
       on_host_(space, "pcg/scalars_on_host", 1), sums_(space)
 {
 }
@@ -24,6 +41,7 @@ void DeviceNestedPcg::prepare(const System& system, DeviceSolver& solver)
     first_.upload({H.outerIndexPtr(), int(H.rows()) + 1});
     column_.upload({H.innerIndexPtr(), int(H.nonZeros())});
     value_.upload(std::vector<float>(H.valuePtr(), H.valuePtr() + H.nonZeros()));
+    sum_.upload(row_sums(H));
     diagonal_.upload(system.diagonal());
     fixed_.upload(system.fixed());
 }
@@ -51,7 +69,7 @@ BlocksInverse DeviceNestedPcg::blocks_inverse() const
 
 SystemRows DeviceNestedPcg::rows() const
 {
-    return {first_.view(), column_.view(), value_.view(), diagonal_.view(), fixed_.view()};
+    return {first_.view(), column_.view(), value_.view(), sum_.view(), diagonal_.view(), fixed_.view()};
 }
 
 Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z, const std::function<void()>& then)

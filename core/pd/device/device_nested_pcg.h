@@ -42,7 +42,7 @@ private:
     DeviceSolver* solver_ = nullptr;
     DeviceActiveSet* active_ = nullptr;
     DeviceArray<int> first_, column_;
-    DeviceArray<float> value_;
+    DeviceArray<float> value_, sum_;
     DeviceArray<double> diagonal_;
     DeviceArray<unsigned char> fixed_;
     DeviceArray<Mat3> inverse_; ///< [lists]

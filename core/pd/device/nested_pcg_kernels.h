@@ -64,17 +64,24 @@ struct PcgScalars {
 
 /// H [vertices x vertices] as rows of numbers, and what is constant beside it.
 struct SystemRows {
-    View<const int> first, column;   ///< [vertices + 1], [entries]
-    View<const float> value;         ///< [entries] [N/m]
-    View<const double> diagonal;     ///< [vertices] D [N/m]
+    View<const int> first, column; ///< [vertices + 1], [entries]
+    View<const float> value;       ///< [entries] [N/m]
+    View<const float> sum;         ///< [vertices] of a row, found in double: what inertia leaves of it [N/m]
+    View<const double> diagonal;   ///< [vertices] D [N/m]
     View<const unsigned char> fixed; ///< [vertices]
 
+    /// By differences: where all vertices move alike, elastic rows cancel to the last bit and inertia, which
+    /// may be less than the rounding of D, remains.
     TOILE_HD PaddedVec3 times(int i, View<const PaddedVec3> x) const
     {
-        PaddedVec3 sum(0.0F);
-        for (int k = first[i]; k < first[i + 1]; ++k)
-            sum += value[k] * x[column[k]];
-        return sum;
+        const PaddedVec3 own = x[i], back = -1.0F * own;
+        PaddedVec3 product = sum[i] * own;
+        for (int k = first[i]; k < first[i + 1]; ++k) {
+            PaddedVec3 difference = x[column[k]];
+            difference += back;
+            product += value[k] * difference;
+        }
+        return product;
     }
 };
 
