@@ -51,8 +51,7 @@ public:
     /// the next call. Waits for their number. Where there was not enough room it grows and searches again.
     /// @param sides      may be null
     /// @param clearance  [vertices] see Clearance::of, of the device [m]: vertices that are clear by more
-    /// than
-    ///                   they look for are not looked for; may be empty
+    ///                   than they look for are not looked for; may be empty
     /// @throws DeviceError where the device has not the memory
     View<const ContactPair> detect(const DeviceMeshCollider& mesh, int collider,
                                    const DeviceSideMemory* sides = nullptr,

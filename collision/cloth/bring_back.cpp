@@ -1,7 +1,9 @@
 #include "collision/cloth/bring_back.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <utility>
 
 #include "core/backend/parallel.h"
 

@@ -12,7 +12,7 @@ namespace toile {
 
 /// Changes ways until no pair is in its own way, as SafeStep says. Where pairs are, on CPU or GPU, is the
 /// PairWatch's affair: it hears whose ways have changed and answers which pairs are in the way then. Costs
-/// what is brought back, and a few passes over all vertices.
+/// what is brought back, and a few passes over all vertices and, at each look, over all pairs.
 class BringBack {
 public:
     struct Settings {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "collision/cloth/vertex_set.h"
@@ -14,7 +13,7 @@ namespace toile {
 /// [Provot 1997, Collision and self-collision handling in cloth model dedicated to design garments: impact
 /// zones]. Deviation: theirs are rigid at once; here by as much as is needed.
 ///
-/// All but the first reset() costs what is in zones, not what is not.
+/// But for what holds each vertex, which reset() copies, all costs what is in zones, not what is not.
 class ImpactZones {
 public:
     /// What holds a vertex: cloth that lies on a body goes where that lets it, held cloth where it is led.
