@@ -77,7 +77,8 @@ public:
     /// How deep a step would end in colliders [m]; 0 where it would not.
     virtual double deepest() = 0;
 
-    /// Terms with a gap below the margin [m] (so all with gap + give below it: give >= 0), good until the next call of any function.
+    /// Terms with a gap below the margin [m] (so all with gap + give below it: give >= 0), good until the
+    /// next call of any function.
     /// @param with_beside  all that share a vertex with one of them too
     /// @param v            velocities that are wanted too; may be none
     virtual NearTerms near(double margin, bool with_beside, StepField v = View<Vec3>()) = 0;

@@ -62,8 +62,7 @@ public:
     /// @param gradient  [vertices] [N]
     /// @param move      [vertices] that the method wants next [m]
     /// @param stop      Move: of the error, only that
-    bool is_within(double tolerance, View<const Vec3> gradient, View<const Vec3> move,
-                   StepStop stop) const;
+    bool is_within(double tolerance, View<const Vec3> gradient, View<const Vec3> move, StepStop stop) const;
 
 private:
     /// Share [-] of what drives a step, M (q* - x0) / dt^2, that may be left in the gradient.

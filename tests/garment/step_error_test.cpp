@@ -92,9 +92,8 @@ TEST(StepError, StepsThatStopByTheirMoveAreFartherAway)
     const std::vector<Vec3> minimiser =
         thrown.step(1e-8, OuterMethod::NewtonPcg, std::make_unique<DirectSolver>());
     const auto error = [&](StepStop stop) {
-        return rms(
-            thrown.step(kTolerance, OuterMethod::LocalGlobal, std::make_unique<DirectSolver>(), stop),
-            minimiser);
+        return rms(thrown.step(kTolerance, OuterMethod::LocalGlobal, std::make_unique<DirectSolver>(), stop),
+                   minimiser);
     };
     EXPECT_LT(error(StepStop::Error), 3.0 * kTolerance);
     EXPECT_GT(error(StepStop::Move), 3.0 * kTolerance);
