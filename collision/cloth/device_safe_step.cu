@@ -3,22 +3,9 @@
 #include <algorithm>
 
 #include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/roomy.h"
 
 namespace toile {
-
-namespace {
-
-/// Room is made for this much more than is needed [-].
-constexpr double kHeadroom = 1.25;
-
-template <typename Array>
-void make_room(Array& array, int size)
-{
-    if (size > array.size())
-        array.resize(int(kHeadroom * double(size)));
-}
-
-} // namespace
 
 DeviceSafeStep::DeviceSafeStep(const CudaSpace& space, DeviceNearPairs& near, DeviceExemptPairs& exempt,
                                const LeastGap& gap, int vertex_count)
@@ -67,8 +54,7 @@ View<const BlockedPair> DeviceSafeStep::look_at_all(View<const Vec3> x)
 
 View<const BlockedPair> DeviceSafeStep::look(View<const ChangedWay> changed)
 {
-    make_room(host_changed_, changed.size());
-    const View<ChangedWay> sent = host_changed_.view().subview(0, changed.size());
+    const View<ChangedWay> sent = first_items(host_changed_, changed.size());
     std::copy(changed.begin(), changed.end(), sent.begin());
     changed_.upload(sent);
     is_stale_.fill_zero();
@@ -118,13 +104,12 @@ View<const BlockedPair> DeviceSafeStep::list_in_the_way()
 {
     const int number = list_flagged(space_, "collision/device_list_in_the_way",
                                     is_in_the_way_.view().subview(0, count_), places_, listed_, scratch_);
-    make_room(blocked_, number);
-    make_room(host_blocked_, number);
-    parallel_for(
-        space_, "collision/device_report_in_the_way", number,
-        ReportInTheWay{
-            pairs_.view().subview(0, count_), {base_, way_.view(), gap_}, places_.view(), blocked_.view()});
-    const View<BlockedPair> read = host_blocked_.view().subview(0, number);
+    const View<BlockedPair> read = first_items(host_blocked_, number);
+    parallel_for(space_, "collision/device_report_in_the_way", number,
+                 ReportInTheWay{pairs_.view().subview(0, count_),
+                                {base_, way_.view(), gap_},
+                                places_.view(),
+                                first_items(blocked_, number)});
     blocked_.download_first(read);
     space_.synchronise();
     return read;

@@ -155,6 +155,23 @@ protected:
         DeviceArray<unsigned char> fixed;
     };
 
+    /// Terms of a step that have seen where it ends.
+    struct Seen {
+        explicit Seen(const CudaSpace& space)
+            : there(space, made.mesh.triangles, made.x, made.cloths, made.partners, made.settings()),
+              board(space, int(made.x.size()))
+        {
+            made.advance();
+            there.begin_step(board.begin(made));
+            there.make(nullptr);
+            there.see(board.found);
+        }
+
+        Dressed made;
+        DeviceContactTerms there;
+        OnBoard board;
+    };
+
     std::vector<ContactTerm> downloaded(const DeviceContactTerms& terms)
     {
         DeviceArray<ContactTerm> copy(space(), "test/terms", terms.energy().terms().size());
@@ -257,14 +274,8 @@ TEST_F(DeviceContactTermsTest, AreThoseOfTheCpuFromStepToStep)
 
 TEST_F(DeviceContactTermsTest, TellsWhichTermsAreNear)
 {
-    Dressed made;
-    DeviceContactTerms there(space(), made.mesh.triangles, made.x, made.cloths, made.partners,
-                             made.settings());
-    OnBoard board(space(), int(made.x.size()));
-    made.advance();
-    there.begin_step(board.begin(made));
-    there.make(nullptr);
-    there.see(board.found);
+    Seen seen(space());
+    auto& [made, there, board] = seen;
     std::vector<Vec3> velocities;
     for (size_t v = 0; v < made.x.size(); ++v)
         velocities.emplace_back(double(v), 2.0, -1.0);
@@ -301,14 +312,8 @@ TEST_F(DeviceContactTermsTest, TellsWhichTermsAreNear)
 
 TEST_F(DeviceContactTermsTest, TakeBackWhatIsMovedOfNearOnes)
 {
-    Dressed made;
-    DeviceContactTerms there(space(), made.mesh.triangles, made.x, made.cloths, made.partners,
-                             made.settings());
-    OnBoard board(space(), int(made.x.size()));
-    made.advance();
-    there.begin_step(board.begin(made));
-    there.make(nullptr);
-    there.see(board.found);
+    Seen seen(space());
+    auto& [made, there, board] = seen;
     OnBoard::fill(board.v, std::vector<Vec3>(made.x.size(), Vec3(0.1, 0.0, 0.0)));
     const NearTerms near = there.near(0.0, false, board.v);
     ASSERT_GT(near.terms.size(), 10);
