@@ -1,9 +1,5 @@
 #include "collision/contact.h"
 
-#include <algorithm>
-#include <array>
-#include <limits>
-
 #include "collision/device_contact_terms.h"
 #include "collision/host_contact_terms.h"
 #include "core/backend/stages.h"
@@ -25,21 +21,6 @@ constexpr double kLeftOver = 1e-4;
 /// walking skirt was minimised three times a step for nothing that could be measured.
 constexpr double kFrictionChange = 0.5;
 
-/// Of the triangles around each vertex [m].
-std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<const Vec3> x)
-{
-    std::vector<double> shortest(x.size(), std::numeric_limits<double>::max());
-    for (const Triangle& corner : triangles) {
-        const std::array<Vec3, 3> side{x[corner[1]] - x[corner[0]], x[corner[2]] - x[corner[1]],
-                                       x[corner[0]] - x[corner[2]]};
-        const double longest = std::max({side[0].norm(), side[1].norm(), side[2].norm()});
-        const double altitude = side[0].cross(side[1]).norm() / longest;
-        for (const int v : corner)
-            shortest[v] = std::min(shortest[v], altitude);
-    }
-    return shortest;
-}
-
 std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Triangle> triangles,
                                          View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                          const std::vector<ContactPartner>& partners,
@@ -57,16 +38,16 @@ std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Trian
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
                  const std::vector<ContactCloth>& cloths, const std::vector<ContactPartner>& partners,
                  const Settings& settings, const CudaSpace* space)
-    : rigid_(rigid_bodies_of(cloths)), altitude_(shortest_altitudes(triangles, positions)),
-      terms_(make_terms(energy_, triangles, positions, cloths, partners, settings, space))
+    : terms_(make_terms(energy_, triangles, positions, cloths, partners, settings, space))
 {
     if (settings.cloth_with_cloth)
-        between_ = make_cloth_contact(triangles, positions, cloths, altitude_, space);
+        between_ =
+            make_cloth_contact(triangles, positions, cloths, shortest_altitudes(triangles, positions), space);
 }
 
 void Contact::begin_step(const StepStart& start)
 {
-    start_ = start;
+    dt_ = start.dt;
     has_cleared_ = false;
     if (between_)
         between_->begin_step(start);
@@ -91,6 +72,12 @@ bool Contact::activate(View<const Vec3> x) { return !energy_.terms().empty() && 
 void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
 {
     energy_.add_hessian_product(p, out);
+}
+
+bool Contact::make_feasible(StepField x) const
+{
+    terms_->see(x);
+    return terms_->push_to_rest();
 }
 
 bool Contact::revise(StepField x, bool is_settled)
@@ -148,19 +135,18 @@ void Contact::clear(StepField x, StepField v)
     has_cleared_ = true;
     find_again();
     const StageScope stage("collision/clear");
-    stop_at_surfaces(v);
-    push_out(x, kLeftOver);
+    terms_->stop_at_surfaces(v);
+    terms_->push_out(kLeftOver);
 }
 
 /// What would have crossed stops: it loses the velocity that it was to have got there.
 bool Contact::keep_apart(StepField x, StepField v)
 {
     terms_->see(x);
-    return between_ && between_->hold_back(x, v, start_.dt, [&] { return terms_->leaning(); });
+    return between_ && between_->hold_back(x, v, dt_, [&] { return terms_->leaning(); });
 }
 
-/// Coulomb's law with the distance pushed out for the normal impulse [Macklin et al. 2014, eq. 24]. Nothing
-/// of a stick stays for the next step: friction has undone it.
+/// Nothing of a stick stays for the next step: friction has undone it.
 void Contact::resolve(StepField x, StepField v)
 {
     terms_->see(x);
@@ -171,8 +157,8 @@ void Contact::resolve(StepField x, StepField v)
     terms_->adopt_forces();
     terms_->remember(RememberedSlip::kNothing);
     has_cleared_ = true;
-    rub(x, v);
-    push_out(x, 0.0);
+    terms_->rub(v);
+    terms_->push_out(0.0);
 }
 
 } // namespace toile

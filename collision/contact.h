@@ -43,7 +43,7 @@ public:
 
     void begin_step(const StepStart& start) override;
     bool may_act() const override { return !terms_->empty(); }
-    bool make_feasible(StepField x, ExpectedMoves expected) const override;
+    bool make_feasible(StepField x) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
@@ -77,22 +77,8 @@ public:
 private:
     void find_again();
     void remember_end();
-    template <typename Sweeps>
-    void sweep_near(StepField x, ExpectedMoves expected, const Sweeps& sweeps) const;
-    double mobility_of(const ContactPair& pair) const;
-    void accelerate(const ContactPair& pair, double force, View<Vec3> x) const;
-    bool is_held(int vertex) const;
-    double leverage_of(const ContactPair& pair) const;
-    bool push(const ContactPair& pair, const Vec3& move, View<Vec3> field) const;
-    double clearance_of(const ContactPair& pair) const;
-    Vec3 surface_velocity(const ContactPair& pair) const;
-    void stop_at_surfaces(StepField v) const;
-    void rub(StepField x, StepField v) const;
-    void push_out(StepField x, double most) const;
 
-    std::vector<int> rigid_; ///< [vertices] see rigid_bodies_of
-    StepStart start_;
-    std::vector<double> altitude_; ///< [vertices] the shortest of the triangles around, at the start [m]
+    double dt_ = 0.0;                       ///< of this step [s]
     std::unique_ptr<ClothContact> between_; ///< cloth and cloth; null where that is switched off
     ContactEnergy energy_;                  ///< without terms where they are on a GPU
     std::unique_ptr<ContactTerms> terms_;

@@ -1,6 +1,10 @@
 #include "collision/contact_cloth.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
+
+#include <Eigen/Geometry>
 
 namespace toile {
 
@@ -23,8 +27,25 @@ double largest_gap(const std::vector<ContactCloth>& cloths)
     return largest;
 }
 
-ContactTables::ContactTables(const std::vector<ContactCloth>& cloths, int partner_count)
-    : partner_friction(cloths.size() * partner_count, 0.0), cloth_friction(cloths.size() * cloths.size(), 0.0)
+std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<const Vec3> x)
+{
+    std::vector<double> shortest(x.size(), std::numeric_limits<double>::max());
+    for (const Triangle& corner : triangles) {
+        const std::array<Vec3, 3> side{x[corner[1]] - x[corner[0]], x[corner[2]] - x[corner[1]],
+                                       x[corner[0]] - x[corner[2]]};
+        const double longest = std::max({side[0].norm(), side[1].norm(), side[2].norm()});
+        const double altitude = side[0].cross(side[1]).norm() / longest;
+        for (const int v : corner)
+            shortest[v] = std::min(shortest[v], altitude);
+    }
+    return shortest;
+}
+
+ContactTables::ContactTables(const std::vector<ContactCloth>& cloths, int partner_count,
+                             View<const Triangle> triangles, View<const Vec3> positions)
+    : partner_friction(cloths.size() * partner_count, 0.0),
+      cloth_friction(cloths.size() * cloths.size(), 0.0), rigid(rigid_bodies_of(cloths)),
+      altitude(shortest_altitudes(triangles, positions))
 {
     for (size_t c = 0; c < cloths.size(); ++c) {
         const ContactCloth& cloth = cloths[c];

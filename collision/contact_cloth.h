@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "core/backend/types.h"
+
 namespace toile {
 
 /// One of the cloths that a Contact looks after: how it keeps its distance, and what it is like to rub on.
@@ -23,15 +25,22 @@ std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths);
 /// Of those that cloths keep to colliders [m].
 double largest_gap(const std::vector<ContactCloth>& cloths);
 
-/// What ContactRules asks of the cloths.
+/// [vertices] The shortest altitude of the triangles around each [m].
+std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<const Vec3> x);
+
+/// What ContactRules and PushRules ask of the cloths.
 struct ContactTables {
-    /// @param cloths  whose vertices follow each other
-    ContactTables(const std::vector<ContactCloth>& cloths, int partner_count);
+    /// @param cloths     whose vertices follow each other
+    /// @param positions  [vertices] start positions [m]
+    ContactTables(const std::vector<ContactCloth>& cloths, int partner_count, View<const Triangle> triangles,
+                  View<const Vec3> positions);
 
     std::vector<int> cloth_of;            ///< [vertices]
     std::vector<double> gap;              ///< [cloths] [m]
     std::vector<double> partner_friction; ///< [cloths x partners] [-]
     std::vector<double> cloth_friction;   ///< [cloths x cloths] [-]
+    std::vector<int> rigid;               ///< [vertices] see rigid_bodies_of
+    std::vector<double> altitude;         ///< [vertices] see shortest_altitudes [m]
 };
 
 } // namespace toile

@@ -16,4 +16,14 @@ ContactRules rules_of(const StepStart& start, const ContactTerms::Settings& sett
     return rules;
 }
 
+PushRules push_rules_of(const StepStart& start)
+{
+    PushRules rules;
+    rules.fixed = start.fixed;
+    rules.masses = start.masses;
+    rules.dt = start.dt;
+    rules.farthest_motion = ColliderPairs::kMaxCarrySpeed * start.dt;
+    return rules;
+}
+
 } // namespace toile

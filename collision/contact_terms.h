@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
 #include "collision/cloth/cloth_contact.h"
 #include "collision/colliders.h"
 #include "collision/contact_cloth.h"
+#include "collision/contact_pushes.h"
 #include "collision/contact_rules.h"
 #include "core/pd/active_set_energy.h"
 
@@ -14,22 +14,6 @@ namespace toile {
 
 class CudaSpace;
 class DeviceActiveSet;
-
-/// Where the vertices of a near term are.
-struct NearVertices {
-    std::array<Vec3, 4> x{};                ///< [m] undefined where unused
-    std::array<unsigned char, 8> has_all{}; ///< 1: all terms of this vertex are among the near ones
-};
-
-/// Terms that are nearer than a margin, or share a vertex with one that is where those were asked for, in
-/// their order, and the positions and velocities of their vertices, on the host.
-struct NearTerms {
-    View<const ContactTerm> terms;
-    double margin = 0.0;            ///< [m]; infinite where these are all
-    View<const NearVertices> start; ///< [terms] as they were found; empty where these are all
-    View<Vec3> x = {}; ///< [vertices] to be changed [m]; elsewhere than at those of terms undefined
-    View<Vec3> v = {}; ///< [vertices] likewise, where they were asked for [m/s]
-};
 
 /// The terms of Contact during a step: made of the pairs with colliders, which it finds, and of those of
 /// cloth with cloth; what they are asked; and what friction remembers of them. HostContactTerms has them on
@@ -77,14 +61,14 @@ public:
     /// How deep a step would end in colliders [m]; 0 where it would not.
     virtual double deepest() = 0;
 
-    /// Terms with a gap below the margin [m] (so all with gap + give below it: give >= 0), good until the
-    /// next call of any function.
-    /// @param with_beside  all that share a vertex with one of them too
-    /// @param v            velocities that are wanted too; may be none
-    virtual NearTerms near(double margin, bool with_beside, StepField v = View<Vec3>()) = 0;
-
-    /// Takes over what was changed of the vertices of some near terms, in the fields that they are of.
-    virtual void take(const NearTerms& near, View<const int> changed) = 0;
+    /// Moves cloth by contact alone, term by term (contact_pushes.h): positions to where contact would take
+    /// them before a minimisation (PushToRest), true where something moved; positions out of what they are in
+    /// by more than `most` [m] (PushOut); velocities [m/s] that go into surfaces (StopAtSurface); and both as
+    /// rigid contact with friction changes them (Rub).
+    virtual bool push_to_rest() = 0;
+    virtual void push_out(double most) = 0;
+    virtual void stop_at_surfaces(StepField v) = 0;
+    virtual void rub(StepField v) = 0;
 
     /// Keeps forces and sticking of the pairs that press, for their successors. The forces are the
     /// minimiser's: clearing and the strain limit move cloth afterwards, out of pairs to the last bit.
@@ -104,5 +88,8 @@ public:
 
 /// The rules of a step, without their tables.
 ContactRules rules_of(const StepStart& start, const ContactTerms::Settings& settings);
+
+/// Those of its pushes, without their tables.
+PushRules push_rules_of(const StepStart& start);
 
 } // namespace toile

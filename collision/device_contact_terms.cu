@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/device_turns.cuh"
 #include "core/backend/cuda/parallel.cuh"
 
 namespace toile {
@@ -9,22 +10,25 @@ namespace toile {
 DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triangle> triangles,
                                        View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                        const std::vector<ContactPartner>& partners, const Settings& settings)
-    : space_(space), tables_(cloths, int(partners.size())), settings_(settings),
+    : space_(space), tables_(cloths, int(partners.size()), triangles, positions), settings_(settings),
       colliders_(space, triangles, positions, partners,
                  {largest_gap(cloths), settings.face_vertex, settings.edge_edge}),
       energy_(space), memory_(space), cloth_of_(space, "terms/cloth_of"), gap_(space, "terms/gap"),
       partner_friction_(space, "terms/partner_friction"), cloth_friction_(space, "terms/cloth_friction"),
-      half_thickness_(space, "terms/half_thickness"), room_(space, "terms/room"),
+      half_thickness_(space, "terms/half_thickness"), rigid_(space, "terms/rigid"),
+      altitude_(space, "terms/altitude"), room_(space, "terms/room"),
       overlap_(space, "terms/overlap", positions.size()), pair_flags_(space, "terms/pair_flags"),
       flags_(space, "terms/flags"), leans_(space, "terms/leans", positions.size()),
-      list_(space, "terms/list"), near_(space, positions.size()), count_(space), limits_(space),
-      least_(space), scratch_(space, "terms/scratch")
+      list_(space, "terms/list"), turns_(space, positions.size()), push_force_(space, "terms/push_force"),
+      count_(space), limits_(space), least_(space), scratch_(space, "terms/scratch")
 {
     TOILE_ASSERT(int(tables_.cloth_of.size()) == positions.size());
     cloth_of_.upload(tables_.cloth_of);
     gap_.upload(tables_.gap);
     partner_friction_.upload(tables_.partner_friction);
     cloth_friction_.upload(tables_.cloth_friction);
+    rigid_.upload(tables_.rigid);
+    altitude_.upload(tables_.altitude);
 }
 
 void DeviceContactTerms::begin_step(const StepStart& start)
@@ -38,6 +42,11 @@ void DeviceContactTerms::begin_step(const StepStart& start)
     rules_.x = start.there.x;
     rules_.diagonal = start.there.diagonal;
     rules_.fixed = start.there.fixed;
+    push_rules_ = push_rules_of(start);
+    push_rules_.fixed = start.there.fixed;
+    push_rules_.masses = start.there.masses;
+    push_rules_.rigid = rigid_.view();
+    push_rules_.altitude = altitude_.view();
     colliders_.find(start.there.x, start.there.prediction, start.dt);
 }
 
@@ -107,12 +116,42 @@ double DeviceContactTerms::deepest()
     return std::max(0.0, -height.value);
 }
 
-NearTerms DeviceContactTerms::near(double margin, bool with_beside, StepField v)
+void DeviceContactTerms::list_near(double margin)
 {
-    return near_.find(energy_.touches(), energy_.vertices().size(), margin, with_beside, x_, v);
+    turns_.list(energy_.touches(), energy_.vertices(), x_.change_there(), margin);
 }
 
-void DeviceContactTerms::take(const NearTerms& near, View<const int> changed) { near_.take(near, changed); }
+bool DeviceContactTerms::push_to_rest()
+{
+    return sweep_near([&](double margin) {
+        list_near(margin);
+        const View<double> force = first_items(push_force_, energy_.terms().size());
+        push_force_.fill_zero();
+        turns_.run(PushToRest{push_rules_, force, x_.change_there()}, kGuessSweeps, margin);
+        return turns_.outcome();
+    });
+}
+
+void DeviceContactTerms::push_out(double most)
+{
+    sweep_near([&](double margin) {
+        list_near(margin);
+        turns_.run(PushOut{push_rules_, most, x_.change_there()}, kClearSweeps, margin);
+        return turns_.outcome();
+    });
+}
+
+void DeviceContactTerms::stop_at_surfaces(StepField v)
+{
+    list_near(0.0);
+    turns_.run(StopAtSurface{push_rules_, x_.there(), v.change_there()}, 1);
+}
+
+void DeviceContactTerms::rub(StepField v)
+{
+    list_near(HUGE_VAL);
+    turns_.run(Rub{push_rules_, x_.change_there(), v.change_there()}, 1);
+}
 
 void DeviceContactTerms::remember(Slip slip) { memory_.keep(energy_.terms(), rules_, slip, x_.there()); }
 

@@ -5,13 +5,13 @@
 #include "collision/device_contact_energy.h"
 #include "collision/device_contact_memory.h"
 #include "collision/device_look_kernels.h"
-#include "collision/device_near_terms.h"
+#include "collision/device_turns.h"
 #include "core/backend/cuda/roomy.h"
 
 namespace toile {
 
-/// ContactTerms on a GPU: only numbers, flags of vertices and near terms come to the host. Every function
-/// waits for what it returns.
+/// ContactTerms on a GPU: only numbers and flags of vertices come to the host. Every function waits for what
+/// it returns.
 class DeviceContactTerms : public ContactTerms {
 public:
     /// @param space  borrowed
@@ -30,8 +30,10 @@ public:
     bool has_left(double trust) override;
     void find_again() override { colliders_.find_again(x_.there()); }
     double deepest() override;
-    NearTerms near(double margin, bool with_beside, StepField v) override;
-    void take(const NearTerms& near, View<const int> changed) override;
+    bool push_to_rest() override;
+    void push_out(double most) override;
+    void stop_at_surfaces(StepField v) override;
+    void rub(StepField v) override;
     void remember(Slip slip) override;
     int remembered() const override { return memory_.size(); }
     double end_step() override;
@@ -41,6 +43,7 @@ public:
     const DeviceContactEnergy& energy() const { return energy_; }
 
 private:
+    void list_near(double margin);
     void mark_flagged(View<unsigned char> marks);
     View<unsigned char> flags() { return first_items(flags_, energy_.terms().size()); }
     ContactLook look() const { return {energy_.terms(), x_.there()}; }
@@ -51,19 +54,23 @@ private:
     DeviceColliderPairs colliders_;
     DeviceContactEnergy energy_;
     DeviceContactMemory memory_;
-    ContactRules rules_; ///< of this step
+    ContactRules rules_;   ///< of this step
+    PushRules push_rules_; ///< likewise
     StepField x_{View<Vec3>()};
 
     DeviceArray<int> cloth_of_; ///< see ContactTables
     DeviceArray<double> gap_, partner_friction_, cloth_friction_;
     DeviceArray<double> half_thickness_; ///< [vertices]
+    DeviceArray<int> rigid_;             ///< see PushRules
+    DeviceArray<double> altitude_;
 
     DeviceArray<double> room_, overlap_;    ///< see FindRoom
     DeviceArray<unsigned char> pair_flags_; ///< [pairs]
     DeviceArray<unsigned char> flags_;      ///< [terms]
     DeviceArray<unsigned char> leans_;      ///< [vertices]
     DeviceArray<int> list_;                 ///< of what is flagged
-    DeviceNearTerms near_;
+    DeviceTurns turns_;
+    DeviceArray<double> push_force_; ///< [terms] see PushToRest
     SumScratch<int> count_;
     SumScratch<FrictionLimits> limits_;
     SumScratch<Least> least_;

@@ -17,7 +17,7 @@ constexpr double kPlenty = std::numeric_limits<double>::infinity();
 HostContactTerms::HostContactTerms(ContactEnergy& energy, View<const Triangle> triangles,
                                    View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                    const std::vector<ContactPartner>& partners, const Settings& settings)
-    : energy_(energy), tables_(cloths, int(partners.size())), settings_(settings),
+    : energy_(energy), tables_(cloths, int(partners.size()), triangles, positions), settings_(settings),
       colliders_(triangles, positions, partners,
                  {largest_gap(cloths), settings.face_vertex, settings.edge_edge})
 {
@@ -31,6 +31,9 @@ void HostContactTerms::begin_step(const StepStart& start)
     rules_.gap = tables_.gap;
     rules_.partner_friction = tables_.partner_friction;
     rules_.cloth_friction = tables_.cloth_friction;
+    push_rules_ = push_rules_of(start);
+    push_rules_.rigid = tables_.rigid;
+    push_rules_.altitude = tables_.altitude;
     colliders_.find(start);
 }
 
@@ -146,9 +149,36 @@ double HostContactTerms::deepest()
     return depth;
 }
 
-NearTerms HostContactTerms::near(double, bool, StepField v)
+bool HostContactTerms::push_to_rest()
 {
-    return {energy_.terms(), kPlenty, {}, seen_.change_on_host(), v.change_on_host()};
+    const View<Vec3> x = seen_.change_on_host();
+    return sweep_near([&](double margin) {
+        turns_.list(energy_.terms(), x, margin);
+        push_force_.assign(energy_.terms().size(), 0.0);
+        return turns_.run(PushToRest{push_rules_, push_force_, x}, kGuessSweeps, margin);
+    });
+}
+
+void HostContactTerms::push_out(double most)
+{
+    const View<Vec3> x = seen_.change_on_host();
+    sweep_near([&](double margin) {
+        turns_.list(energy_.terms(), x, margin);
+        return turns_.run(PushOut{push_rules_, most, x}, kClearSweeps, margin);
+    });
+}
+
+void HostContactTerms::stop_at_surfaces(StepField v)
+{
+    turns_.list(energy_.terms(), seen_.change_on_host(), 0.0);
+    turns_.run(StopAtSurface{push_rules_, x_, v.change_on_host()}, 1);
+}
+
+void HostContactTerms::rub(StepField v)
+{
+    const View<Vec3> x = seen_.change_on_host();
+    turns_.list(energy_.terms(), x, HUGE_VAL);
+    turns_.run(Rub{push_rules_, x, v.change_on_host()}, 1);
 }
 
 void HostContactTerms::remember(Slip slip)

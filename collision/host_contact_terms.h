@@ -5,6 +5,7 @@
 #include "collision/contact_memory.h"
 #include "collision/contact_rules.h"
 #include "collision/contact_terms.h"
+#include "collision/host_turns.h"
 
 namespace toile {
 
@@ -31,8 +32,10 @@ public:
     bool has_left(double trust) override;
     void find_again() override;
     double deepest() override;
-    NearTerms near(double margin, bool with_beside, StepField v) override;
-    void take(const NearTerms&, View<const int>) override {} // changed where they are
+    bool push_to_rest() override;
+    void push_out(double most) override;
+    void stop_at_surfaces(StepField v) override;
+    void rub(StepField v) override;
     void remember(Slip slip) override;
     int remembered() const override { return memory_.size(); }
     double end_step() override;
@@ -46,7 +49,10 @@ private:
     ContactTables tables_;
     Settings settings_;
     ColliderPairs colliders_;
-    ContactRules rules_; ///< of this step
+    ContactRules rules_;   ///< of this step
+    PushRules push_rules_; ///< likewise
+    HostTurns turns_;
+    std::vector<double> push_force_; ///< [terms] see PushToRest
     StepField seen_{View<Vec3>()};
     View<const Vec3> x_;                ///< of seen_
     std::vector<unsigned char> strays_; ///< [vertices] 1 where pairs with colliders are to be found again

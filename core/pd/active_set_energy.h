@@ -17,17 +17,14 @@ struct StepStart {
     View<const double> masses;       ///< [vertices] [kg]; of unknowns that are no vertices: unspecified
     double dt = 0.0;                 ///< [s]
 
-    /// The first four as the device has them, until the end of the step; empty where no GPU makes it.
+    /// The first five as the device has them, until the end of the step; empty where no GPU makes it.
     struct There {
         View<const Vec3> x, prediction;
         View<const double> diagonal;
         View<const unsigned char> fixed;
+        View<const double> masses;
     } there = {};
 };
-
-/// How far vertices are from where contact puts them, as far as one can tell: as a step predicts them, or
-/// moved a little from where contact had put them.
-enum class ExpectedMoves { Long, Short };
 
 /// A convex energy that acts on changing places, contact above all. It stays out of H; while it is active the
 /// solver inverts H + dH by preconditioned CG instead of H directly.
@@ -41,8 +38,7 @@ public:
 
     /// Moves a start guess out of the candidates' forbidden half-spaces as contact without anything else
     /// would. True when anything moved.
-    /// @param expected  what is looked at first, no more
-    virtual bool make_feasible(StepField x, ExpectedMoves expected) const = 0;
+    virtual bool make_feasible(StepField x) const = 0;
 
     /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) const = 0;

@@ -28,7 +28,7 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
     x_t1_ = prediction_;
     if (active) {
         active->begin_step(start_of(dt));
-        active->make_feasible(x_t1_, ExpectedMoves::Long);
+        active->make_feasible(x_t1_);
     }
     minimise(dt, active, report);
     if (report.status == StepReport::Status::NonFinite)

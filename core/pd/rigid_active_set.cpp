@@ -64,11 +64,11 @@ void RigidActiveSet::begin_step(const StepStart& start)
 }
 
 /// Of the start guess the free points only: pushed out one by one, the vertices of a body would come apart.
-bool RigidActiveSet::make_feasible(StepField positions, ExpectedMoves expected) const
+bool RigidActiveSet::make_feasible(StepField positions) const
 {
     const View<Vec3> q = positions.change_on_host();
     to_surface(q, x_);
-    const bool moved = surface_.make_feasible(x_, expected);
+    const bool moved = surface_.make_feasible(x_);
     take_free(x_, q);
     return moved;
 }

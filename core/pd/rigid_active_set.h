@@ -22,7 +22,7 @@ public:
     RigidActiveSet(ActiveSetEnergy& surface, const RigidBodies& bodies, int free_count);
 
     void begin_step(const StepStart& start) override;
-    bool make_feasible(StepField q, ExpectedMoves expected) const override;
+    bool make_feasible(StepField q) const override;
     double add_gradient(View<const Vec3> q, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> q) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;

@@ -22,7 +22,7 @@ StepReport Rival::step(double dt, View<const Vec3> acceleration, const std::vect
     if (active) {
         // Where limit and contact contradict each other, contact has the last word.
         if (projection)
-            active->make_feasible(x_t1_, ExpectedMoves::Long);
+            active->make_feasible(x_t1_);
         active->keep_apart(x_t1_, v_);
         active->end_step(x_t1_);
     }

@@ -140,7 +140,7 @@ void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* ac
     std::function<bool()> clear_contacts;
     if (active)
         clear_contacts = [&] {
-            const bool moved = active->make_feasible(x_t1_, ExpectedMoves::Short);
+            const bool moved = active->make_feasible(x_t1_);
             static_cast<void>(x_t1_.change_there());
             return moved;
         };
@@ -158,8 +158,8 @@ void DeviceBody::begin_contact(ActiveSetEnergy& active)
                        system_->fixed(),
                        system_->masses(),
                        dt_,
-                       {x_.there(), prediction_.there(), diagonal_.view(), fixed_.view()}});
-    active.make_feasible(x_t1_, ExpectedMoves::Long);
+                       {x_.there(), prediction_.there(), diagonal_.view(), fixed_.view(), masses_.view()}});
+    active.make_feasible(x_t1_);
 }
 
 void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)

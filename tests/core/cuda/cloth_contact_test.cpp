@@ -95,7 +95,7 @@ struct Sides {
         x = std::make_unique<Field>(space, made.x);
         prediction = std::make_unique<Field>(space, made.expected);
         host.begin_step({x->host(), prediction->host(), ones, fixed, ones, kDt, {}});
-        there.begin_step({{}, {}, ones, fixed, ones, kDt, {x->there(), prediction->there(), {}, {}}});
+        there.begin_step({{}, {}, ones, fixed, ones, kDt, {x->there(), prediction->there(), {}, {}, {}}});
     }
 
     const CudaSpace& space;

@@ -132,7 +132,7 @@ protected:
         OnBoard(const CudaSpace& space, int count)
             : x(space, "test/x", count), prediction(space, "test/prediction", count),
               found(space, "test/found", count), v(space, "test/v", count), diagonal(space, "test/diagonal"),
-              fixed(space, "test/fixed")
+              masses(space, "test/masses"), fixed(space, "test/fixed")
         {
         }
         static void fill(MirroredArray<Vec3>& field, View<const Vec3> values)
@@ -147,29 +147,13 @@ protected:
             StepStart start{made.x, made.prediction, made.diagonal, made.fixed, made.masses, kDt};
             diagonal.upload(made.diagonal);
             fixed.upload(made.fixed);
-            start.there = {x.there(), prediction.there(), diagonal.view(), fixed.view()};
+            masses.upload(made.masses);
+            start.there = {x.there(), prediction.there(), diagonal.view(), fixed.view(), masses.view()};
             return start;
         }
         MirroredArray<Vec3> x, prediction, found, v;
-        DeviceArray<double> diagonal;
+        DeviceArray<double> diagonal, masses;
         DeviceArray<unsigned char> fixed;
-    };
-
-    /// Terms of a step that have seen where it ends.
-    struct Seen {
-        explicit Seen(const CudaSpace& space)
-            : there(space, made.mesh.triangles, made.x, made.cloths, made.partners, made.settings()),
-              board(space, int(made.x.size()))
-        {
-            made.advance();
-            there.begin_step(board.begin(made));
-            there.make(nullptr);
-            there.see(board.found);
-        }
-
-        Dressed made;
-        DeviceContactTerms there;
-        OnBoard board;
     };
 
     std::vector<ContactTerm> downloaded(const DeviceContactTerms& terms)
@@ -272,67 +256,7 @@ TEST_F(DeviceContactTermsTest, AreThoseOfTheCpuFromStepToStep)
     EXPECT_GT(faces, 100);
 }
 
-TEST_F(DeviceContactTermsTest, TellsWhichTermsAreNear)
-{
-    Seen seen(space());
-    auto& [made, there, board] = seen;
-    std::vector<Vec3> velocities;
-    for (size_t v = 0; v < made.x.size(); ++v)
-        velocities.emplace_back(double(v), 2.0, -1.0);
-    OnBoard::fill(board.v, velocities);
-    const std::vector<ContactTerm> all = downloaded(there);
-    for (const double margin : {0.0, 0.001, 1.0}) {
-        std::vector<unsigned char> has_near(made.x.size(), 0);
-        for (const ContactTerm& term : all)
-            for (int k = 0; term.gap(made.found) < margin && k < term.pair.count(); ++k)
-                has_near[term.pair.vertex[k]] = 1;
-        std::vector<ContactPair> expected, found;
-        for (const ContactTerm& term : all) {
-            bool is_expected = false;
-            for (int k = 0; k < term.pair.count(); ++k)
-                is_expected = is_expected || has_near[term.pair.vertex[k]];
-            if (is_expected)
-                expected.push_back(term.pair);
-        }
-        const NearTerms near = there.near(margin, true, board.v);
-        for (int i = 0; i < near.terms.size(); ++i) {
-            const ContactPair& pair = near.terms[i].pair;
-            found.push_back(pair);
-            for (int k = 0; k < pair.count(); ++k) {
-                const int v = pair.vertex[k];
-                EXPECT_EQ(near.start[i].has_all[k], has_near[v]);
-                EXPECT_EQ(near.start[i].x[k], made.found[v]);
-                EXPECT_EQ(near.x[v], made.found[v]);
-                EXPECT_EQ(near.v[v], velocities[v]);
-            }
-        }
-        expect_same(expected, found, made.x, "near");
-    }
-}
-
-TEST_F(DeviceContactTermsTest, TakeBackWhatIsMovedOfNearOnes)
-{
-    Seen seen(space());
-    auto& [made, there, board] = seen;
-    OnBoard::fill(board.v, std::vector<Vec3>(made.x.size(), Vec3(0.1, 0.0, 0.0)));
-    const NearTerms near = there.near(0.0, false, board.v);
-    ASSERT_GT(near.terms.size(), 10);
-    std::vector<Vec3> x = made.found, v(made.x.size(), Vec3(0.1, 0.0, 0.0));
-    std::vector<int> changed;
-    for (int i = 0; i < near.terms.size(); i += 3) {
-        const int vertex = near.terms[i].pair.vertex[0];
-        x[vertex] = near.x[vertex] = Vec3(1.0, i, 2.0);
-        v[vertex] = near.v[vertex] = Vec3(3.0, 4.0, i);
-        changed.push_back(i);
-    }
-    there.take(near, changed);
-    for (size_t i = 0; i < x.size(); ++i) {
-        EXPECT_EQ(board.found.host()[i], x[i]);
-        EXPECT_EQ(board.v.host()[i], v[i]);
-    }
-}
-
-/// Contact as a body asks it: only near terms come to the host, and the result is that of all.
+/// Contact as a body asks it.
 TEST_F(DeviceContactTermsTest, MoveClothAsOnTheCpu)
 {
     Dressed made;
@@ -353,9 +277,8 @@ TEST_F(DeviceContactTermsTest, MoveClothAsOnTheCpu)
         here.begin_step(start);
         there.begin_step(start);
         std::vector<Vec3> guess = made.prediction, x = made.found, v(made.x.size(), Vec3(0.1, -0.3, 0.0));
-        const auto expected = step % 2 == 0 ? ExpectedMoves::Long : ExpectedMoves::Short;
-        EXPECT_TRUE(here.make_feasible(guess, expected));
-        EXPECT_TRUE(there.make_feasible(board.prediction, expected));
+        EXPECT_TRUE(here.make_feasible(guess));
+        EXPECT_TRUE(there.make_feasible(board.prediction));
         expect_same_field(guess, board.prediction.host(), 1e-8);
 
         EXPECT_TRUE(here.revise(x, true));
@@ -414,7 +337,7 @@ TEST_F(DeviceContactTermsTest, AreNoneWhereNothingIsNear)
     OnBoard board(space(), int(made.x.size()));
     made.advance();
     contact.begin_step(board.begin(made));
-    EXPECT_FALSE(contact.make_feasible(board.prediction, ExpectedMoves::Long));
+    EXPECT_FALSE(contact.make_feasible(board.prediction));
     EXPECT_FALSE(contact.on_device(space())->has_terms());
     EXPECT_FALSE(contact.revise(board.found, true));
     contact.clear(board.found, board.v);

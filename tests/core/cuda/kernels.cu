@@ -1,4 +1,4 @@
-#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/cuda/turns.cuh"
 #include "tests/core/cuda/kernels.h"
 
 namespace toile::test {
@@ -46,6 +46,16 @@ void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel
 void launch(const CudaSpace& space, const GatherCorners& kernel)
 {
     parallel_for(space, "test/gather", kernel.gradient.size(), kernel);
+}
+
+void launch(const CudaSpace& space, const NumberTurns& kernel)
+{
+    parallel_for(space, "test/number_turns", kernel.of.size(), kernel);
+}
+
+void launch(const CudaSpace& space, const Turns& turns, int most, int rounds, const MixShared& kernel)
+{
+    parallel_in_turns(space, "test/mix", turns, most, rounds, kernel);
 }
 
 void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,

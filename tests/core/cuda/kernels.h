@@ -3,6 +3,7 @@
 #include "core/backend/cuda/sum_scratch.h"
 #include "core/backend/types.h"
 #include "garment/energy/membrane_kernels.h"
+#include "tests/core/shared_items.h"
 
 namespace toile::test {
 
@@ -105,6 +106,8 @@ void launch(const CudaSpace& space, const WriteWild& kernel);
 void launch(const CudaSpace& space, const WriteLayout& kernel);
 void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel);
 void launch(const CudaSpace& space, const GatherCorners& kernel);
+void launch(const CudaSpace& space, const NumberTurns& kernel);
+void launch(const CudaSpace& space, const Turns& turns, int most, int rounds, const MixShared& kernel);
 
 /// The sum of numbers in a slot of the device, and read back.
 void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,

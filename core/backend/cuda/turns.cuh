@@ -1,0 +1,101 @@
+#pragma once
+
+/// Launches on a GPU in which items go one after the other as far as they share something. Included by .cu
+/// files, as parallel.cuh.
+
+#include <algorithm>
+#include <string_view>
+
+#include "core/backend/cuda/parallel.cuh"
+#include "core/backend/turns.h"
+
+namespace toile {
+
+/// Threads that visit items: as many as a large device runs at once. More would only wait.
+inline constexpr int kVisitors = 8448;
+
+#ifdef __CUDACC__
+
+/// An item's turn in a round.
+class Turn {
+public:
+    /// @param shared  what the item shares; -1 unused
+    __device__ Turn(const Turns& turns, int item, const std::array<int, Turns::kShares>& shared, int round)
+        : served_(turns.served.data()), shared_(shared)
+    {
+        for (int k = 0; k < Turns::kShares; ++k)
+            if (shared[k] >= 0)
+                before_[k] = round * turns.total[shared[k]] + turns.rank[Turns::kShares * item + k];
+    }
+
+    /// Until all before it have been served; sees what they wrote.
+    __device__ void await() const
+    {
+        for (int k = 0; k < Turns::kShares; ++k)
+            while (shared_[k] >= 0 && *at(k) != before_[k]) {
+            }
+        __threadfence();
+    }
+
+    __device__ void pass_on() const
+    {
+        __threadfence();
+        for (int k = 0; k < Turns::kShares; ++k)
+            if (shared_[k] >= 0)
+                *at(k) = before_[k] + 1;
+    }
+
+private:
+    __device__ volatile int* at(int k) const { return served_ + shared_[k]; }
+
+    int* served_;
+    std::array<int, Turns::kShares> shared_, before_;
+};
+
+/// Visits begin in order, so whoever is waited for has begun: however few threads run at once, the first of
+/// them need not wait. One thread of a warp works, as the others would wait for it to wait.
+template <typename Kernel>
+__global__ void run_in_turns(const Turns turns, int rounds, const Kernel kernel)
+{
+    wait_for_turn();
+    if (threadIdx.x % kWarp != 0)
+        return;
+    const unsigned count = unsigned(turns.count[0]), visits = unsigned(rounds) * count;
+    unsigned* const next = turns.next.data();
+    for (unsigned visit = atomicAdd(next, 1U); visit < visits; visit = atomicAdd(next, 1U)) {
+        const int item = turns.order.at(turns.places[int(visit % count)]);
+        const auto own = kernel.early(item);
+        const Turn turn(turns, item, kernel.shared(own), int(visit / count));
+        turn.await();
+        kernel(item, own);
+        turn.pass_on();
+    }
+}
+
+#endif
+
+/// Launches kernel(item, kernel.early(item)) for all listed items, round after round, in the stream's turn
+/// and returns. Each begins when those before it that share something with it are done, so that the result is
+/// that of one after the other. early() loads what no item changes, and kernel.shared() tells by that what
+/// the item shares with others. Counted and refused as parallel_for.
+/// @param turns  next[0] is 0, and nothing has been served
+/// @param most   items that may be listed
+template <typename Kernel>
+void parallel_in_turns(const CudaSpace& space, std::string_view name, [[maybe_unused]] const Turns& turns,
+                       int most, [[maybe_unused]] int rounds, [[maybe_unused]] const Kernel& kernel,
+                       CallSite where = CallSite::here())
+{
+    const StageScope stage(name);
+    if (most <= 0)
+        return;
+    const CudaLaunch launch(space, name, where);
+#ifdef __CUDACC__
+    constexpr int kBlock = 128;
+    const int visitors = std::min(most, kVisitors);
+    launch_kernel(space, run_in_turns<Kernel>, block_count(visitors, kBlock / kWarp), kBlock, 0, turns,
+                  rounds, kernel);
+#endif
+    launch.done();
+}
+
+} // namespace toile

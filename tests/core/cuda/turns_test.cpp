@@ -1,0 +1,57 @@
+#include <numeric>
+
+#include "core/backend/cuda/scan.h"
+#include "tests/core/cuda/kernels.h"
+#include "tests/core/cuda/on_device.h"
+
+namespace toile::test {
+namespace {
+
+using DeviceTurnsTest = OnDevice;
+
+/// A device of its own, filled from the host.
+template <typename T>
+DeviceArray<T> uploaded(const CudaSpace& space, const std::vector<T>& values)
+{
+    DeviceArray<T> array(space, "test/values");
+    array.upload(values);
+    return array;
+}
+
+/// Bit by bit, with many more items than threads that visit them.
+TEST_F(DeviceTurnsTest, AreThoseOfOneAfterTheOther)
+{
+    constexpr int kRounds = 3;
+    for (const auto& [count, shared_count] : {std::pair(1, 20), {700, 60}, {200000, 70000}}) {
+        const SharedItems made(count, shared_count);
+        const TurnOrder order{count};
+        const std::vector<unsigned char> listed = some_listed(order);
+        std::vector<double> values(shared_count);
+        std::iota(values.begin(), values.end(), 1.0);
+
+        const auto items = uploaded(space(), made.items);
+        const auto flags = uploaded(space(), listed);
+        const auto lists = uploaded(space(), made.lists), first = uploaded(space(), made.first),
+                   entries = uploaded(space(), made.entries);
+        DeviceArray<double> there = uploaded(space(), values);
+        DeviceArray<int> places(space(), "test/places", order.place_count()),
+            listed_count(space(), "test/count", 1), rank(space(), "test/rank", Turns::kShares * count),
+            total(space(), "test/total", shared_count), served(space(), "test/served", shared_count);
+        DeviceArray<unsigned> next(space(), "test/next", 1);
+        next.fill_zero();
+        DeviceScratch scratch(space(), "test/scratch");
+        list_flagged(space(), "test/list", flags.view(), places.view(), listed_count.view(), scratch);
+        launch(space(), NumberTurns{order, flags.view(), lists.view(), first.view(), entries.view(),
+                                    rank.view(), total.view(), served.view()});
+        launch(space(),
+               Turns{order, places.view(), listed_count.view(), rank.view(), total.view(), served.view(),
+                     next.view()},
+               count, kRounds, MixShared{items.view(), there.view()});
+
+        mix_in_turn(made, order, listed, kRounds, values);
+        EXPECT_EQ(there.downloaded(), values) << count;
+    }
+}
+
+} // namespace
+} // namespace toile::test

@@ -1,0 +1,78 @@
+#include "tests/core/shared_items.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace toile::test {
+namespace {
+
+TEST(TurnOrder, HasEveryItemAtOnePlace)
+{
+    for (const int count : {0, 1, 31, 32, 33, 1000, 4097}) {
+        const TurnOrder order{count};
+        std::vector<int> found;
+        for (int place = 0; place < order.place_count(); ++place)
+            if (const int item = order.at(place); item < count) {
+                EXPECT_EQ(order.place_of(item), place);
+                found.push_back(item);
+            }
+        std::sort(found.begin(), found.end());
+        ASSERT_EQ(int(found.size()), count);
+        for (int i = 0; i < count; ++i)
+            EXPECT_EQ(found[i], i);
+    }
+}
+
+/// How many go one after the other at most where item i waits for all of i - reach to i + reach before it.
+int longest_wait(const TurnOrder& order, int reach)
+{
+    std::vector<int> depth(order.count, 0);
+    for (int place = 0; place < order.place_count(); ++place) {
+        const int item = order.at(place);
+        if (item >= order.count)
+            continue;
+        int before = 0;
+        for (int other = std::max(0, item - reach); other <= std::min(order.count - 1, item + reach); ++other)
+            before = std::max(before, depth[other]);
+        depth[item] = before + 1;
+    }
+    return *std::max_element(depth.begin(), depth.end());
+}
+
+/// In the list's own order all would wait for each other.
+TEST(TurnOrder, LetsNeighboursInAListGoSoon)
+{
+    const TurnOrder order{100000};
+    EXPECT_LE(longest_wait(order, 1), 12);
+    EXPECT_LE(longest_wait(order, 10), 64);
+}
+
+TEST(NumberTurns, CountThoseBeforeInTheOrder)
+{
+    const SharedItems made(1000, 120);
+    const TurnOrder order{1000};
+    const std::vector<unsigned char> listed = some_listed(order);
+    std::vector<int> rank(4000, -1), total(120, -1), served(120, -1);
+    const NumberTurns number{order, listed, made.lists, made.first, made.entries, rank, total, served};
+    for (int k = 0; k < 120; ++k)
+        number(k);
+    for (int shared = 0; shared < 120; ++shared) {
+        int before = 0;
+        for (int place = 0; place < order.place_count(); ++place) {
+            const int item = order.at(place);
+            for (int k = 0; listed[place] != 0 && k < Turns::kShares; ++k) {
+                if (made.items[item][k] != shared)
+                    continue;
+                EXPECT_EQ(rank[Turns::kShares * item + k], before);
+                ++before;
+            }
+        }
+        EXPECT_EQ(total[shared], before);
+        EXPECT_EQ(served[shared], 0);
+    }
+}
+
+} // namespace
+} // namespace toile::test
