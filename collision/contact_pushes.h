@@ -1,7 +1,8 @@
 #pragma once
 
 /// How contact alone moves cloth, pair by pair, where no minimisation does it: before a step's minimisation,
-/// and of what that has left inside. The same bodies on CPU and GPU, in the TurnOrder of the terms.
+/// and of what that has left inside. A sweep is of the terms that push when it begins, one after the other in
+/// their TurnOrder. The same bodies on CPU and GPU.
 
 #include <array>
 #include <cmath>
@@ -119,12 +120,15 @@ struct PushToRest {
     View<double> force; ///< [terms] so far [N]
     View<Vec3> x;       ///< [vertices] [m]
 
+    TOILE_HD bool acts(int i, const ContactTerm& term) const
+    {
+        return term.gap(x) + term.give < 0.0 || force[i] != 0.0;
+    }
+
     /// True where something moved.
     TOILE_HD bool operator()(int i, const ContactTerm& term) const
     {
         const double depth = -term.gap(x) - term.give;
-        if (depth <= 0.0 && force[i] == 0.0)
-            return false;
         const double mobility = rules.mobility_of(term.pair);
         const double reach = depth + mobility * force[i];
         const double change = term.spring.force(term.spring.depth_at_rest(reach, mobility)) - force[i];
@@ -142,11 +146,19 @@ struct PushOut {
     double most;  ///< depth that is left to a pair which rests there [m]
     View<Vec3> x; ///< [vertices] [m]
 
+    TOILE_HD bool acts(int, const ContactTerm& term) const { return depth_of(term) > 0.0; }
+
     TOILE_HD bool operator()(int, const ContactTerm& term) const
     {
-        const double depth = -term.gap(x) - term.give - std::fmin(most, term.rest_depth());
+        const double depth = depth_of(term);
         return depth > 0.0 &&
                rules.push(term.pair, std::fmin(depth, rules.clearance_of(term.pair)) * term.pair.normal, x);
+    }
+
+private:
+    TOILE_HD double depth_of(const ContactTerm& term) const
+    {
+        return -term.gap(x) - term.give - std::fmin(most, term.rest_depth());
     }
 };
 
@@ -156,11 +168,14 @@ struct StopAtSurface {
     View<const Vec3> x; ///< [vertices] [m]
     View<Vec3> v;       ///< [vertices] [m/s]
 
+    TOILE_HD bool acts(int, const ContactTerm& term) const
+    {
+        return term.gap(x) < 0.0 && rules.clearance_of(term.pair) >= kThinnest;
+    }
+
     TOILE_HD bool operator()(int, const ContactTerm& term) const
     {
         const ContactPair& pair = term.pair;
-        if (term.gap(x) >= 0.0 || rules.clearance_of(pair) < kThinnest)
-            return false;
         const double approach = pair.normal.dot(rules.surface_velocity(pair) - pair.cloth_point(v));
         return approach > 0.0 && rules.push(pair, approach * pair.normal, v);
     }
@@ -173,6 +188,8 @@ struct StopAtSurface {
 struct Rub {
     PushRules rules;
     View<Vec3> x, v; ///< [vertices] [m], [m/s]
+
+    TOILE_HD bool acts(int, const ContactTerm& term) const { return term.gap(x) < 0.0; }
 
     TOILE_HD bool operator()(int, const ContactTerm& term) const
     {
@@ -202,72 +219,35 @@ private:
     }
 };
 
-/// What became of sweeps over listed terms.
-struct PushOutcome {
-    int moved = 0;    ///< 1: something
-    int went_far = 0; ///< 1: a vertex went so far that terms which are not listed might push it
-};
-
-/// A push of sweeps over the terms that are nearer than a margin: nothing moves once something has gone too
-/// far. The weights of cloth with cloth sum to 2, so terms that are not listed stay clear of vertices that
-/// move by less than nearly half of the margin.
+/// Flags the place of term i where it pushes; for i in [0, place_count()), as places beyond the terms are
+/// empty.
 template <typename Push>
-struct WatchedPush {
+struct FlagActing {
     Push push;
     View<const ContactTerm> terms;
-    View<const Vec3> x;        ///< [vertices] [m]
-    View<const Vec3> start;    ///< [vertices] where they were, those of listed terms [m]
-    double margin;             ///< [m]
-    View<PushOutcome> outcome; ///< [1]
-
-    TOILE_HD ContactTerm early(int i) const { return terms[i]; }
-    TOILE_HD std::array<int, 4> shared(const ContactTerm& term) const { return term.pair.vertex; }
-
-    TOILE_HD bool operator()(int i, const ContactTerm& term) const
-    {
-        if (outcome[0].went_far != 0 || !push(i, term))
-            return false;
-        outcome[0].moved = 1;
-        for (int k = 0; k < term.pair.count(); ++k)
-            if (const int v = term.pair.vertex[k]; !((x[v] - start[v]).norm() < 0.49 * margin))
-                outcome[0].went_far = 1;
-        return true;
-    }
-};
-
-/// What is in some slots, to the same slots elsewhere.
-struct CopySlots {
-    View<const int> slots; ///< each once
-    View<const Vec3> from;
-    View<Vec3> to;
-
-    TOILE_HD void operator()(int k) const { to[slots[k]] = from[slots[k]]; }
-};
-
-/// Flags the place of term i where its gap is below the margin; for i in [0, place_count()), as places beyond
-/// the terms are empty.
-struct FlagNear {
-    View<const ContactTerm> terms;
-    View<const Vec3> x; ///< [vertices] [m]
-    double margin;      ///< [m]
     TurnOrder order;
     View<unsigned char> flags; ///< [places] out
 
     TOILE_HD void operator()(int i) const
     {
-        flags[order.place_of(i)] = i < order.count && terms[i].gap(x) < margin ? 1 : 0;
+        flags[order.place_of(i)] = i < order.count && push.acts(i, terms[i]) ? 1 : 0;
     }
 };
 
-/// Calls sweeps(margin [m]) -> PushOutcome with ever larger margins, until nothing goes too far.
-/// @return whether something moved
-template <typename Sweeps>
-bool sweep_near(const Sweeps& sweeps)
-{
-    constexpr double kMargin = 1e-4, kGrowth = 8.0, kAll = 1.0; // [m], [-], [m]
-    for (double margin = kMargin;; margin = margin < kAll ? kGrowth * margin : HUGE_VAL)
-        if (const PushOutcome outcome = sweeps(margin); outcome.went_far == 0)
-            return outcome.moved != 0;
-}
+/// A push of a listed term.
+template <typename Push>
+struct PushInTurn {
+    Push push;
+    View<const ContactTerm> terms;
+    View<int> moved; ///< [1] becomes 1 where something moves
+
+    TOILE_HD ContactTerm early(int i) const { return terms[i]; }
+    TOILE_HD std::array<int, 4> shared(const ContactTerm& term) const { return term.pair.vertex; }
+    TOILE_HD void operator()(int i, const ContactTerm& term) const
+    {
+        if (push(i, term))
+            moved[0] = 1;
+    }
+};
 
 } // namespace toile

@@ -116,41 +116,29 @@ double DeviceContactTerms::deepest()
     return std::max(0.0, -height.value);
 }
 
-void DeviceContactTerms::list_near(double margin)
-{
-    turns_.list(energy_.touches(), energy_.vertices(), x_.change_there(), margin);
-}
-
 bool DeviceContactTerms::push_to_rest()
 {
-    return sweep_near([&](double margin) {
-        list_near(margin);
-        const View<double> force = first_items(push_force_, energy_.terms().size());
-        push_force_.fill_zero();
-        turns_.run(PushToRest{push_rules_, force, x_.change_there()}, kGuessSweeps, margin);
-        return turns_.outcome();
-    });
+    if (empty())
+        return false;
+    const View<double> force = first_items(push_force_, energy_.terms().size());
+    push_force_.fill_zero();
+    turns_.sweep(energy_, PushToRest{push_rules_, force, x_.change_there()}, kGuessSweeps);
+    return turns_.moved();
 }
 
 void DeviceContactTerms::push_out(double most)
 {
-    sweep_near([&](double margin) {
-        list_near(margin);
-        turns_.run(PushOut{push_rules_, most, x_.change_there()}, kClearSweeps, margin);
-        return turns_.outcome();
-    });
+    turns_.sweep(energy_, PushOut{push_rules_, most, x_.change_there()}, kClearSweeps);
 }
 
 void DeviceContactTerms::stop_at_surfaces(StepField v)
 {
-    list_near(0.0);
-    turns_.run(StopAtSurface{push_rules_, x_.there(), v.change_there()}, 1);
+    turns_.sweep(energy_, StopAtSurface{push_rules_, x_.there(), v.change_there()}, 1);
 }
 
 void DeviceContactTerms::rub(StepField v)
 {
-    list_near(HUGE_VAL);
-    turns_.run(Rub{push_rules_, x_.change_there(), v.change_there()}, 1);
+    turns_.sweep(energy_, Rub{push_rules_, x_.change_there(), v.change_there()}, 1);
 }
 
 void DeviceContactTerms::remember(Slip slip) { memory_.keep(energy_.terms(), rules_, slip, x_.there()); }

@@ -43,7 +43,6 @@ public:
     const DeviceContactEnergy& energy() const { return energy_; }
 
 private:
-    void list_near(double margin);
     void mark_flagged(View<unsigned char> marks);
     View<unsigned char> flags() { return first_items(flags_, energy_.terms().size()); }
     ContactLook look() const { return {energy_.terms(), x_.there()}; }

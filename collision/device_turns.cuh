@@ -8,10 +8,25 @@
 namespace toile {
 
 template <typename Push>
-void DeviceTurns::run(const Push& push, int sweeps, double margin)
+void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, int sweeps)
 {
-    parallel_in_turns(space_, "contact/push", turns_, touches_.terms.size(), sweeps,
-                      WatchedPush<Push>{push, touches_.terms, x_, start_.view(), margin, outcome_.view()});
+    const View<const ContactTerm> terms = contact.terms();
+    const ContactTouches touches = contact.touches();
+    const View<const int> vertices = contact.vertices();
+    Turns turns = make_room(contact, sweeps);
+    const View<unsigned char> flags = flags_.view().subview(0, turns.places.size());
+    for (int done = 0; done < sweeps; ++done) {
+        turns.next = next_.view().subview(done, 1);
+        parallel_for(space_, "contact/flag_acting", flags.size(),
+                     FlagActing<Push>{push, terms, turns.order, flags});
+        list_flagged(space_, "contact/list_acting", flags, places_.view().subview(0, flags.size()),
+                     count_.view(), scratch_);
+        parallel_for(space_, "contact/number_turns", vertices.size(),
+                     NumberTurns{turns.order, flags, vertices, touches.first, touches.entries, rank_.view(),
+                                 served_.view()});
+        parallel_in_turns(space_, "contact/push", turns, terms.size(),
+                          PushInTurn<Push>{push, terms, moved_.view()});
+    }
 }
 
 } // namespace toile

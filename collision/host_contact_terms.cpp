@@ -151,34 +151,24 @@ double HostContactTerms::deepest()
 
 bool HostContactTerms::push_to_rest()
 {
-    const View<Vec3> x = seen_.change_on_host();
-    return sweep_near([&](double margin) {
-        turns_.list(energy_.terms(), x, margin);
-        push_force_.assign(energy_.terms().size(), 0.0);
-        return turns_.run(PushToRest{push_rules_, push_force_, x}, kGuessSweeps, margin);
-    });
+    push_force_.assign(energy_.terms().size(), 0.0);
+    return turns_.sweep(energy_.terms(), PushToRest{push_rules_, push_force_, seen_.change_on_host()},
+                        kGuessSweeps);
 }
 
 void HostContactTerms::push_out(double most)
 {
-    const View<Vec3> x = seen_.change_on_host();
-    sweep_near([&](double margin) {
-        turns_.list(energy_.terms(), x, margin);
-        return turns_.run(PushOut{push_rules_, most, x}, kClearSweeps, margin);
-    });
+    turns_.sweep(energy_.terms(), PushOut{push_rules_, most, seen_.change_on_host()}, kClearSweeps);
 }
 
 void HostContactTerms::stop_at_surfaces(StepField v)
 {
-    turns_.list(energy_.terms(), seen_.change_on_host(), 0.0);
-    turns_.run(StopAtSurface{push_rules_, x_, v.change_on_host()}, 1);
+    turns_.sweep(energy_.terms(), StopAtSurface{push_rules_, x_, v.change_on_host()}, 1);
 }
 
 void HostContactTerms::rub(StepField v)
 {
-    const View<Vec3> x = seen_.change_on_host();
-    turns_.list(energy_.terms(), x, HUGE_VAL);
-    turns_.run(Rub{push_rules_, x, v.change_on_host()}, 1);
+    turns_.sweep(energy_.terms(), Rub{push_rules_, seen_.change_on_host(), v.change_on_host()}, 1);
 }
 
 void HostContactTerms::remember(Slip slip)

@@ -3,44 +3,48 @@
 #include <vector>
 
 #include "collision/contact_pushes.h"
+#include "core/backend/parallel.h"
 
 namespace toile {
 
-/// Terms that push one after the other, in their TurnOrder.
+/// Terms that push one after the other, in their TurnOrder, on the CPU.
 class HostTurns {
 public:
-    /// Lists those nearer than the margin [m].
-    /// @param terms, x  [vertices] [m], borrowed until the last run()
-    void list(View<const ContactTerm> terms, View<Vec3> x, double margin);
-
-    /// Lets those push, sweep after sweep.
-    /// @param push    (i, term) -> whether it moved something
-    /// @param margin  within which a term was listed that might push what moves [m]; where something goes
-    ///                too far for that nothing stays moved
+    /// Sweep after sweep, of those that push when it begins, until none does or nothing moves.
+    /// @return whether something moved
     template <typename Push>
-    PushOutcome run(const Push& push, int sweeps, double margin = HUGE_VAL)
+    bool sweep(View<const ContactTerm> terms, const Push& push, int sweeps)
     {
-        PushOutcome outcome;
-        const WatchedPush<Push> watched{push, terms_, x_, start_, margin, {&outcome, 1}};
-        bool is_still = false; // a sweep that changes nothing would change nothing again
-        for (int sweep = 0; sweep < sweeps && !is_still; ++sweep) {
-            is_still = true;
+        bool moved = false;
+        for (int done = 0; done < sweeps; ++done) {
+            int moves = 0;
+            const PushInTurn<Push> push_in_turn{push, terms, {&moves, 1}};
+            list(terms, push);
             for (const int i : listed_)
-                is_still = !watched(i, terms_[i]) && is_still;
+                push_in_turn(i, terms[i]);
+            if (moves == 0)
+                break;
+            moved = true;
         }
-        if (outcome.went_far != 0)
-            put_back();
-        return outcome;
+        return moved;
     }
 
 private:
-    void put_back();
+    template <typename Push>
+    void list(View<const ContactTerm> terms, const Push& push)
+    {
+        const TurnOrder order{terms.size()};
+        flags_.resize(order.place_count());
+        parallel_for(kCpu, "contact/flag_acting", order.place_count(),
+                     FlagActing<Push>{push, terms, order, flags_});
+        listed_.clear();
+        for (int place = 0; place < order.place_count(); ++place)
+            if (flags_[place] != 0)
+                listed_.push_back(order.at(place));
+    }
 
-    View<const ContactTerm> terms_;
-    View<Vec3> x_;
     std::vector<unsigned char> flags_; ///< [places]
     std::vector<int> listed_;          ///< terms, in order
-    std::vector<Vec3> start_;          ///< [vertices] those of listed terms
 };
 
 } // namespace toile

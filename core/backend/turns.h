@@ -54,8 +54,7 @@ struct Turns {
     TurnOrder order;
     View<const int> places; ///< of listed items, ascending: the first count[0]
     View<const int> count;  ///< [1]
-    View<const int> rank;   ///< [kShares x items] how many of a round come before it there
-    View<const int> total;  ///< [shared] how many come in a round
+    View<const int> rank;   ///< [kShares x items] how many come before it in what it shares
     View<int> served;       ///< [shared] how many have come
     View<unsigned> next;    ///< [1] visits that have begun
 };
@@ -67,8 +66,7 @@ struct NumberTurns {
     View<const int> of;               ///< [lists] what is shared
     View<const int> first;            ///< [lists + 1] into entries
     View<const int> entries;          ///< kShares * item + slot, ascending in each list
-    View<int> rank;                   ///< [kShares x items] out, see Turns
-    View<int> total, served;          ///< [shared] out
+    View<int> rank, served;           ///< out, see Turns
 
     TOILE_HD void operator()(int k) const
     {
@@ -85,7 +83,6 @@ struct NumberTurns {
         for (int e = first[k]; e < first[k + 1]; ++e)
             if (is_listed(entries[e]))
                 rank[entries[e]] = next[class_of(entries[e])]++;
-        total[of[k]] = sum;
         served[of[k]] = 0;
     }
 

@@ -64,13 +64,12 @@ inline std::vector<unsigned char> some_listed(const TurnOrder& order)
 
 /// What the listed ones make of `values`, one after the other.
 inline void mix_in_turn(const SharedItems& made, const TurnOrder& order,
-                        const std::vector<unsigned char>& listed, int rounds, std::vector<double>& values)
+                        const std::vector<unsigned char>& listed, std::vector<double>& values)
 {
     const MixShared mix{made.items, values};
-    for (int round = 0; round < rounds; ++round)
-        for (int place = 0; place < order.place_count(); ++place)
-            if (listed[place] != 0)
-                mix(order.at(place), order.at(place));
+    for (int place = 0; place < order.place_count(); ++place)
+        if (listed[place] != 0)
+            mix(order.at(place), order.at(place));
 }
 
 } // namespace toile::test

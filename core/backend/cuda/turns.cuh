@@ -16,16 +16,19 @@ inline constexpr int kVisitors = 8448;
 
 #ifdef __CUDACC__
 
-/// An item's turn in a round.
+/// What was written before is seen by whoever sees what is written after; and the other way round.
+__device__ inline void order_memory() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
+
+/// An item's turn.
 class Turn {
 public:
     /// @param shared  what the item shares; -1 unused
-    __device__ Turn(const Turns& turns, int item, const std::array<int, Turns::kShares>& shared, int round)
+    __device__ Turn(const Turns& turns, int item, const std::array<int, Turns::kShares>& shared)
         : served_(turns.served.data()), shared_(shared)
     {
         for (int k = 0; k < Turns::kShares; ++k)
             if (shared[k] >= 0)
-                before_[k] = round * turns.total[shared[k]] + turns.rank[Turns::kShares * item + k];
+                before_[k] = turns.rank[Turns::kShares * item + k];
     }
 
     /// Until all before it have been served; sees what they wrote.
@@ -34,12 +37,12 @@ public:
         for (int k = 0; k < Turns::kShares; ++k)
             while (shared_[k] >= 0 && *at(k) != before_[k]) {
             }
-        __threadfence();
+        order_memory();
     }
 
     __device__ void pass_on() const
     {
-        __threadfence();
+        order_memory();
         for (int k = 0; k < Turns::kShares; ++k)
             if (shared_[k] >= 0)
                 *at(k) = before_[k] + 1;
@@ -55,17 +58,17 @@ private:
 /// Visits begin in order, so whoever is waited for has begun: however few threads run at once, the first of
 /// them need not wait. One thread of a warp works, as the others would wait for it to wait.
 template <typename Kernel>
-__global__ void run_in_turns(const Turns turns, int rounds, const Kernel kernel)
+__global__ void run_in_turns(const Turns turns, const Kernel kernel)
 {
     wait_for_turn();
     if (threadIdx.x % kWarp != 0)
         return;
-    const unsigned count = unsigned(turns.count[0]), visits = unsigned(rounds) * count;
+    const unsigned count = unsigned(turns.count[0]);
     unsigned* const next = turns.next.data();
-    for (unsigned visit = atomicAdd(next, 1U); visit < visits; visit = atomicAdd(next, 1U)) {
-        const int item = turns.order.at(turns.places[int(visit % count)]);
+    for (unsigned visit = atomicAdd(next, 1U); visit < count; visit = atomicAdd(next, 1U)) {
+        const int item = turns.order.at(turns.places[int(visit)]);
         const auto own = kernel.early(item);
-        const Turn turn(turns, item, kernel.shared(own), int(visit / count));
+        const Turn turn(turns, item, kernel.shared(own));
         turn.await();
         kernel(item, own);
         turn.pass_on();
@@ -74,16 +77,15 @@ __global__ void run_in_turns(const Turns turns, int rounds, const Kernel kernel)
 
 #endif
 
-/// Launches kernel(item, kernel.early(item)) for all listed items, round after round, in the stream's turn
-/// and returns. Each begins when those before it that share something with it are done, so that the result is
-/// that of one after the other. early() loads what no item changes, and kernel.shared() tells by that what
-/// the item shares with others. Counted and refused as parallel_for.
+/// Launches kernel(item, kernel.early(item)) for all listed items in the stream's turn and returns. Each
+/// begins when those before it that share something with it are done, so that the result is that of one after
+/// the other. early() loads what no item changes, and kernel.shared() tells by that what the item shares with
+/// others. Counted and refused as parallel_for.
 /// @param turns  next[0] is 0, and nothing has been served
 /// @param most   items that may be listed
 template <typename Kernel>
 void parallel_in_turns(const CudaSpace& space, std::string_view name, [[maybe_unused]] const Turns& turns,
-                       int most, [[maybe_unused]] int rounds, [[maybe_unused]] const Kernel& kernel,
-                       CallSite where = CallSite::here())
+                       int most, [[maybe_unused]] const Kernel& kernel, CallSite where = CallSite::here())
 {
     const StageScope stage(name);
     if (most <= 0)
@@ -91,9 +93,8 @@ void parallel_in_turns(const CudaSpace& space, std::string_view name, [[maybe_un
     const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
     constexpr int kBlock = 128;
-    const int visitors = std::min(most, kVisitors);
-    launch_kernel(space, run_in_turns<Kernel>, block_count(visitors, kBlock / kWarp), kBlock, 0, turns,
-                  rounds, kernel);
+    launch_kernel(space, run_in_turns<Kernel>, block_count(std::min(most, kVisitors), kBlock / kWarp), kBlock,
+                  0, turns, kernel);
 #endif
     launch.done();
 }

@@ -53,9 +53,9 @@ void launch(const CudaSpace& space, const NumberTurns& kernel)
     parallel_for(space, "test/number_turns", kernel.of.size(), kernel);
 }
 
-void launch(const CudaSpace& space, const Turns& turns, int most, int rounds, const MixShared& kernel)
+void launch(const CudaSpace& space, const Turns& turns, int most, const MixShared& kernel)
 {
-    parallel_in_turns(space, "test/mix", turns, most, rounds, kernel);
+    parallel_in_turns(space, "test/mix", turns, most, kernel);
 }
 
 void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,

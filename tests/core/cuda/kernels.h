@@ -107,7 +107,7 @@ void launch(const CudaSpace& space, const WriteLayout& kernel);
 void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel);
 void launch(const CudaSpace& space, const GatherCorners& kernel);
 void launch(const CudaSpace& space, const NumberTurns& kernel);
-void launch(const CudaSpace& space, const Turns& turns, int most, int rounds, const MixShared& kernel);
+void launch(const CudaSpace& space, const Turns& turns, int most, const MixShared& kernel);
 
 /// The sum of numbers in a slot of the device, and read back.
 void sum_into(const CudaSpace& space, View<const double> numbers, View<double> slot,

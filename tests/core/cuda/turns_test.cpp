@@ -21,7 +21,6 @@ DeviceArray<T> uploaded(const CudaSpace& space, const std::vector<T>& values)
 /// Bit by bit, with many more items than threads that visit them.
 TEST_F(DeviceTurnsTest, AreThoseOfOneAfterTheOther)
 {
-    constexpr int kRounds = 3;
     for (const auto& [count, shared_count] : {std::pair(1, 20), {700, 60}, {200000, 70000}}) {
         const SharedItems made(count, shared_count);
         const TurnOrder order{count};
@@ -36,19 +35,18 @@ TEST_F(DeviceTurnsTest, AreThoseOfOneAfterTheOther)
         DeviceArray<double> there = uploaded(space(), values);
         DeviceArray<int> places(space(), "test/places", order.place_count()),
             listed_count(space(), "test/count", 1), rank(space(), "test/rank", Turns::kShares * count),
-            total(space(), "test/total", shared_count), served(space(), "test/served", shared_count);
+            served(space(), "test/served", shared_count);
         DeviceArray<unsigned> next(space(), "test/next", 1);
         next.fill_zero();
         DeviceScratch scratch(space(), "test/scratch");
         list_flagged(space(), "test/list", flags.view(), places.view(), listed_count.view(), scratch);
         launch(space(), NumberTurns{order, flags.view(), lists.view(), first.view(), entries.view(),
-                                    rank.view(), total.view(), served.view()});
+                                    rank.view(), served.view()});
         launch(space(),
-               Turns{order, places.view(), listed_count.view(), rank.view(), total.view(), served.view(),
-                     next.view()},
-               count, kRounds, MixShared{items.view(), there.view()});
+               Turns{order, places.view(), listed_count.view(), rank.view(), served.view(), next.view()},
+               count, MixShared{items.view(), there.view()});
 
-        mix_in_turn(made, order, listed, kRounds, values);
+        mix_in_turn(made, order, listed, values);
         EXPECT_EQ(there.downloaded(), values) << count;
     }
 }
