@@ -1,8 +1,8 @@
 #pragma once
 
 /// How contact alone moves cloth, pair by pair, where no minimisation does it: before a step's minimisation,
-/// and of what that has left inside. A sweep is of the terms that push when it begins, one after the other in
-/// their TurnOrder. The same bodies on CPU and GPU.
+/// and of what that has left inside. A sweep is of the terms that push, or almost, when it begins, one after
+/// the other in their TurnOrder. The same bodies on CPU and GPU.
 
 #include <array>
 #include <cmath>
@@ -32,6 +32,11 @@ inline constexpr double kThinnest = 5e-5;
 /// Where fixed vertices carry nearly all of the pair, the free one would have to be thrown far; the energy
 /// deals with it.
 inline constexpr double kMinLeverage = 0.1;
+
+/// Distance [m] from where it would push within which a term has its turn in a sweep too: others may push it
+/// on to there. More than nothing, since sweeps leave many with nothing but rounding errors, which must not
+/// decide.
+inline constexpr double kAlmost = 2e-5;
 
 /// What of a pair may be moved, and how far.
 struct PushRules {
@@ -122,13 +127,15 @@ struct PushToRest {
 
     TOILE_HD bool acts(int i, const ContactTerm& term) const
     {
-        return term.gap(x) + term.give < 0.0 || force[i] != 0.0;
+        return term.gap(x) + term.give < kAlmost || force[i] != 0.0;
     }
 
     /// True where something moved.
     TOILE_HD bool operator()(int i, const ContactTerm& term) const
     {
         const double depth = -term.gap(x) - term.give;
+        if (depth <= 0.0 && force[i] == 0.0)
+            return false;
         const double mobility = rules.mobility_of(term.pair);
         const double reach = depth + mobility * force[i];
         const double change = term.spring.force(term.spring.depth_at_rest(reach, mobility)) - force[i];
@@ -146,7 +153,7 @@ struct PushOut {
     double most;  ///< depth that is left to a pair which rests there [m]
     View<Vec3> x; ///< [vertices] [m]
 
-    TOILE_HD bool acts(int, const ContactTerm& term) const { return depth_of(term) > 0.0; }
+    TOILE_HD bool acts(int, const ContactTerm& term) const { return depth_of(term) > -kAlmost; }
 
     TOILE_HD bool operator()(int, const ContactTerm& term) const
     {
@@ -189,7 +196,7 @@ struct Rub {
     PushRules rules;
     View<Vec3> x, v; ///< [vertices] [m], [m/s]
 
-    TOILE_HD bool acts(int, const ContactTerm& term) const { return term.gap(x) < 0.0; }
+    TOILE_HD bool acts(int, const ContactTerm& term) const { return term.gap(x) < kAlmost; }
 
     TOILE_HD bool operator()(int, const ContactTerm& term) const
     {
