@@ -38,6 +38,23 @@ inline constexpr double kMinLeverage = 0.1;
 /// decide.
 inline constexpr double kAlmost = 2e-5;
 
+/// Of a move or force by vertex of a pair; 0 where unused or held.
+using PairShares = std::array<double, 4>;
+
+/// Adds its share of a move to each vertex of a pair. False where none has one.
+TOILE_HD inline bool push(const ContactPair& pair, const PairShares& shares, const Vec3& move,
+                          View<Vec3> field)
+{
+    bool moved = false;
+    for (int k = 0; k < 4; ++k) {
+        if (shares[k] == 0.0)
+            continue;
+        field[pair.vertex[k]] += shares[k] * move;
+        moved = true;
+    }
+    return moved;
+}
+
 /// What of a pair may be moved, and how far.
 struct PushRules {
     View<const unsigned char> fixed; ///< [vertices]
@@ -64,38 +81,28 @@ struct PushRules {
         return squares < kMinLeverage ? 0.0 : squares;
     }
 
-    /// How far a force on the pair's cloth point moves it in the step [m/N]: dt^2 sum_k b_k^2 / m_k over the
-    /// free vertices. 0 where fixed ones carry nearly all of the pair.
-    TOILE_HD double mobility_of(const ContactPair& pair) const
+    /// What a force of 1 N along the pair's normal moves its vertices by in this step, dt^2 b_k / m_k [m/N];
+    /// 0 of held ones, and of all where fixed vertices carry nearly all of the pair.
+    TOILE_HD PairShares shares_of_force(const ContactPair& pair) const
     {
+        PairShares shares{};
         if (leverage_of(pair) == 0.0)
-            return 0.0;
-        double mobility = 0.0;
+            return shares;
         for (int k = 0; k < pair.count(); ++k)
             if (const int v = pair.vertex[k]; !is_held(v))
-                mobility += pair.weight[k] * pair.weight[k] / masses[v];
-        return dt * dt * mobility;
+                shares[k] = dt * dt * pair.weight[k] / masses[v];
+        return shares;
     }
 
-    /// Moves the pair's free vertices as a force [N] along its normal would in this step.
-    TOILE_HD void accelerate(const ContactPair& pair, double force, View<Vec3> x) const
+    /// What moves the pair's cloth point by 1, by the same amount for equal weights [-]; likewise.
+    TOILE_HD PairShares shares_of_move(const ContactPair& pair) const
     {
-        for (int k = 0; k < pair.count(); ++k)
-            if (const int v = pair.vertex[k]; !is_held(v))
-                x[v] += dt * dt * force * pair.weight[k] / masses[v] * pair.normal;
-    }
-
-    /// Adds to the field at the pair's free vertices so that its cloth point moves by `move`. False where
-    /// fixed vertices carry nearly all of the pair.
-    TOILE_HD bool push(const ContactPair& pair, const Vec3& move, View<Vec3> field) const
-    {
+        PairShares shares{};
         const double leverage = leverage_of(pair);
-        if (leverage == 0.0)
-            return false;
         for (int k = 0; k < pair.count(); ++k)
-            if (!is_held(pair.vertex[k]))
-                field[pair.vertex[k]] += pair.weight[k] / leverage * move;
-        return true;
+            if (leverage != 0.0 && !is_held(pair.vertex[k]))
+                shares[k] = pair.weight[k] / leverage;
+        return shares;
     }
 
     /// How far a pair may be pushed in a sweep without crushing a triangle [m].
@@ -117,6 +124,14 @@ struct PushRules {
     }
 };
 
+/// What pushes know of a term before its turn.
+struct TermInTurn {
+    ContactTerm term;
+    PairShares shares{};
+    double clearance = 0.0;               ///< see PushRules::clearance_of [m]
+    Vec3 surface_velocity = Vec3::Zero(); ///< [m/s]
+};
+
 /// A sweep's push of term i where contact alone would take it, with masses and the compliance of its spring
 /// [Macklin et al. 2016, eq. 18], and a force that never pulls. Momentum goes where contact sends it, and
 /// pairs that press begin as deep as their force asks for: friction reads it from there.
@@ -130,20 +145,27 @@ struct PushToRest {
         return term.gap(x) + term.give < kAlmost || force[i] != 0.0;
     }
 
-    /// True where something moved.
-    TOILE_HD bool operator()(int i, const ContactTerm& term) const
+    TOILE_HD TermInTurn early(const ContactTerm& term) const
     {
+        return {term, rules.shares_of_force(term.pair)};
+    }
+
+    /// True where something moved.
+    TOILE_HD bool operator()(int i, const TermInTurn& own) const
+    {
+        const ContactTerm& term = own.term;
         const double depth = -term.gap(x) - term.give;
         if (depth <= 0.0 && force[i] == 0.0)
             return false;
-        const double mobility = rules.mobility_of(term.pair);
+        double mobility = 0.0; // how far a force on the pair's cloth point moves it [m/N]
+        for (int k = 0; k < 4; ++k)
+            mobility += term.pair.weight[k] * own.shares[k];
         const double reach = depth + mobility * force[i];
         const double change = term.spring.force(term.spring.depth_at_rest(reach, mobility)) - force[i];
         if (mobility == 0.0 || change == 0.0)
             return false;
         force[i] += change;
-        rules.accelerate(term.pair, change, x);
-        return true;
+        return push(term.pair, own.shares, change * term.pair.normal, x);
     }
 };
 
@@ -155,11 +177,16 @@ struct PushOut {
 
     TOILE_HD bool acts(int, const ContactTerm& term) const { return depth_of(term) > -kAlmost; }
 
-    TOILE_HD bool operator()(int, const ContactTerm& term) const
+    TOILE_HD TermInTurn early(const ContactTerm& term) const
     {
-        const double depth = depth_of(term);
-        return depth > 0.0 &&
-               rules.push(term.pair, std::fmin(depth, rules.clearance_of(term.pair)) * term.pair.normal, x);
+        return {term, rules.shares_of_move(term.pair), rules.clearance_of(term.pair)};
+    }
+
+    TOILE_HD bool operator()(int, const TermInTurn& own) const
+    {
+        const double depth = depth_of(own.term);
+        const ContactPair& pair = own.term.pair;
+        return depth > 0.0 && push(pair, own.shares, std::fmin(depth, own.clearance) * pair.normal, x);
     }
 
 private:
@@ -180,11 +207,16 @@ struct StopAtSurface {
         return term.gap(x) < 0.0 && rules.clearance_of(term.pair) >= kThinnest;
     }
 
-    TOILE_HD bool operator()(int, const ContactTerm& term) const
+    TOILE_HD TermInTurn early(const ContactTerm& term) const
     {
-        const ContactPair& pair = term.pair;
-        const double approach = pair.normal.dot(rules.surface_velocity(pair) - pair.cloth_point(v));
-        return approach > 0.0 && rules.push(pair, approach * pair.normal, v);
+        return {term, rules.shares_of_move(term.pair), 0.0, rules.surface_velocity(term.pair)};
+    }
+
+    TOILE_HD bool operator()(int, const TermInTurn& own) const
+    {
+        const ContactPair& pair = own.term.pair;
+        const double approach = pair.normal.dot(own.surface_velocity - pair.cloth_point(v));
+        return approach > 0.0 && push(pair, own.shares, approach * pair.normal, v);
     }
 };
 
@@ -198,23 +230,28 @@ struct Rub {
 
     TOILE_HD bool acts(int, const ContactTerm& term) const { return term.gap(x) < kAlmost; }
 
-    TOILE_HD bool operator()(int, const ContactTerm& term) const
+    TOILE_HD TermInTurn early(const ContactTerm& term) const
     {
+        const ContactPair& pair = term.pair;
+        return {term, rules.shares_of_move(pair), rules.clearance_of(pair), rules.surface_velocity(pair)};
+    }
+
+    TOILE_HD bool operator()(int, const TermInTurn& own) const
+    {
+        const ContactTerm& term = own.term;
         const double depth = -term.gap(x);
         if (depth <= 0.0)
             return false;
         const ContactPair& pair = term.pair;
-        const double clearance = rules.clearance_of(pair);
-        rules.push(pair, at_most(-term.slip(x), term.friction * depth), x);
-        const double out = std::fmin(std::fmax(depth - term.give, 0.0), clearance);
-        const bool moved = rules.push(pair, out * pair.normal, x);
+        push(pair, own.shares, at_most(-term.slip(x), term.friction * depth), x);
+        const double out = std::fmin(std::fmax(depth - term.give, 0.0), own.clearance);
+        const bool moved = push(pair, own.shares, out * pair.normal, x);
 
-        const Vec3 lag = rules.surface_velocity(pair) - pair.cloth_point(v);
+        const Vec3 lag = own.surface_velocity - pair.cloth_point(v);
         const double approach = pair.normal.dot(lag);
-        if (approach > 0.0 && clearance >= kThinnest)
-            rules.push(
-                pair,
-                approach * pair.normal + at_most(lag - approach * pair.normal, term.friction * approach), v);
+        if (approach > 0.0 && own.clearance >= kThinnest)
+            push(pair, own.shares,
+                 approach * pair.normal + at_most(lag - approach * pair.normal, term.friction * approach), v);
         return moved;
     }
 
@@ -248,13 +285,19 @@ struct PushInTurn {
     View<const ContactTerm> terms;
     View<int> moved; ///< [1] becomes 1 where something moves
 
-    TOILE_HD ContactTerm early(int i) const { return terms[i]; }
-    TOILE_HD std::array<int, 4> shared(const ContactTerm& term) const { return term.pair.vertex; }
-    TOILE_HD void operator()(int i, const ContactTerm& term) const
+    TOILE_HD TermInTurn early(int i) const { return push.early(terms[i]); }
+    TOILE_HD std::array<int, 4> shared(const TermInTurn& own) const { return own.term.pair.vertex; }
+    TOILE_HD void operator()(int i, const TermInTurn& own) const
     {
-        if (push(i, term))
+        if (push(i, own))
             moved[0] = 1;
     }
+};
+
+/// What terms share with each other.
+struct VerticesOfTerm {
+    View<const ContactTerm> terms;
+    TOILE_HD std::array<int, 4> operator()(int i) const { return terms[i].pair.vertex; }
 };
 
 } // namespace toile

@@ -3,6 +3,7 @@
 #include "collision/contact_kernels.h"
 #include "core/backend/cuda/sort.h"
 #include "core/backend/cuda/sum_scratch.h"
+#include "core/backend/turns.h"
 #include "core/pd/device/device_active_set.h"
 
 namespace toile {
@@ -25,6 +26,8 @@ public:
     View<ContactTerm> change_terms() { return terms_.view(); }    ///< not what they touch
     View<const int> vertices() const { return vertices_.view(); } ///< [lists] see ContactEnergy::Touches
     ContactTouches touches() const { return {terms_.view(), first_.view(), entries_.view()}; }
+
+    SharedLists lists() const { return {list_of_.view(), first_.view(), entries_.view()}; }
 
     bool has_terms() const override { return terms_.size() > 0; }
     void add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy) override;

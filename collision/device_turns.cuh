@@ -11,8 +11,6 @@ template <typename Push>
 void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, int sweeps)
 {
     const View<const ContactTerm> terms = contact.terms();
-    const ContactTouches touches = contact.touches();
-    const View<const int> vertices = contact.vertices();
     Turns turns = make_room(contact, sweeps);
     const View<unsigned char> flags = flags_.view().subview(0, turns.places.size());
     for (int done = 0; done < sweeps; ++done) {
@@ -21,9 +19,8 @@ void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, in
                      FlagActing<Push>{push, terms, turns.order, flags});
         list_flagged(space_, "contact/list_acting", flags, places_.view().subview(0, flags.size()),
                      count_.view(), scratch_);
-        parallel_for(space_, "contact/number_turns", vertices.size(),
-                     NumberTurns{turns.order, flags, vertices, touches.first, touches.entries, rank_.view(),
-                                 served_.view()});
+        parallel_for(space_, "contact/number_turns", Turns::kShares * terms.size(),
+                     NumberTurn<VerticesOfTerm>{turns, {terms}, flags, contact.lists(), rank_.view()});
         parallel_in_turns(space_, "contact/push", turns, terms.size(),
                           PushInTurn<Push>{push, terms, moved_.view()});
     }

@@ -21,7 +21,7 @@ public:
             const PushInTurn<Push> push_in_turn{push, terms, {&moves, 1}};
             list(terms, push);
             for (const int i : listed_)
-                push_in_turn(i, terms[i]);
+                push_in_turn(i, push_in_turn.early(i));
             if (moves == 0)
                 break;
             moved = true;

@@ -59,36 +59,40 @@ struct Turns {
     View<unsigned> next;    ///< [1] visits that have begun
 };
 
-/// Numbers those that share something: list k of the items that do.
-struct NumberTurns {
-    TurnOrder order;
+/// Who shares what: the entries of list k are kShares * item + slot, ascending.
+struct SharedLists {
+    View<const int> list_of; ///< [shared] number of the list of each, from 1 on
+    View<const int> first;   ///< [lists + 1] into entries
+    View<const int> entries;
+};
+
+/// Numbers the listed items in what they share: thread q the q % kShares-th of item places[q / kShares].
+/// @tparam SharedBy  item -> what it shares, as Turns::kShares numbers; -1 unused
+template <typename SharedBy>
+struct NumberTurn {
+    Turns turns;
+    SharedBy shared_by;
     View<const unsigned char> listed; ///< [places] 1 where an item is listed
-    View<const int> of;               ///< [lists] what is shared
-    View<const int> first;            ///< [lists + 1] into entries
-    View<const int> entries;          ///< kShares * item + slot, ascending in each list
-    View<int> rank, served;           ///< out, see Turns
+    SharedLists lists;
+    View<int> rank; ///< out, see Turns
 
-    TOILE_HD void operator()(int k) const
+    TOILE_HD void operator()(int q) const
     {
-        std::array<int, TurnOrder::kClasses> next{};
-        for (int e = first[k]; e < first[k + 1]; ++e)
-            if (is_listed(entries[e]))
-                ++next[class_of(entries[e])];
-        int sum = 0;
-        for (int& of_class : next) {
-            const int size = of_class;
-            of_class = sum;
-            sum += size;
-        }
-        for (int e = first[k]; e < first[k + 1]; ++e)
-            if (is_listed(entries[e]))
-                rank[entries[e]] = next[class_of(entries[e])]++;
-        served[of[k]] = 0;
+        if (q / Turns::kShares >= turns.count[0])
+            return;
+        const int own = turns.places[q / Turns::kShares];
+        const int entry = Turns::kShares * turns.order.at(own) + q % Turns::kShares;
+        const int shared = shared_by(entry / Turns::kShares)[entry % Turns::kShares];
+        if (shared < 0)
+            return;
+        const int list = lists.list_of[shared] - 1;
+        int before = 0;
+        for (int e = lists.first[list]; e < lists.first[list + 1]; ++e)
+            if (const int place = turns.order.place_of(lists.entries[e] / Turns::kShares); place < own)
+                before += listed[place];
+        rank[entry] = before;
+        turns.served[shared] = 0;
     }
-
-private:
-    TOILE_HD int class_of(int entry) const { return order.class_of(entry / Turns::kShares); }
-    TOILE_HD bool is_listed(int entry) const { return listed[order.place_of(entry / Turns::kShares)] != 0; }
 };
 
 } // namespace toile

@@ -26,10 +26,16 @@ struct MixShared {
     }
 };
 
+/// What items share.
+struct SharedByItem {
+    View<const std::array<int, Turns::kShares>> items;
+    TOILE_HD std::array<int, Turns::kShares> operator()(int item) const { return items[item]; }
+};
+
 /// Items that share one to four things with their neighbours in the list; every seventeenth shares the last
 /// thing too.
 struct SharedItems {
-    SharedItems(int count, int shared_count) : items(count)
+    SharedItems(int count, int shared_count) : items(count), list_of(shared_count)
     {
         std::mt19937 random(3);
         std::vector<std::vector<int>> of_shared(shared_count);
@@ -42,15 +48,15 @@ struct SharedItems {
             for (int k = 0; k < used; ++k)
                 of_shared[items[i][k]].push_back(Turns::kShares * i + k);
         }
-        for (int s = 0; s < shared_count; ++s) {
-            lists.push_back(s);
+        for (int s = shared_count - 1; s >= 0; --s) {
+            list_of[s] = shared_count - s;
             entries.insert(entries.end(), of_shared[s].begin(), of_shared[s].end());
             first.push_back(int(entries.size()));
         }
     }
 
     std::vector<std::array<int, Turns::kShares>> items;
-    std::vector<int> lists, first{0}, entries; ///< see NumberTurns
+    std::vector<int> list_of, first{0}, entries; ///< see SharedLists
 };
 
 /// Every third item, and the first.

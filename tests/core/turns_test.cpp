@@ -49,15 +49,24 @@ TEST(TurnOrder, LetsNeighboursInAListGoSoon)
     EXPECT_LE(longest_wait(order, 10), 64);
 }
 
-TEST(NumberTurns, CountThoseBeforeInTheOrder)
+TEST(NumberTurn, CountsThoseBeforeInTheOrder)
 {
     const SharedItems made(1000, 120);
     const TurnOrder order{1000};
     const std::vector<unsigned char> listed = some_listed(order);
-    std::vector<int> rank(4000, -1), served(120, -1);
-    const NumberTurns number{order, listed, made.lists, made.first, made.entries, rank, served};
-    for (int k = 0; k < 120; ++k)
-        number(k);
+    std::vector<int> places, rank(4000, -1), served(120, -1);
+    for (int place = 0; place < order.place_count(); ++place)
+        if (listed[place] != 0)
+            places.push_back(place);
+    std::vector<int> count{int(places.size())};
+    places.resize(order.place_count());
+    const NumberTurn<SharedByItem> number{{order, places, count, rank, served, {}},
+                                          {made.items},
+                                          listed,
+                                          {made.list_of, made.first, made.entries},
+                                          rank};
+    for (int q = 0; q < Turns::kShares * 1000; ++q)
+        number(q);
     for (int shared = 0; shared < 120; ++shared) {
         int before = 0;
         for (int place = 0; place < order.place_count(); ++place) {
@@ -69,7 +78,7 @@ TEST(NumberTurns, CountThoseBeforeInTheOrder)
                 ++before;
             }
         }
-        EXPECT_EQ(served[shared], 0);
+        EXPECT_EQ(served[shared], before > 0 ? 0 : -1);
     }
 }
 

@@ -34,9 +34,8 @@ public:
     /// Until all before it have been served; sees what they wrote.
     __device__ void await() const
     {
-        for (int k = 0; k < Turns::kShares; ++k)
-            while (shared_[k] >= 0 && *at(k) != before_[k]) {
-            }
+        while (!has_come()) {
+        }
         order_memory();
     }
 
@@ -49,6 +48,14 @@ public:
     }
 
 private:
+    /// Asks for all that it shares at once.
+    __device__ bool has_come() const
+    {
+        int left = 0;
+        for (int k = 0; k < Turns::kShares; ++k)
+            left |= shared_[k] >= 0 ? *at(k) ^ before_[k] : 0;
+        return left == 0;
+    }
     __device__ volatile int* at(int k) const { return served_ + shared_[k]; }
 
     int* served_;

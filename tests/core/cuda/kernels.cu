@@ -48,9 +48,9 @@ void launch(const CudaSpace& space, const GatherCorners& kernel)
     parallel_for(space, "test/gather", kernel.gradient.size(), kernel);
 }
 
-void launch(const CudaSpace& space, const NumberTurns& kernel)
+void launch(const CudaSpace& space, const NumberTurn<SharedByItem>& kernel)
 {
-    parallel_for(space, "test/number_turns", kernel.of.size(), kernel);
+    parallel_for(space, "test/number_turns", Turns::kShares * kernel.turns.order.count, kernel);
 }
 
 void launch(const CudaSpace& space, const Turns& turns, int most, const MixShared& kernel)

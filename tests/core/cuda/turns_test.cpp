@@ -30,7 +30,7 @@ TEST_F(DeviceTurnsTest, AreThoseOfOneAfterTheOther)
 
         const auto items = uploaded(space(), made.items);
         const auto flags = uploaded(space(), listed);
-        const auto lists = uploaded(space(), made.lists), first = uploaded(space(), made.first),
+        const auto list_of = uploaded(space(), made.list_of), first = uploaded(space(), made.first),
                    entries = uploaded(space(), made.entries);
         DeviceArray<double> there = uploaded(space(), values);
         DeviceArray<int> places(space(), "test/places", order.place_count()),
@@ -40,11 +40,13 @@ TEST_F(DeviceTurnsTest, AreThoseOfOneAfterTheOther)
         next.fill_zero();
         DeviceScratch scratch(space(), "test/scratch");
         list_flagged(space(), "test/list", flags.view(), places.view(), listed_count.view(), scratch);
-        launch(space(), NumberTurns{order, flags.view(), lists.view(), first.view(), entries.view(),
-                                    rank.view(), served.view()});
-        launch(space(),
-               Turns{order, places.view(), listed_count.view(), rank.view(), served.view(), next.view()},
-               count, MixShared{items.view(), there.view()});
+        const Turns turns{order, places.view(), listed_count.view(), rank.view(), served.view(), next.view()};
+        launch(space(), NumberTurn<SharedByItem>{turns,
+                                                 {items.view()},
+                                                 flags.view(),
+                                                 {list_of.view(), first.view(), entries.view()},
+                                                 rank.view()});
+        launch(space(), turns, count, MixShared{items.view(), there.view()});
 
         mix_in_turn(made, order, listed, values);
         EXPECT_EQ(there.downloaded(), values) << count;
