@@ -77,7 +77,13 @@ void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
 bool Contact::make_feasible(StepField x) const
 {
     terms_->see(x);
-    return terms_->push_to_rest();
+    return terms_->push_to_rest(kGuessSweeps);
+}
+
+bool Contact::sweep_once(StepField x) const
+{
+    terms_->see(x);
+    return terms_->push_to_rest(1);
 }
 
 bool Contact::revise(StepField x, bool is_settled)

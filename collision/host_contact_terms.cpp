@@ -149,11 +149,11 @@ double HostContactTerms::deepest()
     return depth;
 }
 
-bool HostContactTerms::push_to_rest()
+bool HostContactTerms::push_to_rest(int sweeps)
 {
     push_force_.assign(energy_.terms().size(), 0.0);
     return turns_.sweep(energy_.terms(), PushToRest{push_rules_, push_force_, seen_.change_on_host()},
-                        kGuessSweeps);
+                        sweeps);
 }
 
 void HostContactTerms::push_out(double most)

@@ -40,6 +40,9 @@ public:
     /// would. True when anything moved.
     virtual bool make_feasible(StepField x) const = 0;
 
+    /// A single sweep of that, for who sweeps over other constraints in between.
+    virtual bool sweep_once(StepField x) const = 0;
+
     /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) const = 0;
 

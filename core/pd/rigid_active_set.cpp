@@ -63,12 +63,23 @@ void RigidActiveSet::begin_step(const StepStart& start)
     surface_.begin_step({start_, prediction_, diagonal_, fixed_, start.masses, start.dt});
 }
 
-/// Of the start guess the free points only: pushed out one by one, the vertices of a body would come apart.
 bool RigidActiveSet::make_feasible(StepField positions) const
+{
+    return push_free(positions, [&] { return surface_.make_feasible(x_); });
+}
+
+bool RigidActiveSet::sweep_once(StepField positions) const
+{
+    return push_free(positions, [&] { return surface_.sweep_once(x_); });
+}
+
+/// The free points only: pushed out one by one, the vertices of a body would come apart.
+template <typename Push>
+bool RigidActiveSet::push_free(StepField positions, const Push& push) const
 {
     const View<Vec3> q = positions.change_on_host();
     to_surface(q, x_);
-    const bool moved = surface_.make_feasible(x_);
+    const bool moved = push();
     take_free(x_, q);
     return moved;
 }

@@ -23,6 +23,7 @@ public:
 
     void begin_step(const StepStart& start) override;
     bool make_feasible(StepField q) const override;
+    bool sweep_once(StepField q) const override;
     double add_gradient(View<const Vec3> q, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> q) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
@@ -39,6 +40,8 @@ public:
     void end_step(StepField q) override;
 
 private:
+    template <typename Push>
+    bool push_free(StepField positions, const Push& push) const;
     void to_surface(View<const Vec3> q, View<Vec3> x) const;
     void take_free(View<const Vec3> x, View<Vec3> q) const;
     View<Vec3> rigid_part(View<Vec3> x) const { return x.subview(free_count_, bodies_.vertex_count()); }

@@ -25,7 +25,7 @@ void StepEnd::project(StepProjection& projection, const ActiveSetEnergy* active)
     unprojected_.assign(x_.begin(), x_.end());
     std::function<bool()> clear_contacts;
     if (active)
-        clear_contacts = [&] { return active->make_feasible(x_); };
+        clear_contacts = [&] { return active->sweep_once(x_); };
     projection.project(x_, inverse_masses_, clear_contacts);
     parallel_for(kCpu, "pd/finish", x_.size(), [&](int i) { v_[i] += (x_[i] - unprojected_[i]) / dt_; });
 }

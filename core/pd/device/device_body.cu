@@ -139,11 +139,7 @@ void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* ac
         return;
     std::function<bool()> clear_contacts;
     if (active)
-        clear_contacts = [&] {
-            const bool moved = active->make_feasible(x_t1_);
-            static_cast<void>(x_t1_.change_there());
-            return moved;
-        };
+        clear_contacts = [&] { return active->sweep_once(x_t1_); };
     parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyPositions{x_t1_.there(), found_.view()});
     limits.project(x_t1_.change_there(), inverse_masses_.view(), clear_contacts);
     parallel_for(space_, "pd/projected", x_.size(),
