@@ -70,8 +70,11 @@ struct ContactTouches {
     TOILE_HD Vec3 force(int k, View<const Vec3> of_term, int from = 0, int stride = 1) const
     {
         Vec3 sum(0.0, 0.0, 0.0);
-        for (int e = first[k] + from; e < first[k + 1]; e += stride)
-            sum += terms[entries[e] / 4].pair.weight[entries[e] % 4] * of_term[entries[e] / 4];
+        for (int e = first[k] + from; e < first[k + 1]; e += stride) {
+            const Vec3& of_this = of_term[entries[e] / 4];
+            if (of_this != Vec3(0.0, 0.0, 0.0)) // most do not press
+                sum += terms[entries[e] / 4].pair.weight[entries[e] % 4] * of_this;
+        }
         return sum;
     }
 

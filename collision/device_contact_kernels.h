@@ -254,6 +254,7 @@ struct BoundList {
 struct MultiplyList {
     ContactTouches touches;
     View<const FrozenContact> frozen; ///< [terms]
+    View<const Mat3> blocks;          ///< [lists] see BoundList
     View<const PaddedVec3> p;         ///< [vertices] [m]
     View<Vec3> product;               ///< [lists] out [N]
 
@@ -261,7 +262,9 @@ struct MultiplyList {
     TOILE_HD void operator()(int k, const Team& team, bool is_own) const
     {
         Vec3 sum(0.0, 0.0, 0.0);
-        for (int e = touches.first[k] + team.thread; e < touches.first[k + 1]; e += Team::kThreads) {
+        const bool acts = blocks[k].trace() > 0.0; // what most do not: their terms are not looked at
+        const int end = acts ? touches.first[k + 1] : 0;
+        for (int e = touches.first[k] + team.thread; e < end; e += Team::kThreads) {
             const int term = touches.entries[e] / 4;
             const FrozenContact at = frozen[term];
             if (!at.acts())
