@@ -95,8 +95,9 @@ void DeviceContactEnergy::activate(View<const Vec3> x)
 
 void DeviceContactEnergy::multiply(View<const PaddedVec3> p)
 {
-    parallel_for_teams<kListThreads>(space_, "contact/multiply", vertices_.size(),
-                                     MultiplyList{touches(), frozen_.view(), blocks_.view(), p, product_.view()});
+    parallel_for_teams<kListThreads>(
+        space_, "contact/multiply", vertices_.size(),
+        MultiplyList{touches(), frozen_.view(), blocks_.view(), p, product_.view()});
 }
 
 DeviceActiveSet::Frozen DeviceContactEnergy::frozen() const
