@@ -51,7 +51,8 @@ DeviceColliderPairs::DeviceColliderPairs(const CudaSpace& space, View<const Tria
       nearest_(space, "pairs/nearest"), strays_(space, "pairs/strays", positions.size()),
       flags_(space, "pairs/flags"), list_(space, "pairs/list"), planes_(space),
       plane_pairs_(space, "pairs/planes"), first_plane_(space, "pairs/first_plane", positions.size()),
-      surroundings_(space), count_(space), scratch_(space, "pairs/scratch")
+      surroundings_(space), stray_count_(space), count_(space, "pairs/count", 1),
+      scratch_(space, "pairs/scratch")
 {
     for (const ContactPartner& partner : partners)
         meshes_.push_back(partner.mesh ? std::make_unique<Mesh>(space, *partner.mesh, positions.size())
@@ -224,8 +225,8 @@ bool DeviceColliderPairs::mark_unseen(View<const Vec3> x)
                      MarkUnseen{meshes_[c]->clearance.view(), x, found_at_.view(), reach_.view(),
                                 settings_.gap, strays_.view()});
     }
-    has_strays_ =
-        parallel_sum(space_, "contact/count_strays", x.size(), 0, CountStray{strays_.view()}, count_) > 0;
+    has_strays_ = parallel_sum(space_, "contact/count_strays", x.size(), 0, CountStray{strays_.view()},
+                               stray_count_) > 0;
     return has_strays_;
 }
 

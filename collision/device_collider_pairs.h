@@ -92,7 +92,8 @@ private:
     SortArrays planes_;                   ///< [pairs] by vertex
     DeviceArray<int> plane_pairs_, first_plane_;
     SumScratch<Surroundings> surroundings_;
-    SumScratch<int> count_;
+    SumScratch<int> stray_count_;
+    PinnedArray<int> count_;
     DeviceScratch scratch_;
 };
 

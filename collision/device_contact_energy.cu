@@ -22,10 +22,9 @@ DeviceContactEnergy::DeviceContactEnergy(const CudaSpace& space)
     : space_(space), terms_(space, "contact/terms"), vertices_(space, "contact/vertices"),
       first_(space, "contact/first"), entries_(space, "contact/entries"), list_of_(space, "contact/list_of"),
       force_(space, "contact/force"), term_energy_(space, "contact/energy"), frozen_(space, "contact/frozen"),
-      blocks_(space, "contact/blocks"), product_(space, "contact/product"),
-      acting_(space, "contact/acting", 1), acting_sums_(space, "contact/acting_sums"),
-      acting_on_host_(space, "contact/acting_on_host", 1), sort_(space), flags_(space, "contact/flags"),
-      count_(space), scratch_(space, "contact/scratch")
+      blocks_(space, "contact/blocks"), product_(space, "contact/product"), acting_(space, "contact/acting"),
+      acting_sums_(space, "contact/acting_sums"), sort_(space), flags_(space, "contact/flags"),
+      count_(space, "contact/count", 1), scratch_(space, "contact/scratch")
 {
 }
 
@@ -75,22 +74,16 @@ void DeviceContactEnergy::touch(int vertex_count)
                  NumberList{first_.view(), sort_.sorted_keys.view(), vertices_.view(), list_of_.view()});
 }
 
-void DeviceContactEnergy::add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy)
+void DeviceContactEnergy::evaluate(View<const Vec3> x, View<Vec3> gradient, View<double> energy)
 {
-    parallel_for(space_, "contact/evaluate", terms_.size(),
-                 EvaluateContact{terms_.view(), x, force_.view(), term_energy_.view()});
-    parallel_for_teams<kListThreads>(
-        space_, "contact/gather", vertices_.size(),
-        AddContact{touches(), vertices_.view(), force_.view(), term_energy_.view(), gradient, energy});
-}
-
-void DeviceContactEnergy::activate(View<const Vec3> x)
-{
-    parallel_sum(space_, "contact/freeze", terms_.size(), 0,
-                 FreezeAndCount{{terms_.view(), x, frozen_.view()}}, acting_.view(), acting_sums_);
-    parallel_for_teams<kListThreads>(space_, "contact/blocks", vertices_.size(),
-                                     BoundList{touches(), frozen_.view(), blocks_.view()});
-    acting_.download(acting_on_host_.view());
+    parallel_sum_then(space_, "contact/evaluate", terms_.size(), 0,
+                      EvaluateAndFreeze{{terms_.view(), x, force_.view(), term_energy_.view()},
+                                        {terms_.view(), x, frozen_.view()}},
+                      acting_.next(), acting_sums_);
+    parallel_for_teams<kListThreads>(space_, "contact/gather", vertices_.size(),
+                                     GatherContact{touches(), vertices_.view(), force_.view(),
+                                                   term_energy_.view(), frozen_.view(), gradient, energy,
+                                                   blocks_.view()});
 }
 
 void DeviceContactEnergy::multiply(View<const PaddedVec3> p)

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "collision/contact_kernels.h"
+#include "core/backend/cuda/report.h"
 #include "core/backend/cuda/sort.h"
-#include "core/backend/cuda/sum_scratch.h"
 #include "core/backend/turns.h"
 #include "core/pd/device/device_active_set.h"
 
@@ -30,9 +30,8 @@ public:
     SharedLists lists() const { return {list_of_.view(), first_.view(), entries_.view()}; }
 
     bool has_terms() const override { return terms_.size() > 0; }
-    void add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy) override;
-    void activate(View<const Vec3> x) override;
-    bool acts() const override { return acting_on_host_[0] > 0; }
+    void evaluate(View<const Vec3> x, View<Vec3> gradient, View<double> energy) override;
+    bool acts() const override { return acting_.await() > 0; }
     void multiply(View<const PaddedVec3> p) override;
     Frozen frozen() const override;
 
@@ -47,11 +46,11 @@ private:
     DeviceArray<FrozenContact> frozen_;           ///< [terms]
     DeviceArray<Mat3> blocks_;                    ///< [touched]
     DeviceArray<Vec3> product_;                   ///< [touched] [N]
-    DeviceArray<int> acting_, acting_sums_;
-    PinnedArray<int> acting_on_host_;
+    DeviceReport<int> acting_;                    ///< terms
+    DeviceArray<int> acting_sums_;
     SortArrays sort_;                  ///< [4 x terms] by vertex
     DeviceArray<unsigned char> flags_; ///< [4 x terms + 1]
-    SumScratch<int> count_;
+    PinnedArray<int> count_;
     DeviceScratch scratch_;
 };
 

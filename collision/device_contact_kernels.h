@@ -199,19 +199,35 @@ TOILE_HD Numbers team_sum(const Team& team, Numbers own)
     return own;
 }
 
-/// Adds the forces on the vertex of list k, and the energies of the terms whose first vertex it is.
-struct AddContact {
+/// Evaluates and freezes a term; of the sum of how many act.
+struct EvaluateAndFreeze {
+    EvaluateContact evaluate;
+    FreezeContact freeze;
+    TOILE_HD int operator()(int i) const
+    {
+        evaluate(i);
+        freeze(i);
+        return freeze.frozen[i].acts() ? 1 : 0;
+    }
+};
+
+/// Adds the forces on the vertex of list k, and the energies of the terms whose first vertex it is; bounds
+/// their frozen Hessian.
+struct GatherContact {
     ContactTouches touches;
-    View<const int> vertices;  ///< [lists]
-    View<const Vec3> force;    ///< [terms] [N]
-    View<const double> energy; ///< [terms] [J]
-    View<Vec3> gradient;       ///< [vertices] added to [N]
-    View<double> own;          ///< [vertices] added to: shares of the value [J]
+    View<const int> vertices;         ///< [lists]
+    View<const Vec3> force;           ///< [terms] [N]
+    View<const double> energy;        ///< [terms] [J]
+    View<const FrozenContact> frozen; ///< [terms]
+    View<Vec3> gradient;              ///< [vertices] added to [N]
+    View<double> own;                 ///< [vertices] added to: shares of the value [J]
+    View<Mat3> blocks;                ///< [lists] out [N/m]
 
     template <typename Team>
     TOILE_HD void operator()(int k, const Team& team, bool is_own) const
     {
         const Vec3 sum = team_sum(team, touches.force(k, force, team.thread, Team::kThreads));
+        const Mat3 block = team_sum(team, touches.block(k, frozen, team.thread, Team::kThreads));
         double shares = 0.0;
         for (int e = touches.first[k] + team.thread; e < touches.first[k + 1]; e += Team::kThreads)
             if (touches.entries[e] % 4 == 0)
@@ -221,31 +237,7 @@ struct AddContact {
             return;
         gradient[vertices[k]] += sum;
         own[vertices[k]] += shares;
-    }
-};
-
-/// FreezeContact; a term of how many act.
-struct FreezeAndCount {
-    FreezeContact freeze;
-    TOILE_HD int operator()(int i) const
-    {
-        freeze(i);
-        return freeze.frozen[i].acts() ? 1 : 0;
-    }
-};
-
-/// The block of list k.
-struct BoundList {
-    ContactTouches touches;
-    View<const FrozenContact> frozen; ///< [terms]
-    View<Mat3> blocks;                ///< [lists] out
-
-    template <typename Team>
-    TOILE_HD void operator()(int k, const Team& team, bool is_own) const
-    {
-        const Mat3 sum = team_sum(team, touches.block(k, frozen, team.thread, Team::kThreads));
-        if (team.thread == 0 && is_own)
-            blocks[k] = sum;
+        blocks[k] = block;
     }
 };
 
@@ -254,7 +246,7 @@ struct BoundList {
 struct MultiplyList {
     ContactTouches touches;
     View<const FrozenContact> frozen; ///< [terms]
-    View<const Mat3> blocks;          ///< [lists] see BoundList
+    View<const Mat3> blocks;          ///< [lists] see GatherContact
     View<const PaddedVec3> p;         ///< [vertices] [m]
     View<Vec3> product;               ///< [lists] out [N]
 

@@ -7,7 +7,7 @@ namespace toile {
 
 DeviceContactMemory::DeviceContactMemory(const CudaSpace& space)
     : space_(space), records_(space, "memory/records"), hashes_(space), order_(space, "memory/order"),
-      flags_(space, "memory/flags"), pressing_(space, "memory/pressing"), count_(space),
+      flags_(space, "memory/flags"), pressing_(space, "memory/pressing"), count_(space, "memory/count", 1),
       scratch_(space, "memory/scratch")
 {
 }

@@ -3,7 +3,6 @@
 #include "collision/contact_memory.h"
 #include "collision/device_contact_kernels.h"
 #include "core/backend/cuda/sort.h"
-#include "core/backend/cuda/sum_scratch.h"
 
 namespace toile {
 
@@ -30,7 +29,7 @@ private:
     DeviceArray<int> order_; ///< [records] by hash
     DeviceArray<unsigned char> flags_;
     DeviceArray<int> pressing_;
-    SumScratch<int> count_;
+    PinnedArray<int> count_;
     DeviceScratch scratch_;
 };
 

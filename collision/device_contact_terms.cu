@@ -20,7 +20,7 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
       overlap_(space, "terms/overlap", positions.size()), pair_flags_(space, "terms/pair_flags"),
       flags_(space, "terms/flags"), leans_(space, "terms/leans", positions.size()),
       list_(space, "terms/list"), turns_(space, positions.size()), push_force_(space, "terms/push_force"),
-      count_(space), limits_(space), least_(space), scratch_(space, "terms/scratch")
+      count_(space, "terms/count", 1), limits_(space), least_(space), scratch_(space, "terms/scratch")
 {
     TOILE_ASSERT(int(tables_.cloth_of.size()) == positions.size());
     cloth_of_.upload(tables_.cloth_of);

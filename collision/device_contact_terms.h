@@ -70,7 +70,7 @@ private:
     DeviceArray<int> list_;                 ///< of what is flagged
     DeviceTurns turns_;
     DeviceArray<double> push_force_; ///< [terms] see PushToRest
-    SumScratch<int> count_;
+    PinnedArray<int> count_;
     SumScratch<FrictionLimits> limits_;
     SumScratch<Least> least_;
     DeviceScratch scratch_;

@@ -68,7 +68,7 @@ DeviceContactDetector::DeviceContactDetector(const CudaSpace& space, View<const 
       distance_(space, "detect/distance"), in_front_(space, "detect/in_front", positions.size()),
       sort_(space), sorted_sheets_(space, "detect/sorted_sheets"),
       sheet_room_(1 + positions.size() / kVerticesOfSheet), pairs_(space, "detect/pairs"),
-      numbers_(space, "detect/numbers", 1), read_(space, "detect/read", 1), scratch_(space, "detect/scratch")
+      numbers_(space, "detect/numbers", 1), scratch_(space, "detect/scratch")
 {
     order_.upload(order_of(positions));
     rank_.upload(ranks_by_corners(triangles));
@@ -111,9 +111,8 @@ void DeviceContactDetector::search(const DeviceMeshCollider& mesh, int collider,
 
 bool DeviceContactDetector::settle()
 {
-    numbers_.download(read_.view());
     space_.synchronise();
-    const DetectNumbers& numbers = read_[0];
+    const DetectNumbers& numbers = numbers_[0];
     const long all = count_ + numbers.pairs;
     const bool had_room = all <= pairs_.size() && numbers.sheets <= sheet_room_ &&
                           numbers.most_sheets <= sheets_.room && numbers.most_ridges <= ridges_.room;

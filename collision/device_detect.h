@@ -142,8 +142,7 @@ private:
     int sheet_room_; ///< sheets that there is room for
     DeviceArray<ContactPair> pairs_;
     int count_ = 0, last_count_ = 0;     ///< of pairs: all, and those of the last search
-    DeviceArray<DetectNumbers> numbers_; ///< [1]
-    PinnedArray<DetectNumbers> read_;    ///< [1]
+    PinnedArray<DetectNumbers> numbers_; ///< [1]
     DeviceScratch scratch_;
 };
 

@@ -31,7 +31,7 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triang
       motion_(space, "cloth_contact/motion", positions.size()),
       expected_(space, "cloth_contact/expected", positions.size()), wanted_(space, "cloth_contact/wanted"),
       pressing_(space, "cloth_contact/pressing"), marks_(space, "cloth_contact/marks"),
-      places_(space, "cloth_contact/places"), count_(space), sum_(space),
+      places_(space, "cloth_contact/places"), count_(space, "cloth_contact/count", 1), sum_(space),
       scratch_(space, "cloth_contact/scratch"),
       bring_back_(build_surface_edges(triangles, positions.size()),
                   {rules().safe_step().gap(), rules().safe_step().most_deflection}, rules().bodies()),

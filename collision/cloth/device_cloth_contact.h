@@ -44,7 +44,7 @@ private:
     DeviceArray<ContactPair> pressing_;
     DeviceArray<unsigned char> marks_; ///< [pairs] 1: presses
     DeviceArray<int> places_;          ///< [pairs] of those that press
-    SumScratch<int> count_;
+    PinnedArray<int> count_;
     SumScratch<int> sum_;
     DeviceScratch scratch_;
 

@@ -19,7 +19,8 @@ DeviceExemptPairs::DeviceExemptPairs(const CudaSpace& space, const ExemptPairs& 
     : space_(space), rest_(space, "exempt_pairs/rest"), too_near_(exempt.rule().too_near),
       is_thin_(space, "exempt_pairs/is_thin"), crosses_(space, "exempt_pairs/crosses"),
       has_thin_(any(exempt.rule().is_thin)), marks_(space, "exempt_pairs/marks"),
-      places_(space, "exempt_pairs/places"), count_(space), scratch_(space, "exempt_pairs/scratch")
+      places_(space, "exempt_pairs/places"), count_(space, "exempt_pairs/count", 1),
+      scratch_(space, "exempt_pairs/scratch")
 {
     rest_.upload(exempt.rule().rest);
     is_thin_.upload(exempt.rule().is_thin);

@@ -32,7 +32,7 @@ private:
 
     DeviceArray<unsigned char> marks_; ///< [found] 1: kept
     DeviceArray<int> places_;          ///< [found] of those that are kept
-    SumScratch<int> count_;
+    PinnedArray<int> count_;
     DeviceScratch scratch_;
 };
 

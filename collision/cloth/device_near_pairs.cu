@@ -43,7 +43,7 @@ DeviceNearPairs::DeviceNearPairs(const CudaSpace& space, View<const Triangle> tr
       candidates_(space, "near_pairs/candidates"), is_pair_(space, "near_pairs/is_pair"),
       pairs_in_list_(space, "near_pairs/pairs_in_list"), count_(space, "near_pairs/count", 1),
       pairs_(space, "near_pairs/pairs"), numbers_(space, "near_pairs/numbers", 1),
-      read_(space, "near_pairs/read", 1), scratch_(space, "near_pairs/scratch")
+      scratch_(space, "near_pairs/scratch")
 {
     rigid_.upload(rigid);
     counts_.fill_zero();
@@ -75,7 +75,7 @@ View<const NearPair> DeviceNearPairs::find(View<const Vec3> x, const Ways& ways,
     do
         search_again(ways.around.empty() ? all_ : around_, x, ways, margin);
     while (!settle());
-    return pairs().subview(0, read_[0].pairs);
+    return pairs().subview(0, numbers_[0].pairs);
 }
 
 /// A search that is asked for a second time has grown all that it needs, so it is recorded then.
@@ -105,9 +105,8 @@ void DeviceNearPairs::search(View<const Vec3> x, const Ways& ways, double margin
 
 bool DeviceNearPairs::settle()
 {
-    numbers_.download(read_.view());
     space_.synchronise();
-    const SearchNumbers& numbers = read_[0];
+    const SearchNumbers& numbers = numbers_[0];
     if (ordered_surface_ == 0.0)
         ordered_surface_ = numbers.surface;
     is_worn_out_ = numbers.surface > kWornOut * ordered_surface_;

@@ -96,8 +96,7 @@ private:
     DeviceArray<unsigned char> is_pair_;
     DeviceArray<int> pairs_in_list_, count_; ///< [candidates], [1]
     DeviceArray<NearPair> pairs_;
-    DeviceArray<SearchNumbers> numbers_; ///< [1]
-    PinnedArray<SearchNumbers> read_;    ///< [1]
+    PinnedArray<SearchNumbers> numbers_; ///< [1]
     DeviceScratch scratch_;
 };
 

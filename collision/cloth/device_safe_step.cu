@@ -15,7 +15,7 @@ DeviceSafeStep::DeviceSafeStep(const CudaSpace& space, DeviceNearPairs& near, De
       way_(space, "safe_step/way", vertex_count), is_in_the_way_(space, "safe_step/is_in_the_way"),
       is_stale_(space, "safe_step/is_stale", vertex_count), marks_(space, "safe_step/marks", vertex_count),
       counts_(space, "safe_step/counts", 2), block_sums_(space, "safe_step/block_sums"),
-      read_(space, "safe_step/read", 2), places_(space, "safe_step/places"), listed_(space),
+      places_(space, "safe_step/places"), listed_(space, "safe_step/listed", 1),
       scratch_(space, "safe_step/scratch"), changed_(space, "safe_step/changed"),
       host_changed_(space, "safe_step/host_changed"), blocked_(space, "safe_step/blocked"),
       host_blocked_(space, "safe_step/host_blocked")
@@ -94,9 +94,8 @@ void DeviceSafeStep::count_in_the_way(int known)
 
 DeviceSafeStep::Counts DeviceSafeStep::read_counts()
 {
-    counts_.download(read_.view());
     space_.synchronise();
-    return {read_[0], read_[1]};
+    return {counts_[0], counts_[1]};
 }
 
 /// To the host.

@@ -58,12 +58,12 @@ private:
     DeviceArray<unsigned char> is_in_the_way_; ///< [pairs]
 
     // Of one look.
-    DeviceArray<unsigned char> is_stale_;  ///< [vertices] 1: goes elsewhere than in the look before
-    DeviceArray<unsigned char> marks_;     ///< [vertices] 1: strays
-    DeviceArray<int> counts_, block_sums_; ///< Counts; scratch
-    PinnedArray<int> read_;                ///< Counts
-    DeviceArray<int> places_;              ///< of pairs in the way
-    SumScratch<int> listed_;
+    DeviceArray<unsigned char> is_stale_; ///< [vertices] 1: goes elsewhere than in the look before
+    DeviceArray<unsigned char> marks_;    ///< [vertices] 1: strays
+    PinnedArray<int> counts_;             ///< Counts
+    DeviceArray<int> block_sums_;         ///< scratch
+    DeviceArray<int> places_;             ///< of pairs in the way
+    PinnedArray<int> listed_;
     DeviceScratch scratch_;
     DeviceArray<ChangedWay> changed_;
     PinnedArray<ChangedWay> host_changed_; ///< the first of them, as many as there are

@@ -14,18 +14,19 @@ struct alignas(8) RowEntry {
     float value;
 };
 
-/// Rows of a sparse matrix in slices, one for each warp: kThreads threads a row, each with every kThreads-th
+/// Rows of a sparse matrix in slices, one for each warp: `Threads` threads a row, each with every so many-th
 /// entry. What a warp loads at once is side by side. Rows of a slice are as long as its longest, in whole
 /// warps of entries; what is missing is 0 at the diagonal.
-struct SlicedRows {
-    static constexpr int kThreads = 4; ///< of a row
+template <int Threads>
+struct RowsInSlices {
+    static constexpr int kThreads = Threads; ///< of a row
     static constexpr int kRows = kWarp / kThreads;
 
     std::vector<int> first; ///< [slices + 1] into entries
     std::vector<RowEntry> entries;
 
     /// @param row_first  [rows + 1] into columns and values
-    SlicedRows(View<const int> row_first, View<const int> columns, View<const float> values)
+    RowsInSlices(View<const int> row_first, View<const int> columns, View<const float> values)
     {
         const int rows = row_first.size() - 1;
         first.push_back(0);
@@ -45,8 +46,12 @@ struct SlicedRows {
     }
 };
 
+using SlicedRows = RowsInSlices<4>;
+using WholeRows = RowsInSlices<1>; ///< a thread a row: for kernels with much else to do for it
+
 /// @param A  compressed
-inline SlicedRows sliced_rows_of(const SparseMatrix& A)
+template <typename Rows = SlicedRows>
+Rows sliced_rows_of(const SparseMatrix& A)
 {
     const std::vector<int> columns(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros());
     const std::vector<float> values(A.valuePtr(), A.valuePtr() + A.nonZeros());

@@ -1,10 +1,9 @@
-#include "core/pd/device/descent_kernels.h"
-
 #include <limits>
 
 #include <gtest/gtest.h>
 
 #include "core/pd/lbfgs.h"
+#include "tests/core/descent_arrays.h"
 #include "tests/core/objectives.h"
 
 /// The descent of a GPU, its kernels called one by one on the CPU, against the CPU's own loop. No GPU is
@@ -16,69 +15,40 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class DescentOnHost {
 public:
-    explicit DescentOnHost(int n)
-        : here_{Fields(n)}, trial_{Fields(n)}, energy_(n), direction_(n), s_(kHistory * n, PaddedVec3(0.0F)),
-          y_(s_), w_(s_), masses_(n, 1.0), fixed_(n, 0), drive_(n, Vec3(0.0, 1e30, 0.0)), descent_(1)
-    {
-    }
+    explicit DescentOnHost(int n) : arrays_(n) {}
 
-    void hold(int vertex) { fixed_[vertex] = 1; }
+    void hold(int vertex) { arrays_.fixed[vertex] = 1; }
 
-    /// Minimises from x, in place; what StepError asks of a step does not bind.
+    /// Minimises from x, in place.
     Descent minimise(Objective& objective, std::vector<Vec3>& x, const OuterLoop::Settings& settings)
     {
         const int n = int(x.size());
-        trial_.x = x;
-        Descent& descent = descent_[0];
+        DescentArrays::Point& trial = arrays_.trial;
+        trial.x = x;
+        Descent& descent = arrays_.descent[0];
         descent.tolerance = settings.tolerance;
         descent.max_iterations = settings.max_iterations;
         descent.dt2 = 1e-30;
         descent.mass = descent.driving = 1e30;
         descent.begin();
-        const DescentFields fields = this->fields();
+        const DescentFields fields = arrays_.fields();
         while (!descent.is_over) {
-            energy_.assign(n, 0.0); // inertia has its place in evaluate()
-            energy_[0] = objective.evaluate(trial_.x, trial_.gradient);
-            objective.precondition(trial_.gradient, trial_.z);
+            arrays_.energy.assign(n, 0.0);
+            arrays_.energy[0] = objective.evaluate(trial.x, trial.gradient);
+            objective.precondition(trial.gradient, trial.z);
             TrialSums sums;
             for (int i = 0; i < n; ++i)
                 sums += MeasureTrial{fields}(i);
-            DecideOnTrial{descent_}(sums);
+            DecideOnTrial{arrays_.descent}(sums);
             for (int i = 0; i < n; ++i)
                 TakeTrial{fields}(i);
         }
-        x = here_.x;
+        x = arrays_.here.x;
         return descent;
     }
 
 private:
-    struct Fields {
-        explicit Fields(int n) : x(n), gradient(n), z(n) {}
-        std::vector<Vec3> x, gradient, z;
-    };
-    DescentFields fields()
-    {
-        return {{here_.x, here_.gradient, here_.z},
-                {trial_.x, trial_.gradient, trial_.z},
-                energy_,
-                direction_,
-                s_,
-                y_,
-                w_,
-                masses_,
-                fixed_,
-                drive_,
-                {masses_, drive_, 0.0, trial_.x, trial_.gradient},
-                descent_};
-    }
-
-    Fields here_, trial_;
-    std::vector<double> energy_;
-    std::vector<PaddedVec3> direction_, s_, y_, w_;
-    std::vector<double> masses_;
-    std::vector<unsigned char> fixed_;
-    std::vector<Vec3> drive_;
-    std::vector<Descent> descent_;
+    DescentArrays arrays_;
 };
 
 /// Both loops from the same point.
@@ -94,16 +64,6 @@ struct Both {
     std::vector<Vec3> x, x_there;
     OuterLoop::Outcome here;
     Descent there;
-};
-
-/// A quadratic whose inverse is neither good nor symmetric, as quadrature's.
-class Unsymmetric : public Quadratic {
-public:
-    void precondition(View<const Vec3> g, View<Vec3> z) override
-    {
-        for (int i = 0; i < g.size(); ++i)
-            z[i] = 0.2 * g[i] + 0.05 * g[(i + 1) % g.size()];
-    }
 };
 
 TEST(Descent, TakesTheStepsOfTheTwoLoopRecursion)

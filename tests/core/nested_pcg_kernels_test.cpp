@@ -14,6 +14,8 @@ constexpr int kCount = 60, kPressing = 7;
 struct Chain {
     std::vector<int> first, column;
     std::vector<float> value, sum;
+    std::vector<int> slices;
+    std::vector<RowEntry> entries;
     std::vector<double> diagonal;
     std::vector<unsigned char> fixed = std::vector<unsigned char>(kCount, 0);
     std::vector<int> list_of = std::vector<int>(kCount, 0);
@@ -35,6 +37,9 @@ struct Chain {
             sum.push_back(i == 0 || i + 1 == kCount ? 1.125F : 0.125F);
         }
         first.push_back(int(column.size()));
+        const WholeRows rows(first, column, value);
+        slices = rows.first;
+        entries = rows.entries;
         for (int k = 0; k < kPressing; ++k) {
             vertices.push_back(5 + 7 * k);
             list_of[vertices[k]] = k + 1;
@@ -45,7 +50,7 @@ struct Chain {
             InvertBlock{vertices, blocks, diagonal, inverse}(k);
     }
 
-    SystemRows rows() const { return {first, column, value, sum, diagonal, fixed}; }
+    SystemRows rows() const { return {slices, entries, sum, fixed}; }
     BlocksInverse blocks_inverse() const { return {list_of, inverse, diagonal}; }
 
     void multiply(View<const Vec3> p, View<Vec3> out) const
@@ -186,32 +191,34 @@ TEST(NestedPcgKernels, KeepInertiaBesideStiffness)
     const double diagonal = 2.0 * kStiffness / 3.0 + kInertia;
     const std::vector<float> value{float(diagonal), float(-kStiffness / 3.0), float(-kStiffness / 3.0)};
     const std::vector<float> sum{float(kInertia)};
-    const std::vector<double> diagonals{diagonal};
     const std::vector<unsigned char> fixed{0};
     const std::vector<PaddedVec3> move(3, padded(Vec3(0.3, -1.7, 2.9)));
-    const PaddedVec3 product = SystemRows{first, column, value, sum, diagonals, fixed}.times(0, move);
+    const WholeRows sliced(first, column, value);
+    const SystemRows rows{sliced.first, sliced.entries, sum, fixed};
+    const PaddedVec3 product = rows.times(rows.row(0), move[0], move);
     for (int a = 0; a < 3; ++a)
         EXPECT_FLOAT_EQ(product[a], float(kInertia) * move[0][a]);
 }
 
-TEST(NestedPcgKernels, ChangeNothingPastTheEnd)
+TEST(NestedPcgKernels, EndWherePcgDoes)
 {
     const Chain chain;
     const std::vector<Vec3> b = random_forces();
-    for (const Pcg::Settings& settings :
+    for (Pcg::Settings settings :
          {Pcg::Settings{.tolerance = 0.0, .max_iterations = 3},
           Pcg::Settings{.tolerance = 0.1, .max_iterations = 100},
           Pcg::Settings{.tolerance = 0.0, .max_iterations = 100, .least_gain = 0.5}}) {
+        settings.is_flexible = true;
+        std::vector<Vec3> expected(kCount);
+        Pcg pcg;
+        const Pcg::Outcome outcome = pcg.solve(
+            [&](View<const Vec3> p, View<Vec3> out) { chain.multiply(p, out); },
+            [&](View<const Vec3> r, View<Vec3> z) { chain.precondition(r, z); }, b, expected, settings);
         Iterations solve(chain, b, settings);
-        int last = 0;
-        for (; !solve.scalars().is_over && last < 20; ++last)
+        while (!solve.scalars().is_over && solve.scalars().iterations < 20)
             solve.take(1);
-        ASSERT_LT(last, 20);
-        EXPECT_EQ(solve.scalars().iterations, last);
-        const std::vector<Vec3> x = solve.x();
-        solve.take(20);
-        EXPECT_EQ(solve.x(), x);
-        EXPECT_EQ(solve.scalars().iterations, last);
+        EXPECT_EQ(solve.scalars().iterations, outcome.iterations);
+        EXPECT_FALSE(solve.scalars().is_void);
     }
 }
 
@@ -220,7 +227,8 @@ TEST(NestedPcgKernels, StandStillWhereNothingIsAsked)
     const Chain chain;
     const std::vector<Vec3> nothing(kCount, Vec3::Zero());
     Iterations solve(chain, nothing);
-    solve.take(2);
+    solve.take(1);
+    EXPECT_TRUE(solve.scalars().is_over);
     EXPECT_EQ(solve.scalars().iterations, 0);
     EXPECT_EQ(solve.x(), nothing);
 }

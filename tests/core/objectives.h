@@ -41,6 +41,16 @@ public:
     std::vector<Vec3> center = random_field(100, 1);
 };
 
+/// A quadratic whose inverse is neither good nor symmetric, as quadrature's.
+class Unsymmetric : public Quadratic {
+public:
+    void precondition(View<const Vec3> g, View<Vec3> z) override
+    {
+        for (int i = 0; i < g.size(); ++i)
+            z[i] = 0.2 * g[i] + 0.05 * g[(i + 1) % g.size()];
+    }
+};
+
 inline double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 {
     double largest = 0.0;

@@ -1,6 +1,7 @@
 #include "core/backend/cuda/device.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/backend/error.h"
 #include "core/backend/stages.h"
@@ -65,6 +66,29 @@ void CudaSpace::synchronise(CallSite where) const
         throw DeviceError(pending_kernels() + " failed on " + described() + ": " + cuda::reason_of(status) +
                           "; noticed at " + at(where));
     launch_count_ = 0;
+}
+
+void CudaSpace::await(unsigned& word, unsigned value, CallSite where) const
+{
+    constexpr int kGlances = 1 << 14; // at the word, between looks at what has become of the stream
+    const std::atomic_ref<unsigned> told(word);
+    const auto has_come = [&] { return told.load(std::memory_order_acquire) == value; };
+    if (has_come())
+        return;
+    const StageScope stage("cuda/wait");
+    while (true) {
+        for (int glance = 0; glance < kGlances; ++glance)
+            if (has_come())
+                return;
+        const cuda::Status status = cuda::look_at(device_.index, stream_);
+        if (cuda::is_busy(status))
+            continue;
+        if (status != cuda::Status::Good)
+            synchronise(where); // tells what failed
+        if (!has_come())
+            throw DeviceError(at(where) + ": nothing that was given to " + described() +
+                              " sends the report that is waited for");
+    }
 }
 
 std::size_t CudaSpace::free_memory() const

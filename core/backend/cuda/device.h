@@ -42,6 +42,12 @@ public:
     ///         said, when one of them failed. The device is of no use to this process from then on.
     void synchronise(CallSite where = CallSite::here()) const;
 
+    /// Waits until a kernel has written `value` into `word`, which lies in a PinnedArray (report.h); what the
+    /// stream was given behind that kernel may still run. A call of stage "cuda/wait" where there is anything
+    /// to wait for.
+    /// @throws DeviceError as synchronise(); also when the stream is done and nothing was written.
+    void await(unsigned& word, unsigned value, CallSite where = CallSite::here()) const;
+
     /// True while a CudaGraph records: what the stream is given is kept, not run.
     bool is_recording() const { return cuda::is_recording(stream_); }
 

@@ -16,6 +16,8 @@ Status use_device(int) { return Status::NotBuilt; }
 Status open_stream(int, CUstream_st*&) { return Status::NotBuilt; }
 Status close_stream(int, CUstream_st*) { return Status::NotBuilt; }
 Status wait_for(int, CUstream_st*) { return Status::NotBuilt; }
+Status look_at(int, CUstream_st*) { return Status::NotBuilt; }
+bool is_busy(Status) { return false; }
 Status take_launch_error() { return Status::NotBuilt; }
 
 Status allocate(int, std::size_t, void*&) { return Status::NotBuilt; }

@@ -206,10 +206,8 @@ T parallel_sum(const CudaSpace& space, std::string_view name, int count, const T
 {
     if (count <= 0)
         return zero;
-    parallel_sum(space, name, count, zero, term, scratch.total.view(), scratch.block_sums, where);
-    scratch.total.download(scratch.value.view());
-    space.synchronise(where);
-    return scratch.value[0];
+    parallel_sum_then(space, name, count, zero, term, scratch.total.next(), scratch.block_sums, where);
+    return scratch.total.await(where);
 }
 
 } // namespace toile

@@ -93,6 +93,13 @@ Status wait_for(int device, CUstream_st* stream)
     return on_device(device, [&] { return cudaStreamSynchronize(stream); });
 }
 
+Status look_at(int device, CUstream_st* stream)
+{
+    return on_device(device, [&] { return cudaStreamQuery(stream); });
+}
+
+bool is_busy(Status status) { return status == status_of(cudaErrorNotReady); }
+
 Status take_launch_error() { return status_of(cudaGetLastError()); }
 
 Status allocate(int device, std::size_t bytes, void*& data)

@@ -44,6 +44,9 @@ Status use_device(int device);
 Status open_stream(int device, CUstream_st*& stream);
 Status close_stream(int device, CUstream_st* stream);
 Status wait_for(int device, CUstream_st* stream);
+/// Good where the stream has done all that it was given.
+Status look_at(int device, CUstream_st* stream);
+bool is_busy(Status status);
 
 /// What is wrong with the latest launch of this thread, and forgets it.
 Status take_launch_error();

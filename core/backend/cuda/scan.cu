@@ -48,14 +48,13 @@ void list_flagged(const CudaSpace& space, std::string_view name, View<const unsi
 }
 
 int list_flagged(const CudaSpace& space, std::string_view name, View<const unsigned char> flags,
-                 DeviceArray<int>& places, SumScratch<int>& count, DeviceScratch& scratch, CallSite where)
+                 DeviceArray<int>& places, PinnedArray<int>& count, DeviceScratch& scratch, CallSite where)
 {
     if (flags.empty())
         return 0;
-    list_flagged(space, name, flags, first_items(places, flags.size()), count.total.view(), scratch, where);
-    count.total.download(count.value.view());
+    list_flagged(space, name, flags, first_items(places, flags.size()), count.view(), scratch, where);
     space.synchronise(where);
-    return count.value[0];
+    return count[0];
 }
 
 } // namespace toile

@@ -6,7 +6,6 @@
 
 #include "core/backend/cuda/array.h"
 #include "core/backend/cuda/device.h"
-#include "core/backend/cuda/sum_scratch.h"
 
 namespace toile {
 
@@ -29,8 +28,9 @@ void list_flagged(const CudaSpace& space, std::string_view name, View<const unsi
 
 /// The same, waited for: returns how many there are.
 /// @param places  grows where it is shorter than flags
+/// @param count   [1] scratch
 int list_flagged(const CudaSpace& space, std::string_view name, View<const unsigned char> flags,
-                 DeviceArray<int>& places, SumScratch<int>& count, DeviceScratch& scratch,
+                 DeviceArray<int>& places, PinnedArray<int>& count, DeviceScratch& scratch,
                  CallSite where = CallSite::here());
 
 } // namespace toile

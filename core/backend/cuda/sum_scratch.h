@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/backend/cuda/array.h"
+#include "core/backend/cuda/report.h"
 #include "core/backend/cuda/team.h"
 
 namespace toile {
@@ -8,14 +8,12 @@ namespace toile {
 /// What a sum that is read back (parallel.cuh) needs; kept between sums so that none asks for memory.
 template <typename T>
 struct SumScratch {
-    explicit SumScratch(const CudaSpace& space)
-        : block_sums(space, "sum/blocks"), total(space, "sum/total", 1), value(space, "sum/value", 1)
+    explicit SumScratch(const CudaSpace& space) : block_sums(space, "sum/blocks"), total(space, "sum/total")
     {
     }
 
     DeviceArray<T> block_sums;
-    DeviceArray<T> total;
-    PinnedArray<T> value;
+    DeviceReport<T> total;
 };
 
 /// Threads of a block of a record's sum, and blocks at most: one for every multiprocessor of a large device,

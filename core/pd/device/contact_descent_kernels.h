@@ -34,46 +34,44 @@ struct MeasureContactTrial {
     PairCoefficients pairs;
     double step; ///< [-] of the direction; 0: the trial is where the descent begins
 
-    TOILE_HD ContactTrialSums operator()(int i) const
+    /// All but what the trial's energies and contact write.
+    struct Early {
+        Vec3 gradient, drive;
+        PaddedVec3 direction;
+        double mass;
+        PaddedVec3 s[kHistory];
+    };
+    TOILE_HD Early early(int i) const
+    {
+        Early own{fields.here.gradient[i], fields.drive[i], fields.direction[i], fields.masses[i], {}};
+        for (int j = 0; j < kHistory; ++j)
+            own.s[j] = fields.s[fields.pair_of(pairs.slot[j], i)];
+        return own;
+    }
+
+    TOILE_HD ContactTrialSums operator()(int i) const { return (*this)(i, early(i)); }
+    TOILE_HD ContactTrialSums operator()(int i, const Early& own) const
     {
         ContactTrialSums sums;
         sums.value = fields.shares_of(i);
         if (step == 0.0)
             return sums;
-        const Vec3 gradient = fields.here.gradient[i], d = unpadded(fields.direction[i]);
-        sums.slope = gradient.dot(d);
+        const Vec3 d = unpadded(own.direction);
+        sums.slope = own.gradient.dot(d);
         sums.largest_square = d.squaredNorm();
-        sums.error.move = fields.masses[i] * sums.largest_square;
-        sums.error.force = gradient.squaredNorm() / fields.masses[i];
-        sums.error.opposing = gradient.dot(fields.drive[i]);
+        sums.error.move = own.mass * sums.largest_square;
+        sums.error.force = own.gradient.squaredNorm() / own.mass;
+        sums.error.opposing = own.gradient.dot(own.drive);
 
-        const Vec3 s = step * d, g = fields.free_part(fields.trial.gradient, i), y = g - gradient;
+        const Vec3 s = step * d, g = fields.free_part(fields.trial.gradient, i), y = g - own.gradient;
         sums.products.sy = s.dot(y);
         sums.products.ss = s.squaredNorm();
         sums.products.yy = y.squaredNorm();
         sums.products.sg = s.dot(g);
         for (int j = 0; j < kHistory; ++j)
             if (j < pairs.count)
-                sums.products.s_y[j] = unpadded(fields.s[fields.pair_of(pairs.slot[j], i)]).dot(y);
+                sums.products.s_y[j] = unpadded(own.s[j]).dot(y);
         return sums;
-    }
-};
-
-/// The trial becomes the current point, and its step a pair.
-struct TakePoint {
-    DescentFields fields;
-    int slot; ///< of the pair; -1: none
-
-    TOILE_HD void operator()(int i) const
-    {
-        const Vec3 x = fields.trial.x[i], g = fields.free_part(fields.trial.gradient, i);
-        if (slot >= 0) {
-            const int pair = fields.pair_of(slot, i);
-            fields.s[pair] = padded(x - fields.here.x[i]);
-            fields.y[pair] = padded(g - fields.here.gradient[i]);
-        }
-        fields.here.x[i] = x;
-        fields.here.gradient[i] = g;
     }
 };
 
@@ -89,6 +87,26 @@ struct BeforeInverse {
             if (j < alpha.count)
                 sum -= alpha.of[j] * unpadded(fields.y[fields.pair_of(alpha.slot[j], i)]);
         fields.trial.z[i] = fields.fixed[i] ? Vec3(0.0, 0.0, 0.0) : sum;
+    }
+};
+
+/// The trial becomes the current point, and its step a pair; begins a direction from there.
+struct TakePoint {
+    BeforeInverse before_inverse; ///< alpha with the pair
+    int slot;                     ///< of the pair; -1: none
+
+    TOILE_HD void operator()(int i) const
+    {
+        const DescentFields& fields = before_inverse.fields;
+        const Vec3 x = fields.trial.x[i], g = fields.free_part(fields.trial.gradient, i);
+        if (slot >= 0) {
+            const int pair = fields.pair_of(slot, i);
+            fields.s[pair] = padded(x - fields.here.x[i]);
+            fields.y[pair] = padded(g - fields.here.gradient[i]);
+        }
+        fields.here.x[i] = x;
+        fields.here.gradient[i] = g;
+        before_inverse(i);
     }
 };
 
@@ -110,28 +128,41 @@ struct MeasureInverse {
     DescentFields fields;
     PairCoefficients pairs;
 
-    TOILE_HD InverseProducts operator()(int i) const
+    /// The pairs, which the inverse leaves as they are.
+    struct Early {
+        PaddedVec3 y[kHistory];
+    };
+    TOILE_HD Early early(int i) const
     {
+        Early own;
+        for (int j = 0; j < kHistory; ++j)
+            own.y[j] = fields.y[fields.pair_of(pairs.slot[j], i)];
+        return own;
+    }
+
+    TOILE_HD InverseProducts operator()(int i) const { return (*this)(i, early(i)); }
+    TOILE_HD InverseProducts operator()(int i, const Early& own) const
+    {
+        const Vec3 z = fields.here.z[i];
         InverseProducts sums;
         for (int j = 0; j < kHistory; ++j)
             if (j < pairs.count)
-                sums.y_z[j] = unpadded(fields.y[fields.pair_of(pairs.slot[j], i)]).dot(fields.here.z[i]);
+                sums.y_z[j] = unpadded(own.y[j]).dot(z);
         return sums;
     }
 };
 
-/// The direction z + sum_j of_j s_j.
-struct AfterInverse {
-    DescentFields fields;
-    PairCoefficients of_s;
+/// What becomes of them: coefficients of the pairs' steps.
+struct FindCoefficients {
+    TwoLoop pairs;
+    PairCoefficients alpha;
+    View<double> of_s; ///< [kHistory] out
 
-    TOILE_HD void operator()(int i) const
+    TOILE_HD void operator()(const InverseProducts& sums) const
     {
-        Vec3 d = fields.free_part(fields.here.z, i);
+        const PairCoefficients found = pairs.after(alpha, sums.y_z);
         for (int j = 0; j < kHistory; ++j)
-            if (j < of_s.count)
-                d += of_s.of[j] * unpadded(fields.s[fields.pair_of(of_s.slot[j], i)]);
-        fields.direction[i] = padded(d);
+            of_s[j] = found.of[j];
     }
 };
 
@@ -140,10 +171,44 @@ struct TryStep {
     DescentFields fields;
     double step; ///< [-]
 
-    TOILE_HD void operator()(int i) const
+    TOILE_HD void operator()(int i) const { from(i, fields.here.x[i], fields.direction[i]); }
+    TOILE_HD void from(int i, const Vec3& here, const PaddedVec3& direction) const
     {
-        fields.trial.x[i] = fields.here.x[i] + step * unpadded(fields.direction[i]);
+        fields.trial.x[i] = here + step * unpadded(direction);
         fields.begin_trial(i);
+    }
+};
+
+/// The direction z + sum_j of_j s_j, and a step of it.
+struct AfterInverse {
+    TryStep trial;
+    PairCoefficients pairs;
+    View<const double> of_s; ///< [kHistory]
+
+    /// All but what the inverse finds.
+    struct Early {
+        Vec3 x;
+        PaddedVec3 s[kHistory];
+    };
+    TOILE_HD Early early(int i) const
+    {
+        const DescentFields& fields = trial.fields;
+        Early own{fields.here.x[i], {}};
+        for (int j = 0; j < kHistory; ++j)
+            own.s[j] = fields.s[fields.pair_of(pairs.slot[j], i)];
+        return own;
+    }
+
+    TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
+    TOILE_HD void operator()(int i, const Early& own) const
+    {
+        Vec3 sum = trial.fields.free_part(trial.fields.here.z, i);
+        for (int j = 0; j < kHistory; ++j)
+            if (j < pairs.count)
+                sum += of_s[j] * unpadded(own.s[j]);
+        const PaddedVec3 direction = padded(sum);
+        trial.fields.direction[i] = direction;
+        trial.from(i, own.x, direction);
     }
 };
 

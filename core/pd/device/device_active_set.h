@@ -21,13 +21,11 @@ public:
     /// False where the host has found nothing that could act.
     virtual bool has_terms() const = 0;
 
-    /// Adds the gradient [N] and shares of the energy [J] at x [vertices] [m].
-    virtual void add_gradient(View<const Vec3> x, View<Vec3> gradient, View<double> energy) = 0;
+    /// Adds the gradient [N] and shares of the energy [J] at x [vertices] [m], and freezes the terms active
+    /// there.
+    virtual void evaluate(View<const Vec3> x, View<Vec3> gradient, View<double> energy) = 0;
 
-    /// Freezes the terms active at x.
-    virtual void activate(View<const Vec3> x) = 0;
-
-    /// Whether any was at the last activate(), for who has waited since.
+    /// Whether any was at the last evaluate(). Waits.
     virtual bool acts() const = 0;
 
     /// Product of the frozen Hessian with p [vertices] [m].

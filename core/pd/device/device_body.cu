@@ -50,8 +50,6 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
       end_sums_(space, "body/end_sums", block_count(x_.size(), kSumItems)),
       gradient_(space, "body/largest_gradient", 1), speed_(space, "body/largest_speed", 1),
-      gradient_on_host_(space, "body/largest_gradient_on_host", 1),
-      speed_on_host_(space, "body/largest_speed_on_host", 1),
       descent_(space, x_.size(), energies_.share_count())
 {
     TOILE_ASSERT(x_.size() == system_->vertex_count());

@@ -104,9 +104,9 @@ private:
     DeviceArray<double> inverse_masses_;    ///< [1/kg] 0 where fixed
     DeviceArray<unsigned char> fixed_;
     DeviceArray<StepSums> begin_sums_;
-    DeviceArray<LargestSquare> end_sums_, gradient_, speed_; ///< scratch; [1] squares of what is largest
-    PinnedArray<LargestSquare> gradient_on_host_, speed_on_host_;
-    bool knows_speed_ = false; ///< speed_on_host_ is of the velocities as they are
+    DeviceArray<LargestSquare> end_sums_;
+    PinnedArray<LargestSquare> gradient_, speed_; ///< [1]
+    bool knows_speed_ = false;                    ///< speed_ is of the velocities as they are
     DeviceDescent descent_;
     std::unique_ptr<DeviceContactDescent> contact_descent_; ///< null before contact first acts
     bool is_touching_prepared_ = false;                     ///< contact_descent_ knows H

@@ -20,7 +20,7 @@ void DeviceBody::set_velocities(View<const Vec3> v)
 
 double DeviceBody::max_speed() const
 {
-    return knows_speed_ ? std::sqrt(speed_on_host_[0].value) : PointMasses::max_speed();
+    return knows_speed_ ? std::sqrt(speed_[0].value) : PointMasses::max_speed();
 }
 
 /// Takes note of which vertices are fixed, and of H.
@@ -83,7 +83,6 @@ void DeviceBody::finish()
     parallel_sum(space_, "pd/finish", x_.size(), LargestSquare{},
                  FinishVertex{x_.there(), x_t1_.there(), descent_.gradient(), dt_, v_.overwrite_there()},
                  gradient_.view(), end_sums_);
-    gradient_.download(gradient_on_host_.view());
 }
 
 /// Takes the end for the next start, and waits once for all that is reported of it.
@@ -91,12 +90,11 @@ void DeviceBody::end(DeviceStepProjection* limits, StepReport& report)
 {
     parallel_sum(space_, "pd/end", x_.size(), LargestSquare{},
                  EndVertex{{x_t1_.there(), x_.overwrite_there()}, v_.there()}, speed_.view(), end_sums_);
-    speed_.download(speed_on_host_.view());
     if (limits)
         limits->end_step(x_.there());
     space_.synchronise();
     knows_speed_ = true;
-    report.gradient_norm = std::sqrt(gradient_on_host_[0].value);
+    report.gradient_norm = std::sqrt(gradient_[0].value);
 }
 
 } // namespace toile

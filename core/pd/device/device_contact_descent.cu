@@ -1,6 +1,7 @@
 #include "core/pd/device/device_contact_descent.h"
 
 #include "core/backend/cuda/record_sum.cuh"
+#include "core/pd/device/body_kernels.h"
 #include "core/pd/recent_values.h"
 
 namespace toile {
@@ -8,8 +9,7 @@ namespace toile {
 DeviceContactDescent::DeviceContactDescent(const CudaSpace& space, int vertex_count,
                                            const Pcg::Settings& contact_solve)
     : space_(space), pcg_(space, vertex_count, contact_solve), energies_(space, "descent/energies"),
-      sums_(space), trial_(space, "descent/trial", 1), trial_on_host_(space, "descent/trial_on_host", 1),
-      inverse_(space, "descent/inverse", 1), inverse_on_host_(space, "descent/inverse_on_host", 1)
+      sums_(space), trial_(space, "descent/trial"), of_s_(space, "descent/of_s", kHistory)
 {
 }
 
@@ -33,21 +33,17 @@ double DeviceContactDescent::evaluate(const DescentFields& fields, DeviceActiveS
     return measure(fields, active, 0.0).value;
 }
 
-/// Evaluates the trial point at `step` [-] of the direction, and freezes the terms that act there, since most
-/// trials are taken. Waits.
+/// Evaluates the trial point at `step` [-] of the direction. Waits.
 ContactTrialSums DeviceContactDescent::measure(const DescentFields& fields, DeviceActiveSet& active,
                                                double step)
 {
     const int n = fields.direction.size();
     energies_.launch();
-    active.add_gradient(fields.trial.x, fields.trial.gradient, fields.energy.subview(0, n));
-    active.activate(fields.trial.x);
+    active.evaluate(fields.trial.x, fields.trial.gradient, fields.energy.subview(0, n));
     parallel_sum_record_then<ContactTrialSums>(space_, "descent/measure", n,
                                                MeasureContactTrial{fields, pairs_.pairs(), step},
-                                               KeepTotal<ContactTrialSums>{trial_.view()}, sums_);
-    trial_.download(trial_on_host_.view());
-    space_.synchronise();
-    return trial_on_host_[0];
+                                               trial_.next(), sums_);
+    return trial_.await();
 }
 
 OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, DeviceActiveSet& active,
@@ -61,8 +57,7 @@ OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, D
     pairs_.clear();
     take(fields, nullptr);
     while (is_finite(outcome.value) && outcome.iterations < task.settings.max_iterations) {
-        find_direction(fields, active, outcome);
-        parallel_for(space_, "descent/try", fields.direction.size(), TryStep{fields, 1.0});
+        outcome.linear_iterations += find_direction(fields, active);
         ContactTrialSums trial = measure(fields, active, 1.0);
         outcome.displacement = std::sqrt(trial.largest_square);
         trial.error.mass = task.mass;
@@ -76,9 +71,7 @@ OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, D
         if (!search(fields, active, trial, line)) {
             if (outcome.converged || pairs_.count() == 0)
                 break;
-            pairs_.clear();
-            active.activate(fields.here.x);
-            space_.synchronise();
+            restart(fields, active);
             continue;
         }
         outcome.value = trial.value;
@@ -112,40 +105,41 @@ bool DeviceContactDescent::search(const DescentFields& fields, DeviceActiveSet& 
     return true;
 }
 
+/// Without its pairs the method is plain local/global.
+void DeviceContactDescent::restart(const DescentFields& fields, DeviceActiveSet& active)
+{
+    pairs_.clear();
+    parallel_for(space_, "descent/restart", fields.direction.size(), BeginAt{fields.here.x, fields});
+    measure(fields, active, 0.0);
+    take(fields, nullptr);
+}
+
 /// The trial becomes the current point. @param products  of its step; null: it is no pair
 void DeviceContactDescent::take(const DescentFields& fields, const StepProducts* products)
 {
     const int slot = products != nullptr ? pairs_.add(*products) : -1;
-    parallel_for(space_, "descent/take_point", fields.direction.size(), TakePoint{fields, slot});
+    parallel_for(space_, "descent/take_point", fields.direction.size(),
+                 TakePoint{{fields, pairs_.before()}, slot});
 }
 
-void DeviceContactDescent::find_direction(const DescentFields& fields, DeviceActiveSet& active,
-                                          OuterLoop::Outcome& outcome)
+/// The direction from the point just taken, and the trial a whole step along it. @return iterations of PCG
+int DeviceContactDescent::find_direction(const DescentFields& fields, DeviceActiveSet& active)
 {
     const int n = fields.direction.size();
-    const PairCoefficients alpha = pairs_.before();
-    parallel_for(space_, "descent/before_inverse", n, BeforeInverse{fields, alpha});
-    const auto measure_inverse = [&] {
-        if (pairs_.count() == 0)
-            return;
-        parallel_sum_record_then<InverseProducts>(space_, "descent/measure_inverse", n,
-                                                  MeasureInverse{fields, pairs_.pairs()},
-                                                  KeepTotal<InverseProducts>{inverse_.view()}, sums_);
-        inverse_.download(inverse_on_host_.view());
-    };
+    int iterations = 0;
     if (active.acts()) {
         pcg_.update(active);
-        outcome.linear_iterations += pcg_.solve(fields.trial.z, fields.here.z, measure_inverse).iterations;
+        iterations = pcg_.solve(fields.trial.z, fields.here.z).iterations;
     } else {
         solver_->solve_there(fields.trial.z, fields.here.z);
-        measure_inverse();
-        space_.synchronise();
     }
-
-    std::array<double, kHistory> y_z{};
     if (pairs_.count() > 0)
-        std::copy(std::begin(inverse_on_host_[0].y_z), std::end(inverse_on_host_[0].y_z), y_z.begin());
-    parallel_for(space_, "descent/after_inverse", n, AfterInverse{fields, pairs_.after(alpha, y_z)});
+        parallel_sum_record_then<InverseProducts>(
+            space_, "descent/measure_inverse", n, MeasureInverse{fields, pairs_.pairs()},
+            FindCoefficients{pairs_, pairs_.before(), of_s_.view()}, sums_);
+    parallel_for(space_, "descent/after_inverse", n,
+                 AfterInverse{{fields, 1.0}, pairs_.pairs(), of_s_.view()});
+    return iterations;
 }
 
 } // namespace toile

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/backend/cuda/graph.h"
+#include "core/backend/cuda/report.h"
 #include "core/backend/cuda/sum_scratch.h"
 #include "core/pd/device/contact_descent_kernels.h"
 #include "core/pd/device/device_descent.h"
@@ -42,9 +43,10 @@ public:
 
 private:
     ContactTrialSums measure(const DescentFields& fields, DeviceActiveSet& active, double step);
-    void find_direction(const DescentFields& fields, DeviceActiveSet& active, OuterLoop::Outcome& outcome);
+    int find_direction(const DescentFields& fields, DeviceActiveSet& active);
     bool search(const DescentFields& fields, DeviceActiveSet& active, ContactTrialSums& trial,
                 LineSearch& line);
+    void restart(const DescentFields& fields, DeviceActiveSet& active);
     void take(const DescentFields& fields, const StepProducts* products);
 
     const CudaSpace& space_;
@@ -53,10 +55,8 @@ private:
     TwoLoop pairs_;
     CudaGraph energies_; ///< everything of the objective but contact
     RecordScratch sums_;
-    DeviceArray<ContactTrialSums> trial_;
-    PinnedArray<ContactTrialSums> trial_on_host_;
-    DeviceArray<InverseProducts> inverse_;
-    PinnedArray<InverseProducts> inverse_on_host_;
+    DeviceReport<ContactTrialSums> trial_;
+    DeviceArray<double> of_s_; ///< FindCoefficients'
 };
 
 } // namespace toile

@@ -1,6 +1,5 @@
 #include "core/pd/device/device_nested_pcg.h"
 
-#include <algorithm>
 #include <numeric>
 #include <vector>
 
@@ -24,13 +23,12 @@ std::vector<float> row_sums(const SparseMatrix& H)
 } // namespace
 
 DeviceNestedPcg::DeviceNestedPcg(const CudaSpace& space, int n, const Pcg::Settings& settings)
-    : space_(space), settings_(settings), first_(space, "pcg/first"), column_(space, "pcg/column"),
-      value_(space, "pcg/value"), sum_(space, "pcg/sum"), diagonal_(space, "pcg/diagonal"),
-      fixed_(space, "pcg/fixed"), inverse_(space, "pcg/inverse"), r_(space, "pcg/r", n),
-      r_previous_(space, "pcg/r_previous", n), z_(space, "pcg/z", n), p_(space, "pcg/p", n),
-      Kz_(space, "pcg/Kz", n), Kp_(space, "pcg/Kp", n), scaled_(space, "pcg/scaled", n),
-      solved_(space, "pcg/solved", n), scalars_(space, "pcg/scalars", 1),
-      on_host_(space, "pcg/scalars_on_host", 1), sums_(space)
+    : space_(space), settings_(settings), first_(space, "pcg/first"), entries_(space, "pcg/entries"),
+      sum_(space, "pcg/sum"), diagonal_(space, "pcg/diagonal"), fixed_(space, "pcg/fixed"),
+      inverse_(space, "pcg/inverse"), r_(space, "pcg/r", n), r_previous_(space, "pcg/r_previous", n),
+      z_(space, "pcg/z", n), p_(space, "pcg/p", n), Kz_(space, "pcg/Kz", n), Kp_(space, "pcg/Kp", n),
+      scaled_(space, "pcg/scaled", n), solved_(space, "pcg/solved", n), scalars_(space, "pcg/scalars", 1),
+      progress_(space, "pcg/progress"), sums_(space)
 {
 }
 
@@ -38,9 +36,9 @@ void DeviceNestedPcg::prepare(const System& system, DeviceSolver& solver)
 {
     const SparseMatrix& H = system.matrix();
     solver_ = &solver;
-    first_.upload({H.outerIndexPtr(), int(H.rows()) + 1});
-    column_.upload({H.innerIndexPtr(), int(H.nonZeros())});
-    value_.upload(std::vector<float>(H.valuePtr(), H.valuePtr() + H.nonZeros()));
+    const auto rows = sliced_rows_of<WholeRows>(H);
+    first_.upload(rows.first);
+    entries_.upload(rows.entries);
     sum_.upload(row_sums(H));
     diagonal_.upload(system.diagonal());
     fixed_.upload(system.fixed());
@@ -69,23 +67,20 @@ BlocksInverse DeviceNestedPcg::blocks_inverse() const
 
 SystemRows DeviceNestedPcg::rows() const
 {
-    return {first_.view(), column_.view(), value_.view(), sum_.view(), diagonal_.view(), fixed_.view()};
+    return {first_.view(), entries_.view(), sum_.view(), fixed_.view()};
 }
 
-Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z, const std::function<void()>& then)
+Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z)
 {
     const StageScope stage("pd/pcg");
     const PcgFields fields = this->fields(z);
     parallel_for(space_, "pcg/begin", g.size(), BeginPcg{g, fields, blocks_inverse(), scalars_.view()});
-    const PcgScalars* now = nullptr;
-    for (int count = expected_iterations_; now == nullptr || !now->is_over; count = 1) {
-        for (int k = 0; k < count; ++k)
-            iterate(fields);
-        then();
-        now = &read_back();
+    PcgScalars now;
+    while (!now.is_over) {
+        iterate(fields);
+        now = progress_.await();
     }
-    expected_iterations_ = std::max(1, now->iterations);
-    return {now->iterations, now->residual};
+    return {now.iterations, now.residual};
 }
 
 void DeviceNestedPcg::iterate(const PcgFields& fields)
@@ -97,15 +92,8 @@ void DeviceNestedPcg::iterate(const PcgFields& fields)
     parallel_sum_record_then<PcgSums>(
         space_, "pcg/multiply", n,
         MultiplySystem{fields, rows(), active_->frozen().list_of, active_->frozen().product},
-        FindStep{scalars_.view(), settings_}, sums_);
+        FindStepAndReport{{scalars_.view(), settings_}, progress_.next()}, sums_);
     parallel_for(space_, "pcg/step", n, TakeStep{fields, blocks_inverse(), scalars_.view()});
-}
-
-const PcgScalars& DeviceNestedPcg::read_back()
-{
-    scalars_.download(on_host_.view());
-    space_.synchronise();
-    return on_host_[0];
 }
 
 } // namespace toile

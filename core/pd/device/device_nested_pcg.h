@@ -1,8 +1,7 @@
 #pragma once
 
-#include <functional>
-
 #include "core/backend/cuda/array.h"
+#include "core/backend/cuda/report.h"
 #include "core/backend/cuda/sum_scratch.h"
 #include "core/linear/device_solver.h"
 #include "core/linear/pcg.h"
@@ -23,34 +22,31 @@ public:
     /// Enqueues the inverses of the blocks that were frozen last. @param active  borrowed until the next
     void update(DeviceActiveSet& active);
 
-    /// z = (H + dH)^-1 g. Waits to see whether that is enough when it has enqueued as many iterations as the
-    /// solve before took, and then after each; what is too much changes nothing. Takes at least
-    /// one.
+    /// z = (H + dH)^-1 g, at least one iteration. Each reports before it ends whether it is the last, so that
+    /// the next comes in time; z itself is there in the stream's turn.
     /// @param g, z  [vertices] on the device [N], [m]
-    /// @param then  enqueues what is to be known of z beside it, before each wait: the last time counts
-    Pcg::Outcome solve(View<const Vec3> g, View<Vec3> z, const std::function<void()>& then);
+    Pcg::Outcome solve(View<const Vec3> g, View<Vec3> z);
 
 private:
     PcgFields fields(View<Vec3> x);
     BlocksInverse blocks_inverse() const;
     SystemRows rows() const;
     void iterate(const PcgFields& fields);
-    const PcgScalars& read_back();
 
     const CudaSpace& space_;
     Pcg::Settings settings_;
     DeviceSolver* solver_ = nullptr;
     DeviceActiveSet* active_ = nullptr;
-    DeviceArray<int> first_, column_;
-    DeviceArray<float> value_, sum_;
+    DeviceArray<int> first_; ///< of WholeRows
+    DeviceArray<RowEntry> entries_;
+    DeviceArray<float> sum_;
     DeviceArray<double> diagonal_;
     DeviceArray<unsigned char> fixed_;
     DeviceArray<Mat3> inverse_; ///< [lists]
     DeviceArray<PaddedVec3> r_, r_previous_, z_, p_, Kz_, Kp_;
     DeviceArray<Vec3> scaled_, solved_;
     DeviceArray<PcgScalars> scalars_;
-    PinnedArray<PcgScalars> on_host_;
-    int expected_iterations_ = 1;
+    DeviceReport<PcgScalars> progress_;
     RecordScratch sums_;
 };
 

@@ -4,8 +4,10 @@
 
 #include <Eigen/LU>
 
-#include "core/backend/types.h"
+#include "core/backend/cuda/report.h"
+#include "core/backend/unroll.h"
 #include "core/linear/pcg.h"
+#include "core/linear/sliced_rows.h"
 #include "core/pd/device/device_active_set.h"
 
 namespace toile {
@@ -59,27 +61,41 @@ struct PcgScalars {
     double residual = 1.0;               ///< [-] |r| / |b|
     int iterations = 0;
     bool is_over = false; ///< this iteration is the last
-    bool is_past = false; ///< it was: x stays
+    bool is_void = false; ///< and takes no step
 };
 
-/// H [vertices x vertices] as rows of numbers, and what is constant beside it.
+/// H [vertices x vertices], and what is constant beside it.
 struct SystemRows {
-    View<const int> first, column; ///< [vertices + 1], [entries]
-    View<const float> value;       ///< [entries] [N/m]
-    View<const float> sum;         ///< [vertices] of a row, found in double: what inertia leaves of it [N/m]
-    View<const double> diagonal;   ///< [vertices] D [N/m]
+    View<const int> first;        ///< [slices + 1] of WholeRows
+    View<const RowEntry> entries; ///< [N/m]
+    View<const float> sum;        ///< [vertices] of a row, found in double: what inertia leaves of it [N/m]
     View<const unsigned char> fixed; ///< [vertices]
 
-    /// By differences: where all vertices move alike, elastic rows cancel to the last bit and inertia, which
-    /// may be less than the rounding of D, remains.
-    TOILE_HD PaddedVec3 times(int i, View<const PaddedVec3> x) const
+    /// Row i: every kWarp-th entry.
+    struct Row {
+        int begin, end;
+        float sum;
+        bool is_fixed;
+    };
+    TOILE_HD Row row(int i) const
     {
-        const PaddedVec3 own = x[i], back = -1.0F * own;
-        PaddedVec3 product = sum[i] * own;
-        for (int k = first[i]; k < first[i + 1]; ++k) {
-            PaddedVec3 difference = x[column[k]];
+        const int slice = i / WholeRows::kRows;
+        return {first[slice] + i % WholeRows::kRows, first[slice + 1], sum[i], fixed[i] != 0};
+    }
+
+    /// Row times x, of which `own` is what the row's vertex has. By differences: where all vertices move
+    /// alike, elastic rows cancel to the last bit and inertia, which may be less than the rounding of the
+    /// diagonal, remains.
+    TOILE_HD PaddedVec3 times(const Row& row, const PaddedVec3& own, View<const PaddedVec3> x) const
+    {
+        const PaddedVec3 back = -1.0F * own;
+        PaddedVec3 product = row.sum * own;
+        TOILE_UNROLL(4)
+        for (int k = row.begin; k < row.end; k += kWarp) {
+            const RowEntry entry = entries[k];
+            PaddedVec3 difference = x[entry.column];
             difference += back;
-            product += value[k] * difference;
+            product += entry.value * difference;
         }
         return product;
     }
@@ -167,21 +183,21 @@ struct MultiplySystem {
     struct Early {
         PaddedVec3 r, Kp, p, previous;
         int list;
-        unsigned char fixed;
+        SystemRows::Row row;
     };
     TOILE_HD Early early(int i) const
     {
-        return {fields.r[i], fields.Kp[i], fields.p[i], fields.r_previous[i], list_of[i], H.fixed[i]};
+        return {fields.r[i], fields.Kp[i], fields.p[i], fields.r_previous[i], list_of[i], H.row(i)};
     }
 
     TOILE_HD PcgSums operator()(int i) const { return (*this)(i, early(i)); }
     TOILE_HD PcgSums operator()(int i, const Early& own) const
     {
-        const auto& [r, Kp, p, previous, list, fixed] = own;
+        const auto& [r, Kp, p, previous, list, row] = own;
         const PaddedVec3 z = fields.z[i];
         PaddedVec3 Kz = z;
-        if (!fixed) {
-            Kz = H.times(i, fields.z);
+        if (!row.is_fixed) {
+            Kz = H.times(row, z, fields.z);
             if (list > 0)
                 Kz += padded(frozen_product[list - 1]);
         }
@@ -212,17 +228,14 @@ struct FindStep {
     TOILE_HD void operator()(const PcgSums& sums) const
     {
         PcgScalars& all = scalars[0];
-        all.is_past = all.is_over;
-        if (all.is_past)
-            return;
         if (all.iterations == 0)
             all.b_square = sums.r_r;
         const double beta = all.rz != 0.0 ? (sums.r_z - sums.previous_z) / all.rz : 0.0;
         all.beta = beta;
         all.rz = sums.r_z;
         all.pKp = sums.z_Kz + beta * (2.0 * sums.z_Kp + beta * all.pKp);
-        all.is_over = all.is_past = !(all.pKp > 0.0);
-        if (all.is_past)
+        all.is_over = all.is_void = !(all.pKp > 0.0);
+        if (all.is_void)
             return;
         ++all.iterations;
         all.step = (sums.r_z + beta * sums.p_r) / all.pKp;
@@ -234,6 +247,18 @@ struct FindStep {
         all.residual = std::sqrt(std::fmax(0.0, r_square) / all.b_square);
         all.is_over = all.iterations >= settings.max_iterations || all.residual <= settings.tolerance ||
                       !settings.is_worth_more(all.iterations, all.gain, all.total_gain);
+    }
+};
+
+/// FindStep, of which the host hears.
+struct FindStepAndReport {
+    FindStep find;
+    SendReport<PcgScalars> report;
+
+    TOILE_HD void operator()(const PcgSums& sums) const
+    {
+        find(sums);
+        report(find.scalars[0]);
     }
 };
 
@@ -257,7 +282,7 @@ struct TakeStep {
     TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
     TOILE_HD void operator()(int i, const Early& own) const
     {
-        if (scalars[0].is_past)
+        if (scalars[0].is_void)
             return;
         const double step = scalars[0].step, beta = scalars[0].beta;
         const Vec3 p = unpadded(own.z) + beta * unpadded(own.p);

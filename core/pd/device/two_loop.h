@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 
 #include "core/pd/device/descent.h"
@@ -39,10 +38,10 @@ struct PairCoefficients {
 class TwoLoop {
 public:
     void clear() { count_ = next_slot_ = 0; }
-    int count() const { return count_; }
+    TOILE_HD int count() const { return count_; }
 
     /// The pairs kept, with coefficients of 0.
-    PairCoefficients pairs() const
+    TOILE_HD PairCoefficients pairs() const
     {
         PairCoefficients all;
         all.count = count_;
@@ -87,7 +86,7 @@ public:
 
     /// After the inverse has made z of q: the direction is z + sum_j of_j s_j.
     /// @param y_z  y_j . z
-    PairCoefficients after(const PairCoefficients& alpha, const std::array<double, kHistory>& y_z) const
+    TOILE_HD PairCoefficients after(const PairCoefficients& alpha, const double (&y_z)[kHistory]) const
     {
         PairCoefficients of_s = pairs();
         for (int i = 0; i < count_; ++i) {

@@ -28,6 +28,16 @@ void launch(const CudaSpace& space, const AddLastTwo& kernel)
     parallel_for(space, "test/add_last_two", kernel.next.size(), kernel);
 }
 
+void launch(const CudaSpace& space, const SendNumbers& kernel)
+{
+    parallel_for(space, "test/send", 1, kernel);
+}
+
+void launch(const CudaSpace& space, const HearFromHost& kernel)
+{
+    parallel_for(space, "test/hear", 1, kernel);
+}
+
 void launch(const CudaSpace& space, const WriteWild& kernel)
 {
     parallel_for(space, "test/wild", kernel.nowhere.size(), kernel);

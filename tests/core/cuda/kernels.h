@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/backend/cuda/report.h"
 #include "core/backend/cuda/sum_scratch.h"
 #include "core/backend/types.h"
 #include "garment/energy/membrane_kernels.h"
@@ -48,6 +49,40 @@ struct AddLastTwo {
 
     TOILE_HD unsigned early(int i) const { return older[i]; }
     TOILE_HD void operator()(int i, unsigned own) const { next[i] = last[last.size() - 1 - i] + own; }
+};
+
+/// A record of several words.
+struct Numbers {
+    static constexpr int kCount = 16;
+    double of[kCount];
+};
+
+/// Reports first, first + 1/4, ...
+struct SendNumbers {
+    SendReport<Numbers> send;
+    double first;
+    TOILE_HD void operator()(int) const
+    {
+        Numbers numbers;
+        for (int j = 0; j < Numbers::kCount; ++j)
+            numbers.of[j] = first + 0.25 * j;
+        send(numbers);
+    }
+};
+
+/// Waits for the host to change a word of its memory, some seconds at most.
+struct HearFromHost {
+    View<int> word;  ///< [1] of the host
+    View<int> heard; ///< [1] out: the word at the end
+    TOILE_HD void operator()(int) const
+    {
+        constexpr int kLooks = 1 << 22;
+        const volatile int* const at = &word[0];
+        int found = *at;
+        for (int look = 0; look < kLooks && found == 0; ++look)
+            found = *at;
+        heard[0] = found;
+    }
 };
 
 /// Writes item i where it is told to: the test says, nowhere.
@@ -102,6 +137,8 @@ void launch(const CudaSpace& space, const CountEndVisits& kernel);
 void launch(const CudaSpace& space, const AddScaled& kernel);
 void launch(const CudaSpace& space, const ScaleBySlot& kernel);
 void launch(const CudaSpace& space, const AddLastTwo& kernel);
+void launch(const CudaSpace& space, const SendNumbers& kernel);
+void launch(const CudaSpace& space, const HearFromHost& kernel);
 void launch(const CudaSpace& space, const WriteWild& kernel);
 void launch(const CudaSpace& space, const WriteLayout& kernel);
 void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel);

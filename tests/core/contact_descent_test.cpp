@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include "core/pd/device/body_kernels.h"
+#include "core/pd/device/contact_descent_kernels.h"
+#include "core/pd/lbfgs.h"
+#include "tests/core/descent_arrays.h"
+#include "tests/core/objectives.h"
+
+/// The descent of a GPU while contact acts, its kernels called one by one on the CPU, against the CPU's own
+/// loop. No GPU is needed.
+namespace toile::test {
+namespace {
+
+class ContactDescentOnHost {
+public:
+    ContactDescentOnHost(Objective& objective, std::vector<Vec3> start)
+        : objective_(objective), count_(int(start.size())), start_(std::move(start)), arrays_(count_)
+    {
+        begin_at(start_);
+    }
+
+    void hold(int vertex) { arrays_.fixed[vertex] = 1; }
+
+    void take_iterations(int count)
+    {
+        for (int k = 0; k < count; ++k) {
+            find_direction();
+            ContactTrialSums trial = measure(1.0);
+            for (LineSearch line{value_, trial.slope}; !line.accepts(trial.value);) {
+                line.shorten(trial.value);
+                each(TryStep{arrays_.fields(), line.step});
+                trial = measure(line.step);
+            }
+            value_ = trial.value;
+            take(&trial.products);
+        }
+    }
+
+    /// Forgets its pairs.
+    void restart()
+    {
+        const std::vector<Vec3> here = x();
+        begin_at(here);
+    }
+
+    const std::vector<Vec3>& x() const { return arrays_.here.x; }
+    double value() const { return value_; }
+    int pairs() const { return pairs_.count(); }
+
+private:
+    template <typename Kernel>
+    void each(const Kernel& kernel)
+    {
+        for (int i = 0; i < count_; ++i)
+            kernel(i);
+    }
+
+    void begin_at(const std::vector<Vec3>& x)
+    {
+        pairs_.clear();
+        each(BeginAt{x, arrays_.fields()});
+        value_ = measure(0.0).value;
+        take(nullptr);
+    }
+
+    ContactTrialSums measure(double step)
+    {
+        arrays_.energy.assign(count_, 0.0);
+        arrays_.energy[0] = objective_.evaluate(arrays_.trial.x, arrays_.trial.gradient);
+        ContactTrialSums sums;
+        for (int i = 0; i < count_; ++i)
+            sums += MeasureContactTrial{arrays_.fields(), pairs_.pairs(), step}(i);
+        return sums;
+    }
+
+    void take(const StepProducts* products)
+    {
+        const int slot = products != nullptr ? pairs_.add(*products) : -1;
+        each(TakePoint{{arrays_.fields(), pairs_.before()}, slot});
+    }
+
+    void find_direction()
+    {
+        objective_.precondition(arrays_.trial.z, arrays_.here.z);
+        InverseProducts sums;
+        for (int i = 0; i < count_; ++i)
+            sums += MeasureInverse{arrays_.fields(), pairs_.pairs()}(i);
+        FindCoefficients{pairs_, pairs_.before(), of_s_}(sums);
+        each(AfterInverse{{arrays_.fields(), 1.0}, pairs_.pairs(), of_s_});
+    }
+
+    Objective& objective_;
+    int count_;
+    std::vector<Vec3> start_;
+    DescentArrays arrays_;
+    TwoLoop pairs_;
+    std::vector<double> of_s_ = std::vector<double>(kHistory);
+    double value_ = 0.0;
+};
+
+TEST(ContactDescent, TakesTheStepsOfTheTwoLoopRecursion)
+{
+    // Pairs are kept in single precision, so steps differ in the eighth digit and then more.
+    Unsymmetric objective;
+    for (const int iterations : {1, 2, 3, 6, 12}) {
+        std::vector<Vec3> x = random_field(100, 3);
+        ContactDescentOnHost there(objective, x);
+        there.take_iterations(iterations);
+        Lbfgs lbfgs(kHistory);
+        const OuterLoop::Outcome here = lbfgs.minimise(objective, x, {0.0, iterations});
+        EXPECT_EQ(there.pairs(), std::min(iterations, kHistory));
+        EXPECT_LT(farthest(there.x(), x), 1e-5) << iterations;
+        EXPECT_NEAR(there.value(), here.value, 1e-4 * here.value);
+    }
+}
+
+TEST(ContactDescent, ShortensStepsThatGoTooFar)
+{
+    Valley objective;
+    std::vector<Vec3> x{Vec3(-1.2, 1.0, 1.0), Vec3(0.0, 0.0, 0.0), Vec3(1.3, 1.5, 2.0)};
+    ContactDescentOnHost there(objective, x);
+    there.take_iterations(5);
+    Lbfgs lbfgs(kHistory);
+    lbfgs.minimise(objective, x, {0.0, 5});
+    EXPECT_LT(farthest(there.x(), x), 1e-4);
+}
+
+TEST(ContactDescent, BeginsAnewWhereItIs)
+{
+    Unsymmetric objective;
+    ContactDescentOnHost there(objective, random_field(100, 3));
+    there.take_iterations(3);
+    const double value = there.value();
+    std::vector<Vec3> x = there.x();
+    there.restart();
+    EXPECT_EQ(there.x(), x);
+    EXPECT_EQ(there.value(), value);
+    there.take_iterations(2);
+    Lbfgs lbfgs(kHistory);
+    lbfgs.minimise(objective, x, {0.0, 2});
+    EXPECT_LT(farthest(there.x(), x), 1e-5);
+}
+
+TEST(ContactDescent, LeavesFixedVerticesWhereTheyAreWhateverPullsAtThem)
+{
+    Unsymmetric objective;
+    const std::vector<Vec3> start = random_field(100, 6);
+    ContactDescentOnHost there(objective, start);
+    there.hold(7);
+    there.restart();
+    there.take_iterations(4);
+    EXPECT_EQ(there.x()[7], start[7]);
+    EXPECT_NE(there.x()[8], start[8]);
+}
+
+} // namespace
+} // namespace toile::test
