@@ -58,7 +58,7 @@ struct EdgeQueries {
 
 /// Candidates that a query keeps when they are counted; who has more looks for them again, and so do the
 /// threads beside it. Layers that lie close have up to 30.
-inline constexpr int kKeptCandidates = 32;
+inline constexpr int kKeptCandidates = 64;
 
 /// Counts the candidates of query i and keeps the first.
 template <typename Queries>
