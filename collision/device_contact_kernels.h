@@ -250,32 +250,65 @@ struct MultiplyList {
     View<const PaddedVec3> p;         ///< [vertices] [m]
     View<Vec3> product;               ///< [lists] out [N]
 
+    /// An entry of a list, without p.
+    struct Entry {
+        FrozenContact at;
+        std::array<int, 4> vertex{-1, -1, -1, -1};
+        std::array<double, 4> weight{};
+        Vec3 normal{0.0, 0.0, 0.0};
+        double own_weight = 0.0;
+    };
+
+    /// Which entries a thread has, and the first of them.
+    struct Early {
+        int next, end;
+        Entry entry;
+    };
+    template <typename Team>
+    TOILE_HD Early early(int k, const Team& team, bool /*is_own*/) const
+    {
+        const bool acts = blocks[k].trace() > 0.0; // what most do not: their terms are not looked at
+        const int next = touches.first[k] + team.thread, end = acts ? touches.first[k + 1] : 0;
+        return {next, end, next < end ? entry(next) : Entry{}};
+    }
+
     template <typename Team>
     TOILE_HD void operator()(int k, const Team& team, bool is_own) const
     {
+        (*this)(k, team, is_own, early(k, team, is_own));
+    }
+    template <typename Team>
+    TOILE_HD void operator()(int k, const Team& team, bool is_own, const Early& own) const
+    {
         Vec3 sum(0.0, 0.0, 0.0);
-        const bool acts = blocks[k].trace() > 0.0; // what most do not: their terms are not looked at
-        const int end = acts ? touches.first[k + 1] : 0;
-        for (int e = touches.first[k] + team.thread; e < end; e += Team::kThreads) {
-            const int term = touches.entries[e] / 4;
-            const FrozenContact at = frozen[term];
-            if (!at.acts())
-                continue;
-            const ContactPair& pair = touches.terms[term].pair;
-            sum += pair.weight[touches.entries[e] % 4] * at.times(pair.normal, move_of(pair));
-        }
+        if (own.next < own.end)
+            add(own.entry, sum);
+        for (int e = own.next + Team::kThreads; e < own.end; e += Team::kThreads)
+            add(entry(e), sum);
         sum = team_sum(team, sum);
         if (team.thread == 0 && is_own)
             product[k] = sum;
     }
 
 private:
-    TOILE_HD Vec3 move_of(const ContactPair& pair) const
+    TOILE_HD Entry entry(int e) const
     {
-        Vec3 sum(0.0, 0.0, 0.0);
-        for (int k = 0; k < 4 && pair.vertex[k] >= 0; ++k)
-            sum += pair.weight[k] * unpadded(p[pair.vertex[k]]);
-        return sum;
+        const int term = touches.entries[e] / 4;
+        const FrozenContact at = frozen[term];
+        if (!at.acts())
+            return {};
+        const ContactPair& pair = touches.terms[term].pair;
+        return {at, pair.vertex, pair.weight, pair.normal, pair.weight[touches.entries[e] % 4]};
+    }
+
+    TOILE_HD void add(const Entry& entry, Vec3& sum) const
+    {
+        if (!entry.at.acts())
+            return;
+        Vec3 move(0.0, 0.0, 0.0);
+        for (int k = 0; k < 4 && entry.vertex[k] >= 0; ++k)
+            move += entry.weight[k] * unpadded(p[entry.vertex[k]]);
+        sum += entry.own_weight * entry.at.times(entry.normal, move);
     }
 };
 

@@ -217,46 +217,77 @@ struct GatherLeafByTeam {
     View<const int> nodes;          ///< [slots]
     View<const int> others;         ///< nodes in no leaf
     View<const int> first;          ///< [bodies] where a body's nodes begin in b and x
+    bool climbs_apart; ///< sources are older than the launch before, which still climbs from level to level
     View<const Vec3> b;
     View<Vec3> x; ///< out
 
-    TOILE_HD int leaves_of_all() const { return first.size() * (nodes.size() / ClusterTree::kLeaf); }
+    TOILE_HD int leaves_of_all() const { return first.size() * leaves(); }
     TOILE_HD int teams(int team_size) const
     {
         return leaves_of_all() + (first.size() * others.size() + team_size - 1) / team_size;
     }
 
+    /// The near field, where its sources are there.
+    template <typename Team>
+    TOILE_HD PackedSum<Rank> early(int k, const Team& team, bool /*is_own*/) const
+    {
+        return climbs_apart && k < leaves_of_all() ? near_field(k, team) : PackedSum<Rank>{};
+    }
+
     template <typename Team>
     TOILE_HD void operator()(int k, const Team& team, bool is_own) const
+    {
+        (*this)(k, team, is_own, early(k, team, is_own));
+    }
+    template <typename Team>
+    TOILE_HD void operator()(int k, const Team& team, bool is_own, const PackedSum<Rank>& early) const
     {
         if (k >= leaves_of_all()) {
             if (is_own)
                 copy_others((k - leaves_of_all()) * Team::kThreads + team.thread);
             return;
         }
-        const int leaves = nodes.size() / ClusterTree::kLeaf, body = k / leaves, leaf = k % leaves;
-        const int clusters = moments.size() / first.size();
-        const auto own_sources = sources.subview(body * nodes.size(), nodes.size());
-        const auto own_moments = moments.subview(body * clusters, clusters);
-        PackedSum<Rank> bytes;
-        bytes.add(packed, own_sources, own_moments, leaf, team.thread, Team::kThreads);
-        LeafSum<Rank, Floats<KernelView::kTargets>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
-        sum.add(rest, own_sources, own_moments, leaf, {0, team.thread, Team::kThreads});
+        PackedSum<Rank> all = climbs_apart ? early : near_field(k, team);
+        const auto own_moments = of_body(moments, k);
+        all.add_far(packed, own_moments, leaf_of(k), team.thread, Team::kThreads);
+        all.sum.add_far(rest, own_moments, leaf_of(k), {0, team.thread, Team::kThreads});
 
         // Thread 3 t + a gets and writes axis a of target t.
         float numbers[3 * KernelView::kTargets];
-        for (int t = 0; t < KernelView::kTargets; ++t)
-            for (int a = 0; a < 3; ++a)
-                numbers[3 * t + a] = sum.axis[a][t];
+        for (int a = 0; a < 3; ++a) {
+            const auto total = all.total(a);
+            for (int t = 0; t < KernelView::kTargets; ++t)
+                numbers[3 * t + a] = total[t];
+        }
         const float own = team.sum_each(numbers);
         const int target = team.thread / 3;
         if (target >= KernelView::kTargets || !is_own)
             return;
-        if (const int v = nodes[leaf * ClusterTree::kLeaf + target]; v >= 0)
-            x[first[body] + v][team.thread % 3] = double(own);
+        if (const int v = nodes[leaf_of(k) * ClusterTree::kLeaf + target]; v >= 0)
+            x[first[k / leaves()] + v][team.thread % 3] = double(own);
     }
 
 private:
+    TOILE_HD int leaves() const { return nodes.size() / ClusterTree::kLeaf; }
+    TOILE_HD int leaf_of(int k) const { return k % leaves(); }
+
+    /// The part of an array of all bodies that team k's has.
+    TOILE_HD View<const PaddedVec3> of_body(View<const PaddedVec3> all, int k) const
+    {
+        const int count = all.size() / first.size();
+        return all.subview(k / leaves() * count, count);
+    }
+
+    template <typename Team>
+    TOILE_HD PackedSum<Rank> near_field(int k, const Team& team) const
+    {
+        const auto own_sources = of_body(sources, k);
+        PackedSum<Rank> all;
+        all.add_near(packed, own_sources, leaf_of(k), team.thread, Team::kThreads);
+        all.sum.add_near(rest, own_sources, leaf_of(k), {0, team.thread, Team::kThreads});
+        return all;
+    }
+
     TOILE_HD void copy_others(int k) const
     {
         if (k >= first.size() * others.size())

@@ -124,6 +124,7 @@ void DeviceQuadrature::gather_leaves(View<const Vec3> b, View<Vec3> x)
                                         nodes_.view(),
                                         others_.view(),
                                         first_.view(),
+                                        basis_.leaf_count > ClimbFromLeaves<Rank>::kLeaves,
                                         b,
                                         x};
     parallel_for_teams(space_, "quadrature/gather", leaves.teams(Team::kThreads), leaves);

@@ -35,14 +35,21 @@ struct LeafSum {
     Targets axis[3] = {Targets(0.0F), Targets(0.0F), Targets(0.0F)}; ///< x, y and z of the targets
 
     /// @param sources  [slots] r
-    /// @param moments  [Rank * clusters] m
     template <typename Vector>
-    TOILE_HD void add(const KernelView& table, View<const Vector> sources, View<const Vector> moments,
-                      int leaf, const LeafPart& part)
+    TOILE_HD void add_near(const KernelView& table, View<const Vector> sources, int leaf,
+                           const LeafPart& part)
     {
         LeafSum sum = *this; // in registers: in memory it might be among the weights
         sum.template add_list<ClusterTree::kLeaf>(table.near_weights, table.near_leaf, sources,
                                                   table.near_first[leaf], table.near_first[leaf + 1], part);
+        *this = sum;
+    }
+
+    /// @param moments  [Rank * clusters] m
+    template <typename Vector>
+    TOILE_HD void add_far(const KernelView& table, View<const Vector> moments, int leaf, const LeafPart& part)
+    {
+        LeafSum sum = *this;
         sum.template add_list<Rank>(table.far_weights, table.far_cluster, moments, table.far_first[leaf],
                                     table.far_first[leaf + 1], part);
         *this = sum;

@@ -48,14 +48,15 @@ struct alignas(sizeof(Number) * (Count % 4 == 0   ? 4
 template <int Rank>
 struct PackedSum {
     using Targets = Floats<KernelView::kTargets>;
-    Targets axis[3] = {Targets(0.0F), Targets(0.0F), Targets(0.0F)}; ///< x, y and z of the targets
 
+    /// All but what bases add; what is not packed may be added to it.
+    LeafSum<Rank, Targets> sum;
+
+    /// Near entries.
     /// @param sources  [slots] r
-    /// @param moments  [Rank * clusters] m
-    /// @param begin    the first node or function of a list that is taken
+    /// @param begin    the first node of a list that is taken
     template <typename Vector>
-    TOILE_HD void add(const PackedView& table, View<const Vector> sources, View<const Vector> moments,
-                      int leaf, int begin, int step)
+    TOILE_HD void add_near(const PackedView& table, View<const Vector> sources, int leaf, int begin, int step)
     {
         constexpr int kNodes = ClusterTree::kLeaf;
         TOILE_UNROLL(2)
@@ -66,6 +67,14 @@ struct PackedSum {
             add_weights(codes(table.near_codes, k), scale.number[0], scale.number[1],
                         sources[table.near_leaf[entry] * kNodes + k % kNodes]);
         }
+    }
+
+    /// Far entries.
+    /// @param moments  [Rank * clusters] m
+    /// @param begin    the first function of a list that is taken
+    template <typename Vector>
+    TOILE_HD void add_far(const PackedView& table, View<const Vector> moments, int leaf, int begin, int step)
+    {
         TOILE_UNROLL(4)
         for (int k = table.far_first[leaf] * Rank + begin; k < table.far_first[leaf + 1] * Rank; k += step) {
             const int entry = k / Rank, function = k % Rank;
@@ -73,8 +82,14 @@ struct PackedSum {
             add_weights(codes(table.far_codes, k), scales[function], scales[Rank],
                         moments[table.far_cluster[entry] * Rank + function]);
         }
-        for (int a = 0; a < 3; ++a)
-            axis[a] += Targets(common_[a]);
+    }
+
+    /// What has been added up along an axis.
+    TOILE_HD Targets total(int a) const
+    {
+        Targets all = sum.axis[a];
+        all += Targets(common_[a]);
+        return all;
     }
 
 private:
@@ -92,7 +107,7 @@ private:
         for (int t = 0; t < KernelView::kTargets; ++t)
             code.value[t] = byte_minus_128(codes.number[t / 4], t % 4);
         for (int a = 0; a < 3; ++a) {
-            axis[a] += code * (scale * value[a]);
+            sum.axis[a] += code * (scale * value[a]);
             common_[a] += base * value[a];
         }
     }

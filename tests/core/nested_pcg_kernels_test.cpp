@@ -79,10 +79,10 @@ struct Chain {
     {
         std::vector<Vec3> scaled(kCount), solved(kCount);
         for (int i = 0; i < kCount; ++i)
-            scaled[i] = diagonal[i] * blocks_inverse()(i, r[i]);
+            scaled[i] = diagonal[i] * blocks_inverse().of(i)(r[i]);
         solve(scaled, solved);
         for (int i = 0; i < kCount; ++i)
-            z[i] = blocks_inverse()(i, r[i] + diagonal[i] * solved[i]);
+            z[i] = blocks_inverse().of(i)(r[i] + diagonal[i] * solved[i]);
     }
 };
 

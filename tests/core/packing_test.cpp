@@ -19,7 +19,9 @@ constexpr double kTolerance = 0.2;
 struct SplitList {
     std::vector<int> packed_first, rest_first, packed_source, rest_source;
     std::vector<std::uint32_t> codes;
-    std::vector<float> scales, rest_weights;
+    std::vector<float> scales;
+    std::vector<Floats<8>> rest_memory; // aligned as a GPU's is
+    View<float> rest_weights;
 
     SplitList(const EntryList& list, const PackingRule& rule, bool is_near, int words, int scale_count)
     {
@@ -34,7 +36,8 @@ struct SplitList {
         codes.resize(packed * words);
         scales.resize(packed * scale_count);
         rest_source.resize(rest);
-        rest_weights.resize(rest * list.rows * list.row_size);
+        rest_memory.resize(rest * list.rows * list.row_size / 8);
+        rest_weights = View<float>(rest_memory.data()->value, 8 * int(rest_memory.size()));
         packed_first.resize(list.first.size());
         rest_first.resize(list.first.size());
         parallel_for(kCpu, "test/firsts", list.first.size(),
@@ -99,17 +102,18 @@ private:
     void sum_leaf(int leaf, View<const PaddedVec3> sources, View<const PaddedVec3> moments,
                   View<Vec3> x) const
     {
-        PackedSum<Rank> bytes;
-        bytes.add({near_.packed_first, near_.packed_source, near_.codes, near_.scales, far_.packed_first,
-                   far_.packed_source, far_.codes, far_.scales},
-                  sources, moments, leaf, 0, 1);
-        LeafSum<Rank, Floats<8>> sum{{bytes.axis[0], bytes.axis[1], bytes.axis[2]}};
-        sum.add({near_.rest_first, near_.rest_source, near_.rest_weights, far_.rest_first, far_.rest_source,
-                 far_.rest_weights},
-                sources, moments, leaf, {});
+        const PackedView packed{near_.packed_first, near_.packed_source, near_.codes, near_.scales,
+                                far_.packed_first,  far_.packed_source,  far_.codes,  far_.scales};
+        const KernelView rest{near_.rest_first, near_.rest_source, near_.rest_weights,
+                              far_.rest_first,  far_.rest_source,  far_.rest_weights};
+        PackedSum<Rank> all;
+        all.add_near(packed, sources, leaf, 0, 1);
+        all.add_far(packed, moments, leaf, 0, 1);
+        all.sum.add_near(rest, sources, leaf, {});
+        all.sum.add_far(rest, moments, leaf, {});
         for (int t = 0; t < 8; ++t)
             if (const int v = tables_->tree.nodes()[8 * leaf + t]; v >= 0)
-                x[v] = Vec3(sum.axis[0][t], sum.axis[1][t], sum.axis[2][t]);
+                x[v] = Vec3(all.total(0)[t], all.total(1)[t], all.total(2)[t]);
     }
 
     std::shared_ptr<const QuadratureTables> tables_;

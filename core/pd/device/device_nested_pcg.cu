@@ -88,6 +88,7 @@ void DeviceNestedPcg::iterate(const PcgFields& fields)
     const int n = fields.x.size();
     solver_->solve_there(fields.scaled, fields.solved);
     parallel_for(space_, "pcg/precondition", n, FinishPrecondition{fields, blocks_inverse()});
+    TOILE_ASSERT(active_->frozen().vertices.size() > 0); // else the next kernel would come too early
     active_->multiply(fields.z);
     parallel_sum_record_then<PcgSums>(
         space_, "pcg/multiply", n,

@@ -108,17 +108,24 @@ struct BlocksInverse {
     View<const double> diagonal; ///< [vertices]
 
     /// What vertex i has of it.
-    struct Early {
-        int list;
+    struct OfVertex {
         double diagonal;
-    };
-    TOILE_HD Early early(int i) const { return {list_of[i], diagonal[i]}; }
+        bool is_frozen;
+        Mat3 inverse; ///< where frozen
 
-    TOILE_HD Vec3 operator()(const Early& own, const Vec3& r) const
+        TOILE_HD Vec3 operator()(const Vec3& r) const
+        {
+            return is_frozen ? Vec3(inverse * r) : Vec3(r / diagonal);
+        }
+    };
+    TOILE_HD OfVertex of(int i) const
     {
-        return own.list > 0 ? Vec3(inverse[own.list - 1] * r) : Vec3(r / own.diagonal);
+        const int list = list_of[i];
+        OfVertex own{diagonal[i], list > 0, {}};
+        if (own.is_frozen)
+            own.inverse = inverse[list - 1];
+        return own;
     }
-    TOILE_HD Vec3 operator()(int i, const Vec3& r) const { return (*this)(early(i), r); }
 };
 
 /// Inverts the block of list k.
@@ -149,7 +156,8 @@ struct BeginPcg {
         fields.x[i] = Vec3(0.0, 0.0, 0.0);
         fields.p[i] = fields.Kp[i] = fields.r_previous[i] = PaddedVec3(0.0F);
         fields.r[i] = padded(r);
-        fields.scaled[i] = E.diagonal[i] * E(i, r);
+        const auto own = E.of(i);
+        fields.scaled[i] = own.diagonal * own(r);
     }
 };
 
@@ -161,46 +169,47 @@ struct FinishPrecondition {
     /// What H^-1 leaves as it is.
     struct Early {
         Vec3 r;
-        BlocksInverse::Early E;
+        BlocksInverse::OfVertex E;
     };
-    TOILE_HD Early early(int i) const { return {unpadded(fields.r[i]), E.early(i)}; }
+    TOILE_HD Early early(int i) const { return {unpadded(fields.r[i]), E.of(i)}; }
 
     TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
     TOILE_HD void operator()(int i, const Early& own) const
     {
-        fields.z[i] = padded(E(own.E, own.r + own.E.diagonal * fields.solved[i]));
+        fields.z[i] = padded(own.E(own.r + own.E.diagonal * fields.solved[i]));
     }
 };
 
-/// K z; z itself at fixed vertices. Terms of all sums.
+/// K z; z itself at fixed vertices. Terms of all sums. Comes right after the product of frozen terms.
 struct MultiplySystem {
     PcgFields fields;
     SystemRows H;
     View<const int> list_of;         ///< [vertices]
     View<const Vec3> frozen_product; ///< [lists] dH z [N]
 
-    /// What neither the preconditioner nor the product of frozen terms writes.
+    /// All but the product of frozen terms: H z too.
     struct Early {
-        PaddedVec3 r, Kp, p, previous;
+        PaddedVec3 r, Kp, p, previous, z, Hz;
         int list;
-        SystemRows::Row row;
+        bool is_fixed;
     };
     TOILE_HD Early early(int i) const
     {
-        return {fields.r[i], fields.Kp[i], fields.p[i], fields.r_previous[i], list_of[i], H.row(i)};
+        const SystemRows::Row row = H.row(i);
+        const PaddedVec3 z = fields.z[i];
+        return {fields.r[i], fields.Kp[i],
+                fields.p[i], fields.r_previous[i],
+                z,           row.is_fixed ? z : H.times(row, z, fields.z),
+                list_of[i],  row.is_fixed};
     }
 
     TOILE_HD PcgSums operator()(int i) const { return (*this)(i, early(i)); }
     TOILE_HD PcgSums operator()(int i, const Early& own) const
     {
-        const auto& [r, Kp, p, previous, list, row] = own;
-        const PaddedVec3 z = fields.z[i];
-        PaddedVec3 Kz = z;
-        if (!row.is_fixed) {
-            Kz = H.times(row, z, fields.z);
-            if (list > 0)
-                Kz += padded(frozen_product[list - 1]);
-        }
+        const auto& [r, Kp, p, previous, z, Hz, list, is_fixed] = own;
+        PaddedVec3 Kz = Hz;
+        if (list > 0 && !is_fixed)
+            Kz += padded(frozen_product[list - 1]);
         fields.Kz[i] = Kz;
         PcgSums sums;
         sums.r_z = dot(r, z);
@@ -272,11 +281,11 @@ struct TakeStep {
     struct Early {
         Vec3 x;
         PaddedVec3 r, z, p, Kp;
-        BlocksInverse::Early E;
+        BlocksInverse::OfVertex E;
     };
     TOILE_HD Early early(int i) const
     {
-        return {fields.x[i], fields.r[i], fields.z[i], fields.p[i], fields.Kp[i], E.early(i)};
+        return {fields.x[i], fields.r[i], fields.z[i], fields.p[i], fields.Kp[i], E.of(i)};
     }
 
     TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
@@ -293,7 +302,7 @@ struct TakeStep {
         fields.x[i] = own.x + step * p;
         fields.r_previous[i] = own.r;
         fields.r[i] = padded(r);
-        fields.scaled[i] = own.E.diagonal * E(own.E, r);
+        fields.scaled[i] = own.E.diagonal * own.E(r);
     }
 };
 
