@@ -267,7 +267,7 @@ struct MultiplyList {
     template <typename Team>
     TOILE_HD Early early(int k, const Team& team, bool /*is_own*/) const
     {
-        const bool acts = blocks[k].trace() > 0.0; // what most do not: their terms are not looked at
+        const bool acts = blocks[k].trace() != 0.0; // what most do not: their terms are not looked at
         const int next = touches.first[k] + team.thread, end = acts ? touches.first[k + 1] : 0;
         return {next, end, next < end ? entry(next) : Entry{}};
     }

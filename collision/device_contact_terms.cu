@@ -128,16 +128,22 @@ bool DeviceContactTerms::push_to_rest(int sweeps)
 
 void DeviceContactTerms::push_out(double most)
 {
+    if (empty())
+        return;
     turns_.sweep(energy_, PushOut{push_rules_, most, x_.change_there()}, kClearSweeps);
 }
 
 void DeviceContactTerms::stop_at_surfaces(StepField v)
 {
+    if (empty())
+        return;
     turns_.sweep(energy_, StopAtSurface{push_rules_, x_.there(), v.change_there()}, 1);
 }
 
 void DeviceContactTerms::rub(StepField v)
 {
+    if (empty())
+        return;
     turns_.sweep(energy_, Rub{push_rules_, x_.change_there(), v.change_there()}, 1);
 }
 

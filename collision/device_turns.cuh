@@ -2,6 +2,7 @@
 
 /// What DeviceTurns runs. Included by .cu files, as parallel.cuh.
 
+#include "collision/contact_turns.h"
 #include "collision/device_turns.h"
 #include "core/backend/cuda/turns.cuh"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "collision/contact_pushes.h"
 #include "collision/device_contact_energy.h"
 #include "core/backend/cuda/scan.h"
+#include "core/backend/turns.h"
 
 namespace toile {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "collision/contact_pushes.h"
+#include "collision/contact_turns.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -21,7 +21,7 @@ public:
             const PushInTurn<Push> push_in_turn{push, terms, {&moves, 1}};
             list(terms, push);
             for (const int i : listed_)
-                push_in_turn(i, push_in_turn.early(i));
+                push_in_turn(i, push_in_turn.prepare(i));
             if (moves == 0)
                 break;
             moved = true;

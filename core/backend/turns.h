@@ -46,8 +46,8 @@ private:
     TOILE_HD static int lot(int group) { return int((std::uint32_t(group) * 2654435769U) >> 27); }
 };
 
-/// Whose turn it is on a GPU: of items that are listed in a TurnOrder and share up to four of something, such
-/// as vertices, with others.
+/// Whose turn it is on a GPU: of items that are listed in a TurnOrder and share up to four different things,
+/// such as vertices, with others.
 struct Turns {
     static constexpr int kShares = 4;
 

@@ -13,7 +13,7 @@ struct MixShared {
     View<const std::array<int, Turns::kShares>> items;
     View<double> values; ///< [shared]
 
-    TOILE_HD int early(int item) const { return item; }
+    TOILE_HD int prepare(int item) const { return item; }
     TOILE_HD std::array<int, Turns::kShares> shared(int item) const { return items[item]; }
     TOILE_HD void operator()(int item, int own) const
     {

@@ -11,7 +11,7 @@
 
 namespace toile {
 
-/// Threads that visit items: as many as a large device runs at once. More would only wait.
+/// Threads that visit items, at most: no device runs more at once, and more would only wait.
 inline constexpr int kVisitors = 8448;
 
 #ifdef __CUDACC__
@@ -74,7 +74,7 @@ __global__ void run_in_turns(const Turns turns, const Kernel kernel)
     unsigned* const next = turns.next.data();
     for (unsigned visit = atomicAdd(next, 1U); visit < count; visit = atomicAdd(next, 1U)) {
         const int item = turns.order.at(turns.places[int(visit)]);
-        const auto own = kernel.early(item);
+        const auto own = kernel.prepare(item);
         const Turn turn(turns, item, kernel.shared(own));
         turn.await();
         kernel(item, own);
@@ -84,10 +84,10 @@ __global__ void run_in_turns(const Turns turns, const Kernel kernel)
 
 #endif
 
-/// Launches kernel(item, kernel.early(item)) for all listed items in the stream's turn and returns. Each
+/// Launches kernel(item, kernel.prepare(item)) for all listed items in the stream's turn and returns. Each
 /// begins when those before it that share something with it are done, so that the result is that of one after
-/// the other. early() loads what no item changes, and kernel.shared() tells by that what the item shares with
-/// others. Counted and refused as parallel_for.
+/// the other. prepare() loads what no item changes, and kernel.shared() tells by that what the item shares
+/// with others. Counted and refused as parallel_for.
 /// @param turns  next[0] is 0, and nothing has been served
 /// @param most   items that may be listed
 template <typename Kernel>
