@@ -57,7 +57,7 @@ struct EdgeQueries {
 };
 
 /// Candidates that a query keeps when they are counted; who has more looks for them again, and so do the
-/// threads beside it. Layers that lie close have up to 30.
+/// threads beside it. Layers that lie close have up to 30, those of a pile more.
 inline constexpr int kKeptCandidates = 64;
 
 /// Counts the candidates of query i and keeps the first.
