@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "core/backend/cuda/team.h"
@@ -13,6 +14,17 @@ struct alignas(8) RowEntry {
     int column;
     float value;
 };
+
+/// Entries k, k + kWarp and so on of a row, all of which are loaded before any is waited for; zeros from
+/// `end` on.
+template <int Count>
+TOILE_HD std::array<RowEntry, Count> entries_from(View<const RowEntry> entries, int row, int k, int end)
+{
+    std::array<RowEntry, Count> some;
+    for (int n = 0; n < Count; ++n)
+        some[n] = k + n * kWarp < end ? entries[k + n * kWarp] : RowEntry{row, 0.0F};
+    return some;
+}
 
 /// Rows of a sparse matrix in slices, one for each warp: `Threads` threads a row, each with every so many-th
 /// entry. What a warp loads at once is side by side. Rows of a slice are as long as its longest, in whole

@@ -43,16 +43,14 @@ struct AddBending {
     /// Where a thread's entries are, and the first of them: what no launch changes.
     struct Early {
         int begin, end;
-        RowEntry some[kAtOnce];
+        std::array<RowEntry, kAtOnce> some;
     };
     template <typename Team>
     TOILE_HD Early early(int i, const Team& team, bool) const
     {
-        const int slice = i / SlicedRows::kRows;
-        Early own{
-            first[slice] + i % SlicedRows::kRows * SlicedRows::kThreads + team.thread, first[slice + 1], {}};
-        load_some(i, own.begin, own.end, own.some);
-        return own;
+        const int slice = i / SlicedRows::kRows, end = first[slice + 1];
+        const int begin = first[slice] + i % SlicedRows::kRows * SlicedRows::kThreads + team.thread;
+        return {begin, end, entries_from<kAtOnce>(entries, i, begin, end)};
     }
 
     template <typename Team>
@@ -69,11 +67,8 @@ struct AddBending {
         Vec3 sum(0.0, 0.0, 0.0);
         if (own_entries.begin < own_entries.end)
             add_some(own_entries.some, here, sum);
-        for (int k = own_entries.begin + kAtOnce * kWarp; k < own_entries.end; k += kAtOnce * kWarp) {
-            RowEntry some[kAtOnce];
-            load_some(i, k, own_entries.end, some);
-            add_some(some, here, sum);
-        }
+        for (int k = own_entries.begin + kAtOnce * kWarp; k < own_entries.end; k += kAtOnce * kWarp)
+            add_some(entries_from<kAtOnce>(entries, i, k, own_entries.end), here, sum);
 
         const double own = team.sum(1, 0.5 * here.dot(sum)); // where digits cancel, before they are dropped
         for (int a = 0; a < 3; ++a)
@@ -85,15 +80,7 @@ struct AddBending {
     }
 
 private:
-    /// Entries k, k + kWarp and so on of row i, all of which are loaded before any is waited for.
-    TOILE_HD void load_some(int i, int k, int end, RowEntry (&some)[kAtOnce]) const
-    {
-        for (int n = 0; n < kAtOnce; ++n) {
-            const bool exists = k + n * kWarp < end;
-            some[n] = exists ? entries[k + n * kWarp] : RowEntry{i, 0.0F};
-        }
-    }
-    TOILE_HD void add_some(const RowEntry (&some)[kAtOnce], const Vec3& here, Vec3& sum) const
+    TOILE_HD void add_some(const std::array<RowEntry, kAtOnce>& some, const Vec3& here, Vec3& sum) const
     {
         for (const RowEntry& entry : some)
             sum += double(entry.value) * (x[entry.column] - here);

@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 
 #include "core/backend/cuda/report.h"
-#include "core/backend/unroll.h"
 #include "core/linear/pcg.h"
 #include "core/linear/sliced_rows.h"
 #include "core/pd/device/device_active_set.h"
@@ -66,6 +65,8 @@ struct PcgScalars {
 
 /// H [vertices x vertices], and what is constant beside it.
 struct SystemRows {
+    static constexpr int kAtOnce = 8; ///< entries of a row that are loaded before any is waited for
+
     View<const int> first;        ///< [slices + 1] of WholeRows
     View<const RowEntry> entries; ///< [N/m]
     View<const float> sum;        ///< [vertices] of a row, found in double: what inertia leaves of it [N/m]
@@ -73,14 +74,14 @@ struct SystemRows {
 
     /// Row i: every kWarp-th entry.
     struct Row {
-        int begin, end;
+        int own, begin, end;
         float sum;
         bool is_fixed;
     };
     TOILE_HD Row row(int i) const
     {
         const int slice = i / WholeRows::kRows;
-        return {first[slice] + i % WholeRows::kRows, first[slice + 1], sum[i], fixed[i] != 0};
+        return {i, first[slice] + i % WholeRows::kRows, first[slice + 1], sum[i], fixed[i] != 0};
     }
 
     /// Row times x, of which `own` is what the row's vertex has. By differences: where all vertices move
@@ -90,12 +91,15 @@ struct SystemRows {
     {
         const PaddedVec3 back = -1.0F * own;
         PaddedVec3 product = row.sum * own;
-        TOILE_UNROLL(4)
-        for (int k = row.begin; k < row.end; k += kWarp) {
-            const RowEntry entry = entries[k];
-            PaddedVec3 difference = x[entry.column];
-            difference += back;
-            product += entry.value * difference;
+        for (int k = row.begin; k < row.end; k += kAtOnce * kWarp) {
+            const auto some = entries_from<kAtOnce>(entries, row.own, k, row.end);
+            PaddedVec3 values[kAtOnce];
+            for (int n = 0; n < kAtOnce; ++n)
+                values[n] = x[some[n].column];
+            for (int n = 0; n < kAtOnce; ++n) {
+                values[n] += back;
+                product += some[n].value * values[n];
+            }
         }
         return product;
     }
