@@ -17,15 +17,15 @@ TOILE_HD inline int lowest_bit(std::uint64_t bits)
 #endif
 }
 
-/// Byte k of four as a number, minus 128. A GPU puts it into the last digits of 2^23, for its conversions are
-/// slow.
-TOILE_HD inline float byte_minus_128(std::uint32_t four, int k)
+/// Byte k of four as 1 + kByteUnit byte: a GPU puts it among the digits of a 1, for its conversions are slow.
+inline constexpr float kByteUnit = 1.0F / 32768.0F;
+TOILE_HD inline float one_and_byte(std::uint32_t four, int k)
 {
 #ifdef __CUDA_ARCH__
-    constexpr unsigned kTwoTo23 = 0x4b000000U, kByteBelowIt = 0x7440U;
-    return __uint_as_float(__byte_perm(four, kTwoTo23, kByteBelowIt + unsigned(k))) - (8388608.0F + 128.0F);
+    constexpr unsigned kOne = 0x3f800000U, kByteInDigits = 0x7604U;
+    return __uint_as_float(__byte_perm(four, kOne, kByteInDigits + (unsigned(k) << 4)));
 #else
-    return float(int(four >> (8 * k) & 0xffU) - 128);
+    return 1.0F + kByteUnit * float(four >> (8 * k) & 0xffU);
 #endif
 }
 

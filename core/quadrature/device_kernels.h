@@ -210,6 +210,8 @@ private:
 /// of the leaves copy x = b where the table knows nothing: at fixed nodes.
 template <int Rank>
 struct GatherLeafByTeam {
+    static constexpr int kThreads = 16; ///< of a team: with 32 adding up takes as long again, 8 are too few
+
     PackedView packed;
     KernelView rest;                ///< entries that are not packed
     View<const PaddedVec3> sources; ///< [bodies * slots]
@@ -227,11 +229,27 @@ struct GatherLeafByTeam {
         return leaves_of_all() + (first.size() * others.size() + team_size - 1) / team_size;
     }
 
-    /// The near field, where its sources are there.
+    /// What no launch changes: where the far lists are, whose sum the thread writes. And the near field,
+    /// where its sources are there.
+    struct Early {
+        PackedSum<Rank> near;
+        ListRows far_list;
+        KernelView::Entries rest_far;
+        int target; ///< among the nodes of all bodies, -1 for none
+    };
     template <typename Team>
-    TOILE_HD PackedSum<Rank> early(int k, const Team& team, bool /*is_own*/) const
+    TOILE_HD Early early(int k, const Team& team, bool is_own) const
     {
-        return climbs_apart && k < leaves_of_all() ? near_field(k, team) : PackedSum<Rank>{};
+        Early own{{}, {}, {}, -1};
+        if (k >= leaves_of_all())
+            return own;
+        const int leaf = leaf_of(k);
+        own.far_list = own.near.far_rows(packed, leaf, team.thread, Team::kThreads);
+        own.rest_far = rest.far_of(leaf);
+        own.target = is_own ? target_of(k, team) : -1;
+        if (climbs_apart)
+            add_near(k, team, own.near);
+        return own;
     }
 
     template <typename Team>
@@ -240,31 +258,19 @@ struct GatherLeafByTeam {
         (*this)(k, team, is_own, early(k, team, is_own));
     }
     template <typename Team>
-    TOILE_HD void operator()(int k, const Team& team, bool is_own, const PackedSum<Rank>& early) const
+    TOILE_HD void operator()(int k, const Team& team, bool is_own, const Early& own) const
     {
-        if (k >= leaves_of_all()) {
-            if (is_own)
-                copy_others((k - leaves_of_all()) * Team::kThreads + team.thread);
-            return;
+        PackedSum<Rank> all = own.near;
+        if (k < leaves_of_all()) {
+            if (!climbs_apart)
+                add_near(k, team, all);
+            add_far(k, team, own, all);
         }
-        PackedSum<Rank> all = climbs_apart ? early : near_field(k, team);
-        const auto own_moments = of_body(moments, k);
-        all.add_far(packed, own_moments, leaf_of(k), team.thread, Team::kThreads);
-        all.sum.add_far(rest, own_moments, leaf_of(k), {0, team.thread, Team::kThreads});
-
-        // Thread 3 t + a gets and writes axis a of target t.
-        float numbers[3 * KernelView::kTargets];
-        for (int a = 0; a < 3; ++a) {
-            const auto total = all.total(a);
-            for (int t = 0; t < KernelView::kTargets; ++t)
-                numbers[3 * t + a] = total[t];
-        }
-        const float own = team.sum_each(numbers);
-        const int target = team.thread / 3;
-        if (target >= KernelView::kTargets || !is_own)
-            return;
-        if (const int v = nodes[leaf_of(k) * ClusterTree::kLeaf + target]; v >= 0)
-            x[first[k / leaves()] + v][team.thread % 3] = double(own);
+        const auto sums = team.template sum_shares<KernelView::kTargets>(numbers_of(all));
+        if (own.target >= 0)
+            x[own.target] = Vec3(double(sums[0]), double(sums[1]), double(sums[2]));
+        if (k >= leaves_of_all() && is_own)
+            copy_others((k - leaves_of_all()) * Team::kThreads + team.thread);
     }
 
 private:
@@ -278,14 +284,44 @@ private:
         return all.subview(k / leaves() * count, count);
     }
 
+    /// Whose sum a thread writes, among the nodes of all bodies; -1 for none.
     template <typename Team>
-    TOILE_HD PackedSum<Rank> near_field(int k, const Team& team) const
+    TOILE_HD int target_of(int k, const Team& team) const
+    {
+        constexpr int kOfTarget = Team::kThreads / KernelView::kTargets; ///< threads that have its sum
+        if (team.thread % kOfTarget != 0)
+            return -1;
+        const int v = nodes[leaf_of(k) * ClusterTree::kLeaf + team.thread / kOfTarget];
+        return v >= 0 ? first[k / leaves()] + v : -1;
+    }
+
+    template <typename Team>
+    TOILE_HD void add_near(int k, const Team& team, PackedSum<Rank>& all) const
     {
         const auto own_sources = of_body(sources, k);
-        PackedSum<Rank> all;
-        all.add_near(packed, own_sources, leaf_of(k), team.thread, Team::kThreads);
-        all.sum.add_near(rest, own_sources, leaf_of(k), {0, team.thread, Team::kThreads});
-        return all;
+        const KernelView::Entries rest_near = rest.near_of(leaf_of(k));
+        all.add_near(packed, own_sources, all.near_rows(packed, leaf_of(k), team.thread, Team::kThreads));
+        all.sum.add_near(rest, own_sources, rest_near, {0, team.thread, Team::kThreads});
+    }
+
+    template <typename Team>
+    TOILE_HD void add_far(int k, const Team& team, const Early& own, PackedSum<Rank>& all) const
+    {
+        const auto own_moments = of_body(moments, k);
+        all.add_far(packed, own_moments, own.far_list);
+        all.sum.add_far(rest, own_moments, own.rest_far, {0, team.thread, Team::kThreads});
+    }
+
+    /// Axis by axis, target by target.
+    TOILE_HD static std::array<float, 3 * KernelView::kTargets> numbers_of(const PackedSum<Rank>& all)
+    {
+        std::array<float, 3 * KernelView::kTargets> numbers;
+        for (int a = 0; a < 3; ++a) {
+            const auto total = all.total(a);
+            for (int t = 0; t < KernelView::kTargets; ++t)
+                numbers[3 * t + a] = total[t];
+        }
+        return numbers;
     }
 
     TOILE_HD void copy_others(int k) const

@@ -127,7 +127,8 @@ void DeviceQuadrature::gather_leaves(View<const Vec3> b, View<Vec3> x)
                                         basis_.leaf_count > ClimbFromLeaves<Rank>::kLeaves,
                                         b,
                                         x};
-    parallel_for_teams(space_, "quadrature/gather", leaves.teams(Team::kThreads), leaves);
+    constexpr int kTeam = GatherLeafByTeam<Rank>::kThreads;
+    parallel_for_teams<kTeam>(space_, "quadrature/gather", leaves.teams(kTeam), leaves);
 }
 
 } // namespace toile

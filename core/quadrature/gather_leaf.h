@@ -19,8 +19,8 @@ struct GatherLeaf {
     void operator()(int leaf) const
     {
         LeafSum<Rank, FloatLanes> sum;
-        sum.add_near(table, sources, leaf, {});
-        sum.add_far(table, moments, leaf, {});
+        sum.add_near(table, sources, table.near_of(leaf), {});
+        sum.add_far(table, moments, table.far_of(leaf), {});
         for (int t = 0; t < KernelView::kTargets; ++t)
             if (const int v = nodes[leaf * ClusterTree::kLeaf + t]; v >= 0)
                 x[v] = Vec3(double(sum.axis[0][t]), double(sum.axis[1][t]), double(sum.axis[2][t]));

@@ -10,12 +10,20 @@ namespace toile {
 struct KernelView {
     static constexpr int kTargets = ClusterTree::kLeaf;
 
+    /// Entries [begin, end) of a list.
+    struct Entries {
+        int begin, end;
+    };
+
     View<const int> near_first;     ///< [leaves + 1] into near_leaf
     View<const int> near_leaf;      ///< source leaves
     View<const float> near_weights; ///< [near_leaf][source node][kTargets] [m/N]
     View<const int> far_first;      ///< [leaves + 1] into far_cluster
     View<const int> far_cluster;    ///< source clusters
     View<const float> far_weights;  ///< [far_cluster][rank][kTargets] [m/N]
+
+    TOILE_HD Entries near_of(int leaf) const { return {near_first[leaf], near_first[leaf + 1]}; }
+    TOILE_HD Entries far_of(int leaf) const { return {far_first[leaf], far_first[leaf + 1]}; }
 };
 
 /// What one of several adds up of a leaf: these targets, every `groups`-th entry of the lists from `group`
@@ -36,33 +44,32 @@ struct LeafSum {
 
     /// @param sources  [slots] r
     template <typename Vector>
-    TOILE_HD void add_near(const KernelView& table, View<const Vector> sources, int leaf,
+    TOILE_HD void add_near(const KernelView& table, View<const Vector> sources, KernelView::Entries entries,
                            const LeafPart& part)
     {
         LeafSum sum = *this; // in registers: in memory it might be among the weights
-        sum.template add_list<ClusterTree::kLeaf>(table.near_weights, table.near_leaf, sources,
-                                                  table.near_first[leaf], table.near_first[leaf + 1], part);
+        sum.template add_list<ClusterTree::kLeaf>(table.near_weights, table.near_leaf, sources, entries,
+                                                  part);
         *this = sum;
     }
 
     /// @param moments  [Rank * clusters] m
     template <typename Vector>
-    TOILE_HD void add_far(const KernelView& table, View<const Vector> moments, int leaf, const LeafPart& part)
+    TOILE_HD void add_far(const KernelView& table, View<const Vector> moments, KernelView::Entries entries,
+                          const LeafPart& part)
     {
         LeafSum sum = *this;
-        sum.template add_list<Rank>(table.far_weights, table.far_cluster, moments, table.far_first[leaf],
-                                    table.far_first[leaf + 1], part);
+        sum.template add_list<Rank>(table.far_weights, table.far_cluster, moments, entries, part);
         *this = sum;
     }
 
 private:
-    /// Entries [begin, end) of a list.
     template <int Count, typename Vector>
     TOILE_HD void add_list(View<const float> weights, View<const int> source, View<const Vector> values,
-                           int begin, int end, const LeafPart& part)
+                           KernelView::Entries entries, const LeafPart& part)
     {
-        TOILE_UNROLL(2)
-        for (int e = begin + part.group; e < end; e += part.groups)
+        TOILE_UNROLL(1) // on a GPU few entries come here, and are to take no registers from the others
+        for (int e = entries.begin + part.group; e < entries.end; e += part.groups)
             add_entry<Count>(weights, e, part.first_target, &values[source[e] * Count]);
     }
 
@@ -72,6 +79,7 @@ private:
     {
         const float* const first =
             weights.data() + std::size_t(entry) * Count * KernelView::kTargets + first_target;
+        TOILE_UNROLL(1)
         for (int k = 0; k < Count; ++k) {
             const Targets weight = load_as<Targets>(first + k * KernelView::kTargets);
             const Vector value = values[k];

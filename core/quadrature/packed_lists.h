@@ -41,10 +41,19 @@ struct alignas(sizeof(Number) * (Count % 4 == 0   ? 4
     }
 };
 
+/// The rows of a leaf's list that a thread has: source nodes, or functions of clusters, next, next + step and
+/// so on.
+struct ListRows {
+    int next = 0;
+    int end = 0;
+    int step = 1;
+};
+
 /// LeafSum over packed lists: of all targets, from every `step`-th source node and function of a cluster.
 ///
 /// A thread has one of those at a time, and its neighbour the next: what they load is side by side. Threads
-/// that take whole entries load three times as often from places far apart.
+/// that take whole entries load three times as often from places far apart. Of a few rows all is loaded
+/// before any of it is needed, so that loads don't wait for each other.
 template <int Rank>
 struct PackedSum {
     using Targets = Floats<KernelView::kTargets>;
@@ -52,36 +61,38 @@ struct PackedSum {
     /// All but what bases add; what is not packed may be added to it.
     LeafSum<Rank, Targets> sum;
 
-    /// Near entries.
-    /// @param sources  [slots] r
-    /// @param begin    the first node of a list that is taken
-    template <typename Vector>
-    TOILE_HD void add_near(const PackedView& table, View<const Vector> sources, int leaf, int begin, int step)
+    /// The rows of a leaf that are thread `thread`'s of `threads`.
+    TOILE_HD static ListRows near_rows(const PackedView& table, int leaf, int thread, int threads)
     {
-        constexpr int kNodes = ClusterTree::kLeaf;
-        TOILE_UNROLL(2)
-        for (int k = table.near_first[leaf] * kNodes + begin; k < table.near_first[leaf + 1] * kNodes;
-             k += step) {
-            const int entry = k / kNodes;
-            const auto scale = LoadedNumbers<float, 2>::from(&table.near_scales[2 * entry]);
-            add_weights(codes(table.near_codes, k), scale.number[0], scale.number[1],
-                        sources[table.near_leaf[entry] * kNodes + k % kNodes]);
-        }
+        return {table.near_first[leaf] * kNodes + thread, table.near_first[leaf + 1] * kNodes, threads};
+    }
+    TOILE_HD static ListRows far_rows(const PackedView& table, int leaf, int thread, int threads)
+    {
+        return {table.far_first[leaf] * Rank + thread, table.far_first[leaf + 1] * Rank, threads};
     }
 
-    /// Far entries.
-    /// @param moments  [Rank * clusters] m
-    /// @param begin    the first function of a list that is taken
+    /// @param sources  [slots] r
     template <typename Vector>
-    TOILE_HD void add_far(const PackedView& table, View<const Vector> moments, int leaf, int begin, int step)
+    TOILE_HD void add_near(const PackedView& table, View<const Vector> sources, const ListRows& list)
     {
-        TOILE_UNROLL(4)
-        for (int k = table.far_first[leaf] * Rank + begin; k < table.far_first[leaf + 1] * Rank; k += step) {
+        add_rows(list, sources, [&](int k) -> Row {
+            const int entry = k / kNodes;
+            const auto scale = LoadedNumbers<float, 2>::from(&table.near_scales[2 * entry]);
+            return {codes(table.near_codes, k), scale.number[0], scale.number[1],
+                    table.near_leaf[entry] * kNodes + k % kNodes};
+        });
+    }
+
+    /// @param moments  [Rank * clusters] m
+    template <typename Vector>
+    TOILE_HD void add_far(const PackedView& table, View<const Vector> moments, const ListRows& list)
+    {
+        add_rows(list, moments, [&](int k) -> Row {
             const int entry = k / Rank, function = k % Rank;
             const float* const scales = table.far_scales.data() + std::size_t(entry) * (Rank + 1);
-            add_weights(codes(table.far_codes, k), scales[function], scales[Rank],
-                        moments[table.far_cluster[entry] * Rank + function]);
-        }
+            return {codes(table.far_codes, k), scales[function], scales[Rank],
+                    table.far_cluster[entry] * Rank + function};
+        });
     }
 
     /// What has been added up along an axis.
@@ -94,21 +105,50 @@ struct PackedSum {
 
 private:
     using Codes = LoadedNumbers<std::uint32_t, PackedView::kWords>;
+    static constexpr int kNodes = ClusterTree::kLeaf;
+    static constexpr int kAtOnce = 3; ///< rows: with more, registers are short
+
+    struct Row {
+        Codes codes;
+        float base, scale;
+        int value; ///< number of what it weighs
+    };
 
     TOILE_HD static Codes codes(const View<const std::uint32_t>& all, int k)
     {
         return Codes::from(all.data() + std::size_t(k) * PackedView::kWords);
     }
 
-    template <typename Vector>
-    TOILE_HD void add_weights(const Codes& codes, float base, float scale, const Vector& value)
+    /// @param load  row k of the list
+    template <typename Vector, typename Load>
+    TOILE_HD void add_rows(const ListRows& list, View<const Vector> values, const Load& load)
     {
-        Targets code(0.0F);
+        for (int first = list.next; first < list.end; first += kAtOnce * list.step) {
+            Row rows[kAtOnce] = {}; // beyond the end of the list they weigh nothing
+            Vector value[kAtOnce];
+            for (int j = 0; j < kAtOnce; ++j)
+                if (const int k = first + j * list.step; k < list.end)
+                    rows[j] = load(k);
+            for (int j = 0; j < kAtOnce; ++j)
+                value[j] = values[rows[j].value];
+            for (int j = 0; j < kAtOnce; ++j)
+                add_row(rows[j], value[j]);
+        }
+    }
+
+    /// A weight is base + scale (byte - 128), and what one_and_byte() has in common of all bytes comes to
+    /// common_ as the base does.
+    template <typename Vector>
+    TOILE_HD void add_row(const Row& row, const Vector& value)
+    {
+        constexpr float kInCommon = 1.0F + 128.0F * kByteUnit;
+        const float factor = row.scale / kByteUnit, common = row.base - kInCommon * factor;
+        Targets code;
         for (int t = 0; t < KernelView::kTargets; ++t)
-            code.value[t] = byte_minus_128(codes.number[t / 4], t % 4);
+            code.value[t] = one_and_byte(row.codes.number[t / 4], t % 4);
         for (int a = 0; a < 3; ++a) {
-            sum.axis[a] += code * (scale * value[a]);
-            common_[a] += base * value[a];
+            sum.axis[a] += code * (factor * value[a]);
+            common_[a] += common * value[a];
         }
     }
 

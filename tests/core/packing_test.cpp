@@ -107,10 +107,10 @@ private:
         const KernelView rest{near_.rest_first, near_.rest_source, near_.rest_weights,
                               far_.rest_first,  far_.rest_source,  far_.rest_weights};
         PackedSum<Rank> all;
-        all.add_near(packed, sources, leaf, 0, 1);
-        all.add_far(packed, moments, leaf, 0, 1);
-        all.sum.add_near(rest, sources, leaf, {});
-        all.sum.add_far(rest, moments, leaf, {});
+        all.add_near(packed, sources, all.near_rows(packed, leaf, 0, 1));
+        all.add_far(packed, moments, all.far_rows(packed, leaf, 0, 1));
+        all.sum.add_near(rest, sources, rest.near_of(leaf), {});
+        all.sum.add_far(rest, moments, rest.far_of(leaf), {});
         for (int t = 0; t < 8; ++t)
             if (const int v = tables_->tree.nodes()[8 * leaf + t]; v >= 0)
                 x[v] = Vec3(all.total(0)[t], all.total(1)[t], all.total(2)[t]);

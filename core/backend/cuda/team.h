@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "core/backend/types.h"
 
 /// Threads that share an item, as the kernels launched by teams.cuh see them.
@@ -28,38 +31,63 @@ struct TeamOf {
         return value;
     }
 
-    /// On a GPU only, as above: thread k gets the sum of number k over all threads; for a whole warp. In
-    /// every step a thread passes half of its numbers on and takes over the other half: 31 exchanges, not 5 a
-    /// number.
-    template <typename Number, int Count>
-    TOILE_HD Number sum_each(const Number (&numbers)[Count]) const
+    /// Where a flag of each thread is set: of how many threads before this one, and of how many in all.
+    struct Flagged {
+        int before, count;
+    };
+    TOILE_HD Flagged flagged(bool flag) const
     {
-        static_assert(kThreads == kWarp && Count <= kWarp);
-        Number all[kWarp];
-        for (int k = 0; k < kWarp; ++k)
-            all[k] = k < Count ? numbers[k] : Number(0);
 #ifdef __CUDA_ARCH__
-        exchange<kWarp / 2>(all);
-        return all[0];
+        const unsigned own = ~0U >> (kWarp - kThreads);
+        const int first = int(threadIdx.x) % kWarp - thread;
+        const unsigned flags = __ballot_sync(own << first, flag) >> first & own;
+        return {__popc(flags & ((1U << thread) - 1U)), __popc(flags)};
 #else
-        return all[thread];
+        return {0, flag ? 1 : 0};
+#endif
+    }
+
+    /// On a GPU only, as above: the sum of every number over all threads, shared out. Threads get Count /
+    /// Shares of them, the first kThreads / Shares threads the first. In every step a thread passes half of
+    /// its numbers on and takes over the other half, until it has only its share.
+    template <int Shares, typename Number, std::size_t Count>
+    TOILE_HD std::array<Number, Count / Shares> sum_shares(const std::array<Number, Count>& numbers) const
+    {
+        static_assert(Count % Shares == 0 && kThreads % Shares == 0);
+#ifdef __CUDA_ARCH__
+        return shared_out<Shares, kThreads / 2>(numbers);
+#else
+        std::array<Number, Count / Shares> own;
+        std::copy_n(numbers.begin() + own.size() * (thread / (kThreads / Shares)), own.size(), own.begin());
+        return own;
 #endif
     }
 
 private:
 #ifdef __CUDA_ARCH__
-    template <int Half, typename Number>
-    __device__ void exchange(Number (&numbers)[kWarp]) const
+    template <int Shares, int Half, typename Number, std::size_t Count>
+    __device__ std::array<Number, Count / Shares> shared_out(const std::array<Number, Count>& numbers) const
     {
-        const bool is_upper = (thread & Half) != 0;
+        if constexpr (Half == 0) {
+            return numbers;
+        } else if constexpr (Shares == 1) {
+            std::array<Number, Count> sums;
 #pragma unroll
-        for (int k = 0; k < Half; ++k) {
-            const Number low = numbers[k], high = numbers[k + Half];
-            const Number taken = __shfl_xor_sync(0xffffffffU, is_upper ? low : high, Half);
-            numbers[k] = (is_upper ? high : low) + taken;
+            for (int k = 0; k < int(Count); ++k)
+                sums[k] = numbers[k] + __shfl_xor_sync(0xffffffffU, numbers[k], Half);
+            return shared_out<1, Half / 2>(sums);
+        } else {
+            constexpr int kKept = int(Count) / 2;
+            const bool is_upper = (thread & Half) != 0;
+            std::array<Number, kKept> kept;
+#pragma unroll
+            for (int k = 0; k < kKept; ++k) {
+                const Number low = numbers[k], high = numbers[k + kKept];
+                const Number taken = __shfl_xor_sync(0xffffffffU, is_upper ? low : high, Half);
+                kept[k] = (is_upper ? high : low) + taken;
+            }
+            return shared_out<Shares / 2, Half / 2>(kept);
         }
-        if constexpr (Half > 1)
-            exchange<Half / 2>(numbers);
     }
 #endif
 };
