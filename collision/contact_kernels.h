@@ -66,11 +66,11 @@ struct ContactTouches {
     View<const int> first;   ///< [lists + 1] into entries
     View<const int> entries; ///< 4 * term + slot, ascending in each list
 
-    /// sum of weight * force over the terms of list k, or over every `stride`-th from number `from` on
-    TOILE_HD Vec3 force(int k, View<const Vec3> of_term, int from = 0, int stride = 1) const
+    /// sum of weight * force over the terms of list k
+    TOILE_HD Vec3 force(int k, View<const Vec3> of_term) const
     {
         Vec3 sum(0.0, 0.0, 0.0);
-        for (int e = first[k] + from; e < first[k + 1]; e += stride) {
+        for (int e = first[k]; e < first[k + 1]; ++e) {
             const Vec3& of_this = of_term[entries[e] / 4];
             if (of_this != Vec3(0.0, 0.0, 0.0)) // most do not press
                 sum += terms[entries[e] / 4].pair.weight[entries[e] % 4] * of_this;
@@ -78,21 +78,23 @@ struct ContactTouches {
         return sum;
     }
 
-    /// sum_p |b_k| (sum_j |b_j|) A_p over the same terms: over all of list k it bounds the frozen Hessian at
-    /// its vertex (Cauchy-Schwarz).
-    TOILE_HD Mat3 block(int k, View<const FrozenContact> frozen, int from = 0, int stride = 1) const
+    /// What list k's terms add to the bound of the frozen Hessian at its vertex.
+    TOILE_HD Mat3 block(int k, View<const FrozenContact> frozen) const
     {
         Mat3 sum = Mat3::Zero();
-        for (int e = first[k] + from; e < first[k + 1]; e += stride) {
-            const int term = entries[e] / 4;
-            if (!frozen[term].acts())
-                continue;
-            const ContactPair& pair = terms[term].pair;
-            const double total = pair.is_between_cloths() ? 2.0 : 1.0; // of a pair's |weights|
-            const double weight = pair.weight[entries[e] % 4];
-            sum += (weight < 0.0 ? -weight : weight) * total * frozen[term].matrix(pair.normal);
-        }
+        for (int e = first[k]; e < first[k + 1]; ++e)
+            if (const int term = entries[e] / 4; frozen[term].acts())
+                sum += bound_at(terms[term].pair, entries[e] % 4, frozen[term]);
         return sum;
+    }
+
+    /// |b_k| (sum_j |b_j|) A_p of pair p: summed over all pairs of its vertex k it bounds the frozen Hessian
+    /// there (Cauchy-Schwarz).
+    TOILE_HD static Mat3 bound_at(const ContactPair& pair, int k, const FrozenContact& frozen)
+    {
+        const double total = pair.is_between_cloths() ? 2.0 : 1.0; // of a pair's |weights|
+        const double weight = pair.weight[k];
+        return (weight < 0.0 ? -weight : weight) * total * frozen.matrix(pair.normal);
     }
 };
 

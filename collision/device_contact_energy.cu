@@ -22,9 +22,10 @@ DeviceContactEnergy::DeviceContactEnergy(const CudaSpace& space)
     : space_(space), terms_(space, "contact/terms"), vertices_(space, "contact/vertices"),
       first_(space, "contact/first"), entries_(space, "contact/entries"), list_of_(space, "contact/list_of"),
       force_(space, "contact/force"), term_energy_(space, "contact/energy"), frozen_(space, "contact/frozen"),
-      blocks_(space, "contact/blocks"), product_(space, "contact/product"), acting_(space, "contact/acting"),
-      acting_sums_(space, "contact/acting_sums"), sort_(space), flags_(space, "contact/flags"),
-      count_(space, "contact/count", 1), scratch_(space, "contact/scratch")
+      blocks_(space, "contact/blocks"), product_(space, "contact/product"),
+      acting_count_(space, "contact/acting_count"), acting_entries_(space, "contact/acting_entries"),
+      acting_(space, "contact/acting"), acting_sums_(space, "contact/acting_sums"), sort_(space),
+      flags_(space, "contact/flags"), count_(space, "contact/count", 1), scratch_(space, "contact/scratch")
 {
 }
 
@@ -39,6 +40,7 @@ View<ContactTerm> DeviceContactEnergy::make_room(int count)
         frozen_.resize(size);
         sort_.resize(4 * size);
         entries_.resize(4 * size);
+        acting_entries_.resize(4 * size);
         flags_.resize(4 * size + 1);
         first_.resize(4 * size + 1);
     }
@@ -68,6 +70,7 @@ void DeviceContactEnergy::touch(int vertex_count)
     vertices_.resize(lists);
     blocks_.resize(lists);
     product_.resize(lists);
+    acting_count_.resize(lists);
     list_of_.resize(vertex_count);
     list_of_.fill_zero();
     parallel_for(space_, "contact/number_lists", lists,
@@ -83,14 +86,18 @@ void DeviceContactEnergy::evaluate(View<const Vec3> x, View<Vec3> gradient, View
     parallel_for_teams<kListThreads>(space_, "contact/gather", vertices_.size(),
                                      GatherContact{touches(), vertices_.view(), force_.view(),
                                                    term_energy_.view(), frozen_.view(), gradient, energy,
-                                                   blocks_.view()});
+                                                   blocks_.view(), acting_there()});
+}
+
+ActingEntries DeviceContactEnergy::acting_there()
+{
+    return {first_.view(), acting_count_.view(), acting_entries_.view()};
 }
 
 void DeviceContactEnergy::multiply(View<const PaddedVec3> p)
 {
-    parallel_for_teams<kListThreads>(
-        space_, "contact/multiply", vertices_.size(),
-        MultiplyList{touches(), frozen_.view(), blocks_.view(), p, product_.view()});
+    parallel_for_teams<kListThreads>(space_, "contact/multiply", vertices_.size(),
+                                     MultiplyList{acting_there(), p, product_.view()});
 }
 
 DeviceActiveSet::Frozen DeviceContactEnergy::frozen() const

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "collision/acting_entries.h"
 #include "collision/contact_kernels.h"
 #include "core/backend/cuda/report.h"
 #include "core/backend/cuda/sort.h"
@@ -36,6 +37,8 @@ public:
     Frozen frozen() const override;
 
 private:
+    ActingEntries acting_there();
+
     const CudaSpace& space_;
     int room_ = 0; ///< terms
     DeviceArray<ContactTerm> terms_;
@@ -46,6 +49,8 @@ private:
     DeviceArray<FrozenContact> frozen_;           ///< [terms]
     DeviceArray<Mat3> blocks_;                    ///< [touched]
     DeviceArray<Vec3> product_;                   ///< [touched] [N]
+    DeviceArray<int> acting_count_;               ///< [touched] see ActingEntries
+    DeviceArray<ActingEntry> acting_entries_;     ///< [4 x terms] likewise
     DeviceReport<int> acting_;                    ///< terms
     DeviceArray<int> acting_sums_;
     SortArrays sort_;                  ///< [4 x terms] by vertex

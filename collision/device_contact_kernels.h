@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "collision/acting_entries.h"
 #include "collision/contact_kernels.h"
 #include "collision/contact_memory.h"
 #include "collision/device_pair_kernels.h"
@@ -212,7 +213,7 @@ struct EvaluateAndFreeze {
 };
 
 /// Adds the forces on the vertex of list k, and the energies of the terms whose first vertex it is; bounds
-/// their frozen Hessian.
+/// their frozen Hessian, and lists those that act.
 struct GatherContact {
     ContactTouches touches;
     View<const int> vertices;         ///< [lists]
@@ -222,54 +223,80 @@ struct GatherContact {
     View<Vec3> gradient;              ///< [vertices] added to [N]
     View<double> own;                 ///< [vertices] added to: shares of the value [J]
     View<Mat3> blocks;                ///< [lists] out [N/m]
+    ActingEntries acting;             ///< out
 
     template <typename Team>
     TOILE_HD void operator()(int k, const Team& team, bool is_own) const
     {
-        const Vec3 sum = team_sum(team, touches.force(k, force, team.thread, Team::kThreads));
-        const Mat3 block = team_sum(team, touches.block(k, frozen, team.thread, Team::kThreads));
-        double shares = 0.0;
-        for (int e = touches.first[k] + team.thread; e < touches.first[k + 1]; e += Team::kThreads)
-            if (touches.entries[e] % 4 == 0)
-                shares += energy[touches.entries[e] / 4];
-        shares = team.sum(1, shares);
+        Sums sums;
+        int listed = 0;
+        const int begin = touches.first[k], end = touches.first[k + 1];
+        for (int e = begin + team.thread; e - team.thread < end; e += Team::kThreads) {
+            const bool acts = e < end && add(touches.entries[e], sums);
+            const auto flagged = team.flagged(acts);
+            if (acts && is_own)
+                acting.entries[begin + listed + flagged.before] = entry(touches.entries[e]);
+            listed += flagged.count;
+        }
+        const Vec3 all = team_sum(team, sums.force);
+        const Mat3 block = team_sum(team, sums.block);
+        const double shares = team.sum(1, sums.energy);
         if (team.thread != 0 || !is_own)
             return;
-        gradient[vertices[k]] += sum;
+        gradient[vertices[k]] += all;
         own[vertices[k]] += shares;
         blocks[k] = block;
+        acting.count[k] = listed;
+    }
+
+private:
+    struct Sums {
+        Vec3 force{0.0, 0.0, 0.0};
+        Mat3 block = Mat3::Zero();
+        double energy = 0.0;
+    };
+
+    /// @return whether the term acts
+    TOILE_HD bool add(int entry, Sums& sums) const
+    {
+        const int term = entry / 4, slot = entry % 4;
+        const FrozenContact at = frozen[term];
+        const Vec3 of_term = force[term];
+        if (slot == 0)
+            sums.energy += energy[term];
+        const ContactPair& pair = touches.terms[term].pair;
+        if (of_term != Vec3(0.0, 0.0, 0.0)) // most do not press
+            sums.force += pair.weight[slot] * of_term;
+        if (at.acts())
+            sums.block += ContactTouches::bound_at(pair, slot, at);
+        return at.acts();
+    }
+
+    TOILE_HD ActingEntry entry(int entry) const
+    {
+        return ActingEntry::of(touches.terms[entry / 4].pair, entry % 4, frozen[entry / 4]);
     }
 };
 
 /// What the frozen terms at the vertex of list k answer to a move p of all. Every term is multiplied once for
 /// each of its vertices: that takes less than a kernel before this one.
 struct MultiplyList {
-    ContactTouches touches;
-    View<const FrozenContact> frozen; ///< [terms]
-    View<const Mat3> blocks;          ///< [lists] see GatherContact
-    View<const PaddedVec3> p;         ///< [vertices] [m]
-    View<Vec3> product;               ///< [lists] out [N]
-
-    /// An entry of a list, without p.
-    struct Entry {
-        FrozenContact at;
-        std::array<int, 4> vertex{-1, -1, -1, -1};
-        std::array<double, 4> weight{};
-        Vec3 normal{0.0, 0.0, 0.0};
-        double own_weight = 0.0;
-    };
+    ActingEntries acting;
+    View<const PaddedVec3> p; ///< [vertices] [m]
+    View<Vec3> product;       ///< [lists] out [N]
 
     /// Which entries a thread has, and the first of them.
     struct Early {
         int next, end;
-        Entry entry;
+        ActingEntry entry;
     };
     template <typename Team>
     TOILE_HD Early early(int k, const Team& team, bool /*is_own*/) const
     {
-        const bool acts = blocks[k].trace() != 0.0; // what most do not: their terms are not looked at
-        const int next = touches.first[k] + team.thread, end = acts ? touches.first[k + 1] : 0;
-        return {next, end, next < end ? entry(next) : Entry{}};
+        Early own{acting.first[k] + team.thread, acting.first[k] + acting.count[k], {}};
+        if (own.next < own.end)
+            own.entry = acting.entries[own.next];
+        return own;
     }
 
     template <typename Team>
@@ -282,33 +309,12 @@ struct MultiplyList {
     {
         Vec3 sum(0.0, 0.0, 0.0);
         if (own.next < own.end)
-            add(own.entry, sum);
+            sum = own.entry.times(p);
         for (int e = own.next + Team::kThreads; e < own.end; e += Team::kThreads)
-            add(entry(e), sum);
+            sum += acting.entries[e].times(p);
         sum = team_sum(team, sum);
         if (team.thread == 0 && is_own)
             product[k] = sum;
-    }
-
-private:
-    TOILE_HD Entry entry(int e) const
-    {
-        const int term = touches.entries[e] / 4;
-        const FrozenContact at = frozen[term];
-        if (!at.acts())
-            return {};
-        const ContactPair& pair = touches.terms[term].pair;
-        return {at, pair.vertex, pair.weight, pair.normal, pair.weight[touches.entries[e] % 4]};
-    }
-
-    TOILE_HD void add(const Entry& entry, Vec3& sum) const
-    {
-        if (!entry.at.acts())
-            return;
-        Vec3 move(0.0, 0.0, 0.0);
-        for (int k = 0; k < 4 && entry.vertex[k] >= 0; ++k)
-            move += entry.weight[k] * unpadded(p[entry.vertex[k]]);
-        sum += entry.own_weight * entry.at.times(entry.normal, move);
     }
 };
 
