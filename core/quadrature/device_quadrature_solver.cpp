@@ -22,8 +22,8 @@ struct DeviceQuadratureSolver::Group {
 DeviceQuadratureSolver::DeviceQuadratureSolver(const CudaSpace& space, std::vector<Part> parts,
                                                QuadratureTables::Settings settings,
                                                std::shared_ptr<TableStore> store, Weights weights)
-    : space_(space), parts_(std::move(parts)), settings_(settings), store_(std::move(store)),
-      weights_(weights), b_(space, "quadrature/b"), x_(space, "quadrature/x")
+    : DeviceSolver(space), parts_(std::move(parts)), settings_(settings), store_(std::move(store)),
+      weights_(weights)
 {
 }
 
@@ -67,32 +67,23 @@ std::unique_ptr<DeviceQuadrature> DeviceQuadratureSolver::make_operator(const Gr
     if (weights_ == Weights::Bytes)
         packing = {of_H, settings_.kernel.tolerance};
     if (const auto tables = store_->find(input, part.listener))
-        return std::make_unique<DeviceQuadrature>(space_, *tables, size, group.first, packing);
+        return std::make_unique<DeviceQuadrature>(space(), *tables, size, group.first, packing);
 
     const std::shared_ptr<const QuadratureTables> tables = begin_tables(input);
     const std::shared_ptr<const SupernodalFactor> factor =
         shared_factor(group.H, [&] { return Cholesky(group.H).shared_factor(); });
     std::optional<DeviceKernelTable> kernel =
-        build_kernel_table(space_, *factor, of_H, tables->basis, settings_.kernel, part.listener.progress);
+        build_kernel_table(space(), *factor, of_H, tables->basis, settings_.kernel, part.listener.progress);
     if (!kernel)
         throw Cancelled("building the quadrature tables was cancelled");
-    return std::make_unique<DeviceQuadrature>(space_, tables->basis, std::move(*kernel), size, group.first,
+    return std::make_unique<DeviceQuadrature>(space(), tables->basis, std::move(*kernel), size, group.first,
                                               packing);
 }
 
-void DeviceQuadratureSolver::apply(View<const Vec3> b, View<Vec3> x) const
+void DeviceQuadratureSolver::solve_there(View<const Vec3> b, View<Vec3> x) const
 {
     for (const auto& one : operators_)
         one->solve(b, x);
-}
-
-void DeviceQuadratureSolver::solve(View<const Vec3> b, View<Vec3> x) const
-{
-    b_.upload(b);
-    x_.resize(x.size());
-    apply(b_.view(), x_.view());
-    x_.download(x);
-    space_.synchronise();
 }
 
 } // namespace toile

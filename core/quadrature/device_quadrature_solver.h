@@ -34,24 +34,17 @@ public:
     ///         DeviceError where the device has not the memory
     void update(const SparseMatrix& H, View<const unsigned char> fixed) override;
 
-    /// Copies there and back.
-    void solve(View<const Vec3> b, View<Vec3> x) const override;
-    void solve_there(View<const Vec3> b, View<Vec3> x) override { apply(b, x); }
-    const CudaSpace& space() const override { return space_; }
-    bool is_symmetric() const override { return false; }
+    void solve_there(View<const Vec3> b, View<Vec3> x) const override;
 
 private:
     struct Group;
     std::unique_ptr<DeviceQuadrature> make_operator(const Group& group) const;
-    void apply(View<const Vec3> b, View<Vec3> x) const;
 
-    const CudaSpace& space_;
     std::vector<Part> parts_;
     QuadratureTables::Settings settings_;
     std::shared_ptr<TableStore> store_;
     Weights weights_;
     std::vector<std::unique_ptr<DeviceQuadrature>> operators_; ///< of equal bodies each
-    mutable DeviceArray<Vec3> b_, x_;                          ///< of solve()
 };
 
 } // namespace toile

@@ -6,8 +6,8 @@ namespace toile {
 
 DevicePaperRule::DevicePaperRule(const CudaSpace& space, View<const Vec2> uv, View<const Triangle> triangles,
                                  const Settings& settings)
-    : space_(space), on_cpu_(uv, triangles, settings), rule_(space), H_(space),
-      left_(space, "paper_rule/left"), given_(space, "paper_rule/given"), found_(space, "paper_rule/found")
+    : DeviceSolver(space), on_cpu_(uv, triangles, settings), rule_(space), H_(space),
+      left_(space, "paper_rule/left")
 {
 }
 
@@ -25,25 +25,16 @@ void DevicePaperRule::update(const SparseMatrix& H, View<const unsigned char> fi
     left_.resize(fixed.size());
 }
 
-void DevicePaperRule::apply(View<const Vec3> b, View<Vec3> x) const
+void DevicePaperRule::solve_there(View<const Vec3> b, View<Vec3> x) const
 {
     constexpr int kThreads = WeightedRows::kThreads;
-    parallel_for_teams<kThreads>(space_, "paper_rule/solve", x.size(), ApplyRule{rule_.view(), b, x});
+    parallel_for_teams<kThreads>(space(), "paper_rule/solve", x.size(), ApplyRule{rule_.view(), b, x});
     for (int done = 1; done < on_cpu_.settings().applications; ++done) {
-        parallel_for_teams<kThreads>(space_, "paper_rule/residual", x.size(),
+        parallel_for_teams<kThreads>(space(), "paper_rule/residual", x.size(),
                                      RuleResidual{H_.view(), b, x, left_.view()});
-        parallel_for_teams<kThreads>(space_, "paper_rule/correct", x.size(),
+        parallel_for_teams<kThreads>(space(), "paper_rule/correct", x.size(),
                                      CorrectByRule{rule_.view(), left_.view(), x});
     }
-}
-
-void DevicePaperRule::solve(View<const Vec3> b, View<Vec3> x) const
-{
-    given_.upload(b);
-    found_.resize(x.size());
-    apply(given_.view(), found_.view());
-    found_.download(x);
-    space_.synchronise();
 }
 
 } // namespace toile

@@ -18,11 +18,7 @@ public:
 
     /// As PaperRule::update().
     void update(const SparseMatrix& H, View<const unsigned char> fixed) override;
-    /// Copies there and back.
-    void solve(View<const Vec3> b, View<Vec3> x) const override;
-    void solve_there(View<const Vec3> b, View<Vec3> x) override { apply(b, x); }
-    const CudaSpace& space() const override { return space_; }
-    bool is_symmetric() const override { return false; }
+    void solve_there(View<const Vec3> b, View<Vec3> x) const override;
 
 private:
     /// WeightedRows on the device.
@@ -38,13 +34,9 @@ private:
         WeightedRows view() const { return {first.view(), entries.view()}; }
     };
 
-    void apply(View<const Vec3> b, View<Vec3> x) const;
-
-    const CudaSpace& space_;
     PaperRule on_cpu_;
     Rows rule_, H_;
-    mutable DeviceArray<Vec3> left_;          ///< of b, between applications
-    mutable DeviceArray<Vec3> given_, found_; ///< of solve()
+    mutable DeviceArray<Vec3> left_; ///< of b, between applications
 };
 
 } // namespace toile

@@ -7,8 +7,8 @@
 namespace toile {
 
 DevicePaddedSolver::DevicePaddedSolver(const CudaSpace& space)
-    : space_(space), is_free_(space, "baselines/is_free"), b_(space, "baselines/b"), x_(space, "baselines/x"),
-      given_(space, "baselines/given"), found_(space, "baselines/found")
+    : DeviceSolver(space), is_free_(space, "baselines/is_free"), b_(space, "baselines/b"),
+      x_(space, "baselines/x")
 {
 }
 
@@ -25,20 +25,11 @@ void DevicePaddedSolver::update(const SparseMatrix& H, View<const unsigned char>
     prepare(A, invert_diagonal(A, fixed));
 }
 
-void DevicePaddedSolver::apply(View<const Vec3> b, View<Vec3> x) const
+void DevicePaddedSolver::solve_there(View<const Vec3> b, View<Vec3> x) const
 {
-    parallel_for(space_, "baselines/pad", b.size(), PadFree{b, is_free_.view(), b_.view()});
+    parallel_for(space(), "baselines/pad", b.size(), PadFree{b, is_free_.view(), b_.view()});
     solve_free(b_.view(), x_.view());
-    parallel_for(space_, "baselines/unpad", b.size(), UnpadFree{x_.view(), b, is_free_.view(), x});
-}
-
-void DevicePaddedSolver::solve(View<const Vec3> b, View<Vec3> x) const
-{
-    given_.upload(b);
-    found_.resize(x.size());
-    apply(given_.view(), found_.view());
-    found_.download(x);
-    space_.synchronise();
+    parallel_for(space(), "baselines/unpad", b.size(), UnpadFree{x_.view(), b, is_free_.view(), x});
 }
 
 } // namespace toile

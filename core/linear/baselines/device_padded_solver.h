@@ -16,11 +16,7 @@ public:
     explicit DevicePaddedSolver(const CudaSpace& space);
 
     void update(const SparseMatrix& H, View<const unsigned char> fixed) final;
-    /// Copies there and back.
-    void solve(View<const Vec3> b, View<Vec3> x) const final;
-    void solve_there(View<const Vec3> b, View<Vec3> x) final { apply(b, x); }
-    const CudaSpace& space() const final { return space_; }
-    bool is_symmetric() const final { return false; }
+    void solve_there(View<const Vec3> b, View<Vec3> x) const final;
 
 protected:
     /// @param A                 [n x n] H, compressed, without explicit zeros
@@ -31,12 +27,8 @@ protected:
     virtual void solve_free(View<const PaddedVec3> b, View<PaddedVec3> x) const = 0;
 
 private:
-    void apply(View<const Vec3> b, View<Vec3> x) const;
-
-    const CudaSpace& space_;
     DeviceArray<float> is_free_; ///< 0 where fixed
     mutable DeviceArray<PaddedVec3> b_, x_;
-    mutable DeviceArray<Vec3> given_, found_; ///< of solve()
 };
 
 } // namespace toile
