@@ -32,6 +32,7 @@ protected:
         for (Vec3& x : x_)
             x = Vec3(uniform_(random_), uniform_(random_), uniform_(random_));
         std::vector<ContactTerm> terms;
+        terms.reserve(kTerms);
         for (int i = 0; i < kTerms; ++i)
             terms.push_back(some_term(i));
         energy_.set_terms(std::move(terms), kVertices);
