@@ -108,11 +108,19 @@ __global__ void __launch_bounds__(kRecordThreads)
         return;
 
     // The last block to finish adds up those of all: warps every so many-th, then the warps in order.
+    // All are loaded before any is waited for.
     __threadfence();
+    constexpr int kWarps = kRecordThreads / kWarp, kOfWarp = (kRecordBlocks + kWarps - 1) / kWarps;
+    double sums[kOfWarp];
+#pragma unroll
+    for (int n = 0; n < kOfWarp; ++n) {
+        const unsigned b = warp + n * kWarps;
+        sums[n] = b < gridDim.x ? __ldcg(&block_sums[b * kWarp + lane]) : 0.0;
+    }
     double sum = 0.0;
-#pragma unroll 8
-    for (unsigned b = warp; b < gridDim.x; b += kRecordThreads / kWarp)
-        sum = Lanes::combined(sum, __ldcg(&block_sums[b * kWarp + lane]), lane == T::kLargest);
+#pragma unroll
+    for (int n = 0; n < kOfWarp; ++n)
+        sum = Lanes::combined(sum, sums[n], lane == T::kLargest);
     sum = Lanes::of_block(sum, of_warps);
     if (warp == 0)
         of_warps[0][lane] = sum;
