@@ -40,6 +40,11 @@ struct alignas(Count * sizeof(float)) Floats {
         for (float& number : value)
             number = all;
     }
+    template <typename... Rest>
+    TOILE_HD Floats(float first, float second, Rest... rest) : value{first, second, rest...}
+    {
+        static_assert(sizeof...(Rest) + 2 == Count);
+    }
     TOILE_HD float operator[](int k) const { return value[k]; }
     TOILE_HD Floats& operator+=(const Floats& other)
     {

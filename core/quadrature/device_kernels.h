@@ -23,7 +23,7 @@ struct MomentsOfBodies {
     TOILE_HD int nodes_of(int level, int c, int most) const
     {
         const int left = level_size(basis.leaf_count, level) - c;
-        return left < most ? left : most;
+        return left < 0 ? 0 : left < most ? left : most;
     }
 
     /// What a thread takes of the basis where its block climbs: loaded before that begins, since level by
@@ -75,9 +75,25 @@ struct MomentsOfBodies {
     }
 };
 
+/// A right-hand side, and a solution, that are arrays (what else they may be: DeviceQuadrature::begin_solve).
+struct LoadField {
+    View<const Vec3> b; ///< [nodes of all]
+
+    struct Early {};
+    TOILE_HD Early early(int) const { return {}; }
+    TOILE_HD PaddedVec3 operator()(int v, const Early&) const { return padded(b[v]); }
+};
+struct StoreField {
+    View<Vec3> x; ///< [nodes of all] out
+
+    TOILE_HD bool is_wanted() const { return true; }
+    TOILE_HD void operator()(int v, const PaddedVec3& value) const { x[v] = unpadded(value); }
+};
+
 /// First pass from the leaves up: a block sorts the right-hand side of kLeaves leaves into slots, zero where
 /// padded, takes the moments of the leaves and climbs to their common ancestor. A thread for every slot.
-template <int Rank>
+/// Slots after those of the leaves have nodes that are in none, whose right-hand side is kept too.
+template <int Rank, typename Source>
 struct ClimbFromLeaves {
     static constexpr int kLevels = 5, kLeaves = 1 << kLevels;
     static constexpr int kThreads = kLeaves * ClusterTree::kLeaf;
@@ -86,19 +102,21 @@ struct ClimbFromLeaves {
 
     MomentsOfBodies<Rank> moments;
     View<const int> nodes; ///< [slots] of one body, -1 where padded
-    View<const int> first; ///< [bodies] where a body's nodes begin in b
-    View<const Vec3> b;
+    View<const int> first; ///< [bodies] where a body's nodes begin among those of all
+    Source source;
     View<PaddedVec3> sources; ///< [bodies * slots] out
 
-    TOILE_HD int blocks_of_body() const { return (moments.basis.leaf_count + kLeaves - 1) / kLeaves; }
+    TOILE_HD int blocks_of_body() const { return (nodes.size() + kThreads - 1) / kThreads; }
 
-    /// What no launch changes: leaves of a block, a thread's slot and node, its weights.
+    /// What no launch changes: leaves of a block, a thread's slot and node, its weights. And what the source
+    /// finds early.
     struct Early {
         int body, first_leaf, leaves, slot;
-        bool exists;
+        bool exists, is_of_leaf;
         int node; ///< among those of all bodies, -1 where padded
         float weights[Rank];
         typename MomentsOfBodies<Rank>::template Transfers<kLevels> transfers;
+        typename Source::Early source;
     };
     template <typename Block>
     TOILE_HD Early early(int k, const Block& block) const
@@ -108,11 +126,14 @@ struct ClimbFromLeaves {
         own.first_leaf = k % blocks_of_body() * kLeaves;
         own.leaves = moments.nodes_of(0, own.first_leaf, kLeaves);
         own.slot = own.first_leaf * ClusterTree::kLeaf + block.thread;
-        own.exists = block.thread < own.leaves * ClusterTree::kLeaf;
+        own.exists = own.slot < nodes.size();
+        own.is_of_leaf = block.thread < own.leaves * ClusterTree::kLeaf;
         const int v = own.exists ? nodes[own.slot] : -1;
         own.node = v >= 0 ? first[own.body] + v : -1;
+        if (own.node >= 0)
+            own.source = source.early(own.node);
         for (int r = 0; r < Rank; ++r)
-            own.weights[r] = own.exists ? moments.basis.leaves[own.slot * Rank + r] : 0.0F;
+            own.weights[r] = own.is_of_leaf ? moments.basis.leaves[own.slot * Rank + r] : 0.0F;
         own.transfers =
             moments.template transfers<kLevels>(block.thread, 0, own.first_leaf, own.leaves, levels());
         return own;
@@ -126,10 +147,10 @@ struct ClimbFromLeaves {
     template <typename Block>
     TOILE_HD void operator()(int, const Block& block, const Early& own) const
     {
-        const PaddedVec3 source = own.node >= 0 ? padded(b[own.node]) : PaddedVec3(0.0F);
+        const PaddedVec3 at_node = own.node >= 0 ? source(own.node, own.source) : PaddedVec3(0.0F);
         if (own.exists)
-            sources[own.body * nodes.size() + own.slot] = source;
-        gather_leaf(block, own, source);
+            sources[own.body * nodes.size() + own.slot] = at_node;
+        gather_leaf(block, own, at_node);
         block.wait();
         moments.template climb<kLevels>(block, own.body, 0, own.first_leaf, own.leaves, levels(),
                                         own.transfers);
@@ -145,16 +166,16 @@ struct ClimbFromLeaves {
 
 private:
     template <typename Block>
-    TOILE_HD void gather_leaf(const Block& block, const Early& own, const PaddedVec3& source) const
+    TOILE_HD void gather_leaf(const Block& block, const Early& own, const PaddedVec3& at_node) const
     {
         const TeamOf<ClusterTree::kLeaf> team{block.thread % ClusterTree::kLeaf};
         const int leaf = block.thread / ClusterTree::kLeaf;
         auto* const of_leaves = static_cast<PaddedVec3*>(block.memory);
         for (int r = 0; r < Rank; ++r) {
-            PaddedVec3 moment = own.weights[r] * source;
+            PaddedVec3 moment = own.weights[r] * at_node;
             for (int a = 0; a < 3; ++a)
                 moment.value[a] = team.sum(1, moment[a]);
-            if (own.exists && team.thread == r) {
+            if (own.is_of_leaf && team.thread == r) {
                 of_leaves[leaf * Rank + r] = moment;
                 moments.of(own.body, 0, own.first_leaf + leaf)[r] = moment;
             }
@@ -207,8 +228,8 @@ private:
 };
 
 /// Second pass by a team per leaf: its threads share the lists, and have all targets each. Teams after those
-/// of the leaves copy x = b where the table knows nothing: at fixed nodes.
-template <int Rank>
+/// of the leaves pass x = b where the table knows nothing: at fixed nodes.
+template <int Rank, typename Sink>
 struct GatherLeafByTeam {
     static constexpr int kThreads = 16; ///< of a team: with 32 adding up takes as long again, 8 are too few
 
@@ -216,31 +237,31 @@ struct GatherLeafByTeam {
     KernelView rest;                ///< entries that are not packed
     View<const PaddedVec3> sources; ///< [bodies * slots]
     View<const PaddedVec3> moments; ///< [bodies * clusters * rank]
-    View<const int> nodes;          ///< [slots]
-    View<const int> others;         ///< nodes in no leaf
-    View<const int> first;          ///< [bodies] where a body's nodes begin in b and x
+    View<const int> nodes;          ///< [slots] first those of leaves
+    int leaves;                     ///< of one body
+    View<const int> first;          ///< [bodies] where a body's nodes begin among those of all
     bool climbs_apart; ///< sources are older than the launch before, which still climbs from level to level
-    View<const Vec3> b;
-    View<Vec3> x; ///< out
+    Sink sink;
 
-    TOILE_HD int leaves_of_all() const { return first.size() * leaves(); }
+    TOILE_HD int leaves_of_all() const { return first.size() * leaves; }
     TOILE_HD int teams(int team_size) const
     {
-        return leaves_of_all() + (first.size() * others.size() + team_size - 1) / team_size;
+        return leaves_of_all() + (first.size() * others() + team_size - 1) / team_size;
     }
 
-    /// What no launch changes: where the far lists are, whose sum the thread writes. And the near field,
-    /// where its sources are there.
+    /// What no launch changes: where the far lists are, whose sum the thread writes. And the near field, and
+    /// whether there is to be any, where what tells it is older.
     struct Early {
         PackedSum<Rank> near;
         ListRows far_list;
         KernelView::Entries rest_far;
         int target; ///< among the nodes of all bodies, -1 for none
+        bool is_wanted;
     };
     template <typename Team>
     TOILE_HD Early early(int k, const Team& team, bool is_own) const
     {
-        Early own{{}, {}, {}, -1};
+        Early own{{}, {}, {}, -1, !climbs_apart || sink.is_wanted()};
         if (k >= leaves_of_all())
             return own;
         const int leaf = leaf_of(k);
@@ -260,6 +281,8 @@ struct GatherLeafByTeam {
     template <typename Team>
     TOILE_HD void operator()(int k, const Team& team, bool is_own, const Early& own) const
     {
+        if (!own.is_wanted)
+            return;
         PackedSum<Rank> all = own.near;
         if (k < leaves_of_all()) {
             if (!climbs_apart)
@@ -268,20 +291,20 @@ struct GatherLeafByTeam {
         }
         const auto sums = team.template sum_shares<KernelView::kTargets>(numbers_of(all));
         if (own.target >= 0)
-            x[own.target] = Vec3(double(sums[0]), double(sums[1]), double(sums[2]));
+            sink(own.target, PaddedVec3{sums[0], sums[1], sums[2], 0.0F});
         if (k >= leaves_of_all() && is_own)
-            copy_others((k - leaves_of_all()) * Team::kThreads + team.thread);
+            pass_other((k - leaves_of_all()) * Team::kThreads + team.thread);
     }
 
 private:
-    TOILE_HD int leaves() const { return nodes.size() / ClusterTree::kLeaf; }
-    TOILE_HD int leaf_of(int k) const { return k % leaves(); }
+    TOILE_HD int others() const { return nodes.size() - leaves * ClusterTree::kLeaf; }
+    TOILE_HD int leaf_of(int k) const { return k % leaves; }
 
     /// The part of an array of all bodies that team k's has.
     TOILE_HD View<const PaddedVec3> of_body(View<const PaddedVec3> all, int k) const
     {
         const int count = all.size() / first.size();
-        return all.subview(k / leaves() * count, count);
+        return all.subview(k / leaves * count, count);
     }
 
     /// Whose sum a thread writes, among the nodes of all bodies; -1 for none.
@@ -292,7 +315,7 @@ private:
         if (team.thread % kOfTarget != 0)
             return -1;
         const int v = nodes[leaf_of(k) * ClusterTree::kLeaf + team.thread / kOfTarget];
-        return v >= 0 ? first[k / leaves()] + v : -1;
+        return v >= 0 ? first[k / leaves] + v : -1;
     }
 
     template <typename Team>
@@ -324,12 +347,12 @@ private:
         return numbers;
     }
 
-    TOILE_HD void copy_others(int k) const
+    TOILE_HD void pass_other(int k) const
     {
-        if (k >= first.size() * others.size())
+        if (k >= first.size() * others())
             return;
-        const int v = first[k / others.size()] + others[k % others.size()];
-        x[v] = b[v];
+        const int body = k / others(), slot = leaves * ClusterTree::kLeaf + k % others();
+        sink(first[body] + nodes[slot], sources[body * nodes.size() + slot]);
     }
 };
 

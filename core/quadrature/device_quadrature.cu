@@ -1,8 +1,6 @@
-#include "core/quadrature/device_quadrature.h"
+#include "core/quadrature/device_quadrature.cuh"
 
 #include <vector>
-
-#include "core/backend/cuda/teams.cuh"
 
 namespace toile {
 
@@ -10,18 +8,18 @@ namespace {
 
 std::vector<float> single(View<const double> values) { return {values.begin(), values.end()}; }
 
-/// Nodes that are in no leaf.
-std::vector<int> others_of(View<const int> slots, int node_count)
+/// Slots of leaves, and then one for every node that is in none.
+std::vector<int> with_others(View<const int> of_leaves, int node_count)
 {
     std::vector<unsigned char> is_known(node_count, 0);
-    for (const int v : slots)
+    for (const int v : of_leaves)
         if (v >= 0)
             is_known[v] = 1;
-    std::vector<int> others;
+    std::vector<int> slots(of_leaves.begin(), of_leaves.end());
     for (int v = 0; v < node_count; ++v)
         if (!is_known[v])
-            others.push_back(v);
-    return others;
+            slots.push_back(v);
+    return slots;
 }
 
 } // namespace
@@ -38,16 +36,15 @@ DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const ClusterBasis& b
                                    const PackingAccuracy& packing)
     : space_(space), kernel_(pack_table(space, std::move(kernel), basis.tree(), packing)),
       leaves_(space, "quadrature/leaves"), transfers_(space, "quadrature/transfers"),
-      nodes_(space, "quadrature/nodes"), others_(space, "quadrature/others"),
-      first_(space, "quadrature/first"),
-      sources_(space, "quadrature/sources", int(first.size()) * basis.tree().nodes().size()),
+      nodes_(space, "quadrature/nodes"), first_(space, "quadrature/first"),
+      sources_(space, "quadrature/sources"),
       moments_(space, "quadrature/moments", int(first.size()) * basis.rank() * basis.tree().cluster_count())
 {
     leaves_.upload(single(basis.leaves()));
     transfers_.upload(single(basis.transfers()));
-    nodes_.upload(basis.tree().nodes());
+    nodes_.upload(with_others(basis.tree().nodes(), node_count));
     first_.upload(first);
-    others_.upload(others_of(basis.tree().nodes(), node_count));
+    sources_.resize(first_.size() * nodes_.size());
 
     const BasisView<double>& view = basis.view();
     basis_.rank = view.rank;
@@ -68,67 +65,11 @@ void DeviceQuadrature::solve(View<const Vec3> b, View<Vec3> x)
 {
     const StageScope stage("quadrature/solve");
     gather_moments(b);
-    gather(b, x);
+    gather(x);
 }
 
-void DeviceQuadrature::gather_moments(View<const Vec3> b)
-{
-    if (basis_.rank == rank_of(Extent::Surface))
-        climb<rank_of(Extent::Surface)>(b);
-    else
-        climb<rank_of(Extent::Volume)>(b);
-}
+void DeviceQuadrature::gather_moments(View<const Vec3> b) { begin_solve(LoadField{b}); }
 
-template <int Rank>
-void DeviceQuadrature::climb(View<const Vec3> b)
-{
-    if (basis_.leaf_count == 0)
-        return;
-    using FromLeaves = ClimbFromLeaves<Rank>;
-    using FromLevel = ClimbFromLevel<Rank>;
-    const int bodies = first_.size();
-    const MomentsOfBodies<Rank> moments{basis_, moments_.view(), moments_.size() / (bodies * Rank)};
-    const FromLeaves from_leaves{moments, nodes_.view(), first_.view(), b, sources_.view()};
-    parallel_for_blocks<FromLeaves::kThreads>(space_, "quadrature/leaf_moments",
-                                              bodies * from_leaves.blocks_of_body(), FromLeaves::kSharedBytes,
-                                              from_leaves);
-
-    // A block each for as many clusters as it has threads, until one is left.
-    for (int level = from_leaves.levels(); level_size(basis_.leaf_count, level) > 1;) {
-        int levels = 0;
-        while (1 << levels < FromLevel::kNodes && level_size(basis_.leaf_count, level + levels) > 1)
-            ++levels;
-        const FromLevel from_level{moments, level, levels};
-        parallel_for_blocks<FromLevel::kThreads>(space_, "quadrature/moments",
-                                                 bodies * from_level.blocks_of_body(),
-                                                 FromLevel::kSharedBytes, from_level);
-        level += levels;
-    }
-}
-
-void DeviceQuadrature::gather(View<const Vec3> b, View<Vec3> x)
-{
-    if (basis_.rank == rank_of(Extent::Surface))
-        gather_leaves<rank_of(Extent::Surface)>(b, x);
-    else
-        gather_leaves<rank_of(Extent::Volume)>(b, x);
-}
-
-template <int Rank>
-void DeviceQuadrature::gather_leaves(View<const Vec3> b, View<Vec3> x)
-{
-    const GatherLeafByTeam<Rank> leaves{kernel_.packed.view(),
-                                        kernel_.rest.view(),
-                                        sources_.view(),
-                                        moments_.view(),
-                                        nodes_.view(),
-                                        others_.view(),
-                                        first_.view(),
-                                        basis_.leaf_count > ClimbFromLeaves<Rank>::kLeaves,
-                                        b,
-                                        x};
-    constexpr int kTeam = GatherLeafByTeam<Rank>::kThreads;
-    parallel_for_teams<kTeam>(space_, "quadrature/gather", leaves.teams(kTeam), leaves);
-}
+void DeviceQuadrature::gather(View<Vec3> x) { end_solve(StoreField{x}); }
 
 } // namespace toile

@@ -31,28 +31,39 @@ public:
                      int node_count, const std::vector<int>& first = {0},
                      const PackingAccuracy& packing = {});
 
-    /// Enqueues x = H^-1 b, nearly, for every body; as it is for fixed nodes.
+    /// Enqueues x = H^-1 b, nearly, for every body; x = b, rounded, at fixed nodes.
     /// @param b, x  [nodes of all] on the device; not the same array
     void solve(View<const Vec3> b, View<Vec3> x);
 
     /// Its two passes, for whoever times them: moments of b, then the sums of every leaf.
     void gather_moments(View<const Vec3> b);
-    void gather(View<const Vec3> b, View<Vec3> x);
+    void gather(View<Vec3> x);
+
+    /// The passes where b is found, and x used, by the kernels themselves (device_quadrature.cuh).
+    /// @param source  source(i, source.early(i)) is b at node i of all bodies, called once for each; what
+    ///                early() may load see launch.cuh
+    /// @param sink    sink(i, x) takes x at node i, called once for each; for none, mostly, where
+    ///                sink.is_wanted() is false, which may not depend on the launch directly before
+    template <typename Source>
+    void begin_solve(const Source& source);
+    template <typename Sink>
+    void end_solve(const Sink& sink);
 
     /// What solve() must read of the tables [bytes].
     std::size_t table_bytes() const;
 
 private:
-    template <int Rank>
-    void climb(View<const Vec3> b);
-    template <int Rank>
-    void gather_leaves(View<const Vec3> b, View<Vec3> x);
+    template <int Rank, typename Source>
+    void climb(const Source& source);
+    template <int Rank, typename Sink>
+    void gather_leaves(const Sink& sink);
 
     const CudaSpace& space_;
     BasisView<float> basis_;
     PackedTable kernel_;
     DeviceArray<float> leaves_, transfers_;
-    DeviceArray<int> nodes_, others_, first_;
+    DeviceArray<int> nodes_; ///< [slots] those of leaves, then nodes that are in none
+    DeviceArray<int> first_;
     DeviceArray<PaddedVec3> sources_, moments_;
 };
 

@@ -36,6 +36,20 @@ public:
 
     void solve_there(View<const Vec3> b, View<Vec3> x) const override;
 
+    /// solve_there() in two halves: see DeviceQuadrature.
+    template <typename Source>
+    void begin_solve(const Source& source)
+    {
+        for (const auto& one : operators_)
+            one->begin_solve(source);
+    }
+    template <typename Sink>
+    void end_solve(const Sink& sink)
+    {
+        for (const auto& one : operators_)
+            one->end_solve(sink);
+    }
+
 private:
     struct Group;
     std::unique_ptr<DeviceQuadrature> make_operator(const Group& group) const;

@@ -92,7 +92,7 @@ TEST_F(DeviceQuadratureTest, LeavesFixedNodesAsTheyAre)
                 entry.valueRef() = entry.row() == entry.col() ? 1.0 : 0.0;
     build(H, grid.fixed, grid.places);
     EXPECT_LT(difference(by_device(), by_cpu()), kTolerance);
-    EXPECT_EQ(by_device()[3], by_cpu()[3]);
+    EXPECT_LT((by_device()[3] - by_cpu()[3]).norm(), 1e-7); // single precision, otherwise as it is
 }
 
 TEST_F(DeviceQuadratureTest, KnowsVolumesAndTreesOfAnyHeight)
