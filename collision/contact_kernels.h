@@ -11,9 +11,9 @@ struct EvaluateContact {
     View<Vec3> force;    ///< [terms] out: gradient with respect to the cloth point
     View<double> energy; ///< [terms] out
 
-    TOILE_HD void operator()(int i) const
+    TOILE_HD void operator()(int i) const { (*this)(i, terms[i]); }
+    TOILE_HD void operator()(int i, const ContactTerm& term) const
     {
-        const ContactTerm& term = terms[i];
         const double depth = -term.gap(x);
         Vec3 f = -term.spring.force(depth) * term.pair.normal;
         double e = term.spring.energy(depth);
@@ -35,9 +35,9 @@ struct FreezeContact {
     View<const Vec3> x;         ///< [vertices] [m]
     View<FrozenContact> frozen; ///< [terms] out
 
-    TOILE_HD void operator()(int i) const
+    TOILE_HD void operator()(int i) const { (*this)(i, terms[i]); }
+    TOILE_HD void operator()(int i, const ContactTerm& term) const
     {
-        const ContactTerm& term = terms[i];
         FrozenContact at;
         at.normal = term.spring.stiffness_at(-term.gap(x));
         if (term.friction_limit() > 0.0)

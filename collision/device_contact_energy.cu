@@ -24,8 +24,8 @@ DeviceContactEnergy::DeviceContactEnergy(const CudaSpace& space)
       force_(space, "contact/force"), term_energy_(space, "contact/energy"), frozen_(space, "contact/frozen"),
       blocks_(space, "contact/blocks"), product_(space, "contact/product"),
       acting_count_(space, "contact/acting_count"), acting_entries_(space, "contact/acting_entries"),
-      acting_(space, "contact/acting"), acting_sums_(space, "contact/acting_sums"), sort_(space),
-      flags_(space, "contact/flags"), count_(space, "contact/count", 1), scratch_(space, "contact/scratch")
+      sort_(space), flags_(space, "contact/flags"), count_(space, "contact/count", 1),
+      scratch_(space, "contact/scratch")
 {
 }
 
@@ -79,10 +79,9 @@ void DeviceContactEnergy::touch(int vertex_count)
 
 void DeviceContactEnergy::evaluate(View<const Vec3> x, View<Vec3> gradient, View<double> energy)
 {
-    parallel_sum_then(space_, "contact/evaluate", terms_.size(), 0,
-                      EvaluateAndFreeze{{terms_.view(), x, force_.view(), term_energy_.view()},
-                                        {terms_.view(), x, frozen_.view()}},
-                      acting_.next(), acting_sums_);
+    parallel_for(space_, "contact/evaluate", terms_.size(),
+                 EvaluateAndFreeze{{terms_.view(), x, force_.view(), term_energy_.view()},
+                                   {terms_.view(), x, frozen_.view()}});
     parallel_for_teams<kListThreads>(space_, "contact/gather", vertices_.size(),
                                      GatherContact{touches(), vertices_.view(), force_.view(),
                                                    term_energy_.view(), frozen_.view(), gradient, energy,
@@ -102,7 +101,7 @@ void DeviceContactEnergy::multiply(View<const PaddedVec3> p)
 
 DeviceActiveSet::Frozen DeviceContactEnergy::frozen() const
 {
-    return {list_of_.view(), vertices_.view(), blocks_.view(), product_.view()};
+    return {list_of_.view(), vertices_.view(), acting_count_.view(), blocks_.view(), product_.view()};
 }
 
 } // namespace toile

@@ -32,7 +32,6 @@ public:
 
     bool has_terms() const override { return terms_.size() > 0; }
     void evaluate(View<const Vec3> x, View<Vec3> gradient, View<double> energy) override;
-    bool acts() const override { return acting_.await() > 0; }
     void multiply(View<const PaddedVec3> p) override;
     Frozen frozen() const override;
 
@@ -51,10 +50,8 @@ private:
     DeviceArray<Vec3> product_;                   ///< [touched] [N]
     DeviceArray<int> acting_count_;               ///< [touched] see ActingEntries
     DeviceArray<ActingEntry> acting_entries_;     ///< [4 x terms] likewise
-    DeviceReport<int> acting_;                    ///< terms
-    DeviceArray<int> acting_sums_;
-    SortArrays sort_;                  ///< [4 x terms] by vertex
-    DeviceArray<unsigned char> flags_; ///< [4 x terms + 1]
+    SortArrays sort_;                             ///< [4 x terms] by vertex
+    DeviceArray<unsigned char> flags_;            ///< [4 x terms + 1]
     PinnedArray<int> count_;
     DeviceScratch scratch_;
 };

@@ -200,15 +200,18 @@ TOILE_HD Numbers team_sum(const Team& team, Numbers own)
     return own;
 }
 
-/// Evaluates and freezes a term; of the sum of how many act.
+/// Evaluates and freezes a term.
 struct EvaluateAndFreeze {
     EvaluateContact evaluate;
     FreezeContact freeze;
-    TOILE_HD int operator()(int i) const
+    /// The term: what it meets is all that changes.
+    TOILE_HD ContactTerm early(int i) const { return evaluate.terms[i]; }
+
+    TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
+    TOILE_HD void operator()(int i, const ContactTerm& term) const
     {
-        evaluate(i);
-        freeze(i);
-        return freeze.frozen[i].acts() ? 1 : 0;
+        evaluate(i, term);
+        freeze(i, term);
     }
 };
 
@@ -221,22 +224,42 @@ struct GatherContact {
     View<const double> energy;        ///< [terms] [J]
     View<const FrozenContact> frozen; ///< [terms]
     View<Vec3> gradient;              ///< [vertices] added to [N]
-    View<double> own;                 ///< [vertices] added to: shares of the value [J]
+    View<double> energy_shares;       ///< [vertices] added to, of the value [J]
     View<Mat3> blocks;                ///< [lists] out [N/m]
     ActingEntries acting;             ///< out
+
+    /// Which entries a thread has, and the first of them.
+    struct Early {
+        int begin, end, entry;
+    };
+    template <typename Team>
+    TOILE_HD Early early(int k, const Team& team, bool /*is_own*/) const
+    {
+        Early own{touches.first[k], touches.first[k + 1], 0};
+        if (own.begin + team.thread < own.end)
+            own.entry = touches.entries[own.begin + team.thread];
+        return own;
+    }
 
     template <typename Team>
     TOILE_HD void operator()(int k, const Team& team, bool is_own) const
     {
+        (*this)(k, team, is_own, early(k, team, is_own));
+    }
+    template <typename Team>
+    TOILE_HD void operator()(int k, const Team& team, bool is_own, const Early& own) const
+    {
         Sums sums;
-        int listed = 0;
-        const int begin = touches.first[k], end = touches.first[k + 1];
-        for (int e = begin + team.thread; e - team.thread < end; e += Team::kThreads) {
-            const bool acts = e < end && add(touches.entries[e], sums);
+        int listed = 0, entry = own.entry;
+        for (int first = own.begin; first < own.end; first += Team::kThreads) {
+            const int e = first + team.thread;
+            const bool acts = e < own.end && add(entry, sums);
             const auto flagged = team.flagged(acts);
             if (acts && is_own)
-                acting.entries[begin + listed + flagged.before] = entry(touches.entries[e]);
+                acting.entries[own.begin + listed + flagged.before] = acting_entry(entry);
             listed += flagged.count;
+            if (e + Team::kThreads < own.end)
+                entry = touches.entries[e + Team::kThreads];
         }
         const Vec3 all = team_sum(team, sums.force);
         const Mat3 block = team_sum(team, sums.block);
@@ -244,7 +267,7 @@ struct GatherContact {
         if (team.thread != 0 || !is_own)
             return;
         gradient[vertices[k]] += all;
-        own[vertices[k]] += shares;
+        energy_shares[vertices[k]] += shares;
         blocks[k] = block;
         acting.count[k] = listed;
     }
@@ -272,7 +295,7 @@ private:
         return at.acts();
     }
 
-    TOILE_HD ActingEntry entry(int entry) const
+    TOILE_HD ActingEntry acting_entry(int entry) const
     {
         return ActingEntry::of(touches.terms[entry / 4].pair, entry % 4, frozen[entry / 4]);
     }

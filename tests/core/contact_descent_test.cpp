@@ -14,8 +14,11 @@ namespace {
 class ContactDescentOnHost {
 public:
     ContactDescentOnHost(Objective& objective, std::vector<Vec3> start)
-        : objective_(objective), count_(int(start.size())), start_(std::move(start)), arrays_(count_)
+        : objective_(objective), count_(int(start.size())), start_(std::move(start)), arrays_(count_),
+          list_of_(count_)
     {
+        for (int k = 0; k < int(vertices_.size()); ++k)
+            list_of_[vertices_[k]] = k + 1;
         begin_at(start_);
     }
 
@@ -59,7 +62,9 @@ private:
     {
         pairs_.clear();
         each(BeginAt{x, arrays_.fields()});
-        value_ = measure(0.0).value;
+        const ContactTrialSums trial = measure(0.0);
+        EXPECT_EQ(trial.acting, 5.0);
+        value_ = trial.value;
         take(nullptr);
     }
 
@@ -69,9 +74,12 @@ private:
         arrays_.energy[0] = objective_.evaluate(arrays_.trial.x, arrays_.trial.gradient);
         ContactTrialSums sums;
         for (int i = 0; i < count_; ++i)
-            sums += MeasureContactTrial{arrays_.fields(), pairs_.pairs(), step}(i);
+            sums += MeasureContactTrial{arrays_.fields(), contact(), pairs_.pairs(), step}(i);
         return sums;
     }
+
+    /// Terms that act at two vertices and have no force: they are counted.
+    DeviceActiveSet::Frozen contact() const { return {list_of_, vertices_, acting_, {}, {}}; }
 
     void take(const StepProducts* products)
     {
@@ -93,6 +101,7 @@ private:
     int count_;
     std::vector<Vec3> start_;
     DescentArrays arrays_;
+    std::vector<int> vertices_{1, 0}, acting_{2, 3}, list_of_;
     TwoLoop pairs_;
     std::vector<double> of_s_ = std::vector<double>(kHistory);
     double value_ = 0.0;

@@ -47,10 +47,11 @@ struct Chain {
             blocks.push_back(4.0 * n * n.transpose());
         }
         for (int k = 0; k < kPressing; ++k)
-            InvertBlock{vertices, blocks, diagonal, inverse}(k);
+            inverse[k] = Mat3(blocks[k] + diagonal[vertices[k]] * Mat3::Identity()).inverse();
     }
 
     SystemRows rows() const { return {slices, entries, sum, fixed}; }
+    DeviceActiveSet::Frozen frozen() const { return {list_of, vertices, {}, blocks, {}}; }
     BlocksInverse blocks_inverse() const { return {list_of, inverse, diagonal}; }
 
     void multiply(View<const Vec3> p, View<Vec3> out) const
@@ -105,16 +106,18 @@ public:
         : chain_(chain), settings_(settings)
     {
         for (int i = 0; i < kCount; ++i)
-            BeginPcg{b, fields(), chain_.blocks_inverse(), scalars_}(i);
+            scaled_[i] =
+                unpadded(BeginPcg{b, fields(), {chain_.frozen(), chain_.diagonal, inverse_}, scalars_}(i));
     }
 
     void take(int count)
     {
         const PcgFields fields = this->fields();
+        const BlocksInverse E{chain_.list_of, inverse_, chain_.diagonal};
         for (int k = 0; k < count; ++k) {
-            Chain::solve(fields.scaled, fields.solved);
+            Chain::solve(scaled_, solved_);
             for (int i = 0; i < kCount; ++i)
-                FinishPrecondition{fields, chain_.blocks_inverse()}(i);
+                FinishPrecondition{fields, E, scalars_}(i, padded(solved_[i]));
             for (int l = 0; l < kPressing; ++l)
                 product_[l] = chain_.blocks[l] * unpadded(fields.z[chain_.vertices[l]]);
             PcgSums sums;
@@ -122,7 +125,7 @@ public:
                 sums += MultiplySystem{fields, chain_.rows(), chain_.list_of, product_}(i);
             FindStep{scalars_, settings_}(sums);
             for (int i = 0; i < kCount; ++i)
-                TakeStep{fields, chain_.blocks_inverse(), scalars_}(i);
+                scaled_[i] = unpadded(TakeStep{fields, E, scalars_, {report_, unsigned(k + 1)}}(i));
         }
     }
 
@@ -133,17 +136,16 @@ private:
     static constexpr Pcg::Settings kEndless{.tolerance = 0.0, .max_iterations = 100};
     using Field = std::vector<PaddedVec3>;
 
-    PcgFields fields()
-    {
-        return {x_, field_[0], field_[1], field_[2], field_[3], field_[4], field_[5], scaled_, solved_};
-    }
+    PcgFields fields() { return {x_, field_[0], field_[1], field_[2], field_[3], field_[4], field_[5]}; }
 
     const Chain& chain_;
     Pcg::Settings settings_;
     std::vector<Field> field_ = std::vector<Field>(6, Field(kCount, PaddedVec3(0.0F)));
     std::vector<Vec3> x_ = std::vector<Vec3>(kCount), scaled_ = x_, solved_ = x_;
     std::vector<Vec3> product_ = std::vector<Vec3>(kPressing);
+    std::vector<Mat3> inverse_ = std::vector<Mat3>(kPressing);
     std::vector<PcgScalars> scalars_ = std::vector<PcgScalars>(1);
+    std::vector<Reported<PcgScalars>> report_ = std::vector<Reported<PcgScalars>>(1);
 };
 
 TEST(NestedPcgKernels, TakeTheIterationsOfPcg)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/pd/device/descent_kernels.h"
+#include "core/pd/device/device_active_set.h"
 #include "core/pd/device/two_loop.h"
 
 namespace toile {
@@ -13,6 +14,7 @@ struct ContactTrialSums {
     double value = 0.0;          ///< [J]
     double slope = 0.0;          ///< [J] gradient . direction
     double largest_square = 0.0; ///< [m^2] of the direction's vectors: a maximum, not a sum
+    double acting = 0.0;         ///< terms of contact that act there, each at every vertex of its own
     StepError::Sums error;       ///< of gradient and direction; mass and driving are the step's and stay zero
     StepProducts products;
 
@@ -21,6 +23,7 @@ struct ContactTrialSums {
         value += other.value;
         slope += other.slope;
         largest_square = std::fmax(largest_square, other.largest_square);
+        acting += other.acting;
         error += other.error;
         products += other.products;
         return *this;
@@ -31,6 +34,7 @@ static_assert(offsetof(ContactTrialSums, largest_square) == ContactTrialSums::kL
 
 struct MeasureContactTrial {
     DescentFields fields;
+    DeviceActiveSet::Frozen contact;
     PairCoefficients pairs;
     double step; ///< [-] of the direction; 0: the trial is where the descent begins
 
@@ -39,11 +43,13 @@ struct MeasureContactTrial {
         Vec3 gradient, drive;
         PaddedVec3 direction;
         double mass;
+        int list;
         PaddedVec3 s[kHistory];
     };
     TOILE_HD Early early(int i) const
     {
-        Early own{fields.here.gradient[i], fields.drive[i], fields.direction[i], fields.masses[i], {}};
+        Early own{fields.here.gradient[i], fields.drive[i],    fields.direction[i],
+                  fields.masses[i],        contact.list_of[i], {}};
         for (int j = 0; j < kHistory; ++j)
             own.s[j] = fields.s[fields.pair_of(pairs.slot[j], i)];
         return own;
@@ -54,6 +60,7 @@ struct MeasureContactTrial {
     {
         ContactTrialSums sums;
         sums.value = fields.shares_of(i);
+        sums.acting = own.list > 0 ? contact.acting[own.list - 1] : 0;
         if (step == 0.0)
             return sums;
         const Vec3 d = unpadded(own.direction);

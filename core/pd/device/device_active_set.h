@@ -12,6 +12,7 @@ public:
     struct Frozen {
         View<const int> list_of;  ///< [vertices] number of its list and 1; 0: none
         View<const int> vertices; ///< [lists]
+        View<const int> acting;   ///< [lists] how many terms of each act
         View<const Mat3> blocks;  ///< [lists] bounds as FrozenHessian::diagonal_blocks() [N/m]
         View<const Vec3> product; ///< [lists] of the last multiply() [N]
     };
@@ -24,9 +25,6 @@ public:
     /// Adds the gradient [N] and shares of the energy [J] at x [vertices] [m], and freezes the terms active
     /// there.
     virtual void evaluate(View<const Vec3> x, View<Vec3> gradient, View<double> energy) = 0;
-
-    /// Whether any was at the last evaluate(). Waits.
-    virtual bool acts() const = 0;
 
     /// Product of the frozen Hessian with p [vertices] [m].
     virtual void multiply(View<const PaddedVec3> p) = 0;

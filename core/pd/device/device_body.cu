@@ -255,7 +255,7 @@ void DeviceBody::prepare_touching()
     if (!contact_descent_)
         contact_descent_ = std::make_unique<DeviceContactDescent>(space_, x_.size(), settings_.contact_solve);
     contact_descent_->prepare(*system_, *solver_);
-    contact_descent_->record(problem(dt_), fields());
+    contact_descent_->set_problem(problem(dt_));
     is_touching_prepared_ = true;
 }
 

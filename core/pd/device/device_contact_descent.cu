@@ -8,8 +8,8 @@ namespace toile {
 
 DeviceContactDescent::DeviceContactDescent(const CudaSpace& space, int vertex_count,
                                            const Pcg::Settings& contact_solve)
-    : space_(space), pcg_(space, vertex_count, contact_solve), energies_(space, "descent/energies"),
-      sums_(space), trial_(space, "descent/trial"), of_s_(space, "descent/of_s", kHistory)
+    : space_(space), pcg_(space, vertex_count, contact_solve), sums_(space), trial_(space, "descent/trial"),
+      of_s_(space, "descent/of_s", kHistory)
 {
 }
 
@@ -17,15 +17,6 @@ void DeviceContactDescent::prepare(const System& system, DeviceSolver& solver)
 {
     solver_ = &solver;
     pcg_.prepare(system, solver);
-}
-
-void DeviceContactDescent::record(const DeviceDescent::Problem& problem, const DescentFields& fields)
-{
-    const int n = fields.direction.size();
-    energies_.record([&] {
-        problem.add_gradient({fields.trial.x, fields.trial.gradient, fields.energy.subview(0, n),
-                              fields.energy.subview(n, fields.energy.size() - n)});
-    });
 }
 
 double DeviceContactDescent::evaluate(const DescentFields& fields, DeviceActiveSet& active)
@@ -38,12 +29,15 @@ ContactTrialSums DeviceContactDescent::measure(const DescentFields& fields, Devi
                                                double step)
 {
     const int n = fields.direction.size();
-    energies_.launch();
+    add_gradient_({fields.trial.x, fields.trial.gradient, fields.energy.subview(0, n),
+                   fields.energy.subview(n, fields.energy.size() - n)});
     active.evaluate(fields.trial.x, fields.trial.gradient, fields.energy.subview(0, n));
-    parallel_sum_record_then<ContactTrialSums>(space_, "descent/measure", n,
-                                               MeasureContactTrial{fields, pairs_.pairs(), step},
-                                               trial_.next(), sums_);
-    return trial_.await();
+    parallel_sum_record_then<ContactTrialSums>(
+        space_, "descent/measure", n, MeasureContactTrial{fields, active.frozen(), pairs_.pairs(), step},
+        trial_.next(), sums_);
+    const ContactTrialSums trial = trial_.await();
+    acts_ = trial.acting > 0.0;
+    return trial;
 }
 
 OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, DeviceActiveSet& active,
@@ -81,8 +75,7 @@ OuterLoop::Outcome DeviceContactDescent::minimise(const DescentFields& fields, D
         ++outcome.iterations;
         outcome.displacement *= line.step;
         outcome.converged = recent.add_and_tell_stall(
-            outcome.value,
-            active.acts() ? StepError::energy_of(task.settings.tolerance, task.mass, task.dt) : 0.0);
+            outcome.value, acts_ ? StepError::energy_of(task.settings.tolerance, task.mass, task.dt) : 0.0);
         if (outcome.converged)
             break;
     }
@@ -127,9 +120,8 @@ int DeviceContactDescent::find_direction(const DescentFields& fields, DeviceActi
 {
     const int n = fields.direction.size();
     int iterations = 0;
-    if (active.acts()) {
-        pcg_.update(active);
-        iterations = pcg_.solve(fields.trial.z, fields.here.z).iterations;
+    if (acts_) {
+        iterations = pcg_.solve(active, fields.trial.z, fields.here.z).iterations;
     } else {
         solver_->solve_there(fields.trial.z, fields.here.z);
     }

@@ -2,7 +2,6 @@
 
 #include <functional>
 
-#include "core/backend/cuda/graph.h"
 #include "core/backend/cuda/report.h"
 #include "core/backend/cuda/sum_scratch.h"
 #include "core/pd/device/contact_descent_kernels.h"
@@ -31,8 +30,8 @@ public:
     /// Takes another H. @param solver  its inverse, borrowed
     void prepare(const System& system, DeviceSolver& solver);
 
-    /// Takes another problem: what it enqueues is recorded.
-    void record(const DeviceDescent::Problem& problem, const DescentFields& fields);
+    /// Takes another problem. @param problem  borrowed for what it borrows
+    void set_problem(const DeviceDescent::Problem& problem) { add_gradient_ = problem.add_gradient; }
 
     /// The objective at fields.trial.x, begun there (begin_trial()).
     double evaluate(const DescentFields& fields, DeviceActiveSet& active);
@@ -53,9 +52,11 @@ private:
     DeviceSolver* solver_ = nullptr;
     DeviceNestedPcg pcg_;
     TwoLoop pairs_;
-    CudaGraph energies_; ///< everything of the objective but contact
+    /// Everything of the objective but contact. Not a graph: its kernels would not come early after others.
+    std::function<void(const DeviceEvaluation& at)> add_gradient_;
     RecordScratch sums_;
     DeviceReport<ContactTrialSums> trial_;
+    bool acts_ = false;        ///< contact, where the trial is
     DeviceArray<double> of_s_; ///< FindCoefficients'
 };
 

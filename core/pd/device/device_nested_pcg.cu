@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "core/backend/cuda/record_sum.cuh"
+#include "core/quadrature/device_quadrature.cuh"
+#include "core/quadrature/device_quadrature_solver.h"
 
 namespace toile {
 
@@ -27,7 +29,7 @@ DeviceNestedPcg::DeviceNestedPcg(const CudaSpace& space, int n, const Pcg::Setti
       sum_(space, "pcg/sum"), diagonal_(space, "pcg/diagonal"), fixed_(space, "pcg/fixed"),
       inverse_(space, "pcg/inverse"), r_(space, "pcg/r", n), r_previous_(space, "pcg/r_previous", n),
       z_(space, "pcg/z", n), p_(space, "pcg/p", n), Kz_(space, "pcg/Kz", n), Kp_(space, "pcg/Kp", n),
-      scaled_(space, "pcg/scaled", n), solved_(space, "pcg/solved", n), scalars_(space, "pcg/scalars", 1),
+      solver_b_(space, "pcg/solver_b"), solver_x_(space, "pcg/solver_x"), scalars_(space, "pcg/scalars", 1),
       progress_(space, "pcg/progress"), sums_(space)
 {
 }
@@ -36,6 +38,7 @@ void DeviceNestedPcg::prepare(const System& system, DeviceSolver& solver)
 {
     const SparseMatrix& H = system.matrix();
     solver_ = &solver;
+    quadrature_ = dynamic_cast<DeviceQuadratureSolver*>(&solver);
     const auto rows = sliced_rows_of<WholeRows>(H);
     first_.upload(rows.first);
     entries_.upload(rows.entries);
@@ -44,25 +47,9 @@ void DeviceNestedPcg::prepare(const System& system, DeviceSolver& solver)
     fixed_.upload(system.fixed());
 }
 
-void DeviceNestedPcg::update(DeviceActiveSet& active)
-{
-    active_ = &active;
-    const DeviceActiveSet::Frozen frozen = active.frozen();
-    if (inverse_.size() < frozen.blocks.size())
-        inverse_.resize(frozen.blocks.size());
-    parallel_for(space_, "pcg/invert_blocks", frozen.blocks.size(),
-                 InvertBlock{frozen.vertices, frozen.blocks, diagonal_.view(), inverse_.view()});
-}
-
 PcgFields DeviceNestedPcg::fields(View<Vec3> x)
 {
-    return {x,          r_.view(),  r_previous_.view(), z_.view(),     p_.view(),
-            Kz_.view(), Kp_.view(), scaled_.view(),     solved_.view()};
-}
-
-BlocksInverse DeviceNestedPcg::blocks_inverse() const
-{
-    return {active_->frozen().list_of, inverse_.view(), diagonal_.view()};
+    return {x, r_.view(), r_previous_.view(), z_.view(), p_.view(), Kz_.view(), Kp_.view()};
 }
 
 SystemRows DeviceNestedPcg::rows() const
@@ -70,31 +57,52 @@ SystemRows DeviceNestedPcg::rows() const
     return {first_.view(), entries_.view(), sum_.view(), fixed_.view()};
 }
 
-Pcg::Outcome DeviceNestedPcg::solve(View<const Vec3> g, View<Vec3> z)
+Pcg::Outcome DeviceNestedPcg::solve(DeviceActiveSet& active, View<const Vec3> g, View<Vec3> z)
 {
     const StageScope stage("pd/pcg");
+    const DeviceActiveSet::Frozen frozen = active.frozen();
+    TOILE_ASSERT(frozen.vertices.size() > 0); // else what follows its product would come too early
+    if (inverse_.size() < frozen.vertices.size())
+        inverse_.resize(frozen.vertices.size());
     const PcgFields fields = this->fields(z);
-    parallel_for(space_, "pcg/begin", g.size(), BeginPcg{g, fields, blocks_inverse(), scalars_.view()});
+    const BlocksInverse E{frozen.list_of, inverse_.view(), diagonal_.view()};
+    const FinishPrecondition finish{fields, E, scalars_.view()};
+
+    begin_inverse(BeginPcg{g, fields, {frozen, diagonal_.view(), inverse_.view()}, scalars_.view()});
+    end_inverse(finish);
     PcgScalars now;
     while (!now.is_over) {
-        iterate(fields);
+        active.multiply(fields.z);
+        parallel_sum_record_then<PcgSums>(space_, "pcg/multiply", g.size(),
+                                          MultiplySystem{fields, rows(), frozen.list_of, frozen.product},
+                                          FindStep{scalars_.view(), settings_}, sums_);
+        begin_inverse(TakeStep{fields, E, scalars_.view(), progress_.next()});
+        end_inverse(finish); // in vain after the last step, but cheap then: the device has no time to wait
         now = progress_.await();
     }
     return {now.iterations, now.residual};
 }
 
-void DeviceNestedPcg::iterate(const PcgFields& fields)
+/// Enqueues what H^-1 does of a right-hand side before it can give a solution.
+template <typename Source>
+void DeviceNestedPcg::begin_inverse(const Source& source)
 {
-    const int n = fields.x.size();
-    solver_->solve_there(fields.scaled, fields.solved);
-    parallel_for(space_, "pcg/precondition", n, FinishPrecondition{fields, blocks_inverse()});
-    TOILE_ASSERT(active_->frozen().vertices.size() > 0); // else the next kernel would come too early
-    active_->multiply(fields.z);
-    parallel_sum_record_then<PcgSums>(
-        space_, "pcg/multiply", n,
-        MultiplySystem{fields, rows(), active_->frozen().list_of, active_->frozen().product},
-        FindStepAndReport{{scalars_.view(), settings_}, progress_.next()}, sums_);
-    parallel_for(space_, "pcg/step", n, TakeStep{fields, blocks_inverse(), scalars_.view()});
+    if (quadrature_ != nullptr)
+        return quadrature_->begin_solve(source);
+    const int n = r_.size();
+    solver_b_.resize(n);
+    parallel_for(space_, "pcg/give", n, StoreSource<Source>{source, solver_b_.view()});
+}
+
+template <typename Sink>
+void DeviceNestedPcg::end_inverse(const Sink& sink)
+{
+    if (quadrature_ != nullptr)
+        return quadrature_->end_solve(sink);
+    const int n = r_.size();
+    solver_x_.resize(n);
+    solver_->solve_there(solver_b_.view(), solver_x_.view());
+    parallel_for(space_, "pcg/take", n, PassToSink<Sink>{solver_x_.view(), sink});
 }
 
 } // namespace toile

@@ -11,16 +11,14 @@
 
 namespace toile {
 
-/// NestedPcg with BlockInverse as a GPU runs it: the steps of an iteration that lie between applications of
-/// H^-1. Flexible conjugate gradients [Notay 2000], rearranged so that all sums of an iteration are known at
+/// NestedPcg with BlockInverse as a GPU runs it: the steps of an iteration before, in and after H^-1.
+/// Flexible conjugate gradients [Notay 2000], rearranged so that all sums of an iteration are known at
 /// once [Chronopoulos & Gear 1989]: K z is taken instead of K p = K z + beta K p', K = H + dH. In single
 /// precision: what is wanted is a direction, a tenth of the residual away.
 struct PcgFields {
     View<Vec3> x;                         ///< [vertices] [m]
     View<PaddedVec3> r, r_previous, z, p; ///< [vertices] [N], [m]
     View<PaddedVec3> Kz, Kp;              ///< [vertices] [N]
-    View<Vec3> scaled;                    ///< [vertices] D E r [N]
-    View<Vec3> solved;                    ///< [vertices] H^-1 D E r [m]
 };
 
 /// What an iteration sums up, p and K p being those of the one before.
@@ -121,6 +119,9 @@ struct BlocksInverse {
         {
             return is_frozen ? Vec3(inverse * r) : Vec3(r / diagonal);
         }
+
+        /// D E r
+        TOILE_HD PaddedVec3 scaled(const Vec3& r) const { return padded(diagonal * (*this)(r)); }
     };
     TOILE_HD OfVertex of(int i) const
     {
@@ -132,27 +133,36 @@ struct BlocksInverse {
     }
 };
 
-/// Inverts the block of list k.
-struct InvertBlock {
-    View<const int> vertices; ///< [lists]
-    View<const Mat3> blocks;  ///< [lists] [N/m]
-    View<const double> diagonal;
-    View<Mat3> inverse; ///< [lists] out
+/// E where nothing has been inverted yet.
+struct InvertBlocks {
+    DeviceActiveSet::Frozen frozen;
+    View<const double> diagonal; ///< [vertices]
+    View<Mat3> inverse;          ///< [lists] out
 
-    TOILE_HD void operator()(int k) const
+    /// Inverts what vertex i has.
+    TOILE_HD BlocksInverse::OfVertex operator()(int i) const
     {
-        inverse[k] = Mat3(blocks[k] + diagonal[vertices[k]] * Mat3::Identity()).inverse();
+        const int list = frozen.list_of[i];
+        BlocksInverse::OfVertex own{diagonal[i], list > 0, {}};
+        if (own.is_frozen) {
+            own.inverse = Mat3(frozen.blocks[list - 1] + own.diagonal * Mat3::Identity()).inverse();
+            inverse[list - 1] = own.inverse;
+        }
+        return own;
     }
 };
 
-/// Begins: x = 0, r = b, and the part of P r before H^-1.
+/// Begins: x = 0, r = b; a source (DeviceQuadrature::begin_solve) of D E r for the first H^-1.
 struct BeginPcg {
     View<const Vec3> b;
     PcgFields fields;
-    BlocksInverse E;
+    InvertBlocks invert;
     View<PcgScalars> scalars; ///< [1]
 
-    TOILE_HD void operator()(int i) const
+    struct Early {};
+    TOILE_HD Early early(int) const { return {}; }
+
+    TOILE_HD PaddedVec3 operator()(int i, const Early& = {}) const
     {
         if (i == 0)
             scalars[0] = {};
@@ -160,27 +170,23 @@ struct BeginPcg {
         fields.x[i] = Vec3(0.0, 0.0, 0.0);
         fields.p[i] = fields.Kp[i] = fields.r_previous[i] = PaddedVec3(0.0F);
         fields.r[i] = padded(r);
-        const auto own = E.of(i);
-        fields.scaled[i] = own.diagonal * own(r);
+        return invert(i).scaled(r);
     }
 };
 
-/// z = E (r + D H^-1 D E r)
+/// z = E (r + D H^-1 D E r); a sink (DeviceQuadrature::end_solve) of H^-1, of which none is wanted after the
+/// last step.
 struct FinishPrecondition {
     PcgFields fields;
     BlocksInverse E;
+    View<const PcgScalars> scalars;
 
-    /// What H^-1 leaves as it is.
-    struct Early {
-        Vec3 r;
-        BlocksInverse::OfVertex E;
-    };
-    TOILE_HD Early early(int i) const { return {unpadded(fields.r[i]), E.of(i)}; }
+    TOILE_HD bool is_wanted() const { return !scalars[0].is_over; }
 
-    TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
-    TOILE_HD void operator()(int i, const Early& own) const
+    TOILE_HD void operator()(int i, const PaddedVec3& solved) const
     {
-        fields.z[i] = padded(own.E(own.r + own.E.diagonal * fields.solved[i]));
+        const BlocksInverse::OfVertex own = E.of(i);
+        fields.z[i] = padded(own(unpadded(fields.r[i]) + own.diagonal * unpadded(solved)));
     }
 };
 
@@ -263,23 +269,14 @@ struct FindStep {
     }
 };
 
-/// FindStep, of which the host hears.
-struct FindStepAndReport {
-    FindStep find;
-    SendReport<PcgScalars> report;
-
-    TOILE_HD void operator()(const PcgSums& sums) const
-    {
-        find(sums);
-        report(find.scalars[0]);
-    }
-};
-
-/// Moves along p, and begins the next P r.
+/// Moves along p, and tells the host how it goes; a source of D E r for the next H^-1, of which none is
+/// needed after the last step. What goes to the host takes so long that no kernel with a sum should wait for
+/// it.
 struct TakeStep {
     PcgFields fields;
     BlocksInverse E;
     View<const PcgScalars> scalars;
+    SendReport<PcgScalars> report;
 
     /// All but K z and what the sums decide.
     struct Early {
@@ -292,11 +289,13 @@ struct TakeStep {
         return {fields.x[i], fields.r[i], fields.z[i], fields.p[i], fields.Kp[i], E.of(i)};
     }
 
-    TOILE_HD void operator()(int i) const { (*this)(i, early(i)); }
-    TOILE_HD void operator()(int i, const Early& own) const
+    TOILE_HD PaddedVec3 operator()(int i) const { return (*this)(i, early(i)); }
+    TOILE_HD PaddedVec3 operator()(int i, const Early& own) const
     {
+        if (i == 0)
+            report(scalars[0]);
         if (scalars[0].is_void)
-            return;
+            return PaddedVec3(0.0F);
         const double step = scalars[0].step, beta = scalars[0].beta;
         const Vec3 p = unpadded(own.z) + beta * unpadded(own.p);
         const Vec3 Kp = unpadded(fields.Kz[i]) + beta * unpadded(own.Kp);
@@ -306,8 +305,28 @@ struct TakeStep {
         fields.x[i] = own.x + step * p;
         fields.r_previous[i] = own.r;
         fields.r[i] = padded(r);
-        fields.scaled[i] = own.E.diagonal * own.E(r);
+        return own.E.scaled(r);
     }
+};
+
+/// A source that fills an array, and a sink that reads one: for a solver that knows arrays only.
+template <typename Source>
+struct StoreSource {
+    Source source;
+    View<Vec3> b; ///< [vertices] out
+
+    TOILE_HD typename Source::Early early(int i) const { return source.early(i); }
+    TOILE_HD void operator()(int i, const typename Source::Early& own) const
+    {
+        b[i] = unpadded(source(i, own));
+    }
+};
+template <typename Sink>
+struct PassToSink {
+    View<const Vec3> x; ///< [vertices]
+    Sink sink;
+
+    TOILE_HD void operator()(int i) const { sink(i, padded(x[i])); }
 };
 
 } // namespace toile
