@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "core/backend/error.h"
 #include "core/linear/block_diagonal_solver.h"
+#include "core/linear/device_solver.h"
 #include "core/pd/body.h"
 #include "core/pd/sliced_energy.h"
 #include "core/quadrature/device_quadrature_solver.h"
@@ -139,6 +141,37 @@ double farthest_apart(View<const Vec3> a, View<const Vec3> b)
     return most;
 }
 
+/// A solver of which nobody knows more than what any solver of a GPU does.
+class SomeSolver final : public DeviceSolver {
+public:
+    SomeSolver(const CudaSpace& space, std::unique_ptr<GlobalSolver> solver)
+        : DeviceSolver(space), solver_(std::move(solver))
+    {
+    }
+    void update(const SparseMatrix& H, View<const unsigned char> fixed) override
+    {
+        solver_->update(H, fixed);
+    }
+    void solve_there(View<const Vec3> b, View<Vec3> x) const override
+    {
+        dynamic_cast<const DeviceSolver&>(*solver_).solve_there(b, x);
+    }
+
+private:
+    std::unique_ptr<GlobalSolver> solver_;
+};
+
+/// A rough floor through the middle of the sheets.
+TouchingPlane::Settings rough_floor()
+{
+    TouchingPlane::Settings floor;
+    floor.height = 0.19;
+    floor.stiffness = 50.0;
+    floor.friction = 0.4;
+    floor.normal_force = 0.01;
+    return floor;
+}
+
 class DeviceBodyTest : public OnDevice {
 protected:
     std::unique_ptr<DeviceBody> make_body(const Swings& swings, DeviceBody::Settings settings) const
@@ -208,16 +241,10 @@ TEST_F(DeviceBodyTest, StopsByItsMoveWhereTheCpuDoes)
     EXPECT_LT(iterations, by_error);
 }
 
-/// On a rough floor through the middle of the sheets.
 TEST_F(DeviceBodyTest, TouchesAsOnTheCpu)
 {
     const Swings swings(2);
-    TouchingPlane::Settings floor;
-    floor.height = 0.19;
-    floor.stiffness = 50.0;
-    floor.friction = 0.4;
-    floor.normal_force = 0.01;
-    TouchingPlane plane(swings.start(), floor);
+    TouchingPlane plane(swings.start(), rough_floor());
     Body::Settings settings = exact();
     settings.max_iterations = 15;
     Body here(swings.start(), swings.system(swings.solver()), settings);
@@ -231,6 +258,24 @@ TEST_F(DeviceBodyTest, TouchesAsOnTheCpu)
         // Cut off after 15 iterations; PCG is in single precision there.
         EXPECT_LT(farthest_apart(there->positions(), here.positions()), 5e-5) << k;
     }
+}
+
+/// PCG's kernels are then those of no solver's.
+TEST_F(DeviceBodyTest, TouchesWithAnySolverToTheSameBits)
+{
+    const Swings swings(2);
+    TouchingPlane plane(swings.start(), rough_floor()), same(swings.start(), rough_floor());
+    const auto known = make_body(swings, {1e-5, 15});
+    DeviceBody unknown(space(), swings.start(),
+                       swings.system(std::make_unique<SomeSolver>(space(), swings.solver(space()))),
+                       {1e-5, 15});
+    int of_pcg = 0;
+    for (int k = 0; k < 3; ++k) {
+        of_pcg += step(*known, swings, &plane).linear_iterations;
+        (void)step(unknown, swings, &same);
+        EXPECT_EQ(copy_of(known->positions()), copy_of(unknown.positions())) << k;
+    }
+    EXPECT_GT(of_pcg, 30);
 }
 
 TEST_F(DeviceBodyTest, ConvergesAsWellWithAByteAWeight)
