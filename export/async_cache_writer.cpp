@@ -15,19 +15,34 @@ AsyncCacheWriter::~AsyncCacheWriter() { close(); }
 
 void AsyncCacheWriter::write(int frame, View<const Vec3> positions)
 {
+    Frame copy = take_free(frame);
+    copy.copy.assign(positions.begin(), positions.end());
+    enqueue(std::move(copy));
+}
+
+void AsyncCacheWriter::write_later(int frame, LatePositions positions)
+{
+    Frame late = take_free(frame);
+    late.late = std::move(positions);
+    enqueue(std::move(late));
+}
+
+AsyncCacheWriter::Frame AsyncCacheWriter::take_free(int index)
+{
     TOILE_ASSERT(thread_.joinable());
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !free_.empty() || error_; });
     rethrow_error();
-    Frame copy = std::move(free_.back());
+    Frame frame = std::move(free_.back());
     free_.pop_back();
-    lock.unlock();
+    frame.index = index;
+    return frame;
+}
 
-    copy.index = frame;
-    copy.positions.assign(positions.begin(), positions.end());
-
-    lock.lock();
-    queue_.push_back(std::move(copy));
+void AsyncCacheWriter::enqueue(Frame frame)
+{
+    const std::lock_guard lock(mutex_);
+    queue_.push_back(std::move(frame));
     changed_.notify_all();
 }
 
@@ -49,20 +64,27 @@ void AsyncCacheWriter::deliver_until_closed()
         queue_.pop_front();
 
         // After an error the rest is dropped: a cache with a gap would be worse than a short one.
-        if (!error_) {
-            lock.unlock();
-            std::exception_ptr error;
-            try {
-                target_->write(frame.index, frame.positions);
-            } catch (...) {
-                error = std::current_exception();
-            }
-            lock.lock();
+        const bool is_dropped = error_ != nullptr;
+        lock.unlock();
+        const std::exception_ptr error = is_dropped ? nullptr : deliver(frame);
+        frame.late = nullptr;
+        lock.lock();
+        if (error)
             error_ = error;
-        }
         free_.push_back(std::move(frame));
         changed_.notify_all();
     }
+}
+
+/// @return what went wrong
+std::exception_ptr AsyncCacheWriter::deliver(const Frame& frame)
+{
+    try {
+        target_->write(frame.index, frame.late ? frame.late() : View<const Vec3>(frame.copy));
+    } catch (...) {
+        return std::current_exception();
+    }
+    return nullptr;
 }
 
 void AsyncCacheWriter::close()

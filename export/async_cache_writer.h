@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -25,6 +26,13 @@ public:
     /// Queues a copy. @throws what writing an earlier frame threw; nothing is written after that.
     void write(int frame, View<const Vec3> positions) override;
 
+    /// Gives a frame's positions [vertices] [m] when they are to be written, and throws where it can't. It
+    /// owns what it reads, is called once, on the writer's thread, and is gone when the frame is written.
+    using LatePositions = std::function<View<const Vec3>()>;
+
+    /// Queues positions that may still be on their way, without a copy. @throws as write()
+    void write_later(int frame, LatePositions positions);
+
     /// Waits for the queue and finishes the target. @throws what it or an earlier write threw.
     void finish() override;
 
@@ -33,10 +41,14 @@ public:
 private:
     struct Frame {
         int index = 0;
-        std::vector<Vec3> positions;
+        LatePositions late;
+        std::vector<Vec3> copy; ///< where nothing is late
     };
 
+    Frame take_free(int index);
+    void enqueue(Frame frame);
     void deliver_until_closed();
+    std::exception_ptr deliver(const Frame& frame);
     void close();
     void rethrow_error() const;
 

@@ -41,6 +41,16 @@ View<T> ClothGroup::part(View<T> all, int cloth) const
 
 View<const Vec3> ClothGroup::positions_of(int cloth) const { return part(body_->positions(), cloth); }
 
+void ClothGroup::add_cloths_to(Snapshot& snapshot) const
+{
+    const std::shared_ptr<const Readback<Vec3>> coming = body_->read_back_positions();
+    for (int i = 0; i < int(cloths_.size()); ++i)
+        if (coming)
+            snapshot.add(coming, first_[i], first_[i + 1] - first_[i]);
+        else
+            snapshot.add(positions_of(i));
+}
+
 void ClothGroup::mark_fixed(double t_t1)
 {
     for (int i = 0; i < int(cloths_.size()); ++i)

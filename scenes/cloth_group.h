@@ -9,6 +9,7 @@
 #include "garment/energy/joint_strain_limit.h"
 #include "scenes/scene_cloth.h"
 #include "scenes/scene_solids.h"
+#include "scenes/snapshot.h"
 
 namespace toile {
 
@@ -27,6 +28,9 @@ public:
 
     /// Positions of one cloth now, good until the next step [m]. They are copied from the GPU that has them.
     View<const Vec3> positions_of(int cloth) const;
+
+    /// Adds all cloths as they are now. Nothing is waited for.
+    void add_cloths_to(Snapshot& snapshot) const;
 
     const SceneSolids* solids() const { return solids_.get(); } ///< null: none
 

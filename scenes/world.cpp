@@ -140,6 +140,17 @@ View<const ClothState> World::cloths() const
 {
     return surfaces().subview(0, int(parts_->scene.cloths.size()));
 }
+std::shared_ptr<const Snapshot> World::snapshot() const
+{
+    auto snapshot = std::make_shared<Snapshot>();
+    for (const ClothGroup& group : parts_->groups)
+        group.add_cloths_to(*snapshot);
+    for (const ClothGroup& group : parts_->groups)
+        if (const SceneSolids* solids = group.solids())
+            for (int i = 0; i < solids->count(); ++i)
+                snapshot->add(solids->positions(i));
+    return snapshot;
+}
 const StartReport& World::start() const { return parts_->start; }
 const CudaDevice* World::device() const { return parts_->space ? &parts_->space->device() : nullptr; }
 const Stages& World::stages() const { return parts_->stages; }

@@ -12,6 +12,7 @@
 #include "garment/fabric/fabric.h"
 #include "scenes/backend.h"
 #include "scenes/format/scene.h"
+#include "scenes/snapshot.h"
 
 namespace toile {
 
@@ -85,6 +86,9 @@ public:
 
     /// All cloths and then all solids, each in the order of the scene. As cloths().
     View<const ClothState> surfaces() const;
+
+    /// Where surfaces() are now, without waiting for a GPU. It must not outlive the World.
+    std::shared_ptr<const Snapshot> snapshot() const;
 
     /// What the start pose had inside avatars and through cloth, and what its repair left. Cloths and bodies
     /// are numbered as in Scene::cloths and Scene::avatars.

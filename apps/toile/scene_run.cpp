@@ -21,11 +21,11 @@ namespace toile {
 
 namespace {
 
-/// A cache on its way to disk and the cloth whose positions it takes.
+/// A cache on its way to disk and the cloth or solid whose positions it takes.
 struct OpenCache {
     std::filesystem::path file;
     int cloth;
-    std::unique_ptr<CacheWriter> writer;
+    std::unique_ptr<AsyncCacheWriter> writer;
 };
 
 std::vector<OpenCache> open_caches(const Scene& scene, const World& world,
@@ -44,8 +44,10 @@ std::vector<OpenCache> open_caches(const Scene& scene, const World& world,
 
 void write_frame(const World& world, std::vector<OpenCache>& caches)
 {
+    const std::shared_ptr<const Snapshot> snapshot = world.snapshot();
     for (OpenCache& cache : caches)
-        cache.writer->write(world.frame(), world.surfaces()[cache.cloth].positions);
+        cache.writer->write_later(world.frame(),
+                                  [snapshot, surface = cache.cloth] { return snapshot->positions(surface); });
 }
 
 /// PC2 and MDD hold positions only: the mesh they play on goes beside them, in its start state, unless an OBJ

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "core/backend/cuda/readback.h"
 #include "core/backend/types.h"
 #include "core/linear/field.h"
 #include "core/pd/active_set_energy.h"
@@ -37,6 +39,10 @@ public:
     virtual View<const Vec3> velocities() const = 0;
     virtual void set_positions(View<const Vec3> x) = 0;
     virtual void set_velocities(View<const Vec3> v) = 0;
+
+    /// Begins to bring the positions, as they are now, from the device that has them; null where the host
+    /// has.
+    virtual std::shared_ptr<const Readback<Vec3>> read_back_positions() { return nullptr; }
 
     /// Largest velocity of a vertex now [m/s]; NaN where one is.
     virtual double max_speed() const { return max_norm(velocities()); }

@@ -1,6 +1,8 @@
 #include "export/async_cache_writer.h"
 
+#include <atomic>
 #include <chrono>
+#include <memory>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -28,6 +30,43 @@ TEST_F(AsyncCacheWriterTest, LeavesTheSameBytesAsWritingAtOnce)
     }
     queued.finish();
     EXPECT_EQ(bytes_of(file("queued.pc2")), bytes_of(file("direct.pc2")));
+}
+
+/// Each is asked for once, by the thread that writes, and nobody has it any more when it is written.
+TEST_F(AsyncCacheWriterTest, AsksForLatePositionsWhereItWrites)
+{
+    const CacheLayout layout = cache_layout(quad_mesh(), 9);
+    const auto direct = make_cache_writer(file("direct.pc2"), layout);
+    write_frames(*direct, 0, 9, 7);
+    direct->finish();
+
+    AsyncCacheWriter later(make_cache_writer(file("later.pc2"), layout), 3);
+    std::vector<std::weak_ptr<const std::vector<Vec3>>> given;
+    std::atomic<int> asked = 0, asked_here = 0;
+    for (int frame = 0; frame < 9; ++frame) {
+        const auto positions = std::make_shared<const std::vector<Vec3>>(frame_positions(frame, 7));
+        given.push_back(positions);
+        later.write_later(frame, [&, positions, caller = std::this_thread::get_id()]() -> View<const Vec3> {
+            ++asked;
+            asked_here += std::this_thread::get_id() == caller;
+            return *positions;
+        });
+    }
+    later.finish();
+    EXPECT_EQ(bytes_of(file("later.pc2")), bytes_of(file("direct.pc2")));
+    EXPECT_EQ(asked, 9);
+    EXPECT_EQ(asked_here, 0);
+    for (const auto& positions : given)
+        EXPECT_TRUE(positions.expired());
+}
+
+TEST_F(AsyncCacheWriterTest, SurfacesWhatLatePositionsThrow)
+{
+    AsyncCacheWriter writer(make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 9)), 2);
+    writer.write(0, frame_positions(0, 7));
+    writer.write_later(1, []() -> View<const Vec3> { throw DeviceError("the GPU is gone"); });
+    EXPECT_THROW(writer.finish(), DeviceError);
+    EXPECT_EQ(read_cache(file("a.partial.pc2")).frame_count(), 1);
 }
 
 TEST_F(AsyncCacheWriterTest, DeliversWhatWasQueuedWhenDestroyed)

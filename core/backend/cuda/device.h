@@ -71,6 +71,7 @@ private:
     friend class CudaBuffer;
     friend class CudaGraph;
     friend class DeviceTimer;
+    friend class StreamMark;
     friend class CudaLaunch;
 
     struct Launch {

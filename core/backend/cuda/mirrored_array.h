@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/backend/cuda/array.h"
+#include "core/backend/cuda/readback.h"
 #include "core/backend/stages.h"
 
 namespace toile {
@@ -44,6 +45,13 @@ public:
         is_sending_ = false;
         newer_ = Newer::Host;
         return on_host_.view();
+    }
+
+    /// Begins to bring it to the host as it is now, whatever becomes of it, and does not wait.
+    void read_back(Readback<T>& readback) const
+    {
+        send();
+        readback.begin(there_);
     }
 
     /// On the device, in the stream's turn.

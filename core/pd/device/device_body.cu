@@ -41,7 +41,7 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       settings_(settings), energies_(energies_of(space, *system_)),
       x_(space, "body/x", int(positions.size())), v_(space, "body/v", x_.size()),
       x_t1_(space, "body/x_t1", x_.size()), acceleration_(space, "body/acceleration", x_.size()),
-      prediction_(space, "body/prediction", x_.size()), targets_(space, "body/targets", x_.size()),
+      prediction_(space, "body/prediction", x_.size()), readbacks_(space, "body/readback"), targets_(space, "body/targets", x_.size()),
       held_(space, "body/held"), held_targets_(space, "body/held_targets"),
       held_targets_on_host_(space, "body/held_targets_on_host"), drive_(space, "body/drive", x_.size()),
       found_(space, "body/found", x_.size()), found_gradient_(space, "body/found_gradient", x_.size()),

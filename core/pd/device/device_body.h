@@ -52,6 +52,7 @@ public:
 
     View<const Vec3> positions() const override { return x_.host(); }
     View<const Vec3> velocities() const override { return v_.host(); }
+    std::shared_ptr<const Readback<Vec3>> read_back_positions() override;
     void set_positions(View<const Vec3> x) override { overwrite(x_, x); }
     void set_velocities(View<const Vec3> v) override;
     double max_speed() const override;
@@ -94,6 +95,7 @@ private:
 
     std::unique_ptr<DeviceAcceleration> loads_; ///< null: the caller's acceleration
     MirroredArray<Vec3> x_, v_, x_t1_, acceleration_, prediction_;
+    ReadbackPool<Vec3> readbacks_;
     DeviceArray<Vec3> targets_; ///< [vertices] where held
     DeviceArray<int> held_;     ///< vertices that are fixed
     std::vector<int> host_held_;

@@ -23,6 +23,13 @@ double DeviceBody::max_speed() const
     return knows_speed_ ? std::sqrt(speed_[0].value) : PointMasses::max_speed();
 }
 
+std::shared_ptr<const Readback<Vec3>> DeviceBody::read_back_positions()
+{
+    const std::shared_ptr<Readback<Vec3>> readback = readbacks_.take();
+    x_.read_back(*readback);
+    return readback;
+}
+
 /// Takes note of which vertices are fixed, and of H.
 void DeviceBody::hold(const std::vector<unsigned char>& fixed)
 {

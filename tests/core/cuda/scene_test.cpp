@@ -88,6 +88,27 @@ TEST_F(DeviceSceneTest, CopiesPositionsOnlyWhenTheyAreAskedFor)
     EXPECT_EQ(farthest_apart(world, again), 0.0) << "whoever looked";
 }
 
+/// They are read when the scene has long gone on.
+TEST_F(DeviceSceneTest, SnapshotsAreNotWaitedForAndStay)
+{
+    const Scene scene = scene_of(R"("fps": 30, "frames": 9, )" + kTwoSheetsOnABall);
+    World world = world_on(Backend::Cuda, scene), watched = world_on(Backend::Cuda, scene);
+    std::vector<std::shared_ptr<const Snapshot>> snapshots{world.snapshot()};
+    std::vector<std::vector<ClothState>> seen{{watched.cloths().begin(), watched.cloths().end()}};
+    for (int frame = 1; frame < 9; ++frame) {
+        world.advance_frame();
+        snapshots.push_back(world.snapshot());
+        watched.advance_frame();
+        seen.emplace_back(watched.cloths().begin(), watched.cloths().end());
+    }
+    EXPECT_LT(world.stages().calls("cuda/to_host"), watched.stages().calls("cuda/to_host"));
+    for (int frame = 0; frame < 9; ++frame)
+        for (int c = 0; c < 2; ++c) {
+            const View<const Vec3> x = snapshots[frame]->positions(c);
+            EXPECT_EQ(std::vector<Vec3>(x.begin(), x.end()), seen[frame][c].positions) << frame;
+        }
+}
+
 TEST_F(DeviceSceneTest, SleepsAsOnTheCpu)
 {
     const Scene scene = scene_of(R"("fps": 30, "frames": 90, "contact": {"self": false},

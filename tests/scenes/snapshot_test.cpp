@@ -1,0 +1,34 @@
+#include "scenes/snapshot.h"
+
+#include <gtest/gtest.h>
+
+#include "scenes/format/read_scene.h"
+#include "scenes/world.h"
+
+namespace toile {
+namespace {
+
+/// Cloths that do not touch each other are groups of their own, those that do are one; solids come last.
+TEST(Snapshot, HasAllSurfacesAsTheyWere)
+{
+    const std::string cloths = R"("cloths": [
+        {"name": "a", "rectangle": {"size": [0.2, 0.1], "resolution": 0.05}, "translate": [0, 1, 0]},
+        {"name": "b", "rectangle": {"size": [0.1, 0.1], "resolution": 0.05}, "translate": [1, 1, 0]}])";
+    for (const std::string others :
+         {R"(, "contact": {"self": false})",
+          R"(, "solids": [{"name": "brick", "box": {"size": [0.2, 0.1, 0.06]}, "translate": [2, 1, 0]}])"}) {
+        World world(parse_scene("{\"toile\": 1, \"frames\": 9, " + cloths + others + "}", "test.json"));
+        world.advance_frame();
+        const std::vector<ClothState> then(world.surfaces().begin(), world.surfaces().end());
+        const std::shared_ptr<const Snapshot> snapshot = world.snapshot();
+        world.advance_frame();
+        for (size_t s = 0; s < then.size(); ++s) {
+            const View<const Vec3> x = snapshot->positions(int(s));
+            EXPECT_EQ(std::vector<Vec3>(x.begin(), x.end()), then[s].positions) << then[s].name;
+            EXPECT_NE(world.surfaces()[s].positions, then[s].positions);
+        }
+    }
+}
+
+} // namespace
+} // namespace toile
