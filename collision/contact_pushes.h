@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "collision/contact_rules.h"
+#include "core/backend/turns.h"
 
 namespace toile {
 
@@ -131,6 +132,8 @@ struct TermInTurn {
     Vec3 surface_velocity = Vec3::Zero(); ///< [m/s]
 };
 
+// A push changes fields(), and over(other fields) is the same push of vertices that are there.
+
 /// A sweep's push of term i where contact alone would take it, with masses and the compliance of its spring
 /// [Macklin et al. 2016, eq. 18], and a force that never pulls. Momentum goes where contact sends it, and
 /// pairs that press begin as deep as their force asks for: friction reads it from there.
@@ -138,6 +141,10 @@ struct PushToRest {
     PushRules rules;
     View<double> force; ///< [terms] so far [N]
     View<Vec3> x;       ///< [vertices] [m]
+
+    static constexpr int kFields = 1;
+    TOILE_HD SharedFields<1> fields() const { return {x}; }
+    TOILE_HD PushToRest over(const SharedFields<1>& there) const { return {rules, force, there[0]}; }
 
     TOILE_HD bool acts(int i, const ContactTerm& term) const
     {
@@ -174,6 +181,10 @@ struct PushOut {
     double most;  ///< depth that is left to a pair which rests there [m]
     View<Vec3> x; ///< [vertices] [m]
 
+    static constexpr int kFields = 1;
+    TOILE_HD SharedFields<1> fields() const { return {x}; }
+    TOILE_HD PushOut over(const SharedFields<1>& there) const { return {rules, most, there[0]}; }
+
     TOILE_HD bool acts(int, const ContactTerm& term) const { return depth_of(term) > -kAlmost; }
 
     TOILE_HD TermInTurn prepare(const ContactTerm& term) const
@@ -201,6 +212,10 @@ struct StopAtSurface {
     View<const Vec3> x; ///< [vertices] [m]
     View<Vec3> v;       ///< [vertices] [m/s]
 
+    static constexpr int kFields = 1;
+    TOILE_HD SharedFields<1> fields() const { return {v}; }
+    TOILE_HD StopAtSurface over(const SharedFields<1>& there) const { return {rules, x, there[0]}; }
+
     TOILE_HD bool acts(int, const ContactTerm& term) const
     {
         return term.gap(x) < 0.0 && rules.clearance_of(term.pair) >= kThinnest;
@@ -226,6 +241,10 @@ struct StopAtSurface {
 struct Rub {
     PushRules rules;
     View<Vec3> x, v; ///< [vertices] [m], [m/s]
+
+    static constexpr int kFields = 2;
+    TOILE_HD SharedFields<2> fields() const { return {x, v}; }
+    TOILE_HD Rub over(const SharedFields<2>& there) const { return {rules, there[0], there[1]}; }
 
     TOILE_HD bool acts(int, const ContactTerm& term) const { return term.gap(x) < kAlmost; }
 

@@ -22,18 +22,36 @@ struct FlagActing {
     }
 };
 
-/// A push of a listed term.
+/// A push of a listed term, of vertices that are numbered as in the term.
 template <typename Push>
 struct PushInTurn {
+    static constexpr int kFields = Push::kFields;
+
     Push push;
     View<const ContactTerm> terms;
     View<int> moved; ///< [1] becomes 1 where something moves
 
-    TOILE_HD TermInTurn prepare(int i) const { return push.prepare(terms[i]); }
-    TOILE_HD std::array<int, 4> shared(const TermInTurn& own) const { return own.term.pair.vertex; }
-    TOILE_HD void operator()(int i, const TermInTurn& own) const
+    struct Prepared {
+        TermInTurn here;
+        std::array<int, 4> vertex;
+    };
+
+    TOILE_HD SharedFields<kFields> fields() const { return push.fields(); }
+    TOILE_HD Prepared prepare(int i) const
     {
-        if (push(i, own))
+        Prepared prepared{push.prepare(terms[i]), terms[i].pair.vertex};
+        std::array<int, 4>& vertex = prepared.here.term.pair.vertex;
+        for (int k = 0; k < 4; ++k)
+            vertex[k] = vertex[k] < 0 ? -1 : k;
+        return prepared;
+    }
+    TOILE_HD std::array<int, 4> shared(const Prepared& prepared) const { return prepared.vertex; }
+    TOILE_HD void operator()(int i, const Prepared& prepared, OwnFields<kFields>& own) const
+    {
+        SharedFields<kFields> there;
+        for (int f = 0; f < kFields; ++f)
+            there[f] = View<Vec3>(own[f].data(), 4);
+        if (push.over(there)(i, prepared.here))
             moved[0] = 1;
     }
 };

@@ -5,25 +5,27 @@
 namespace toile {
 
 DeviceTurns::DeviceTurns(const CudaSpace& space, int vertex_count)
-    : space_(space), flags_(space, "turns/flags"), places_(space, "turns/places"),
-      count_(space, "turns/count", 1), rank_(space, "turns/rank"),
-      served_(space, "turns/served", vertex_count), next_(space, "turns/next"),
-      moved_(space, "turns/moved", 1), moved_here_(space, "turns/moved_here", 1),
-      scratch_(space, "turns/scratch")
+    : space_(space), vertex_count_(vertex_count), flags_(space, "turns/flags"),
+      places_(space, "turns/places"), count_(space, "turns/count", 1), rank_(space, "turns/rank"),
+      passed_(space, "turns/passed"), next_(space, "turns/next"), moved_(space, "turns/moved", 1),
+      moved_here_(space, "turns/moved_here", 1), scratch_(space, "turns/scratch")
 {
 }
 
 /// Nothing has begun, and nothing moved.
-Turns DeviceTurns::make_room(const DeviceContactEnergy& contact, int sweeps)
+Turns DeviceTurns::make_room(const DeviceContactEnergy& contact, int sweeps, int fields)
 {
     const TurnOrder order{contact.terms().size()};
     next_.resize(sweeps);
     next_.fill_zero();
     moved_.fill_zero();
     first_items(flags_, order.place_count());
-    return {order,          first_items(places_, order.place_count()),
-            count_.view(),  first_items(rank_, Turns::kShares * order.count),
-            served_.view(), next_.view()};
+    return {order,
+            first_items(places_, order.place_count()),
+            count_.view(),
+            first_items(rank_, Turns::kShares * order.count),
+            first_items(passed_, fields * vertex_count_),
+            next_.view()};
 }
 
 bool DeviceTurns::moved()

@@ -12,7 +12,7 @@ template <typename Push>
 void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, int sweeps)
 {
     const View<const ContactTerm> terms = contact.terms();
-    Turns turns = make_room(contact, sweeps);
+    Turns turns = make_room(contact, sweeps, Push::kFields);
     const View<unsigned char> flags = flags_.view().subview(0, turns.places.size());
     for (int done = 0; done < sweeps; ++done) {
         turns.next = next_.view().subview(done, 1);
@@ -21,7 +21,8 @@ void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, in
         list_flagged(space_, "contact/list_acting", flags, places_.view().subview(0, flags.size()),
                      count_.view(), scratch_);
         parallel_for(space_, "contact/number_turns", Turns::kShares * terms.size(),
-                     NumberTurn<VerticesOfTerm>{turns, {terms}, flags, contact.lists(), rank_.view()});
+                     NumberTurn<VerticesOfTerm, Push::kFields>{
+                         turns, {terms}, flags, contact.lists(), push.fields(), rank_.view()});
         parallel_in_turns(space_, "contact/push", turns, terms.size(),
                           PushInTurn<Push>{push, terms, moved_.view()});
     }

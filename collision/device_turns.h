@@ -21,14 +21,16 @@ public:
     bool moved();
 
 private:
-    Turns make_room(const DeviceContactEnergy& contact, int sweeps);
+    Turns make_room(const DeviceContactEnergy& contact, int sweeps, int fields);
 
     const CudaSpace& space_;
-    DeviceArray<unsigned char> flags_;       ///< [places]
-    DeviceArray<int> places_, count_, rank_; ///< see Turns
-    DeviceArray<int> served_;                ///< [vertices] see Turns
-    DeviceArray<unsigned> next_;             ///< [sweeps] see Turns
-    DeviceArray<int> moved_;                 ///< [1]
+    int vertex_count_;
+    DeviceArray<unsigned char> flags_; ///< [places]
+    DeviceArray<int> places_, count_;  ///< see Turns
+    DeviceArray<TurnRank> rank_;       ///< see Turns
+    DeviceArray<PassedVector> passed_; ///< [fields x vertices] see Turns
+    DeviceArray<unsigned> next_;       ///< [sweeps] see Turns
+    DeviceArray<int> moved_;           ///< [1]
     PinnedArray<int> moved_here_;
     DeviceScratch scratch_;
 };

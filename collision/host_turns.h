@@ -17,12 +17,11 @@ public:
     {
         bool moved = false;
         for (int done = 0; done < sweeps; ++done) {
-            int moves = 0;
-            const PushInTurn<Push> push_in_turn{push, terms, {&moves, 1}};
+            bool moves = false;
             list(terms, push);
             for (const int i : listed_)
-                push_in_turn(i, push_in_turn.prepare(i));
-            if (moves == 0)
+                moves |= push(i, push.prepare(terms[i]));
+            if (!moves)
                 break;
             moved = true;
         }

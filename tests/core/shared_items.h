@@ -10,19 +10,25 @@ namespace toile::test {
 
 /// Mixes what an item shares, and its own number: another order is another result.
 struct MixShared {
-    View<const std::array<int, Turns::kShares>> items;
-    View<double> values; ///< [shared]
+    static constexpr int kFields = 2;
 
+    View<const std::array<int, Turns::kShares>> items;
+    SharedFields<2> values; ///< [shared]
+
+    TOILE_HD SharedFields<2> fields() const { return values; }
     TOILE_HD int prepare(int item) const { return item; }
     TOILE_HD std::array<int, Turns::kShares> shared(int item) const { return items[item]; }
-    TOILE_HD void operator()(int item, int own) const
+    TOILE_HD void operator()(int item, int prepared, OwnFields<2>& own) const
     {
-        double sum = 1.0 + own;
-        for (const int at : items[item])
-            sum = at >= 0 ? 0.5 * (sum + values[at]) : sum;
-        for (const int at : items[item])
-            if (at >= 0)
-                values[at] = 0.5 * (values[at] - sum);
+        Vec3 sum(1.0 + prepared, 0.5 * prepared, 2.0);
+        for (int k = 0; k < Turns::kShares; ++k)
+            if (items[item][k] >= 0)
+                sum = 0.5 * (sum + own[0][k] - 0.25 * own[1][k]);
+        for (int k = 0; k < Turns::kShares; ++k)
+            if (items[item][k] >= 0) {
+                own[0][k] = 0.5 * (own[0][k] - sum);
+                own[1][k] = 0.5 * (own[1][k] + own[0][k]);
+            }
     }
 };
 
@@ -68,14 +74,35 @@ inline std::vector<unsigned char> some_listed(const TurnOrder& order)
     return listed;
 }
 
-/// What the listed ones make of `values`, one after the other.
+/// What the listed ones make of `values` [shared], one after the other.
 inline void mix_in_turn(const SharedItems& made, const TurnOrder& order,
-                        const std::vector<unsigned char>& listed, std::vector<double>& values)
+                        const std::vector<unsigned char>& listed, const SharedFields<2>& values)
 {
     const MixShared mix{made.items, values};
-    for (int place = 0; place < order.place_count(); ++place)
-        if (listed[place] != 0)
-            mix(order.at(place), order.at(place));
+    for (int place = 0; place < order.place_count(); ++place) {
+        if (listed[place] == 0)
+            continue;
+        const int item = order.at(place);
+        OwnFields<2> own;
+        const auto each = [&](const auto& exchange) {
+            for (int f = 0; f < 2; ++f)
+                for (int k = 0; k < Turns::kShares; ++k)
+                    if (made.items[item][k] >= 0)
+                        exchange(own[f][k], values[f][made.items[item][k]]);
+        };
+        each([](Vec3& here, const Vec3& there) { here = there; });
+        mix(item, item, own);
+        each([](const Vec3& here, Vec3& there) { there = here; });
+    }
+}
+
+/// Values that all differ.
+inline std::vector<Vec3> some_values(int count, double first)
+{
+    std::vector<Vec3> values;
+    for (int i = 0; i < count; ++i)
+        values.emplace_back(first + i, -0.25 * i, 1.0 / (i + first));
+    return values;
 }
 
 } // namespace toile::test

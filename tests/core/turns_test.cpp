@@ -54,31 +54,49 @@ TEST(NumberTurn, CountsThoseBeforeInTheOrder)
     const SharedItems made(1000, 120);
     const TurnOrder order{1000};
     const std::vector<unsigned char> listed = some_listed(order);
-    std::vector<int> places, rank(4000, -1), served(120, -1);
+    std::vector<int> places;
+    std::vector<TurnRank> rank(4000, TurnRank(-1, false));
+    std::vector<Vec3> values[] = {some_values(120, 1.0), some_values(120, 500.0)};
+    std::vector<PassedVector> passed(240, PassedVector(Vec3::Zero(), -1));
     for (int place = 0; place < order.place_count(); ++place)
         if (listed[place] != 0)
             places.push_back(place);
     std::vector<int> count{int(places.size())};
     places.resize(order.place_count());
-    const NumberTurn<SharedByItem> number{{order, places, count, rank, served, {}},
-                                          {made.items},
-                                          listed,
-                                          {made.list_of, made.first, made.entries},
-                                          rank};
+    const NumberTurn<SharedByItem, 2> number{
+        {order, places, count, rank, passed, {}}, {made.items},           listed,
+        {made.list_of, made.first, made.entries}, {values[0], values[1]}, rank};
     for (int q = 0; q < Turns::kShares * 1000; ++q)
         number(q);
     for (int shared = 0; shared < 120; ++shared) {
-        int before = 0;
-        for (int place = 0; place < order.place_count(); ++place) {
-            const int item = order.at(place);
-            for (int k = 0; listed[place] != 0 && k < Turns::kShares; ++k) {
-                if (made.items[item][k] != shared)
-                    continue;
-                EXPECT_EQ(rank[Turns::kShares * item + k], before);
-                ++before;
-            }
+        std::vector<TurnRank> in_order;
+        for (int place = 0; place < order.place_count(); ++place)
+            for (int k = 0; listed[place] != 0 && k < Turns::kShares; ++k)
+                if (const int item = order.at(place); made.items[item][k] == shared)
+                    in_order.push_back(rank[Turns::kShares * item + k]);
+        for (int before = 0; before < int(in_order.size()); ++before) {
+            EXPECT_EQ(in_order[before].before(), before);
+            EXPECT_EQ(in_order[before].is_last(), before + 1 == int(in_order.size()));
         }
-        EXPECT_EQ(served[shared], before > 0 ? 0 : -1);
+        for (int f = 0; f < 2; ++f) {
+            const PassedVector& first = passed[120 * f + shared];
+            EXPECT_EQ(first.turns(), in_order.empty() ? -1 : 0);
+            EXPECT_EQ(first.value(), in_order.empty() ? Vec3(Vec3::Zero()) : values[f][shared]);
+        }
+    }
+}
+
+/// Either word alone tells that the vector is not there yet.
+TEST(PassedVector, IsWholeOnlyWithBothWords)
+{
+    const Vec3 value(-1.0 / 3.0, 1e300, -2.5e-310);
+    const PassedVector old(Vec3(7.0, 8.0, 9.0), 41), passed(value, 42);
+    EXPECT_EQ(passed.turns(), 42);
+    EXPECT_EQ(passed.value(), value);
+    for (const int word : {0, 1}) {
+        PassedVector torn = old;
+        torn.words[word] = passed.words[word];
+        EXPECT_EQ(torn.turns(), 41);
     }
 }
 

@@ -16,50 +16,93 @@ inline constexpr int kVisitors = 8448;
 
 #ifdef __CUDACC__
 
-/// What was written before is seen by whoever sees what is written after; and the other way round.
-__device__ inline void order_memory() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
+/// Shortest time from one turn to the next at the same thing [ns].
+inline constexpr unsigned kShortestTurn = 300;
+
+/// The word as a whole, however many others read and write it.
+__device__ inline PassedVector::Word load_word(const PassedVector::Word& word)
+{
+    PassedVector::Word loaded;
+    asm volatile("{ .reg .b128 whole; ld.relaxed.gpu.global.b128 whole, [%2]; mov.b128 {%0, %1}, whole; }"
+                 : "=l"(loaded.number), "=l"(loaded.part_and_turns)
+                 : "l"(&word)
+                 : "memory");
+    return loaded;
+}
+__device__ inline void store_word(PassedVector::Word& word, const PassedVector::Word& stored)
+{
+    asm volatile(
+        "{ .reg .b128 whole; mov.b128 whole, {%1, %2}; st.relaxed.gpu.global.b128 [%0], whole; }" ::"l"(
+            &word),
+        "l"(stored.number), "l"(stored.part_and_turns)
+        : "memory");
+}
 
 /// An item's turn.
+template <int kFields>
 class Turn {
 public:
     /// @param shared  what the item shares; -1 unused
-    __device__ Turn(const Turns& turns, int item, const std::array<int, Turns::kShares>& shared)
-        : served_(turns.served.data()), shared_(shared)
+    __device__ Turn(const Turns& turns, int item, const std::array<int, Turns::kShares>& shared,
+                    const SharedFields<kFields>& fields)
+        : passed_(turns.passed.data()), fields_(fields), shared_(shared)
     {
         for (int k = 0; k < Turns::kShares; ++k)
             if (shared[k] >= 0)
-                before_[k] = turns.rank[Turns::kShares * item + k];
+                rank_[k] = turns.rank[Turns::kShares * item + k];
     }
 
-    /// Until all before it have been served; sees what they wrote.
-    __device__ void await() const
+    /// Until all before it have had theirs. @param own  out
+    __device__ void await(OwnFields<kFields>& own) const
     {
-        while (!has_come()) {
-        }
-        order_memory();
+        for (int left = look(own); left > 0; left = look(own))
+            if (left > 1)
+                __nanosleep(unsigned(left - 1) * kShortestTurn);
     }
 
-    __device__ void pass_on() const
+    __device__ void pass_on(const OwnFields<kFields>& own) const
     {
-        order_memory();
-        for (int k = 0; k < Turns::kShares; ++k)
-            if (shared_[k] >= 0)
-                *at(k) = before_[k] + 1;
+#pragma unroll
+        for (int f = 0; f < kFields; ++f)
+#pragma unroll
+            for (int k = 0; k < Turns::kShares; ++k) {
+                if (shared_[k] < 0)
+                    continue;
+                if (rank_[k].is_last()) {
+                    fields_[f][shared_[k]] = own[f][k];
+                    continue;
+                }
+                const PassedVector left(own[f][k], rank_[k].before() + 1);
+                store_word(at(f, k).words[0], left.words[0]);
+                store_word(at(f, k).words[1], left.words[1]);
+            }
     }
 
 private:
-    /// Asks for all that it shares at once.
-    __device__ bool has_come() const
+    /// Asks for all that it shares at once. @return how many turns it waits for at least
+    __device__ int look(OwnFields<kFields>& own) const
     {
         int left = 0;
-        for (int k = 0; k < Turns::kShares; ++k)
-            left |= shared_[k] >= 0 ? *at(k) ^ before_[k] : 0;
-        return left == 0;
+#pragma unroll
+        for (int f = 0; f < kFields; ++f)
+#pragma unroll
+            for (int k = 0; k < Turns::kShares; ++k) {
+                if (shared_[k] < 0)
+                    continue;
+                PassedVector passed;
+                passed.words[0] = load_word(at(f, k).words[0]);
+                passed.words[1] = load_word(at(f, k).words[1]);
+                own[f][k] = passed.value();
+                left = max(left, rank_[k].before() - passed.turns());
+            }
+        return left;
     }
-    __device__ volatile int* at(int k) const { return served_ + shared_[k]; }
+    __device__ PassedVector& at(int f, int k) const { return passed_[f * fields_[f].size() + shared_[k]]; }
 
-    int* served_;
-    std::array<int, Turns::kShares> shared_, before_;
+    PassedVector* passed_;
+    SharedFields<kFields> fields_;
+    std::array<int, Turns::kShares> shared_;
+    std::array<TurnRank, Turns::kShares> rank_;
 };
 
 /// Visits begin in order, so whoever is waited for has begun: however few threads run at once, the first of
@@ -74,21 +117,23 @@ __global__ void run_in_turns(const Turns turns, const Kernel kernel)
     unsigned* const next = turns.next.data();
     for (unsigned visit = atomicAdd(next, 1U); visit < count; visit = atomicAdd(next, 1U)) {
         const int item = turns.order.at(turns.places[int(visit)]);
-        const auto own = kernel.prepare(item);
-        const Turn turn(turns, item, kernel.shared(own));
-        turn.await();
-        kernel(item, own);
-        turn.pass_on();
+        const auto prepared = kernel.prepare(item);
+        const Turn<Kernel::kFields> turn(turns, item, kernel.shared(prepared), kernel.fields());
+        OwnFields<Kernel::kFields> own;
+        turn.await(own);
+        kernel(item, prepared, own);
+        turn.pass_on(own);
     }
 }
 
 #endif
 
-/// Launches kernel(item, kernel.prepare(item)) for all listed items in the stream's turn and returns. Each
-/// begins when those before it that share something with it are done, so that the result is that of one after
-/// the other. prepare() loads what no item changes, and kernel.shared() tells by that what the item shares
-/// with others. Counted and refused as parallel_for.
-/// @param turns  next[0] is 0, and nothing has been served
+/// Launches kernel(item, kernel.prepare(item), own) for all listed items in the stream's turn and returns.
+/// Each begins when those before it that share something with it are done, so that the result is that of one
+/// after the other. prepare() loads what no item changes, and kernel.shared() tells by that what the item
+/// shares with others. `own` has the vectors of that in each of kernel.fields(), to read and to change;
+/// nothing else that one item changes is seen by another. Counted and refused as parallel_for.
+/// @param turns  numbered (NumberTurn) with the same fields; next[0] is 0
 /// @param most   items that may be listed
 template <typename Kernel>
 void parallel_in_turns(const CudaSpace& space, std::string_view name, [[maybe_unused]] const Turns& turns,

@@ -58,7 +58,7 @@ void launch(const CudaSpace& space, const GatherCorners& kernel)
     parallel_for(space, "test/gather", kernel.gradient.size(), kernel);
 }
 
-void launch(const CudaSpace& space, const NumberTurn<SharedByItem>& kernel)
+void launch(const CudaSpace& space, const NumberTurn<SharedByItem, 2>& kernel)
 {
     parallel_for(space, "test/number_turns", Turns::kShares * kernel.turns.order.count, kernel);
 }

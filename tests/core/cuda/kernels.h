@@ -143,7 +143,7 @@ void launch(const CudaSpace& space, const WriteWild& kernel);
 void launch(const CudaSpace& space, const WriteLayout& kernel);
 void launch(const CudaSpace& space, const ProjectMembraneTriangle<Mat32>& kernel);
 void launch(const CudaSpace& space, const GatherCorners& kernel);
-void launch(const CudaSpace& space, const NumberTurn<SharedByItem>& kernel);
+void launch(const CudaSpace& space, const NumberTurn<SharedByItem, 2>& kernel);
 void launch(const CudaSpace& space, const Turns& turns, int most, const MixShared& kernel);
 
 /// The sum of numbers in a slot of the device, and read back.

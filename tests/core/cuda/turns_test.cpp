@@ -1,5 +1,3 @@
-#include <numeric>
-
 #include "core/backend/cuda/scan.h"
 #include "tests/core/cuda/kernels.h"
 #include "tests/core/cuda/on_device.h"
@@ -25,31 +23,34 @@ TEST_F(DeviceTurnsTest, AreThoseOfOneAfterTheOther)
         const SharedItems made(count, shared_count);
         const TurnOrder order{count};
         const std::vector<unsigned char> listed = some_listed(order);
-        std::vector<double> values(shared_count);
-        std::iota(values.begin(), values.end(), 1.0);
+        std::vector<Vec3> values[] = {some_values(shared_count, 1.0), some_values(shared_count, 500.0)};
 
         const auto items = uploaded(space(), made.items);
         const auto flags = uploaded(space(), listed);
         const auto list_of = uploaded(space(), made.list_of), first = uploaded(space(), made.first),
                    entries = uploaded(space(), made.entries);
-        DeviceArray<double> there = uploaded(space(), values);
+        DeviceArray<Vec3> there[] = {uploaded(space(), values[0]), uploaded(space(), values[1])};
+        const SharedFields<2> fields{there[0].view(), there[1].view()};
         DeviceArray<int> places(space(), "test/places", order.place_count()),
-            listed_count(space(), "test/count", 1), rank(space(), "test/rank", Turns::kShares * count),
-            served(space(), "test/served", shared_count);
+            listed_count(space(), "test/count", 1);
+        DeviceArray<TurnRank> rank(space(), "test/rank", Turns::kShares * count);
+        DeviceArray<PassedVector> passed(space(), "test/passed", 2 * shared_count);
         DeviceArray<unsigned> next(space(), "test/next", 1);
         next.fill_zero();
         DeviceScratch scratch(space(), "test/scratch");
         list_flagged(space(), "test/list", flags.view(), places.view(), listed_count.view(), scratch);
-        const Turns turns{order, places.view(), listed_count.view(), rank.view(), served.view(), next.view()};
-        launch(space(), NumberTurn<SharedByItem>{turns,
-                                                 {items.view()},
-                                                 flags.view(),
-                                                 {list_of.view(), first.view(), entries.view()},
-                                                 rank.view()});
-        launch(space(), turns, count, MixShared{items.view(), there.view()});
+        const Turns turns{order, places.view(), listed_count.view(), rank.view(), passed.view(), next.view()};
+        launch(space(), NumberTurn<SharedByItem, 2>{turns,
+                                                    {items.view()},
+                                                    flags.view(),
+                                                    {list_of.view(), first.view(), entries.view()},
+                                                    fields,
+                                                    rank.view()});
+        launch(space(), turns, count, MixShared{items.view(), fields});
 
-        mix_in_turn(made, order, listed, values);
-        EXPECT_EQ(there.downloaded(), values) << count;
+        mix_in_turn(made, order, listed, {values[0], values[1]});
+        EXPECT_EQ(there[0].downloaded(), values[0]) << count;
+        EXPECT_EQ(there[1].downloaded(), values[1]) << count;
     }
 }
 
