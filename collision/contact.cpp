@@ -52,6 +52,8 @@ void Contact::begin_step(const StepStart& start)
     if (between_)
         between_->begin_step(start);
     terms_->begin_step(start);
+    if (between_)
+        between_->end_search();
     terms_->make(between_.get());
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 /// Room at first: pairs of a vertex, and vertices of a sheet.
 constexpr int kPairsOfVertex = 3;
-constexpr int kVerticesOfSheet = 4;
+constexpr int kVerticesOfSheet = 16;
 
 /// Room is made for this much more than was needed [-].
 constexpr double kHeadroom = 1.25;

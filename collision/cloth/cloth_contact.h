@@ -26,9 +26,11 @@ public:
     ClothContact(const ClothContact&) = delete;
     ClothContact& operator=(const ClothContact&) = delete;
 
-    /// Finds the pairs for a step from start.x to about start.prediction; fields are borrowed during the
-    /// step.
+    /// Finds the pairs for a step from start.x to about start.prediction, or begins to; fields are borrowed
+    /// during the step.
     virtual void begin_step(const StepStart& start) = 0;
+    /// Waits for what begin_step() has begun, before anything else is asked.
+    virtual void end_search() {}
 
     /// Appends the pairs that may press in this step.
     virtual void append_pairs(std::vector<ContactPair>& out) const = 0;

@@ -57,19 +57,23 @@ void DeviceClothContact::begin_step(const StepStart& start)
     prediction_ = start.there.prediction;
     parallel_for(space_, "collision/expect", start.there.x.size(),
                  ExpectMotion{start.there.x, prediction_, deviation_.view(), motion_.view()});
-    look(start.there.x);
+    begin_search(start.there.x);
 }
 
-void DeviceClothContact::look(View<const Vec3> x)
+void DeviceClothContact::begin_search(View<const Vec3> x)
 {
     const StageScope stage("collision/near_pairs");
     has_base_ = false;
     parallel_for(space_, "collision/keep_base", x.size(), CopyPositions{x, base_.view()});
     parallel_for(space_, "collision/expect", x.size(),
                  ExpectEnd{base_.view(), motion_.view(), expected_.view()});
-    const View<const NearPair> found =
-        near_.find(base_.view(), {motion_.view(), slack_.view()}, rules().thickest());
-    safe_.begin(base_.view(), expected_.view(), slack_.view(), found);
+    near_.begin(base_.view(), {motion_.view(), slack_.view()}, rules().thickest());
+}
+
+void DeviceClothContact::end_search()
+{
+    const StageScope stage("collision/near_pairs");
+    safe_.begin(base_.view(), expected_.view(), slack_.view(), near_.end());
     list_pressing();
 }
 
@@ -156,7 +160,8 @@ void DeviceClothContact::look_on(View<const Vec3> x, bool was_held, bool goes_on
     parallel_for(space_, "collision/look_on", x.size(),
                  LookOn{x, was_held ? View<const Vec3>(wanted_.view()) : x, goes_on, rules().slack(),
                         motion_.view(), slack_.view()});
-    look(x);
+    begin_search(x);
+    end_search();
 }
 
 bool DeviceClothContact::has_slid(View<const Vec3> x)

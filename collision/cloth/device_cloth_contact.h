@@ -17,6 +17,7 @@ public:
 
     /// @param start  with `there`
     void begin_step(const StepStart& start) override;
+    void end_search() override;
     void append_pairs(std::vector<ContactPair>& out) const override;
     View<const ContactPair> pressing_there() const override { return pressing_.view(); }
     bool advance(StepField x, const Leaning& leans) override;
@@ -28,14 +29,14 @@ public:
 private:
     double limit(StepField x, const Leaning& leans);
     void copy_base();
-    void look(View<const Vec3> x);
+    void begin_search(View<const Vec3> x);
     void look_on(View<const Vec3> x, bool was_held, bool goes_on);
     void list_pressing();
     bool has_slid(View<const Vec3> x);
     FindPressing find_pressing() const;
 
     const CudaSpace& space_;
-    DeviceNearPairs near_;
+    NearPairsBeside near_;
     DeviceExemptPairs exempt_;
     DeviceSafeStep safe_;
     DeviceArray<double> half_thickness_, slack_;                      ///< [vertices] [m]

@@ -61,36 +61,40 @@ void DeviceNearPairs::make_room(long candidates, long pairs)
     }
     if (pairs > pairs_.size())
         pairs_.resize(with_headroom(pairs));
-    all_.forget();
-    around_.forget();
+    all_.asked = {};
+    around_.asked = {};
 }
 
-View<const NearPair> DeviceNearPairs::find(View<const Vec3> x, const Ways& ways, double margin)
+void DeviceNearPairs::begin(View<const Vec3> x, const Ways& ways, double margin)
 {
     if (is_worn_out_) {
         surface_.reorder(x);
         ordered_surface_ = 0.0;
         is_worn_out_ = false;
     }
-    do
-        search_again(ways.around.empty() ? all_ : around_, x, ways, margin);
-    while (!settle());
+    begun_ = {x, ways, margin};
+    search_again(ways.around.empty() ? all_ : around_);
+}
+
+View<const NearPair> DeviceNearPairs::end()
+{
+    while (!settle())
+        search_again(begun_.ways.around.empty() ? all_ : around_);
     return pairs().subview(0, numbers_[0].pairs);
 }
 
 /// A search that is asked for a second time has grown all that it needs, so it is recorded then.
-void DeviceNearPairs::search_again(Asked& last, View<const Vec3> x, const Ways& ways, double margin)
+void DeviceNearPairs::search_again(Recording& last)
 {
-    if (!last.is(x, ways, margin)) {
-        search(x, ways, margin);
-        last.x = x;
-        last.ways = ways;
-        last.margin = margin;
+    const auto search_now = [&] { search(begun_.x, begun_.ways, begun_.margin); };
+    if (!last.asked.is(begun_)) {
+        search_now();
+        last.asked = begun_;
         last.is_recorded = false;
         return;
     }
     if (!last.is_recorded)
-        last.graph.record([&] { search(x, ways, margin); });
+        last.graph.record(search_now);
     last.is_recorded = true;
     last.graph.launch();
 }

@@ -28,13 +28,20 @@ public:
     /// device as one graph.
     /// @param x, ways  on the device
     /// @throws DeviceError where the device has not the memory, or there are 2^31 candidates
-    View<const NearPair> find(View<const Vec3> x, const Ways& ways, double margin);
+    View<const NearPair> find(View<const Vec3> x, const Ways& ways, double margin)
+    {
+        begin(x, ways, margin);
+        return end();
+    }
+    /// The same in two calls: begins a search, and waits for what it finds. What was given stays as it is
+    /// until then.
+    void begin(View<const Vec3> x, const Ways& ways, double margin);
+    View<const NearPair> end();
 
     /// Copies the first pairs that find() has found into `out`, before the call returns.
     void download(View<NearPair> out) const { pairs_.download_first(out); }
 
-    /// find() in two parts, of which the first can be recorded in a graph: enqueues a search with the room
-    /// that there is.
+    /// find() for who records it in a graph: enqueues a search with the room that there is.
     void search(View<const Vec3> x, const Ways& ways, double margin);
     /// Waits. False where there was not enough room: it has grown, and the same search, recorded anew, finds
     /// all pairs.
@@ -57,35 +64,40 @@ private:
     EdgeQueries edge_queries() const;
     PairCorners corners() const { return {surface_.triangles(), surface_.edges().vertex}; }
 
-    /// What search() was asked for last, and its recording.
     struct Asked {
-        explicit Asked(const CudaSpace& space) : graph(space, "collision/device_search") {}
-        bool is(View<const Vec3> other_x, const Ways& other_ways, double other_margin) const
+        View<const Vec3> x;
+        Ways ways;
+        double margin = 0.0;
+
+        bool is(const Asked& other) const
         {
             const auto are_same = [](const auto& a, const auto& b) {
                 return a.data() == b.data() && a.size() == b.size();
             };
-            return are_same(x, other_x) && are_same(ways.motion, other_ways.motion) &&
-                   are_same(ways.slack, other_ways.slack) && are_same(ways.around, other_ways.around) &&
-                   margin == other_margin;
+            return are_same(x, other.x) && are_same(ways.motion, other.ways.motion) &&
+                   are_same(ways.slack, other.ways.slack) && are_same(ways.around, other.ways.around) &&
+                   margin == other.margin;
         }
-        void forget() { x = {}; }
+    };
 
-        View<const Vec3> x;
-        Ways ways;
-        double margin = 0.0;
+    /// What search() was asked for last, and its recording.
+    struct Recording {
+        explicit Recording(const CudaSpace& space) : graph(space, "collision/device_search") {}
+
+        Asked asked;
         bool is_recorded = false;
         CudaGraph graph;
     };
 
-    void search_again(Asked& last, View<const Vec3> x, const Ways& ways, double margin);
+    void search_again(Recording& last);
     void list_candidates();
     void make_room(long candidates, long pairs);
 
     const CudaSpace& space_;
     DeviceSurface surface_;
     DeviceArray<int> rigid_;
-    Asked all_, around_;           ///< of find(): without and with Ways::around
+    Asked begun_;                  ///< by begin()
+    Recording all_, around_;       ///< of begin(): without and with Ways::around
     double ordered_surface_ = 0.0; ///< [m^2] of the first search after the order was chosen; 0: none yet
     bool is_worn_out_ = false;
 

@@ -35,6 +35,7 @@ public:
     CudaSpace& operator=(const CudaSpace&) = delete;
 
     const CudaDevice& device() const { return device_; }
+    Checks checks() const { return checks_; }
     CUstream_st* stream() const { return stream_; }
 
     /// Waits until all that the stream was given is done. A call of stage "cuda/wait".

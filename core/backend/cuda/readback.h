@@ -7,28 +7,9 @@
 #include <vector>
 
 #include "core/backend/cuda/array.h"
+#include "core/backend/cuda/mark.h"
 
 namespace toile {
-
-/// A point of a stream, which any thread may wait for.
-class StreamMark {
-public:
-    explicit StreamMark(const CudaSpace& space);
-    ~StreamMark();
-    StreamMark(const StreamMark&) = delete;
-    StreamMark& operator=(const StreamMark&) = delete;
-
-    /// Moves it behind all that the stream has been given.
-    void set();
-
-    /// Until the stream has come there.
-    /// @throws DeviceError where the device no longer answers
-    void await() const;
-
-private:
-    const CudaSpace* space_;
-    CUevent_st* event_ = nullptr;
-};
 
 /// A copy of an array of a device on its way to the host (asynchronous readback): device and host go on
 /// meanwhile, and who needs it waits for it, on whatever thread. Like arrays it must not outlive its space.

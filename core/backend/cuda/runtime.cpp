@@ -209,6 +209,11 @@ Status wait_for(int device, CUevent_st* event)
     return on_device(device, [&] { return cudaEventSynchronize(event); });
 }
 
+Status hold_back(int device, CUstream_st* stream, CUevent_st* event)
+{
+    return on_device(device, [&] { return cudaStreamWaitEvent(stream, event); });
+}
+
 Status elapsed_ms(CUevent_st* from, CUevent_st* to, float& ms)
 {
     return answer(cudaEventElapsedTime(&ms, from, to));

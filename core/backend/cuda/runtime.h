@@ -80,6 +80,8 @@ Status make_event(int device, CUevent_st*& event);
 Status destroy(CUevent_st* event);
 Status record(int device, CUevent_st* event, CUstream_st* stream);
 Status wait_for(int device, CUevent_st* event);
+/// What the stream is given from now on waits for the event.
+Status hold_back(int device, CUstream_st* stream, CUevent_st* event);
 Status elapsed_ms(CUevent_st* from, CUevent_st* to, float& ms);
 
 } // namespace cuda

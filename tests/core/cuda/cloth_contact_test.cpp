@@ -96,6 +96,7 @@ struct Sides {
         prediction = std::make_unique<Field>(space, made.expected);
         host.begin_step({x->host(), prediction->host(), ones, fixed, ones, kDt, {}});
         there.begin_step({{}, {}, ones, fixed, ones, kDt, {x->there(), prediction->there(), {}, {}, {}}});
+        there.end_search();
     }
 
     const CudaSpace& space;
@@ -170,7 +171,7 @@ TEST_F(DeviceClothContactTest, LeavesAloneWhatTheCpuLeavesAlone)
         NearPairs near(made.triangles, made.x);
         const ExemptPairs exempt(made.x, altitude, 2e-6);
         SafeStep safe(near, exempt, {});
-        DeviceNearPairs near_there(space(), made.triangles, made.x);
+        NearPairsBeside near_there(space(), made.triangles, made.x);
         DeviceExemptPairs exempt_there(space(), exempt);
         DeviceSafeStep safe_there(space(), near_there, exempt_there, safe.least_gap(), int(made.x.size()));
 

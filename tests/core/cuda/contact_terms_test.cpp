@@ -233,6 +233,7 @@ TEST_F(DeviceContactTermsTest, AreThoseOfTheCpuFromStepToStep)
         between_there->begin_step(start);
         here.begin_step(start);
         there.begin_step(start);
+        between_there->end_search();
         here.make(between.get());
         there.make(between_there.get());
         const TermDifferences first = compare(energy.terms(), downloaded(there), made, what);

@@ -1,4 +1,4 @@
-#include "core/backend/cuda/readback.h"
+#include "core/backend/cuda/mark.h"
 
 #include "core/backend/error.h"
 
@@ -21,6 +21,11 @@ void StreamMark::await() const
     const cuda::Status status = cuda::wait_for(space_->device().index, event_);
     if (status != cuda::Status::Good)
         throw DeviceError("waiting for what " + space_->described() + " sends: " + cuda::reason_of(status));
+}
+
+void StreamMark::hold_back(const CudaSpace& other) const
+{
+    other.require(cuda::hold_back(other.device().index, other.stream(), event_), "waiting for a mark");
 }
 
 } // namespace toile
