@@ -195,6 +195,15 @@ struct ClimbFromLevel {
     int level;
     int levels; ///< to climb: at most kLevels
 
+    /// Levels that a block climbs from this one: until one cluster is left, or its own are one.
+    static int levels_from(int level, int leaf_count)
+    {
+        int levels = 0;
+        while (levels < kLevels && level_size(leaf_count, level + levels) > 1)
+            ++levels;
+        return levels;
+    }
+
     TOILE_HD int blocks_of_body() const { return level_size(moments.basis.leaf_count, level + levels); }
 
     /// What no launch changes.

@@ -61,15 +61,15 @@ std::size_t DeviceQuadrature::table_bytes() const
            (std::size_t(leaves_.size()) + transfers_.size()) * sizeof(float);
 }
 
-void DeviceQuadrature::solve(View<const Vec3> b, View<Vec3> x)
+void DeviceQuadrature::solve(Operators all, View<const Vec3> b, View<Vec3> x)
 {
     const StageScope stage("quadrature/solve");
-    gather_moments(b);
-    gather(x);
+    begin_solve(all, LoadField{b});
+    end_solve(all, StoreField{x});
 }
 
-void DeviceQuadrature::gather_moments(View<const Vec3> b) { begin_solve(LoadField{b}); }
+void DeviceQuadrature::gather_moments(View<const Vec3> b) { begin_solve({this, 1}, LoadField{b}); }
 
-void DeviceQuadrature::gather(View<Vec3> x) { end_solve(StoreField{x}); }
+void DeviceQuadrature::gather(View<Vec3> x) { end_solve({this, 1}, StoreField{x}); }
 
 } // namespace toile

@@ -9,63 +9,80 @@
 namespace toile {
 
 template <typename Source>
-void DeviceQuadrature::begin_solve(const Source& source)
+void DeviceQuadrature::begin_solve(Operators all, const Source& source)
 {
-    if (basis_.rank == rank_of(Extent::Surface))
-        climb<rank_of(Extent::Surface)>(source);
-    else
-        climb<rank_of(Extent::Volume)>(source);
-}
-
-template <int Rank, typename Source>
-void DeviceQuadrature::climb(const Source& source)
-{
-    using FromLeaves = ClimbFromLeaves<Rank, Source>;
-    using FromLevel = ClimbFromLevel<Rank>;
-    const int bodies = first_.size();
-    const MomentsOfBodies<Rank> moments{basis_, moments_.view(), moments_.size() / (bodies * Rank)};
-    const FromLeaves from_leaves{moments, nodes_.view(), first_.view(), source, sources_.view()};
-    parallel_for_blocks<FromLeaves::kThreads>(space_, "quadrature/leaf_moments",
-                                              bodies * from_leaves.blocks_of_body(), FromLeaves::kSharedBytes,
-                                              from_leaves);
-
-    // A block each for as many clusters as it has threads, until one is left.
-    for (int level = from_leaves.levels(); level_size(basis_.leaf_count, level) > 1;) {
-        int levels = 0;
-        while (1 << levels < FromLevel::kNodes && level_size(basis_.leaf_count, level + levels) > 1)
-            ++levels;
-        const FromLevel from_level{moments, level, levels};
-        parallel_for_blocks<FromLevel::kThreads>(space_, "quadrature/moments",
-                                                 bodies * from_level.blocks_of_body(),
-                                                 FromLevel::kSharedBytes, from_level);
-        level += levels;
-    }
+    climb<rank_of(Extent::Surface)>(all, source);
+    climb<rank_of(Extent::Volume)>(all, source);
 }
 
 template <typename Sink>
-void DeviceQuadrature::end_solve(const Sink& sink)
+void DeviceQuadrature::end_solve(Operators all, const Sink& sink)
 {
-    if (basis_.rank == rank_of(Extent::Surface))
-        gather_leaves<rank_of(Extent::Surface)>(sink);
-    else
-        gather_leaves<rank_of(Extent::Volume)>(sink);
+    gather_leaves<rank_of(Extent::Surface)>(all, sink);
+    gather_leaves<rank_of(Extent::Volume)>(all, sink);
+}
+
+template <int Rank>
+MomentsOfBodies<Rank> DeviceQuadrature::moments()
+{
+    return {basis_, moments_.view(), moments_.size() / (first_.size() * Rank)};
+}
+
+template <int Rank, typename Source>
+void DeviceQuadrature::climb(Operators all, const Source& source)
+{
+    using FromLeaves = ClimbFromLeaves<Rank, Source>;
+    std::vector<CountedKernel<FromLeaves>> from_leaves;
+    for (DeviceQuadrature& one : all)
+        if (one.basis_.rank == Rank) {
+            const FromLeaves kernel{one.template moments<Rank>(), one.nodes_.view(), one.first_.view(),
+                                    source, one.sources_.view()};
+            from_leaves.push_back({kernel, one.first_.size() * kernel.blocks_of_body()});
+        }
+    if (from_leaves.empty())
+        return;
+    const CudaSpace& space = all[0].space_;
+    parallel_for_blocks<FromLeaves::kThreads>(space, "quadrature/leaf_moments", from_leaves,
+                                              FromLeaves::kSharedBytes);
+
+    // A block each for as many clusters as it has threads, until one is left.
+    using FromLevel = ClimbFromLevel<Rank>;
+    for (int level = FromLeaves::kLevels;; level += FromLevel::kLevels) {
+        std::vector<CountedKernel<FromLevel>> from_level;
+        for (DeviceQuadrature& one : all)
+            if (one.basis_.rank == Rank && level_size(one.basis_.leaf_count, level) > 1) {
+                const FromLevel kernel{one.template moments<Rank>(), level,
+                                       FromLevel::levels_from(level, one.basis_.leaf_count)};
+                from_level.push_back({kernel, one.first_.size() * kernel.blocks_of_body()});
+            }
+        if (from_level.empty())
+            return;
+        parallel_for_blocks<FromLevel::kThreads>(space, "quadrature/moments", from_level,
+                                                 FromLevel::kSharedBytes);
+    }
 }
 
 template <int Rank, typename Sink>
-void DeviceQuadrature::gather_leaves(const Sink& sink)
+void DeviceQuadrature::gather_leaves(Operators all, const Sink& sink)
 {
+    using Gather = GatherLeafByTeam<Rank, Sink>;
     constexpr int kLeavesOfBlock = ClimbFromLeaves<Rank, LoadField>::kLeaves;
-    const GatherLeafByTeam<Rank, Sink> leaves{kernel_.packed.view(),
-                                              kernel_.rest.view(),
-                                              sources_.view(),
-                                              moments_.view(),
-                                              nodes_.view(),
-                                              basis_.leaf_count,
-                                              first_.view(),
-                                              basis_.leaf_count > kLeavesOfBlock,
-                                              sink};
-    constexpr int kTeam = GatherLeafByTeam<Rank, Sink>::kThreads;
-    parallel_for_teams<kTeam>(space_, "quadrature/gather", leaves.teams(kTeam), leaves);
+    std::vector<CountedKernel<Gather>> kernels;
+    for (DeviceQuadrature& one : all)
+        if (one.basis_.rank == Rank) {
+            const Gather kernel{one.kernel_.packed.view(),
+                                one.kernel_.rest.view(),
+                                one.sources_.view(),
+                                one.moments_.view(),
+                                one.nodes_.view(),
+                                one.basis_.leaf_count,
+                                one.first_.view(),
+                                one.basis_.leaf_count > kLeavesOfBlock,
+                                sink};
+            kernels.push_back({kernel, kernel.teams(Gather::kThreads)});
+        }
+    if (!kernels.empty())
+        parallel_for_teams<Gather::kThreads>(all[0].space_, "quadrature/gather", kernels);
 }
 
 } // namespace toile

@@ -31,9 +31,13 @@ public:
                      int node_count, const std::vector<int>& first = {0},
                      const PackingAccuracy& packing = {});
 
+    /// Operators of one space that are applied side by side, each to nodes of its own.
+    using Operators = View<DeviceQuadrature>;
+
     /// Enqueues x = H^-1 b, nearly, for every body; x = b, rounded, at fixed nodes.
     /// @param b, x  [nodes of all] on the device; not the same array
-    void solve(View<const Vec3> b, View<Vec3> x);
+    static void solve(Operators all, View<const Vec3> b, View<Vec3> x);
+    void solve(View<const Vec3> b, View<Vec3> x) { solve({this, 1}, b, x); }
 
     /// Its two passes, for whoever times them: moments of b, then the sums of every leaf.
     void gather_moments(View<const Vec3> b);
@@ -45,18 +49,20 @@ public:
     /// @param sink    sink(i, x) takes x at node i, called once for each; for none, mostly, where
     ///                sink.is_wanted() is false, which may not depend on the launch directly before
     template <typename Source>
-    void begin_solve(const Source& source);
+    static void begin_solve(Operators all, const Source& source);
     template <typename Sink>
-    void end_solve(const Sink& sink);
+    static void end_solve(Operators all, const Sink& sink);
 
     /// What solve() must read of the tables [bytes].
     std::size_t table_bytes() const;
 
 private:
     template <int Rank, typename Source>
-    void climb(const Source& source);
+    static void climb(Operators all, const Source& source);
     template <int Rank, typename Sink>
-    void gather_leaves(const Sink& sink);
+    static void gather_leaves(Operators all, const Sink& sink);
+    template <int Rank>
+    MomentsOfBodies<Rank> moments();
 
     const CudaSpace& space_;
     BasisView<float> basis_;

@@ -47,7 +47,7 @@ void DeviceQuadratureSolver::update(const SparseMatrix& H, View<const unsigned c
         first += size;
     }
     TOILE_ASSERT(first == H.rows());
-    std::vector<std::unique_ptr<DeviceQuadrature>> operators;
+    std::vector<DeviceQuadrature> operators;
     operators.reserve(groups.size());
     for (const Group& group : groups)
         operators.push_back(make_operator(group));
@@ -56,7 +56,7 @@ void DeviceQuadratureSolver::update(const SparseMatrix& H, View<const unsigned c
 
 /// From tables at hand, in memory or on disk, else from tables built on the device. Those are not kept: they
 /// may differ from the CPU's in last bits.
-std::unique_ptr<DeviceQuadrature> DeviceQuadratureSolver::make_operator(const Group& group) const
+DeviceQuadrature DeviceQuadratureSolver::make_operator(const Group& group) const
 {
     const Part& part = *group.part;
     const TableInput input{group.H, group.fixed, part.places, settings_};
@@ -67,7 +67,7 @@ std::unique_ptr<DeviceQuadrature> DeviceQuadratureSolver::make_operator(const Gr
     if (weights_ == Weights::Bytes)
         packing = {of_H, settings_.kernel.tolerance};
     if (const auto tables = store_->find(input, part.listener))
-        return std::make_unique<DeviceQuadrature>(space(), *tables, size, group.first, packing);
+        return {space(), *tables, size, group.first, packing};
 
     const std::shared_ptr<const QuadratureTables> tables = begin_tables(input);
     const std::shared_ptr<const SupernodalFactor> factor =
@@ -76,14 +76,12 @@ std::unique_ptr<DeviceQuadrature> DeviceQuadratureSolver::make_operator(const Gr
         build_kernel_table(space(), *factor, of_H, tables->basis, settings_.kernel, part.listener.progress);
     if (!kernel)
         throw Cancelled("building the quadrature tables was cancelled");
-    return std::make_unique<DeviceQuadrature>(space(), tables->basis, std::move(*kernel), size, group.first,
-                                              packing);
+    return {space(), tables->basis, std::move(*kernel), size, group.first, packing};
 }
 
 void DeviceQuadratureSolver::solve_there(View<const Vec3> b, View<Vec3> x) const
 {
-    for (const auto& one : operators_)
-        one->solve(b, x);
+    DeviceQuadrature::solve(operators_, b, x);
 }
 
 } // namespace toile

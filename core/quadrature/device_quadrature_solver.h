@@ -40,25 +40,23 @@ public:
     template <typename Source>
     void begin_solve(const Source& source)
     {
-        for (const auto& one : operators_)
-            one->begin_solve(source);
+        DeviceQuadrature::begin_solve(operators_, source);
     }
     template <typename Sink>
     void end_solve(const Sink& sink)
     {
-        for (const auto& one : operators_)
-            one->end_solve(sink);
+        DeviceQuadrature::end_solve(operators_, sink);
     }
 
 private:
     struct Group;
-    std::unique_ptr<DeviceQuadrature> make_operator(const Group& group) const;
+    DeviceQuadrature make_operator(const Group& group) const;
 
     std::vector<Part> parts_;
     QuadratureTables::Settings settings_;
     std::shared_ptr<TableStore> store_;
     Weights weights_;
-    std::vector<std::unique_ptr<DeviceQuadrature>> operators_; ///< of equal bodies each
+    mutable std::vector<DeviceQuadrature> operators_; ///< of equal bodies each; a solve writes what they sum
 };
 
 } // namespace toile

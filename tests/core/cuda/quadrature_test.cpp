@@ -171,5 +171,35 @@ TEST_F(DeviceQuadratureTest, SolvesEqualAndOtherBodiesWithTablesOfEitherMaker)
         }
 }
 
+/// Trees of any height, more of them than one launch takes, some of them equal.
+TEST_F(DeviceQuadratureTest, HasTheSameBitsSideBySideAndAlone)
+{
+    const Grid grid;
+    std::vector<SparseMatrix> blocks{grid.matrix(1e-1), grid.matrix(1e-4), grid.matrix(1e-1)};
+    std::vector<DeviceQuadratureSolver::Part> parts(3, {grid.places, {}});
+    for (const int columns : {1, 257, 8, 600, 9, 16, 600, 255, 300, 40}) {
+        blocks.push_back(grid_laplacian(columns, 1, 1e-2));
+        parts.push_back({grid_places(columns, 1), {}});
+    }
+    const SparseMatrix H = side_by_side(blocks);
+    std::vector<unsigned char> fixed(H.rows(), 0);
+    const std::vector<Vec3> load = random_field(int(H.rows()), 5);
+    std::vector<Vec3> found(load.size());
+    DeviceQuadratureSolver together(space(), parts, {}, std::make_shared<TableStore>());
+    together.update(H, fixed);
+    together.solve(load, found);
+
+    int first = 0;
+    for (size_t k = 0; k < parts.size(); ++k) {
+        const int count = int(parts[k].places.size());
+        DeviceQuadratureSolver alone(space(), {parts[k]}, {}, std::make_shared<TableStore>());
+        alone.update(blocks[k], View<const unsigned char>(fixed).subview(first, count));
+        std::vector<Vec3> expected(count);
+        alone.solve(View<const Vec3>(load).subview(first, count), expected);
+        EXPECT_EQ(std::vector<Vec3>(found.begin() + first, found.begin() + first + count), expected) << k;
+        first += count;
+    }
+}
+
 } // namespace
 } // namespace toile::test
