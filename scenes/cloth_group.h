@@ -40,6 +40,9 @@ public:
     /// One time step of dt [s] that ends at time t_t1 [s], obstacles already advanced to it.
     StepReport step(double dt, double t_t1, const std::vector<Obstacle>& obstacles);
 
+    /// Tells that no cloth crosses cloth as they are placed now.
+    void know_no_crossings() { may_cross_ = solids_ != nullptr; }
+
     /// Puts the vertices of one cloth elsewhere; velocities and rest shape stay.
     void place(int cloth, View<const Vec3> positions);
 

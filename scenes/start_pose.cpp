@@ -19,6 +19,21 @@ StartCloth start_of(const Scene& scene, const scene::Cloth& settings, const Scen
     return start;
 }
 
+/// Repairs where that is wanted and anything can be.
+StartReport look_and_repair(std::vector<StartCloth>& starts, const std::vector<ContactPartner>& bodies,
+                            bool may_repair)
+{
+    StartReport report;
+    {
+        const StageScope stage("scenes/start_check");
+        report = check_start(starts, bodies);
+    }
+    if (report.is_clean() || !may_repair)
+        return report;
+    const StageScope stage("scenes/start_repair");
+    return repair_start(starts, bodies);
+}
+
 } // namespace
 
 StartReport repair_start_pose(const Scene& scene, std::vector<ClothGroup>& groups,
@@ -34,19 +49,15 @@ StartReport repair_start_pose(const Scene& scene, std::vector<ClothGroup>& group
     for (const Obstacle& obstacle : obstacles)
         bodies.push_back(obstacle.partner());
 
-    StartReport report;
-    {
-        const StageScope stage("scenes/start_check");
-        report = check_start(starts, bodies);
-    }
-    if (report.is_clean() || !scene.contact.repair_start)
-        return report;
-    const StageScope stage("scenes/start_repair");
-    report = repair_start(starts, bodies);
+    const StartReport report = look_and_repair(starts, bodies, scene.contact.repair_start);
     auto start = starts.begin();
     for (ClothGroup& group : groups)
-        for (int i = 0; i < int(group.cloths().size()); ++i)
-            group.place(i, (start++)->positions);
+        for (int i = 0; i < int(group.cloths().size()); ++i, ++start)
+            if (report.was_repaired)
+                group.place(i, start->positions);
+    if (report.remaining(StartPlace::Kind::Crossing) == 0)
+        for (ClothGroup& group : groups)
+            group.know_no_crossings();
     return report;
 }
 
