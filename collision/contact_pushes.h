@@ -130,6 +130,7 @@ struct TermInTurn {
     PairShares shares{};
     double clearance = 0.0;               ///< see PushRules::clearance_of [m]
     Vec3 surface_velocity = Vec3::Zero(); ///< [m/s]
+    double left = 0.0;                    ///< depth that it is left, see PushOut [m]
 };
 
 // A push changes fields(), and over(other fields) is the same push of vertices that are there.
@@ -185,24 +186,30 @@ struct PushOut {
     TOILE_HD SharedFields<1> fields() const { return {x}; }
     TOILE_HD PushOut over(const SharedFields<1>& there) const { return {rules, most, there[0]}; }
 
-    TOILE_HD bool acts(int, const ContactTerm& term) const { return depth_of(term) > -kAlmost; }
+    TOILE_HD bool acts(int, const ContactTerm& term) const
+    {
+        return depth_of(term, left_to(term)) > -kAlmost;
+    }
 
     TOILE_HD TermInTurn prepare(const ContactTerm& term) const
     {
-        return {term, rules.shares_of_move(term.pair), rules.clearance_of(term.pair)};
+        TermInTurn own{term, rules.shares_of_move(term.pair), rules.clearance_of(term.pair)};
+        own.left = left_to(term);
+        return own;
     }
 
     TOILE_HD bool operator()(int, const TermInTurn& own) const
     {
-        const double depth = depth_of(own.term);
+        const double depth = depth_of(own.term, own.left);
         const ContactPair& pair = own.term.pair;
         return depth > 0.0 && push(pair, own.shares, std::fmin(depth, own.clearance) * pair.normal, x);
     }
 
 private:
-    TOILE_HD double depth_of(const ContactTerm& term) const
+    TOILE_HD double left_to(const ContactTerm& term) const { return std::fmin(most, term.rest_depth()); }
+    TOILE_HD double depth_of(const ContactTerm& term, double left) const
     {
-        return -term.gap(x) - term.give - std::fmin(most, term.rest_depth());
+        return -term.gap(x) - term.give - left;
     }
 };
 
