@@ -1,6 +1,6 @@
 # TOILE_CUDA: whether kernels are also compiled for NVIDIA GPUs. Sets TOILE_WITH_CUDA.
 #
-#   AUTO  where a CUDA compiler is found that works (CUDA 12 or newer), a build without otherwise
+#   AUTO  where a CUDA compiler is found that works (CUDA 12.3 or newer), a build without otherwise
 #   ON    stops with an error where there is none
 #   OFF   never
 #
@@ -33,8 +33,8 @@ function(toile_look_for_cuda)
     execute_process(COMMAND "${CMAKE_CUDA_COMPILER}" --version OUTPUT_VARIABLE banner ERROR_QUIET)
     if(NOT banner MATCHES "release ([0-9]+\\.[0-9]+)")
         set(missing "${CMAKE_CUDA_COMPILER} is not nvcc" PARENT_SCOPE)
-    elseif(CMAKE_MATCH_1 VERSION_LESS 12)
-        set(missing "${CMAKE_CUDA_COMPILER} is ${CMAKE_MATCH_1}, 12 or newer is needed" PARENT_SCOPE)
+    elseif(CMAKE_MATCH_1 VERSION_LESS 12.3)
+        set(missing "${CMAKE_CUDA_COMPILER} is ${CMAKE_MATCH_1}, 12.3 or newer is needed" PARENT_SCOPE)
     endif()
 endfunction()
 
