@@ -2,6 +2,8 @@
 
 /// Terms that push one after the other, as Turns has them.
 
+#include <array>
+
 #include "collision/contact_pushes.h"
 #include "core/backend/turns.h"
 
@@ -22,7 +24,8 @@ struct FlagActing {
     }
 };
 
-/// A push of a listed term, of vertices that are numbered as in the term.
+/// A push of a listed term on what its vertices have: own[f][k] is that of its vertex k, so that the vertices
+/// of the prepared pair are 0 to 3, or -1 where unused.
 template <typename Push>
 struct PushInTurn {
     static constexpr int kFields = Push::kFields;
@@ -32,8 +35,8 @@ struct PushInTurn {
     View<int> moved; ///< [1] becomes 1 where something moves
 
     struct Prepared {
-        TermInTurn here;
-        std::array<int, 4> vertex;
+        TermInTurn here;           ///< found with the numbers below, then numbered anew
+        std::array<int, 4> vertex; ///< in the fields
     };
 
     TOILE_HD SharedFields<kFields> fields() const { return push.fields(); }

@@ -12,6 +12,8 @@ template <typename Push>
 void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, int sweeps)
 {
     const View<const ContactTerm> terms = contact.terms();
+    for ([[maybe_unused]] const View<Vec3>& field : push.fields())
+        TOILE_ASSERT(field.size() == vertex_count_);
     Turns turns = make_room(contact, sweeps, Push::kFields);
     const View<unsigned char> flags = flags_.view().subview(0, turns.places.size());
     for (int done = 0; done < sweeps; ++done) {

@@ -28,7 +28,7 @@ private:
     DeviceArray<unsigned char> flags_; ///< [places]
     DeviceArray<int> places_, count_;  ///< see Turns
     DeviceArray<TurnRank> rank_;       ///< see Turns
-    DeviceArray<PassedVector> passed_; ///< [fields x vertices] see Turns
+    DeviceArray<TaggedVector> passed_; ///< [fields x vertices] see Turns
     DeviceArray<unsigned> next_;       ///< [sweeps] see Turns
     DeviceArray<int> moved_;           ///< [1]
     PinnedArray<int> moved_here_;

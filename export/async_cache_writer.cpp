@@ -16,7 +16,7 @@ AsyncCacheWriter::~AsyncCacheWriter() { close(); }
 void AsyncCacheWriter::write(int frame, View<const Vec3> positions)
 {
     Frame copy = take_free(frame);
-    copy.copy.assign(positions.begin(), positions.end());
+    copy.positions.assign(positions.begin(), positions.end());
     enqueue(std::move(copy));
 }
 
@@ -71,6 +71,8 @@ void AsyncCacheWriter::deliver_until_closed()
         lock.lock();
         if (error)
             error_ = error;
+        else if (!is_dropped)
+            ++delivered_;
         free_.push_back(std::move(frame));
         changed_.notify_all();
     }
@@ -80,14 +82,14 @@ void AsyncCacheWriter::deliver_until_closed()
 std::exception_ptr AsyncCacheWriter::deliver(const Frame& frame)
 {
     try {
-        target_->write(frame.index, frame.late ? frame.late() : View<const Vec3>(frame.copy));
+        target_->write(frame.index, frame.late ? frame.late() : View<const Vec3>(frame.positions));
     } catch (...) {
         return std::current_exception();
     }
     return nullptr;
 }
 
-void AsyncCacheWriter::close()
+int AsyncCacheWriter::close()
 {
     {
         const std::lock_guard lock(mutex_);
@@ -96,6 +98,7 @@ void AsyncCacheWriter::close()
     }
     if (thread_.joinable())
         thread_.join();
+    return delivered_;
 }
 
 void AsyncCacheWriter::rethrow_error() const

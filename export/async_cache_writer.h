@@ -36,20 +36,22 @@ public:
     /// Waits for the queue and finishes the target. @throws what it or an earlier write threw.
     void finish() override;
 
+    /// Waits for the queue; nothing can be written any more. @return frames that the target has taken
+    int close();
+
     std::filesystem::path partial() const override { return target_->partial(); }
 
 private:
     struct Frame {
         int index = 0;
-        LatePositions late;
-        std::vector<Vec3> copy; ///< where nothing is late
+        LatePositions late;          ///< empty: they are here
+        std::vector<Vec3> positions; ///< [vertices] [m]
     };
 
     Frame take_free(int index);
     void enqueue(Frame frame);
     void deliver_until_closed();
     std::exception_ptr deliver(const Frame& frame);
-    void close();
     void rethrow_error() const;
 
     std::unique_ptr<CacheWriter> target_;
@@ -58,6 +60,7 @@ private:
     std::deque<Frame> queue_;
     std::vector<Frame> free_; ///< buffers of delivered frames, reused
     std::exception_ptr error_;
+    int delivered_ = 0;
     bool closed_ = false;
     std::thread thread_;
 };

@@ -108,7 +108,8 @@ void ClothGroup::accelerate(double dt, double t_t1)
     }
 }
 
-/// Exactly, at the first step and then as long as there are any. A solid that crosses itself stays as it is.
+/// Exactly: at the first step unless the start is known to have none, after place(), and as long as there are
+/// any. A solid that crosses itself stays as it is.
 void ClothGroup::look_for_crossings()
 {
     const StageScope stage("scenes/find_crossings");

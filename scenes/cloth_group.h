@@ -40,7 +40,8 @@ public:
     /// One time step of dt [s] that ends at time t_t1 [s], obstacles already advanced to it.
     StepReport step(double dt, double t_t1, const std::vector<Obstacle>& obstacles);
 
-    /// Tells that no cloth crosses cloth as they are placed now.
+    /// Tells that no cloth crosses cloth as they are placed now: it need not be looked for in the first step,
+    /// unless there are solids, which it may cross.
     void know_no_crossings() { may_cross_ = solids_ != nullptr; }
 
     /// Puts the vertices of one cloth elsewhere; velocities and rest shape stay.

@@ -44,6 +44,11 @@ std::vector<OpenCache> open_caches(const Scene& scene, const World& world,
 
 void write_frame(const World& world, std::vector<OpenCache>& caches)
 {
+    if (world.device() == nullptr) {
+        for (OpenCache& cache : caches)
+            cache.writer->write(world.frame(), world.surfaces()[cache.cloth].positions);
+        return;
+    }
     const std::shared_ptr<const Snapshot> snapshot = world.snapshot();
     for (OpenCache& cache : caches)
         cache.writer->write_later(world.frame(),
@@ -72,7 +77,6 @@ std::string note_of(const StepReport& report)
 struct Outcome {
     std::string word = "complete"; ///< or "interrupted", "failed"
     std::string message;           ///< why it failed
-    int written = 0;               ///< frames that caches were given
 };
 
 /// Settles and runs to the last frame, to an interrupt, or to a failure.
@@ -83,7 +87,7 @@ void run_frames(World& world, const Scene& scene, std::vector<OpenCache>& caches
     world.settle();
     Progress progress = log.progress("frame", scene.frames);
     write_frame(world, caches);
-    progress.update(++outcome.written);
+    progress.update(1);
     while (world.frame() + 1 < scene.frames) {
         if (interrupt.requested()) {
             outcome.word = "interrupted";
@@ -99,7 +103,7 @@ void run_frames(World& world, const Scene& scene, std::vector<OpenCache>& caches
             return;
         }
         write_frame(world, caches);
-        progress.update(++outcome.written, note_of(step));
+        progress.update(world.frame() + 1, note_of(step));
     }
 }
 
@@ -119,24 +123,28 @@ Outcome run_or_stop(World& world, const Scene& scene, std::vector<OpenCache>& ca
 }
 
 /// Says where a run ended that did not get to its end, and lists the partial caches; those without a frame
-/// go.
+/// go. What a GPU that has failed did not send any more is missing in them.
 void explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>& caches, const RunLog& log)
 {
+    int most = 0;
     for (OpenCache& cache : caches) {
+        const int written = cache.writer->close();
         const std::filesystem::path partial = cache.writer->partial();
-        cache.writer.reset(); // delivers what is still queued
+        cache.writer.reset();
+        most = std::max(most, written);
         std::error_code gone_already;
-        if (outcome.written == 0)
+        if (written == 0)
             std::filesystem::remove_all(partial, gone_already);
         else
             log.file(partial);
     }
     const std::string reason = outcome.message.empty() ? "" : ": " + outcome.message;
-    if (outcome.written == 0)
+    if (most == 0)
         log.error(outcome.word + " before the first frame" + reason + "; no frame was written");
     else
-        log.error(outcome.word + " at frame " + std::to_string(last_frame) + reason +
-                  "; the frames before it are in the partial caches");
+        log.error(outcome.word + " at frame " + std::to_string(last_frame) + reason + "; " +
+                  std::to_string(most) + (most == 1 ? " frame is" : " frames are") +
+                  " in the partial caches");
 }
 
 /// One cache of each cloth, as it lies on disk.

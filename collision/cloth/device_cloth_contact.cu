@@ -21,15 +21,15 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triang
                                        View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                        View<const double> altitude)
     : ClothContact({triangles, positions, cloths, altitude}), space_(space),
-      near_(space, triangles, positions, rigid_bodies_of(cloths)),
-      exempt_(space, exempt_pairs(positions, altitude)),
-      safe_(space, near_, exempt_, rules().safe_step().gap(), positions.size()),
       half_thickness_(space, "cloth_contact/half_thickness"),
       slack_(space, "cloth_contact/slack", positions.size()),
       base_(space, "cloth_contact/base", positions.size()),
       deviation_(space, "cloth_contact/deviation", positions.size()),
       motion_(space, "cloth_contact/motion", positions.size()),
       expected_(space, "cloth_contact/expected", positions.size()), wanted_(space, "cloth_contact/wanted"),
+      near_(space, triangles, positions, rigid_bodies_of(cloths)),
+      exempt_(space, exempt_pairs(positions, altitude)),
+      safe_(space, near_, exempt_, rules().safe_step().gap(), positions.size()),
       pressing_(space, "cloth_contact/pressing"), marks_(space, "cloth_contact/marks"),
       places_(space, "cloth_contact/places"), count_(space, "cloth_contact/count", 1), sum_(space),
       scratch_(space, "cloth_contact/scratch"),
@@ -53,6 +53,7 @@ void DeviceClothContact::forget()
 void DeviceClothContact::begin_step(const StepStart& start)
 {
     TOILE_ASSERT(start.there.x.size() == slack_.size());
+    near_.abandon(); // of a step that an error has ended
     fixed_ = start.fixed;
     prediction_ = start.there.prediction;
     parallel_for(space_, "collision/expect", start.there.x.size(),

@@ -36,12 +36,12 @@ private:
     FindPressing find_pressing() const;
 
     const CudaSpace& space_;
-    NearPairsBeside near_;
-    DeviceExemptPairs exempt_;
-    DeviceSafeStep safe_;
     DeviceArray<double> half_thickness_, slack_;                      ///< [vertices] [m]
     View<const Vec3> prediction_;                                     ///< [vertices] on the device [m]
     DeviceArray<Vec3> base_, deviation_, motion_, expected_, wanted_; ///< [vertices] [m]
+    AsyncNearPairs near_;
+    DeviceExemptPairs exempt_;
+    DeviceSafeStep safe_;
     DeviceArray<ContactPair> pressing_;
     DeviceArray<unsigned char> marks_; ///< [pairs] 1: presses
     DeviceArray<int> places_;          ///< [pairs] of those that press

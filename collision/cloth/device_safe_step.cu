@@ -7,7 +7,7 @@
 
 namespace toile {
 
-DeviceSafeStep::DeviceSafeStep(const CudaSpace& space, NearPairsBeside& near, DeviceExemptPairs& exempt,
+DeviceSafeStep::DeviceSafeStep(const CudaSpace& space, AsyncNearPairs& near, DeviceExemptPairs& exempt,
                                const LeastGap& gap, int vertex_count)
     : space_(space), near_(near), exempt_(exempt), gap_(gap),
       known_motion_(space, "safe_step/known_motion", vertex_count),

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "collision/cloth/async_near_pairs.h"
 #include "collision/cloth/device_exempt_pairs.h"
-#include "collision/cloth/near_pairs_beside.h"
 #include "collision/cloth/safe_step_kernels.h"
 
 namespace toile {
@@ -14,7 +14,7 @@ public:
     /// @param space   borrowed
     /// @param near    searches for those who stray; borrowed
     /// @param exempt  borrowed
-    DeviceSafeStep(const CudaSpace& space, NearPairsBeside& near, DeviceExemptPairs& exempt,
+    DeviceSafeStep(const CudaSpace& space, AsyncNearPairs& near, DeviceExemptPairs& exempt,
                    const LeastGap& gap, int vertex_count);
 
     /// As SafeStep::begin, all on the device. Pairs are those of near.find, exempt ones among them, and
@@ -43,7 +43,7 @@ private:
     View<const BlockedPair> list_in_the_way();
 
     const CudaSpace& space_;
-    NearPairsBeside& near_;
+    AsyncNearPairs& near_;
     DeviceExemptPairs& exempt_;
     LeastGap gap_;
     View<const Vec3> base_;    ///< [vertices] [m]

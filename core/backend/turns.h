@@ -50,15 +50,15 @@ private:
 /// A vector that one turn leaves to the next on a GPU: two words that are each read and written whole, either
 /// of them with how many turns there have been. Who finds the number that it waits for in both has the vector
 /// too, and needs no fence.
-struct PassedVector {
+struct TaggedVector {
     struct alignas(16) Word {
         std::uint64_t number;         ///< x, or y
         std::uint64_t part_and_turns; ///< half of z above, the turns below
     };
     Word words[2];
 
-    PassedVector() = default;
-    TOILE_HD PassedVector(const Vec3& value, int turns)
+    TaggedVector() = default;
+    TOILE_HD TaggedVector(const Vec3& value, int turns)
     {
         const std::uint64_t z = bits_of(value[2]);
         words[0] = {bits_of(value[0]), (z & kUpper) | std::uint32_t(turns)};
@@ -118,7 +118,7 @@ struct Turns {
     View<const int> places;    ///< of listed items, ascending: the first count[0]
     View<const int> count;     ///< [1]
     View<const TurnRank> rank; ///< [kShares x items] in each thing that it shares
-    View<PassedVector> passed; ///< [fields x shared] what those left that have had their turn
+    View<TaggedVector> passed; ///< [fields x shared] what those left that have had their turn
     View<unsigned> next;       ///< [1] visits that have begun
 };
 
@@ -138,7 +138,7 @@ struct SharedLists {
 };
 
 /// Numbers the listed items in what they share, and lays out for the first of them what it begins with:
-/// thread q the q % kShares-th of item places[q / kShares].
+/// thread q the q % kShares-th of item places[q / kShares]. Out: rank, and turns.passed of what is listed.
 /// @tparam SharedBy  item -> what it shares, as Turns::kShares numbers; -1 unused
 template <typename SharedBy, int kFields>
 struct NumberTurn {
@@ -165,8 +165,10 @@ struct NumberTurn {
             (place < own ? before : after) += listed[place];
         }
         rank[entry] = TurnRank(before, after == 1); // itself
-        for (int f = 0; before == 0 && f < kFields; ++f)
-            turns.passed[f * fields[f].size() + shared] = PassedVector(fields[f][shared], 0);
+        if (before > 0)
+            return;
+        for (int f = 0; f < kFields; ++f)
+            turns.passed[f * fields[f].size() + shared] = TaggedVector(fields[f][shared], 0);
     }
 };
 

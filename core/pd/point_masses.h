@@ -40,8 +40,9 @@ public:
     virtual void set_positions(View<const Vec3> x) = 0;
     virtual void set_velocities(View<const Vec3> v) = 0;
 
-    /// Begins to bring the positions, as they are now, from the device that has them; null where the host
-    /// has.
+    /// Begins to bring the positions [vertices] [m], as they are now, from the device that has them; null
+    /// where the host has. They must not outlive that device's space.
+    /// @throws DeviceError where the device refuses
     virtual std::shared_ptr<const Readback<Vec3>> read_back_positions() { return nullptr; }
 
     /// Largest velocity of a vertex now [m/s]; NaN where one is.

@@ -1,5 +1,8 @@
 #include "core/quadrature/device_quadrature.cuh"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 namespace toile {

@@ -3,6 +3,8 @@
 /// The kernels of DeviceQuadrature around any source of right-hand sides and any sink of solutions. Included
 /// by .cu files, as parallel.cuh.
 
+#include <algorithm>
+
 #include "core/backend/cuda/teams.cuh"
 #include "core/quadrature/device_quadrature.h"
 
@@ -28,61 +30,75 @@ MomentsOfBodies<Rank> DeviceQuadrature::moments()
     return {basis_, moments_.view(), moments_.size() / (first_.size() * Rank)};
 }
 
+/// Leaves of the largest operator with that rank; 0 where none has it.
+template <int Rank>
+int DeviceQuadrature::most_leaves(Operators all)
+{
+    int most = 0;
+    for (const DeviceQuadrature& one : all)
+        if (one.basis_.rank == Rank)
+            most = std::max(most, one.basis_.leaf_count);
+    return most;
+}
+
 template <int Rank, typename Source>
 void DeviceQuadrature::climb(Operators all, const Source& source)
 {
-    using FromLeaves = ClimbFromLeaves<Rank, Source>;
-    std::vector<CountedKernel<FromLeaves>> from_leaves;
-    for (DeviceQuadrature& one : all)
-        if (one.basis_.rank == Rank) {
-            const FromLeaves kernel{one.template moments<Rank>(), one.nodes_.view(), one.first_.view(),
-                                    source, one.sources_.view()};
-            from_leaves.push_back({kernel, one.first_.size() * kernel.blocks_of_body()});
-        }
-    if (from_leaves.empty())
+    const int most_leaves = DeviceQuadrature::most_leaves<Rank>(all);
+    if (most_leaves == 0)
         return;
+    using FromLeaves = ClimbFromLeaves<Rank, Source>;
+    const auto from_leaves = [&](int k) -> CountedKernel<FromLeaves> {
+        DeviceQuadrature& one = all[k];
+        if (one.basis_.rank != Rank)
+            return {};
+        const FromLeaves kernel{one.template moments<Rank>(), one.nodes_.view(), one.first_.view(), source,
+                                one.sources_.view()};
+        return {kernel, one.first_.size() * kernel.blocks_of_body()};
+    };
     const CudaSpace& space = all[0].space_;
-    parallel_for_blocks<FromLeaves::kThreads>(space, "quadrature/leaf_moments", from_leaves,
-                                              FromLeaves::kSharedBytes);
+    parallel_for_blocks<FromLeaves::kThreads, FromLeaves>(space, "quadrature/leaf_moments", all.size(),
+                                                          from_leaves, FromLeaves::kSharedBytes);
 
     // A block each for as many clusters as it has threads, until one is left.
     using FromLevel = ClimbFromLevel<Rank>;
-    for (int level = FromLeaves::kLevels;; level += FromLevel::kLevels) {
-        std::vector<CountedKernel<FromLevel>> from_level;
-        for (DeviceQuadrature& one : all)
-            if (one.basis_.rank == Rank && level_size(one.basis_.leaf_count, level) > 1) {
-                const FromLevel kernel{one.template moments<Rank>(), level,
-                                       FromLevel::levels_from(level, one.basis_.leaf_count)};
-                from_level.push_back({kernel, one.first_.size() * kernel.blocks_of_body()});
-            }
-        if (from_level.empty())
-            return;
-        parallel_for_blocks<FromLevel::kThreads>(space, "quadrature/moments", from_level,
-                                                 FromLevel::kSharedBytes);
+    for (int level = FromLeaves::kLevels; level_size(most_leaves, level) > 1; level += FromLevel::kLevels) {
+        const auto from_level = [&](int k) -> CountedKernel<FromLevel> {
+            DeviceQuadrature& one = all[k];
+            if (one.basis_.rank != Rank || level_size(one.basis_.leaf_count, level) == 1)
+                return {};
+            const FromLevel kernel{one.template moments<Rank>(), level,
+                                   FromLevel::levels_from(level, one.basis_.leaf_count)};
+            return {kernel, one.first_.size() * kernel.blocks_of_body()};
+        };
+        parallel_for_blocks<FromLevel::kThreads, FromLevel>(space, "quadrature/moments", all.size(),
+                                                            from_level, FromLevel::kSharedBytes);
     }
 }
 
 template <int Rank, typename Sink>
 void DeviceQuadrature::gather_leaves(Operators all, const Sink& sink)
 {
+    if (most_leaves<Rank>(all) == 0)
+        return;
     using Gather = GatherLeafByTeam<Rank, Sink>;
     constexpr int kLeavesOfBlock = ClimbFromLeaves<Rank, LoadField>::kLeaves;
-    std::vector<CountedKernel<Gather>> kernels;
-    for (DeviceQuadrature& one : all)
-        if (one.basis_.rank == Rank) {
-            const Gather kernel{one.kernel_.packed.view(),
-                                one.kernel_.rest.view(),
-                                one.sources_.view(),
-                                one.moments_.view(),
-                                one.nodes_.view(),
-                                one.basis_.leaf_count,
-                                one.first_.view(),
-                                one.basis_.leaf_count > kLeavesOfBlock,
-                                sink};
-            kernels.push_back({kernel, kernel.teams(Gather::kThreads)});
-        }
-    if (!kernels.empty())
-        parallel_for_teams<Gather::kThreads>(all[0].space_, "quadrature/gather", kernels);
+    const auto gather = [&](int k) -> CountedKernel<Gather> {
+        DeviceQuadrature& one = all[k];
+        if (one.basis_.rank != Rank)
+            return {};
+        const Gather kernel{one.kernel_.packed.view(),
+                            one.kernel_.rest.view(),
+                            one.sources_.view(),
+                            one.moments_.view(),
+                            one.nodes_.view(),
+                            one.basis_.leaf_count,
+                            one.first_.view(),
+                            one.basis_.leaf_count > kLeavesOfBlock,
+                            sink};
+        return {kernel, kernel.teams(Gather::kThreads)};
+    };
+    parallel_for_teams<Gather::kThreads, Gather>(all[0].space_, "quadrature/gather", all.size(), gather);
 }
 
 } // namespace toile

@@ -62,6 +62,8 @@ private:
     template <int Rank, typename Sink>
     static void gather_leaves(Operators all, const Sink& sink);
     template <int Rank>
+    static int most_leaves(Operators all);
+    template <int Rank>
     MomentsOfBodies<Rank> moments();
 
     const CudaSpace& space_;

@@ -1,6 +1,7 @@
 #include "core/quadrature/device_quadrature_solver.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/backend/error.h"

@@ -57,7 +57,7 @@ TEST(NumberTurn, CountsThoseBeforeInTheOrder)
     std::vector<int> places;
     std::vector<TurnRank> rank(4000, TurnRank(-1, false));
     std::vector<Vec3> values[] = {some_values(120, 1.0), some_values(120, 500.0)};
-    std::vector<PassedVector> passed(240, PassedVector(Vec3::Zero(), -1));
+    std::vector<TaggedVector> passed(240, TaggedVector(Vec3::Zero(), -1));
     for (int place = 0; place < order.place_count(); ++place)
         if (listed[place] != 0)
             places.push_back(place);
@@ -79,7 +79,7 @@ TEST(NumberTurn, CountsThoseBeforeInTheOrder)
             EXPECT_EQ(in_order[before].is_last(), before + 1 == int(in_order.size()));
         }
         for (int f = 0; f < 2; ++f) {
-            const PassedVector& first = passed[120 * f + shared];
+            const TaggedVector& first = passed[120 * f + shared];
             EXPECT_EQ(first.turns(), in_order.empty() ? -1 : 0);
             EXPECT_EQ(first.value(), in_order.empty() ? Vec3(Vec3::Zero()) : values[f][shared]);
         }
@@ -87,14 +87,14 @@ TEST(NumberTurn, CountsThoseBeforeInTheOrder)
 }
 
 /// Either word alone tells that the vector is not there yet.
-TEST(PassedVector, IsWholeOnlyWithBothWords)
+TEST(TaggedVector, IsWholeOnlyWithBothWords)
 {
     const Vec3 value(-1.0 / 3.0, 1e300, -2.5e-310);
-    const PassedVector old(Vec3(7.0, 8.0, 9.0), 41), passed(value, 42);
+    const TaggedVector old(Vec3(7.0, 8.0, 9.0), 41), passed(value, 42);
     EXPECT_EQ(passed.turns(), 42);
     EXPECT_EQ(passed.value(), value);
     for (const int word : {0, 1}) {
-        PassedVector torn = old;
+        TaggedVector torn = old;
         torn.words[word] = passed.words[word];
         EXPECT_EQ(torn.turns(), 41);
     }

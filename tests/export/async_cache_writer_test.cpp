@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -66,6 +67,7 @@ TEST_F(AsyncCacheWriterTest, SurfacesWhatLatePositionsThrow)
     writer.write(0, frame_positions(0, 7));
     writer.write_later(1, []() -> View<const Vec3> { throw DeviceError("the GPU is gone"); });
     EXPECT_THROW(writer.finish(), DeviceError);
+    EXPECT_EQ(writer.close(), 1);
     EXPECT_EQ(read_cache(file("a.partial.pc2")).frame_count(), 1);
 }
 

@@ -76,7 +76,7 @@ void* CudaBuffer::allocate(std::size_t bytes) const
                                                   : cuda::allocate_pinned(device, bytes, data);
     if (status != Status::Good)
         refuse(bytes, status);
-    CudaSpace::Memory& memory = space_->memory_;
+    CudaSpace::Memory& memory = *space_->memory_;
     ++memory.allocations;
     (where_ == Where::Device ? memory.device_bytes : memory.pinned_bytes) += bytes;
 #ifdef TOILE_CHECKED
@@ -109,7 +109,7 @@ void CudaBuffer::release() noexcept
     static_cast<void>(cuda::wait_for(device, space_->stream()));
     static_cast<void>(where_ == Where::Device ? cuda::release(device, data_)
                                               : cuda::release_pinned(device, data_));
-    CudaSpace::Memory& memory = space_->memory_;
+    CudaSpace::Memory& memory = *space_->memory_;
     (where_ == Where::Device ? memory.device_bytes : memory.pinned_bytes) -= capacity_;
     data_ = nullptr;
     capacity_ = 0;

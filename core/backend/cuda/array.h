@@ -16,7 +16,8 @@ namespace toile {
 ///
 /// Memory comes from cudaMalloc, not from the stream-ordered pool: arrays grow while a run warms up and not
 /// in its steps, so the pool's speed buys nothing, and cudaMalloc refuses at once, in the call that asked.
-/// Growing or freeing waits for the stream, so a kernel under way never loses what it works on.
+/// Growing or freeing waits for the stream, so a kernel under way never loses what it works on; who lets
+/// another space work on an array waits for that first.
 class CudaBuffer {
 public:
     enum class Where { Device, Pinned };

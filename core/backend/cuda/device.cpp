@@ -48,6 +48,12 @@ CudaSpace::CudaSpace(int device, Checks checks) : device_(require_device(device)
     require(cuda::open_stream(device, stream_), "opening a stream");
 }
 
+CudaSpace::CudaSpace(const CudaSpace& other, Beside)
+    : device_(other.device_), checks_(other.checks_), memory_(other.memory_)
+{
+    require(cuda::open_stream(device_.index, stream_), "opening a stream");
+}
+
 CudaSpace::~CudaSpace()
 {
     // Nothing to be done about a device that no longer answers.

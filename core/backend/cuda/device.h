@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,17 +31,21 @@ public:
     /// @throws DeviceError in one sentence: no such device, or why there is none.
     explicit CudaSpace(int device);
     CudaSpace(int device, Checks checks);
+
+    /// Another stream of the same device, with the same checks and one count of memory.
+    struct Beside {};
+    CudaSpace(const CudaSpace& other, Beside);
     ~CudaSpace();
     CudaSpace(const CudaSpace&) = delete;
     CudaSpace& operator=(const CudaSpace&) = delete;
 
     const CudaDevice& device() const { return device_; }
-    Checks checks() const { return checks_; }
     CUstream_st* stream() const { return stream_; }
 
     /// Waits until all that the stream was given is done. A call of stage "cuda/wait".
     /// @throws DeviceError naming the kernels launched since the last wait with file and line, and what CUDA
-    ///         said, when one of them failed. The device is of no use to this process from then on.
+    ///         said, when one of them failed, or one of another space of the device. The device is of no use
+    ///         to this process from then on.
     void synchronise(CallSite where = CallSite::here()) const;
 
     /// Waits until a kernel has written `value` into `word`, which lies in a PinnedArray (report.h); what the
@@ -52,14 +57,14 @@ public:
     /// True while a CudaGraph records: what the stream is given is kept, not run.
     bool is_recording() const { return cuda::is_recording(stream_); }
 
-    /// Memory that arrays of this space have asked for since it was made. Steps after the first should leave
-    /// `allocations` as it is.
+    /// Memory that arrays of this space, and of those beside it, have asked for since it was made. Steps
+    /// after the first should leave `allocations` as it is.
     struct Memory {
         long allocations = 0;         ///< calls of the device's allocator so far
         std::size_t device_bytes = 0; ///< held now on the device [bytes]
         std::size_t pinned_bytes = 0; ///< held now on the host, unswappable [bytes]
     };
-    const Memory& memory() const { return memory_; }
+    const Memory& memory() const { return *memory_; }
 
     /// What the device has left [bytes].
     std::size_t free_memory() const;
@@ -72,7 +77,7 @@ private:
     friend class CudaBuffer;
     friend class CudaGraph;
     friend class DeviceTimer;
-    friend class StreamMark;
+    friend class StreamEvent;
     friend class CudaLaunch;
 
     struct Launch {
@@ -92,7 +97,7 @@ private:
     CudaDevice device_;
     Checks checks_;
     CUstream_st* stream_ = nullptr;
-    mutable Memory memory_;
+    std::shared_ptr<Memory> memory_ = std::make_shared<Memory>();
 
     // Kernels since the last wait: how many, and the last of them in a ring.
     mutable std::array<Launch, 4> launches_;

@@ -39,11 +39,11 @@ Status node_count(CUgraph_st*, int&) { return Status::NotBuilt; }
 Status destroy(CUgraph_st*) { return Status::NotBuilt; }
 Status destroy(CUgraphExec_st*) { return Status::NotBuilt; }
 
-Status make_event(int, CUevent_st*&) { return Status::NotBuilt; }
+Status make_event(int, EventUse, CUevent_st*&) { return Status::NotBuilt; }
 Status destroy(CUevent_st*) { return Status::NotBuilt; }
 Status record(int, CUevent_st*, CUstream_st*) { return Status::NotBuilt; }
 Status wait_for(int, CUevent_st*) { return Status::NotBuilt; }
-Status hold_back(int, CUstream_st*, CUevent_st*) { return Status::NotBuilt; }
+Status delay(int, CUstream_st*, CUevent_st*) { return Status::NotBuilt; }
 Status elapsed_ms(CUevent_st*, CUevent_st*, float&) { return Status::NotBuilt; }
 
 } // namespace toile::cuda

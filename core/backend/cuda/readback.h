@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/backend/cuda/array.h"
-#include "core/backend/cuda/mark.h"
+#include "core/backend/cuda/event.h"
 
 namespace toile {
 
@@ -24,20 +24,20 @@ public:
     {
         here_.resize(there.size());
         there.download(here_.view());
-        arrived_.set();
+        arrived_.record();
     }
 
     /// The array as it was. Waits; from any thread, and from several at once.
     /// @throws DeviceError where the device no longer answers
     View<const T> await() const
     {
-        arrived_.await();
+        arrived_.wait();
         return here_.view();
     }
 
 private:
     PinnedArray<T> here_;
-    StreamMark arrived_;
+    StreamEvent arrived_;
 };
 
 /// Readbacks, each of which is used again once nobody holds it any more.

@@ -192,9 +192,11 @@ Status node_count(CUgraph_st* graph, int& count)
 Status destroy(CUgraph_st* graph) { return answer(cudaGraphDestroy(graph)); }
 Status destroy(CUgraphExec_st* program) { return answer(cudaGraphExecDestroy(program)); }
 
-Status make_event(int device, CUevent_st*& event)
+Status make_event(int device, EventUse use, CUevent_st*& event)
 {
-    return on_device(device, [&] { return cudaEventCreate(&event); });
+    const unsigned flags =
+        use == EventUse::Timing ? cudaEventDefault : cudaEventDisableTiming | cudaEventBlockingSync;
+    return on_device(device, [&] { return cudaEventCreateWithFlags(&event, flags); });
 }
 
 Status destroy(CUevent_st* event) { return answer(cudaEventDestroy(event)); }
@@ -209,7 +211,7 @@ Status wait_for(int device, CUevent_st* event)
     return on_device(device, [&] { return cudaEventSynchronize(event); });
 }
 
-Status hold_back(int device, CUstream_st* stream, CUevent_st* event)
+Status delay(int device, CUstream_st* stream, CUevent_st* event)
 {
     return on_device(device, [&] { return cudaStreamWaitEvent(stream, event); });
 }

@@ -76,12 +76,14 @@ Status node_count(CUgraph_st* graph, int& count);
 Status destroy(CUgraph_st* graph);
 Status destroy(CUgraphExec_st* program);
 
-Status make_event(int device, CUevent_st*& event);
+/// Whether an event tells times, or is waited for by threads that leave their core meanwhile.
+enum class EventUse { Timing, Waiting };
+Status make_event(int device, EventUse use, CUevent_st*& event);
 Status destroy(CUevent_st* event);
 Status record(int device, CUevent_st* event, CUstream_st* stream);
 Status wait_for(int device, CUevent_st* event);
 /// What the stream is given from now on waits for the event.
-Status hold_back(int device, CUstream_st* stream, CUevent_st* event);
+Status delay(int device, CUstream_st* stream, CUevent_st* event);
 Status elapsed_ms(CUevent_st* from, CUevent_st* to, float& ms);
 
 } // namespace cuda

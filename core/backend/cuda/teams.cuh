@@ -5,28 +5,38 @@
 
 #include <algorithm>
 #include <string_view>
-#include <vector>
 
 #include "core/backend/cuda/parallel.cuh"
 #include "core/backend/cuda/team.h"
 
 namespace toile {
 
-/// A kernel and how many items it has.
+/// A kernel and how many items it has, none at first.
 template <typename Kernel>
 struct CountedKernel {
     Kernel kernel;
     int count = 0;
 };
 
-/// Some of a kind that one launch takes side by side.
+/// Kernels of a kind that one launch takes side by side. Room for more costs the host time in every launch.
 template <typename Kernel>
-struct KernelsBeside {
-    static constexpr int kParameterBytes = 4096 - 128;
-    static constexpr int kMost = std::min(8, kParameterBytes / int(sizeof(CountedKernel<Kernel>) + 4));
+struct KernelBatch {
+    static constexpr int kParameterBytes = 4096; ///< that a launch can take
+    static constexpr int kMost =
+        std::min(4, (kParameterBytes - 8) / int(sizeof(CountedKernel<Kernel>) + sizeof(int)));
+    static_assert(kMost >= 1, "a kernel has too many parameters to be launched");
 
     CountedKernel<Kernel> all[kMost];
     int end_block[kMost]; ///< behind the blocks of each
+    int size = 0;
+
+    int blocks() const { return size == 0 ? 0 : end_block[size - 1]; }
+    void add(const CountedKernel<Kernel>& kernel, int blocks)
+    {
+        const int before = this->blocks();
+        all[size] = kernel;
+        end_block[size++] = before + blocks;
+    }
 
     /// Number of the kernel that a block runs.
     TOILE_HD int of_block(int block) const
@@ -57,10 +67,10 @@ __global__ void run_teams(int count, const Kernel kernel)
 }
 
 template <int Threads, typename Kernel>
-__global__ void run_teams_beside(const __grid_constant__ KernelsBeside<Kernel> beside)
+__global__ void run_teams_batch(const __grid_constant__ KernelBatch<Kernel> batch)
 {
-    const int k = beside.of_block(int(blockIdx.x));
-    run_team<Threads>(int(blockIdx.x) - beside.first_block(k), beside.all[k].count, beside.all[k].kernel);
+    const int k = batch.of_block(int(blockIdx.x));
+    run_team<Threads>(int(blockIdx.x) - batch.first_block(k), batch.all[k].count, batch.all[k].kernel);
 }
 
 template <int Threads, typename Kernel>
@@ -71,34 +81,34 @@ __global__ void __launch_bounds__(Threads) run_blocks(const Kernel kernel)
 }
 
 template <int Threads, typename Kernel>
-__global__ void __launch_bounds__(Threads)
-    run_blocks_beside(const __grid_constant__ KernelsBeside<Kernel> beside)
+__global__ void __launch_bounds__(Threads) run_blocks_batch(const __grid_constant__ KernelBatch<Kernel> batch)
 {
     extern __shared__ float4 memory[];
-    const int k = beside.of_block(int(blockIdx.x));
-    run_in_turn(beside.all[k].kernel, int(blockIdx.x) - beside.first_block(k),
+    const int k = batch.of_block(int(blockIdx.x));
+    run_in_turn(batch.all[k].kernel, int(blockIdx.x) - batch.first_block(k),
                 Block<Threads>{int(threadIdx.x), memory});
 }
 
 #endif
 
-/// Calls launch(some of them, blocks) until all kernels have been launched.
+/// Calls launch(batch) with all of kernel_at(0 .. size - 1) that have items, a batch or more.
 /// @param blocks_of  items -> blocks
-template <typename Kernel, typename BlocksOf, typename Launch>
-void launch_beside(const std::vector<CountedKernel<Kernel>>& kernels, const BlocksOf& blocks_of,
-                   const Launch& launch)
+template <typename Kernel, typename KernelAt, typename BlocksOf, typename Launch>
+void launch_batches(int size, const KernelAt& kernel_at, const BlocksOf& blocks_of, const Launch& launch)
 {
-    const int count = int(kernels.size()), most = KernelsBeside<Kernel>::kMost;
-    for (int first = 0; first < count; first += most) {
-        KernelsBeside<Kernel> beside;
-        int blocks = 0;
-        for (int k = first; k < std::min(first + most, count); ++k) {
-            beside.all[k - first] = kernels[k];
-            blocks += blocks_of(kernels[k].count);
-            beside.end_block[k - first] = blocks;
+    KernelBatch<Kernel> batch;
+    for (int k = 0; k < size; ++k) {
+        const CountedKernel<Kernel> kernel = kernel_at(k);
+        if (kernel.count <= 0)
+            continue;
+        if (batch.size == KernelBatch<Kernel>::kMost) {
+            launch(batch);
+            batch.size = 0;
         }
-        launch(beside, blocks);
+        batch.add(kernel, blocks_of(kernel.count));
     }
+    if (batch.size > 0)
+        launch(batch);
 }
 
 /// Launches kernel(i, team, is_own) for i in [0, count), a team each, in the stream's turn and returns. Where
@@ -123,20 +133,21 @@ void parallel_for_teams(const CudaSpace& space, std::string_view name, int count
 
 /// The same of several kernels side by side, none of which needs what another finds: one launch, or a few
 /// where there are many.
-template <int Threads, typename Kernel>
-void parallel_for_teams(const CudaSpace& space, std::string_view name,
-                        const std::vector<CountedKernel<Kernel>>& kernels, int block = 128,
-                        CallSite where = CallSite::here())
+/// @param kernel_at  k -> CountedKernel<Kernel>, for k in [0, size)
+template <int Threads, typename Kernel, typename KernelAt>
+void parallel_for_teams(const CudaSpace& space, std::string_view name, int size, const KernelAt& kernel_at,
+                        int block = 128, CallSite where = CallSite::here())
 {
-    if (kernels.size() == 1)
-        return parallel_for_teams<Threads>(space, name, kernels[0].count, kernels[0].kernel, block, where);
-    const StageScope stage(name);
-    launch_beside(
-        kernels, [&](int count) { return block_count(count, block / Threads); },
-        [&]([[maybe_unused]] const KernelsBeside<Kernel>& beside, [[maybe_unused]] int blocks) {
+    launch_batches<Kernel>(
+        size, kernel_at, [&](int count) { return block_count(count, block / Threads); },
+        [&](const KernelBatch<Kernel>& batch) {
+            if (batch.size == 1)
+                return parallel_for_teams<Threads>(space, name, batch.all[0].count, batch.all[0].kernel,
+                                                   block, where);
+            const StageScope stage(name);
             const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-            launch_kernel(space, run_teams_beside<Threads, Kernel>, blocks, block, 0, beside);
+            launch_kernel(space, run_teams_batch<Threads, Kernel>, batch.blocks(), block, 0, batch);
 #endif
             launch.done();
         });
@@ -161,21 +172,21 @@ void parallel_for_blocks(const CudaSpace& space, std::string_view name, [[maybe_
 }
 
 /// The same of several kernels side by side, as parallel_for_teams.
-template <int Threads, typename Kernel>
-void parallel_for_blocks(const CudaSpace& space, std::string_view name,
-                         const std::vector<CountedKernel<Kernel>>& kernels, std::size_t shared_bytes,
-                         CallSite where = CallSite::here())
+template <int Threads, typename Kernel, typename KernelAt>
+void parallel_for_blocks(const CudaSpace& space, std::string_view name, int size, const KernelAt& kernel_at,
+                         std::size_t shared_bytes, CallSite where = CallSite::here())
 {
-    if (kernels.size() == 1)
-        return parallel_for_blocks<Threads>(space, name, kernels[0].count, shared_bytes, kernels[0].kernel,
-                                            where);
-    const StageScope stage(name);
-    launch_beside(
-        kernels, [](int count) { return count; },
-        [&]([[maybe_unused]] const KernelsBeside<Kernel>& beside, [[maybe_unused]] int blocks) {
+    launch_batches<Kernel>(
+        size, kernel_at, [](int count) { return count; },
+        [&](const KernelBatch<Kernel>& batch) {
+            if (batch.size == 1)
+                return parallel_for_blocks<Threads>(space, name, batch.all[0].count, shared_bytes,
+                                                    batch.all[0].kernel, where);
+            const StageScope stage(name);
             const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-            launch_kernel(space, run_blocks_beside<Threads, Kernel>, blocks, Threads, shared_bytes, beside);
+            launch_kernel(space, run_blocks_batch<Threads, Kernel>, batch.blocks(), Threads, shared_bytes,
+                          batch);
 #endif
             launch.done();
         });

@@ -4,8 +4,8 @@ namespace toile {
 
 DeviceTimer::DeviceTimer(const CudaSpace& space) : space_(&space)
 {
-    space.require(cuda::make_event(space.device().index, start_), "making a timer");
-    const cuda::Status made = cuda::make_event(space.device().index, stop_);
+    space.require(cuda::make_event(space.device().index, cuda::EventUse::Timing, start_), "making a timer");
+    const cuda::Status made = cuda::make_event(space.device().index, cuda::EventUse::Timing, stop_);
     if (made != cuda::Status::Good)
         static_cast<void>(cuda::destroy(start_));
     space.require(made, "making a timer");

@@ -16,20 +16,23 @@ inline constexpr int kVisitors = 8448;
 
 #ifdef __CUDACC__
 
-/// Shortest time from one turn to the next at the same thing [ns].
+/// Shortest time from one turn to the next at the same thing [ns]: who rests for longer sleeps through its
+/// turn, and who rests for less only asks more often.
 inline constexpr unsigned kShortestTurn = 300;
 
-/// The word as a whole, however many others read and write it.
-__device__ inline PassedVector::Word load_word(const PassedVector::Word& word)
+/// The word as a whole, however many others read and write it: one access to a number of 128 bits, where a
+/// vector of two numbers would be two (PTX ISA 8.3, "memory consistency model").
+__device__ inline TaggedVector::Word load_word(const TaggedVector::Word& word)
 {
-    PassedVector::Word loaded;
+    TaggedVector::Word loaded;
     asm volatile("{ .reg .b128 whole; ld.relaxed.gpu.global.b128 whole, [%2]; mov.b128 {%0, %1}, whole; }"
                  : "=l"(loaded.number), "=l"(loaded.part_and_turns)
                  : "l"(&word)
                  : "memory");
     return loaded;
 }
-__device__ inline void store_word(PassedVector::Word& word, const PassedVector::Word& stored)
+/// The same to write it.
+__device__ inline void store_word(TaggedVector::Word& word, const TaggedVector::Word& stored)
 {
     asm volatile(
         "{ .reg .b128 whole; mov.b128 whole, {%1, %2}; st.relaxed.gpu.global.b128 [%0], whole; }" ::"l"(
@@ -72,7 +75,7 @@ public:
                     fields_[f][shared_[k]] = own[f][k];
                     continue;
                 }
-                const PassedVector left(own[f][k], rank_[k].before() + 1);
+                const TaggedVector left(own[f][k], rank_[k].before() + 1);
                 store_word(at(f, k).words[0], left.words[0]);
                 store_word(at(f, k).words[1], left.words[1]);
             }
@@ -89,7 +92,7 @@ private:
             for (int k = 0; k < Turns::kShares; ++k) {
                 if (shared_[k] < 0)
                     continue;
-                PassedVector passed;
+                TaggedVector passed;
                 passed.words[0] = load_word(at(f, k).words[0]);
                 passed.words[1] = load_word(at(f, k).words[1]);
                 own[f][k] = passed.value();
@@ -97,9 +100,9 @@ private:
             }
         return left;
     }
-    __device__ PassedVector& at(int f, int k) const { return passed_[f * fields_[f].size() + shared_[k]]; }
+    __device__ TaggedVector& at(int f, int k) const { return passed_[f * fields_[f].size() + shared_[k]]; }
 
-    PassedVector* passed_;
+    TaggedVector* passed_;
     SharedFields<kFields> fields_;
     std::array<int, Turns::kShares> shared_;
     std::array<TurnRank, Turns::kShares> rank_;

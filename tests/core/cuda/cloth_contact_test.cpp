@@ -171,7 +171,7 @@ TEST_F(DeviceClothContactTest, LeavesAloneWhatTheCpuLeavesAlone)
         NearPairs near(made.triangles, made.x);
         const ExemptPairs exempt(made.x, altitude, 2e-6);
         SafeStep safe(near, exempt, {});
-        NearPairsBeside near_there(space(), made.triangles, made.x);
+        AsyncNearPairs near_there(space(), made.triangles, made.x);
         DeviceExemptPairs exempt_there(space(), exempt);
         DeviceSafeStep safe_there(space(), near_there, exempt_there, safe.least_gap(), int(made.x.size()));
 

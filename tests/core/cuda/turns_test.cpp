@@ -34,7 +34,7 @@ TEST_F(DeviceTurnsTest, AreThoseOfOneAfterTheOther)
         DeviceArray<int> places(space(), "test/places", order.place_count()),
             listed_count(space(), "test/count", 1);
         DeviceArray<TurnRank> rank(space(), "test/rank", Turns::kShares * count);
-        DeviceArray<PassedVector> passed(space(), "test/passed", 2 * shared_count);
+        DeviceArray<TaggedVector> passed(space(), "test/passed", 2 * shared_count);
         DeviceArray<unsigned> next(space(), "test/next", 1);
         next.fill_zero();
         DeviceScratch scratch(space(), "test/scratch");

@@ -1,19 +1,18 @@
 #pragma once
 
 #include "collision/cloth/device_near_pairs.h"
-#include "core/backend/cuda/mark.h"
+#include "core/backend/cuda/event.h"
 
 namespace toile {
 
 /// Searches for near pairs on a stream of their own: what another stream is given meanwhile runs beside them.
-class NearPairsBeside {
+class AsyncNearPairs {
 public:
     /// @param space  the other stream, borrowed
     /// @param triangles, positions, rigid  as DeviceNearPairs has them
-    NearPairsBeside(const CudaSpace& space, View<const Triangle> triangles, View<const Vec3> positions,
-                    View<const int> rigid = {})
-        : beside_(space.device().index, space.checks()), given_(space),
-          near_(beside_, triangles, positions, rigid)
+    AsyncNearPairs(const CudaSpace& space, View<const Triangle> triangles, View<const Vec3> positions,
+                   View<const int> rigid = {})
+        : beside_(space, CudaSpace::Beside{}), given_(space), near_(beside_, triangles, positions, rigid)
     {
     }
 
@@ -21,13 +20,28 @@ public:
     /// given to it from now on must leave these arrays as they are until end().
     void begin(View<const Vec3> x, const Ways& ways, double margin)
     {
-        given_.set();
-        given_.hold_back(beside_);
+        TOILE_ASSERT(!is_searching_);
+        given_.record();
+        given_.delay(beside_);
         near_.begin(x, ways, margin);
+        is_searching_ = true;
     }
 
     /// Waits for the pairs, which stay until the next search.
-    View<const NearPair> end() { return near_.end(); }
+    View<const NearPair> end()
+    {
+        TOILE_ASSERT(is_searching_);
+        is_searching_ = false;
+        return near_.end();
+    }
+
+    /// Waits for a search that was begun and that nobody ends any more; there may be none.
+    void abandon()
+    {
+        if (is_searching_)
+            beside_.synchronise();
+        is_searching_ = false;
+    }
 
     View<const NearPair> find(View<const Vec3> x, const Ways& ways, double margin)
     {
@@ -39,8 +53,9 @@ public:
 
 private:
     CudaSpace beside_;
-    StreamMark given_; ///< all that the other stream was given before a search
+    StreamEvent given_; ///< all that the other stream was given before a search
     DeviceNearPairs near_;
+    bool is_searching_ = false;
 };
 
 } // namespace toile
