@@ -49,7 +49,7 @@ StartReport repair_start_pose(const Scene& scene, std::vector<ClothGroup>& group
     for (const Obstacle& obstacle : obstacles)
         bodies.push_back(obstacle.partner());
 
-    const StartReport report = look_and_repair(starts, bodies, scene.contact.repair_start);
+    StartReport report = look_and_repair(starts, bodies, scene.contact.repair_start);
     auto start = starts.begin();
     for (ClothGroup& group : groups)
         for (int i = 0; i < int(group.cloths().size()); ++i, ++start)

@@ -100,6 +100,7 @@ inline void mix_in_turn(const SharedItems& made, const TurnOrder& order,
 inline std::vector<Vec3> some_values(int count, double first)
 {
     std::vector<Vec3> values;
+    values.reserve(count);
     for (int i = 0; i < count; ++i)
         values.emplace_back(first + i, -0.25 * i, 1.0 / (i + first));
     return values;

@@ -14,10 +14,11 @@ TEST(Snapshot, HasAllSurfacesAsTheyWere)
     const std::string cloths = R"("cloths": [
         {"name": "a", "rectangle": {"size": [0.2, 0.1], "resolution": 0.05}, "translate": [0, 1, 0]},
         {"name": "b", "rectangle": {"size": [0.1, 0.1], "resolution": 0.05}, "translate": [1, 1, 0]}])";
-    for (const std::string others :
-         {R"(, "contact": {"self": false})",
-          R"(, "solids": [{"name": "brick", "box": {"size": [0.2, 0.1, 0.06]}, "translate": [2, 1, 0]}])"}) {
-        World world(parse_scene("{\"toile\": 1, \"frames\": 9, " + cloths + others + "}", "test.json"));
+    for (const char* others :
+         {R"(, "contact": {"self": false}})",
+          R"(, "solids": [{"name": "brick", "box": {"size": [0.2, 0.1, 0.06]}, "translate": [2, 1, 0]}]})"}) {
+        World world(parse_scene(std::string(R"({"toile": 1, "frames": 9, )").append(cloths).append(others),
+                                "test.json"));
         world.advance_frame();
         const std::vector<ClothState> then(world.surfaces().begin(), world.surfaces().end());
         const std::shared_ptr<const Snapshot> snapshot = world.snapshot();
