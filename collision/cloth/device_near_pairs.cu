@@ -73,19 +73,20 @@ void DeviceNearPairs::begin(View<const Vec3> x, const Ways& ways, double margin)
         is_worn_out_ = false;
     }
     begun_ = {x, ways, margin};
-    search_again(ways.around.empty() ? all_ : around_);
+    search_begun();
 }
 
 View<const NearPair> DeviceNearPairs::end()
 {
     while (!settle())
-        search_again(begun_.ways.around.empty() ? all_ : around_);
+        search_begun();
     return pairs().subview(0, numbers_[0].pairs);
 }
 
 /// A search that is asked for a second time has grown all that it needs, so it is recorded then.
-void DeviceNearPairs::search_again(Recording& last)
+void DeviceNearPairs::search_begun()
 {
+    Recording& last = begun_.ways.around.empty() ? all_ : around_;
     const auto search_now = [&] { search(begun_.x, begun_.ways, begun_.margin); };
     if (!last.asked.is(begun_)) {
         search_now();

@@ -89,7 +89,7 @@ private:
         CudaGraph graph;
     };
 
-    void search_again(Recording& last);
+    void search_begun();
     void list_candidates();
     void make_room(long candidates, long pairs);
 

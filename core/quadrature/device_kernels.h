@@ -90,6 +90,15 @@ struct StoreField {
     TOILE_HD void operator()(int v, const PaddedVec3& value) const { x[v] = unpadded(value); }
 };
 
+/// Levels that a block climbs from this one: until one cluster is left, or so many at most.
+TOILE_HD inline int levels_to_climb(int leaf_count, int level, int most)
+{
+    int levels = 0;
+    while (levels < most && level_size(leaf_count, level + levels) > 1)
+        ++levels;
+    return levels;
+}
+
 /// First pass from the leaves up: a block sorts the right-hand side of kLeaves leaves into slots, zero where
 /// padded, takes the moments of the leaves and climbs to their common ancestor. A thread for every slot.
 /// Slots after those of the leaves have nodes that are in none, whose right-hand side is kept too.
@@ -156,13 +165,7 @@ struct ClimbFromLeaves {
                                         own.transfers);
     }
 
-    TOILE_HD int levels() const
-    {
-        int levels = 0;
-        while (levels < kLevels && level_size(moments.basis.leaf_count, levels) > 1)
-            ++levels;
-        return levels;
-    }
+    TOILE_HD int levels() const { return levels_to_climb(moments.basis.leaf_count, 0, kLevels); }
 
 private:
     template <typename Block>
@@ -194,15 +197,6 @@ struct ClimbFromLevel {
     MomentsOfBodies<Rank> moments;
     int level;
     int levels; ///< to climb: at most kLevels
-
-    /// Levels that a block climbs from this one: until one cluster is left, or its own are one.
-    static int levels_from(int level, int leaf_count)
-    {
-        int levels = 0;
-        while (levels < kLevels && level_size(leaf_count, level + levels) > 1)
-            ++levels;
-        return levels;
-    }
 
     TOILE_HD int blocks_of_body() const { return level_size(moments.basis.leaf_count, level + levels); }
 

@@ -68,7 +68,7 @@ void DeviceQuadrature::climb(Operators all, const Source& source)
             if (one.basis_.rank != Rank || level_size(one.basis_.leaf_count, level) == 1)
                 return {};
             const FromLevel kernel{one.template moments<Rank>(), level,
-                                   FromLevel::levels_from(level, one.basis_.leaf_count)};
+                                   levels_to_climb(one.basis_.leaf_count, level, FromLevel::kLevels)};
             return {kernel, one.first_.size() * kernel.blocks_of_body()};
         };
         parallel_for_blocks<FromLevel::kThreads, FromLevel>(space, "quadrature/moments", all.size(),

@@ -13,8 +13,9 @@ const std::set<std::string> kGainEnergy{"dt 1/1000 stiffness 1e+07 density 1",
                                         "dt 1/10 stiffness 1e+07 density 1", "random start stiffness 1",
                                         "ball jumps in (mesh) dt 1/10"};
 
-/// Cloth that a ball leaves in a step of 1/10 s gains energy in some runs and not in others that differ in
-/// their last bits, and so with compiler and processor (docs/benchmarks/README.md): its bound [-].
+/// Cloth that a ball leaves in a step of 1/10 s gains energy, by the factor, in some runs and not in others
+/// that differ in their last bits, and so with compiler and processor (docs/benchmarks/README.md): its bound
+/// [-].
 const std::string kLeaves = "ball jumps away dt 1/10";
 constexpr double kLeavingGain = 1.5;
 
@@ -49,13 +50,14 @@ class StressBy : public testing::TestWithParam<scene::SolverMethod> {};
 TEST_P(StressBy, LeavesClothFiniteWithoutNewEnergyAndAtRest)
 {
     const Limits limits;
+    const bool is_by_factor = GetParam() == scene::SolverMethod::Auto; // so few vertices stay with it
     for (const Result& result : run_quick_cases(GetParam())) {
         SCOPED_TRACE(result.name);
         EXPECT_TRUE(result.is_finite);
         EXPECT_LT(result.drift, result.name == kSettles ? kSettling : limits.drift);
         if (!kGainEnergy.contains(result.name)) {
             EXPECT_LT(result.energy_ratio,
-                      1.0 + (result.name == kLeaves ? kLeavingGain : limits.energy_gain));
+                      1.0 + (is_by_factor && result.name == kLeaves ? kLeavingGain : limits.energy_gain));
         }
         EXPECT_LT(result.final_speed, kUnfold.contains(result.name) ? kUnfolding : kCreep);
     }

@@ -65,20 +65,15 @@ public:
 
     __device__ void pass_on(const OwnFields<kFields>& own) const
     {
-#pragma unroll
-        for (int f = 0; f < kFields; ++f)
-#pragma unroll
-            for (int k = 0; k < Turns::kShares; ++k) {
-                if (shared_[k] < 0)
-                    continue;
-                if (rank_[k].is_last()) {
-                    fields_[f][shared_[k]] = own[f][k];
-                    continue;
-                }
-                const TaggedVector left(own[f][k], rank_[k].before() + 1);
-                store_word(at(f, k).words[0], left.words[0]);
-                store_word(at(f, k).words[1], left.words[1]);
+        for_each_shared([&](int f, int k) {
+            if (rank_[k].is_last()) {
+                fields_[f][shared_[k]] = own[f][k];
+                return;
             }
+            const TaggedVector left(own[f][k], rank_[k].before() + 1);
+            store_word(at(f, k).words[0], left.words[0]);
+            store_word(at(f, k).words[1], left.words[1]);
+        });
     }
 
 private:
@@ -86,19 +81,26 @@ private:
     __device__ int look(OwnFields<kFields>& own) const
     {
         int left = 0;
+        for_each_shared([&](int f, int k) {
+            TaggedVector passed;
+            passed.words[0] = load_word(at(f, k).words[0]);
+            passed.words[1] = load_word(at(f, k).words[1]);
+            own[f][k] = passed.value();
+            left = max(left, rank_[k].before() - passed.turns());
+        });
+        return left;
+    }
+
+    /// Calls act(f, k) for field f of the k-th that it shares.
+    template <typename Act>
+    __device__ void for_each_shared(const Act& act) const
+    {
 #pragma unroll
         for (int f = 0; f < kFields; ++f)
 #pragma unroll
-            for (int k = 0; k < Turns::kShares; ++k) {
-                if (shared_[k] < 0)
-                    continue;
-                TaggedVector passed;
-                passed.words[0] = load_word(at(f, k).words[0]);
-                passed.words[1] = load_word(at(f, k).words[1]);
-                own[f][k] = passed.value();
-                left = max(left, rank_[k].before() - passed.turns());
-            }
-        return left;
+            for (int k = 0; k < Turns::kShares; ++k)
+                if (shared_[k] >= 0)
+                    act(f, k);
     }
     __device__ TaggedVector& at(int f, int k) const { return passed_[f * fields_[f].size() + shared_[k]]; }
 
