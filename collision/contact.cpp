@@ -79,13 +79,13 @@ void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
 bool Contact::make_feasible(StepField x) const
 {
     terms_->see(x);
-    return terms_->push_to_rest(kGuessSweeps);
+    return terms_->push_to_rest(kGuessSweeps, false);
 }
 
-bool Contact::sweep_once(StepField x) const
+bool Contact::sweep_once(StepField x, bool goes_on) const
 {
     terms_->see(x);
-    return terms_->push_to_rest(1);
+    return terms_->push_to_rest(1, goes_on);
 }
 
 bool Contact::revise(StepField x, bool is_settled)

@@ -44,7 +44,7 @@ public:
     void begin_step(const StepStart& start) override;
     bool may_act() const override { return !terms_->empty(); }
     bool make_feasible(StepField x) const override;
-    bool sweep_once(StepField x) const override;
+    bool sweep_once(StepField x, bool goes_on) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;

@@ -116,12 +116,13 @@ double DeviceContactTerms::deepest()
     return std::max(0.0, -height.value);
 }
 
-bool DeviceContactTerms::push_to_rest(int sweeps)
+bool DeviceContactTerms::push_to_rest(int sweeps, bool goes_on)
 {
     if (empty())
         return false;
     const View<double> force = first_items(push_force_, energy_.terms().size());
-    push_force_.fill_zero();
+    if (!goes_on)
+        push_force_.fill_zero();
     turns_.sweep(energy_, PushToRest{push_rules_, force, x_.change_there()}, sweeps);
     return turns_.moved();
 }

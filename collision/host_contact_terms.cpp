@@ -149,9 +149,10 @@ double HostContactTerms::deepest()
     return depth;
 }
 
-bool HostContactTerms::push_to_rest(int sweeps)
+bool HostContactTerms::push_to_rest(int sweeps, bool goes_on)
 {
-    push_force_.assign(energy_.terms().size(), 0.0);
+    if (!goes_on)
+        push_force_.assign(energy_.terms().size(), 0.0);
     return turns_.sweep(energy_.terms(), PushToRest{push_rules_, push_force_, seen_.change_on_host()},
                         sweeps);
 }

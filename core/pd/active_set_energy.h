@@ -41,7 +41,9 @@ public:
     virtual bool make_feasible(StepField x) const = 0;
 
     /// A single sweep of that, for who sweeps over other constraints in between.
-    virtual bool sweep_once(StepField x) const = 0;
+    /// @param goes_on  after another one: from the forces that it has left, so that what presses from two
+    ///                 sides comes to share the room instead of taking all of it in turns
+    virtual bool sweep_once(StepField x, bool goes_on) const = 0;
 
     /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) const = 0;

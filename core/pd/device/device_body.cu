@@ -1,6 +1,7 @@
 #include "core/pd/device/device_body.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/backend/cuda/parallel.cuh"
 #include "core/backend/error.h"
@@ -137,7 +138,9 @@ void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* ac
         return;
     std::function<bool()> clear_contacts;
     if (active)
-        clear_contacts = [&] { return active->sweep_once(x_t1_); };
+        clear_contacts = [&, goes_on = false]() mutable {
+            return active->sweep_once(x_t1_, std::exchange(goes_on, true));
+        };
     parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyPositions{x_t1_.there(), found_.view()});
     limits.project(x_t1_.change_there(), inverse_masses_.view(), clear_contacts);
     parallel_for(space_, "pd/projected", x_.size(),
