@@ -199,6 +199,18 @@ TEST(Contact, ClearsASliverByItsOwnMeasureOnly)
     EXPECT_LE(x[0].y(), start[0].y() + 2.6e-4);
 }
 
+TEST(Contact, GoesOnFromTheForcesOfTheSweepBefore)
+{
+    RisingPlate scene;
+    std::vector<Vec3> x = scene.start; // the plate has passed it
+    EXPECT_TRUE(scene.contact.sweep_once(x, false));
+    const std::vector<Vec3> rest = x;
+    scene.contact.sweep_once(x, true);
+    EXPECT_NEAR(x[0].y(), rest[0].y(), 1e-12) << "it rests already";
+    EXPECT_TRUE(scene.contact.sweep_once(x, false));
+    EXPECT_GT(x[0].y(), rest[0].y() + 1e-5) << "as if nothing had pushed it there";
+}
+
 TEST(Contact, FollowsATurningShapeByThePointItStartedFrom)
 {
     const Eigen::Isometry3d quarter(Eigen::AngleAxisd(1.5707963267948966, Vec3::UnitY()));

@@ -289,6 +289,11 @@ TEST_F(DeviceContactTermsTest, MoveClothAsOnTheCpu)
         there.clear(board.found, board.v);
         expect_same_field(x, board.found.host(), 1e-8);
         expect_same_field(v, board.v.host(), 1e-5);
+        for (const bool goes_on : {false, true, true}) {
+            here.sweep_once(x, goes_on);
+            there.sweep_once(board.found, goes_on);
+            expect_same_field(x, board.found.host(), 1e-8);
+        }
         here.end_step(x);
         there.end_step(board.found);
         EXPECT_GT(here.active_count(), 10);
