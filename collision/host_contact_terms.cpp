@@ -149,10 +149,13 @@ double HostContactTerms::deepest()
     return depth;
 }
 
-bool HostContactTerms::push_to_rest(int sweeps, bool goes_on)
+bool HostContactTerms::push_to_rest(int sweeps, FirstForces first)
 {
-    if (!goes_on)
+    if (first != FirstForces::kLast)
         push_force_.assign(energy_.terms().size(), 0.0);
+    const TakePressing take{energy_.terms(), x_, push_force_};
+    for (int i = 0; first == FirstForces::kPressing && i < take.terms.size(); ++i)
+        take(i);
     return turns_.sweep(energy_.terms(), PushToRest{push_rules_, push_force_, seen_.change_on_host()},
                         sweeps);
 }
