@@ -82,7 +82,7 @@ private:
     double dt_ = 0.0;                       ///< of this step [s]
     std::unique_ptr<ClothContact> between_; ///< cloth and cloth; null where that is switched off
     ContactEnergy energy_;                  ///< without terms where they are on a GPU
-    bool has_rigid_; ///< among the cloths are surfaces of rigid bodies
+    bool has_rigid_;                        ///< among the cloths are surfaces of rigid bodies
     std::unique_ptr<ContactTerms> terms_;
     bool has_cleared_ = false; ///< in this step: friction remembers the minimiser's pairs, these are new
     int active_count_ = 0;

@@ -145,7 +145,7 @@ enum class FirstForces {
 /// What term i presses with at x, for FirstForces::kPressing.
 struct TakePressing {
     View<const ContactTerm> terms;
-    View<const Vec3> x;  ///< [vertices] [m]
+    View<const Vec3> x; ///< [vertices] [m]
     View<double> force; ///< [terms] out [N]
 
     TOILE_HD void operator()(int i) const

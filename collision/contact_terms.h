@@ -62,9 +62,9 @@ public:
     virtual double deepest() = 0;
 
     /// Moves cloth by contact alone, term by term (contact_pushes.h): positions to where contact would take
-    /// them before a minimisation (PushToRest), true where something moved; positions out of what they are in by more than `most` [m] (PushOut);
-    /// velocities [m/s] that go into surfaces (StopAtSurface); and both as rigid contact with friction changes
-    /// them (Rub).
+    /// them before a minimisation (PushToRest), true where something moved; positions out of what they are in
+    /// by more than `most` [m] (PushOut); velocities [m/s] that go into surfaces (StopAtSurface); and both as
+    /// rigid contact with friction changes them (Rub).
     virtual bool push_to_rest(int sweeps, FirstForces first) = 0;
     virtual void push_out(double most) = 0;
     virtual void stop_at_surfaces(StepField v) = 0;
