@@ -18,14 +18,13 @@ constexpr double kWornOut = 2.5;
 Candidates::Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions)
     : triangles_(triangles), edges_(edges), points_(positions.size())
 {
-    set_points(positions, {}, 0.0);
+    place(positions, {}, 0.0);
     rebuild();
 }
 
-void Candidates::update(View<const Vec3> x, const Ways& ways, double margin)
+void Candidates::update(View<const unsigned char> around)
 {
-    around_ = ways.around;
-    set_points(x, ways, margin);
+    around_ = around;
     refit();
     if (tree_.surface(box_margin_) > kWornOut * built_surface_)
         rebuild();
@@ -33,7 +32,7 @@ void Candidates::update(View<const Vec3> x, const Ways& ways, double margin)
 }
 
 /// Positions in single precision around the middle of all, motions without the one common to all.
-void Candidates::set_points(View<const Vec3> x, const Ways& ways, double margin)
+void Candidates::place(View<const Vec3> x, const Ways& ways, double margin)
 {
     if (x.empty())
         return;

@@ -15,8 +15,12 @@ public:
     /// Builds the tree. triangles and edges must outlive this.
     Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions);
 
-    /// New boxes, and a new tree where the old one is worn out. See NearPairs::find.
-    void update(View<const Vec3> x, const Ways& ways, double margin);
+    /// Where vertices are and go. See NearPairs::find.
+    void place(View<const Vec3> x, const Ways& ways, double margin);
+
+    /// New boxes there, and a new tree where the old one is worn out: for visit().
+    /// @param around  [vertices] as Ways::around
+    void update(View<const unsigned char> around);
 
     /// Some vertex moves otherwise than the others.
     bool is_moving() const { return is_moving_; }
@@ -24,8 +28,15 @@ public:
     /// Parts of the search that may run at the same time; their number does not depend on the threads.
     int task_count() const { return int(tasks_.size()); }
 
+    /// Whether these two are candidates.
+    template <typename A, typename B>
+    bool overlap(const A& a, const B& b) const
+    {
+        return box_of(a).overlaps(box_of(b));
+    }
+
     /// Calls try_edges(e, f) and try_triangle(v, t) for the task's candidates, primitives with common
-    /// vertices among them; only for those with a vertex of Ways::around, where that says so. Over all tasks
+    /// vertices among them; only for those with a vertex of `around`, where that says so. Over all tasks
     /// each pair comes at most once.
     template <typename TryEdges, typename TryTriangle>
     void visit(int task, const TryEdges& try_edges, const TryTriangle& try_triangle) const
@@ -39,7 +50,6 @@ public:
     }
 
 private:
-    void set_points(View<const Vec3> x, const Ways& ways, double margin);
     Box box_of(const std::array<int, 1>& v) const { return box_around(box_margin_, points_[v[0]]); }
     Box box_of(const std::array<int, 2>& v) const
     {

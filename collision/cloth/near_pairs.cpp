@@ -1,13 +1,31 @@
 #include "collision/cloth/near_pairs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "collision/cloth/candidates.h"
+#include "collision/cloth/kept_pairs.h"
 #include "collision/cloth/ordered_records.h"
 #include "collision/cloth/pair_rules.h"
 #include "core/backend/parallel.h"
 
 namespace toile {
+
+namespace {
+
+/// Kept pairs that a task looks at.
+constexpr int kPairsOfTask = 4096;
+
+/// [m]; 0 without edges.
+double mean_length(const SurfaceEdges& edges, View<const Vec3> x)
+{
+    double sum = 0.0;
+    for (const auto& [a, b] : edges.vertex)
+        sum += (x[b] - x[a]).norm();
+    return edges.edge_count() > 0 ? sum / edges.edge_count() : 0.0;
+}
+
+} // namespace
 
 class NearPairs::Search {
 public:
@@ -23,21 +41,31 @@ private:
         std::vector<Record> vertex_triangle, edge_edge;
     };
 
-    void search();
+    void keep();
+    void search(View<const unsigned char> around, View<const unsigned char> strays);
+    void look_at_kept();
+    void look_at_kept(View<const KeptPairs::Pair> kept, bool is_edge_edge);
+    View<Found> begin_tasks(int count);
+    void order();
     void report(std::vector<NearPair>& out);
+    std::vector<KeptPairs::Pair> with_distances(const OrderedRecords& records, bool is_edge_edge) const;
     void try_edges(int e, int f, Found& found) const;
     void try_triangle(int v, int t, Found& found) const;
 
     PairCorners corners() const { return {triangles_, edges_.vertex}; }
     bool is_wanted(const std::array<int, 4>& v) const
     {
-        const View<const unsigned char>& around = ways_.around;
-        return around.empty() || around[v[0]] || around[v[1]] || around[v[2]] || around[v[3]];
+        return is_any(ways_.around, v) && is_any(strays_, v);
+    }
+    static bool is_any(View<const unsigned char> marks, const std::array<int, 4>& v)
+    {
+        return marks.empty() || marks[v[0]] || marks[v[1]] || marks[v[2]] || marks[v[3]];
     }
     bool are_in_one_body(int a, int b) const
     {
         return !rigid_.empty() && rigid_[a] >= 0 && rigid_[a] == rigid_[b];
     }
+    bool are_candidates(const Record& record, bool is_edge_edge) const;
     bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const
     {
         return MayMeet{x_, ways_, margin_, candidates_.is_moving()}(v, is_edge_edge);
@@ -47,21 +75,25 @@ private:
     std::vector<int> rigid_; ///< [vertices], or empty
     SurfaceEdges edges_;
     Candidates candidates_;
+    KeptPairs kept_;
 
     // The arguments of find.
     View<const Vec3> x_;
     Ways ways_;
     double margin_ = 0.0;
+    View<const unsigned char> strays_; ///< [vertices] a search wants pairs with one of these; empty: any
 
     // Memory kept between searches.
-    std::vector<Found> found_;
+    std::vector<Found> found_; ///< by task
+    int task_count_ = 0;       ///< of them that belong to this search
     OrderedRecords vertex_triangle_, edge_edge_;
 };
 
 NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> positions,
                           std::vector<int> rigid)
     : triangles_(triangle_list.begin(), triangle_list.end()), rigid_(std::move(rigid)),
-      edges_(build_surface_edges(triangle_list, positions.size())), candidates_(triangles_, edges_, positions)
+      edges_(build_surface_edges(triangle_list, positions.size())),
+      candidates_(triangles_, edges_, positions), kept_(mean_length(edges_, positions))
 {
 }
 
@@ -86,40 +118,129 @@ void NearPairs::Search::try_triangle(int p, int t, Found& found) const
 
 void NearPairs::Search::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {
+    const KeptPairs::Plan plan = kept_.plan(x, ways, margin);
     x_ = x;
     ways_ = ways;
     margin_ = margin;
-    candidates_.update(x, ways, margin);
-    search();
+    if (plan == KeptPairs::Plan::kKeep)
+        keep();
+    candidates_.place(x, ways, margin);
+    task_count_ = 0;
+    if (plan == KeptPairs::Plan::kSearch)
+        search(ways.around, {});
+    else
+        look_at_kept();
+    order();
     report(out);
 }
 
-/// Numbers of the pairs, task by task.
-void NearPairs::Search::search()
+/// Searches wide, for pairs as they are.
+void NearPairs::Search::keep()
 {
-    found_.resize(std::max(found_.size(), size_t(candidates_.task_count())));
-    for (Found& found : found_) {
+    const StageScope stage("collision/keep_pairs");
+    const Ways ways = std::exchange(ways_, {});
+    const double margin = std::exchange(margin_, kept_.wide(margin_));
+    candidates_.place(x_, ways_, margin_);
+    task_count_ = 0;
+    search({}, {});
+    order();
+    kept_.keep(x_, ways, margin, with_distances(vertex_triangle_, false), with_distances(edge_edge_, true));
+    ways_ = ways;
+    margin_ = margin;
+}
+
+/// Those that kept_ is asked to keep.
+std::vector<KeptPairs::Pair> NearPairs::Search::with_distances(const OrderedRecords& records,
+                                                               bool is_edge_edge) const
+{
+    std::vector<KeptPairs::Pair> pairs(records.size());
+    parallel_for(kCpu, "collision/kept_distances", records.size(), [&](int i) {
+        const std::array<Vec3, 4> at =
+            corners_of(corners()(records[i].first, records[i].second, is_edge_edge), x_);
+        pairs[i] = {records[i], closest_difference(closest_weights(is_edge_edge, at), at).norm()};
+    });
+    return pairs;
+}
+
+/// What as many more tasks find, which is nothing yet.
+View<NearPairs::Search::Found> NearPairs::Search::begin_tasks(int count)
+{
+    const int first = std::exchange(task_count_, task_count_ + count);
+    found_.resize(std::max(found_.size(), size_t(task_count_)));
+    const View<Found> begun = View<Found>(found_).subview(first, count);
+    for (Found& found : begun) {
         found.vertex_triangle.clear();
         found.edge_edge.clear();
     }
+    return begun;
+}
+
+/// Numbers of the pairs, task by task.
+/// @param around, strays  [vertices] only pairs with one of these, and with one of those; empty: any
+void NearPairs::Search::search(View<const unsigned char> around, View<const unsigned char> strays)
+{
+    strays_ = strays;
+    candidates_.update(around);
+    const View<Found> found = begin_tasks(candidates_.task_count());
     parallel_for(
-        kCpu, "collision/cloth_pairs", candidates_.task_count(),
+        kCpu, "collision/cloth_pairs", found.size(),
         [&](int task) {
-            Found& found = found_[task];
             candidates_.visit(
-                task, [&](int e, int f) { try_edges(e, f, found); },
-                [&](int v, int t) { try_triangle(v, t, found); });
+                task, [&](int e, int f) { try_edges(e, f, found[task]); },
+                [&](int v, int t) { try_triangle(v, t, found[task]); });
         },
         1);
 }
 
-/// The pairs in order, and what there is to know about each.
+/// The same of what is kept, and a search around strays alone.
+void NearPairs::Search::look_at_kept()
+{
+    const StageScope stage("collision/kept_pairs");
+    strays_ = {};
+    look_at_kept(kept_.vertex_triangle(), false);
+    look_at_kept(kept_.edge_edge(), true);
+    if (kept_.has_strays())
+        search(ways_.around.empty() ? kept_.strays() : ways_.around, kept_.strays());
+}
+
+void NearPairs::Search::look_at_kept(View<const KeptPairs::Pair> kept, bool is_edge_edge)
+{
+    const View<Found> found = begin_tasks((kept.size() + kPairsOfTask - 1) / kPairsOfTask);
+    parallel_for(
+        kCpu, "collision/look_at_kept", found.size(),
+        [&](int task) {
+            std::vector<Record>& records = is_edge_edge ? found[task].edge_edge : found[task].vertex_triangle;
+            const int end = std::min(kept.size(), (task + 1) * kPairsOfTask);
+            for (int i = task * kPairsOfTask; i < end; ++i) {
+                const Record& record = kept[i].record;
+                const std::array<int, 4> v = corners()(record.first, record.second, is_edge_edge);
+                if (is_wanted(v) && kept_.may_meet(kept[i], v, is_edge_edge, margin_) &&
+                    are_candidates(record, is_edge_edge) && may_meet(v, is_edge_edge))
+                    records.push_back(record);
+            }
+        },
+        1);
+}
+
+bool NearPairs::Search::are_candidates(const Record& record, bool is_edge_edge) const
+{
+    const auto [first, second] = record;
+    return is_edge_edge ? candidates_.overlap(edges_.vertex[first], edges_.vertex[second])
+                        : candidates_.overlap(std::array<int, 1>{first}, triangles_[second]);
+}
+
+void NearPairs::Search::order()
+{
+    const View<const Found> all = View<const Found>(found_).subview(0, task_count_);
+    vertex_triangle_.order(x_.size(), all,
+                           [](const Found& found) { return View<const Record>(found.vertex_triangle); });
+    edge_edge_.order(edges_.edge_count(), all,
+                     [](const Found& found) { return View<const Record>(found.edge_edge); });
+}
+
+/// What there is to know about each pair.
 void NearPairs::Search::report(std::vector<NearPair>& out)
 {
-    vertex_triangle_.order(x_.size(), found_,
-                           [](const Found& found) { return View<const Record>(found.vertex_triangle); });
-    edge_edge_.order(edges_.edge_count(), found_,
-                     [](const Found& found) { return View<const Record>(found.edge_edge); });
     const int triangle_count = vertex_triangle_.size();
     const int count = triangle_count + edge_edge_.size();
     out.resize(count);

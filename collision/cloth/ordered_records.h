@@ -18,7 +18,7 @@ public:
     /// @param firsts      Record::first lies in [0, firsts)
     /// @param records_of  View<const Record> of one task
     template <typename Task, typename RecordsOf>
-    void order(int firsts, const std::vector<Task>& tasks, const RecordsOf& records_of)
+    void order(int firsts, View<const Task> tasks, const RecordsOf& records_of)
     {
         // Counting sort by the first: most have no record, few have many.
         begin_.assign(size_t(firsts) + 1, 0);

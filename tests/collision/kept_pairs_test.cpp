@@ -1,0 +1,157 @@
+#include "collision/cloth/kept_pairs.h"
+
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "collision/cloth/near_pairs.h"
+#include "core/backend/stages.h"
+#include "tests/collision/soups.h"
+
+namespace toile {
+namespace {
+
+using test::folded_sheet;
+using test::Random;
+using test::Soup;
+
+constexpr double kMargin = 1e-3, kEdge = 0.01;
+
+/// What one that has found nothing before finds, which searches. Counts nothing.
+std::vector<NearPair> find_anew(const Soup& soup, const Ways& ways, double margin)
+{
+    Stages aside;
+    const Stages::Activate activate(aside);
+    std::vector<NearPair> pairs;
+    NearPairs(soup.triangles, soup.x).find(soup.x, ways, margin, pairs);
+    return pairs;
+}
+
+void expect_same_bits(const std::vector<NearPair>& a, const std::vector<NearPair>& b)
+{
+    ASSERT_EQ(a.size(), b.size());
+    int different = 0;
+    for (size_t i = 0; i < a.size(); ++i)
+        different +=
+            std::tie(a[i].vertex, a[i].weight, a[i].distance, a[i].first, a[i].second, a[i].is_edge_edge,
+                     a[i].is_facing) != std::tie(b[i].vertex, b[i].weight, b[i].distance, b[i].first,
+                                                 b[i].second, b[i].is_edge_edge, b[i].is_facing) ||
+            a[i].normal != b[i].normal;
+    EXPECT_EQ(different, 0);
+}
+
+/// Layers that move by little beside what all do, some vertices by more.
+class KeptPairsOfLayers : public testing::Test {
+protected:
+    KeptPairsOfLayers()
+        : soup_(folded_sheet(random_)), near_(soup_.triangles, soup_.x), marks_(soup_.x.size(), 0)
+    {
+        soup_.stand_still();
+    }
+
+    /// @param usual  [m] most that a vertex comes and goes
+    /// @param strays  [-] share of vertices that do so by up to an edge
+    void move(double usual, double strays)
+    {
+        const Vec3 all = 0.1 * random_.point(), all_go = 0.1 * random_.point();
+        for (size_t v = 0; v < soup_.x.size(); ++v) {
+            const double most = random_.uniform(0, 1) < strays ? kEdge : usual;
+            soup_.x[v] += all + most * random_.uniform(0, 1) * random_.point();
+            soup_.motion[v] = all_go + most * random_.uniform(0, 1) * random_.point();
+            soup_.slack[v] = random_.below(3) == 0 ? usual * random_.uniform(0, 1) : 0.0;
+            marks_[v] = (unsigned char)(random_.below(10) == 0);
+        }
+    }
+
+    void expect_all(const Ways& ways, double margin)
+    {
+        near_.find(soup_.x, ways, margin, found_);
+        expect_same_bits(found_, find_anew(soup_, ways, margin));
+        count_ += found_.size();
+    }
+
+    Random random_{31};
+    Soup soup_;
+    NearPairs near_;
+    std::vector<unsigned char> marks_;
+    std::vector<NearPair> found_;
+    size_t count_ = 0;
+    Stages stages_;
+    Stages::Activate activate_{stages_};
+};
+
+TEST_F(KeptPairsOfLayers, AreThoseOfASearch)
+{
+    for (const double usual : {1e-5, 1e-4, 5e-4})
+        for (int i = 0; i < 20; ++i) {
+            move(usual, i % 4 == 3 ? 0.05 : 0.0);
+            expect_all(soup_.ways(), kMargin);
+            expect_all({soup_.motion, soup_.slack, marks_}, 0.5 * kMargin);
+            expect_all({{}, {}, marks_}, 0.0);
+        }
+    EXPECT_GT(count_, 50000u);
+    EXPECT_GT(stages_.calls("collision/kept_pairs"), 60);
+    EXPECT_GT(stages_.calls("collision/keep_pairs"), 2);
+}
+
+TEST_F(KeptPairsOfLayers, NeedNoSearchWhereNothingStrays)
+{
+    for (int i = 0; i < 2; ++i) // the first search, and the one that finds cloth still
+        expect_all(soup_.ways(), kMargin);
+    EXPECT_EQ(stages_.calls("collision/keep_pairs"), 1);
+    for (int i = 0; i < 5; ++i) {
+        move(1e-5, 0.0);
+        stages_.clear();
+        near_.find(soup_.x, soup_.ways(), kMargin, found_);
+        near_.find(soup_.x, {soup_.motion, soup_.slack, marks_}, kMargin, found_);
+        EXPECT_EQ(stages_.calls("collision/kept_pairs"), 2);
+        EXPECT_EQ(stages_.calls("collision/cloth_pairs"), 0);
+        EXPECT_EQ(stages_.calls("collision/cloth_refit"), 0);
+    }
+}
+
+TEST_F(KeptPairsOfLayers, AreNotKeptWhereClothMovesFast)
+{
+    for (int i = 0; i < 10; ++i) {
+        move(kEdge, 0.0);
+        expect_all(soup_.ways(), kMargin);
+    }
+    EXPECT_EQ(stages_.calls("collision/keep_pairs"), 0);
+    EXPECT_EQ(stages_.calls("collision/kept_pairs"), 0);
+}
+
+TEST_F(KeptPairsOfLayers, AreKeptAnewWhenClothHasGoneOn)
+{
+    for (int i = 0; i < 60; ++i) {
+        for (Vec3& x : soup_.x)
+            x.y() += 0.01 * x.x(); // turns
+        expect_all(soup_.ways(), kMargin);
+    }
+    EXPECT_GT(stages_.calls("collision/keep_pairs"), 2);
+    EXPECT_LT(stages_.calls("collision/cloth_pairs"), 20) << "each list serves several";
+}
+
+/// Corners of a triangle and the vertex above it: one corner has come by all that a side may spend, another
+/// is to go by as much. Neither is too much by itself.
+TEST(KeptPairs, HaveStraysWhereASideSpendsTooMuchInAll)
+{
+    const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0.3, 0.1, 0.3)};
+    constexpr double kWide = 0.1;
+    KeptPairs kept(1.0);
+    const double reach = 0.5 * (kept.wide(kWide) - kWide);
+    ASSERT_GT(reach, 0.1);
+    kept.plan(x, {}, kWide);
+    kept.keep(x, {}, kWide, {{{3, 0}, 0.1}}, {});
+    EXPECT_FALSE(kept.has_strays());
+
+    std::vector<Vec3> here = x, motion(4, Vec3::Zero());
+    here[0].y() += 0.8 * reach;
+    here[1].y() -= 0.8 * reach;
+    motion[2].y() = 0.8 * reach;
+    motion[3].y() = -0.8 * reach;
+    kept.plan(here, {motion, {}}, kWide);
+    EXPECT_TRUE(kept.has_strays());
+}
+
+} // namespace
+} // namespace toile
