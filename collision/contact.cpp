@@ -92,7 +92,7 @@ bool Contact::make_feasible(StepField x) const
 bool Contact::sweep_once(StepField x, bool goes_on) const
 {
     terms_->see(x);
-    const FirstForces with_rigid = goes_on ? FirstForces::kLast : FirstForces::kPressing;
+    const FirstForces with_rigid = goes_on ? FirstForces::kLast : FirstForces::kAsPressed;
     return terms_->push_to_rest(1, has_rigid_ ? with_rigid : FirstForces::kNone);
 }
 

@@ -137,12 +137,12 @@ struct TermInTurn {
 
 /// Forces that the first of some sweeps of PushToRest begins with.
 enum class FirstForces {
-    kNone,     ///< x is where cloth would go without contact
-    kPressing, ///< it is at rest in contact
-    kLast,     ///< those that the last sweep has left
+    kNone,      ///< x is where cloth would go without contact
+    kAsPressed, ///< it is at rest in contact
+    kLast,      ///< those that the last sweep has left
 };
 
-/// What term i presses with at x, for FirstForces::kPressing.
+/// What term i presses with at x, for FirstForces::kAsPressed.
 struct TakePressing {
     View<const ContactTerm> terms;
     View<const Vec3> x; ///< [vertices] [m]

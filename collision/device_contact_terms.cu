@@ -123,7 +123,7 @@ bool DeviceContactTerms::push_to_rest(int sweeps, FirstForces first)
     const View<double> force = first_items(push_force_, energy_.terms().size());
     if (first == FirstForces::kNone)
         push_force_.fill_zero();
-    else if (first == FirstForces::kPressing)
+    else if (first == FirstForces::kAsPressed)
         parallel_for(space_, "contact/take_pressing", force.size(),
                      TakePressing{energy_.terms(), x_.there(), force});
     turns_.sweep(energy_, PushToRest{push_rules_, force, x_.change_there()}, sweeps);

@@ -154,7 +154,7 @@ bool HostContactTerms::push_to_rest(int sweeps, FirstForces first)
     if (first != FirstForces::kLast)
         push_force_.assign(energy_.terms().size(), 0.0);
     const TakePressing take{energy_.terms(), x_, push_force_};
-    for (int i = 0; first == FirstForces::kPressing && i < take.terms.size(); ++i)
+    for (int i = 0; first == FirstForces::kAsPressed && i < take.terms.size(); ++i)
         take(i);
     return turns_.sweep(energy_.terms(), PushToRest{push_rules_, push_force_, seen_.change_on_host()},
                         sweeps);

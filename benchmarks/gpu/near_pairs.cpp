@@ -70,7 +70,7 @@ NearSearch measure(const CudaSpace& space, const Folded& sheet, const std::vecto
     search.vertices = int(sheet.x.size());
     search.triangles = int(sheet.triangles.size());
     std::vector<NearPair> expected;
-    NearPairs cpu(sheet.triangles, order_pose);
+    NearPairs cpu(sheet.triangles, order_pose, {}, NearPairs::Keeping::kNothing);
     search.cpu_us = 1e3 * best_ms(kCpuSeconds, [&] { cpu.find(sheet.x, {motion}, kMargin, expected); });
 
     DeviceArray<Vec3> positions(space, "benchmarks/x"), motions(space, "benchmarks/motion");

@@ -19,7 +19,7 @@ struct NearSearch {
     double records_us = 0.0;   ///< [us] candidates sorted and tested, pairs reported
     double total_us = 0.0;     ///< [us] all of it
     double find_us = 0.0;      ///< [us] the same launched one by one, until the host knows the number
-    double cpu_us = 0.0;       ///< [us] NearPairs::find on all threads of the CPU
+    double cpu_us = 0.0;       ///< [us] NearPairs::find on all threads of the CPU, searching
     int different = 0;         ///< pairs whose numbers or flag are not those of the CPU
 };
 

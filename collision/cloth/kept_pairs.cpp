@@ -16,10 +16,10 @@ namespace {
 constexpr double kReachOfEdge = 0.25, kReachOfMargin = 8.0;
 
 /// Searches that a list must serve to be worth the wide search that it takes.
-constexpr int kWorthwhile = 3;
+constexpr int kWorthwhile = 4;
 
 /// Share of vertices [-] that may be strays: their pairs take a search of their own.
-constexpr double kMostStrays = 0.125;
+constexpr double kMostStrays = 0.03;
 
 /// Farther apart by this than asked for, a pair is refused whatever rounding does to its distance [m].
 constexpr double kRounding = 1e-9;

@@ -29,7 +29,8 @@ double mean_length(const SurfaceEdges& edges, View<const Vec3> x)
 
 class NearPairs::Search {
 public:
-    Search(View<const Triangle> triangle_list, View<const Vec3> positions, std::vector<int> rigid);
+    Search(View<const Triangle> triangle_list, View<const Vec3> positions, std::vector<int> rigid,
+           Keeping keeping);
 
     void find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out);
     const SurfaceEdges& edges() const { return edges_; }
@@ -75,6 +76,7 @@ private:
     std::vector<int> rigid_; ///< [vertices], or empty
     SurfaceEdges edges_;
     Candidates candidates_;
+    Keeping keeping_;
     KeptPairs kept_;
 
     // The arguments of find.
@@ -90,10 +92,10 @@ private:
 };
 
 NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> positions,
-                          std::vector<int> rigid)
+                          std::vector<int> rigid, Keeping keeping)
     : triangles_(triangle_list.begin(), triangle_list.end()), rigid_(std::move(rigid)),
       edges_(build_surface_edges(triangle_list, positions.size())),
-      candidates_(triangles_, edges_, positions), kept_(mean_length(edges_, positions))
+      candidates_(triangles_, edges_, positions), keeping_(keeping), kept_(mean_length(edges_, positions))
 {
 }
 
@@ -118,15 +120,16 @@ void NearPairs::Search::try_triangle(int p, int t, Found& found) const
 
 void NearPairs::Search::find(View<const Vec3> x, const Ways& ways, double margin, std::vector<NearPair>& out)
 {
-    const KeptPairs::Plan plan = kept_.plan(x, ways, margin);
+    using Plan = KeptPairs::Plan;
+    const Plan plan = keeping_ == Keeping::kPairs ? kept_.plan(x, ways, margin) : Plan::kSearch;
     x_ = x;
     ways_ = ways;
     margin_ = margin;
-    if (plan == KeptPairs::Plan::kKeep)
+    if (plan == Plan::kKeep)
         keep();
     candidates_.place(x, ways, margin);
     task_count_ = 0;
-    if (plan == KeptPairs::Plan::kSearch)
+    if (plan == Plan::kSearch)
         search(ways.around, {});
     else
         look_at_kept();
@@ -251,8 +254,9 @@ void NearPairs::Search::report(std::vector<NearPair>& out)
     });
 }
 
-NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid)
-    : search_(std::make_unique<Search>(triangles, positions, std::move(rigid)))
+NearPairs::NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid,
+                     Keeping keeping)
+    : search_(std::make_unique<Search>(triangles, positions, std::move(rigid), keeping))
 {
 }
 NearPairs::~NearPairs() = default;

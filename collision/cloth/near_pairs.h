@@ -41,14 +41,20 @@ struct NearPair {
 /// - two edges: closest inside both, not parallel, and both stand out: the direction between them leads into
 ///   no face beside either, and off one of them or over a border. Flat sheets meet with their vertices.
 /// docs/collision/cloth.md draws them.
+///
+/// While cloth stays about where it was, pairs that a wide search has found are asked instead of the tree
+/// (KeptPairs). What find() gives is the same, to the bit.
 class NearPairs {
 public:
+    enum class Keeping { kPairs, kNothing }; ///< kNothing: each find() searches, to measure that
+
     /// Builds edges and tree. O(n log n).
     /// @param triangles  [triangles x 3] indices into positions; any list: collapsed, non-manifold
     /// @param positions  [vertices x 3] [m] the first pose
     /// @param rigid      [vertices] number of the rigid body, -1 for none: no pairs within one body. Empty:
     ///                   none at all
-    NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {});
+    NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {},
+              Keeping keeping = Keeping::kPairs);
     ~NearPairs();
     NearPairs(NearPairs&&) noexcept;
     NearPairs& operator=(NearPairs&&) noexcept;

@@ -218,15 +218,17 @@ TEST(Contact, GoesOnFromTheForcesOfTheSweepBeforeWhereSomethingRigidMayPress)
         const double pressed = scene.rise + 0.5 * kGap;
         x[0].y() = pressed;
         contact.sweep_once(x, false);
-        if (has_rigid)
+        if (has_rigid) {
             EXPECT_NEAR(x[0].y(), pressed, 1e-12) << "it rests already";
-        else
+        } else {
             EXPECT_GT(x[0].y(), pressed + 1e-5) << "as if nothing had pushed it there";
+        }
         x[0].y() = pressed - 1e-4; // others press
         contact.sweep_once(x, true);
         EXPECT_GT(x[0].y(), pressed - 1e-4 + 1e-5);
-        if (has_rigid)
+        if (has_rigid) {
             EXPECT_LT(x[0].y(), pressed) << "it shares";
+        }
     }
 }
 

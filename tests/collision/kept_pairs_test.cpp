@@ -84,7 +84,7 @@ TEST_F(KeptPairsOfLayers, AreThoseOfASearch)
 {
     for (const double usual : {1e-5, 1e-4, 5e-4})
         for (int i = 0; i < 20; ++i) {
-            move(usual, i % 4 == 3 ? 0.05 : 0.0);
+            move(usual, i % 4 == 3 ? 0.01 : 0.0);
             expect_all(soup_.ways(), kMargin);
             expect_all({soup_.motion, soup_.slack, marks_}, 0.5 * kMargin);
             expect_all({{}, {}, marks_}, 0.0);

@@ -189,7 +189,7 @@ protected:
     {
         here.see(x);
         there.see(board.found);
-        for (const FirstForces first : {FirstForces::kNone, FirstForces::kLast, FirstForces::kPressing}) {
+        for (const FirstForces first : {FirstForces::kNone, FirstForces::kLast, FirstForces::kAsPressed}) {
             EXPECT_EQ(here.push_to_rest(1, first), there.push_to_rest(1, first));
             expect_same_field(x, board.found.host(), 1e-8);
         }
