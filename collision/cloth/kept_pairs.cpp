@@ -96,7 +96,7 @@ void KeptPairs::measure(View<const Vec3> x, const Ways& ways)
     const Vec3 common_motion = mean(ways.motion);
     const Vec3 common = mean(x) - mean(base_);
     excursions_.resize(n);
-    parallel_for(kCpu, "collision/excursions", n, [&](int v) {
+    parallel_for(kCpu, "collision/cloth_excursions", n, [&](int v) {
         Excursion& own = excursions_[v];
         own.come = (x[v] - base_[v] - common).norm();
         own.goes = ways.motion.empty() ? 0.0 : (ways.motion[v] - common_motion).norm();

@@ -140,7 +140,7 @@ void NearPairs::Search::find(View<const Vec3> x, const Ways& ways, double margin
 /// Searches wide, for pairs as they are.
 void NearPairs::Search::keep()
 {
-    const StageScope stage("collision/keep_pairs");
+    const StageScope stage("collision/cloth_keep");
     const Ways ways = std::exchange(ways_, {});
     const double margin = std::exchange(margin_, kept_.wide(margin_));
     candidates_.place(x_, ways_, margin_);
@@ -157,7 +157,7 @@ std::vector<KeptPairs::Pair> NearPairs::Search::with_distances(const OrderedReco
                                                                bool is_edge_edge) const
 {
     std::vector<KeptPairs::Pair> pairs(records.size());
-    parallel_for(kCpu, "collision/kept_distances", records.size(), [&](int i) {
+    parallel_for(kCpu, "collision/cloth_kept_distances", records.size(), [&](int i) {
         const std::array<Vec3, 4> at =
             corners_of(corners()(records[i].first, records[i].second, is_edge_edge), x_);
         pairs[i] = {records[i], closest_difference(closest_weights(is_edge_edge, at), at).norm()};
@@ -198,7 +198,7 @@ void NearPairs::Search::search(View<const unsigned char> around, View<const unsi
 /// The same of what is kept, and a search around strays alone.
 void NearPairs::Search::look_at_kept()
 {
-    const StageScope stage("collision/kept_pairs");
+    const StageScope stage("collision/cloth_kept");
     strays_ = {};
     look_at_kept(kept_.vertex_triangle(), false);
     look_at_kept(kept_.edge_edge(), true);
@@ -210,7 +210,7 @@ void NearPairs::Search::look_at_kept(View<const KeptPairs::Pair> kept, bool is_e
 {
     const View<Found> found = begin_tasks((kept.size() + kPairsOfTask - 1) / kPairsOfTask);
     parallel_for(
-        kCpu, "collision/look_at_kept", found.size(),
+        kCpu, "collision/cloth_ask_kept", found.size(),
         [&](int task) {
             std::vector<Record>& records = is_edge_edge ? found[task].edge_edge : found[task].vertex_triangle;
             const int end = std::min(kept.size(), (task + 1) * kPairsOfTask);

@@ -90,21 +90,21 @@ TEST_F(KeptPairsOfLayers, AreThoseOfASearch)
             expect_all({{}, {}, marks_}, 0.0);
         }
     EXPECT_GT(count_, 50000u);
-    EXPECT_GT(stages_.calls("collision/kept_pairs"), 60);
-    EXPECT_GT(stages_.calls("collision/keep_pairs"), 2);
+    EXPECT_GT(stages_.calls("collision/cloth_kept"), 60);
+    EXPECT_GT(stages_.calls("collision/cloth_keep"), 2);
 }
 
 TEST_F(KeptPairsOfLayers, NeedNoSearchWhereNothingStrays)
 {
     for (int i = 0; i < 2; ++i) // the first search, and the one that finds cloth still
         expect_all(soup_.ways(), kMargin);
-    EXPECT_EQ(stages_.calls("collision/keep_pairs"), 1);
+    EXPECT_EQ(stages_.calls("collision/cloth_keep"), 1);
     for (int i = 0; i < 5; ++i) {
         move(1e-5, 0.0);
         stages_.clear();
         near_.find(soup_.x, soup_.ways(), kMargin, found_);
         near_.find(soup_.x, {soup_.motion, soup_.slack, marks_}, kMargin, found_);
-        EXPECT_EQ(stages_.calls("collision/kept_pairs"), 2);
+        EXPECT_EQ(stages_.calls("collision/cloth_kept"), 2);
         EXPECT_EQ(stages_.calls("collision/cloth_pairs"), 0);
         EXPECT_EQ(stages_.calls("collision/cloth_refit"), 0);
     }
@@ -116,8 +116,8 @@ TEST_F(KeptPairsOfLayers, AreNotKeptWhereClothMovesFast)
         move(kEdge, 0.0);
         expect_all(soup_.ways(), kMargin);
     }
-    EXPECT_EQ(stages_.calls("collision/keep_pairs"), 0);
-    EXPECT_EQ(stages_.calls("collision/kept_pairs"), 0);
+    EXPECT_EQ(stages_.calls("collision/cloth_keep"), 0);
+    EXPECT_EQ(stages_.calls("collision/cloth_kept"), 0);
 }
 
 TEST_F(KeptPairsOfLayers, AreKeptAnewWhenClothHasGoneOn)
@@ -127,7 +127,7 @@ TEST_F(KeptPairsOfLayers, AreKeptAnewWhenClothHasGoneOn)
             x.y() += 0.01 * x.x(); // turns
         expect_all(soup_.ways(), kMargin);
     }
-    EXPECT_GT(stages_.calls("collision/keep_pairs"), 2);
+    EXPECT_GT(stages_.calls("collision/cloth_keep"), 2);
     EXPECT_LT(stages_.calls("collision/cloth_pairs"), 20) << "each list serves several";
 }
 
