@@ -21,6 +21,10 @@ constexpr int kWorthwhile = 4;
 /// Share of vertices [-] that may be strays: their pairs take a search of their own.
 constexpr double kMostStrays = 0.03;
 
+/// Pairs a vertex [-] that take as long to look at as to search for, and for how many searches it is not
+/// tried again where there were more: in deep stacks.
+constexpr int kMostPairs = 32, kPause = 64;
+
 /// Farther apart by this than asked for, a pair is refused whatever rounding does to its distance [m].
 constexpr double kRounding = 1e-9;
 
@@ -60,8 +64,9 @@ KeptPairs::Plan KeptPairs::plan(View<const Vec3> x, const Ways& ways, double mar
         return Plan::kSearch;
     const bool is_calm =
         has_list ? uses_ >= kWorthwhile : are_few(mark_strays(0.5 * (wide(margin) - margin) / kWorthwhile));
-    if (is_calm)
+    if (is_calm && pause_ == 0)
         return Plan::kKeep;
+    pause_ = std::max(0, pause_ - 1);
     begin_at(x);
     return Plan::kSearch;
 }
@@ -78,6 +83,8 @@ void KeptPairs::keep(View<const Vec3> x, const Ways& ways, double margin, std::v
     complete_to_ = wide(margin);
     vertex_triangle_ = std::move(vertex_triangle);
     edge_edge_ = std::move(edge_edge);
+    if (vertex_triangle_.size() + edge_edge_.size() > size_t(kMostPairs) * size_t(x.size()))
+        pause_ = kPause;
     measure(x, ways);
     mark_strays(0.5 * (complete_to_ - margin));
 }

@@ -72,6 +72,7 @@ private:
     std::vector<Vec3> base_;   ///< [vertices] the pose of the list, or without one of the last search [m]
     double complete_to_ = 0.0; ///< [m] distance that the list is complete to; 0: there is none
     int uses_ = 0;             ///< searches for all pairs that the list has served
+    int pause_ = 0;            ///< searches for all pairs before another list is tried
     std::vector<Pair> vertex_triangle_, edge_edge_; ///< in order
 
     std::vector<Excursion> excursions_; ///< [vertices]
