@@ -1,7 +1,7 @@
 #include "collision/cloth/kept_pairs.h"
 
 #include <algorithm>
-#include <utility>
+#include <limits>
 
 #include "collision/cloth/pair_geometry.h"
 #include "core/backend/parallel.h"
@@ -48,27 +48,39 @@ void KeptPairs::Excursion::add(const Excursion& other)
 
 KeptPairs::Plan KeptPairs::plan(View<const Vec3> x, const Ways& ways, double margin)
 {
-    const bool asks_for_all = ways.around.empty(), has_list = complete_to_ > 0.0;
-    if (base_.empty() || (!asks_for_all && !has_list)) {
+    const bool asks_for_all = ways.around.empty();
+    if (base_.empty() || (!asks_for_all && !has_list_)) {
         if (asks_for_all)
             begin_at(x);
         return Plan::kSearch;
     }
 
     measure(x, ways);
-    if (has_list && are_few(mark_strays(0.5 * (complete_to_ - margin)))) {
+    if (has_list_ && are_few(mark_strays(reach(margin)))) {
         uses_ += asks_for_all;
         return Plan::kUse;
     }
     if (!asks_for_all)
         return Plan::kSearch;
-    const bool is_calm =
-        has_list ? uses_ >= kWorthwhile : are_few(mark_strays(0.5 * (wide(margin) - margin) / kWorthwhile));
-    if (is_calm && pause_ == 0)
+    if (pause_ == 0 && would_serve(margin))
         return Plan::kKeep;
     pause_ = std::max(0, pause_ - 1);
     begin_at(x);
     return Plan::kSearch;
+}
+
+/// Whether a list made now would do for this search and a few more, by what the last has done, or else by how
+/// cloth has moved since the last search.
+bool KeptPairs::would_serve(double margin)
+{
+    const double reach = 0.5 * (wide(margin) - margin);
+    if (!(reach > 0.0))
+        return false;
+    if (!has_list_)
+        return are_few(mark_strays(reach / kWorthwhile));
+    const auto is_fast = [&](const Excursion& own) { return !(own.goes <= reach - most_.slack); };
+    return uses_ >= kWorthwhile &&
+           are_few(int(std::count_if(excursions_.begin(), excursions_.end(), is_fast)));
 }
 
 double KeptPairs::wide(double margin) const
@@ -76,24 +88,26 @@ double KeptPairs::wide(double margin) const
     return margin + 2.0 * std::min(kReachOfEdge * mean_edge_, kReachOfMargin * margin);
 }
 
-void KeptPairs::keep(View<const Vec3> x, const Ways& ways, double margin, std::vector<Pair> vertex_triangle,
-                     std::vector<Pair> edge_edge)
+/// Of the list that there is.
+double KeptPairs::reach(double margin) const { return 0.5 * (complete_to_ - margin - kRounding); }
+
+void KeptPairs::keep(View<const Vec3> x, const Ways& ways, double margin)
 {
     begin_at(x);
+    has_list_ = true;
     complete_to_ = wide(margin);
-    vertex_triangle_ = std::move(vertex_triangle);
-    edge_edge_ = std::move(edge_edge);
     if (vertex_triangle_.size() + edge_edge_.size() > size_t(kMostPairs) * size_t(x.size()))
         pause_ = kPause;
     measure(x, ways);
-    mark_strays(0.5 * (complete_to_ - margin));
+    mark_strays(reach(margin));
 }
 
 /// Without a list.
 void KeptPairs::begin_at(View<const Vec3> x)
 {
     base_.assign(x.begin(), x.end());
-    complete_to_ = 0.0;
+    base_mean_ = mean(x);
+    has_list_ = false;
     uses_ = 0;
 }
 
@@ -101,7 +115,7 @@ void KeptPairs::measure(View<const Vec3> x, const Ways& ways)
 {
     const int n = x.size();
     const Vec3 common_motion = mean(ways.motion);
-    const Vec3 common = mean(x) - mean(base_);
+    const Vec3 common = mean(x) - base_mean_;
     excursions_.resize(n);
     parallel_for(kCpu, "collision/cloth_excursions", n, [&](int v) {
         Excursion& own = excursions_[v];
@@ -112,16 +126,18 @@ void KeptPairs::measure(View<const Vec3> x, const Ways& ways)
     most_ = {};
     for (const Excursion& own : excursions_)
         most_.add(own);
+    if (!(common + common_motion).allFinite()) // nor is any excursion
+        most_.come = std::numeric_limits<double>::infinity();
 }
 
 /// Vertices of a side may differ in which of the three they spend most of, so each has a bound of its own:
 /// what is spent of it where that leaves enough for the others.
 int KeptPairs::mark_strays(double reach)
 {
-    strays_.assign(excursions_.size(), 0);
     stray_count_ = 0;
     if (most_.sum() <= reach)
         return 0;
+    strays_.assign(excursions_.size(), 0);
     const double left = reach - most_.slack;
     const double goes = most_.come <= 0.5 * left ? left - most_.come : std::min(most_.goes, 0.5 * left);
     const Excursion bound{left - goes, goes, most_.slack};
@@ -133,7 +149,7 @@ int KeptPairs::mark_strays(double reach)
     return stray_count_;
 }
 
-bool KeptPairs::are_few(int strays) const { return strays <= kMostStrays * double(excursions_.size()); }
+bool KeptPairs::are_few(int vertices) const { return vertices <= kMostStrays * double(excursions_.size()); }
 
 bool KeptPairs::may_meet(const Pair& pair, const std::array<int, 4>& vertices, bool is_edge_edge,
                          double margin) const

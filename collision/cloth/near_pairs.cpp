@@ -49,7 +49,7 @@ private:
     View<Found> begin_tasks(int count);
     void order();
     void report(std::vector<NearPair>& out);
-    std::vector<KeptPairs::Pair> with_distances(const OrderedRecords& records, bool is_edge_edge) const;
+    void take(const OrderedRecords& records, bool is_edge_edge, std::vector<KeptPairs::Pair>& kept) const;
     void try_edges(int e, int f, Found& found) const;
     void try_triangle(int v, int t, Found& found) const;
 
@@ -147,22 +147,23 @@ void NearPairs::Search::keep()
     task_count_ = 0;
     search({}, {});
     order();
-    kept_.keep(x_, ways, margin, with_distances(vertex_triangle_, false), with_distances(edge_edge_, true));
+    take(vertex_triangle_, false, kept_.change_vertex_triangle());
+    take(edge_edge_, true, kept_.change_edge_edge());
+    kept_.keep(x_, ways, margin);
     ways_ = ways;
     margin_ = margin;
 }
 
-/// Those that kept_ is asked to keep.
-std::vector<KeptPairs::Pair> NearPairs::Search::with_distances(const OrderedRecords& records,
-                                                               bool is_edge_edge) const
+/// Into `kept`, with distances.
+void NearPairs::Search::take(const OrderedRecords& records, bool is_edge_edge,
+                             std::vector<KeptPairs::Pair>& kept) const
 {
-    std::vector<KeptPairs::Pair> pairs(records.size());
+    kept.resize(records.size());
     parallel_for(kCpu, "collision/cloth_kept_distances", records.size(), [&](int i) {
         const std::array<Vec3, 4> at =
             corners_of(corners()(records[i].first, records[i].second, is_edge_edge), x_);
-        pairs[i] = {records[i], closest_difference(closest_weights(is_edge_edge, at), at).norm()};
+        kept[i] = {records[i], closest_difference(closest_weights(is_edge_edge, at), at).norm()};
     });
-    return pairs;
 }
 
 /// What as many more tasks find, which is nothing yet.

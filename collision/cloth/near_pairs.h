@@ -43,7 +43,8 @@ struct NearPair {
 /// docs/collision/cloth.md draws them.
 ///
 /// While cloth stays about where it was, pairs that a wide search has found are asked instead of the tree
-/// (KeptPairs). What find() gives is the same, to the bit.
+/// (KeptPairs). What find() gives is the same, to the bit; but of triangles that are thin, whose distances
+/// are off by rounding, a search may let pairs pass that are farther apart than asked for.
 class NearPairs {
 public:
     enum class Keeping { kPairs, kNothing }; ///< kNothing: each find() searches, to measure that

@@ -18,12 +18,13 @@ using test::Soup;
 constexpr double kMargin = 2e-4, kEdge = 0.01;
 
 /// What one that has found nothing before finds, which searches. Counts nothing.
-std::vector<NearPair> find_anew(const Soup& soup, const Ways& ways, double margin)
+std::vector<NearPair> find_anew(const Soup& soup, const Ways& ways, double margin,
+                                const std::vector<int>& rigid = {})
 {
     Stages aside;
     const Stages::Activate activate(aside);
     std::vector<NearPair> pairs;
-    NearPairs(soup.triangles, soup.x).find(soup.x, ways, margin, pairs);
+    NearPairs(soup.triangles, soup.x, rigid).find(soup.x, ways, margin, pairs);
     return pairs;
 }
 
@@ -120,6 +121,36 @@ TEST_F(KeptPairsOfLayers, AreNotKeptWhereClothMovesFast)
     EXPECT_EQ(stages_.calls("collision/cloth_kept"), 0);
 }
 
+/// Collapsed and repeated triangles, rigid bodies, margins that grow after a list was made.
+TEST(KeptPairs, AreThoseOfASearchInAnySoup)
+{
+    constexpr double kSoupMargin = 0.01;
+    Random random(32);
+    Stages stages;
+    const Stages::Activate activate(stages);
+    size_t count = 0;
+    for (int i = 0; i < 10; ++i) {
+        Soup soup = test::random_soup(random);
+        std::vector<int> rigid(soup.x.size(), -1);
+        for (int v = 0; v < 20; ++v)
+            rigid[v] = v / 10;
+        NearPairs near(soup.triangles, soup.x, rigid);
+        std::vector<NearPair> found;
+        for (const double margin : {1.0, 1.0, 0.5, 2.0, 8.0, 40.0, 0.0, 1.0}) {
+            near.find(soup.x, soup.ways(), margin * kSoupMargin, found);
+            expect_same_bits(found, find_anew(soup, soup.ways(), margin * kSoupMargin, rigid));
+            count += found.size();
+            for (size_t v = 0; v < soup.x.size(); ++v) {
+                soup.x[v] += 1e-3 * random.point();
+                soup.motion[v] = 2e-3 * random.point();
+                soup.slack[v] *= 0.1;
+            }
+        }
+    }
+    EXPECT_GT(count, 10000u);
+    EXPECT_GT(stages.calls("collision/cloth_kept"), 30);
+}
+
 /// Stages of sixty searches while `layers` sheets turn.
 Stages turning(int layers)
 {
@@ -149,6 +180,19 @@ TEST(KeptPairs, AreKeptAnewWhenClothHasGoneOn)
 /// In a deep stack every layer is near many others, and a list takes as long to look at as to search for.
 TEST(KeptPairs, AreNotTriedAgainSoonInDeepStacks) { EXPECT_EQ(turning(20).calls("collision/cloth_keep"), 1); }
 
+TEST(KeptPairs, AreNotTriedWithoutAMargin)
+{
+    Soup soup;
+    test::add_sheet(soup, 8, kEdge, 0.0);
+    NearPairs near(soup.triangles, soup.x);
+    Stages stages;
+    const Stages::Activate activate(stages);
+    std::vector<NearPair> found;
+    for (int i = 0; i < 5; ++i)
+        near.find(soup.x, soup.ways(), 0.0, found);
+    EXPECT_EQ(stages.calls("collision/cloth_pairs"), 5);
+}
+
 /// Corners of a triangle and the vertex above it: one corner has come by all that a side may spend, another
 /// is to go by as much. Neither is too much by itself.
 TEST(KeptPairs, HaveStraysWhereASideSpendsTooMuchInAll)
@@ -159,7 +203,8 @@ TEST(KeptPairs, HaveStraysWhereASideSpendsTooMuchInAll)
     const double reach = 0.5 * (kept.wide(kWide) - kWide);
     ASSERT_GT(reach, 0.1);
     kept.plan(x, {}, kWide);
-    kept.keep(x, {}, kWide, {{{3, 0}, 0.1}}, {});
+    kept.change_vertex_triangle() = {{{3, 0}, 0.1}};
+    kept.keep(x, {}, kWide);
     EXPECT_FALSE(kept.has_strays());
 
     std::vector<Vec3> here = x, motion(4, Vec3::Zero());
