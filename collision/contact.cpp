@@ -1,7 +1,5 @@
 #include "collision/contact.h"
 
-#include <algorithm>
-
 #include "collision/device_contact_terms.h"
 #include "collision/host_contact_terms.h"
 #include "core/backend/stages.h"
@@ -40,9 +38,7 @@ std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Trian
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
                  const std::vector<ContactCloth>& cloths, const std::vector<ContactPartner>& partners,
                  const Settings& settings, const CudaSpace* space)
-    : has_rigid_(std::any_of(cloths.begin(), cloths.end(),
-                             [](const ContactCloth& cloth) { return cloth.is_rigid; })),
-      terms_(make_terms(energy_, triangles, positions, cloths, partners, settings, space))
+    : terms_(make_terms(energy_, triangles, positions, cloths, partners, settings, space))
 {
     if (settings.cloth_with_cloth)
         between_ =
@@ -83,17 +79,13 @@ void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
 bool Contact::make_feasible(StepField x) const
 {
     terms_->see(x);
-    return terms_->push_to_rest(kGuessSweeps, FirstForces::kNone);
+    return terms_->push_to_rest(kGuessSweeps);
 }
 
-/// Sweeps do not move what is rigid, so that cloth between it and a collider is pushed from two sides that do
-/// not give way: their forces must stay in balance, or the last to push takes all of the room. Cloth on cloth
-/// gives way by itself; there, forces that are taken back draw it to where it was pushed out of.
-bool Contact::sweep_once(StepField x, bool goes_on) const
+bool Contact::sweep_once(StepField x) const
 {
     terms_->see(x);
-    const FirstForces with_rigid = goes_on ? FirstForces::kLast : FirstForces::kAsPressed;
-    return terms_->push_to_rest(1, has_rigid_ ? with_rigid : FirstForces::kNone);
+    return terms_->push_to_rest(1);
 }
 
 bool Contact::revise(StepField x, bool is_settled)

@@ -44,7 +44,7 @@ public:
     void begin_step(const StepStart& start) override;
     bool may_act() const override { return !terms_->empty(); }
     bool make_feasible(StepField x) const override;
-    bool sweep_once(StepField x, bool goes_on) const override;
+    bool sweep_once(StepField x) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> x) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;
@@ -82,7 +82,6 @@ private:
     double dt_ = 0.0;                       ///< of this step [s]
     std::unique_ptr<ClothContact> between_; ///< cloth and cloth; null where that is switched off
     ContactEnergy energy_;                  ///< without terms where they are on a GPU
-    bool has_rigid_;                        ///< among the cloths are surfaces of rigid bodies
     std::unique_ptr<ContactTerms> terms_;
     bool has_cleared_ = false; ///< in this step: friction remembers the minimiser's pairs, these are new
     int active_count_ = 0;

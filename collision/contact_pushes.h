@@ -135,25 +135,6 @@ struct TermInTurn {
 
 // A push changes fields(), and over(other fields) is the same push of vertices that are there.
 
-/// Forces that the first of some sweeps of PushToRest begins with.
-enum class FirstForces {
-    kNone,      ///< x is where cloth would go without contact
-    kAsPressed, ///< it is at rest in contact
-    kLast,      ///< those that the last sweep has left
-};
-
-/// What term i presses with at x, for FirstForces::kAsPressed.
-struct TakePressing {
-    View<const ContactTerm> terms;
-    View<const Vec3> x; ///< [vertices] [m]
-    View<double> force; ///< [terms] out [N]
-
-    TOILE_HD void operator()(int i) const
-    {
-        force[i] = terms[i].spring.force(-terms[i].gap(x) - terms[i].give);
-    }
-};
-
 /// A sweep's push of term i where contact alone would take it, with masses and the compliance of its spring
 /// [Macklin et al. 2016, eq. 18], and a force that never pulls. Momentum goes where contact sends it, and
 /// pairs that press begin as deep as their force asks for: friction reads it from there.

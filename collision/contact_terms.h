@@ -65,7 +65,7 @@ public:
     /// them before a minimisation (PushToRest), true where something moved; positions out of what they are in
     /// by more than `most` [m] (PushOut); velocities [m/s] that go into surfaces (StopAtSurface); and both as
     /// rigid contact with friction changes them (Rub).
-    virtual bool push_to_rest(int sweeps, FirstForces first) = 0;
+    virtual bool push_to_rest(int sweeps) = 0;
     virtual void push_out(double most) = 0;
     virtual void stop_at_surfaces(StepField v) = 0;
     virtual void rub(StepField v) = 0;

@@ -116,16 +116,12 @@ double DeviceContactTerms::deepest()
     return std::max(0.0, -height.value);
 }
 
-bool DeviceContactTerms::push_to_rest(int sweeps, FirstForces first)
+bool DeviceContactTerms::push_to_rest(int sweeps)
 {
     if (empty())
         return false;
     const View<double> force = first_items(push_force_, energy_.terms().size());
-    if (first == FirstForces::kNone)
-        push_force_.fill_zero();
-    else if (first == FirstForces::kAsPressed)
-        parallel_for(space_, "contact/take_pressing", force.size(),
-                     TakePressing{energy_.terms(), x_.there(), force});
+    push_force_.fill_zero();
     turns_.sweep(energy_, PushToRest{push_rules_, force, x_.change_there()}, sweeps);
     return turns_.moved();
 }

@@ -149,13 +149,9 @@ double HostContactTerms::deepest()
     return depth;
 }
 
-bool HostContactTerms::push_to_rest(int sweeps, FirstForces first)
+bool HostContactTerms::push_to_rest(int sweeps)
 {
-    if (first != FirstForces::kLast)
-        push_force_.assign(energy_.terms().size(), 0.0);
-    const TakePressing take{energy_.terms(), x_, push_force_};
-    for (int i = 0; first == FirstForces::kAsPressed && i < take.terms.size(); ++i)
-        take(i);
+    push_force_.assign(energy_.terms().size(), 0.0);
     return turns_.sweep(energy_.terms(), PushToRest{push_rules_, push_force_, seen_.change_on_host()},
                         sweeps);
 }

@@ -32,7 +32,7 @@ public:
     bool has_left(double trust) override;
     void find_again() override;
     double deepest() override;
-    bool push_to_rest(int sweeps, FirstForces first) override;
+    bool push_to_rest(int sweeps) override;
     void push_out(double most) override;
     void stop_at_surfaces(StepField v) override;
     void rub(StepField v) override;

@@ -41,8 +41,7 @@ public:
     virtual bool make_feasible(StepField x) const = 0;
 
     /// A single sweep of that, for who sweeps over other constraints in between.
-    /// @param goes_on  after another one: it may begin with the forces that this has left
-    virtual bool sweep_once(StepField x, bool goes_on) const = 0;
+    virtual bool sweep_once(StepField x) const = 0;
 
     /// Adds the gradient [N] and returns the energy [J] at x. Same bits for every thread count.
     virtual double add_gradient(View<const Vec3> x, View<Vec3> gradient) const = 0;

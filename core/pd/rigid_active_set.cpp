@@ -68,9 +68,9 @@ bool RigidActiveSet::make_feasible(StepField positions) const
     return push_free(positions, [&] { return surface_.make_feasible(x_); });
 }
 
-bool RigidActiveSet::sweep_once(StepField positions, bool goes_on) const
+bool RigidActiveSet::sweep_once(StepField positions) const
 {
-    return push_free(positions, [&] { return surface_.sweep_once(x_, goes_on); });
+    return push_free(positions, [&] { return surface_.sweep_once(x_); });
 }
 
 /// The free points only: pushed out one by one, the vertices of a body would come apart.

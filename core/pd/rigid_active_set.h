@@ -23,7 +23,7 @@ public:
 
     void begin_step(const StepStart& start) override;
     bool make_feasible(StepField q) const override;
-    bool sweep_once(StepField q, bool goes_on) const override;
+    bool sweep_once(StepField q) const override;
     double add_gradient(View<const Vec3> q, View<Vec3> gradient) const override;
     bool activate(View<const Vec3> q) override;
     void add_hessian_product(View<const Vec3> p, View<Vec3> out) const override;

@@ -1,7 +1,5 @@
 #include "core/pd/step_end.h"
 
-#include <utility>
-
 #include "core/backend/parallel.h"
 
 namespace toile {
@@ -27,9 +25,7 @@ void StepEnd::project(StepProjection& projection, const ActiveSetEnergy* active)
     unprojected_.assign(x_.begin(), x_.end());
     std::function<bool()> clear_contacts;
     if (active)
-        clear_contacts = [&, goes_on = false]() mutable {
-            return active->sweep_once(x_, std::exchange(goes_on, true));
-        };
+        clear_contacts = [&] { return active->sweep_once(x_); };
     projection.project(x_, inverse_masses_, clear_contacts);
     parallel_for(kCpu, "pd/finish", x_.size(), [&](int i) { v_[i] += (x_[i] - unprojected_[i]) / dt_; });
 }

@@ -71,30 +71,6 @@ TEST_F(ContactPushes, NeverPull)
     EXPECT_NEAR(x_[0].y(), 3e-3, 1e-12) << "as if it had not pushed";
 }
 
-/// A plate that is held presses from above, by as much as the floor does from below.
-TEST_F(ContactPushes, ShareTheRoomWhereSweepsGoOnFromTheForcesOfTheLast)
-{
-    constexpr double kRoom = 1e-3;
-    const auto least_gap = [&](bool goes_on) {
-        ContactTerm plate = on_plane(0);
-        plate.pair.normal = -Vec3::UnitY();
-        plate.pair.point = Vec3(0.0, kRoom, 0.0);
-        std::vector<ContactTerm> terms{on_plane(0), plate};
-        for (ContactTerm& term : terms)
-            term.offset = kRoom; // twice what there is for both
-        x_[0].y() = 0.7 * kRoom;
-        std::vector<double> force(2, 0.0);
-        for (int sweep = 0; sweep < 20; ++sweep) {
-            if (!goes_on)
-                force.assign(2, 0.0);
-            turns_.sweep(terms, PushToRest{rules(), force, x_}, 1);
-        }
-        return std::min(x_[0].y(), kRoom - x_[0].y());
-    };
-    EXPECT_GT(least_gap(true), 0.4 * kRoom);
-    EXPECT_LT(least_gap(false), 0.35 * kRoom) << "who comes last takes it";
-}
-
 TEST_F(ContactPushes, ReachThoseThatASweepPushesOn)
 {
     constexpr double kDistance = 3e-3, kDepth = 0.8 * kAlmost, kApart = 0.6 * kAlmost;

@@ -199,39 +199,6 @@ TEST(Contact, ClearsASliverByItsOwnMeasureOnly)
     EXPECT_LE(x[0].y(), start[0].y() + 2.6e-4);
 }
 
-TEST(Contact, GoesOnFromTheForcesOfTheSweepBeforeWhereSomethingRigidMayPress)
-{
-    for (const bool has_rigid : {false, true}) {
-        RisingPlate scene;
-        std::vector<ContactCloth> cloths{one_cloth(3), one_cloth(3)};
-        cloths[1].is_rigid = has_rigid;
-        const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}};
-        std::vector<Vec3> start = scene.start;
-        for (int v = 0; v < 3; ++v)
-            start.push_back(scene.start[v] + Vec3(0.0, 2.0, 0.0)); // far above
-        const std::vector<double> diagonal(6, 100.0), masses(6, 1e-3);
-        const std::vector<unsigned char> fixed(6, 0);
-        Contact contact(triangles, start, cloths, {{nullptr, &scene.plate}}, scene.settings);
-        contact.begin_step({start, start, diagonal, fixed, masses, RisingPlate::kDt});
-
-        std::vector<Vec3> x = start;
-        const double pressed = scene.rise + 0.5 * kGap;
-        x[0].y() = pressed;
-        contact.sweep_once(x, false);
-        if (has_rigid) {
-            EXPECT_NEAR(x[0].y(), pressed, 1e-12) << "it rests already";
-        } else {
-            EXPECT_GT(x[0].y(), pressed + 1e-5) << "as if nothing had pushed it there";
-        }
-        x[0].y() = pressed - 1e-4; // others press
-        contact.sweep_once(x, true);
-        EXPECT_GT(x[0].y(), pressed - 1e-4 + 1e-5);
-        if (has_rigid) {
-            EXPECT_LT(x[0].y(), pressed) << "it shares";
-        }
-    }
-}
-
 TEST(Contact, FollowsATurningShapeByThePointItStartedFrom)
 {
     const Eigen::Isometry3d quarter(Eigen::AngleAxisd(1.5707963267948966, Vec3::UnitY()));

@@ -168,7 +168,7 @@ public:
     }
     void begin_step(const StepStart&) override {}
     bool make_feasible(StepField) const override { return false; }
-    bool sweep_once(StepField, bool) const override { return false; }
+    bool sweep_once(StepField) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
     {
         double value = 0.0;

@@ -46,7 +46,7 @@ public:
 
     void begin_step(const StepStart&) override {}
     bool make_feasible(StepField) const override { return false; }
-    bool sweep_once(StepField, bool) const override { return false; }
+    bool sweep_once(StepField) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
     {
         return energy_.add_gradient(x, gradient);

@@ -1,7 +1,6 @@
 #include "core/pd/device/device_body.h"
 
 #include <cmath>
-#include <utility>
 
 #include "core/backend/cuda/parallel.cuh"
 #include "core/backend/error.h"
@@ -138,9 +137,7 @@ void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* ac
         return;
     std::function<bool()> clear_contacts;
     if (active)
-        clear_contacts = [&, goes_on = false]() mutable {
-            return active->sweep_once(x_t1_, std::exchange(goes_on, true));
-        };
+        clear_contacts = [&] { return active->sweep_once(x_t1_); };
     parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyPositions{x_t1_.there(), found_.view()});
     limits.project(x_t1_.change_there(), inverse_masses_.view(), clear_contacts);
     parallel_for(space_, "pd/projected", x_.size(),
