@@ -29,6 +29,7 @@ DeviceSurface::DeviceSurface(const CudaSpace& space, View<const Triangle> triang
       corners_first_(space, "surface/corners_first"), corners_(space, "surface/corners"),
       used_vertices_(space, "surface/used_vertices"), vertex_order_(space, "surface/vertex_order"),
       edge_order_(space, "surface/edge_order"), triangle_order_(space, "surface/triangle_order"),
+      edge_place_(space, "surface/edge_place"), triangle_place_(space, "surface/triangle_place"),
       triangle_shape_(triangles.size()), edge_shape_(0), triangle_nodes_(space, "surface/triangle_nodes"),
       edge_nodes_(space, "surface/edge_nodes"), sort_(space),
       points_(space, "surface/points", positions.size()), extent_(space, "surface/extent", 1),
@@ -87,6 +88,19 @@ void DeviceSurface::move(View<const Vec3> x, const Ways& ways, double margin)
                  surface_.view(), surface_sums_);
 }
 
+void DeviceSurface::move_some(View<const int> vertices, View<const Vec3> x, const Ways& ways)
+{
+    parallel_sum(space_, "collision/device_changed_points", vertices.size(), Largest(),
+                 PlaceChanged{vertices, x, ways, extent_.view(), largest_.view(), points_.view()},
+                 largest_.view(), largest_sums_);
+    const ChangedPrimitives primitives = changed(vertices, ways.around);
+    parallel_for(space_, "collision/device_refit_changed", primitives.thread_count(),
+                 RefitChanged{primitives,
+                              boxes_,
+                              {triangle_shape_, triangle_place_.view(), triangle_nodes_.view()},
+                              {edge_shape_, edge_place_.view(), edge_nodes_.view()}});
+}
+
 template <typename Primitive>
 void DeviceSurface::refit(const ImplicitShape& shape, View<const int> order, View<const Primitive> primitives,
                           View<BoxNode> nodes)
@@ -103,6 +117,14 @@ void DeviceSurface::reorder(View<const Vec3> x)
     order_along_curve<Triangle>(triangles_.view(), x, triangle_order_);
     order_along_curve<std::array<int, 2>>(edge_vertex_.view(), x, edge_order_);
     order_along_curve<std::array<int, 1>>(used_vertices_.view(), x, vertex_order_);
+    find_places(triangle_order_.view(), triangle_place_);
+    find_places(edge_order_.view(), edge_place_);
+}
+
+void DeviceSurface::find_places(View<const int> order, DeviceArray<int>& places)
+{
+    places.resize(order.size());
+    parallel_for(space_, "collision/device_places", order.size(), FindPlaces{order, places.view()});
 }
 
 template <typename Primitive>

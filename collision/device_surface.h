@@ -20,12 +20,22 @@ public:
     /// half the margin, as Candidates::update has them. All arguments on the device, borrowed until the next.
     void move(View<const Vec3> x, const Ways& ways, double margin);
 
+    /// Enqueues: the same of some vertices, the others as move() has placed them: `ways` and `x` differ from
+    /// those of move() at most there. Boxes above them grow and do not shrink.
+    /// @param vertices  on the device, ascending
+    /// @param ways      none empty; `around` marks the vertices
+    void move_some(View<const int> vertices, View<const Vec3> x, const Ways& ways);
+
     /// Enqueues: orders vertices, edges and triangles along a curve through this pose. May ask for memory.
     void reorder(View<const Vec3> x);
 
     ImplicitBoxTree triangle_tree() const { return {triangle_shape_, triangle_nodes_.view()}; }
     ImplicitBoxTree edge_tree() const { return {edge_shape_, edge_nodes_.view()}; }
     const BoxesAtPoints& boxes() const { return boxes_; } ///< of the last move()
+    ChangedPrimitives changed(View<const int> vertices, View<const unsigned char> is_changed) const
+    {
+        return {vertices, is_changed, triangles(), edges()};
+    }
 
     int vertex_count() const { return points_.size(); }
     View<const Triangle> triangles() const { return triangles_.view(); }
@@ -40,6 +50,7 @@ public:
 private:
     template <typename Primitive>
     void order_along_curve(View<const Primitive> primitives, View<const Vec3> x, DeviceArray<int>& order);
+    void find_places(View<const int> order, DeviceArray<int>& places);
     template <typename Primitive>
     void refit(const ImplicitShape& shape, View<const int> order, View<const Primitive> primitives,
                View<BoxNode> nodes);
@@ -57,6 +68,7 @@ private:
 
     // Trees.
     DeviceArray<int> vertex_order_, edge_order_, triangle_order_;
+    DeviceArray<int> edge_place_, triangle_place_; ///< in these
     ImplicitShape triangle_shape_, edge_shape_;
     DeviceArray<BoxNode> triangle_nodes_, edge_nodes_;
     SortArrays sort_;

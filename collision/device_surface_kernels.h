@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "collision/changed_primitives.h"
 #include "collision/implicit_box_tree.h"
 #include "collision/moving_point.h"
 #include "collision/space_curve.h"
@@ -31,8 +32,7 @@ struct SoupExtent {
         MovingFrame frame;
         frame.center = 0.5 * (lower + upper);
         frame.is_moving = moving != 0;
-        if (frame.is_moving)
-            frame.mean = motion / count;
+        frame.mean = motion / count;
         return frame;
     }
 };
@@ -76,6 +76,28 @@ struct PlacePoint {
         points[v] = frame.point(x[v], frame.is_moving ? ways.motion[v] : frame.mean,
                                 ways.slack.empty() ? 0.0 : ways.slack[v]);
         return {points[v].largest()};
+    }
+};
+
+/// Places the moving point of a vertex anew that now goes elsewhere than all have been placed for; the term
+/// of the largest coordinate, of those as well.
+struct PlaceChanged {
+    View<const int> vertices; ///< that have changed
+    View<const Vec3> x;       ///< [vertices of the soup]
+    Ways ways;
+    View<const SoupExtent> extent; ///< [1]
+    View<const Largest> largest;   ///< [1]
+    View<MovingPoint> points;      ///< [vertices of the soup] in, out
+
+    TOILE_HD Largest operator()(int k) const
+    {
+        const int v = vertices[k];
+        MovingFrame frame = extent[0].frame(x.size());
+        frame.is_moving = true;
+        points[v] = frame.point(x[v], ways.motion[v], ways.slack[v]);
+        Largest most = largest[0];
+        most += {points[v].largest()};
+        return most;
     }
 };
 
@@ -134,6 +156,50 @@ struct RefitNodes {
         for (int k = 1; k < ImplicitShape::kFan; ++k)
             around.add(nodes[child + k]);
         nodes[shape.first[level] + c] = around;
+    }
+};
+
+/// Where items of a tree are in its order.
+struct FindPlaces {
+    View<const int> order; ///< [items]
+    View<int> places;      ///< [items] out
+
+    TOILE_HD void operator()(int i) const { places[order[i]] = i; }
+};
+
+/// A tree of which some boxes change.
+struct ChangingTree {
+    ImplicitShape shape;
+    View<const int> places; ///< [items] FindPlaces
+    View<BoxNode> nodes;
+
+    /// Puts an item, which one thread does, into its box, and grows those above until one has room for it: it
+    /// has grown for others then, who go on.
+    TOILE_HD void put(const BoxNode& item) const
+    {
+        int node = places[item.last];
+        nodes[node] = item;
+        for (int level = 1; level <= shape.top; ++level) {
+            node >>= ImplicitShape::kFanBits;
+            BoxNode& above = nodes[shape.first[level] + node];
+            if (above.contains(item))
+                return;
+            above.grow_shared(item);
+        }
+    }
+};
+
+/// Puts triangles and edges of changed vertices into their trees anew.
+struct RefitChanged {
+    ChangedPrimitives changed;
+    BoxesAtPoints boxes;
+    ChangingTree triangle_tree, edge_tree;
+
+    TOILE_HD void operator()(int thread) const
+    {
+        changed.visit(
+            thread, [](int) {}, [&](int t) { triangle_tree.put(boxes.node(t, changed.triangles[t])); },
+            [&](int e) { edge_tree.put(boxes.node(e, changed.edges.vertex[e])); });
     }
 };
 

@@ -6,6 +6,7 @@
 #include "collision/box.h"
 #include "core/backend/bits.h"
 #include "core/backend/implicit_tree.h"
+#include "core/backend/shared_bounds.h"
 
 namespace toile {
 
@@ -30,6 +31,22 @@ struct alignas(16) BoxNode {
         }
         last = std::max(last, other.last);
         is_wanted |= other.is_wanted;
+    }
+
+    TOILE_HD bool contains(const BoxNode& other) const
+    {
+        bool all = true;
+        for (int k = 0; k < 3; ++k)
+            all &= lower[k] <= other.lower[k] && other.upper[k] <= upper[k];
+        return all;
+    }
+    /// Makes room for the box of another, while threads beside it do the same.
+    TOILE_HD void grow_shared(const BoxNode& other)
+    {
+        for (int k = 0; k < 3; ++k) {
+            lower_shared(lower[k], other.lower[k]);
+            raise_shared(upper[k], other.upper[k]);
+        }
     }
 };
 

@@ -12,7 +12,8 @@ public:
     /// @param triangles, positions, rigid  as DeviceNearPairs has them
     AsyncNearPairs(const CudaSpace& space, View<const Triangle> triangles, View<const Vec3> positions,
                    View<const int> rigid = {})
-        : beside_(space, CudaSpace::Beside{}), given_(space), near_(beside_, triangles, positions, rigid)
+        : space_(space), beside_(space, CudaSpace::Beside{}), given_(space), found_(beside_),
+          near_(beside_, triangles, positions, rigid)
     {
     }
 
@@ -43,17 +44,25 @@ public:
         is_searching_ = false;
     }
 
-    View<const NearPair> find(View<const Vec3> x, const Ways& ways, double margin)
+    /// As DeviceNearPairs, after all that the other stream has been given and before what it is given next.
+    View<const NearPair> find_around(View<const Vec3> x, const Ways& ways, int count, double margin)
     {
-        begin(x, ways, margin);
-        return end();
+        TOILE_ASSERT(!is_searching_);
+        given_.record();
+        given_.delay(beside_);
+        const View<const NearPair> pairs = near_.find_around(x, ways, count, margin);
+        found_.record();
+        found_.delay(space_);
+        return pairs;
     }
 
     SoupView soup() const { return near_.soup(); }
 
 private:
+    const CudaSpace& space_;
     CudaSpace beside_;
     StreamEvent given_; ///< all that the other stream was given before a search
+    StreamEvent found_; ///< the last search around vertices
     DeviceNearPairs near_;
     bool is_searching_ = false;
 };

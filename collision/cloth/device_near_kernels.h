@@ -135,7 +135,7 @@ struct TestCandidate {
     View<const Vec3> x;
     Ways ways;
     double margin;
-    View<const SoupExtent> extent; ///< [1]
+    View<const SoupExtent> extent; ///< [1], or empty: some vertex moves otherwise than others
     View<unsigned char> is_pair;   ///< out: 0 or 1
 
     TOILE_HD void operator()(int i) const
@@ -147,8 +147,8 @@ private:
     TOILE_HD bool may_meet(const Record& candidate) const
     {
         const bool is_edge_edge = list.is_edge_edge(candidate);
-        return MayMeet{x, ways, margin, extent[0].moving != 0}(
-            corners(list.first_of(candidate), candidate.second, is_edge_edge), is_edge_edge);
+        const std::array<int, 4> v = corners(list.first_of(candidate), candidate.second, is_edge_edge);
+        return MayMeet{x, ways, margin, extent.empty() || extent[0].moving != 0}(v, is_edge_edge);
     }
 };
 

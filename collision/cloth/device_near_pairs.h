@@ -1,6 +1,6 @@
 #pragma once
 
-#include "collision/cloth/device_near_kernels.h"
+#include "collision/cloth/device_around_kernels.h"
 #include "collision/device_surface.h"
 #include "core/backend/cuda/graph.h"
 
@@ -37,6 +37,16 @@ public:
     /// until then.
     void begin(View<const Vec3> x, const Ways& ways, double margin);
     View<const NearPair> end();
+
+    /// Pairs with one of some vertices that now go elsewhere than find() was asked for: those that may come
+    /// nearer than `margin` on their ways, and some more as there, in the same order. Where these are few
+    /// nothing but their surroundings is looked at. Waits for their number; a later kernel of another stream
+    /// must wait for the pairs.
+    /// @param x       as find() was given, with what it held
+    /// @param ways    none empty; `around` marks the vertices. All others go as in the searches since find()
+    /// @param count   of vertices that are marked
+    /// @param margin  [m] no larger than in find()
+    View<const NearPair> find_around(View<const Vec3> x, const Ways& ways, int count, double margin);
 
     /// Copies the first pairs that find() has found into `out`, before the call returns.
     void download(View<NearPair> out) const { pairs_.download_first(out); }
@@ -80,36 +90,42 @@ private:
         }
     };
 
-    /// What search() was asked for last, and its recording.
-    struct Recording {
-        explicit Recording(const CudaSpace& space) : graph(space, "collision/device_search") {}
-
-        Asked asked;
-        bool is_recorded = false;
-        CudaGraph graph;
-    };
-
     void search_begun();
     void list_candidates();
+    void list_pairs(View<const Record> candidates, View<const long> first, View<const SoupExtent> extent,
+                    View<const Vec3> x, const Ways& ways, double margin, DeviceScratch& scratch);
+    void search_around_few(View<const Vec3> x, const Ways& ways, int count, double margin);
+    bool settle_around();
+    void report_sorted(int count, View<const Vec3> x);
+    View<const Triangle> triangles() const { return surface_.triangles(); }
+    SurfaceEdgesView edges() const { return surface_.edges(); }
     void make_room(long candidates, long pairs);
 
     const CudaSpace& space_;
     DeviceSurface surface_;
     DeviceArray<int> rigid_;
-    Asked begun_;                  ///< by begin()
-    Recording all_, around_;       ///< of begin(): without and with Ways::around
+    Asked begun_;    ///< by begin()
+    Asked recorded_; ///< by begin() before, with the memory that there is
+    bool is_recorded_ = false;
+    CudaGraph graph_;
     double ordered_surface_ = 0.0; ///< [m^2] of the first search after the order was chosen; 0: none yet
     bool is_worn_out_ = false;
 
     DeviceArray<int> counts_; ///< [vertices + edges + 1] candidates; the last stays 0
     DeviceArray<long> first_; ///< [vertices + edges + 1] their sums
     DeviceArray<int> kept_for_vertices_, kept_for_edges_;
+    DeviceArray<int> around_, around_counts_; ///< vertices of find_around(), candidates of its teams
+    DeviceArray<long> around_first_;          ///< sums of that
+    int room_around_ = 0;                     ///< candidates that there is room for around few vertices
+    SortArrays sort_;
+    DeviceArray<int> sorted_;
     DeviceArray<Record> candidates_;
     DeviceArray<unsigned char> is_pair_;
     DeviceArray<int> pairs_in_list_, count_; ///< [candidates], [1]
     DeviceArray<NearPair> pairs_;
     PinnedArray<SearchNumbers> numbers_; ///< [1]
     DeviceScratch scratch_;
+    DeviceScratch around_scratch_; ///< may grow without the recorded search
 };
 
 } // namespace toile

@@ -45,7 +45,7 @@ View<const BlockedPair> DeviceSafeStep::look_at_all(View<const Vec3> x)
         parallel_for(space_, "collision/know_strays", x.size(),
                      KnowStrays{marks_.view(), way_.view(), slack_, known()});
         const int before = count_;
-        look_around_marked();
+        look_around_marked(counts.strays);
         count_in_the_way(before);
         counts = read_counts();
     }
@@ -63,19 +63,19 @@ View<const BlockedPair> DeviceSafeStep::look(View<const ChangedWay> changed)
                  KnowChanged{changed_.view(), slack_, known(), way_.view(), is_stale_.view(), marks_.view()},
                  counts_.view().subview(0, 1), block_sums_);
     const int before = count_;
-    if (read_counts().strays > 0)
-        look_around_marked();
+    if (const int strays = read_counts().strays; strays > 0)
+        look_around_marked(strays);
     count_in_the_way(before);
     return list_in_the_way();
 }
 
 /// Appends the pairs of marked vertices.
-void DeviceSafeStep::look_around_marked()
+/// @param count  of these
+void DeviceSafeStep::look_around_marked(int count)
 {
     const StageScope stage("collision/look_again");
-    exempt_.append_kept(
-        near_.find(base_, {known_motion_.view(), known_radius_.view(), marks_.view()}, gap_.most()), pairs_,
-        count_);
+    const Ways ways{known_motion_.view(), known_radius_.view(), marks_.view()};
+    exempt_.append_kept(near_.find_around(base_, ways, count, gap_.most()), pairs_, count_);
 }
 
 /// @param known  pairs before this one are looked at where they have a stale vertex

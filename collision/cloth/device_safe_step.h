@@ -37,7 +37,7 @@ private:
     struct Counts {
         int strays, in_the_way; ///< vertices; pairs
     };
-    void look_around_marked();
+    void look_around_marked(int count);
     void count_in_the_way(int known);
     Counts read_counts();
     View<const BlockedPair> list_in_the_way();

@@ -59,7 +59,7 @@ View<const BlockedPair> HostPairWatch::look_at_pairs()
     const PairShare share{base_, motion_, gap_};
     parallel_for(kCpu, "collision/safe_share", pair_count(), [&](int i) {
         const NearPair& pair = this->pair(i);
-        if (is_any_marked(pair, is_stale_))
+        if (is_any_marked(pair.vertex, is_stale_))
             pair_share_[i] = share(pair);
     });
     blocked_.clear();

@@ -56,11 +56,8 @@ private:
     PairCorners corners() const { return {triangles_, edges_.vertex}; }
     bool is_wanted(const std::array<int, 4>& v) const
     {
-        return is_any(ways_.around, v) && is_any(strays_, v);
-    }
-    static bool is_any(View<const unsigned char> marks, const std::array<int, 4>& v)
-    {
-        return marks.empty() || marks[v[0]] || marks[v[1]] || marks[v[2]] || marks[v[3]];
+        return (ways_.around.empty() || is_any_marked(v, ways_.around)) &&
+               (strays_.empty() || is_any_marked(v, strays_));
     }
     bool are_in_one_body(int a, int b) const
     {

@@ -28,6 +28,13 @@ TOILE_HD inline bool share_vertex(const std::array<int, 4>& v, bool is_edge_edge
     return false;
 }
 
+/// @param v      vertices of a pair
+/// @param marks  [vertices]
+TOILE_HD inline bool is_any_marked(const std::array<int, 4>& v, View<const unsigned char> marks)
+{
+    return marks[v[0]] != 0 || marks[v[1]] != 0 || marks[v[2]] != 0 || marks[v[3]] != 0;
+}
+
 TOILE_HD inline std::array<Vec3, 4> corners_of(const std::array<int, 4>& v, View<const Vec3> values)
 {
     return {values[v[0]], values[v[1]], values[v[2]], values[v[3]]};

@@ -139,12 +139,6 @@ struct KnowChanged {
     }
 };
 
-TOILE_HD inline bool is_any_marked(const NearPair& pair, View<const unsigned char> marks)
-{
-    return marks[pair.vertex[0]] != 0 || marks[pair.vertex[1]] != 0 || marks[pair.vertex[2]] != 0 ||
-           marks[pair.vertex[3]] != 0;
-}
-
 /// Flags a pair that is in its own way where it has a stale vertex or is not among the `known` first; a term
 /// of how many are.
 struct CountInTheWay {
@@ -156,7 +150,7 @@ struct CountInTheWay {
 
     TOILE_HD int operator()(int i) const
     {
-        if (i >= known || is_any_marked(pairs[i], is_stale))
+        if (i >= known || is_any_marked(pairs[i].vertex, is_stale))
             flags[i] = (unsigned char)(share(pairs[i]) < 1.0 ? 1 : 0);
         return flags[i];
     }

@@ -1,4 +1,4 @@
-#include "collision/cloth/device_near_kernels.h"
+#include "collision/cloth/device_around_kernels.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/cloth/near_pairs.h"
+#include "tests/collision/pairs_around.h"
 #include "tests/collision/same_pairs.h"
 #include "tests/collision/soups.h"
 #include "tests/collision/surface_on_cpu.h"
@@ -115,6 +116,93 @@ TEST(DeviceNearKernels, FindNothingInNothing)
     expect_those_of_near_pairs(soup, 1.0, 0);
     soup.triangles = {{0, 1, 2}};
     expect_those_of_near_pairs(soup, 1.0, 0);
+}
+
+/// Some vertices of a soup go elsewhere, twice, after all have been searched for.
+class SearchAroundOnCpu {
+public:
+    SearchAroundOnCpu(Soup& soup, double margin)
+        : soup_(soup), margin_(margin), surface_(soup.triangles, soup.x, soup.ways(), margin)
+    {
+    }
+
+    /// @param around  those that go elsewhere now
+    void compare(const std::vector<unsigned char>& around)
+    {
+        const Ways ways{soup_.motion, soup_.slack, around};
+        const std::vector<NearPair> found = find(ways);
+        test::expect_those_around(found, soup_, around, margin_);
+        count_ += found.size();
+    }
+    size_t count() const { return count_; } ///< of pairs found
+
+private:
+    std::vector<NearPair> find(const Ways& ways)
+    {
+        std::vector<int> changed;
+        for (int v = 0; v < ways.around.size(); ++v)
+            if (ways.around[v] != 0)
+                changed.push_back(v);
+        surface_.move_some(changed, ways);
+
+        const PairCorners corners{soup_.triangles, surface_.edges.vertex};
+        const CandidatesAround around{surface_.changed(changed, ways.around),
+                                      surface_.boxes,
+                                      surface_.triangle_tree(),
+                                      surface_.edge_tree(),
+                                      corners,
+                                      {}};
+        std::vector<Record> candidates;
+        for (int i = 0; i < around.team_count(); ++i)
+            around.visit(i, {}, [&](int, const Record& candidate) { candidates.push_back(candidate); });
+        const CandidateList list{candidates, surface_.vertex_count()};
+        const std::vector<long> count{long(candidates.size())};
+        std::vector<unsigned char> is_pair(candidates.size());
+        parallel_for(kCpu, "test/test", int(candidates.size()),
+                     TestCandidate{list, count, corners, soup_.x, ways, margin_, {}, is_pair});
+        std::vector<NearPair> pairs;
+        for (size_t i = 0; i < candidates.size(); ++i)
+            if (is_pair[i] != 0)
+                pairs.push_back(near_pair_at(soup_.triangles, view_of(surface_.edges), soup_.x,
+                                             list.first_of(candidates[i]), candidates[i].second,
+                                             list.is_edge_edge(candidates[i])));
+        return pairs;
+    }
+
+    Soup& soup_;
+    double margin_;
+    test::SurfaceOnCpu surface_;
+    size_t count_ = 0;
+};
+
+TEST(DeviceNearKernels, FindThePairsAroundVerticesThatGoElsewhere)
+{
+    Random random(44);
+    size_t count = 0;
+    for (int i = 0; i < 12; ++i) {
+        Soup soup = i % 2 == 0 ? random_soup(random) : folded_sheet(random);
+        if (i % 4 == 3)
+            soup.stand_still(); // until some go
+        SearchAroundOnCpu search(soup, 0.003);
+        for (const int vertices : {1, 30, 200})
+            search.compare(test::send_elsewhere(random, soup, vertices));
+        count += search.count();
+    }
+    EXPECT_GT(count, 10000u);
+}
+
+TEST(DeviceNearKernels, FindPairsOfAVertexThatGoesFartherThanAnythingWas)
+{
+    Random random(45);
+    Soup soup = folded_sheet(random);
+    soup.stand_still();
+    add_sheet(soup, 3, 0.01, 40.0);
+    SearchAroundOnCpu search(soup, 0.003);
+    std::vector<unsigned char> around(soup.x.size());
+    around[100] = 1;
+    soup.motion[100] = Vec3(0.0, 80.0, 0.0) - soup.x[100] + Vec3(0.013, 0.0, 0.012);
+    search.compare(around);
+    EXPECT_GT(search.count(), 20u);
 }
 
 TEST(ImplicitBoxTree, VisitsWhatOverlapsInOrder)

@@ -25,9 +25,26 @@ public:
         for (int v = 0; v < count; ++v)
             if (!edges.corners_of_vertex.of(v).empty())
                 used.push_back({v});
-        build<Triangle>(triangles, triangle_shape_, triangle_nodes_);
-        build<std::array<int, 2>>(edges.vertex, edge_shape_, edge_nodes_);
+        build<Triangle>(triangles, triangle_shape_, triangle_place_, triangle_nodes_);
+        build<std::array<int, 2>>(edges.vertex, edge_shape_, edge_place_, edge_nodes_);
         vertex_order = order_of<std::array<int, 1>>(used);
+    }
+
+    /// As DeviceSurface.
+    void move_some(const std::vector<int>& vertices, const Ways& ways)
+    {
+        largest_[0] = parallel_sum(kCpu, int(vertices.size()), Largest(),
+                                   PlaceChanged{vertices, x, ways, extent, largest_, points_});
+        const ChangedPrimitives primitives = changed(vertices, ways.around);
+        parallel_for(kCpu, "test/refit_changed", primitives.thread_count(),
+                     RefitChanged{primitives,
+                                  boxes,
+                                  {triangle_shape_, triangle_place_, triangle_nodes_},
+                                  {edge_shape_, edge_place_, edge_nodes_}});
+    }
+    ChangedPrimitives changed(const std::vector<int>& vertices, View<const unsigned char> is_changed) const
+    {
+        return {vertices, is_changed, triangles, view_of(edges)};
     }
 
     int vertex_count() const { return int(x.size()); }
@@ -63,11 +80,14 @@ private:
     }
 
     template <typename Primitive>
-    void build(View<const Primitive> primitives, ImplicitShape& shape, std::vector<BoxNode>& nodes)
+    void build(View<const Primitive> primitives, ImplicitShape& shape, std::vector<int>& places,
+               std::vector<BoxNode>& nodes)
     {
         shape = ImplicitShape(primitives.size());
         nodes.assign(shape.node_count(), BoxNode());
         const std::vector<int> order = order_of<Primitive>(primitives);
+        places.resize(order.size());
+        parallel_for(kCpu, "test/places", int(order.size()), FindPlaces{order, places});
         parallel_for(kCpu, "test/refit", shape.size_of(1),
                      RefitItems<Primitive>{shape, order, primitives, boxes, nodes});
         for (int level = 2; level <= shape.top; ++level)
@@ -78,6 +98,7 @@ private:
     std::vector<Largest> largest_{1};
     std::vector<MovingPoint> points_;
     ImplicitShape triangle_shape_{0}, edge_shape_{0};
+    std::vector<int> triangle_place_, edge_place_;
     std::vector<BoxNode> triangle_nodes_, edge_nodes_;
 };
 

@@ -31,6 +31,14 @@ struct TeamOf {
         return value;
     }
 
+    /// Until all threads are here; what they have written to the block's memory is seen by all.
+    TOILE_HD void wait() const
+    {
+#ifdef __CUDA_ARCH__
+        __syncwarp();
+#endif
+    }
+
     /// Where a flag of each thread is set: of how many threads before this one, and of how many in all.
     struct Flagged {
         int before, count;

@@ -189,8 +189,8 @@ TEST_F(DeviceClothContactTest, LeavesAloneWhatTheCpuLeavesAlone)
         DeviceArray<double> slack(space(), "test/slack");
         motion_there.upload(motion);
         slack.upload(made.slack);
-        safe_there.begin(x.there(), expected.there(), slack.view(),
-                         near_there.find(x.there(), {motion_there.view(), slack.view()}, margin));
+        near_there.begin(x.there(), {motion_there.view(), slack.view()}, margin);
+        safe_there.begin(x.there(), expected.there(), slack.view(), near_there.end());
         DeviceArray<NearPair> listed(space(), "test/listed");
         listed.upload(safe_there.pairs());
         expect_same(pairs, listed.downloaded(), "of trial " + std::to_string(trial));

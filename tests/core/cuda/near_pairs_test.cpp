@@ -9,6 +9,7 @@
 #include "core/backend/cuda/graph.h"
 #include "core/backend/stages.h"
 #include "core/mesh/obj.h"
+#include "tests/collision/pairs_around.h"
 #include "tests/collision/same_pairs.h"
 #include "tests/collision/soups.h"
 #include "tests/core/cuda/on_device.h"
@@ -25,6 +26,10 @@ protected:
               around_(space, "test/around")
         {
             x.upload(soup.x);
+            send(soup, around);
+        }
+        void send(const Soup& soup, const std::vector<unsigned char>& around)
+        {
             motion.upload(soup.motion);
             slack.upload(soup.slack);
             around_.upload(around);
@@ -109,6 +114,45 @@ TEST_F(DeviceNearPairsTest, AreOnlyThoseAroundTheVerticesAskedFor)
     compare(soup, 0.003, "around", {}, around);
     EXPECT_GT(count(), 100u);
     compare(soup, 0.003, "around nothing", {}, std::vector<unsigned char>(soup.x.size()));
+}
+
+TEST_F(DeviceNearPairsTest, AreFoundAroundVerticesThatGoElsewhere)
+{
+    Random random(33);
+    size_t total = 0;
+    for (int i = 0; i < 6; ++i) {
+        Soup soup = i % 2 == 0 ? random_soup(random) : folded_sheet(random);
+        DeviceNearPairs device(space(), soup.triangles, soup.x, {}, 1);
+        OnBoard board(space(), soup);
+        device.find(board.x.view(), board.ways(), 0.003);
+        for (const int vertices : {1, 30, 200}) {
+            const std::vector<unsigned char> around = send_elsewhere(random, soup, vertices);
+            board.send(soup, around);
+            const int count = int(std::count(around.begin(), around.end(), 1));
+            const auto find = [&] {
+                return downloaded(device,
+                                  device.find_around(board.x.view(), board.ways(), count, 0.003).size());
+            };
+            const std::vector<NearPair> found = find();
+            expect_those_around(found, soup, around, 0.003);
+            EXPECT_TRUE(are_same_bits(found, find()));
+            total += found.size();
+        }
+    }
+    EXPECT_GT(total, 5000u);
+}
+
+TEST_F(DeviceNearPairsTest, AroundNothingAreNoneAndNothingRuns)
+{
+    Random random(40);
+    const Soup soup = folded_sheet(random);
+    DeviceNearPairs device(space(), soup.triangles, soup.x);
+    OnBoard board(space(), soup);
+    device.find(board.x.view(), board.ways(), 0.003);
+    Stages stages;
+    const Stages::Activate activate(stages);
+    EXPECT_TRUE(device.find_around(board.x.view(), board.ways(), 0, 0.003).empty());
+    EXPECT_EQ(stages.calls("collision/device_count_around"), 0);
 }
 
 TEST_F(DeviceNearPairsTest, AreNotWithinOneRigidBody)
