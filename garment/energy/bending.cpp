@@ -7,7 +7,7 @@
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
 #include "garment/energy/bending_kernels.h"
-#include "garment/energy/device_bending.h"
+#include "garment/energy/device_elasticity.h"
 
 namespace toile {
 
@@ -172,7 +172,7 @@ double Bending::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 
 bool Bending::add_to(DeviceEnergies& energies, int first_vertex)
 {
-    energies.of_kind<DeviceBending>().add(K_, first_vertex);
+    energies.of_kind<DeviceElasticity>().add_bending(K_, first_vertex);
     return true;
 }
 

@@ -31,59 +31,41 @@ struct BendVertex {
 
 /// BendVertex for a GPU, where bandwidth is short, by a team of threads: rows in slices, their entries in
 /// single precision.
-struct AddBending {
+struct BendByTeam {
     static constexpr int kAtOnce = 6; ///< entries of a thread: all of most rows, which have some 23
 
-    View<const int> first;        ///< [slices + 1] of SlicedRows
+    View<const int> first;        ///< [slices + 1] of SlicedRows; vertices behind them do not bend
     View<const RowEntry> entries; ///< of K [N/m]
     View<const Vec3> x;           ///< [vertices] [m]
-    View<Vec3> gradient;          ///< [vertices] added to [N]
-    View<double> energy;          ///< [vertices] added to [J]
 
-    /// Where a thread's entries are, and the first of them: what no launch changes.
-    struct Early {
-        int begin, end;
-        std::array<RowEntry, kAtOnce> some;
+    /// Of a vertex: what a thread finds, or all.
+    struct Share {
+        Vec3 gradient; ///< [N]
+        double energy; ///< [J]
     };
     template <typename Team>
-    TOILE_HD Early early(int i, const Team& team, bool) const
+    TOILE_HD Share of_thread(int i, const Team& team) const
     {
-        const int slice = i / SlicedRows::kRows, end = first[slice + 1];
+        const int slice = i / SlicedRows::kRows;
+        if (slice + 1 >= first.size())
+            return {Vec3(0.0, 0.0, 0.0), 0.0};
+        const int end = first[slice + 1];
         const int begin = first[slice] + i % SlicedRows::kRows * SlicedRows::kThreads + team.thread;
-        return {begin, end, entries_from<kAtOnce>(entries, i, begin, end)};
-    }
-
-    template <typename Team>
-    TOILE_HD void operator()(int i, const Team& team, bool is_own) const
-    {
-        (*this)(i, team, is_own, early(i, team, is_own));
-    }
-    template <typename Team>
-    TOILE_HD void operator()(int i, const Team& team, bool is_own, const Early& own_entries) const
-    {
-        const bool writes = team.thread == 0 && is_own;
-        const Vec3 here = x[i], before = writes ? gradient[i] : Vec3(0.0, 0.0, 0.0);
-        const double energy_before = writes ? energy[i] : 0.0;
+        const Vec3 here = x[i];
         Vec3 sum(0.0, 0.0, 0.0);
-        if (own_entries.begin < own_entries.end)
-            add_some(own_entries.some, here, sum);
-        for (int k = own_entries.begin + kAtOnce * kWarp; k < own_entries.end; k += kAtOnce * kWarp)
-            add_some(entries_from<kAtOnce>(entries, i, k, own_entries.end), here, sum);
-
-        const double own = team.sum(1, 0.5 * here.dot(sum)); // where digits cancel, before they are dropped
-        for (int a = 0; a < 3; ++a)
-            sum[a] = double(team.sum(1, float(sum[a])));
-        if (!writes)
-            return;
-        gradient[i] = before + sum;
-        energy[i] = energy_before + own;
+        for (int k = begin; k < end; k += kAtOnce * kWarp)
+            for (const RowEntry& entry : entries_from<kAtOnce>(entries, i, k, end))
+                sum += double(entry.value) * (x[entry.column] - here);
+        return {sum, 0.5 * here.dot(sum)};
     }
 
-private:
-    TOILE_HD void add_some(const std::array<RowEntry, kAtOnce>& some, const Vec3& here, Vec3& sum) const
+    template <typename Team>
+    TOILE_HD static Share of_all(const Team& team, const Share& own)
     {
-        for (const RowEntry& entry : some)
-            sum += double(entry.value) * (x[entry.column] - here);
+        Share all{own.gradient, team.sum(1, own.energy)}; // where digits cancel, before they are dropped
+        for (int a = 0; a < 3; ++a)
+            all.gradient[a] = double(team.sum(1, float(own.gradient[a])));
+        return all;
     }
 };
 

@@ -6,7 +6,7 @@
 
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
-#include "garment/energy/device_membrane.h"
+#include "garment/energy/device_elasticity.h"
 #include "garment/energy/membrane_lanes.h"
 
 namespace toile {
@@ -99,7 +99,7 @@ void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, Bloc
 
 bool Membrane::add_to(DeviceEnergies& energies, int first_vertex)
 {
-    energies.of_kind<DeviceMembrane>().add(*rest_, weights_, first_vertex);
+    energies.of_kind<DeviceElasticity>().add_membrane(*rest_, weights_, first_vertex);
     return true;
 }
 

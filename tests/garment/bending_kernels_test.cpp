@@ -12,20 +12,11 @@
 namespace toile::test {
 namespace {
 
-/// On the CPU a thread of a team has its own share only, and the first one writes: they all do in turn.
-void add_share_of_thread(const AddBending& kernel, int i, int thread)
-{
-    struct OneThread {
-        int thread = 0;
-        double sum(int, double value) const { return value; }
-    };
-    AddBending of_thread = kernel;
-    // The entries of this thread in the place of the first one's.
-    of_thread.entries = View<const RowEntry>(kernel.entries.data() + thread, kernel.entries.size() - thread);
-    of_thread(i, OneThread{}, true);
-}
+struct OneThread {
+    int thread;
+};
 
-TEST(AddBending, GivesTheGradientAndEnergyOfTheCpu)
+TEST(BendByTeam, GivesTheGradientAndEnergyOfTheCpu)
 {
     // Rows of different lengths, and a last slice that is not full.
     const Sheet sheet = make_sheet(Vec2(0.3, 0.2), 12, 7, Pattern::Irregular);
@@ -44,10 +35,13 @@ TEST(AddBending, GivesTheGradientAndEnergyOfTheCpu)
                           View<const int>(K.innerIndexPtr(), int(values.size())), values);
     EXPECT_EQ(int(rows.first.size()), (n + SlicedRows::kRows - 1) / SlicedRows::kRows + 1);
     std::vector<double> energy(n, 0.5);
-    const AddBending kernel{rows.first, rows.entries, x, found, energy};
+    const BendByTeam bending_of{rows.first, rows.entries, x};
     for (int i = 0; i < n; ++i)
-        for (int thread = 0; thread < SlicedRows::kThreads; ++thread)
-            add_share_of_thread(kernel, i, thread);
+        for (int thread = 0; thread < SlicedRows::kThreads; ++thread) {
+            const BendByTeam::Share share = bending_of.of_thread(i, OneThread{thread});
+            found[i] += share.gradient;
+            energy[i] += share.energy;
+        }
 
     double largest = 0.0, difference = 0.0;
     for (int i = 0; i < n; ++i) {

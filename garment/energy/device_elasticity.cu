@@ -1,26 +1,27 @@
-#include "garment/energy/device_membrane.h"
+#include "garment/energy/device_elasticity.h"
 
 #include "core/backend/cuda/teams.cuh"
-#include "garment/energy/gather_corners.h"
+#include "garment/energy/gather_elastic.h"
 
 namespace toile {
 
 namespace {
 
 /// Threads of a vertex, which has some six corners.
-constexpr int kTeam = 4;
+constexpr int kTeam = SlicedRows::kThreads;
 
 } // namespace
 
-DeviceMembrane::DeviceMembrane(const CudaSpace& space)
+DeviceElasticity::DeviceElasticity(const CudaSpace& space)
     : space_(space), triangles_(space, "membrane/triangles"), rest_inv_(space, "membrane/rest_inv"),
       area_(space, "membrane/area"), fabric_(space, "membrane/fabric"), weights_(space, "membrane/weights"),
       first_corner_(space, "membrane/first_corner"), corners_(space, "membrane/corners"),
-      corner_gradient_(space, "membrane/corner_gradient")
+      corner_gradient_(space, "membrane/corner_gradient"), bending_first_(space, "bending/first"),
+      bending_entries_(space, "bending/entries")
 {
 }
 
-void DeviceMembrane::add(const RestShape& rest, const MembraneWeights& weights, int first_vertex)
+void DeviceElasticity::add_membrane(const RestShape& rest, const MembraneWeights& weights, int first_vertex)
 {
     TOILE_ASSERT(first_vertex + 1 >= int(host_.first_corner.size()));
     // Vertices before this cloth that are no cloth's have no corners.
@@ -41,7 +42,23 @@ void DeviceMembrane::add(const RestShape& rest, const MembraneWeights& weights, 
     upload();
 }
 
-void DeviceMembrane::upload()
+void DeviceElasticity::add_bending(const SparseMatrix& K, int first_vertex)
+{
+    TOILE_ASSERT(first_vertex + 1 >= int(host_.bending_first.size()));
+    host_.bending_first.resize(first_vertex + 1, int(host_.bending_column.size()));
+    for (int row = 0; row < K.outerSize(); ++row) {
+        for (SparseMatrix::InnerIterator entry(K, row); entry; ++entry) {
+            host_.bending_column.push_back(first_vertex + int(entry.col()));
+            host_.bending_value.push_back(float(entry.value()));
+        }
+        host_.bending_first.push_back(int(host_.bending_column.size()));
+    }
+    const SlicedRows rows(host_.bending_first, host_.bending_column, host_.bending_value);
+    bending_first_.upload(rows.first);
+    bending_entries_.upload(rows.entries);
+}
+
+void DeviceElasticity::upload()
 {
     triangles_.upload(host_.triangles);
     rest_inv_.upload(host_.rest_inv);
@@ -53,17 +70,20 @@ void DeviceMembrane::upload()
     corner_gradient_.resize(triangles_.size());
 }
 
-void DeviceMembrane::add_gradient(const DeviceEvaluation& at)
+void DeviceElasticity::add_gradient(const DeviceEvaluation& at)
 {
+    TOILE_ASSERT(host_.bending_first.size() <= host_.first_corner.size());
     if (triangles_.size() == 0)
-        return; // corners' early part counts on the launch before
+        return; // what is gathered early counts on the launch before
     parallel_for(space_, "membrane/project", triangles_.size(),
                  ProjectMembraneTriangle<CornerPair>{at.x, triangles_.view(), rest_inv_.view(), area_.view(),
                                                      fabric_.view(), weights_.view(), corner_gradient_.view(),
                                                      at.own});
-    parallel_for_teams<kTeam>(
-        space_, "membrane/gather", first_corner_.size() - 1,
-        GatherCornersByTeam{first_corner_.view(), corners_.view(), corner_gradient_.view(), at.gradient});
+    parallel_for_teams<kTeam>(space_, "elasticity/gather", first_corner_.size() - 1,
+                              GatherElastic{{first_corner_.view(), corners_.view(), corner_gradient_.view()},
+                                            {bending_first_.view(), bending_entries_.view(), at.x},
+                                            at.gradient,
+                                            at.energy});
 }
 
 } // namespace toile
