@@ -10,7 +10,7 @@ namespace {
 
 /// Vertices and triangles in parts, each of which one task looks at with a grid of its own.
 struct Parts {
-    static constexpr int kSize = 8192;
+    static constexpr int kSize = 2048;
 
     explicit Parts(int items) : count((items + kSize - 1) / kSize) {}
     int begin(int part) const { return part * kSize; }
