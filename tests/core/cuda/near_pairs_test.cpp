@@ -142,6 +142,31 @@ TEST_F(DeviceNearPairsTest, AreFoundAroundVerticesThatGoElsewhere)
     EXPECT_GT(total, 5000u);
 }
 
+TEST_F(DeviceNearPairsTest, AreFoundAroundManyVerticesByASearchOfEverything)
+{
+    Random random(42);
+    Soup soup;
+    for (const double height : {0.0, 0.006})
+        add_sheet(soup, 60, 0.01, height);
+    DeviceNearPairs device(space(), soup.triangles, soup.x);
+    OnBoard board(space(), soup);
+    device.find(board.x.view(), board.ways(), 0.003);
+    std::vector<unsigned char> around(soup.x.size());
+    for (size_t v = 0; v < soup.x.size(); v += 1 + size_t(random.below(2))) {
+        around[v] = 1;
+        soup.motion[v] = 3e-3 * random.point();
+    }
+    board.send(soup, around);
+    const int count = int(std::count(around.begin(), around.end(), 1));
+    Stages stages;
+    const Stages::Activate activate(stages);
+    const std::vector<NearPair> found =
+        downloaded(device, device.find_around(board.x.view(), board.ways(), count, 0.003).size());
+    EXPECT_EQ(stages.calls("collision/device_count_around"), 0);
+    expect_those_around(found, soup, around, 0.003);
+    EXPECT_GT(found.size(), 10000u);
+}
+
 TEST_F(DeviceNearPairsTest, AroundNothingAreNoneAndNothingRuns)
 {
     Random random(40);

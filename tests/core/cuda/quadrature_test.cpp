@@ -161,7 +161,7 @@ TEST_F(DeviceQuadratureTest, SolvesEqualAndOtherBodiesWithTablesOfEitherMaker)
     // One store has the CPU's tables, the other has none.
     using Weights = DeviceQuadratureSolver::Weights;
     for (const auto& store : {TableStore::of_process(), std::make_shared<TableStore>()})
-        for (const auto [weights, tolerance] :
+        for (const auto& [weights, tolerance] :
              {std::pair(Weights::Single, kTolerance), std::pair(Weights::Bytes, kToleranceOfBytes)}) {
             DeviceQuadratureSolver there(
                 space(), std::vector<DeviceQuadratureSolver::Part>(3, {grid.places, {}}), {}, store, weights);
