@@ -5,9 +5,9 @@
 namespace toile {
 
 /// Vertices of a soup that have changed, with the triangles and edges that have one of them, each once: those
-/// belong to the lowest of their changed vertices. Shared out among threads, for a GPU: one for each vertex,
-/// then kTriangleThreads of each for its triangles, then kEdgeThreads for its edges, so that those of a warp
-/// do the same.
+/// belong to the lowest of their changed vertices. Shared out among threads, or teams of threads, for a GPU:
+/// one for each vertex, then kTriangleThreads of each for its triangles, then kEdgeThreads for its edges, so
+/// that neighbours do the same.
 struct ChangedPrimitives {
     static constexpr int kTriangleThreads = 8, kEdgeThreads = 16;
     static constexpr int kThreads = 1 + kTriangleThreads + kEdgeThreads; ///< of each vertex
@@ -19,7 +19,8 @@ struct ChangedPrimitives {
 
     TOILE_HD int thread_count() const { return kThreads * vertices.size(); }
 
-    /// Calls on_vertex(number), on_triangle(number) or on_edge(number) for what is the thread's.
+    /// Calls on_vertex(number), on_triangle(number) or on_edge(number) for what is the thread's. Vertices of
+    /// no triangle are left out.
     template <typename OnVertex, typename OnTriangle, typename OnEdge>
     TOILE_HD void visit(int thread, const OnVertex& on_vertex, const OnTriangle& on_triangle,
                         const OnEdge& on_edge) const
@@ -27,7 +28,7 @@ struct ChangedPrimitives {
         const int first_of_triangles = vertices.size();
         const int first_of_edges = (1 + kTriangleThreads) * vertices.size();
         if (thread < first_of_triangles)
-            on_vertex(vertices[thread]);
+            visit_vertex(vertices[thread], on_vertex);
         else if (thread < first_of_edges)
             visit_triangles(thread - first_of_triangles, on_triangle);
         else
@@ -48,6 +49,13 @@ private:
             if (primitive[k] < v && is_changed[primitive[k]] != 0)
                 return false;
         return true;
+    }
+
+    template <typename OnVertex>
+    TOILE_HD void visit_vertex(int v, const OnVertex& on_vertex) const
+    {
+        if (!edges.corners_of_vertex.of(v).empty())
+            on_vertex(v);
     }
 
     template <typename OnTriangle>

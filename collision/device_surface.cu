@@ -77,7 +77,7 @@ void DeviceSurface::move(View<const Vec3> x, const Ways& ways, double margin)
     measure(x, ways.motion);
     parallel_sum(space_, "collision/device_points", x.size(), Largest(),
                  PlacePoint{x, ways, extent_.view(), points_.view()}, largest_.view(), largest_sums_);
-    boxes_ = {points_.view(), ways.around, largest_.view(), margin};
+    note(ways, margin);
     refit<Triangle>(triangle_shape_, triangle_order_.view(), triangles_.view(), triangle_nodes_.view());
     refit<std::array<int, 2>>(edge_shape_, edge_order_.view(), edge_vertex_.view(), edge_nodes_.view());
 

@@ -20,6 +20,12 @@ public:
     /// half the margin, as Candidates::update has them. All arguments on the device, borrowed until the next.
     void move(View<const Vec3> x, const Ways& ways, double margin);
 
+    /// What move() notes on the host, for who launches a recording of it with these arguments.
+    void note(const Ways& ways, double margin)
+    {
+        boxes_ = {points_.view(), ways.around, largest_.view(), margin};
+    }
+
     /// Enqueues: the same of some vertices, the others as move() has placed them: `ways` and `x` differ from
     /// those of move() at most there. Boxes above them grow and do not shrink.
     /// @param vertices  on the device, ascending

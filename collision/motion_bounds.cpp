@@ -10,12 +10,15 @@ namespace {
 
 /// Vertices and triangles in parts, each of which one task looks at with a grid of its own.
 struct Parts {
-    static constexpr int kSize = 2048;
+    static constexpr int kMost = 32, kLeastSize = 2048;
 
-    explicit Parts(int items) : count((items + kSize - 1) / kSize) {}
-    int begin(int part) const { return part * kSize; }
+    explicit Parts(int items)
+        : size(std::max(kLeastSize, (items + kMost - 1) / kMost)), count((items + size - 1) / size)
+    {
+    }
+    int begin(int part) const { return part * size; }
 
-    int count;
+    int size, count;
 };
 
 void extend(Bounds& box, const Bounds& other)

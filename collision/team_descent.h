@@ -22,45 +22,39 @@ struct TeamDescent {
     TOILE_HD int visit(const ImplicitBoxTree& tree, const Box& query, const Accepts& accepts,
                        const Take& take) const
     {
-        int count = 0;
-#ifdef __CUDA_ARCH__
-        int size = 1;
+        int size = 1, count = 0;
         if (team.thread == 0)
             stack[0] = entry(tree.shape.top, 0);
         while (size > 0) {
             team.wait();
-            const int opened = size < kNodes ? size : kNodes, parent = team.thread / ImplicitShape::kFan;
+            const int most = team.width() < kFan ? 1 : team.width() / kFan;
+            const int opened = size < most ? size : most, parent = team.thread / kFan;
             size -= opened;
             const int above = parent < opened ? stack[size + parent] : entry(1, 0);
-            const int level = above / kLevel - 1;
-            const int node = above % kLevel * ImplicitShape::kFan + team.thread % ImplicitShape::kFan;
-            const BoxNode own = tree.nodes[tree.shape.first[level] + node];
-            const bool overlaps = parent < opened && own.box().overlaps(query);
-            team.wait();
-            const Team::Flagged inner = team.flagged(overlaps && level > 0);
-            if (overlaps && level > 0)
-                stack[size + inner.before] = entry(level, node);
-            size += inner.count;
-            for (int k = 0; k < kTimes; ++k) {
-                const bool is_taken = overlaps && level == 0 && accepts(own.last, k);
-                const Team::Flagged taken = team.flagged(is_taken);
-                if (is_taken)
-                    take(count + taken.before, own.last, k);
-                count += taken.count;
+            const int level = above / kLevel - 1, first_child = above % kLevel * kFan;
+            team.wait(); // until all have read what others write over
+            for (int child = team.thread % kFan; child < kFan; child += team.width()) {
+                const int node = first_child + child;
+                const BoxNode own = tree.nodes[tree.shape.first[level] + node];
+                const bool overlaps = parent < opened && own.box().overlaps(query);
+                const Team::Flagged inner = team.flagged(overlaps && level > 0);
+                if (overlaps && level > 0)
+                    stack[size + inner.before] = entry(level, node);
+                size += inner.count;
+                for (int k = 0; k < kTimes; ++k) {
+                    const bool is_taken = overlaps && level == 0 && accepts(own.last, k);
+                    const Team::Flagged taken = team.flagged(is_taken);
+                    if (is_taken)
+                        take(count + taken.before, own.last, k);
+                    count += taken.count;
+                }
             }
         }
-#else
-        tree.descend([&](const BoxNode& node) { return node.box().overlaps(query); },
-                     [&](int item) {
-                         for (int k = 0; k < kTimes; ++k)
-                             if (accepts(item, k))
-                                 take(count++, item, k);
-                     });
-#endif
         return count;
     }
 
 private:
+    static constexpr int kFan = ImplicitShape::kFan;
     static constexpr int kLevel = 1 << 27; ///< more nodes than a level has
     static_assert(ImplicitShape::kMaxLevels * long(kLevel) <= 1L << 31);
 

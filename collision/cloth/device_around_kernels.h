@@ -10,10 +10,9 @@ namespace toile {
 /// each thread of ChangedPrimitives.
 struct CandidatesAround {
     ChangedPrimitives changed;
-    BoxesAtPoints boxes;
     ImplicitBoxTree triangle_tree, edge_tree;
-    PairCorners corners;
-    Bodies bodies;
+    VertexQueries vertices;
+    EdgeQueries edges;
 
     TOILE_HD int team_count() const { return changed.thread_count(); }
 
@@ -35,7 +34,7 @@ private:
     TOILE_HD int visit_vertex(int v, const TeamDescent& descent, const Take& take) const
     {
         return descent.visit<1>(
-            triangle_tree, boxes.node(v, v).box(), [&](int t, int) { return may_pair(v, t); },
+            triangle_tree, boxes().node(v, v).box(), [&](int t, int) { return vertices.is_candidate(v, t); },
             [&](int place, int t, int) {
                 take(place, {v, t});
             });
@@ -45,11 +44,11 @@ private:
     template <typename Take>
     TOILE_HD int visit_triangle(int t, const TeamDescent& descent, const Take& take) const
     {
-        const Box own = boxes.node(t, changed.triangles[t]).box();
+        const Box own = boxes().node(t, changed.triangles[t]).box();
         const auto accepts = [&](int other, int k) {
             const int v = changed.triangles[other][k];
             return changed.is_changed[v] == 0 && changed.edges.corners_of_vertex.of(v)[0] == 3 * other + k &&
-                   boxes.node(v, v).box().overlaps(own) && may_pair(v, t);
+                   boxes().node(v, v).box().overlaps(own) && vertices.is_candidate(v, t);
         };
         return descent.visit<3>(triangle_tree, own, accepts, [&](int place, int other, int k) {
             take(place, {changed.triangles[other][k], t});
@@ -60,24 +59,19 @@ private:
     template <typename Take>
     TOILE_HD int visit_edge(int e, const TeamDescent& descent, const Take& take) const
     {
+        const View<const std::array<int, 2>> ends = changed.edges.vertex;
         const auto accepts = [&](int f, int) {
-            if (f == e || (f < e && changed.has_changed(corners.edges[f])))
-                return false;
-            const std::array<int, 4> v = corners(e, f, true);
-            return !share_vertex(v, true) && !bodies.are_one(v[0], v[2]);
+            const bool is_others = f == e || (f < e && changed.has_changed(ends[f]));
+            return !is_others && edges.is_candidate(std::min(e, f), std::max(e, f));
         };
-        const int vertex_count = boxes.points.size();
-        return descent.visit<1>(edge_tree, boxes.node(e, corners.edges[e]).box(), accepts,
+        const int vertex_count = boxes().points.size();
+        return descent.visit<1>(edge_tree, boxes().node(e, ends[e]).box(), accepts,
                                 [&](int place, int f, int) {
                                     take(place, {vertex_count + std::min(e, f), std::max(e, f)});
                                 });
     }
 
-    TOILE_HD bool may_pair(int v, int t) const
-    {
-        const std::array<int, 4> all = corners(v, t, false);
-        return !share_vertex(all, false) && !bodies.are_one(v, all[1]);
-    }
+    TOILE_HD const BoxesAtPoints& boxes() const { return vertices.boxes; }
 };
 
 /// Teams of a block, and the stacks of their descents.

@@ -60,6 +60,7 @@ DeviceNearPairs::DeviceNearPairs(const CudaSpace& space, View<const Triangle> tr
 
 void DeviceNearPairs::make_room(long candidates, long pairs)
 {
+    recorded_ = {}; // also where there is no more memory
     if (candidates > candidates_.size()) {
         const int size = with_headroom(candidates);
         candidates_.resize(size);
@@ -68,7 +69,6 @@ void DeviceNearPairs::make_room(long candidates, long pairs)
     }
     if (pairs > pairs_.size())
         pairs_.resize(with_headroom(pairs));
-    recorded_ = {};
 }
 
 void DeviceNearPairs::begin(View<const Vec3> x, const Ways& ways, double margin)
@@ -102,6 +102,7 @@ void DeviceNearPairs::search_begun()
     if (!is_recorded_)
         graph_.record(search_now);
     is_recorded_ = true;
+    surface_.note(begun_.ways, begun_.margin);
     graph_.launch();
 }
 
@@ -128,12 +129,8 @@ void DeviceNearPairs::search_around_few(View<const Vec3> x, const Ways& ways, in
                  around_scratch_);
     const View<const int> vertices = around_.view().subview(0, count);
     surface_.move_some(vertices, x, ways);
-    const CandidatesAround around{surface_.changed(vertices, ways.around),
-                                  surface_.boxes(),
-                                  surface_.triangle_tree(),
-                                  surface_.edge_tree(),
-                                  corners(),
-                                  {rigid_.view()}};
+    const CandidatesAround around{surface_.changed(vertices, ways.around), surface_.triangle_tree(),
+                                  surface_.edge_tree(), vertex_queries(), edge_queries()};
     const int teams = around.team_count();
     const int blocks = block_count(teams + 1, TeamsAround::kTeams);
     around_counts_.resize(teams + 1);
@@ -196,9 +193,10 @@ bool DeviceNearPairs::settle_around()
     space_.synchronise();
     const SearchNumbers& numbers = numbers_[0];
     const bool had_room = numbers.candidates <= room_around_ && numbers.pairs <= pairs_.size();
-    room_around_ = std::max(room_around_, with_headroom(numbers.candidates));
-    if (!had_room)
+    if (!had_room) {
+        room_around_ = std::max(room_around_, with_headroom(numbers.candidates));
         make_room(room_around_, numbers.pairs);
+    }
     return had_room;
 }
 

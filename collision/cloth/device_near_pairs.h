@@ -40,8 +40,8 @@ public:
 
     /// Pairs with one of some vertices that now go elsewhere than find() was asked for: those that may come
     /// nearer than `margin` on their ways, and some more as there, in the same order. Where these are few
-    /// nothing but their surroundings is looked at. Waits for their number; a later kernel of another stream
-    /// must wait for the pairs.
+    /// nothing but their surroundings is looked at. Vertices of no triangle have none. Waits for their
+    /// number; a later kernel of another stream must wait for the pairs.
     /// @param x       as find() was given, with what it held
     /// @param ways    none empty; `around` marks the vertices. All others go as in the searches since find()
     /// @param count   of vertices that are marked

@@ -15,14 +15,14 @@ struct CornersByTeam {
     View<const CornerPair> corner_gradient; ///< [triangles] [N]
 
     /// A thread's corners.
-    struct Own {
+    struct OfThread {
         int begin, end;
         int some[kAtOnce];
     };
     template <typename Team>
-    TOILE_HD Own own(int v, const Team& team) const
+    TOILE_HD OfThread of_thread(int v, const Team& team) const
     {
-        Own own{first[v] + team.thread, first[v + 1], {}};
+        OfThread own{first[v] + team.thread, first[v + 1], {}};
         for (int n = 0; n < kAtOnce; ++n)
             if (const int k = own.begin + n * Team::kThreads; k < own.end)
                 own.some[n] = corners[k];
@@ -30,7 +30,7 @@ struct CornersByTeam {
     }
 
     template <typename Team>
-    TOILE_HD PaddedVec3 sum(const Team& team, const Own& own) const
+    TOILE_HD PaddedVec3 sum(const Team& team, const OfThread& own) const
     {
         PaddedVec3 sum(0.0F);
         int k = own.begin;
@@ -64,7 +64,7 @@ struct GatherElastic {
 
     /// All but what the triangles found.
     struct Early {
-        CornersByTeam::Own corners;
+        CornersByTeam::OfThread corners;
         BendByTeam::Share bending;
         Vec3 gradient;
         double energy;
@@ -73,8 +73,8 @@ struct GatherElastic {
     TOILE_HD Early early(int v, const Team& team, bool is_own) const
     {
         const bool writes = team.thread == 0 && is_own;
-        return {membrane.own(v, team), bending.of_thread(v, team), writes ? gradient[v] : Vec3(0.0, 0.0, 0.0),
-                writes ? energy[v] : 0.0};
+        return {membrane.of_thread(v, team), bending.of_thread(v, team),
+                writes ? gradient[v] : Vec3(0.0, 0.0, 0.0), writes ? energy[v] : 0.0};
     }
 
     template <typename Team>

@@ -118,23 +118,23 @@ TEST(DeviceNearKernels, FindNothingInNothing)
     expect_those_of_near_pairs(soup, 1.0, 0);
 }
 
-/// Some vertices of a soup go elsewhere, twice, after all have been searched for.
+/// The search of DeviceNearPairs around some vertices of a soup that go elsewhere, again and again, after all
+/// have been searched for.
 class SearchAroundOnCpu {
 public:
-    SearchAroundOnCpu(Soup& soup, double margin)
-        : soup_(soup), margin_(margin), surface_(soup.triangles, soup.x, soup.ways(), margin)
+    SearchAroundOnCpu(Soup& soup, double margin, std::vector<int> rigid = {})
+        : soup_(soup), margin_(margin), rigid_(std::move(rigid)),
+          surface_(soup.triangles, soup.x, soup.ways(), margin)
     {
     }
 
     /// @param around  those that go elsewhere now
-    void compare(const std::vector<unsigned char>& around)
+    std::vector<NearPair> compare(const std::vector<unsigned char>& around)
     {
-        const Ways ways{soup_.motion, soup_.slack, around};
-        const std::vector<NearPair> found = find(ways);
-        test::expect_those_around(found, soup_, around, margin_);
-        count_ += found.size();
+        const std::vector<NearPair> found = find({soup_.motion, soup_.slack, around});
+        test::expect_those_around(found, soup_, around, margin_, rigid_);
+        return found;
     }
-    size_t count() const { return count_; } ///< of pairs found
 
 private:
     std::vector<NearPair> find(const Ways& ways)
@@ -146,33 +146,57 @@ private:
         surface_.move_some(changed, ways);
 
         const PairCorners corners{soup_.triangles, surface_.edges.vertex};
-        const CandidatesAround around{surface_.changed(changed, ways.around),
-                                      surface_.boxes,
-                                      surface_.triangle_tree(),
-                                      surface_.edge_tree(),
-                                      corners,
-                                      {}};
+        const CandidatesAround around{
+            surface_.changed(changed, ways.around),
+            surface_.triangle_tree(),
+            surface_.edge_tree(),
+            {surface_.used, surface_.vertex_order, surface_.boxes, corners, {rigid_}},
+            {surface_.edge_items(), corners, {rigid_}}};
+        std::vector<int> stack(TeamDescent::kStack);
         std::vector<Record> candidates;
-        for (int i = 0; i < around.team_count(); ++i)
-            around.visit(i, {}, [&](int, const Record& candidate) { candidates.push_back(candidate); });
-        const CandidateList list{candidates, surface_.vertex_count()};
-        const std::vector<long> count{long(candidates.size())};
-        std::vector<unsigned char> is_pair(candidates.size());
-        parallel_for(kCpu, "test/test", int(candidates.size()),
-                     TestCandidate{list, count, corners, soup_.x, ways, margin_, {}, is_pair});
-        std::vector<NearPair> pairs;
-        for (size_t i = 0; i < candidates.size(); ++i)
+        for (int i = 0; i < around.team_count(); ++i) {
+            const int first = int(candidates.size());
+            const int count = around.visit(i, {Team{0}, stack}, [&](int place, const Record& candidate) {
+                EXPECT_EQ(first + place, int(candidates.size()));
+                candidates.push_back(candidate);
+            });
+            EXPECT_EQ(first + count, int(candidates.size()));
+        }
+        return report({candidates, surface_.vertex_count()}, corners, ways);
+    }
+
+    std::vector<NearPair> report(const CandidateList& list, const PairCorners& corners, const Ways& ways)
+    {
+        const int candidates = list.candidates.size();
+        const std::vector<long> candidate_count{candidates};
+        std::vector<unsigned char> is_pair(candidates);
+        parallel_for(kCpu, "test/test", candidates,
+                     TestCandidate{list, candidate_count, corners, soup_.x, ways, margin_, {}, is_pair});
+        std::vector<int> in_list;
+        for (int i = 0; i < candidates; ++i)
             if (is_pair[i] != 0)
-                pairs.push_back(near_pair_at(soup_.triangles, view_of(surface_.edges), soup_.x,
-                                             list.first_of(candidates[i]), candidates[i].second,
-                                             list.is_edge_edge(candidates[i])));
+                in_list.push_back(i);
+
+        const int count = int(in_list.size());
+        const long seconds = std::max(soup_.triangles.size(), surface_.edges.vertex.size());
+        std::vector<std::uint64_t> keys(count);
+        std::vector<int> values(count), order(count), sorted(count);
+        parallel_for(kCpu, "test/key", count, KeyPair{list, in_list, seconds, keys, values});
+        std::iota(order.begin(), order.end(), 0);
+        std::sort(order.begin(), order.end(), [&](int a, int b) { return keys[a] < keys[b]; });
+        for (int i = 0; i < count; ++i)
+            sorted[i] = values[order[i]];
+        std::vector<NearPair> pairs(count);
+        parallel_for(
+            kCpu, "test/report", count,
+            ReportSortedPair{list, sorted, soup_.triangles, view_of(surface_.edges), soup_.x, pairs});
         return pairs;
     }
 
     Soup& soup_;
     double margin_;
+    std::vector<int> rigid_;
     test::SurfaceOnCpu surface_;
-    size_t count_ = 0;
 };
 
 TEST(DeviceNearKernels, FindThePairsAroundVerticesThatGoElsewhere)
@@ -185,10 +209,20 @@ TEST(DeviceNearKernels, FindThePairsAroundVerticesThatGoElsewhere)
             soup.stand_still(); // until some go
         SearchAroundOnCpu search(soup, 0.003);
         for (const int vertices : {1, 30, 200})
-            search.compare(test::send_elsewhere(random, soup, vertices));
-        count += search.count();
+            count += search.compare(test::send_elsewhere(random, soup, vertices)).size();
     }
     EXPECT_GT(count, 10000u);
+}
+
+TEST(DeviceNearKernels, FindNoPairsWithinOneRigidBodyAroundItsVertices)
+{
+    Random random(46);
+    Soup soup = folded_sheet(random);
+    std::vector<int> rigid(soup.x.size());
+    for (size_t v = 0; v < rigid.size(); ++v)
+        rigid[v] = int(v / 24) % 3 - 1; // rows of the sheet; some belong to none
+    SearchAroundOnCpu search(soup, 0.003, rigid);
+    EXPECT_GT(search.compare(test::send_elsewhere(random, soup, 100)).size(), 1000u);
 }
 
 TEST(DeviceNearKernels, FindPairsOfAVertexThatGoesFartherThanAnythingWas)
@@ -196,13 +230,16 @@ TEST(DeviceNearKernels, FindPairsOfAVertexThatGoesFartherThanAnythingWas)
     Random random(45);
     Soup soup = folded_sheet(random);
     soup.stand_still();
+    const int far_away = int(soup.x.size()), traveller = 100;
     add_sheet(soup, 3, 0.01, 40.0);
     SearchAroundOnCpu search(soup, 0.003);
     std::vector<unsigned char> around(soup.x.size());
-    around[100] = 1;
-    soup.motion[100] = Vec3(0.0, 80.0, 0.0) - soup.x[100] + Vec3(0.013, 0.0, 0.012);
-    search.compare(around);
-    EXPECT_GT(search.count(), 20u);
+    around[traveller] = 1;
+    soup.motion[traveller] = 2.0 * (Vec3(0.013, 40.0, 0.012) - soup.x[traveller]); // through it half way
+    const std::vector<NearPair> found = search.compare(around);
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const NearPair& pair) {
+        return !pair.is_edge_edge && pair.first == traveller && pair.vertex[1] >= far_away;
+    }));
 }
 
 TEST(ImplicitBoxTree, VisitsWhatOverlapsInOrder)

@@ -18,6 +18,16 @@ struct TeamOf {
 
     int thread; ///< [0, kThreads)
 
+    /// Threads that are there: on the CPU this one only.
+    TOILE_HD static constexpr int width()
+    {
+#ifdef __CUDA_ARCH__
+        return kThreads;
+#else
+        return 1;
+#endif
+    }
+
     /// On a GPU only: a single thread of the CPU gets its own value back.
     /// Sum over the threads whose number leaves the same remainder by `stride`, a power of two; all of them
     /// get it. Pairs in a tree: the same bits in every run.

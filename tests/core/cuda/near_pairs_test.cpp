@@ -125,7 +125,7 @@ TEST_F(DeviceNearPairsTest, AreFoundAroundVerticesThatGoElsewhere)
         DeviceNearPairs device(space(), soup.triangles, soup.x, {}, 1);
         OnBoard board(space(), soup);
         device.find(board.x.view(), board.ways(), 0.003);
-        for (const int vertices : {1, 30, 200}) {
+        for (const int vertices : {1, 30, 36, 43, 52, 62, 75, 90, 110, 130, 160, 200}) { // grow by a fifth
             const std::vector<unsigned char> around = send_elsewhere(random, soup, vertices);
             board.send(soup, around);
             const int count = int(std::count(around.begin(), around.end(), 1));
@@ -165,6 +165,33 @@ TEST_F(DeviceNearPairsTest, AreFoundAroundManyVerticesByASearchOfEverything)
     EXPECT_EQ(stages.calls("collision/device_count_around"), 0);
     expect_those_around(found, soup, around, 0.003);
     EXPECT_GT(found.size(), 10000u);
+}
+
+/// Around many, boxes are those of a smaller margin, until the next search, which is a graph.
+TEST_F(DeviceNearPairsTest, AreFoundAroundFewVerticesAfterManyAndARecordedSearch)
+{
+    Random random(43);
+    Soup soup;
+    for (const double height : {0.0, 0.006})
+        add_sheet(soup, 60, 0.01, height);
+    DeviceNearPairs device(space(), soup.triangles, soup.x);
+    OnBoard board(space(), soup);
+    const auto find = [&] {
+        board.send(soup, {});
+        device.find(board.x.view(), board.ways(), 0.004);
+    };
+    for (int k = 0; k < 2; ++k)
+        find(); // recorded
+    board.send(soup, std::vector<unsigned char>(soup.x.size(), 1));
+    device.find_around(board.x.view(), board.ways(), int(soup.x.size()), 0.0005);
+    find();
+    const std::vector<unsigned char> around = send_elsewhere(random, soup, 100);
+    board.send(soup, around);
+    const int count = int(std::count(around.begin(), around.end(), 1));
+    const std::vector<NearPair> found =
+        downloaded(device, device.find_around(board.x.view(), board.ways(), count, 0.004).size());
+    expect_those_around(found, soup, around, 0.004);
+    EXPECT_GT(found.size(), 1000u);
 }
 
 TEST_F(DeviceNearPairsTest, AroundNothingAreNoneAndNothingRuns)
