@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/backend/stages.h"
+
 namespace toile {
 
 void JointStrainLimit::observe(View<const Vec3> x)
@@ -13,9 +15,33 @@ void JointStrainLimit::observe(View<const Vec3> x)
 void JointStrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
                                const std::function<bool()>& clear_contacts)
 {
+    bool violates = false;
     for (const Part& part : parts_)
-        part.limit->project(x.subview(part.first, part.count), inverse_masses.subview(part.first, part.count),
-                            clear_contacts);
+        violates = part.limit->look(x.subview(part.first, part.count)) || violates;
+    if (!violates)
+        return;
+    for (const Part& part : parts_)
+        part.limit->keep(x.subview(part.first, part.count));
+    const auto has_sweep = [](const Part& part, int sweep) {
+        return part.limit->violates() && sweep < part.limit->settings().max_sweeps;
+    };
+    const auto any_has = [&](int sweep) {
+        return std::any_of(parts_.begin(), parts_.end(),
+                           [&](const Part& part) { return has_sweep(part, sweep); });
+    };
+    for (int sweep = 0; any_has(sweep); ++sweep) {
+        const StageScope stage("garment/strain_limit");
+        for (const Part& part : parts_)
+            if (has_sweep(part, sweep))
+                part.limit->sweep(sweep, x.subview(part.first, part.count),
+                                  inverse_masses.subview(part.first, part.count));
+        const bool cleared = clear_contacts && sweep < StrainLimit::kSweepsWithContact && clear_contacts();
+        for (const Part& part : parts_)
+            if (cleared || has_sweep(part, sweep))
+                part.limit->look_again(x.subview(part.first, part.count), cleared);
+    }
+    for (const Part& part : parts_)
+        part.limit->end(x.subview(part.first, part.count));
 }
 
 DeviceStepProjection* JointStrainLimit::on_device(const CudaSpace& space)

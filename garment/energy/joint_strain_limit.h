@@ -8,7 +8,8 @@
 
 namespace toile {
 
-/// Strain limits of several cloths in one body, each on its own range of vertices.
+/// Strain limits of several cloths in one body, each on its own range of vertices. They are swept together,
+/// for contact that is cleared between two sweeps moves cloth that was within its limit before.
 class JointStrainLimit : public StepProjection {
 public:
     struct Part {

@@ -7,6 +7,7 @@
 #include "core/backend/error.h"
 #include "core/backend/parallel.h"
 #include "core/mesh/colouring.h"
+#include "garment/energy/joint_strain_limit.h"
 
 namespace toile {
 
@@ -106,29 +107,40 @@ void StrainLimit::observe(View<const Vec3> x)
 void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
                           const std::function<bool()>& clear_contacts)
 {
+    JointStrainLimit({{this, 0, x.size()}}).project(x, inverse_masses, clear_contacts);
+}
+
+bool StrainLimit::look(View<const Vec3> x)
+{
     look_at_everything(x);
-    if (violating_.empty())
-        return;
-    before_.assign(x.begin(), x.end());
+    return violates();
+}
+
+void StrainLimit::keep(View<const Vec3> x) { before_.assign(x.begin(), x.end()); }
+
+void StrainLimit::sweep(int number, View<Vec3> x, View<const double> inverse_masses)
+{
+    // Alternate the direction so that corrections travel both ways through the mesh.
+    if (number % 2 == 1)
+        std::reverse(violating_.begin(), violating_.end());
     const ClampTriangle clamp{triangles(), inverse_masses, x};
-    for (int sweep = 0; sweep < settings_.max_sweeps && !violating_.empty(); ++sweep) {
-        const StageScope stage("garment/strain_limit");
+    for (const int t : violating_)
+        clamp(t);
+}
 
-        // Alternate the direction so that corrections travel both ways through the mesh.
-        if (sweep % 2 == 1)
-            std::reverse(violating_.begin(), violating_.end());
-        for (const int t : violating_)
-            clamp(t);
-        const bool cleared = clear_contacts && sweep < kSweepsWithContact && clear_contacts();
-        if (cleared || kNeighbourhood * violating_.size() > violates_.size())
-            look_at_everything(x);
-        else
-            look_around_violating(x);
-    }
+void StrainLimit::look_again(View<const Vec3> x, bool has_moved_elsewhere)
+{
+    if (has_moved_elsewhere || kNeighbourhood * violating_.size() > violates_.size())
+        look_at_everything(x);
+    else
+        look_around_violating(x);
+}
 
+void StrainLimit::end(View<Vec3> x) const
+{
     // Millimetres that clear a wide triangle or a contact are many times the height of a sliver beside it.
     // Sweeps that end worse than they began would turn that into velocity; the membrane does better alone.
-    if ((!violating_.empty() || has_slivers_) && max_strain(x) > max_strain(before_))
+    if ((violates() || has_slivers_) && max_strain(x) > max_strain(before_))
         std::copy(before_.begin(), before_.end(), x.begin());
 }
 

@@ -42,6 +42,17 @@ public:
     void project(View<Vec3> x, View<const double> inverse_masses,
                  const std::function<bool()>& clear_contacts) override;
 
+    /// The parts of project(), for several cloths that contact between them moves too: look(), which is true
+    /// where something violates the limit, keep(), then sweeps, each followed by a look, and end(), which
+    /// goes back to what was kept where the sweeps have ended worse.
+    bool look(View<const Vec3> x);
+    void keep(View<const Vec3> x);
+    void sweep(int number, View<Vec3> x, View<const double> inverse_masses);
+    /// @param has_moved_elsewhere  not only triangles of the sweep have moved
+    void look_again(View<const Vec3> x, bool has_moved_elsewhere);
+    bool violates() const { return !violating_.empty(); } ///< by the last look
+    void end(View<Vec3> x) const;
+
     /// Largest principal stretch minus one at x, of slivers too [-].
     double max_strain(View<const Vec3> x) const;
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/backend/error.h"
+#include "garment/energy/joint_strain_limit.h"
 #include "garment/energy/membrane.h"
 #include "garment/energy/principal_stretch.h"
 #include "tests/garment/sheets.h"
@@ -89,6 +90,28 @@ TEST(StrainLimit, BringsAStretchedSheetBack)
     heavy.patient.project(x, inverse_of(heavy.masses), nullptr);
     EXPECT_LE(heavy.limit.max_strain(x), kLimit + kTolerance);
     EXPECT_GT(heavy.limit.max_strain(x), kLimit - kTolerance) << "no more than needed";
+}
+
+/// The second sheet is stretched, and what clears contact after its sweep stretches the first.
+TEST(JointStrainLimit, BringsBackClothThatContactStretchesMeanwhile)
+{
+    HeavySheet heavy;
+    StrainLimit other(heavy.rest, {kLimit, kTolerance, 1000}, "other");
+    const int n = heavy.rest->vertex_count();
+    JointStrainLimit joint({{&heavy.patient, 0, n}, {&other, n, n}});
+    std::vector<Vec3> x = heavy.sheet.flat();
+    for (const Vec3& p : stretched(heavy.sheet, 1.15, 1.0))
+        x.push_back(p);
+    std::vector<double> inverse_masses = inverse_of(heavy.masses);
+    inverse_masses.insert(inverse_masses.end(), inverse_masses.begin(), inverse_masses.begin() + n);
+    int clearings = 0;
+    joint.project(x, inverse_masses, [&] {
+        if (++clearings == 1)
+            x[heavy.sheet.at(0, 0)] += Vec3(-0.01, 0.0, 0.0);
+        return clearings == 1;
+    });
+    EXPECT_GT(clearings, 1);
+    EXPECT_LE(joint.max_strain(x), kLimit + kTolerance);
 }
 
 TEST(StrainLimit, KeepsTheMassWeightedMomentum)
