@@ -131,7 +131,7 @@ public:
     /// @param around  those that go elsewhere now
     std::vector<NearPair> compare(const std::vector<unsigned char>& around)
     {
-        const std::vector<NearPair> found = find({soup_.motion, soup_.slack, around});
+        std::vector<NearPair> found = find({soup_.motion, soup_.slack, around});
         test::expect_those_around(found, soup_, around, margin_, rigid_);
         return found;
     }
