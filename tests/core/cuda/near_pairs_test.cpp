@@ -48,6 +48,14 @@ protected:
         const View<const NearPair> pairs = near.find(board.x.view(), board.ways(), margin);
         return downloaded(near, pairs.size());
     }
+    /// Around marked vertices, whose ways are those of the soup now.
+    std::vector<NearPair> found_around(DeviceNearPairs& near, OnBoard& board, const Soup& soup,
+                                       const std::vector<unsigned char>& around, double margin)
+    {
+        board.send(soup, around);
+        const int count = int(std::count(around.begin(), around.end(), 1));
+        return downloaded(near, near.find_around(board.x.view(), board.ways(), count, margin).size());
+    }
     std::vector<NearPair> downloaded(const DeviceNearPairs& near, int count)
     {
         DeviceArray<NearPair> copy(space(), "test/pairs");
@@ -67,6 +75,15 @@ protected:
         count_ += expected.size();
     }
     size_t count() const { return count_; } ///< of pairs compared
+
+    /// Of more vertices than a search around few takes, one above the other.
+    static Soup two_sheets()
+    {
+        Soup soup;
+        for (const double height : {0.0, 0.006})
+            add_sheet(soup, 60, 0.01, height);
+        return soup;
+    }
 
 private:
     size_t count_ = 0;
@@ -127,15 +144,9 @@ TEST_F(DeviceNearPairsTest, AreFoundAroundVerticesThatGoElsewhere)
         device.find(board.x.view(), board.ways(), 0.003);
         for (const int vertices : {1, 30, 36, 43, 52, 62, 75, 90, 110, 130, 160, 200}) { // grow by a fifth
             const std::vector<unsigned char> around = send_elsewhere(random, soup, vertices);
-            board.send(soup, around);
-            const int count = int(std::count(around.begin(), around.end(), 1));
-            const auto find = [&] {
-                return downloaded(device,
-                                  device.find_around(board.x.view(), board.ways(), count, 0.003).size());
-            };
-            const std::vector<NearPair> found = find();
+            const std::vector<NearPair> found = found_around(device, board, soup, around, 0.003);
             expect_those_around(found, soup, around, 0.003);
-            EXPECT_TRUE(are_same_bits(found, find()));
+            EXPECT_TRUE(are_same_bits(found, found_around(device, board, soup, around, 0.003)));
             total += found.size();
         }
     }
@@ -145,9 +156,7 @@ TEST_F(DeviceNearPairsTest, AreFoundAroundVerticesThatGoElsewhere)
 TEST_F(DeviceNearPairsTest, AreFoundAroundManyVerticesByASearchOfEverything)
 {
     Random random(42);
-    Soup soup;
-    for (const double height : {0.0, 0.006})
-        add_sheet(soup, 60, 0.01, height);
+    Soup soup = two_sheets();
     DeviceNearPairs device(space(), soup.triangles, soup.x);
     OnBoard board(space(), soup);
     device.find(board.x.view(), board.ways(), 0.003);
@@ -156,12 +165,9 @@ TEST_F(DeviceNearPairsTest, AreFoundAroundManyVerticesByASearchOfEverything)
         around[v] = 1;
         soup.motion[v] = 3e-3 * random.point();
     }
-    board.send(soup, around);
-    const int count = int(std::count(around.begin(), around.end(), 1));
     Stages stages;
     const Stages::Activate activate(stages);
-    const std::vector<NearPair> found =
-        downloaded(device, device.find_around(board.x.view(), board.ways(), count, 0.003).size());
+    const std::vector<NearPair> found = found_around(device, board, soup, around, 0.003);
     EXPECT_EQ(stages.calls("collision/device_count_around"), 0);
     expect_those_around(found, soup, around, 0.003);
     EXPECT_GT(found.size(), 10000u);
@@ -171,9 +177,7 @@ TEST_F(DeviceNearPairsTest, AreFoundAroundManyVerticesByASearchOfEverything)
 TEST_F(DeviceNearPairsTest, AreFoundAroundFewVerticesAfterManyAndARecordedSearch)
 {
     Random random(43);
-    Soup soup;
-    for (const double height : {0.0, 0.006})
-        add_sheet(soup, 60, 0.01, height);
+    Soup soup = two_sheets();
     DeviceNearPairs device(space(), soup.triangles, soup.x);
     OnBoard board(space(), soup);
     const auto find = [&] {
@@ -182,14 +186,10 @@ TEST_F(DeviceNearPairsTest, AreFoundAroundFewVerticesAfterManyAndARecordedSearch
     };
     for (int k = 0; k < 2; ++k)
         find(); // recorded
-    board.send(soup, std::vector<unsigned char>(soup.x.size(), 1));
-    device.find_around(board.x.view(), board.ways(), int(soup.x.size()), 0.0005);
+    found_around(device, board, soup, std::vector<unsigned char>(soup.x.size(), 1), 0.0005);
     find();
     const std::vector<unsigned char> around = send_elsewhere(random, soup, 100);
-    board.send(soup, around);
-    const int count = int(std::count(around.begin(), around.end(), 1));
-    const std::vector<NearPair> found =
-        downloaded(device, device.find_around(board.x.view(), board.ways(), count, 0.004).size());
+    const std::vector<NearPair> found = found_around(device, board, soup, around, 0.004);
     expect_those_around(found, soup, around, 0.004);
     EXPECT_GT(found.size(), 1000u);
 }
