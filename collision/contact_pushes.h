@@ -33,10 +33,10 @@ inline constexpr double kThinnest = 5e-5;
 /// deals with it.
 inline constexpr double kMinLeverage = 0.1;
 
-/// Distance [m] from where it would push within which a term has its turn in a sweep too: others of the sweep
-/// may push it on to there. With a fortieth of that, cloth that a plate presses against a table was left
-/// inside the table in three of eight pulls.
-inline constexpr double kAlmost = 5e-4;
+/// A term that does not push has its turn in a sweep too where it is no farther from pushing than so many
+/// times the depth of one that does and shares a vertex with it [-], and no farther than this [m]: the sweep
+/// may push it on to there. What is pushed from farther comes in the next (docs/collision/contact.md#turns).
+inline constexpr double kCarry = 3.0, kFarthestCarried = 5e-4;
 
 /// Of a move or force by vertex of a pair; 0 where unused or held.
 using PairShares = std::array<double, 4>;
@@ -133,7 +133,9 @@ struct TermInTurn {
     double left = 0.0;                    ///< depth that it is left, see PushOut [m]
 };
 
-// A push changes fields(), and over(other fields) is the same push of vertices that are there.
+// A push changes fields(), and over(other fields) is the same push of vertices that are there. Its depth() tells
+// how far a term is in what the push takes it out of [m]: positive where it pushes, and where not, as far as it
+// is from there. It pushes on others, or not (kCarries).
 
 /// A sweep's push of term i where contact alone would take it, with masses and the compliance of its spring
 /// [Macklin et al. 2016, eq. 18], and a force that never pulls. Momentum goes where contact sends it, and
@@ -147,9 +149,11 @@ struct PushToRest {
     TOILE_HD SharedFields<1> fields() const { return {x}; }
     TOILE_HD PushToRest over(const SharedFields<1>& there) const { return {rules, force, there[0]}; }
 
-    TOILE_HD bool acts(int i, const ContactTerm& term) const
+    static constexpr bool kCarries = true;
+    TOILE_HD double depth(int i, const ContactTerm& term) const
     {
-        return term.gap(x) + term.give < kAlmost || force[i] != 0.0;
+        const double depth = depth_of(term);
+        return force[i] != 0.0 ? std::fmax(std::fabs(depth), kLeastDepth) : depth; // else: it lets go
     }
 
     TOILE_HD TermInTurn prepare(const ContactTerm& term) const
@@ -161,7 +165,7 @@ struct PushToRest {
     TOILE_HD bool operator()(int i, const TermInTurn& own) const
     {
         const ContactTerm& term = own.term;
-        const double depth = -term.gap(x) - term.give;
+        const double depth = depth_of(term);
         if (depth <= 0.0 && force[i] == 0.0)
             return false;
         double mobility = 0.0; // how far a force on the pair's cloth point moves it [m/N]
@@ -174,6 +178,11 @@ struct PushToRest {
         force[i] += change;
         return push(term.pair, own.shares, change * term.pair.normal, x);
     }
+
+private:
+    static constexpr double kLeastDepth = std::numeric_limits<double>::min();
+
+    TOILE_HD double depth_of(const ContactTerm& term) const { return -term.gap(x) - term.give; }
 };
 
 /// A sweep's push of a term out of what it is in.
@@ -186,10 +195,8 @@ struct PushOut {
     TOILE_HD SharedFields<1> fields() const { return {x}; }
     TOILE_HD PushOut over(const SharedFields<1>& there) const { return {rules, most, there[0]}; }
 
-    TOILE_HD bool acts(int, const ContactTerm& term) const
-    {
-        return depth_of(term, left_to(term)) > -kAlmost;
-    }
+    static constexpr bool kCarries = true;
+    TOILE_HD double depth(int, const ContactTerm& term) const { return depth_of(term, left_to(term)); }
 
     TOILE_HD TermInTurn prepare(const ContactTerm& term) const
     {
@@ -223,9 +230,11 @@ struct StopAtSurface {
     TOILE_HD SharedFields<1> fields() const { return {v}; }
     TOILE_HD StopAtSurface over(const SharedFields<1>& there) const { return {rules, x, there[0]}; }
 
-    TOILE_HD bool acts(int, const ContactTerm& term) const
+    static constexpr bool kCarries = false; // it changes no depth
+    TOILE_HD double depth(int, const ContactTerm& term) const
     {
-        return term.gap(x) < 0.0 && rules.clearance_of(term.pair) >= kThinnest;
+        const double depth = -term.gap(x);
+        return depth > 0.0 && rules.clearance_of(term.pair) < kThinnest ? 0.0 : depth;
     }
 
     TOILE_HD TermInTurn prepare(const ContactTerm& term) const
@@ -253,7 +262,8 @@ struct Rub {
     TOILE_HD SharedFields<2> fields() const { return {x, v}; }
     TOILE_HD Rub over(const SharedFields<2>& there) const { return {rules, there[0], there[1]}; }
 
-    TOILE_HD bool acts(int, const ContactTerm& term) const { return term.gap(x) < kAlmost; }
+    static constexpr bool kCarries = true;
+    TOILE_HD double depth(int, const ContactTerm& term) const { return -term.gap(x); }
 
     TOILE_HD TermInTurn prepare(const ContactTerm& term) const
     {

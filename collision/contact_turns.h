@@ -5,22 +5,55 @@
 #include <array>
 
 #include "collision/contact_pushes.h"
+#include "core/backend/shared_bounds.h"
 #include "core/backend/turns.h"
 
 namespace toile {
 
-/// Flags the place of term i where it pushes; for i in [0, place_count()), as places beyond the terms are
-/// empty.
+/// The largest depth of those that push at each vertex; for term i.
+template <typename Push>
+struct FindDeepest {
+    Push push;
+    View<const ContactTerm> terms;
+    View<float> deepest; ///< [vertices] [m] out; 0 before
+
+    TOILE_HD void operator()(int i) const
+    {
+        const double depth = push.depth(i, terms[i]);
+        if (depth <= 0.0)
+            return;
+        for (const int v : terms[i].pair.vertex)
+            if (v >= 0)
+                raise_shared(deepest[v], float(depth));
+    }
+};
+
+/// Flags the place of term i where it pushes or may be pushed on; for i in [0, place_count()), as places beyond
+/// the terms are empty.
 template <typename Push>
 struct FlagActing {
     Push push;
     View<const ContactTerm> terms;
     TurnOrder order;
+    View<const float> deepest; ///< see FindDeepest; not looked at where the push carries nothing
     View<unsigned char> flags; ///< [places] out
 
     TOILE_HD void operator()(int i) const
     {
-        flags[order.place_of(i)] = i < order.count && push.acts(i, terms[i]) ? 1 : 0;
+        flags[order.place_of(i)] = i < order.count && has_turn(i, terms[i]) ? 1 : 0;
+    }
+
+private:
+    TOILE_HD bool has_turn(int i, const ContactTerm& term) const
+    {
+        const double depth = push.depth(i, term);
+        if (depth > 0.0 || !Push::kCarries)
+            return depth > 0.0;
+        float others = 0.0F;
+        for (const int v : term.pair.vertex)
+            if (v >= 0)
+                others = std::fmax(others, deepest[v]);
+        return -depth < std::fmin(kCarry * others, kFarthestCarried);
     }
 };
 

@@ -30,6 +30,7 @@ private:
     DeviceArray<TurnRank> rank_;       ///< see Turns
     DeviceArray<TaggedVector> passed_; ///< [fields x vertices] see Turns
     DeviceArray<unsigned> next_;       ///< [sweeps] see Turns
+    DeviceArray<float> deepest_;       ///< [sweeps x vertices] see FindDeepest
     DeviceArray<int> moved_;           ///< [1]
     PinnedArray<int> moved_here_;
     DeviceScratch scratch_;

@@ -10,7 +10,7 @@ namespace toile {
 /// Terms that push one after the other, in their TurnOrder, on the CPU.
 class HostTurns {
 public:
-    /// Sweep after sweep, of those that push when it begins, until none does or nothing moves.
+    /// Sweep after sweep, of those that push when it begins or may be pushed on, until none does or nothing moves.
     /// @return whether something moved
     template <typename Push>
     bool sweep(View<const ContactTerm> terms, const Push& push, int sweeps)
@@ -34,14 +34,19 @@ private:
     {
         const TurnOrder order{terms.size()};
         flags_.resize(order.place_count());
+        if (Push::kCarries) {
+            deepest_.assign(push.fields()[0].size(), 0.0F);
+            parallel_for(kCpu, "contact/find_deepest", order.count, FindDeepest<Push>{push, terms, deepest_});
+        }
         parallel_for(kCpu, "contact/flag_acting", order.place_count(),
-                     FlagActing<Push>{push, terms, order, flags_});
+                     FlagActing<Push>{push, terms, order, deepest_, flags_});
         listed_.clear();
         for (int place = 0; place < order.place_count(); ++place)
             if (flags_[place] != 0)
                 listed_.push_back(order.at(place));
     }
 
+    std::vector<float> deepest_;       ///< [vertices] see FindDeepest
     std::vector<unsigned char> flags_; ///< [places]
     std::vector<int> listed_;          ///< terms, in order
 };

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "collision/host_turns.h"
 
 namespace toile {
@@ -73,7 +75,7 @@ TEST_F(ContactPushes, NeverPull)
 
 TEST_F(ContactPushes, ReachThoseThatASweepPushesOn)
 {
-    constexpr double kDistance = 3e-3, kDepth = 0.8 * kAlmost, kApart = 0.6 * kAlmost;
+    constexpr double kDistance = 3e-3, kDepth = 4e-4, kApart = 3e-4;
     const std::vector<ContactTerm> terms{on_plane(0), between(kDistance)};
     x_[0].y() = -kDepth;
     x_[1].y() = x_[0].y() + kDistance + kApart;
@@ -81,6 +83,27 @@ TEST_F(ContactPushes, ReachThoseThatASweepPushesOn)
     EXPECT_TRUE(turns_.sweep(terms, PushOut{rules(), 0.0, x_}, 1));
     EXPECT_NEAR(x_[1].y() - before, 0.5 * (kDepth - kApart), 1e-12);
     EXPECT_NEAR(x_[1].y() - x_[0].y(), kDistance, 1e-12);
+}
+
+TEST_F(ContactPushes, HaveTurnsOnlyNearThoseThatPush)
+{
+    constexpr double kDepth = 1e-4;
+    const auto turns_of = [&](double apart, double depth) {
+        const std::vector<ContactTerm> terms{on_plane(0), between(0.5)};
+        x_ = {Vec3(0.0, -depth, 0.0), Vec3(0.0, -depth + 0.5 + apart, 0.0)};
+        const PushOut push{rules(), 0.0, x_};
+        std::vector<float> deepest(2, 0.0F);
+        std::vector<unsigned char> flags(TurnOrder{2}.place_count());
+        for (int i = 0; i < 2; ++i)
+            FindDeepest<PushOut>{push, terms, deepest}(i);
+        for (int i = 0; i < 2; ++i)
+            FlagActing<PushOut>{push, terms, TurnOrder{2}, deepest, flags}(i);
+        return std::accumulate(flags.begin(), flags.end(), 0);
+    };
+    EXPECT_EQ(turns_of(0.9 * kCarry * kDepth, kDepth), 2);
+    EXPECT_EQ(turns_of(1.1 * kCarry * kDepth, kDepth), 1);
+    EXPECT_EQ(turns_of(1.1 * kFarthestCarried, 1e-2), 1);
+    EXPECT_EQ(turns_of(1e-9, -1e-9), 0) << "nobody pushes";
 }
 
 TEST_F(ContactPushes, LeaveWhatIsHeldAndWhatIsApart)
