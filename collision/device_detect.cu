@@ -60,8 +60,9 @@ void DeviceSideMemory::forget() { sides_.upload(std::vector<VertexSides>(sides_.
 
 DeviceContactDetector::DeviceContactDetector(const CudaSpace& space, View<const Triangle> triangles,
                                              View<const Vec3> positions, int room)
-    : space_(space), cloth_(space, triangles, positions), order_(space, "detect/order"),
-      rank_(space, "detect/rank"), planes_(space, "detect/planes", VertexPlanes::kMost * positions.size()),
+    : space_(space), beside_(space, CudaSpace::Beside{}), begun_(space), joined_(beside_),
+      cloth_(space, triangles, positions), order_(space, "detect/order"), rank_(space, "detect/rank"),
+      planes_(space, "detect/planes", VertexPlanes::kMost * positions.size()),
       sheets_(space, "detect/sheets", triangles.size()),
       ridges_(space, "detect/ridges", cloth_.edges().vertex.size()), counts_(space, "detect/counts"),
       first_(space, "detect/first"), first_sheet_(space, "detect/first_sheet"),
@@ -101,11 +102,16 @@ void DeviceContactDetector::search(const DeviceMeshCollider& mesh, int collider,
                                    const DeviceSideMemory* sides, View<const double> clearance)
 {
     clear_counts();
-    find_planes(mesh, collider, sides, clearance);
+    nearest_of(collider); // may be made now
+    begun_.record();
+    begun_.delay(beside_);
+    find_planes(beside_, mesh, collider, sides, clearance);
+    if (settings_.edge_edge)
+        find_ridges(beside_, mesh, collider);
+    joined_.record();
     if (settings_.face_vertex)
         find_sheets(mesh, collider);
-    if (settings_.edge_edge)
-        find_ridges(mesh, collider);
+    joined_.delay(space_);
     report(mesh, collider);
 }
 
@@ -165,10 +171,10 @@ void DeviceContactDetector::clear_counts()
     sorted_sheets_.resize(sheet_room_);
 }
 
-void DeviceContactDetector::find_planes(const DeviceMeshCollider& mesh, int collider,
+void DeviceContactDetector::find_planes(const CudaSpace& on, const DeviceMeshCollider& mesh, int collider,
                                         const DeviceSideMemory* sides, View<const double> clearance)
 {
-    parallel_for(space_, "collision/device_planes", x_.size(),
+    parallel_for(on, "collision/device_planes", x_.size(),
                  FindPlanes{search_of(mesh, collider),
                             order_.view(),
                             sides ? sides->sides() : View<const VertexSides>(),
@@ -209,16 +215,16 @@ void DeviceContactDetector::find_sheets(const DeviceMeshCollider& mesh, int coll
     sort_by_key(space_, "collision/device_sort_sheets", sort_, sorted_sheets_.view(), bits);
 }
 
-void DeviceContactDetector::find_ridges(const DeviceMeshCollider& mesh, int collider)
+void DeviceContactDetector::find_ridges(const CudaSpace& on, const DeviceMeshCollider& mesh, int collider)
 {
     const DeviceSearch search = search_of(mesh, collider);
     const View<const std::array<int, 2>> edge_vertex = cloth_.edges().vertex;
     const ImplicitBoxTree tree = cloth_.edge_tree();
-    parallel_for(space_, "collision/device_ridges", tree.shape.count,
+    parallel_for(on, "collision/device_ridges", tree.shape.count,
                  FindRidges{search, tree.nodes.subview(0, tree.shape.count), edge_vertex, ridges_.slots(),
                             ridges_.found.view()},
                  kBlock);
-    parallel_for(space_, "collision/device_keep_ridges", ridges_.queries,
+    parallel_for(on, "collision/device_keep_ridges", ridges_.queries,
                  KeepRidges{search, edge_vertex, ridges_.found.view(), ridges_.slots(), counts_of_ridges()},
                  kBlock);
 }

@@ -7,6 +7,7 @@
 #include "collision/device_detect_report.h"
 #include "collision/device_mesh_collider.h"
 #include "collision/device_shape_kernels.h"
+#include "core/backend/cuda/event.h"
 #include "core/backend/cuda/scan.h"
 
 namespace toile {
@@ -83,11 +84,12 @@ public:
     void learn_sides(View<const Vec3> x, const DeviceMeshCollider& mesh, int collider,
                      DeviceSideMemory& sides, View<const double> clearance = {});
 
-    /// The parts of search(), for whoever times them.
-    void find_planes(const DeviceMeshCollider& mesh, int collider, const DeviceSideMemory* sides = nullptr,
-                     View<const double> clearance = {});
+    /// The parts of search(), for whoever times them. None needs what another finds: planes and ridges go to
+    /// the stream of `on`.
+    void find_planes(const CudaSpace& on, const DeviceMeshCollider& mesh, int collider,
+                     const DeviceSideMemory* sides = nullptr, View<const double> clearance = {});
     void find_sheets(const DeviceMeshCollider& mesh, int collider);
-    void find_ridges(const DeviceMeshCollider& mesh, int collider);
+    void find_ridges(const CudaSpace& on, const DeviceMeshCollider& mesh, int collider);
     void report(const DeviceMeshCollider& mesh, int collider);
 
 private:
@@ -121,9 +123,11 @@ private:
     void report_pairs(const ShapeRules<Solid>& rules, int begin, int queries);
 
     const CudaSpace& space_;
-    DeviceSurface cloth_;    ///< its trees tell who lies beside whom, their boxes are not renewed
-    DeviceArray<int> order_; ///< [vertices] along a curve through the first pose
-    DeviceArray<int> rank_;  ///< [triangles] ranks_by_corners
+    CudaSpace beside_;           ///< for planes and ridges, while sheets are found
+    StreamEvent begun_, joined_; ///< of a search: before it goes apart, and what beside_ has done
+    DeviceSurface cloth_;        ///< its trees tell who lies beside whom, their boxes are not renewed
+    DeviceArray<int> order_;     ///< [vertices] along a curve through the first pose
+    DeviceArray<int> rank_;      ///< [triangles] ranks_by_corners
     View<const Vec3> x_;
     View<const double> reach_;
     DetectSettings settings_;

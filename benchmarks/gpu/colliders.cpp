@@ -122,11 +122,11 @@ ColliderSearch measure(const CudaSpace& space, const TriangleMesh& dress, const 
     search.different = count_differences(expected, found.downloaded());
 
     search.refit_us = median_us(space, refit);
-    search.planes_us = median_us(space, [&] { device.find_planes(mesh, 0); });
+    search.planes_us = median_us(space, [&] { device.find_planes(space, mesh, 0); });
     if (settings.face_vertex)
         search.sheets_us = median_us(space, [&] { device.find_sheets(mesh, 0); });
     if (settings.edge_edge)
-        search.ridges_us = median_us(space, [&] { device.find_ridges(mesh, 0); });
+        search.ridges_us = median_us(space, [&] { device.find_ridges(space, mesh, 0); });
     search.report_us = median_us(space, [&] { device.report(mesh, 0); });
     search.total_us = median_us(space, [&] {
         refit();
