@@ -29,6 +29,11 @@ public:
         return (cell[2] * count_[1] + cell[1]) * count_[0] + cell[0];
     }
 
+    TOILE_HD Cell cell_at(int number) const
+    {
+        return {number % count_[0], number / count_[0] % count_[1], number / (count_[0] * count_[1])};
+    }
+
     /// May lie outside the grid, by at most two cells.
     TOILE_HD Cell cell_of(const Vec3& x) const
     {
@@ -52,22 +57,12 @@ public:
 
     /// Calls visit(number) for those cells from `first` to `last`, along each axis, that are in the grid.
     template <typename Visit>
-    void for_cells(const Cell& first, const Cell& last, const Visit& visit) const
+    TOILE_HD void for_cells(const Cell& first, const Cell& last, const Visit& visit) const
     {
         for (int z = std::max(first[2], 0); z <= std::min(last[2], count_[2] - 1); ++z)
             for (int y = std::max(first[1], 0); y <= std::min(last[1], count_[1] - 1); ++y)
                 for (int x = std::max(first[0], 0); x <= std::min(last[0], count_[0] - 1); ++x)
                     visit(number_of({x, y, z}));
-    }
-
-    /// Calls visit(cell) for all cells.
-    template <typename Visit>
-    void for_all(const Visit& visit) const
-    {
-        for (int z = 0; z < count_[2]; ++z)
-            for (int y = 0; y < count_[1]; ++y)
-                for (int x = 0; x < count_[0]; ++x)
-                    visit(Cell{x, y, z});
     }
 
 private:

@@ -21,8 +21,6 @@ CarryingPartner carrying(const ContactPartner& partner)
     if (partner.mesh) {
         carrying.is_mesh = true;
         carrying.is_moving = partner.mesh->is_moving();
-        carrying.mesh = partner.mesh->pose();
-        carrying.motion = partner.mesh->last_motion().view();
     } else {
         carrying.pose_t1 = partner.shape->pose();
         carrying.shape_from_t0 = partner.shape->pose_t0().inverse();
@@ -54,8 +52,13 @@ void ColliderPairs::find(const StepStart& start)
 void ColliderPairs::carry(View<const Vec3> x)
 {
     std::vector<CarryingPartner> partners;
-    for (const ContactPartner& partner : partners_)
+    for (const ContactPartner& partner : partners_) {
         partners.push_back(carrying(partner));
+        if (!partner.mesh)
+            continue;
+        partners.back().mesh = partner.mesh->pose();
+        partners.back().motion = partner.mesh->last_motion().view();
+    }
     parallel_for(kCpu, "contact/carry", x.size(),
                  CarryVertex{partners, nearest_, x, farthest_motion_, found_at_});
 }

@@ -72,7 +72,7 @@ private:
     std::vector<NearestSurface> nearest_; ///< [vertices] last step's
 };
 
-/// What takes cloth along, of a partner of the host.
+/// What takes cloth along; pose and motion of a mesh are left to who has them.
 CarryingPartner carrying(const ContactPartner& partner);
 
 } // namespace toile

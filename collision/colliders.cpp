@@ -7,7 +7,7 @@
 namespace toile {
 
 MeshCollider::MeshCollider(const MovingMesh& mesh)
-    : surface_(mesh.triangles, mesh.x_t1), x_t0_(mesh.x_t0), first_owned_(mesh.triangles.size() + 1, 0),
+    : surface_(mesh.triangles, mesh.x_t1), x_t0_(mesh.x_t0), x_t1_(mesh.x_t1), first_owned_(mesh.triangles.size() + 1, 0),
       bounds_(toile::bounds(mesh.x_t1))
 {
     // Edges by their lowest triangle.
@@ -24,16 +24,27 @@ MeshCollider::MeshCollider(const MovingMesh& mesh)
 
 void MeshCollider::move(const MovingMesh& mesh)
 {
-    TOILE_ASSERT(int(mesh.x_t1.size()) == surface_.positions().size());
+    TOILE_ASSERT(mesh.x_t1.size() == x_t1_.size());
     x_t0_ = mesh.x_t0;
-    is_moving_ = !std::equal(mesh.x_t1.begin(), mesh.x_t1.end(), surface_.positions().begin());
+    is_moving_ = mesh.x_t1 != x_t1_;
     if (!is_moving_)
         return;
-    const StageScope stage("collision/refit");
     ++move_count_;
-    bounds_ = toile::bounds(mesh.x_t1);
-    last_motion_.build(surface_.triangles(), surface_.positions(), mesh.x_t1, bounds_);
-    surface_.update(mesh.x_t1);
+    x_before_.swap(x_t1_);
+    x_t1_ = mesh.x_t1;
+    bounds_ = toile::bounds(x_t1_);
+    is_behind_ = true;
+}
+
+void MeshCollider::refit() const
+{
+    const std::lock_guard lock(refitting_);
+    if (!is_behind_)
+        return;
+    const StageScope stage("collision/refit");
+    last_motion_.build(triangles(), x_before_, x_t1_, bounds_);
+    surface_.update(x_t1_);
+    is_behind_ = false;
 }
 
 ShapeCollider::ShapeCollider(const Shape& shape, const Eigen::Isometry3d& pose, const std::string& source)

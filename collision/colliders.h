@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <mutex>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -13,26 +15,32 @@ namespace toile {
 
 /// A triangle surface that cloth may touch, at the end t1 of the current step; still or moving.
 ///
-/// Built once. A mesh that never moves is never refitted: its stage "collision/refit" never runs.
+/// Built once. What searches of the host need of a pose is found when they first ask (stage
+/// "collision/refit"): never for a mesh that stands, nor where a GPU makes the steps.
 class MeshCollider {
 public:
     /// Builds the tree. O(n log n). Any triangle list will do (see SurfaceProximity).
     explicit MeshCollider(const MovingMesh& mesh);
 
-    /// The next step's positions: as many vertices as before, the same triangles. O(n); stage
-    /// "collision/refit" where x_t1 differs from what it was.
+    /// The next step's positions: as many vertices as before, the same triangles. O(n). Not while others ask.
     void move(const MovingMesh& mesh);
 
-    const SurfaceProximity& surface() const { return surface_; } ///< at t1
-    const Bounds& bounds() const { return bounds_; }             ///< at t1
+    View<const Triangle> triangles() const { return surface_.triangles(); }
+    View<const Vec3> x_t0() const { return x_t0_; } ///< [vertices] [m]
+    View<const Vec3> x_t1() const { return x_t1_; } ///< [vertices] [m]
+    const Bounds& bounds() const { return bounds_; } ///< at t1
 
-    /// Steps in which it has moved so far, and how it did in the last of them.
+    /// Steps in which it has moved so far.
     int move_count() const { return move_count_; }
-    const MotionBounds& last_motion() const { return last_motion_; }
     bool is_moving() const { return is_moving_; } ///< in the current step
 
+    // These refit, once after a move, whoever asks first.
+
+    const SurfaceProximity& surface() const { return refitted().surface_; }         ///< at t1
+    const MotionBounds& last_motion() const { return refitted().last_motion_; } ///< how it moved last
+
     /// Both ends of the step, until the next move().
-    MeshPose pose() const { return {surface_.view(), x_t0_}; }
+    MeshPose pose() const { return {surface().view(), x_t0_}; }
 
     /// Displacement of a vertex from t0 to t1 [m].
     Vec3 motion(int vertex) const { return pose().motion(vertex); }
@@ -45,7 +53,7 @@ public:
         std::array<int, 2> vertex;
     };
 
-    bool is_ridge(int edge) const { return surface_.view().is_ridge(edge); } ///< see SurfaceView
+    bool is_ridge(int edge) const { return surface().view().is_ridge(edge); } ///< see SurfaceView
 
     /// Edges whose lowest triangle is this one: every edge belongs to exactly one triangle.
     View<const OwnedEdge> owned_edges(int triangle) const
@@ -55,14 +63,24 @@ public:
     }
 
 private:
-    SurfaceProximity surface_;
-    std::vector<Vec3> x_t0_;
+    const MeshCollider& refitted() const
+    {
+        if (is_behind_.load(std::memory_order_acquire))
+            refit();
+        return *this;
+    }
+    void refit() const;
+
+    mutable SurfaceProximity surface_;
+    std::vector<Vec3> x_t0_, x_t1_, x_before_; ///< [vertices] [m]; the last before the last move
     std::vector<int> first_owned_;       ///< [triangles + 1] into owned_edges_
     std::vector<OwnedEdge> owned_edges_; ///< [edges]
     Bounds bounds_;
     int move_count_ = 0;
     bool is_moving_ = false;
-    MotionBounds last_motion_;
+    mutable MotionBounds last_motion_;
+    mutable std::mutex refitting_;
+    mutable std::atomic<bool> is_behind_ = false; ///< surface_ and last_motion_, of what has moved
 };
 
 /// An analytic solid that moves rigidly during the step.

@@ -16,27 +16,31 @@ constexpr int kPairsOfVertex = 2;
 } // namespace
 
 DeviceColliderPairs::Mesh::Mesh(const CudaSpace& space, const MeshCollider& mesh, int vertex_count)
-    : there(space, mesh.surface().triangles(), mesh.surface().positions()), x_t0(space, "collider/x_t0"),
-      x_t1(space, "collider/x_t1"), motion(space, "collider/motion"),
+    : there(space, mesh.triangles(), mesh.x_t1()), x_t0(space, "collider/x_t0"), x_t1(space, "collider/x_t1"),
+      x_before(space, "collider/x_before", mesh.x_t1().size()), motion(space),
       clear_at(space, "collider/clear_at", vertex_count), clearance(space, "collider/clearance", vertex_count)
 {
+    x_t1.upload(mesh.x_t1());
     clear_at.fill_zero();
     clearance.fill_zero();
 }
 
-/// Uploads a mesh where it has moved, or stopped, since.
+/// Uploads a mesh where it has moved, or stopped, since. Who misses a move has the motion of both.
 void DeviceColliderPairs::Mesh::follow(const MeshCollider& mesh)
 {
     const Step now{mesh.move_count(), mesh.is_moving()};
     if (placed_at == now)
         return;
-    x_t0.upload(mesh.pose().x_t0);
-    x_t1.upload(mesh.surface().positions());
-    there.move(x_t0.view(), x_t1.view());
-    const MotionView moved = mesh.last_motion().view();
-    motion.upload(moved.motion);
-    grid = moved.grid;
+    const bool has_moved = now.move_count > placed_at.move_count;
     placed_at = now;
+    x_t0.upload(mesh.x_t0());
+    if (has_moved) {
+        std::swap(x_before, x_t1);
+        x_t1.upload(mesh.x_t1());
+    }
+    there.move(x_t0.view(), x_t1.view());
+    if (has_moved)
+        motion.build(there.surface().triangles(), x_before.view(), x_t1.view(), mesh.bounds());
 }
 
 DeviceColliderPairs::DeviceColliderPairs(const CudaSpace& space, View<const Triangle> triangles,
@@ -83,7 +87,7 @@ void DeviceColliderPairs::follow_partners()
         Mesh& mesh = *meshes_[c];
         mesh.follow(*partners_[c].mesh);
         carrying.back().mesh = {mesh.there.search().surface, mesh.there.x_t0()};
-        carrying.back().motion = {mesh.grid, mesh.motion.view()};
+        carrying.back().motion = mesh.motion.view();
     }
     carrying_.upload(carrying);
 }
@@ -211,8 +215,7 @@ void DeviceColliderPairs::follow_clearance(int c, View<const Vec3> x)
     const FollowClearance::Mesh since = FollowClearance::since(mesh.clear_since, now);
     mesh.clear_since = now;
     parallel_for(space_, "collision/clearance", x.size(),
-                 FollowClearance{
-                     x, since, {mesh.grid, mesh.motion.view()}, mesh.clear_at.view(), mesh.clearance.view()});
+                 FollowClearance{x, since, mesh.motion.view(), mesh.clear_at.view(), mesh.clearance.view()});
 }
 
 bool DeviceColliderPairs::mark_unseen(View<const Vec3> x)

@@ -5,6 +5,7 @@
 
 #include "collision/collider_pairs.h"
 #include "collision/device_detect.h"
+#include "collision/device_motion_bounds.h"
 #include "collision/device_pair_kernels.h"
 #include "core/backend/cuda/sort.h"
 #include "core/backend/cuda/sum_scratch.h"
@@ -56,9 +57,8 @@ private:
         void follow(const MeshCollider& mesh);
 
         DeviceMeshCollider there;
-        DeviceArray<Vec3> x_t0, x_t1;
-        DeviceArray<Bounds> motion; ///< see MotionView
-        CellGrid grid;
+        DeviceArray<Vec3> x_t0, x_t1, x_before; ///< [vertices] the last before the last move [m]
+        DeviceMotionBounds motion;              ///< of the last move
         Step placed_at;
         DeviceArray<Vec3> clear_at;    ///< [vertices] of the clearance: Clearance [m]
         DeviceArray<double> clearance; ///< [vertices] [m]

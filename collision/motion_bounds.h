@@ -41,7 +41,9 @@ public:
 
 private:
     CellGrid grid_;
-    std::vector<Bounds> motion_; ///< see MotionView
+    std::vector<CellGrid::Cell> cell_of_; ///< [vertices]
+    std::vector<Bounds> own_;             ///< [cells] of the surface in it [m]
+    std::vector<Bounds> motion_;          ///< see MotionView
 };
 
 } // namespace toile

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <type_traits>
 
 #include "core/backend/types.h"
 
@@ -10,34 +12,58 @@
 
 namespace toile {
 
-/// Lowers and raises bounds that many threads lower and raise at the same time: what is left is the least and
-/// the largest of all, whoever came first. No NaN. (A GPU compares whole numbers at once; those of floats are
-/// in the same order where both are positive, in the opposite one where both are negative.)
-TOILE_HD inline void lower_shared(float& bound, float value)
+/// Lowers and raises bounds (float or double) that many threads lower and raise at the same time: what is left
+/// is the least and the largest of all, whoever came first. No NaN. (A GPU compares whole numbers at once; those
+/// of floats are in the same order where both are positive, in the opposite one where both are negative.)
+template <typename Real>
+TOILE_HD void lower_shared(Real& bound, Real value);
+template <typename Real>
+TOILE_HD void raise_shared(Real& bound, Real value);
+
+/// Those numbers.
+template <typename Real>
+struct WholeNumbers {
+    static_assert(std::is_same_v<Real, float> || std::is_same_v<Real, double>);
+    using Signed = std::conditional_t<sizeof(Real) == sizeof(int), int, long long>;
+    using Unsigned = std::make_unsigned_t<Signed>;
+
+#ifdef __CUDACC__
+    __device__ static Signed of(float value) { return __float_as_int(value); }
+    __device__ static Signed of(double value) { return __double_as_longlong(value); }
+#endif
+};
+
+template <typename Real>
+TOILE_HD void lower_shared(Real& bound, Real value)
 {
 #ifdef __CUDA_ARCH__
+    using Numbers = WholeNumbers<Real>;
     if (signbit(value))
-        atomicMax(reinterpret_cast<unsigned*>(&bound), __float_as_uint(value));
+        atomicMax(reinterpret_cast<typename Numbers::Unsigned*>(&bound),
+                  typename Numbers::Unsigned(Numbers::of(value)));
     else
-        atomicMin(reinterpret_cast<int*>(&bound), __float_as_int(value));
+        atomicMin(reinterpret_cast<typename Numbers::Signed*>(&bound), Numbers::of(value));
 #else
-    const std::atomic_ref<float> shared(bound);
-    float now = shared.load();
+    const std::atomic_ref<Real> shared(bound);
+    Real now = shared.load();
     while (value < now && !shared.compare_exchange_weak(now, value)) {
     }
 #endif
 }
 
-TOILE_HD inline void raise_shared(float& bound, float value)
+template <typename Real>
+TOILE_HD void raise_shared(Real& bound, Real value)
 {
 #ifdef __CUDA_ARCH__
+    using Numbers = WholeNumbers<Real>;
     if (signbit(value))
-        atomicMin(reinterpret_cast<unsigned*>(&bound), __float_as_uint(value));
+        atomicMin(reinterpret_cast<typename Numbers::Unsigned*>(&bound),
+                  typename Numbers::Unsigned(Numbers::of(value)));
     else
-        atomicMax(reinterpret_cast<int*>(&bound), __float_as_int(value));
+        atomicMax(reinterpret_cast<typename Numbers::Signed*>(&bound), Numbers::of(value));
 #else
-    const std::atomic_ref<float> shared(bound);
-    float now = shared.load();
+    const std::atomic_ref<Real> shared(bound);
+    Real now = shared.load();
     while (value > now && !shared.compare_exchange_weak(now, value)) {
     }
 #endif

@@ -28,12 +28,12 @@ struct Bounds {
     Vec3 lower = Vec3::Constant(1e300);
     Vec3 upper = Vec3::Constant(-1e300);
 
-    void extend(const Vec3& point)
+    TOILE_HD void extend(const Vec3& point)
     {
         lower = lower.cwiseMin(point);
         upper = upper.cwiseMax(point);
     }
-    bool empty() const { return lower.x() > upper.x(); }
+    TOILE_HD bool empty() const { return lower.x() > upper.x(); }
     Vec3 center() const { return 0.5 * (lower + upper); }
     double diagonal() const { return empty() ? 0.0 : (upper - lower).norm(); }
 };
