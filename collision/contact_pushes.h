@@ -33,6 +33,9 @@ inline constexpr double kThinnest = 5e-5;
 /// deals with it.
 inline constexpr double kMinLeverage = 0.1;
 
+/// Depth [m] from which on a term pushes, in listing them: rounding leaves less of what has been pushed out.
+inline constexpr double kLeastDepth = 1e-9;
+
 /// A term that does not push has its turn in a sweep too where it is no farther from pushing than so many
 /// times the depth of one that does and shares a vertex with it [-], and no farther than this [m]: the sweep
 /// may push it on to there. What is pushed from farther comes in the next (docs/collision/contact.md#turns).
@@ -153,7 +156,7 @@ struct PushToRest {
     TOILE_HD double depth(int i, const ContactTerm& term) const
     {
         const double depth = depth_of(term);
-        return force[i] != 0.0 ? std::fmax(std::fabs(depth), kLeastDepth) : depth; // else: it lets go
+        return force[i] != 0.0 ? std::fabs(depth) : depth; // it lets go, too
     }
 
     TOILE_HD TermInTurn prepare(const ContactTerm& term) const
@@ -180,8 +183,6 @@ struct PushToRest {
     }
 
 private:
-    static constexpr double kLeastDepth = std::numeric_limits<double>::min();
-
     TOILE_HD double depth_of(const ContactTerm& term) const { return -term.gap(x) - term.give; }
 };
 
