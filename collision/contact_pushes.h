@@ -33,8 +33,9 @@ inline constexpr double kThinnest = 5e-5;
 /// deals with it.
 inline constexpr double kMinLeverage = 0.1;
 
-/// Depth [m] from which on a term pushes, in listing them: rounding leaves less of what has been pushed out.
-inline constexpr double kLeastDepth = 1e-9;
+/// Distance [m] from pushing within which a term has its turn in a sweep in any case: rounding may leave what was
+/// pushed out on either side.
+inline constexpr double kSurelyOut = 1e-9;
 
 /// A term that does not push has its turn in a sweep too where it is no farther from pushing than so many
 /// times the depth of one that does and shares a vertex with it [-], and no farther than this [m]: the sweep

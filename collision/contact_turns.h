@@ -20,7 +20,7 @@ struct FindDeepest {
     TOILE_HD void operator()(int i) const
     {
         const double depth = push.depth(i, terms[i]);
-        if (depth < kLeastDepth)
+        if (depth <= 0.0)
             return;
         for (const int v : terms[i].pair.vertex)
             if (v >= 0)
@@ -47,13 +47,15 @@ private:
     TOILE_HD bool has_turn(int i, const ContactTerm& term) const
     {
         const double depth = push.depth(i, term);
-        if (depth >= kLeastDepth || !Push::kCarries)
-            return depth >= kLeastDepth;
+        if (!Push::kCarries)
+            return depth > 0.0;
+        if (depth > -kSurelyOut)
+            return true;
         float others = 0.0F;
         for (const int v : term.pair.vertex)
             if (v >= 0)
                 others = std::fmax(others, deepest[v]);
-        return others > 0.0F && -depth < std::fmin(kCarry * others, kFarthestCarried);
+        return -depth < std::fmin(kCarry * others, kFarthestCarried);
     }
 };
 

@@ -103,7 +103,7 @@ TEST_F(ContactPushes, HaveTurnsOnlyNearThoseThatPush)
     EXPECT_EQ(turns_of(0.9 * kCarry * kDepth, kDepth), 2);
     EXPECT_EQ(turns_of(1.1 * kCarry * kDepth, kDepth), 1);
     EXPECT_EQ(turns_of(1.1 * kFarthestCarried, 1e-2), 1);
-    EXPECT_EQ(turns_of(1e-9, -1e-9), 0) << "nobody pushes";
+    EXPECT_EQ(turns_of(2e-9, -2e-9), 0) << "nobody pushes";
 }
 
 TEST_F(ContactPushes, LeaveWhatIsHeldAndWhatIsApart)
