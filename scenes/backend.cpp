@@ -15,6 +15,11 @@ std::string only_on_cpu(const std::string& key, std::string_view word)
     return key + " \"" + std::string(word) + "\" runs on the CPU only";
 }
 
+/// Memory of a scene on a GPU [bytes]: 12 kB a vertex have been measured, and there is more to a scene than that.
+constexpr std::size_t kBytesOfScene = std::size_t(64) << 20, kBytesOfVertex = 14'000;
+
+std::string in_mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+
 } // namespace
 
 std::string why_not_on_gpu(const Scene& scene)
@@ -49,12 +54,26 @@ std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const
         return std::make_shared<CudaSpace>(device);
     }
     const std::string needs_cpu = why_not_on_gpu(scene);
-    const std::string why_cpu = needs_cpu.empty() ? why_no_cuda_device() : needs_cpu;
+    std::string why_cpu = needs_cpu.empty() ? why_no_cuda_device() : needs_cpu;
     if (why_cpu.empty())
-        return std::make_shared<CudaSpace>(device);
+        try {
+            return std::make_shared<CudaSpace>(device);
+        } catch (const DeviceError& error) { // others may have all of its memory
+            why_cpu = error.what();
+        }
     if (warn)
         warn("the backend is cpu: " + why_cpu);
     return nullptr;
+}
+
+std::string why_no_room(const CudaSpace& space, long vertices)
+{
+    const std::size_t needed = kBytesOfScene + kBytesOfVertex * std::size_t(vertices),
+                      free = space.free_memory();
+    if (needed <= free)
+        return {};
+    return space.described() + " has " + in_mebibytes(free) + " left, " + std::to_string(vertices) +
+           " vertices may take " + in_mebibytes(needed);
 }
 
 } // namespace toile

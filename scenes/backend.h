@@ -13,7 +13,7 @@ namespace toile {
 enum class Backend {
     Cpu,
     Cuda, ///< a GPU; refused where there is none or the scene needs the CPU
-    Auto  ///< a GPU where there is one and the scene can, else the CPU
+    Auto  ///< a GPU where there is one with room and the scene can, else the CPU
 };
 
 /// Why a scene does not run on a GPU, e.g. `solver.method "multigrid" runs on the CPU only`; empty where it
@@ -29,5 +29,9 @@ void require_runs_on_gpu(const Scene& scene);
 /// @throws InvalidInput where the scene asked for Cuda needs the CPU, DeviceError where there is no such GPU
 std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const Scene& scene,
                                               const std::function<void(const std::string&)>& warn);
+
+/// Why a scene of so many vertices of cloth would find no room on a GPU, with both sizes; empty where it would.
+/// An estimate that is rather too large: what scenes took whose garments touch (docs/benchmarks/gpu.md).
+std::string why_no_room(const CudaSpace& space, long vertices);
 
 } // namespace toile

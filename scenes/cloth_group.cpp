@@ -208,12 +208,19 @@ bool ClothGroup::sleeps(double t_t1, const std::vector<Obstacle>& obstacles)
     return sleep_.enabled && rest_time_ > kSleepDelay;
 }
 
-std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstacle>& obstacles,
-                                    const WorldOptions& options, const CudaSpace* space)
+std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Obstacle>& obstacles,
+                                    const WorldOptions& options)
 {
     std::vector<SceneCloth> cloths;
     for (const scene::Cloth& cloth : scene.cloths)
         cloths.emplace_back(scene, cloth, obstacles, options);
+    return cloths;
+}
+
+std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths,
+                                    const std::vector<Obstacle>& obstacles, const WorldOptions& options,
+                                    const CudaSpace* space)
+{
     const bool may_touch = contact_settings(scene).cloth_with_cloth;
     std::vector<std::vector<SceneCloth>> members;
     for (SceneCloth& cloth : cloths) {

@@ -87,10 +87,15 @@ private:
     double rest_time_ = 0.0;          ///< [s] since when every vertex has been slow
 };
 
-/// Sorts the cloths of a scene into groups: one of all where they may touch each other, else one each. Solids
-/// are in the one of all.
+/// The cloths of a scene, one by one.
+std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Obstacle>& obstacles,
+                                    const WorldOptions& options);
+
+/// Sorts them into groups: one of all where they may touch each other, else one each. Solids are in the one of
+/// all.
 /// @param space  as ClothGroup's
-std::vector<ClothGroup> make_groups(const Scene& scene, const std::vector<Obstacle>& obstacles,
-                                    const WorldOptions& options, const CudaSpace* space);
+std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths,
+                                    const std::vector<Obstacle>& obstacles, const WorldOptions& options,
+                                    const CudaSpace* space);
 
 } // namespace toile

@@ -20,6 +20,19 @@ struct World::Parts {
     bool is_shown = true; ///< states are as everything is
     int frame = 0;
 
+    void leave_gpu_without_room(const std::vector<SceneCloth>& cloths, const WorldOptions& options)
+    {
+        long vertices = 0;
+        for (const SceneCloth& cloth : cloths)
+            vertices += long(cloth.state().positions.size());
+        const std::string reason = space ? why_no_room(*space, vertices) : std::string();
+        if (reason.empty())
+            return;
+        space.reset();
+        if (options.warn)
+            options.warn("the backend is cpu: " + reason);
+    }
+
     double dt() const { return scene.frame_duration() / scene.solver.substeps; }
     int settle_steps() const { return int(std::ceil(scene.settle / dt() - 1e-9)); }
 
@@ -76,7 +89,11 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->obstacles.emplace_back(avatar, scene.contact.friction);
     parts_->space = open_backend(options.backend, options.device, scene, options.warn);
-    parts_->groups = make_groups(scene, parts_->obstacles, options, parts_->space.get());
+    std::vector<SceneCloth> cloths = make_cloths(scene, parts_->obstacles, options);
+    if (options.backend == Backend::Auto)
+        parts_->leave_gpu_without_room(cloths, options);
+    parts_->groups =
+        make_groups(scene, std::move(cloths), parts_->obstacles, options, parts_->space.get());
 
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);

@@ -41,23 +41,29 @@ protected:
         const auto taken = test::take_all_but(std::size_t(mebibytes) << 20, space());
         const std::filesystem::path out = folder_.path() / "out";
         std::filesystem::remove_all(out);
-        Finished run = run_toile({"simulate", "cloths.json", "--backend", "cuda", "-o", "out", "--quiet",
-                                  "--no-check", "--report", "run.json"},
-                                 folder_.path());
+        Finished run = run_on("cuda");
         std::cout << mebibytes << " MiB: " << (run.exit_code == 0 ? "ran\n" : run.errors);
         const std::filesystem::path cache = out / "c0.pc2", partial = out / "c0.partial.pc2";
         EXPECT_EQ(std::filesystem::exists(cache), run.exit_code == 0);
-        if (run.exit_code == 0)
+        if (run.exit_code == 0) {
             EXPECT_EQ(read_cache(cache).frame_count(), kFrames);
-        else {
+        } else {
             EXPECT_EQ(run.exit_code, 1);
             EXPECT_EQ(run.error_lines(), 1) << run.errors;
             EXPECT_NE(run.errors.find("out of memory"), std::string::npos) << run.errors;
             EXPECT_EQ(run.output, std::filesystem::exists(partial) ? "out/c0.partial.pc2\n" : "");
         }
-        if (std::filesystem::exists(partial))
+        if (std::filesystem::exists(partial)) {
             EXPECT_GE(read_cache(partial).frame_count(), 1);
+        }
         return run;
+    }
+
+    Finished run_on(const std::string& backend)
+    {
+        return run_toile({"simulate", "cloths.json", "--backend", backend, "-o", "out", "--quiet", "--no-check",
+                          "--report", "run.json"},
+                         folder_.path());
     }
 
 private:
@@ -80,6 +86,23 @@ TEST_F(GpuMemoryTest, EndsCleanlyWhereItIsTooLittle)
     }
     EXPECT_GT(too_little, 0);
     EXPECT_TRUE(names_array);
+}
+
+TEST_F(GpuMemoryTest, IsAskedForBeforeAutoTakesTheGpu)
+{
+    EXPECT_EQ(run_on("auto").errors, "");
+    const auto run_with_left = [&](int mebibytes) {
+        const auto taken = test::take_all_but(std::size_t(mebibytes) << 20, space());
+        const Finished run = run_on("auto");
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        return run.errors;
+    };
+    const std::string too_little = run_with_left(1024), nothing = run_with_left(50);
+    EXPECT_TRUE(test::holds_in_order(too_little, "the backend is cpu: CUDA device 0 (", ") has ",
+                                     " MiB left, 51005 vertices may take ", " MiB"))
+        << too_little;
+    EXPECT_TRUE(test::holds_in_order(nothing, "the backend is cpu: ", "CUDA device 0 (", "out of memory"))
+        << nothing;
 }
 
 } // namespace

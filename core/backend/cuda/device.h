@@ -40,6 +40,7 @@ public:
     CudaSpace& operator=(const CudaSpace&) = delete;
 
     const CudaDevice& device() const { return device_; }
+    std::string described() const; ///< "CUDA device 0 (NVIDIA H200)"
     CUstream_st* stream() const { return stream_; }
 
     /// Waits until all that the stream was given is done. A call of stage "cuda/wait".
@@ -89,8 +90,6 @@ private:
     void launched(std::string_view name, CallSite where) const;
     /// @throws DeviceError "WHAT 'NAME' on CUDA device 0 (...): REASON" unless the status is good.
     void require(cuda::Status status, std::string_view what, std::string_view name = {}) const;
-    /// "CUDA device 0 (NVIDIA H200)"
-    std::string described() const;
     /// "kernel 'a' (file.cu:7)", or the last of several.
     std::string pending_kernels() const;
 
