@@ -7,8 +7,8 @@
 namespace toile {
 
 MeshCollider::MeshCollider(const MovingMesh& mesh)
-    : surface_(mesh.triangles, mesh.x_t1), x_t0_(mesh.x_t0), x_t1_(mesh.x_t1), first_owned_(mesh.triangles.size() + 1, 0),
-      bounds_(toile::bounds(mesh.x_t1))
+    : surface_(mesh.triangles, mesh.x_t1), x_t0_(mesh.x_t0), x_t1_(mesh.x_t1),
+      first_owned_(mesh.triangles.size() + 1, 0), bounds_(toile::bounds(mesh.x_t1))
 {
     // Edges by their lowest triangle.
     const SurfaceEdges& edges = surface_.edges();

@@ -26,8 +26,8 @@ public:
     void move(const MovingMesh& mesh);
 
     View<const Triangle> triangles() const { return surface_.triangles(); }
-    View<const Vec3> x_t0() const { return x_t0_; } ///< [vertices] [m]
-    View<const Vec3> x_t1() const { return x_t1_; } ///< [vertices] [m]
+    View<const Vec3> x_t0() const { return x_t0_; }  ///< [vertices] [m]
+    View<const Vec3> x_t1() const { return x_t1_; }  ///< [vertices] [m]
     const Bounds& bounds() const { return bounds_; } ///< at t1
 
     /// Steps in which it has moved so far.
@@ -36,7 +36,7 @@ public:
 
     // These refit, once after a move, whoever asks first.
 
-    const SurfaceProximity& surface() const { return refitted().surface_; }         ///< at t1
+    const SurfaceProximity& surface() const { return refitted().surface_; }     ///< at t1
     const MotionBounds& last_motion() const { return refitted().last_motion_; } ///< how it moved last
 
     /// Both ends of the step, until the next move().
@@ -73,8 +73,8 @@ private:
 
     mutable SurfaceProximity surface_;
     std::vector<Vec3> x_t0_, x_t1_, x_before_; ///< [vertices] [m]; the last before the last move
-    std::vector<int> first_owned_;       ///< [triangles + 1] into owned_edges_
-    std::vector<OwnedEdge> owned_edges_; ///< [edges]
+    std::vector<int> first_owned_;             ///< [triangles + 1] into owned_edges_
+    std::vector<OwnedEdge> owned_edges_;       ///< [edges]
     Bounds bounds_;
     int move_count_ = 0;
     bool is_moving_ = false;

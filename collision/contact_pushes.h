@@ -33,8 +33,8 @@ inline constexpr double kThinnest = 5e-5;
 /// deals with it.
 inline constexpr double kMinLeverage = 0.1;
 
-/// Distance [m] from pushing within which a term has its turn in a sweep in any case: rounding may leave what was
-/// pushed out on either side.
+/// Distance [m] from pushing within which a term has its turn in a sweep in any case: rounding may leave what
+/// was pushed out on either side.
 inline constexpr double kSurelyOut = 1e-9;
 
 /// A term that does not push has its turn in a sweep too where it is no farther from pushing than so many
@@ -137,9 +137,9 @@ struct TermInTurn {
     double left = 0.0;                    ///< depth that it is left, see PushOut [m]
 };
 
-// A push changes fields(), and over(other fields) is the same push of vertices that are there. Its depth() tells
-// how far a term is in what the push takes it out of [m]: positive where it pushes, and where not, as far as it
-// is from there. It pushes on others, or not (kCarries).
+// A push changes fields(), and over(other fields) is the same push of vertices that are there. Its depth()
+// tells how far a term is in what the push takes it out of [m]: positive where it pushes, and where not, as
+// far as it is from there. It pushes on others, or not (kCarries).
 
 /// A sweep's push of term i where contact alone would take it, with masses and the compliance of its spring
 /// [Macklin et al. 2016, eq. 18], and a force that never pulls. Momentum goes where contact sends it, and

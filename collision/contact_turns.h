@@ -28,8 +28,8 @@ struct FindDeepest {
     }
 };
 
-/// Flags the place of term i where it pushes or may be pushed on; for i in [0, place_count()), as places beyond
-/// the terms are empty.
+/// Flags the place of term i where it pushes or may be pushed on; for i in [0, place_count()), as places
+/// beyond the terms are empty.
 template <typename Push>
 struct FlagActing {
     Push push;

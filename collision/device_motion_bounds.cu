@@ -23,7 +23,8 @@ void DeviceMotionBounds::build(View<const Triangle> triangles, View<const Vec3> 
     parallel_for(space_, "collision/device_clear_motion", cells, ClearMotion{mesh.own});
     parallel_for(space_, "collision/device_vertex_motion", now.size(), AddVertexMotion{mesh});
     parallel_for(space_, "collision/device_triangle_motion", triangles.size(), AddTriangleMotion{mesh});
-    parallel_for(space_, "collision/device_spread_motion", cells, SpreadMotion{grid_, mesh.own, motion_.view()});
+    parallel_for(space_, "collision/device_spread_motion", cells,
+                 SpreadMotion{grid_, mesh.own, motion_.view()});
 }
 
 } // namespace toile

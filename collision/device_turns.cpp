@@ -7,8 +7,9 @@ namespace toile {
 DeviceTurns::DeviceTurns(const CudaSpace& space, int vertex_count)
     : space_(space), vertex_count_(vertex_count), flags_(space, "turns/flags"),
       places_(space, "turns/places"), count_(space, "turns/count", 1), rank_(space, "turns/rank"),
-      passed_(space, "turns/passed"), next_(space, "turns/next"), deepest_(space, "turns/deepest"), moved_(space, "turns/moved", 1),
-      moved_here_(space, "turns/moved_here", 1), scratch_(space, "turns/scratch")
+      passed_(space, "turns/passed"), next_(space, "turns/next"), deepest_(space, "turns/deepest"),
+      moved_(space, "turns/moved", 1), moved_here_(space, "turns/moved_here", 1),
+      scratch_(space, "turns/scratch")
 {
 }
 

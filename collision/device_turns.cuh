@@ -20,7 +20,8 @@ void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, in
         turns.next = next_.view().subview(done, 1);
         const View<float> deepest = deepest_.view().subview(done * vertex_count_, vertex_count_);
         if (Push::kCarries)
-            parallel_for(space_, "contact/find_deepest", terms.size(), FindDeepest<Push>{push, terms, deepest});
+            parallel_for(space_, "contact/find_deepest", terms.size(),
+                         FindDeepest<Push>{push, terms, deepest});
         parallel_for(space_, "contact/flag_acting", flags.size(),
                      FlagActing<Push>{push, terms, turns.order, deepest, flags});
         list_flagged(space_, "contact/list_acting", flags, places_.view().subview(0, flags.size()),

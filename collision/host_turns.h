@@ -10,7 +10,8 @@ namespace toile {
 /// Terms that push one after the other, in their TurnOrder, on the CPU.
 class HostTurns {
 public:
-    /// Sweep after sweep, of those that push when it begins or may be pushed on, until none does or nothing moves.
+    /// Sweep after sweep, of those that push when it begins or may be pushed on, until none does or nothing
+    /// moves.
     /// @return whether something moved
     template <typename Push>
     bool sweep(View<const ContactTerm> terms, const Push& push, int sweeps)

@@ -15,7 +15,8 @@ std::string only_on_cpu(const std::string& key, std::string_view word)
     return key + " \"" + std::string(word) + "\" runs on the CPU only";
 }
 
-/// Memory of a scene on a GPU [bytes]: 12 kB a vertex have been measured, and there is more to a scene than that.
+/// Memory of a scene on a GPU [bytes]: 12 kB a vertex have been measured, and there is more to a scene than
+/// that.
 constexpr std::size_t kBytesOfScene = std::size_t(64) << 20, kBytesOfVertex = 14'000;
 
 std::string in_mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }

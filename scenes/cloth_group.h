@@ -91,8 +91,8 @@ private:
 std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Obstacle>& obstacles,
                                     const WorldOptions& options);
 
-/// Sorts them into groups: one of all where they may touch each other, else one each. Solids are in the one of
-/// all.
+/// Sorts them into groups: one of all where they may touch each other, else one each. Solids are in the one
+/// of all.
 /// @param space  as ClothGroup's
 std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths,
                                     const std::vector<Obstacle>& obstacles, const WorldOptions& options,

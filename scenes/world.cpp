@@ -92,8 +92,7 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     std::vector<SceneCloth> cloths = make_cloths(scene, parts_->obstacles, options);
     if (options.backend == Backend::Auto)
         parts_->leave_gpu_without_room(cloths, options);
-    parts_->groups =
-        make_groups(scene, std::move(cloths), parts_->obstacles, options, parts_->space.get());
+    parts_->groups = make_groups(scene, std::move(cloths), parts_->obstacles, options, parts_->space.get());
 
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);

@@ -12,9 +12,10 @@
 
 namespace toile {
 
-/// Lowers and raises bounds (float or double) that many threads lower and raise at the same time: what is left
-/// is the least and the largest of all, whoever came first. No NaN. (A GPU compares whole numbers at once; those
-/// of floats are in the same order where both are positive, in the opposite one where both are negative.)
+/// Lowers and raises bounds (float or double) that many threads lower and raise at the same time: what is
+/// left is the least and the largest of all, whoever came first. No NaN. (A GPU compares whole numbers at
+/// once; those of floats are in the same order where both are positive, in the opposite one where both are
+/// negative.)
 template <typename Real>
 TOILE_HD void lower_shared(Real& bound, Real value);
 template <typename Real>

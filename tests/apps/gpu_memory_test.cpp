@@ -61,8 +61,8 @@ protected:
 
     Finished run_on(const std::string& backend)
     {
-        return run_toile({"simulate", "cloths.json", "--backend", backend, "-o", "out", "--quiet", "--no-check",
-                          "--report", "run.json"},
+        return run_toile({"simulate", "cloths.json", "--backend", backend, "-o", "out", "--quiet",
+                          "--no-check", "--report", "run.json"},
                          folder_.path());
     }
 

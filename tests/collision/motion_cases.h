@@ -14,8 +14,8 @@ struct MotionCase {
     Bounds box() const { return bounds(now); }
 };
 
-/// A fine sheet that moves by a little more from one end to the other, and triangles of all sizes, some across
-/// many cells, each vertex moving by itself.
+/// A fine sheet that moves by a little more from one end to the other, and triangles of all sizes, some
+/// across many cells, each vertex moving by itself.
 inline MotionCase motion_case(Random& random)
 {
     Soup soup = random_soup(random);

@@ -197,7 +197,8 @@ TEST_F(DeviceSceneTest, DressesAWalkingFigureAsOnTheCpu)
     EXPECT_GT(there.stages().calls("collision/detect_there"), 0);
     EXPECT_LT(there.stages().calls("collision/detect"), 2 * here.stages().calls("collision/detect"));
     EXPECT_GT(here.stages().calls("collision/refit"), 0);
-    EXPECT_EQ(there.stages().calls("collision/refit"), 0) << "nobody on the host asks where the figure is near";
+    EXPECT_EQ(there.stages().calls("collision/refit"), 0)
+        << "nobody on the host asks where the figure is near";
 }
 
 } // namespace
