@@ -42,8 +42,10 @@ void MeshCollider::refit() const
     if (!is_behind_)
         return;
     const StageScope stage("collision/refit");
-    last_motion_.build(triangles(), x_before_, x_t1_, bounds_);
-    surface_.update(x_t1_);
+    parallel_isolated(kCpu, [&] { // else a task of who asks could be taken on here, and ask
+        last_motion_.build(triangles(), x_before_, x_t1_, bounds_);
+        surface_.update(x_t1_);
+    });
     is_behind_ = false;
 }
 

@@ -24,7 +24,7 @@ struct World::Parts {
     {
         long vertices = 0;
         for (const SceneCloth& cloth : cloths)
-            vertices += long(cloth.state().positions.size());
+            vertices += cloth.vertex_count();
         const std::string reason = space ? why_no_room(*space, vertices) : std::string();
         if (reason.empty())
             return;
