@@ -19,6 +19,14 @@ std::string only_on_cpu(const std::string& key, std::string_view word)
 /// that.
 constexpr std::size_t kBytesOfScene = std::size_t(64) << 20, kBytesOfVertex = 14'000;
 
+std::shared_ptr<const CudaSpace> take_cpu(const std::string& why,
+                                          const std::function<void(const std::string&)>& warn)
+{
+    if (warn)
+        warn("the backend is cpu: " + why);
+    return nullptr;
+}
+
 std::string in_mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
 } // namespace
@@ -62,19 +70,21 @@ std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const
         } catch (const DeviceError& error) { // others may have all of its memory
             why_cpu = error.what();
         }
-    if (warn)
-        warn("the backend is cpu: " + why_cpu);
-    return nullptr;
+    return take_cpu(why_cpu, warn);
 }
 
-std::string why_no_room(const CudaSpace& space, long vertices)
+std::shared_ptr<const CudaSpace> where_there_is_room(std::shared_ptr<const CudaSpace> space, long vertices,
+                                                     const std::function<void(const std::string&)>& warn)
 {
+    if (!space)
+        return nullptr;
     const std::size_t needed = kBytesOfScene + kBytesOfVertex * std::size_t(vertices),
-                      free = space.free_memory();
+                      free = space->free_memory();
     if (needed <= free)
-        return {};
-    return space.described() + " has " + in_mebibytes(free) + " left, " + std::to_string(vertices) +
-           " vertices may take " + in_mebibytes(needed);
+        return space;
+    return take_cpu(space->described() + " has " + in_mebibytes(free) + " left, " + std::to_string(vertices) +
+                        " vertices may take " + in_mebibytes(needed),
+                    warn);
 }
 
 } // namespace toile

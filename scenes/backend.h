@@ -30,9 +30,11 @@ void require_runs_on_gpu(const Scene& scene);
 std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const Scene& scene,
                                               const std::function<void(const std::string&)>& warn);
 
-/// Why a scene of so many vertices of cloth would find no room on a GPU, with both sizes; empty where it
-/// would. An estimate that is rather too large: what scenes took whose garments touch
+/// What open_backend() has opened, or null where a scene of so many vertices of cloth may find no room there:
+/// by an estimate that is rather too large, from what scenes took whose garments touch
 /// (docs/benchmarks/gpu.md).
-std::string why_no_room(const CudaSpace& space, long vertices);
+/// @param warn  told both sizes then; may be empty
+std::shared_ptr<const CudaSpace> where_there_is_room(std::shared_ptr<const CudaSpace> space, long vertices,
+                                                     const std::function<void(const std::string&)>& warn);
 
 } // namespace toile

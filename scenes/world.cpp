@@ -9,6 +9,18 @@
 
 namespace toile {
 
+namespace {
+
+long vertex_count(const std::vector<SceneCloth>& cloths)
+{
+    long count = 0;
+    for (const SceneCloth& cloth : cloths)
+        count += cloth.vertex_count();
+    return count;
+}
+
+} // namespace
+
 struct World::Parts {
     Scene scene;
     std::shared_ptr<const CudaSpace> space; ///< null: the CPU
@@ -19,19 +31,6 @@ struct World::Parts {
     Stages stages;
     bool is_shown = true; ///< states are as everything is
     int frame = 0;
-
-    void leave_gpu_without_room(const std::vector<SceneCloth>& cloths, const WorldOptions& options)
-    {
-        long vertices = 0;
-        for (const SceneCloth& cloth : cloths)
-            vertices += cloth.vertex_count();
-        const std::string reason = space ? why_no_room(*space, vertices) : std::string();
-        if (reason.empty())
-            return;
-        space.reset();
-        if (options.warn)
-            options.warn("the backend is cpu: " + reason);
-    }
 
     double dt() const { return scene.frame_duration() / scene.solver.substeps; }
     int settle_steps() const { return int(std::ceil(scene.settle / dt() - 1e-9)); }
@@ -91,7 +90,7 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     parts_->space = open_backend(options.backend, options.device, scene, options.warn);
     std::vector<SceneCloth> cloths = make_cloths(scene, parts_->obstacles, options);
     if (options.backend == Backend::Auto)
-        parts_->leave_gpu_without_room(cloths, options);
+        parts_->space = where_there_is_room(parts_->space, vertex_count(cloths), options.warn);
     parts_->groups = make_groups(scene, std::move(cloths), parts_->obstacles, options, parts_->space.get());
 
     const ThreadLimit threads(scene.solver.threads);
