@@ -1,6 +1,7 @@
 #include "avatars/avatar.h"
 
 #include "core/backend/error.h"
+#include "core/backend/parallel.h"
 
 namespace toile {
 
@@ -27,6 +28,18 @@ std::vector<unsigned char> Avatar::faces_on_bones(const std::vector<std::string>
     if (!bones.empty())
         throw InvalidInput(user + ": " + source_ + " has no bones; remove '" + bones.front() + "'");
     return std::vector<unsigned char>(triangles_.size(), 0);
+}
+
+void Avatar::skin_vertices(View<const Affine> bones, View<Vec3> out) const
+{
+    parallel_for(kCpu, "avatars/skin", vertex_count_, SkinVertices{skin(), bones, out});
+}
+
+void Avatar::pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out)
+{
+    std::vector<Affine> bones(static_cast<size_t>(bone_count()));
+    pose_bones(at, world_from_avatar, bones);
+    skin_vertices(bones, out);
 }
 
 } // namespace toile

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "avatars/skeleton.h"
-#include "core/backend/types.h"
+#include "avatars/skinning_kernels.h"
 
 namespace toile {
 
@@ -18,8 +18,8 @@ struct PoseAt {
     bool operator==(const PoseAt&) const = default;
 };
 
-/// A body as the simulation sees it: fixed triangles whose vertices can be asked for at any clip time.
-/// The vertex order is that of the triangles and never changes.
+/// A body as the simulation sees it: fixed triangles whose vertices can be asked for at any clip time, or
+/// only the bones that they follow. The vertex order is that of the triangles and never changes.
 class Avatar {
 public:
     struct ClipName {
@@ -55,10 +55,23 @@ public:
     virtual std::vector<unsigned char> faces_on_bones(const std::vector<std::string>& bones,
                                                       const std::string& user) const;
 
-    /// Vertex positions of a pose, in metres, Y up, carried through `world_from_avatar`. Reuses scratch: one
-    /// thread at a time.
+    /// What its vertices follow: skin().posed(v, bones) is where one of them is.
+    virtual SkinView skin() const = 0;
+    virtual int bone_count() const = 0;
+
+    /// Where the bones are in a pose, in metres, Y up, carried through `world_from_avatar`. Reuses scratch:
+    /// one thread at a time.
+    /// @param bones  [bone_count()] out: world_from_mesh
+    virtual void pose_bones(const PoseAt& at, const Affine& world_from_avatar, View<Affine> bones) = 0;
+
+    /// All vertices as bones have them: one call of stage "avatars/skin".
+    /// @param bones  [bone_count()] world_from_mesh
+    /// @param out    [vertices] [m]
+    void skin_vertices(View<const Affine> bones, View<Vec3> out) const;
+
+    /// Vertex positions of a pose: pose_bones() and skin_vertices().
     /// @param out  [vertices] [m]
-    virtual void pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out) = 0;
+    void pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out);
 
 protected:
     Avatar(std::string source, std::vector<Triangle> triangles, int vertex_count, std::vector<ClipName> clips)

@@ -19,7 +19,8 @@ Affine Placement::world_from_avatar() const
     return place;
 }
 
-MovingAvatar::MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const Placement& placement)
+MovingAvatar::MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const Placement& placement,
+                           const Affine& carried)
     : avatar_(std::move(avatar)), motion_(std::move(motion)),
       world_from_avatar_(placement.world_from_avatar())
 {
@@ -30,11 +31,9 @@ MovingAvatar::MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const 
     if (!motion_.clip.empty())
         clip_ = avatar_->clip_index(motion_.clip);
 
-    mesh_.triangles = avatar_->triangles();
-    mesh_.x_t1.resize(avatar_->vertex_count());
-    shown_ = at(0.0);
-    avatar_->pose(shown_, world_from_avatar_, mesh_.x_t1);
-    mesh_.x_t0 = mesh_.x_t1;
+    bones_t1_.resize(size_t(avatar_->bone_count()));
+    show(at(0.0), carried);
+    bones_t0_ = bones_t1_;
 }
 
 PoseAt MovingAvatar::at(double t) const
@@ -42,16 +41,21 @@ PoseAt MovingAvatar::at(double t) const
     return pose_at(motion_, clip_, clip_ < 0 ? 0.0 : avatar_->clips()[clip_].duration, t);
 }
 
-void MovingAvatar::advance_to(double t_t1)
+void MovingAvatar::show(const PoseAt& at, const Affine& carried)
+{
+    avatar_->pose_bones(at, compose(carried, world_from_avatar_), bones_t1_);
+    shown_ = at;
+    shown_carried_ = carried;
+}
+
+void MovingAvatar::advance_to(double t_t1, const Affine& carried)
 {
     if (moved_)
-        mesh_.x_t0 = mesh_.x_t1;
+        bones_t0_ = bones_t1_;
     const PoseAt next = at(t_t1);
-    moved_ = !(next == shown_);
-    if (!moved_)
-        return;
-    avatar_->pose(next, world_from_avatar_, mesh_.x_t1);
-    shown_ = next;
+    moved_ = !(next == shown_ && carried == shown_carried_);
+    if (moved_)
+        show(next, carried);
 }
 
 } // namespace toile

@@ -4,7 +4,6 @@
 
 #include "avatars/avatar.h"
 #include "avatars/motion.h"
-#include "core/mesh/triangle_mesh.h"
 
 namespace toile {
 
@@ -18,36 +17,45 @@ struct Placement {
     Affine world_from_avatar() const;
 };
 
-/// An avatar that plays a motion at a place: the moving obstacle of a simulation.
+/// An avatar that plays a motion at a place: the moving obstacle of a simulation. It knows its bones at both
+/// ends of a step; vertices are posed by whoever needs them, where they are needed.
 class MovingAvatar {
 public:
     /// Shows the pose at t = 0, standing still.
+    /// @param carried  see advance_to()
     /// @throws InvalidInput for a clip the avatar does not have and for settings out of range.
-    MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const Placement& placement);
+    MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const Placement& placement,
+                 const Affine& carried = identity_affine());
 
-    /// Makes the end of the last step the start of this one and poses its end at simulation time t_t1 [s].
-    /// A pose equal to the last one (held, ended, static) is not computed again.
-    void advance_to(double t_t1);
+    /// Makes the end of the last step the start of this one and poses the bones at its end, simulation time
+    /// t_t1 [s]. A pose equal to the last one (held, ended, static) is not computed again.
+    /// @param carried  moves it as a whole: x_world = carried(placement(x))
+    void advance_to(double t_t1, const Affine& carried = identity_affine());
 
-    const MovingMesh& mesh() const { return mesh_; }
     const Avatar& avatar() const { return *avatar_; }
+
+    /// world_from_mesh at the step's start and end, for avatar().skin(). [bones]
+    View<const Affine> bones_t0() const { return bones_t0_; }
+    View<const Affine> bones_t1() const { return bones_t1_; }
 
     /// True when it never moves: no clip, or a frozen one.
     bool is_static() const { return shows_one_pose(motion_); }
 
-    /// False when x_t0 equals x_t1 in the current step.
+    /// False when both ends of the current step are the same.
     bool moved() const { return moved_; }
 
 private:
     PoseAt at(double t) const;
+    void show(const PoseAt& at, const Affine& carried);
 
     std::unique_ptr<Avatar> avatar_;
     Motion motion_;
     int clip_ = -1;
     Affine world_from_avatar_;
-    PoseAt shown_; ///< at x_t1
+    PoseAt shown_;         ///< at t1
+    Affine shown_carried_; ///< likewise
     bool moved_ = false;
-    MovingMesh mesh_;
+    std::vector<Affine> bones_t0_, bones_t1_;
 };
 
 } // namespace toile

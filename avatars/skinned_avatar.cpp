@@ -70,8 +70,7 @@ std::vector<unsigned char> branch_of(const Skeleton& skeleton, int root)
 SkinnedAvatar::SkinnedAvatar(std::string source, RiggedModel model)
     : Avatar(std::move(source), model.mesh.rest.triangles, model.mesh.rest.vertex_count(),
              clip_names(model.clips)),
-      model_(std::move(model)), local_(model_.skeleton.rest_pose()), frames_(model_.skeleton.size()),
-      bones_(model_.mesh.bones.size())
+      model_(std::move(model)), local_(model_.skeleton.rest_pose()), frames_(model_.skeleton.size())
 {
     for (const Clip& clip : model_.clips)
         travel_of_clip_.push_back(root_travel(clip));
@@ -102,7 +101,7 @@ Vec3 SkinnedAvatar::root_travel(const Clip& clip) const
     return travel;
 }
 
-void SkinnedAvatar::pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out)
+void SkinnedAvatar::pose_bones(const PoseAt& at, const Affine& world_from_avatar, View<Affine> bones)
 {
     // Joint transforms: the clip's, the bind pose's, or a blend.
     const bool clip_shows = at.clip >= 0 && at.bind_share < 1.0;
@@ -116,7 +115,7 @@ void SkinnedAvatar::pose(const PoseAt& at, const Affine& world_from_avatar, View
             local_[j] = blend(local_[j], rest, at.bind_share);
     }
 
-    // Frames in the world, then the surface.
+    // Frames in the world, then what is tied to them.
     Affine world_from_file = compose(world_from_avatar, model_.metres_from_file);
     if (at.cycles != 0)
         world_from_file.col(3) +=
@@ -124,7 +123,10 @@ void SkinnedAvatar::pose(const PoseAt& at, const Affine& world_from_avatar, View
     joint_frames(model_.skeleton, local_, frames_);
     for (Affine& frame : frames_)
         frame = compose(world_from_file, frame);
-    skin(model_.mesh, frames_, bones_, out);
+    for (int b = 0; b < bone_count(); ++b) {
+        const Bone& bone = model_.mesh.bones[b];
+        bones[b] = compose(frames_[bone.joint], bone.joint_from_mesh);
+    }
 }
 
 std::vector<unsigned char> SkinnedAvatar::faces_on_bones(const std::vector<std::string>& bones,

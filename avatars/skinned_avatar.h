@@ -20,7 +20,9 @@ public:
     /// @param model  weights normalised; bones and tracks refer to joints of its skeleton
     SkinnedAvatar(std::string source, RiggedModel model);
 
-    void pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out) override;
+    SkinView skin() const override { return model_.mesh.skin(); }
+    int bone_count() const override { return int(model_.mesh.bones.size()); }
+    void pose_bones(const PoseAt& at, const Affine& world_from_avatar, View<Affine> bones) override;
 
     std::vector<unsigned char> faces_on_bones(const std::vector<std::string>& bones,
                                               const std::string& user) const override;
@@ -34,7 +36,6 @@ private:
     std::vector<Vec3> travel_of_clip_; ///< [clips] horizontal way of the root in one run [m]
     std::vector<JointTransform> local_;
     std::vector<Affine> frames_;
-    std::vector<Affine> bones_;
 };
 
 } // namespace toile

@@ -195,12 +195,4 @@ std::vector<int> heaviest_joints(const SkinnedMesh& mesh)
     return heaviest;
 }
 
-void skin(const SkinnedMesh& mesh, View<const Affine> world_from_joint, View<Affine> bones, View<Vec3> out)
-{
-    for (int b = 0; b < int(mesh.bones.size()); ++b)
-        bones[b] = compose(world_from_joint[mesh.bones[b].joint], mesh.bones[b].joint_from_mesh);
-    parallel_for(kCpu, "avatars/skin", mesh.rest.vertex_count(),
-                 SkinVertices{mesh.rest.positions, mesh.first, mesh.influences, bones, out});
-}
-
 } // namespace toile

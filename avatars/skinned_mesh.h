@@ -22,6 +22,8 @@ struct SkinnedMesh {
     std::vector<int> first{0}; ///< [vertices + 1] where a vertex's influences begin
     std::vector<Influence> influences; ///< [first.back()] heaviest first
     std::vector<int> space_of_vertex;  ///< [vertices] vertices of different spaces are never one point
+
+    SkinView skin() const { return {rest.positions, first, influences}; } ///< borrowed
 };
 
 /// Drops weights that are not positive and scales the rest of each vertex to sum 1, heaviest first.
@@ -38,11 +40,5 @@ void weld_seams(SkinnedMesh& mesh, double distance);
 
 /// The joint with the most weight over the corners of each triangle, of equals the lowest. [triangles]
 std::vector<int> heaviest_joints(const SkinnedMesh& mesh);
-
-/// Poses the mesh: one call of stage "avatars/skin".
-/// @param world_from_joint  [joints]
-/// @param bones             [bones] scratch, overwritten
-/// @param out               [vertices] [m]
-void skin(const SkinnedMesh& mesh, View<const Affine> world_from_joint, View<Affine> bones, View<Vec3> out);
 
 } // namespace toile

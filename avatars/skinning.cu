@@ -1,3 +1,4 @@
+#include "avatars/lid_kernels.h"
 #include "avatars/skinning_kernels.h"
 #include "core/backend/cuda/parallel.cuh"
 
@@ -5,12 +6,12 @@ namespace toile {
 
 void launch(const CudaSpace& space, const SkinVertices& kernel)
 {
-    parallel_for(space, "avatars/skin", kernel.x.size(), kernel);
+    parallel_for(space, "avatars/device_skin", kernel.x.size(), kernel);
 }
 
-void launch(const CudaSpace& space, const PlaceVertices& kernel)
+void launch(const CudaSpace& space, const PlaceLids& kernel)
 {
-    parallel_for(space, "avatars/place", kernel.x.size(), kernel);
+    parallel_for(space, "avatars/device_lids", kernel.middles.size(), kernel);
 }
 
 } // namespace toile

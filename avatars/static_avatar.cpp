@@ -1,20 +1,20 @@
 #include "avatars/static_avatar.h"
 
-#include "avatars/skinning_kernels.h"
-#include "core/backend/parallel.h"
+#include <numeric>
 
 namespace toile {
 
 StaticAvatar::StaticAvatar(std::string source, TriangleMesh mesh, const Affine& metres_from_file)
     : Avatar(std::move(source), std::move(mesh.triangles), mesh.vertex_count(), {}),
-      positions_(std::move(mesh.positions)), metres_from_file_(metres_from_file)
+      positions_(std::move(mesh.positions)), first_(positions_.size() + 1),
+      influences_(positions_.size(), {0, 1.0}), metres_from_file_(metres_from_file)
 {
+    std::iota(first_.begin(), first_.end(), 0);
 }
 
-void StaticAvatar::pose(const PoseAt&, const Affine& world_from_avatar, View<Vec3> out)
+void StaticAvatar::pose_bones(const PoseAt&, const Affine& world_from_avatar, View<Affine> bones)
 {
-    parallel_for(kCpu, "avatars/place", vertex_count(),
-                 PlaceVertices{positions_, compose(world_from_avatar, metres_from_file_), out});
+    bones[0] = compose(world_from_avatar, metres_from_file_);
 }
 
 } // namespace toile

@@ -6,9 +6,27 @@
 
 namespace toile {
 
-MeshCollider::MeshCollider(const MovingMesh& mesh)
-    : surface_(mesh.triangles, mesh.x_t1), x_t0_(mesh.x_t0), x_t1_(mesh.x_t1),
-      first_owned_(mesh.triangles.size() + 1, 0), bounds_(toile::bounds(mesh.x_t1))
+namespace {
+
+std::vector<Vec3> positions_t0(const MeshPoses& poses)
+{
+    std::vector<Vec3> x(size_t(poses.vertex_count()));
+    poses.pose_t0(x);
+    return x;
+}
+
+std::vector<Vec3> positions_t1(const MeshPoses& poses)
+{
+    std::vector<Vec3> x(size_t(poses.vertex_count()));
+    poses.pose_t1(x);
+    return x;
+}
+
+} // namespace
+
+MeshCollider::MeshCollider(View<const Triangle> triangles, std::shared_ptr<const MeshPoses> poses)
+    : poses_(std::move(poses)), first_owned_(size_t(triangles.size()) + 1, 0), x_t0_(positions_t0(*poses_)),
+      x_t1_(positions_t1(*poses_)), bounds_(toile::bounds(x_t1_)), surface_(triangles, x_t1_)
 {
     // Edges by their lowest triangle.
     const SurfaceEdges& edges = surface_.edges();
@@ -22,27 +40,60 @@ MeshCollider::MeshCollider(const MovingMesh& mesh)
         owned_edges_[next[edges.triangles.of(e)[0]]++] = {e, edges.vertex[e]};
 }
 
+MeshCollider::MeshCollider(View<const Triangle> triangles, std::shared_ptr<GivenPoses> given)
+    : MeshCollider(triangles, std::shared_ptr<const MeshPoses>(given))
+{
+    given_ = std::move(given);
+}
+
+MeshCollider::MeshCollider(const MovingMesh& mesh)
+    : MeshCollider(mesh.triangles, std::make_shared<GivenPoses>(mesh))
+{
+}
+
 void MeshCollider::move(const MovingMesh& mesh)
 {
-    TOILE_ASSERT(mesh.x_t1.size() == x_t1_.size());
-    x_t0_ = mesh.x_t0;
-    is_moving_ = mesh.x_t1 != x_t1_;
-    if (!is_moving_)
+    TOILE_ASSERT(given_ != nullptr);
+    move(given_->move(mesh));
+}
+
+void MeshCollider::move(bool is_moving)
+{
+    is_moving_ = is_moving;
+    is_unposed_ = true;
+    if (!is_moving)
         return;
     ++move_count_;
-    x_before_.swap(x_t1_);
-    x_t1_ = mesh.x_t1;
-    bounds_ = toile::bounds(x_t1_);
     is_behind_ = true;
+}
+
+/// Who has not asked in the step before has the motion of several as the last.
+void MeshCollider::take_pose() const
+{
+    const std::lock_guard lock(asking_);
+    if (!is_unposed_)
+        return;
+    parallel_isolated(kCpu, [&] { // else a task of who asks could be taken on here, and ask
+        poses_->pose_t0(x_t0_);
+        if (posed_at_ == move_count_)
+            return;
+        x_before_.swap(x_t1_);
+        x_t1_.resize(x_t0_.size());
+        poses_->pose_t1(x_t1_);
+        bounds_ = toile::bounds(x_t1_);
+    });
+    posed_at_ = move_count_;
+    is_unposed_ = false;
 }
 
 void MeshCollider::refit() const
 {
-    const std::lock_guard lock(refitting_);
+    (void)posed();
+    const std::lock_guard lock(asking_);
     if (!is_behind_)
         return;
     const StageScope stage("collision/refit");
-    parallel_isolated(kCpu, [&] { // else a task of who asks could be taken on here, and ask
+    parallel_isolated(kCpu, [&] { // see take_pose()
         last_motion_.build(triangles(), x_before_, x_t1_, bounds_);
         surface_.update(x_t1_);
     });

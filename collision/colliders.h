@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "collision/given_poses.h"
 #include "collision/motion_bounds.h"
 #include "collision/shapes.h"
 #include "collision/surface_proximity.h"
@@ -15,32 +16,42 @@ namespace toile {
 
 /// A triangle surface that cloth may touch, at the end t1 of the current step; still or moving.
 ///
-/// Built once. What searches of the host need of a pose is found when they first ask (stage
-/// "collision/refit"): never for a mesh that stands, nor where a GPU makes the steps.
+/// Built once. What the host needs of a pose is found when somebody first asks: where its vertices are, and
+/// for searches the boxes around them (stage "collision/refit"). Neither is for a mesh that stands, nor where
+/// a GPU makes the steps.
 class MeshCollider {
 public:
-    /// Builds the tree. O(n log n). Any triangle list will do (see SurfaceProximity).
+    /// A mesh whose positions are given. Builds the tree. O(n log n). Any triangle list will do (see
+    /// SurfaceProximity).
     explicit MeshCollider(const MovingMesh& mesh);
-
     /// The next step's positions: as many vertices as before, the same triangles. O(n). Not while others ask.
     void move(const MovingMesh& mesh);
 
+    /// A mesh that is posed by somebody else, who is asked as soon as positions are needed.
+    MeshCollider(View<const Triangle> triangles, std::shared_ptr<const MeshPoses> poses);
+    /// The poses are those of the next step. O(1). Not while others ask.
+    void move(bool is_moving);
+
+    const MeshPoses& poses() const { return *poses_; }
     View<const Triangle> triangles() const { return surface_.triangles(); }
-    View<const Vec3> x_t0() const { return x_t0_; }  ///< [vertices] [m]
-    View<const Vec3> x_t1() const { return x_t1_; }  ///< [vertices] [m]
-    const Bounds& bounds() const { return bounds_; } ///< at t1
 
     /// Steps in which it has moved so far.
     int move_count() const { return move_count_; }
     bool is_moving() const { return is_moving_; } ///< in the current step
 
-    // These refit, once after a move, whoever asks first.
+    // These ask for positions, once a step, whoever asks first.
+
+    View<const Vec3> x_t0() const { return posed().x_t0_; }  ///< [vertices] [m]
+    View<const Vec3> x_t1() const { return posed().x_t1_; }  ///< [vertices] [m]
+    const Bounds& bounds() const { return posed().bounds_; } ///< at t1
+
+    // And all that follow, which need boxes, also refit, once after a move.
 
     const SurfaceProximity& surface() const { return refitted().surface_; }     ///< at t1
     const MotionBounds& last_motion() const { return refitted().last_motion_; } ///< how it moved last
 
     /// Both ends of the step, until the next move().
-    MeshPose pose() const { return {surface().view(), x_t0_}; }
+    MeshPose pose() const { return {surface().view(), x_t0()}; }
 
     /// Displacement of a vertex from t0 to t1 [m].
     Vec3 motion(int vertex) const { return pose().motion(vertex); }
@@ -63,24 +74,37 @@ public:
     }
 
 private:
+    MeshCollider(View<const Triangle> triangles, std::shared_ptr<GivenPoses> given);
+    const MeshCollider& posed() const
+    {
+        if (is_unposed_.load(std::memory_order_acquire))
+            take_pose();
+        return *this;
+    }
     const MeshCollider& refitted() const
     {
         if (is_behind_.load(std::memory_order_acquire))
             refit();
         return *this;
     }
+    void take_pose() const;
     void refit() const;
 
-    mutable SurfaceProximity surface_;
-    std::vector<Vec3> x_t0_, x_t1_, x_before_; ///< [vertices] [m]; the last before the last move
-    std::vector<int> first_owned_;             ///< [triangles + 1] into owned_edges_
-    std::vector<OwnedEdge> owned_edges_;       ///< [edges]
-    Bounds bounds_;
+    std::shared_ptr<const MeshPoses> poses_;
+    std::shared_ptr<GivenPoses> given_;  ///< poses_ where positions are given
+    std::vector<int> first_owned_;       ///< [triangles + 1] into owned_edges_
+    std::vector<OwnedEdge> owned_edges_; ///< [edges]
     int move_count_ = 0;
     bool is_moving_ = false;
+
+    // What is found when somebody asks.
+    mutable std::mutex asking_;
+    mutable std::atomic<bool> is_unposed_ = false, is_behind_ = false; ///< positions; surface and motion
+    mutable int posed_at_ = 0;                         ///< move_count_ that the positions are of
+    mutable std::vector<Vec3> x_t0_, x_t1_, x_before_; ///< [vertices] [m]; the last before the last move
+    mutable Bounds bounds_;
+    mutable SurfaceProximity surface_;
     mutable MotionBounds last_motion_;
-    mutable std::mutex refitting_;
-    mutable std::atomic<bool> is_behind_ = false; ///< surface_ and last_motion_, of what has moved
 };
 
 /// An analytic solid that moves rigidly during the step.

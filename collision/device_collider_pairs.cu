@@ -16,7 +16,8 @@ constexpr int kPairsOfVertex = 2;
 } // namespace
 
 DeviceColliderPairs::Mesh::Mesh(const CudaSpace& space, const MeshCollider& mesh, int vertex_count)
-    : there(space, mesh.triangles(), mesh.x_t1()), x_t0(space, "collider/x_t0"), x_t1(space, "collider/x_t1"),
+    : there(space, mesh.triangles(), mesh.x_t1()), poses(mesh.poses().on_device(space)),
+      x_t0(space, "collider/x_t0", mesh.x_t1().size()), x_t1(space, "collider/x_t1"),
       x_before(space, "collider/x_before", mesh.x_t1().size()), motion(space),
       clear_at(space, "collider/clear_at", vertex_count), clearance(space, "collider/clearance", vertex_count)
 {
@@ -25,7 +26,7 @@ DeviceColliderPairs::Mesh::Mesh(const CudaSpace& space, const MeshCollider& mesh
     clearance.fill_zero();
 }
 
-/// Uploads a mesh where it has moved, or stopped, since. Who misses a move has the motion of both.
+/// Poses a mesh where it has moved, or stopped, since. Who misses a move has the motion of both. Waits.
 void DeviceColliderPairs::Mesh::follow(const MeshCollider& mesh)
 {
     const Step now{mesh.move_count(), mesh.is_moving()};
@@ -33,14 +34,16 @@ void DeviceColliderPairs::Mesh::follow(const MeshCollider& mesh)
         return;
     const bool has_moved = now.move_count > placed_at.move_count;
     placed_at = now;
-    x_t0.upload(mesh.x_t0());
+    poses->pose_t0(x_t0);
     if (has_moved) {
         std::swap(x_before, x_t1);
-        x_t1.upload(mesh.x_t1());
+        poses->pose_t1(x_t1);
     }
     there.move(x_t0.view(), x_t1.view());
-    if (has_moved)
-        motion.build(there.surface().triangles(), x_before.view(), x_t1.view(), mesh.bounds());
+    if (!has_moved)
+        return;
+    box = there.surface().bounds();
+    motion.build(there.surface().triangles(), x_before.view(), x_t1.view(), box);
 }
 
 DeviceColliderPairs::DeviceColliderPairs(const CudaSpace& space, View<const Triangle> triangles,
@@ -177,7 +180,7 @@ bool DeviceColliderPairs::is_beyond(int c, const Surroundings& around, const Det
     const Vec3 middle = 0.5 * (around.lower + around.upper), half = 0.5 * (around.upper - around.lower);
     if (const ShapeCollider* const shape = partners_[c].shape)
         return shape->closest(middle).signed_distance > half.norm() + settings.radius + kRounding;
-    const Bounds& box = partners_[c].mesh->bounds();
+    const Bounds& box = meshes_[c]->box;
     const Vec3 apart = (box.lower - around.upper).cwiseMax(around.lower - box.upper).cwiseMax(0.0);
     return apart.norm() > std::max(settings.radius, settings.max_depth) + kRounding;
 }

@@ -57,7 +57,9 @@ private:
         void follow(const MeshCollider& mesh);
 
         DeviceMeshCollider there;
+        std::unique_ptr<DeviceMeshPoses> poses;
         DeviceArray<Vec3> x_t0, x_t1, x_before; ///< [vertices] the last before the last move [m]
+        Bounds box;                             ///< around x_t1 [m]
         DeviceMotionBounds motion;              ///< of the last move
         Step placed_at;
         DeviceArray<Vec3> clear_at;    ///< [vertices] of the clearance: Clearance [m]

@@ -88,6 +88,13 @@ void DeviceSurface::move(View<const Vec3> x, const Ways& ways, double margin)
                  surface_.view(), surface_sums_);
 }
 
+Bounds DeviceSurface::bounds() const
+{
+    SoupExtent extent;
+    extent_.download({&extent, 1});
+    return {extent.lower, extent.upper};
+}
+
 void DeviceSurface::move_some(View<const int> vertices, View<const Vec3> x, const Ways& ways)
 {
     parallel_sum(space_, "collision/device_changed_points", vertices.size(), Largest(),

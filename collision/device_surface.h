@@ -4,6 +4,7 @@
 #include "collision/surface_edges.h"
 #include "core/backend/cuda/array.h"
 #include "core/backend/cuda/sort.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace toile {
 
@@ -50,6 +51,7 @@ public:
     View<const std::array<int, 1>> used_vertices() const { return used_vertices_.view(); }
     View<const int> vertex_order() const { return vertex_order_.view(); }
     View<const SoupExtent> extent() const { return extent_.view(); } ///< [1] of the last move()
+    Bounds bounds() const;                                           ///< around it, on the host [m]. Waits
     /// [1] [m^2] half the surface of the triangles' tree, less the margin: grows as its order goes bad.
     View<const double> surface() const { return surface_.view(); }
 

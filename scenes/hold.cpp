@@ -1,8 +1,10 @@
 #include "scenes/hold.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/backend/error.h"
+#include "core/backend/parallel.h"
 
 namespace toile {
 
@@ -12,23 +14,15 @@ namespace {
 constexpr double kLeastHeight = 0.0005;
 
 /// Orthonormal frame of a triangle: first edge, in-plane normal to it, normal.
-Mat3 frame_of(const TriangleMesh& mesh, int t)
+Mat3 frame_of(const Vec3& a, const Vec3& b, const Vec3& c)
 {
-    const Triangle& corner = mesh.triangles[t];
-    const Vec3 edge = mesh.positions[corner[1]] - mesh.positions[corner[0]];
-    const Vec3 normal = edge.cross(mesh.positions[corner[2]] - mesh.positions[corner[0]]);
+    const Vec3 edge = b - a;
+    const Vec3 normal = edge.cross(c - a);
     Mat3 frame;
     frame.col(0) = edge.normalized();
     frame.col(2) = normal.normalized();
     frame.col(1) = frame.col(2).cross(frame.col(0));
     return frame;
-}
-
-Vec3 interpolate(const TriangleMesh& mesh, int t, const Vec3& barycentric)
-{
-    const Triangle& corner = mesh.triangles[t];
-    return barycentric[0] * mesh.positions[corner[0]] + barycentric[1] * mesh.positions[corner[1]] +
-           barycentric[2] * mesh.positions[corner[2]];
 }
 
 int nearest_vertex(View<const Vec3> x, const Vec3& point)
@@ -106,26 +100,49 @@ void Hold::tie(const Obstacle& obstacle)
     shape_from_world_ = obstacle.body().pose().inverse();
     if (obstacle.partner().shape)
         return;
+    const MeshCollider& mesh = *obstacle.partner().mesh;
+    std::map<int, int> anchor_of;
     for (const Vec3& x : start_) {
-        const SurfacePoint at = *obstacle.partner().mesh->surface().closest(x);
-        const Mat3 frame = frame_of(obstacle.body().contact_surface(), at.triangle);
-        Vec3 offset = frame.transpose() * (x - at.point);
+        const SurfacePoint at = *mesh.surface().closest(x);
+        const Triangle& corner = mesh.triangles()[at.triangle];
+        const Mat3 frame = frame_of(mesh.x_t1()[corner[0]], mesh.x_t1()[corner[1]], mesh.x_t1()[corner[2]]);
+        SurfaceTie tie{{}, at.barycentric, frame.transpose() * (x - at.point)};
         if (at.signed_distance < kLeastHeight) // starts inside: held on the skin, not under it
-            offset = kLeastHeight * Vec3::UnitZ();
-        ties_.push_back({at.triangle, at.barycentric, offset});
+            tie.offset = kLeastHeight * Vec3::UnitZ();
+        for (int c = 0; c < 3; ++c) {
+            const auto [anchor, is_new] = anchor_of.emplace(corner[c], int(anchors_.size()));
+            if (is_new)
+                anchors_.push_back(corner[c]);
+            tie.corner[size_t(c)] = anchor->second;
+        }
+        ties_.push_back(tie);
     }
+    anchored_.resize(anchors_.size());
 }
 
-Vec3 Hold::target(int k, double t, const std::vector<Obstacle>& obstacles) const
+void Hold::follow(double t, const std::vector<Obstacle>& obstacles)
 {
-    if (obstacle_ < 0)
-        return motion_.at(t) * start_[k];
-    const SceneBody& body = obstacles[obstacle_].body();
+    if (obstacle_ < 0) {
+        world_from_start_ = motion_.at(t);
+        return;
+    }
+    const BodyMotion& body = obstacles[obstacle_].body();
+    if (ties_.empty()) {
+        world_from_start_ = body.pose() * shape_from_world_;
+        return;
+    }
+    parallel_for(kCpu, "scenes/anchors", int(anchors_.size()),
+                 [&](int i) { anchored_[i] = body.figure()->vertex_t1(anchors_[i]); });
+}
+
+Vec3 Hold::target(int k) const
+{
     if (ties_.empty())
-        return body.pose() * (shape_from_world_ * start_[k]);
+        return world_from_start_ * start_[k];
     const SurfaceTie& tie = ties_[k];
-    return interpolate(body.contact_surface(), tie.triangle, tie.barycentric) +
-           frame_of(body.contact_surface(), tie.triangle) * tie.offset;
+    const Vec3 &a = anchored_[tie.corner[0]], &b = anchored_[tie.corner[1]], &c = anchored_[tie.corner[2]];
+    return tie.barycentric[0] * a + tie.barycentric[1] * b + tie.barycentric[2] * c +
+           frame_of(a, b, c) * tie.offset;
 }
 
 } // namespace toile

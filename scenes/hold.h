@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "scenes/obstacle.h"
@@ -23,13 +24,16 @@ public:
     /// True when it moves at time t [s] or lets go: cloth must not sleep then.
     bool changes_at(double t) const { return !motion_.is_static() || !holds_at(t); }
 
-    /// Position of the k-th held vertex at time t [s], obstacles already advanced to it.
-    Vec3 target(int k, double t, const std::vector<Obstacle>& obstacles) const;
+    /// To time t [s], obstacles already advanced to it.
+    void follow(double t, const std::vector<Obstacle>& obstacles);
+
+    /// Position of the k-th held vertex at the time of follow() [m].
+    Vec3 target(int k) const;
 
 private:
     /// A point in the frame of an obstacle's triangle.
     struct SurfaceTie {
-        int triangle;
+        std::array<int, 3> corner; ///< in anchors_
         Vec3 barycentric;
         Vec3 offset; ///< [m] in the triangle's frame
     };
@@ -44,6 +48,11 @@ private:
     int obstacle_ = -1;
     Eigen::Isometry3d shape_from_world_ = Eigen::Isometry3d::Identity(); ///< at the start, for shapes
     std::vector<SurfaceTie> ties_;                                       ///< [held], for meshes
+    std::vector<int> anchors_;                                           ///< vertices of the mesh in ties_
+
+    // At the time of follow().
+    Eigen::Isometry3d world_from_start_ = Eigen::Isometry3d::Identity(); ///< but for meshes
+    std::vector<Vec3> anchored_;                                         ///< [anchors] [m]
 };
 
 } // namespace toile

@@ -11,26 +11,23 @@ Obstacle::Obstacle(const scene::Avatar& settings, double default_friction)
         shape_collider_ = std::make_unique<ShapeCollider>(*body_.shape(), body_.pose(), settings.name);
         return;
     }
-    const TriangleMesh& surface = body_.contact_surface();
-    mesh_ = {surface.triangles, surface.positions, surface.positions};
-    mesh_collider_ = std::make_unique<MeshCollider>(mesh_);
+    mesh_collider_ = std::make_unique<MeshCollider>(body_.figure()->contact_triangles(), body_.figure());
 }
 
 void Obstacle::advance_to(double t_t1)
 {
-    const Eigen::Isometry3d pose_t0 = body_.pose();
-    const bool was_moving = moved_;
-    moved_ = !body_.is_static() && body_.advance_to(t_t1);
-    if (!moved_ && !was_moving)
+    if (body_.is_static())
         return;
     const StageScope stage("avatars/advance");
-    if (shape_collider_) {
-        shape_collider_->move(pose_t0, body_.pose());
+    const Eigen::Isometry3d pose_t0 = body_.pose();
+    const bool was_moving = moved_;
+    moved_ = body_.advance_to(t_t1);
+    if (!moved_ && !was_moving)
         return;
-    }
-    mesh_.x_t0.swap(mesh_.x_t1);
-    mesh_.x_t1 = body_.contact_surface().positions;
-    mesh_collider_->move(mesh_);
+    if (shape_collider_)
+        shape_collider_->move(pose_t0, body_.pose());
+    else
+        mesh_collider_->move(moved_);
 }
 
 } // namespace toile

@@ -4,7 +4,7 @@
 
 #include "collision/colliders.h"
 #include "collision/contact.h"
-#include "scenes/scene_body.h"
+#include "scenes/body_motion.h"
 
 namespace toile {
 
@@ -23,13 +23,12 @@ public:
 
     ContactPartner partner() const { return {mesh_collider_.get(), shape_collider_.get()}; }
     double friction() const { return friction_; } ///< [-] with what gives no other
-    const SceneBody& body() const { return body_; }
+    const BodyMotion& body() const { return body_; }
 
 private:
-    SceneBody body_;
+    BodyMotion body_;
     double friction_;
     bool moved_ = false;
-    MovingMesh mesh_; ///< empty for a shape
     std::unique_ptr<MeshCollider> mesh_collider_;
     std::unique_ptr<ShapeCollider> shape_collider_;
 };

@@ -152,21 +152,22 @@ void SceneCloth::mark_fixed(double t_t1, View<unsigned char> fixed) const
 
 void SceneCloth::hold(double t_t1, const std::vector<Obstacle>& obstacles, View<Vec3> targets)
 {
-    int spring = 0;
-    for (const Hold& hold : holds_) {
-        const bool holds = hold.holds_at(t_t1);
-        for (int k = 0; k < int(hold.vertices().size()); ++k) {
-            const Vec3 target = hold.target(k, t_t1, obstacles);
-            if (hold.stiffness()) {
-                if (holds)
-                    springs_->set_target(spring, target);
-                else
-                    springs_->release(spring);
-                ++spring;
-            } else if (holds) {
-                targets[hold.vertices()[k]] = target;
-            }
+    int next_spring = 0;
+    for (Hold& hold : holds_) {
+        const int count = int(hold.vertices().size()), spring = next_spring;
+        next_spring += hold.stiffness() ? count : 0;
+        if (!hold.holds_at(t_t1)) {
+            for (int k = spring; k < next_spring; ++k)
+                springs_->release(k);
+            continue;
         }
+        hold.follow(t_t1, obstacles);
+        parallel_for(kCpu, "scenes/hold", count, [&](int k) {
+            if (hold.stiffness())
+                springs_->set_target(spring + k, hold.target(k));
+            else
+                targets[hold.vertices()[k]] = hold.target(k);
+        });
     }
 }
 

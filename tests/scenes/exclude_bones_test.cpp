@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "collision/surface_edges.h"
-#include "scenes/contact_surface.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/scene_body.h"
 #include "scenes/world.h"

@@ -199,6 +199,8 @@ TEST_F(DeviceSceneTest, DressesAWalkingFigureAsOnTheCpu)
     EXPECT_GT(here.stages().calls("collision/refit"), 0);
     EXPECT_EQ(there.stages().calls("collision/refit"), 0)
         << "nobody on the host asks where the figure is near";
+    EXPECT_EQ(there.stages().calls("avatars/skin"), 0) << "nor where it is";
+    EXPECT_GT(there.stages().calls("avatars/device_skin"), 0);
 }
 
 } // namespace

@@ -1,3 +1,4 @@
+#include "avatars/lid_kernels.h"
 #include "avatars/skinning_kernels.h"
 
 #include <algorithm>
@@ -56,7 +57,7 @@ TEST_F(CudaSkinning, PutsVerticesWhereTheCpuDoes)
 {
     const SkinProblem problem(10000);
     std::vector<Vec3> expected(problem.rest.size());
-    const SkinVertices on_host{problem.rest, problem.first, problem.influences, problem.bones, expected};
+    const SkinVertices on_host{{problem.rest, problem.first, problem.influences}, problem.bones, expected};
     for (int v = 0; v < int(expected.size()); ++v)
         on_host(v);
 
@@ -68,26 +69,31 @@ TEST_F(CudaSkinning, PutsVerticesWhereTheCpuDoes)
     first.upload(problem.first);
     influences.upload(problem.influences);
     bones.upload(problem.bones);
-    launch(space(), SkinVertices{rest.view(), first.view(), influences.view(), bones.view(), x.view()});
+    launch(space(), SkinVertices{{rest.view(), first.view(), influences.view()}, bones.view(), x.view()});
     const double difference = distance(x.downloaded(), expected);
     std::cout << "skinning: largest difference " << difference << " m\n";
     EXPECT_LE(difference, kTolerance);
 }
 
-TEST_F(CudaSkinning, PlacesCopiesWhereTheCpuDoes)
+TEST_F(CudaSkinning, PlacesLidsWhereTheCpuDoes)
 {
-    const SkinProblem problem(10000);
-    std::vector<Vec3> expected(problem.rest.size());
-    const PlaceVertices on_host{problem.rest, problem.bones[3], expected};
-    for (int v = 0; v < int(expected.size()); ++v)
-        on_host(v);
+    const SkinProblem problem(1000);
+    const std::vector<int> first{0, 3, 10, 1000};
+    std::vector<int> rims(1000);
+    for (int i = 0; i < 1000; ++i)
+        rims[size_t(i)] = i * 7 % 1000;
+    std::vector<Vec3> expected(3);
+    const PlaceLids on_host{{first, rims}, problem.rest, expected};
+    for (int lid = 0; lid < 3; ++lid)
+        on_host(lid);
 
-    DeviceArray<Vec3> rest(space(), "test/rest"), x(space(), "test/x", int(expected.size()));
-    rest.upload(problem.rest);
-    launch(space(), PlaceVertices{rest.view(), problem.bones[3], x.view()});
-    const double difference = distance(x.downloaded(), expected);
-    std::cout << "placing: largest difference " << difference << " m\n";
-    EXPECT_LE(difference, kTolerance);
+    DeviceArray<Vec3> body(space(), "test/body"), middles(space(), "test/middles", 3);
+    DeviceArray<int> first_there(space(), "test/first"), rims_there(space(), "test/rims");
+    body.upload(problem.rest);
+    first_there.upload(first);
+    rims_there.upload(rims);
+    launch(space(), PlaceLids{{first_there.view(), rims_there.view()}, body.view(), middles.view()});
+    EXPECT_LE(distance(middles.downloaded(), expected), kTolerance);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "scenes/contact_surface.h"
+#include "avatars/contact_surface.h"
 
 #include <algorithm>
 #include <array>
@@ -47,10 +47,11 @@ std::map<int, int> lowest_joined(const std::vector<Edge>& edges)
 
 ContactSurface::ContactSurface(View<const Triangle> triangles, View<const unsigned char> excluded,
                                int vertex_count, const std::string& user)
+    : body_vertices_(vertex_count)
 {
     for (int t = 0; t < triangles.size(); ++t)
         if (excluded[t] == 0) {
-            mesh_.triangles.push_back(triangles[t]);
+            triangles_.push_back(triangles[t]);
             face_.push_back(t);
         }
     if (face_.empty())
@@ -64,35 +65,26 @@ ContactSurface::ContactSurface(View<const Triangle> triangles, View<const unsign
     for (const Edge& edge : edges_of(triangles, excluded, 0))
         if (gone_edges.contains({edge[1], edge[0]}))
             border.push_back(edge);
-    close_holes(border, vertex_count);
+    close_holes(border);
 }
 
 /// One fan per connected piece of the border. Every border edge gets a face that runs through it the other
 /// way, so what was closed is closed again, whatever shape the border has.
-void ContactSurface::close_holes(const std::vector<Edge>& border, int vertex_count)
+void ContactSurface::close_holes(const std::vector<Edge>& border)
 {
     const std::map<int, int> lowest = lowest_joined(border);
-    std::map<int, int> lid_of; // by its lowest vertex
-    for (const auto& [v, low] : lowest) {
-        const auto [lid, is_new] = lid_of.emplace(low, int(rims_.size()));
-        if (is_new)
-            rims_.emplace_back();
-        rims_[size_t(lid->second)].push_back(v);
+    std::map<int, std::vector<int>> rim_of; // by its lowest vertex; ascending
+    for (const auto& [v, low] : lowest)
+        rim_of[low].push_back(v);
+    std::map<int, int> lid_of;
+    first_rim_.push_back(0);
+    for (const auto& [low, rim] : rim_of) {
+        lid_of.emplace(low, int(lid_of.size()));
+        rims_.insert(rims_.end(), rim.begin(), rim.end());
+        first_rim_.push_back(int(rims_.size()));
     }
     for (const auto& [a, b] : border)
-        mesh_.triangles.emplace_back(b, a, vertex_count + lid_of.at(lowest.at(a)));
-    mesh_.positions.resize(size_t(vertex_count) + rims_.size());
-}
-
-void ContactSurface::move(View<const Vec3> x)
-{
-    auto middle = std::copy(x.begin(), x.end(), mesh_.positions.begin());
-    for (const std::vector<int>& rim : rims_) {
-        Vec3 sum = Vec3::Zero();
-        for (const int v : rim)
-            sum += x[v];
-        *middle++ = sum / double(rim.size());
-    }
+        triangles_.emplace_back(b, a, body_vertices_ + lid_of.at(lowest.at(a)));
 }
 
 } // namespace toile

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "avatars/lid_kernels.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace toile {
@@ -26,25 +27,26 @@ public:
     ContactSurface(View<const Triangle> triangles, View<const unsigned char> excluded, int vertex_count,
                    const std::string& user);
 
-    /// Follows the body. O(vertices)
-    /// @param x  [vertices] of the whole body [m]
-    void move(View<const Vec3> x);
-
     /// Remaining faces in their order, then those of the lids. Vertices are those of the whole body, then the
     /// lids' middles.
-    const TriangleMesh& mesh() const { return mesh_; }
+    const std::vector<Triangle>& triangles() const { return triangles_; }
+    int vertex_count() const { return body_vertices_ + lids().count(); }
 
-    /// The whole body's number of a face of mesh(), -1 for one of a lid.
+    /// Where the lids' middles are.
+    LidRims lids() const { return {first_rim_, rims_}; }
+
+    /// The whole body's number of a face of triangles(), -1 for one of a lid.
     int face_of(int triangle) const { return triangle < int(face_.size()) ? face_[size_t(triangle)] : -1; }
 
 private:
     using Edge = std::array<int, 2>;
 
-    void close_holes(const std::vector<Edge>& border, int vertex_count);
+    void close_holes(const std::vector<Edge>& border);
 
-    TriangleMesh mesh_;
-    std::vector<int> face_;              ///< [remaining faces]
-    std::vector<std::vector<int>> rims_; ///< [lids] vertices around each, ascending
+    int body_vertices_;
+    std::vector<Triangle> triangles_;
+    std::vector<int> face_;             ///< [remaining faces]
+    std::vector<int> first_rim_, rims_; ///< [lids + 1], [first_rim_.back()] see LidRims
 };
 
 } // namespace toile

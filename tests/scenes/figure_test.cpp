@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/backend/stages.h"
+#include "scenes/obstacle.h"
+
+namespace toile {
+namespace {
+
+/// The square column of tests/avatars, 1 m high, whose tip bends for a second.
+scene::Avatar bending_column()
+{
+    scene::Avatar avatar;
+    avatar.name = "column";
+    avatar.shape = std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf";
+    avatar.clip = "bend";
+    return avatar;
+}
+
+std::vector<Vec3> copy_of(View<const Vec3> x) { return {x.begin(), x.end()}; }
+
+TEST(Figure, GivesSingleVerticesAndLidsAsItPosesThem)
+{
+    scene::Avatar settings = bending_column();
+    settings.exclude_bones = {"tip"};
+    Figure figure(settings, identity_affine());
+    EXPECT_GT(figure.vertex_count(), figure.body_vertex_count());
+    EXPECT_TRUE(figure.advance_to(0.4, identity_affine()));
+    std::vector<Vec3> x(size_t(figure.vertex_count()));
+    figure.pose_t1(x);
+    for (int v = 0; v < figure.vertex_count(); ++v)
+        EXPECT_EQ(figure.vertex_t1(v), x[size_t(v)]) << v;
+}
+
+TEST(Figure, IsSkinnedWhenItsColliderIsAsked)
+{
+    Obstacle obstacle(bending_column(), 0.3);
+    const MeshCollider& collider = *obstacle.partner().mesh;
+    Stages stages;
+    const Stages::Activate recording(stages);
+    for (const double t : {0.1, 0.2, 0.3})
+        obstacle.advance_to(t);
+    EXPECT_TRUE(collider.is_moving());
+    EXPECT_EQ(collider.move_count(), 3);
+    EXPECT_EQ(stages.calls("avatars/skin"), 0);
+
+    const std::vector<Vec3> end = copy_of(collider.x_t1());
+    EXPECT_EQ(stages.calls("avatars/skin"), 2) << "both ends of the step";
+    EXPECT_NE(copy_of(collider.x_t0()), end);
+    EXPECT_EQ(copy_of(collider.surface().positions()), end);
+    EXPECT_EQ(stages.calls("avatars/skin"), 2);
+    EXPECT_EQ(stages.calls("collision/refit"), 1);
+
+    obstacle.advance_to(0.4);
+    EXPECT_EQ(copy_of(collider.x_t0()), end);
+    EXPECT_NE(copy_of(collider.x_t1()), end);
+}
+
+TEST(Figure, StopsWhereItsClipEnds)
+{
+    Obstacle obstacle(bending_column(), 0.3);
+    const MeshCollider& collider = *obstacle.partner().mesh;
+    for (const double t : {0.9, 1.0, 1.1})
+        obstacle.advance_to(t);
+    EXPECT_FALSE(obstacle.moved());
+    EXPECT_FALSE(collider.is_moving());
+    EXPECT_EQ(collider.move_count(), 2);
+    EXPECT_EQ(copy_of(collider.x_t0()), copy_of(collider.x_t1()));
+    const std::vector<Vec3> end = copy_of(collider.x_t1());
+    Obstacle bent(bending_column(), 0.3);
+    bent.advance_to(1.0);
+    EXPECT_EQ(copy_of(bent.partner().mesh->x_t1()), end);
+}
+
+TEST(Figure, IsCarriedByItsKeyframes)
+{
+    scene::Avatar settings = bending_column();
+    settings.clip = "";
+    scene::Keyframe there;
+    there.time = 1.0;
+    there.translate = {0.0, 0.5, 0.0};
+    settings.keyframes = {scene::Keyframe{}, there};
+    Obstacle obstacle(settings, 0.3);
+    const MeshCollider& collider = *obstacle.partner().mesh;
+    const std::vector<Vec3> start = copy_of(collider.x_t1());
+    obstacle.advance_to(0.5);
+    EXPECT_TRUE(obstacle.moved());
+    for (size_t v = 0; v < start.size(); ++v)
+        EXPECT_LT((collider.x_t1()[int(v)] - start[v] - Vec3(0, 0.25, 0)).norm(), 1e-15);
+    obstacle.advance_to(1.0);
+    obstacle.advance_to(1.5);
+    EXPECT_FALSE(obstacle.moved()) << "cloth on it may sleep";
+}
+
+} // namespace
+} // namespace toile
