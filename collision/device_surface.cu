@@ -73,18 +73,32 @@ void DeviceSurface::measure(View<const Vec3> x, View<const Vec3> motion)
 
 void DeviceSurface::move(View<const Vec3> x, const Ways& ways, double margin)
 {
+    place(x, ways, margin);
+    refit_triangles(space_);
+    refit_edges(space_);
+}
+
+void DeviceSurface::place(View<const Vec3> x, const Ways& ways, double margin)
+{
     TOILE_ASSERT(x.size() == vertex_count());
     measure(x, ways.motion);
     parallel_sum(space_, "collision/device_points", x.size(), Largest(),
                  PlacePoint{x, ways, extent_.view(), points_.view()}, largest_.view(), largest_sums_);
     note(ways, margin);
-    refit<Triangle>(triangle_shape_, triangle_order_.view(), triangles_.view(), triangle_nodes_.view());
-    refit<std::array<int, 2>>(edge_shape_, edge_order_.view(), edge_vertex_.view(), edge_nodes_.view());
+}
 
+void DeviceSurface::refit_edges(const CudaSpace& on)
+{
+    refit<std::array<int, 2>>(on, edge_shape_, edge_order_.view(), edge_vertex_.view(), edge_nodes_.view());
+}
+
+void DeviceSurface::refit_triangles(const CudaSpace& on)
+{
+    refit<Triangle>(on, triangle_shape_, triangle_order_.view(), triangles_.view(), triangle_nodes_.view());
     const int items = triangle_shape_.first[1];
     const View<const BoxNode> inner =
         triangle_tree().nodes.subview(items, triangle_shape_.node_count() - items);
-    parallel_sum(space_, "collision/device_surface", inner.size(), 0.0, SurfaceOfNode{inner, boxes_},
+    parallel_sum(on, "collision/device_surface", inner.size(), 0.0, SurfaceOfNode{inner, boxes_},
                  surface_.view(), surface_sums_);
 }
 
@@ -109,13 +123,13 @@ void DeviceSurface::move_some(View<const int> vertices, View<const Vec3> x, cons
 }
 
 template <typename Primitive>
-void DeviceSurface::refit(const ImplicitShape& shape, View<const int> order, View<const Primitive> primitives,
-                          View<BoxNode> nodes)
+void DeviceSurface::refit(const CudaSpace& on, const ImplicitShape& shape, View<const int> order,
+                          View<const Primitive> primitives, View<BoxNode> nodes)
 {
     const int fours = shape.size_of(1);
-    parallel_for(space_, "collision/device_refit", fours,
+    parallel_for(on, "collision/device_refit", fours,
                  RefitItems<Primitive>{shape, order, primitives, boxes_, nodes}, 64);
-    parallel_climb(space_, "collision/device_climb", fours, RefitNodes{shape, nodes});
+    parallel_climb(on, "collision/device_climb", fours, RefitNodes{shape, nodes});
 }
 
 void DeviceSurface::reorder(View<const Vec3> x)

@@ -21,6 +21,11 @@ public:
     /// half the margin, as Candidates::update has them. All arguments on the device, borrowed until the next.
     void move(View<const Vec3> x, const Ways& ways, double margin);
 
+    /// move() in parts, of which the last two need nothing of each other.
+    void place(View<const Vec3> x, const Ways& ways, double margin);
+    void refit_triangles(const CudaSpace& on);
+    void refit_edges(const CudaSpace& on);
+
     /// What move() notes on the host, for who launches a recording of it with these arguments.
     void note(const Ways& ways, double margin)
     {
@@ -60,8 +65,8 @@ private:
     void order_along_curve(View<const Primitive> primitives, View<const Vec3> x, DeviceArray<int>& order);
     void find_places(View<const int> order, DeviceArray<int>& places);
     template <typename Primitive>
-    void refit(const ImplicitShape& shape, View<const int> order, View<const Primitive> primitives,
-               View<BoxNode> nodes);
+    void refit(const CudaSpace& on, const ImplicitShape& shape, View<const int> order,
+               View<const Primitive> primitives, View<BoxNode> nodes);
     void measure(View<const Vec3> x, View<const Vec3> motion);
 
     const CudaSpace& space_;

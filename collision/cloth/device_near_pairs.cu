@@ -37,7 +37,8 @@ int with_headroom(long needed)
 
 DeviceNearPairs::DeviceNearPairs(const CudaSpace& space, View<const Triangle> triangles,
                                  View<const Vec3> positions, View<const int> rigid, int room)
-    : space_(space), surface_(space, triangles, positions), rigid_(space, "near_pairs/rigid"),
+    : space_(space), beside_(space, CudaSpace::Beside{}), placed_(space), found_(beside_),
+      surface_(space, triangles, positions), rigid_(space, "near_pairs/rigid"),
       graph_(space, "collision/device_search"),
       counts_(space, "near_pairs/counts", positions.size() + surface_.edges().vertex.size() + 1),
       first_(space, "near_pairs/first", counts_.size()),
@@ -167,9 +168,15 @@ void DeviceNearPairs::report_sorted(int count, View<const Vec3> x)
 
 void DeviceNearPairs::search(View<const Vec3> x, const Ways& ways, double margin)
 {
-    refit(x, ways, margin);
+    surface_.place(x, ways, margin);
+    placed_.record();
+    placed_.delay(beside_);
+    surface_.refit_edges(beside_);
+    count_edges(beside_);
+    found_.record();
+    surface_.refit_triangles(space_);
     count_triangles();
-    count_edges();
+    found_.delay(space_);
     report(x, ways, margin);
 }
 
@@ -221,10 +228,10 @@ void DeviceNearPairs::count_triangles()
                  128);
 }
 
-void DeviceNearPairs::count_edges()
+void DeviceNearPairs::count_edges(const CudaSpace& on)
 {
     const EdgeQueries queries = edge_queries();
-    parallel_for(space_, "collision/device_count_edges", queries.size(),
+    parallel_for(on, "collision/device_count_edges", queries.size(),
                  CountCandidates<EdgeQueries>{queries, surface_.edge_tree(),
                                               counts_.view().subview(surface_.vertex_count(), queries.size()),
                                               kept_for_edges_.view()},

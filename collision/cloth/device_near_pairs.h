@@ -2,6 +2,7 @@
 
 #include "collision/cloth/device_around_kernels.h"
 #include "collision/device_surface.h"
+#include "core/backend/cuda/event.h"
 #include "core/backend/cuda/graph.h"
 
 namespace toile {
@@ -66,7 +67,7 @@ public:
     /// The parts of search(), for whoever times them.
     void refit(View<const Vec3> x, const Ways& ways, double margin) { surface_.move(x, ways, margin); }
     void count_triangles();
-    void count_edges();
+    void count_edges(const CudaSpace& on);
     void report(View<const Vec3> x, const Ways& ways, double margin);
 
 private:
@@ -102,6 +103,8 @@ private:
     void make_room(long candidates, long pairs);
 
     const CudaSpace& space_;
+    CudaSpace beside_;           ///< for edges, while vertices look for triangles
+    StreamEvent placed_, found_; ///< of a search: before it goes apart, and what beside_ has done
     DeviceSurface surface_;
     DeviceArray<int> rigid_;
     Asked begun_;    ///< by begin()
