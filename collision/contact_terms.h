@@ -62,7 +62,7 @@ public:
     virtual double deepest() = 0;
 
     /// Moves cloth by contact alone, term by term (contact_pushes.h): positions to where contact would take
-    /// them before a minimisation (PushToRest), true where something moved; positions out of what they are in
+    /// them before a minimisation (PushToRest), false where nothing moves; positions out of what they are in
     /// by more than `most` [m] (PushOut); velocities [m/s] that go into surfaces (StopAtSurface); and both as
     /// rigid contact with friction changes them (Rub).
     virtual bool push_to_rest(int sweeps) = 0;

@@ -3,6 +3,7 @@
 /// Terms that push one after the other, as Turns has them.
 
 #include <array>
+#include <cmath>
 
 #include "collision/contact_pushes.h"
 #include "core/backend/shared_bounds.h"
@@ -67,7 +68,6 @@ struct PushInTurn {
 
     Push push;
     View<const ContactTerm> terms;
-    View<int> moved; ///< [1] becomes 1 where something moves
 
     struct Prepared {
         TermInTurn here;           ///< found with the numbers below, then numbered anew
@@ -89,8 +89,7 @@ struct PushInTurn {
         SharedFields<kFields> there;
         for (int f = 0; f < kFields; ++f)
             there[f] = View<Vec3>(own[f].data(), 4);
-        if (push.over(there)(i, prepared.here))
-            moved[0] = 1;
+        push.over(there)(i, prepared.here);
     }
 };
 

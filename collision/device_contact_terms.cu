@@ -123,7 +123,7 @@ bool DeviceContactTerms::push_to_rest(int sweeps)
     const View<double> force = first_items(push_force_, energy_.terms().size());
     push_force_.fill_zero();
     turns_.sweep(energy_, PushToRest{push_rules_, force, x_.change_there()}, sweeps);
-    return turns_.moved();
+    return true; // as far as is known without waiting
 }
 
 void DeviceContactTerms::push_out(double most)

@@ -16,12 +16,18 @@ void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, in
         TOILE_ASSERT(field.size() == vertex_count_);
     Turns turns = make_room(contact, sweeps, Push::kFields);
     const View<unsigned char> flags = flags_.view().subview(0, turns.places.size());
+    if constexpr (Push::kCarries) {
+        deepest_.resize(sweeps * vertex_count_);
+        deepest_.fill_zero();
+    }
     for (int done = 0; done < sweeps; ++done) {
         turns.next = next_.view().subview(done, 1);
-        const View<float> deepest = deepest_.view().subview(done * vertex_count_, vertex_count_);
-        if (Push::kCarries)
+        View<float> deepest;
+        if constexpr (Push::kCarries) {
+            deepest = deepest_.view().subview(done * vertex_count_, vertex_count_);
             parallel_for(space_, "contact/find_deepest", terms.size(),
                          FindDeepest<Push>{push, terms, deepest});
+        }
         parallel_for(space_, "contact/flag_acting", flags.size(),
                      FlagActing<Push>{push, terms, turns.order, deepest, flags});
         list_flagged(space_, "contact/list_acting", flags, places_.view().subview(0, flags.size()),
@@ -30,7 +36,7 @@ void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, in
                      NumberTurn<VerticesOfTerm, Push::kFields>{
                          turns, {terms}, flags, contact.lists(), push.fields(), rank_.view()});
         parallel_in_turns(space_, "contact/push", turns, terms.size(),
-                          PushInTurn<Push>{push, terms, moved_.view()});
+                          PushInTurn<Push>{push, terms});
     }
 }
 

@@ -17,9 +17,6 @@ public:
     template <typename Push>
     void sweep(const DeviceContactEnergy& contact, const Push& push, int sweeps);
 
-    /// Whether something moved in the last sweep(). Waits.
-    bool moved();
-
 private:
     Turns make_room(const DeviceContactEnergy& contact, int sweeps, int fields);
 
@@ -30,9 +27,7 @@ private:
     DeviceArray<TurnRank> rank_;       ///< see Turns
     DeviceArray<TaggedVector> passed_; ///< [fields x vertices] see Turns
     DeviceArray<unsigned> next_;       ///< [sweeps] see Turns
-    DeviceArray<float> deepest_;       ///< [sweeps x vertices] see FindDeepest
-    DeviceArray<int> moved_;           ///< [1]
-    PinnedArray<int> moved_here_;
+    DeviceArray<float> deepest_;       ///< [sweeps x vertices] see FindDeepest; none where nothing is carried
     DeviceScratch scratch_;
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 #include <type_traits>
 
 #include "core/backend/types.h"
@@ -12,16 +11,8 @@
 
 namespace toile {
 
-/// Lowers and raises bounds (float or double) that many threads lower and raise at the same time: what is
-/// left is the least and the largest of all, whoever came first. No NaN. (A GPU compares whole numbers at
-/// once; those of floats are in the same order where both are positive, in the opposite one where both are
-/// negative.)
-template <typename Real>
-TOILE_HD void lower_shared(Real& bound, Real value);
-template <typename Real>
-TOILE_HD void raise_shared(Real& bound, Real value);
-
-/// Those numbers.
+/// A float or double as the whole number of its bits, which a GPU compares at once: in the same order where
+/// both are positive, in the opposite one where both are negative.
 template <typename Real>
 struct WholeNumbers {
     static_assert(std::is_same_v<Real, float> || std::is_same_v<Real, double>);
@@ -33,6 +24,9 @@ struct WholeNumbers {
     __device__ static Signed of(double value) { return __double_as_longlong(value); }
 #endif
 };
+
+// Bounds that many threads lower and raise at the same time: what is left is the least and the largest of
+// all, whoever came first. No NaN.
 
 template <typename Real>
 TOILE_HD void lower_shared(Real& bound, Real value)

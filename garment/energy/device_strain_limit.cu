@@ -144,8 +144,7 @@ void DeviceStrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
                                 const std::function<bool()>& clear_contacts)
 {
     TOILE_ASSERT(x.size() >= cloth_.size() && inverse_masses.size() == x.size());
-    if (look(x) == 0)
-        return;
+    TOILE_ASSERT(violating_on_host_[0] > 0);
     parallel_for(space_, "strain_limit/keep", cloth_.size(), KeepPosition{x, kept_.view()});
     find_largest(x, stretch_t0_.view());
     record(x, inverse_masses);
@@ -167,9 +166,12 @@ void DeviceStrainLimit::sweep(View<const Vec3> x, const std::function<bool()>& c
         const int end = clears ? done + 1 : std::min(done + kSweepsAtOnce, max_sweeps_);
         for (; done < end; ++done)
             (done % 2 == 0 ? forward_ : backward_).launch();
-        violating_.download(violating_on_host_.view()); // what clears contacts waits anyway
-        const bool cleared = clears && clear_contacts();
-        left = cleared ? look(x) : how_many();
+        if (clears && clear_contacts()) {
+            left = look(x);
+        } else {
+            violating_.download(violating_on_host_.view());
+            left = how_many();
+        }
     }
 }
 

@@ -13,7 +13,7 @@ namespace toile {
 ///
 /// Whether anything violates its limit is one sum that is read back; where nothing does, that is all. A sweep
 /// is a graph, one call of stage "garment/strain_limit". Every kSweepsAtOnce sweeps, or each while contacts
-/// are cleared, the host reads back how many triangles are left; sweeps that come after none were left find
+/// are cleared, then after that, the host reads back how many triangles are left; sweeps that come after none were left find
 /// nothing to do. Cloths sweep together, up to the largest of their max_sweeps, and are undone one by one.
 class DeviceStrainLimit : public DeviceStepProjection {
 public:

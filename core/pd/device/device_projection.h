@@ -17,10 +17,10 @@ public:
 
     /// Moves x onto the constraint, vertices with weight 0 not at all. Waits to see whether anything is left
     /// to do. Arrays are the device's.
-    /// @param x               [vertices] [m]
+    /// @param x               [vertices] of which is_satisfied() has just said no [m]
     /// @param inverse_masses  [vertices] [1/kg], 0 for fixed vertices
     /// @param clear_contacts  as StepProjection's: to be called while projecting, moves x in the stream's
-    ///                        turn, true when anything moved; may be empty
+    ///                        turn, false where nothing will move; may be empty
     virtual void project(View<Vec3> x, View<const double> inverse_masses,
                          const std::function<bool()>& clear_contacts) = 0;
 

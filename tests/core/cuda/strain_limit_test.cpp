@@ -79,7 +79,8 @@ protected:
     {
         x_->upload(x);
         inverse_masses_->upload(inverse_masses);
-        limit.project(x_->view(), inverse_masses_->view(), clear_contacts);
+        if (!limit.is_satisfied(x_->view()))
+            limit.project(x_->view(), inverse_masses_->view(), clear_contacts);
         return x_->downloaded();
     }
     double max_strain(DeviceStrainLimit& limit, const std::vector<Vec3>& x)
