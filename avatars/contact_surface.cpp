@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/backend/error.h"
+#include "core/backend/parallel.h"
 
 namespace toile {
 
@@ -85,6 +86,14 @@ void ContactSurface::close_holes(const std::vector<Edge>& border)
     }
     for (const auto& [a, b] : border)
         triangles_.emplace_back(b, a, body_vertices_ + lid_of.at(lowest.at(a)));
+}
+
+void ContactSurface::place_lids(View<Vec3> x) const
+{
+    TOILE_ASSERT(x.size() == vertex_count());
+    const View<Vec3> middles = x.subview(body_vertices_, lids().count());
+    parallel_for(kCpu, "avatars/lids", middles.size(),
+                 PlaceLids{lids(), x.subview(0, body_vertices_), middles});
 }
 
 } // namespace toile

@@ -32,8 +32,11 @@ public:
     const std::vector<Triangle>& triangles() const { return triangles_; }
     int vertex_count() const { return body_vertices_ + lids().count(); }
 
-    /// Where the lids' middles are.
     LidRims lids() const { return {first_rim_, rims_}; }
+
+    /// Finds the lids' middles: one call of stage "avatars/lids".
+    /// @param x  [vertex_count()] those of the body, in; the middles, out [m]
+    void place_lids(View<Vec3> x) const;
 
     /// The whole body's number of a face of triangles(), -1 for one of a lid.
     int face_of(int triangle) const { return triangle < int(face_.size()) ? face_[size_t(triangle)] : -1; }

@@ -38,7 +38,7 @@ public:
     View<const Affine> bones_t0() const { return bones_t0_; }
     View<const Affine> bones_t1() const { return bones_t1_; }
 
-    /// True when it never moves: no clip, or a frozen one.
+    /// True when it never moves of itself: no clip, or a frozen one.
     bool is_static() const { return shows_one_pose(motion_); }
 
     /// False when both ends of the current step are the same.

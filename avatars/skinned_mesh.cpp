@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "core/backend/error.h"
-#include "core/backend/parallel.h"
 #include "core/mesh/weld.h"
 
 namespace toile {

@@ -83,18 +83,9 @@ private:
             const int side = leaves ? corner : (corner + 2) % 3;
             const int e = edges.triangle_edge[t][side];
             const bool is_met_leaving = !leaves && triangles[t][side] == v; // from v to v
-            if (!is_met_leaving && is_first_side(e, t, side) && is_lowest_changed(v, edges.vertex[e]))
+            if (!is_met_leaving && edges.is_met_first(e, t, side) && is_lowest_changed(v, edges.vertex[e]))
                 on_edge(e);
         }
-    }
-
-    /// Whether edge e is met first as this side of this triangle.
-    TOILE_HD bool is_first_side(int e, int t, int side) const
-    {
-        for (int k = 0; k < side; ++k)
-            if (edges.triangle_edge[t][k] == e)
-                return false;
-        return edges.triangles.of(e)[0] == t;
     }
 };
 

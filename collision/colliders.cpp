@@ -8,25 +8,20 @@ namespace toile {
 
 namespace {
 
-std::vector<Vec3> positions_t0(const MeshPoses& poses)
+/// Of one end of a step.
+std::vector<Vec3> positions(const MeshPoses& poses, void (MeshPoses::*pose)(View<Vec3>) const)
 {
     std::vector<Vec3> x(size_t(poses.vertex_count()));
-    poses.pose_t0(x);
-    return x;
-}
-
-std::vector<Vec3> positions_t1(const MeshPoses& poses)
-{
-    std::vector<Vec3> x(size_t(poses.vertex_count()));
-    poses.pose_t1(x);
+    (poses.*pose)(x);
     return x;
 }
 
 } // namespace
 
 MeshCollider::MeshCollider(View<const Triangle> triangles, std::shared_ptr<const MeshPoses> poses)
-    : poses_(std::move(poses)), first_owned_(size_t(triangles.size()) + 1, 0), x_t0_(positions_t0(*poses_)),
-      x_t1_(positions_t1(*poses_)), bounds_(toile::bounds(x_t1_)), surface_(triangles, x_t1_)
+    : poses_(std::move(poses)), first_owned_(size_t(triangles.size()) + 1, 0),
+      x_t0_(positions(*poses_, &MeshPoses::pose_t0)), x_t1_(positions(*poses_, &MeshPoses::pose_t1)),
+      bounds_(toile::bounds(x_t1_)), surface_(triangles, x_t1_)
 {
     // Edges by their lowest triangle.
     const SurfaceEdges& edges = surface_.edges();
@@ -54,24 +49,30 @@ MeshCollider::MeshCollider(const MovingMesh& mesh)
 void MeshCollider::move(const MovingMesh& mesh)
 {
     TOILE_ASSERT(given_ != nullptr);
-    move(given_->move(mesh));
+    begin_step(given_->move(mesh));
 }
 
-void MeshCollider::move(bool is_moving)
+void MeshCollider::follow_poses(bool is_moving)
+{
+    TOILE_ASSERT(given_ == nullptr);
+    begin_step(is_moving);
+}
+
+void MeshCollider::begin_step(bool is_moving)
 {
     is_moving_ = is_moving;
-    is_unposed_ = true;
+    needs_pose_ = true;
     if (!is_moving)
         return;
     ++move_count_;
-    is_behind_ = true;
+    needs_refit_ = true;
 }
 
 /// Who has not asked in the step before has the motion of several as the last.
 void MeshCollider::take_pose() const
 {
     const std::lock_guard lock(asking_);
-    if (!is_unposed_)
+    if (!needs_pose_)
         return;
     parallel_isolated(kCpu, [&] { // else a task of who asks could be taken on here, and ask
         poses_->pose_t0(x_t0_);
@@ -83,21 +84,21 @@ void MeshCollider::take_pose() const
         bounds_ = toile::bounds(x_t1_);
     });
     posed_at_ = move_count_;
-    is_unposed_ = false;
+    needs_pose_ = false;
 }
 
 void MeshCollider::refit() const
 {
     (void)posed();
     const std::lock_guard lock(asking_);
-    if (!is_behind_)
+    if (!needs_refit_)
         return;
     const StageScope stage("collision/refit");
     parallel_isolated(kCpu, [&] { // see take_pose()
         last_motion_.build(triangles(), x_before_, x_t1_, bounds_);
         surface_.update(x_t1_);
     });
-    is_behind_ = false;
+    needs_refit_ = false;
 }
 
 ShapeCollider::ShapeCollider(const Shape& shape, const Eigen::Isometry3d& pose, const std::string& source)

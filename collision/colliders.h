@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <string>
 
@@ -17,8 +18,8 @@ namespace toile {
 /// A triangle surface that cloth may touch, at the end t1 of the current step; still or moving.
 ///
 /// Built once. What the host needs of a pose is found when somebody first asks: where its vertices are, and
-/// for searches the boxes around them (stage "collision/refit"). Neither is for a mesh that stands, nor where
-/// a GPU makes the steps.
+/// for searches the boxes around them (stage "collision/refit"). Nobody asks where a GPU makes the steps, and
+/// a mesh that stands has nothing new.
 class MeshCollider {
 public:
     /// A mesh whose positions are given. Builds the tree. O(n log n). Any triangle list will do (see
@@ -27,10 +28,11 @@ public:
     /// The next step's positions: as many vertices as before, the same triangles. O(n). Not while others ask.
     void move(const MovingMesh& mesh);
 
-    /// A mesh that is posed by somebody else, who is asked as soon as positions are needed.
+    /// A mesh that somebody else poses, who is asked when positions are needed.
     MeshCollider(View<const Triangle> triangles, std::shared_ptr<const MeshPoses> poses);
-    /// The poses are those of the next step. O(1). Not while others ask.
-    void move(bool is_moving);
+    /// The poses are now those of the next step. O(1). Not while others ask.
+    /// @param is_moving  its two ends differ
+    void follow_poses(bool is_moving);
 
     const MeshPoses& poses() const { return *poses_; }
     View<const Triangle> triangles() const { return surface_.triangles(); }
@@ -48,7 +50,7 @@ public:
     // And all that follow, which need boxes, also refit, once after a move.
 
     const SurfaceProximity& surface() const { return refitted().surface_; }     ///< at t1
-    const MotionBounds& last_motion() const { return refitted().last_motion_; } ///< how it moved last
+    const MotionBounds& last_motion() const { return refitted().last_motion_; } ///< since last asked
 
     /// Both ends of the step, until the next move().
     MeshPose pose() const { return {surface().view(), x_t0()}; }
@@ -75,15 +77,16 @@ public:
 
 private:
     MeshCollider(View<const Triangle> triangles, std::shared_ptr<GivenPoses> given);
+    void begin_step(bool is_moving);
     const MeshCollider& posed() const
     {
-        if (is_unposed_.load(std::memory_order_acquire))
+        if (needs_pose_.load(std::memory_order_acquire))
             take_pose();
         return *this;
     }
     const MeshCollider& refitted() const
     {
-        if (is_behind_.load(std::memory_order_acquire))
+        if (needs_refit_.load(std::memory_order_acquire))
             refit();
         return *this;
     }
@@ -99,7 +102,7 @@ private:
 
     // What is found when somebody asks.
     mutable std::mutex asking_;
-    mutable std::atomic<bool> is_unposed_ = false, is_behind_ = false; ///< positions; surface and motion
+    mutable std::atomic<bool> needs_pose_ = false, needs_refit_ = false; ///< positions; surface and motion
     mutable int posed_at_ = 0;                         ///< move_count_ that the positions are of
     mutable std::vector<Vec3> x_t0_, x_t1_, x_before_; ///< [vertices] [m]; the last before the last move
     mutable Bounds bounds_;

@@ -61,13 +61,16 @@ public:
     /// How deep a step would end in colliders [m]; 0 where it would not.
     virtual double deepest() = 0;
 
-    /// Moves cloth by contact alone, term by term (contact_pushes.h): positions to where contact would take
-    /// them before a minimisation (PushToRest), false where nothing moves; positions out of what they are in
-    /// by more than `most` [m] (PushOut); velocities [m/s] that go into surfaces (StopAtSurface); and both as
-    /// rigid contact with friction changes them (Rub).
+    // Move cloth by contact alone, term by term (contact_pushes.h).
+
+    /// Positions to where contact would take them before a minimisation (PushToRest). False only where
+    /// nothing moves.
     virtual bool push_to_rest(int sweeps) = 0;
+    /// Positions out of what they are in by more than `most` [m] (PushOut).
     virtual void push_out(double most) = 0;
+    /// Velocities [m/s] that go into surfaces (StopAtSurface).
     virtual void stop_at_surfaces(StepField v) = 0;
+    /// Both as rigid contact with friction changes them (Rub).
     virtual void rub(StepField v) = 0;
 
     /// Keeps forces and sticking of the pairs that press, for their successors. The forces are the

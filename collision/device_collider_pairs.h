@@ -45,7 +45,7 @@ public:
     View<const Vec3> found_at() const { return found_at_.view(); } ///< [vertices] see ColliderPairs [m]
 
 private:
-    /// A mesh there, and where it has last been told to be.
+    /// A mesh there, and the step that it was posed for last.
     struct Mesh {
         /// A step as a MeshCollider knows it.
         struct Step {

@@ -74,7 +74,7 @@ void DeviceSurface::measure(View<const Vec3> x, View<const Vec3> motion)
 void DeviceSurface::move(View<const Vec3> x, const Ways& ways, double margin)
 {
     place(x, ways, margin);
-    refit_triangles(space_);
+    refit_triangles();
     refit_edges(space_);
 }
 
@@ -92,13 +92,14 @@ void DeviceSurface::refit_edges(const CudaSpace& on)
     refit<std::array<int, 2>>(on, edge_shape_, edge_order_.view(), edge_vertex_.view(), edge_nodes_.view());
 }
 
-void DeviceSurface::refit_triangles(const CudaSpace& on)
+void DeviceSurface::refit_triangles()
 {
-    refit<Triangle>(on, triangle_shape_, triangle_order_.view(), triangles_.view(), triangle_nodes_.view());
+    refit<Triangle>(space_, triangle_shape_, triangle_order_.view(), triangles_.view(),
+                    triangle_nodes_.view());
     const int items = triangle_shape_.first[1];
     const View<const BoxNode> inner =
         triangle_tree().nodes.subview(items, triangle_shape_.node_count() - items);
-    parallel_sum(on, "collision/device_surface", inner.size(), 0.0, SurfaceOfNode{inner, boxes_},
+    parallel_sum(space_, "collision/device_surface", inner.size(), 0.0, SurfaceOfNode{inner, boxes_},
                  surface_.view(), surface_sums_);
 }
 

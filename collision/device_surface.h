@@ -21,9 +21,10 @@ public:
     /// half the margin, as Candidates::update has them. All arguments on the device, borrowed until the next.
     void move(View<const Vec3> x, const Ways& ways, double margin);
 
-    /// move() in parts, of which the last two need nothing of each other.
+    /// move() in parts, of which the last two need nothing of each other: edges may go to another stream,
+    /// which must have waited for place() and be waited for before anything else of the surface.
     void place(View<const Vec3> x, const Ways& ways, double margin);
-    void refit_triangles(const CudaSpace& on);
+    void refit_triangles();
     void refit_edges(const CudaSpace& on);
 
     /// What move() notes on the host, for who launches a recording of it with these arguments.

@@ -35,8 +35,7 @@ void DeviceTurns::sweep(const DeviceContactEnergy& contact, const Push& push, in
         parallel_for(space_, "contact/number_turns", Turns::kShares * terms.size(),
                      NumberTurn<VerticesOfTerm, Push::kFields>{
                          turns, {terms}, flags, contact.lists(), push.fields(), rank_.view()});
-        parallel_in_turns(space_, "contact/push", turns, terms.size(),
-                          PushInTurn<Push>{push, terms});
+        parallel_in_turns(space_, "contact/push", turns, terms.size(), PushInTurn<Push>{push, terms});
     }
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/backend/cuda/array.h"
+
 namespace toile {
 
 namespace {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "collision/mesh_poses.h"
 #include "core/mesh/triangle_mesh.h"
 

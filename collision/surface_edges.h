@@ -38,6 +38,16 @@ struct SurfaceEdgesView {
     IncidenceView triangles;
     View<const std::array<int, 3>> triangle_edge;
     IncidenceView corners_of_vertex;
+
+    /// Whether edge e is met first as side k of triangle t: once of all, though a collapsed triangle may have
+    /// it twice.
+    TOILE_HD bool is_met_first(int e, int t, int k) const
+    {
+        for (int before = 0; before < k; ++before)
+            if (triangle_edge[t][before] == e)
+                return false;
+        return triangles.of(e)[0] == t;
+    }
 };
 inline SurfaceEdgesView view_of(const SurfaceEdges& edges)
 {

@@ -24,24 +24,24 @@ BodyMotion::BodyMotion(const scene::Avatar& settings)
     : settings_(settings), shape_(solid_of(settings)), motion_(settings.keyframes, settings.translate)
 {
     if (!shape_) {
-        figure_ = std::make_shared<Figure>(settings, motion_.at(time_).affine());
+        figure_ = std::make_shared<Figure>(settings, motion_.at(0.0).affine());
         return;
     }
     require_usable(*shape_, settings.name);
     start_pose_.linear() = rotation_of(settings.rotate_deg);
     start_pose_.translation() = settings.translate;
-    pose_ = motion_.at(time_) * start_pose_;
+    pose_ = motion_.at(0.0) * start_pose_;
 }
 
 bool BodyMotion::advance_to(double t)
 {
-    const bool is_carried = !motion_.is_static() && t != time_;
-    time_ = t;
+    const Eigen::Isometry3d carried = motion_.at(t);
     if (figure_)
-        return figure_->advance_to(t, motion_.at(t).affine());
-    if (is_carried)
-        pose_ = motion_.at(t) * start_pose_;
-    return is_carried;
+        return figure_->advance_to(t, carried.affine());
+    const Eigen::Isometry3d next = carried * start_pose_;
+    const bool moved = next.matrix() != pose_.matrix();
+    pose_ = next;
+    return moved;
 }
 
 } // namespace toile

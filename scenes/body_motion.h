@@ -12,11 +12,14 @@
 namespace toile {
 
 /// An avatar of a scene in motion: a solid, or a figure whose vertices are posed by whoever needs them.
+/// Moved, not copied: a figure has one owner who advances it.
 class BodyMotion {
 public:
     /// Loads the avatar and shows it at t = 0.
     /// @throws InvalidInput for files, clips and bones that do not work.
     explicit BodyMotion(const scene::Avatar& settings);
+    BodyMotion(BodyMotion&&) = default;
+    BodyMotion& operator=(BodyMotion&&) = default;
 
     const scene::Avatar& settings() const { return settings_; }
 
@@ -32,7 +35,7 @@ public:
     const Eigen::Isometry3d& pose() const { return pose_; } ///< world_from_shape at the step's end
 
     /// All others; null for a shape.
-    const std::shared_ptr<Figure>& figure() const { return figure_; }
+    std::shared_ptr<const Figure> figure() const { return figure_; }
 
 private:
     scene::Avatar settings_;
@@ -41,7 +44,6 @@ private:
     Eigen::Isometry3d start_pose_ = Eigen::Isometry3d::Identity(); ///< of a shape
     Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
     std::shared_ptr<Figure> figure_;
-    double time_ = 0.0;
 };
 
 } // namespace toile

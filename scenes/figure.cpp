@@ -1,7 +1,7 @@
 #include "scenes/figure.h"
 
 #include "avatars/load_avatar.h"
-#include "core/backend/parallel.h"
+#include "core/backend/cuda/array.h"
 
 namespace toile {
 
@@ -67,11 +67,11 @@ bool Figure::advance_to(double t_t1, const Affine& carried)
 
 void Figure::pose(View<const Affine> bones, View<Vec3> x) const
 {
+    TOILE_ASSERT(x.size() == vertex_count());
     const int body = body_vertex_count();
     avatar_.avatar().skin_vertices(bones, x.subview(0, body));
     if (contact_)
-        parallel_for(kCpu, "avatars/lids", x.size() - body,
-                     PlaceLids{contact_->lids(), x.subview(0, body), x.subview(body, x.size() - body)});
+        contact_->place_lids(x);
 }
 
 Vec3 Figure::vertex_t1(int v) const
@@ -106,6 +106,7 @@ public:
 private:
     void pose(View<const Affine> bones, View<Vec3> x)
     {
+        TOILE_ASSERT(x.size() == figure_.vertex_count());
         bones_.upload(bones);
         const int body = rest_.size();
         launch(space_, SkinVertices{{rest_.view(), first_.view(), influences_.view()},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "avatars/contact_surface.h"
@@ -18,7 +19,7 @@ public:
     /// @throws InvalidInput for files, clips and bones that do not work.
     Figure(const scene::Avatar& settings, const Affine& carried);
 
-    bool is_static() const { return avatar_.is_static(); }
+    bool is_static() const { return avatar_.is_static(); } ///< of itself: it may be carried
 
     /// The end of the last step becomes the start of this one, which ends at t_t1 [s].
     /// @param carried  moves it as a whole at its end

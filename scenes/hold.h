@@ -24,7 +24,7 @@ public:
     /// True when it moves at time t [s] or lets go: cloth must not sleep then.
     bool changes_at(double t) const { return !motion_.is_static() || !holds_at(t); }
 
-    /// To time t [s], obstacles already advanced to it.
+    /// To time t [s] at which it holds, obstacles already advanced to it.
     void follow(double t, const std::vector<Obstacle>& obstacles);
 
     /// Position of the k-th held vertex at the time of follow() [m].
@@ -51,7 +51,7 @@ private:
     std::vector<int> anchors_;                                           ///< vertices of the mesh in ties_
 
     // At the time of follow().
-    Eigen::Isometry3d world_from_start_ = Eigen::Isometry3d::Identity(); ///< but for meshes
+    Eigen::Isometry3d world_from_start_ = Eigen::Isometry3d::Identity(); ///< where tied to no mesh
     std::vector<Vec3> anchored_;                                         ///< [anchors] [m]
 };
 

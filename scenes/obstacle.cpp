@@ -27,7 +27,7 @@ void Obstacle::advance_to(double t_t1)
     if (shape_collider_)
         shape_collider_->move(pose_t0, body_.pose());
     else
-        mesh_collider_->move(moved_);
+        mesh_collider_->follow_poses(moved_);
 }
 
 } // namespace toile

@@ -89,7 +89,7 @@ NearSearch measure(const CudaSpace& space, const Folded& sheet, const std::vecto
 
     search.refit_us = median_us(space, [&] { near.refit(x, ways, kMargin); });
     search.triangles_us = median_us(space, [&] { near.count_triangles(); });
-    search.edges_us = median_us(space, [&] { near.count_edges(space); });
+    search.edges_us = median_us(space, [&] { near.count_edges(); });
     search.records_us = median_us(space, [&] { near.report(x, ways, kMargin); });
     search.total_us = median_us(space, [&] { near.search(x, ways, kMargin); });
     search.find_us = 1e3 * best_ms(0.1, [&] { near.find(x, ways, kMargin); });

@@ -170,11 +170,13 @@ void DeviceNearPairs::search(View<const Vec3> x, const Ways& ways, double margin
 {
     surface_.place(x, ways, margin);
     placed_.record();
+
     placed_.delay(beside_);
     surface_.refit_edges(beside_);
-    count_edges(beside_);
+    count_edges_on(beside_);
     found_.record();
-    surface_.refit_triangles(space_);
+
+    surface_.refit_triangles();
     count_triangles();
     found_.delay(space_);
     report(x, ways, margin);
@@ -228,7 +230,7 @@ void DeviceNearPairs::count_triangles()
                  128);
 }
 
-void DeviceNearPairs::count_edges(const CudaSpace& on)
+void DeviceNearPairs::count_edges_on(const CudaSpace& on)
 {
     const EdgeQueries queries = edge_queries();
     parallel_for(on, "collision/device_count_edges", queries.size(),

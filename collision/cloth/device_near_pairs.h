@@ -64,10 +64,11 @@ public:
 
     SoupView soup() const { return {surface_.triangles(), surface_.edges()}; } ///< on the device
 
-    /// The parts of search(), for whoever times them.
+    /// The parts of search(), one after the other, for whoever times them: search() does edges beside
+    /// vertices.
     void refit(View<const Vec3> x, const Ways& ways, double margin) { surface_.move(x, ways, margin); }
     void count_triangles();
-    void count_edges(const CudaSpace& on);
+    void count_edges() { count_edges_on(space_); }
     void report(View<const Vec3> x, const Ways& ways, double margin);
 
 private:
@@ -92,6 +93,7 @@ private:
     };
 
     void search_begun();
+    void count_edges_on(const CudaSpace& on);
     void list_candidates();
     void list_pairs(View<const Record> candidates, View<const long> first, View<const SoupExtent> extent,
                     View<const Vec3> x, const Ways& ways, double margin, DeviceScratch& scratch);

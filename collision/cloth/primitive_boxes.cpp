@@ -4,13 +4,6 @@ namespace toile {
 
 namespace {
 
-/// False for a side of a collapsed triangle that repeats the edge of an earlier one.
-bool is_first_side(const SurfaceEdges& surface, int t, int k)
-{
-    const std::array<int, 3>& edge = surface.triangle_edge[t];
-    return std::find(edge.begin(), edge.begin() + k, edge[k]) == edge.begin() + k;
-}
-
 /// Closes a leaf: fills its last block with empty lanes.
 void close_leaf(PrimitiveBoxes::Kind& kind)
 {
@@ -36,13 +29,14 @@ void PrimitiveBoxes::assign(const BoxTree& tree, const SurfaceEdges& surface, Vi
         kind->first_block = {0};
         kind->item.clear();
     }
+    const SurfaceEdgesView edges_of = view_of(surface);
     for (int leaf = 0; leaf < tree.leaf_count(); ++leaf) {
         for (const int t : tree.items_of(leaf)) {
             triangles.item.push_back(t);
             for (int k = 0; k < 3; ++k) {
                 const int e = surface.triangle_edge[t][k];
                 const int v = corners[t][k];
-                if (surface.triangles.of(e)[0] == t && is_first_side(surface, t, k))
+                if (edges_of.is_met_first(e, t, k))
                     edges.item.push_back(e);
                 if (surface.corners_of_vertex.of(v)[0] == 3 * t + k)
                     vertices.item.push_back(v);

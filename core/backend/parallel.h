@@ -43,7 +43,8 @@ inline int thread_count(CpuSpace)
 inline constexpr int kGrain = 256;
 
 /// Runs kernel(i) for i in [0, count), in any order, on all threads of the caller's TBB arena.
-/// Item i may write slot i only, so the result has the same bits for every thread count.
+/// Item i may write slot i only, or bounds that are shared (shared_bounds.h), so the result has the same bits
+/// for every thread count.
 /// Counted as one call of stage `name`.
 /// @param grain  items per task
 template <typename Kernel>

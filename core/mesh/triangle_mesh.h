@@ -16,7 +16,7 @@ struct TriangleMesh {
     int triangle_count() const { return int(triangles.size()); }
 };
 
-/// A surface that moves during a time step: an avatar or a moving obstacle. Points move linearly in time.
+/// A surface that moves during a time step, with positions given. Points move linearly in time.
 struct MovingMesh {
     std::vector<Triangle> triangles; ///< [triangles]
     std::vector<Vec3> x_t0;          ///< [vertices] at the start of the step [m]

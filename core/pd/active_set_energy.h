@@ -37,7 +37,7 @@ public:
     virtual bool may_act() const { return true; }
 
     /// Moves a start guess out of the candidates' forbidden half-spaces as contact without anything else
-    /// would. False where nothing has moved.
+    /// would. False only where nothing has moved; true is no promise.
     virtual bool make_feasible(StepField x) const = 0;
 
     /// A single sweep of that, for who sweeps over other constraints in between.

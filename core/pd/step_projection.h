@@ -21,7 +21,7 @@ public:
     /// Moves x [vertices] onto the constraint, vertices with weight 0 not at all.
     /// @param inverse_masses  [vertices] [1/kg], 0 for fixed vertices
     /// @param clear_contacts  to be called while projecting, so that contact is respected: moves x, false
-    ///                        where nothing has moved; may be empty
+    ///                        only where nothing has moved; may be empty
     virtual void project(View<Vec3> x, View<const double> inverse_masses,
                          const std::function<bool()>& clear_contacts) = 0;
 

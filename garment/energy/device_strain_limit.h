@@ -12,9 +12,10 @@ namespace toile {
 /// StrainLimit of all cloths of a body on a GPU: the same sweeps, a kernel per colour.
 ///
 /// Whether anything violates its limit is one sum that is read back; where nothing does, that is all. A sweep
-/// is a graph, one call of stage "garment/strain_limit". Every kSweepsAtOnce sweeps, or each while contacts
-/// are cleared, then after that, the host reads back how many triangles are left; sweeps that come after none were left find
-/// nothing to do. Cloths sweep together, up to the largest of their max_sweeps, and are undone one by one.
+/// is a graph, one call of stage "garment/strain_limit". The host reads back how many triangles are left
+/// every kSweepsAtOnce sweeps or, while contacts are cleared, after each clearing; sweeps that come after
+/// none were left find nothing to do. Cloths sweep together, up to the largest of their max_sweeps, and are
+/// undone one by one.
 class DeviceStrainLimit : public DeviceStepProjection {
 public:
     /// Sweeps that go without asking whether any triangle is left. More wait less often but leave more

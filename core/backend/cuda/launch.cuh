@@ -36,7 +36,7 @@ concept LoadsEarly = requires(const Kernel& kernel, const Item&... item)
 /// kernel(item..., what came of it).
 ///
 /// early() may load what the launch directly before does not write, and writes nothing: all launches before
-/// that one are done.
+/// that one of the same stream are done. What another stream writes is there after the turn only.
 template <typename Kernel, typename... Item>
 __device__ void run_in_turn(const Kernel& kernel, const Item&... item)
 {

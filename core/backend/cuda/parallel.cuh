@@ -100,7 +100,8 @@ __global__ void __launch_bounds__(kSumThreads, kSumBlocksAtOnce)
 
 #endif
 
-/// Launches kernel(i) for i in [0, count) in the stream's turn and returns. Item i may write slot i only.
+/// Launches kernel(i) for i in [0, count) in the stream's turn and returns. Item i may write as on the CPU
+/// (core/backend/parallel.h).
 /// Counted as one call of stage `name`, whose time is that of the launch and not of the kernel (DeviceTimer
 /// measures that). An empty range launches nothing.
 /// @param kernel  a named struct of views of device memory, copied; at most 4 KiB

@@ -20,7 +20,7 @@ public:
     /// @param x               [vertices] of which is_satisfied() has just said no [m]
     /// @param inverse_masses  [vertices] [1/kg], 0 for fixed vertices
     /// @param clear_contacts  as StepProjection's: to be called while projecting, moves x in the stream's
-    ///                        turn, false where nothing will move; may be empty
+    ///                        turn, false only where nothing will move; may be empty
     virtual void project(View<Vec3> x, View<const double> inverse_masses,
                          const std::function<bool()>& clear_contacts) = 0;
 

@@ -1,5 +1,6 @@
 #include "scenes/figure.h"
 
+#include "core/backend/cuda/array.h"
 #include "tests/core/cuda/on_device.h"
 
 namespace toile::test {
