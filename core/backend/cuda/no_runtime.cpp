@@ -1,7 +1,7 @@
 #include "core/backend/cuda/runtime.h"
 
-// Nothing below but find_devices() and reason_of() is ever called: CudaSpace, which all else needs, refuses
-// to be made.
+// Nothing below but find_devices(), load_kernels_early() and reason_of() is ever called: CudaSpace, which all
+// else needs, refuses to be made.
 
 namespace toile::cuda {
 
@@ -11,6 +11,7 @@ constexpr const char* kReason = "this build is without CUDA";
 
 std::string reason_of(Status) { return kReason; }
 FoundDevices find_devices() { return {{}, kReason}; }
+void load_kernels_early() {}
 
 Status use_device(int) { return Status::NotBuilt; }
 Status open_stream(int, CUstream_st*&) { return Status::NotBuilt; }

@@ -1,5 +1,7 @@
 #include "core/backend/cuda/runtime.h"
 
+#include <cstdlib>
+
 #include <cuda_runtime_api.h>
 
 namespace toile::cuda {
@@ -74,6 +76,8 @@ FoundDevices find_devices()
         found.why_none = why_no_device(error);
     return found;
 }
+
+void load_kernels_early() { setenv("CUDA_MODULE_LOADING", "EAGER", 0); }
 
 Status use_device(int device) { return answer(cudaSetDevice(device)); }
 

@@ -39,6 +39,10 @@ struct FoundDevices {
 };
 FoundDevices find_devices();
 
+/// For the start of a program, before any other thread and call: kernels are loaded when a device is opened,
+/// not one by one in the steps that launch them first. Who has set CUDA_MODULE_LOADING decides.
+void load_kernels_early();
+
 /// Makes a device that of this thread; every call below that takes one does so.
 Status use_device(int device);
 Status open_stream(int device, CUstream_st*& stream);
