@@ -51,6 +51,8 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
     for (size_t i = 0; i < cloths_.size(); ++i)
         limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
     limits_ = std::make_unique<JointStrainLimit>(std::move(limits));
+    if (space != nullptr)
+        limits_->on_device(*space); // else the first step would take it there
     const size_t unknowns = body_->positions().size();
     fixed_.assign(unknowns, 0);
     targets_.assign(unknowns, Vec3::Zero());
