@@ -131,8 +131,9 @@ void Hold::follow(double t, const std::vector<Obstacle>& obstacles)
         world_from_start_ = body.pose() * shape_from_world_;
         return;
     }
+    const Figure& figure = *body.figure();
     parallel_for(kCpu, "scenes/anchors", int(anchors_.size()),
-                 [&](int i) { anchored_[i] = body.figure()->vertex_t1(anchors_[i]); });
+                 [&](int i) { anchored_[i] = figure.vertex_t1(anchors_[i]); });
 }
 
 Vec3 Hold::target(int k) const
