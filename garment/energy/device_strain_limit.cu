@@ -106,13 +106,13 @@ CountViolating DeviceStrainLimit::count(View<const Vec3> x) { return {triangles(
 int DeviceStrainLimit::look(View<const Vec3> x)
 {
     parallel_sum(space_, "strain_limit/find", triangles_.size(), 0, count(x), violating_.view(), sums_);
-    violating_.download(violating_on_host_.view());
     return how_many();
 }
 
-/// What the last copy of violating_ has brought.
+/// What the last count has found. Waits.
 int DeviceStrainLimit::how_many()
 {
+    violating_.download(violating_on_host_.view());
     space_.synchronise();
     return violating_on_host_[0];
 }
@@ -166,12 +166,7 @@ void DeviceStrainLimit::sweep(View<const Vec3> x, const std::function<bool()>& c
         const int end = clears ? done + 1 : std::min(done + kSweepsAtOnce, max_sweeps_);
         for (; done < end; ++done)
             (done % 2 == 0 ? forward_ : backward_).launch();
-        if (clears && clear_contacts()) {
-            left = look(x);
-        } else {
-            violating_.download(violating_on_host_.view());
-            left = how_many();
-        }
+        left = clears && clear_contacts() ? look(x) : how_many();
     }
 }
 
