@@ -170,7 +170,7 @@ TEST(SolverTable, CountsKeptTablesForEveryMethodThatUsesThem)
     kept.build_ms = 1e6;
     for (const Method& method : choose_methods(" 3")) {
         const double setup_ms = run(problem, steps, method, 1, &kept).setup_ms;
-        EXPECT_EQ(setup_ms > 1e6, method.uses_tables) << method.name;
+        EXPECT_EQ(setup_ms >= 1e6, method.uses_tables) << method.name; // the rest may take no time at all
     }
 }
 
