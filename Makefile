@@ -1,37 +1,64 @@
 # make demo, make test: everything from a fresh clone. The build itself is CMake's (CMakePresets.json).
 .DEFAULT_GOAL := help
-.PHONY: help demo test build format lint clean packages lint-packages
+.PHONY: help demo test bench sanitize build install format lint clean packages lint-packages
 
 JOBS ?= $(shell nproc)
+PREFIX ?= /usr/local
 TOILE := build/bin/toile
+
+# Kernels are compiled for the card that is here; without one only what must work on any machine is.
+CARD := $(shell nvidia-smi -L 2>/dev/null | head -n 1)
+ARCHITECTURES := $(if $(CARD),native,90-real)
+# The demo runs on the CPU unless a GPU is here. GPU=1: compile kernels all the same.
+DEMO_CUDA := $(if $(CARD)$(filter-out 0,$(GPU)),AUTO,OFF)
+
+# What ships; research and the tests of GPUs would double the time.
+SANITIZED_TESTS := $(addprefix test_,core quadrature2d garment collision avatars export scenes preview)
+
+configure = cmake --preset $(1) --log-level=WARNING --no-warn-unused-cli -DCMAKE_CUDA_ARCHITECTURES=$(ARCHITECTURES) $(2)
 
 help: ## Show this list
 	@sed -nE 's/^([a-z]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
 
-demo: build ## Drape a tablecloth and a skirt; pictures and caches go to out/
+demo: packages ## Drape a tablecloth and a skirt; pictures and caches go to out/ (GPU=1: with kernels for GPUs)
+	@$(call configure,default,-DTOILE_CUDA=$(DEMO_CUDA))
+	@cmake --build --preset default --target toile -j $(JOBS)
 	@cmake/setup/demo.sh $(TOILE)
 
-test: build ## Build and run every test
+test: build ## Build everything, and run every test
 	@ctest --preset default -j $(JOBS)
 
-build: packages build/build.ninja ## Build into build/
+bench: packages ## Build toile-bench, which measures
+	@$(call configure,default,-DTOILE_CUDA=AUTO)
+	@cmake --build --preset default --target toile-bench -j $(JOBS)
+	@build/bin/toile-bench --help
+
+sanitize: packages ## Debug build with sanitizers: both demos, and the tests that are fast
+	@$(call configure,sanitize,)
+	@cmake --build --preset sanitize --target toile $(SANITIZED_TESTS) -j $(JOBS)
+	@cmake/setup/sanitize.sh build build-sanitize $(JOBS)
+
+build: packages ## Build everything into build/
+	@$(call configure,default,-DTOILE_CUDA=AUTO)
 	@cmake --build --preset default -j $(JOBS)
+
+install: packages ## Build the program and the library, and install them (PREFIX=/usr/local)
+	@$(call configure,default,-DTOILE_CUDA=AUTO)
+	@cmake --build --preset default --target toile -j $(JOBS)
+	@cmake --install build --prefix $(PREFIX)
 
 format: lint-packages ## Rewrite the sources in the project's format
 	@git ls-files -co --exclude-standard '*.cpp' '*.h' '*.cu' '*.cuh' | xargs -r clang-format -i
 
-lint: packages lint-packages build/build.ninja ## Check format and clang-tidy on what changed (LINT_BASE=ref)
+lint: packages lint-packages ## Check format and clang-tidy on what changed (LINT_BASE=ref)
+	@test -f build/compile_commands.json || $(call configure,default,-DTOILE_CUDA=AUTO)
 	@cmake/setup/lint.sh build
 
-clean: ## Remove build/; out/ stays
-	rm -rf build
+clean: ## Remove the builds; out/ stays
+	rm -rf build build-debug build-sanitize
 
 packages:
 	@cmake/setup/install_packages.sh build
 
 lint-packages:
 	@cmake/setup/install_packages.sh lint
-
-# Ninja calls CMake again by itself when a CMakeLists.txt changes.
-build/build.ninja: | packages
-	@cmake --preset default

@@ -4,16 +4,16 @@
 #include <map>
 
 #include "avatars/import/assimp_import.h"
-#include "avatars/skinned_avatar.h"
-#include "avatars/static_avatar.h"
-#include "core/backend/error.h"
+#include "avatars/model/skinned_avatar.h"
+#include "avatars/model/static_avatar.h"
+#include "core/base/error.h"
 #include "core/mesh/obj.h"
 
-namespace toile {
+namespace toile::avatars {
 
 namespace {
 
-/// The file's extension in lower case, with its dot.
+/// Extension of the file in lower case, with its dot.
 std::string format_of(const std::filesystem::path& file)
 {
     std::string extension = file.extension().string();
@@ -66,4 +66,4 @@ std::unique_ptr<Avatar> load_avatar(const AvatarSettings& settings)
     return std::make_unique<SkinnedAvatar>(source, std::move(model));
 }
 
-} // namespace toile
+} // namespace toile::avatars

@@ -10,16 +10,40 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, RelWithDebInfo or Debug" FORCE)
 endif()
 
-# Rebuilds after a branch switch cost seconds instead of minutes where ccache is installed.
+# Rebuilds after a branch switch cost seconds instead of minutes where ccache is installed. Precompiled headers need
+# the slack that its manual names for them.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND PROJECT_IS_TOP_LEVEL)
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+        "${CCACHE_PROGRAM}")
+    add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess>)
 endif()
 
 option(TOILE_NATIVE "Compile for this machine's instruction set (vector width decides the solver's speed)" ON)
 
-# toile_options: an interface target with the flags of our own code, never exported to consumers.
+# toile_abi: flags that layouts and inline functions of our headers depend on. Programs that link a module get them too.
+add_library(toile_abi INTERFACE)
+target_compile_features(toile_abi INTERFACE cxx_std_20)
+# The instruction set decides Eigen's alignment, so the host's part of .cu files must be told the same. Contraction into
+# fused multiply-adds stays on: results are the same for every thread count, not for every processor.
+if(TOILE_NATIVE)
+    target_compile_options(toile_abi INTERFACE
+        $<$<COMPILE_LANGUAGE:CXX>:-march=native> $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-march=native>)
+endif()
+# Our configuration decides about checks, not that of the program that links us.
+set(is_checked "$<NOT:$<CONFIG:Release>>")
+if(NOT CMAKE_CONFIGURATION_TYPES)
+    string(COMPARE NOTEQUAL "${CMAKE_BUILD_TYPE}" Release is_checked)
+endif()
+target_compile_definitions(toile_abi INTERFACE EIGEN_DONT_PARALLELIZE $<${is_checked}:TOILE_CHECKED>)
+# Vectors and matrices that nobody has written are NaN in checked builds. Kernels keep theirs as they are: shared
+# memory of a GPU has no constructors.
+target_compile_definitions(toile_abi INTERFACE
+    $<$<AND:${is_checked},$<COMPILE_LANGUAGE:CXX>>:EIGEN_INITIALIZE_MATRICES_BY_NAN>)
+
+# toile_options: flags of our own code alone.
 add_library(toile_options INTERFACE)
+target_link_libraries(toile_options INTERFACE toile_abi)
 # GCC 12 warns about its own vector intrinsics and std::string; clang-tidy finds the real cases.
 target_compile_options(toile_options INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -Wno-uninitialized -Wno-maybe-uninitialized -Wno-restrict>)
@@ -29,12 +53,19 @@ target_compile_options(toile_options INTERFACE
     "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-diag-suppress=20012>"
     "$<$<COMPILE_LANGUAGE:CUDA>:SHELL:-Werror cross-execution-space-call -Werror all-warnings>"
     "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-Wno-unknown-pragmas>")
-# The instruction set decides Eigen's alignment, so the host's part of .cu files must be told the same.
-if(TOILE_NATIVE)
-    target_compile_options(toile_options INTERFACE
-        $<$<COMPILE_LANGUAGE:CXX>:-march=native> $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-march=native>)
+
+# Address and undefined-behaviour sanitizers: the preset "sanitize".
+option(TOILE_SANITIZE "Stop at memory errors and undefined behaviour" OFF)
+if(TOILE_SANITIZE)
+    set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
+    add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:${sanitizers};-fno-omit-frame-pointer>")
+    add_link_options(${sanitizers})
+    target_link_options(toile_abi INTERFACE ${sanitizers})
 endif()
-# Contraction into fused multiply-adds stays on: results are the same for every thread count, not for every
-# processor.
-target_compile_definitions(toile_options INTERFACE
-    $<$<NOT:$<CONFIG:Release>>:TOILE_CHECKED> EIGEN_DONT_PARALLELIZE)
+
+# Two classes of one name in one program: found by the linker of a build with link-time optimisation.
+option(TOILE_CHECK_ODR "Link the programs with -flto -Wodr" OFF)
+if(TOILE_CHECK_ODR)
+    add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-flto;-ffat-lto-objects>")
+    add_link_options(-fno-lto)
+endif()

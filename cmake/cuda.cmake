@@ -91,5 +91,5 @@ function(toile_cuda_sources target files libraries)
     # Headers seen through -isystem lose their errors: a host function called by a kernel would become a trap.
     set_target_properties(${target}_cuda PROPERTIES NO_SYSTEM_FROM_IMPORTED ON POSITION_INDEPENDENT_CODE ON)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_cuda>)
-    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:CUDA::cudart_static>)
+    target_link_libraries(${target} PRIVATE CUDA::cudart_static)
 endfunction()

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace toile {
+namespace toile::exports {
 
 AsyncCacheWriter::AsyncCacheWriter(std::unique_ptr<CacheWriter> target, int queue_limit)
     : target_(std::move(target)), free_(size_t(std::max(queue_limit, 1))),
@@ -63,7 +63,7 @@ void AsyncCacheWriter::deliver_until_closed()
         Frame frame = std::move(queue_.front());
         queue_.pop_front();
 
-        // After an error the rest is dropped: a cache with a gap would be worse than a short one.
+        // Drop the remaining frames after an error: a cache with a gap would be worse than a short one.
         const bool is_dropped = error_ != nullptr;
         lock.unlock();
         const std::exception_ptr error = is_dropped ? nullptr : deliver(frame);
@@ -78,7 +78,7 @@ void AsyncCacheWriter::deliver_until_closed()
     }
 }
 
-/// @return what went wrong
+/// @return the error, or null
 std::exception_ptr AsyncCacheWriter::deliver(const Frame& frame)
 {
     try {
@@ -107,4 +107,4 @@ void AsyncCacheWriter::rethrow_error() const
         std::rethrow_exception(error_);
 }
 
-} // namespace toile
+} // namespace toile::exports

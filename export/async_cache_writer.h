@@ -11,32 +11,33 @@
 
 #include "export/cache_writer.h"
 
-namespace toile {
+namespace toile::exports {
 
-/// Writes to another cache on a thread of its own, in the order of the calls, so that the simulation does
-/// not wait for the disk. The caller may change its positions as soon as write() returns.
+/// Writes to another cache on a separate thread, in the order of the calls, so that the simulation does not
+/// wait for the disk. The caller may change its positions as soon as write() returns.
 class AsyncCacheWriter final : public CacheWriter {
 public:
-    /// @param queue_limit  frames held in memory at most (1 or more); write() waits while all are taken
+    /// @param queue_limit  maximum frames in memory (1 or more); write() waits while all are in use
     explicit AsyncCacheWriter(std::unique_ptr<CacheWriter> target, int queue_limit = 4);
 
-    /// Delivers what was queued to the partial; an error then is lost, call finish() to see it.
+    /// Delivers queued frames to the partial. Errors are lost here; finish() reports them.
     ~AsyncCacheWriter() override;
 
-    /// Queues a copy. @throws what writing an earlier frame threw; nothing is written after that.
+    /// Queues a copy. @throws the exception of an earlier failed write; nothing is written after that.
     void write(int frame, View<const Vec3> positions) override;
 
-    /// Gives a frame's positions [vertices] [m] when they are to be written, and throws where it can't. It
-    /// owns what it reads, is called once, on the writer's thread, and is gone when the frame is written.
+    /// Returns a frame's positions [vertices] [m] when they are due for writing, or throws on failure. It
+    /// owns the data that it reads. It is called once, on the writer's thread, and destroyed when the frame
+    /// is written.
     using LatePositions = std::function<View<const Vec3>()>;
 
-    /// Queues positions that may still be on their way, without a copy. @throws as write()
+    /// Queues positions that may not have arrived yet, without a copy. @throws as write()
     void write_later(int frame, LatePositions positions);
 
-    /// Waits for the queue and finishes the target. @throws what it or an earlier write threw.
+    /// Waits for the queue and finishes the target. @throws its exception, or that of an earlier write.
     void finish() override;
 
-    /// Waits for the queue; nothing can be written any more. @return frames that the target has taken
+    /// Waits for the queue; nothing can be written afterwards. @return frames that the target has
     int close();
 
     std::filesystem::path partial() const override { return target_->partial(); }
@@ -44,7 +45,7 @@ public:
 private:
     struct Frame {
         int index = 0;
-        LatePositions late;          ///< empty: they are here
+        LatePositions late;          ///< empty: `positions` is valid
         std::vector<Vec3> positions; ///< [vertices] [m]
     };
 
@@ -65,4 +66,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace toile
+} // namespace toile::exports

@@ -10,10 +10,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/backend/atomic_file.h"
-#include "core/backend/error.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
 
-namespace toile {
+namespace toile::exports {
 
 namespace {
 
@@ -49,7 +49,7 @@ BinaryFile::BinaryFile(const std::filesystem::path& file, Mode mode) : path_(fil
     if (mode == Mode::Read)
         return;
 
-    // Emptying comes after the lock: a second run must not destroy what the first is writing.
+    // Truncate after locking: a second run must not destroy the file that the first is writing.
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
         ::close(descriptor_);
         throw InvalidInput(file.string() + ": another run is writing it; wait for it or choose another name");
@@ -116,4 +116,4 @@ void move_into_place(const std::filesystem::path& complete, const std::filesyste
                           error.message() + "); it is complete, rename it by hand");
 }
 
-} // namespace toile
+} // namespace toile::exports

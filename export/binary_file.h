@@ -4,19 +4,19 @@
 #include <filesystem>
 #include <string_view>
 
-namespace toile {
+namespace toile::exports {
 
-/// A file of bytes read and written by offset. Bytes written are with the operating system when the call
-/// returns, so they outlive a killed process; sync() makes them outlive a power cut too.
+/// A file of bytes read and written by offset. Written bytes are with the operating system when the call
+/// returns, so they outlive a killed process; sync() makes them outlive a power failure too.
 class BinaryFile {
 public:
     enum class Mode {
         Read,     ///< must exist
-        Create,   ///< emptied when it exists; missing parent folders are created
+        Create,   ///< emptied if it exists; missing parent folders are created
         Continue, ///< must exist; content kept
     };
 
-    /// @throws InvalidInput when the file can't be opened, or is open for writing in another process.
+    /// @throws InvalidInput if the file can't be opened, or is open for writing in another process.
     BinaryFile(const std::filesystem::path& file, Mode mode);
     ~BinaryFile();
     BinaryFile(const BinaryFile&) = delete;
@@ -25,7 +25,7 @@ public:
     const std::filesystem::path& path() const { return path_; }
     std::int64_t size() const;
 
-    /// Both transfer all bytes or throw DeviceError.
+    /// Reads or writes all bytes, or throws DeviceError.
     void read_at(std::int64_t offset, char* bytes, std::size_t count) const;
     void write_at(std::int64_t offset, std::string_view bytes);
 
@@ -37,8 +37,8 @@ private:
     int descriptor_ = -1;
 };
 
-/// Renames a completed file to its final name, replacing what was there.
-/// @throws DeviceError naming both when the system refuses.
+/// Renames a completed file to its final name, replacing an existing file.
+/// @throws DeviceError naming both if the system refuses.
 void move_into_place(const std::filesystem::path& complete, const std::filesystem::path& file);
 
-} // namespace toile
+} // namespace toile::exports

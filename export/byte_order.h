@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <cstring>
 
-namespace toile {
+namespace toile::exports {
 
-/// Stores a 32-bit integer or float at `bytes` in the file's byte order, whatever the machine's own is.
+/// Stores a 32-bit integer or float at `bytes` in the byte order of the file, on any machine.
 template <std::endian kOrder, typename T>
 void put(char* bytes, T value)
 {
@@ -17,7 +17,7 @@ void put(char* bytes, T value)
     std::memcpy(bytes, &word, sizeof word);
 }
 
-/// The inverse of put().
+/// Reads a value stored by put().
 template <std::endian kOrder, typename T>
 T get(const char* bytes)
 {
@@ -29,4 +29,4 @@ T get(const char* bytes)
     return std::bit_cast<T>(word);
 }
 
-} // namespace toile
+} // namespace toile::exports

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
-namespace toile {
+namespace toile::exports {
 
 CacheFormat cache_format(const std::filesystem::path& file)
 {
@@ -19,4 +19,4 @@ CacheFormat cache_format(const std::filesystem::path& file)
                        "'; use .pc2, .mdd or .obj");
 }
 
-} // namespace toile
+} // namespace toile::exports

@@ -2,12 +2,12 @@
 
 #include <filesystem>
 
-namespace toile {
+namespace toile::exports {
 
 enum class CacheFormat { Pc2, Mdd, Obj };
 
-/// The format that the extension of `file` names: .pc2, .mdd or .obj.
+/// Format for the extension of `file`: .pc2, .mdd or .obj.
 /// @throws InvalidInput for any other.
 CacheFormat cache_format(const std::filesystem::path& file);
 
-} // namespace toile
+} // namespace toile::exports

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <string>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "export/cache_format.h"
 #include "export/mdd_writer.h"
 #include "export/obj_writer.h"
 #include "export/pc2_writer.h"
 
-namespace toile {
+namespace toile::exports {
 
 namespace {
 
@@ -92,4 +92,4 @@ std::unique_ptr<CacheWriter> make_cache_writer(const path& file, const CacheLayo
     return open_writer(file, layout);
 }
 
-} // namespace toile
+} // namespace toile::exports

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 #include "core/mesh/obj.h"
 
-namespace toile {
+namespace toile::exports {
 
-/// What a cache knows before its first frame arrives.
+/// Properties of a cache that are fixed before its first frame.
 struct CacheLayout {
     int vertex_count = 0;
     int frame_count = 0;      ///< frames that the run will deliver
@@ -19,30 +19,30 @@ struct CacheLayout {
     ObjMesh faces; ///< polygons and texture coordinates, written by OBJ only; positions are ignored
 };
 
-/// The layout of a cache that plays on `mesh`.
+/// Layout of a cache for the vertices and faces of `mesh`.
 CacheLayout cache_layout(const ObjMesh& mesh, int frame_count);
 CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count);
 
-/// Takes a simulation's frames, one after the other, and leaves a point cache in vertex order.
+/// Takes a simulation's frames in order and creates a point cache in vertex order.
 ///
-/// Until finish() everything goes into a partial beside the cache (skirt.partial.pc2 for skirt.pc2): a cache
-/// of the same name from an earlier run stays as it was, and a run that is killed leaves a partial that
-/// reads up to its last completed frame. Destruction without finish() keeps the partial.
+/// Until finish() everything goes into a partial beside the cache (skirt.partial.pc2 for skirt.pc2). A cache
+/// of the same name from an earlier run stays unchanged. A killed run leaves a partial that is readable up to
+/// its last completed frame. Destruction without finish() keeps the partial.
 class CacheWriter {
 public:
     virtual ~CacheWriter() = default;
 
     /// Appends a frame. Frames come in order, from CacheLayout::resume_at on.
     /// @param positions  [vertices] [m]
-    /// @throws InvalidInput for a frame out of order or of another vertex count, DeviceError when the disk
-    ///         refuses.
+    /// @throws InvalidInput for a frame out of order or of another vertex count, DeviceError if the disk
+    /// refuses.
     virtual void write(int frame, View<const Vec3> positions) = 0;
 
-    /// Moves the cache into place.
-    /// @throws InvalidInput when frames are missing; the message names the partial, which is kept.
+    /// Moves the cache to its final name.
+    /// @throws InvalidInput if frames are missing; the message names the partial, which is kept.
     virtual void finish() = 0;
 
-    /// Where the frames are until finish(): a file, or a folder for an OBJ sequence.
+    /// Location of the frames until finish(): a file, or a folder for an OBJ sequence.
     virtual std::filesystem::path partial() const = 0;
 
 protected:
@@ -51,12 +51,12 @@ protected:
     CacheWriter& operator=(const CacheWriter&) = default;
 };
 
-/// The writer for the extension of `file`:
+/// Creates the writer for the extension of `file`:
 ///   .pc2   Point Cache 2
-///   .mdd   Lightwave MDD; its partial is a PC2 (skirt.mdd.partial.pc2), see docs/export
-///   .obj   one OBJ for one frame, else a sequence: skirt.obj stands for skirt_####.obj, the # being digits
-/// @throws InvalidInput before anything is simulated: an unknown extension, a place that can't be written, a
-///         layout without vertices, frames or (OBJ) faces, nothing to resume from.
+///   .mdd   Lightwave MDD; its partial is a PC2 (skirt.mdd.partial.pc2), see docs/guide/caches.md
+///   .obj   one OBJ for one frame, else a sequence: skirt.obj stands for skirt_####.obj, each # a digit
+/// @throws InvalidInput before the simulation: an unknown extension, an unwritable location, a layout
+///         without vertices, frames or (OBJ) faces, no cache to resume.
 std::unique_ptr<CacheWriter> make_cache_writer(const std::filesystem::path& file, const CacheLayout& layout);
 
-} // namespace toile
+} // namespace toile::exports

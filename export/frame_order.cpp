@@ -3,9 +3,9 @@
 #include <string>
 #include <utility>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
-namespace toile {
+namespace toile::exports {
 
 FrameOrder::FrameOrder(std::filesystem::path file, const CacheLayout& layout)
     : file_(std::move(file)), vertex_count_(layout.vertex_count), frame_count_(layout.frame_count),
@@ -33,4 +33,4 @@ void FrameOrder::require_complete(const std::filesystem::path& partial) const
                            partial.string());
 }
 
-} // namespace toile
+} // namespace toile::exports

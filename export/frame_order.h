@@ -2,12 +2,12 @@
 
 #include <filesystem>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 #include "export/cache_writer.h"
 
-namespace toile {
+namespace toile::exports {
 
-/// Counts the frames of a cache and refuses what would leave a gap in it.
+/// Counts the frames of a cache and rejects a frame that would leave a gap.
 class FrameOrder {
 public:
     FrameOrder(std::filesystem::path file, const CacheLayout& layout);
@@ -18,7 +18,7 @@ public:
     void require_next(int frame, View<const Vec3> positions) const;
     void advance() { ++next_; }
 
-    /// @throws InvalidInput naming the partial when frames are missing.
+    /// @throws InvalidInput naming the partial if frames are missing.
     void require_complete(const std::filesystem::path& partial) const;
 
 private:
@@ -28,4 +28,4 @@ private:
     int next_;
 };
 
-} // namespace toile
+} // namespace toile::exports

@@ -6,7 +6,7 @@
 #include "export/binary_file.h"
 #include "export/byte_order.h"
 
-namespace toile {
+namespace toile::exports {
 
 namespace {
 
@@ -56,4 +56,4 @@ void MddWriter::finish()
     std::filesystem::remove(complete_);
 }
 
-} // namespace toile
+} // namespace toile::exports

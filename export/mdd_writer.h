@@ -5,13 +5,13 @@
 #include "export/cache_writer.h"
 #include "export/pc2_writer.h"
 
-namespace toile {
+namespace toile::exports {
 
 /// Lightwave MDD, big endian: int frames, int points, float times[frames] [s], then frames x points x 3
 /// floats.
 ///
-/// The times stand before the first frame, so an unfinished MDD can't be valid for fewer frames than
-/// planned. The frames therefore wait in a PC2, and finish() copies them; both store the same floats.
+/// The times precede the first frame, so an unfinished MDD can't be valid for fewer frames than planned. The
+/// frames are therefore stored in a PC2, and finish() copies them; both formats store the same floats.
 class MddWriter final : public CacheWriter {
 public:
     /// @throws InvalidInput as make_cache_writer().
@@ -24,8 +24,8 @@ public:
 private:
     std::filesystem::path file_;
     CacheLayout layout_;
-    std::filesystem::path complete_; ///< the finished PC2 that is copied
+    std::filesystem::path complete_; ///< finished PC2, source of the copy
     Pc2Writer frames_;
 };
 
-} // namespace toile
+} // namespace toile::exports

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <system_error>
 
-namespace toile {
+namespace toile::exports {
 
 bool ObjSequence::has_digits_placeholder(const std::filesystem::path& pattern)
 {
@@ -69,4 +69,4 @@ std::vector<int> ObjSequence::existing() const
     return numbers;
 }
 
-} // namespace toile
+} // namespace toile::exports

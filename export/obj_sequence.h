@@ -5,22 +5,22 @@
 #include <string>
 #include <vector>
 
-namespace toile {
+namespace toile::exports {
 
-/// The file names of an OBJ sequence: skirt_####.obj names skirt_0000.obj, skirt_0001.obj, ...; the # are
-/// digits, and more are used where they do not suffice.
+/// File names of an OBJ sequence: skirt_####.obj names skirt_0000.obj, skirt_0001.obj, ... Each # is a digit;
+/// larger numbers have more digits.
 class ObjSequence {
 public:
-    /// @param pattern  a path with one run of # in its file name; without one, "_####" is put before the
+    /// @param pattern  a path with one run of # in its file name; otherwise "_####" is inserted before the
     ///                 extension
     explicit ObjSequence(const std::filesystem::path& pattern);
 
     std::filesystem::path file(int number) const;
-    /// skirt_####.obj without the digits and what separates them: skirt.
+    /// File name without the digits and their separator: skirt for skirt_####.obj.
     std::string stem() const;
-    /// The same names in another folder.
+    /// Sequence of equal file names in another folder.
     ObjSequence in(const std::filesystem::path& folder) const;
-    /// The number in a file name of this sequence, or nothing for a foreign name.
+    /// Number in a file name of this sequence, or nothing for a foreign name.
     std::optional<int> number_of(const std::string& file_name) const;
     /// Numbers of the files that exist, ascending.
     std::vector<int> existing() const;
@@ -34,4 +34,4 @@ private:
     int digits_ = 4;
 };
 
-} // namespace toile
+} // namespace toile::exports

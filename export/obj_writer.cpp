@@ -5,10 +5,10 @@
 #include <system_error>
 #include <utility>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "export/binary_file.h"
 
-namespace toile {
+namespace toile::exports {
 
 namespace {
 
@@ -84,8 +84,8 @@ void ObjSequenceWriter::finish()
         move_into_place(waiting_.file(number(frame)), sequence_.file(number(frame)));
     for (int next = number(frame_count_); std::filesystem::remove(sequence_.file(next)); ++next) {
     }
-    std::error_code not_empty; // someone else's files in the folder keep it alive
+    std::error_code not_empty; // foreign files in the folder prevent its removal
     std::filesystem::remove(folder_, not_empty);
 }
 
-} // namespace toile
+} // namespace toile::exports

@@ -6,7 +6,7 @@
 #include "export/frame_order.h"
 #include "export/obj_sequence.h"
 
-namespace toile {
+namespace toile::exports {
 
 /// Writes one frame as an OBJ with the polygons and texture coordinates of the layout.
 class ObjWriter final : public CacheWriter {
@@ -25,8 +25,8 @@ private:
     ObjMesh mesh_;
 };
 
-/// Writes every frame as an OBJ, numbered from the layout's start frame. The frames wait in a folder
-/// skirt.partial/; finish() moves them out and removes frames of an earlier, longer run that would continue
+/// Writes every frame as an OBJ, numbered from the layout's start frame. The frames are stored in a folder
+/// skirt.partial/. finish() moves them out and removes frames of an earlier, longer run that would continue
 /// the sequence.
 class ObjSequenceWriter final : public CacheWriter {
 public:
@@ -50,4 +50,4 @@ private:
     ObjMesh mesh_;
 };
 
-} // namespace toile
+} // namespace toile::exports

@@ -2,11 +2,11 @@
 
 #include <utility>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "export/byte_order.h"
 #include "export/point_cache.h"
 
-namespace toile {
+namespace toile::exports {
 
 namespace {
 constexpr std::endian kLittle = std::endian::little;
@@ -26,7 +26,7 @@ Pc2Writer::Pc2Writer(std::filesystem::path file, const std::filesystem::path& pa
 
 void Pc2Writer::write_header(const CacheLayout& layout)
 {
-    std::string header = "POINTCACHE2"; // closed by a zero byte, which comes from the padding
+    std::string header = "POINTCACHE2"; // terminated by a zero byte from the padding
     header.resize(kPc2HeaderSize, '\0');
     put<kLittle>(&header[12], std::int32_t{1});
     put<kLittle>(&header[16], std::int32_t{layout.vertex_count});
@@ -62,7 +62,7 @@ void Pc2Writer::write(int frame, View<const Vec3> positions)
         for (int axis = 0; axis < 3; ++axis)
             put<kLittle>(&sample_[12 * std::size_t(v) + 4 * std::size_t(axis)], float(positions[v][axis]));
 
-    // The count follows the data: killed in between, the header promises nothing that is not there.
+    // Write the count after the data: if killed in between, the header counts only frames that exist.
     stream_.write_at(kPc2HeaderSize + std::int64_t(sample_.size()) * frame, sample_);
     set_sample_count(frame + 1);
     order_.advance();
@@ -75,4 +75,4 @@ void Pc2Writer::finish()
     move_into_place(partial(), file_);
 }
 
-} // namespace toile
+} // namespace toile::exports

@@ -7,7 +7,7 @@
 #include "export/cache_writer.h"
 #include "export/frame_order.h"
 
-namespace toile {
+namespace toile::exports {
 
 /// Size of a PC2 header [bytes], little endian:
 ///   0 "POINTCACHE2\0"   12 int version = 1     16 int points
@@ -20,7 +20,7 @@ inline constexpr int kPc2SampleCountAt = 28;
 class Pc2Writer final : public CacheWriter {
 public:
     /// @param file     the cache, which finish() creates or replaces
-    /// @param partial  where the frames go until then
+    /// @param partial  file for the frames until then
     /// @throws InvalidInput as make_cache_writer().
     Pc2Writer(std::filesystem::path file, const std::filesystem::path& partial, const CacheLayout& layout);
 
@@ -36,7 +36,7 @@ private:
     std::filesystem::path file_;
     FrameOrder order_;
     BinaryFile stream_;
-    std::string sample_; ///< one frame in file byte order, kept to avoid allocation
+    std::string sample_; ///< one frame in file byte order, a member to avoid allocation
 };
 
-} // namespace toile
+} // namespace toile::exports

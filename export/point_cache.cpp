@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <string>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "export/binary_file.h"
 #include "export/byte_order.h"
 #include "export/cache_format.h"
 #include "export/obj_sequence.h"
 #include "export/pc2_writer.h"
 
-namespace toile {
+namespace toile::exports {
 
 namespace {
 
@@ -22,7 +22,7 @@ using std::filesystem::path;
     throw InvalidInput(file.string() + ": " + why);
 }
 
-/// The first `size` bytes of a file.
+/// Reads the first `size` bytes of a file.
 std::string read_head(const BinaryFile& file, std::int64_t size, const char* format)
 {
     if (file.size() < size)
@@ -43,7 +43,7 @@ std::vector<Vec3> decode_positions(const std::string& bytes)
     return positions;
 }
 
-/// Frames of equal size behind a header: what PC2 and MDD share.
+/// Frames of equal size behind a header: the common part of PC2 and MDD.
 template <std::endian kOrder>
 class BinarySource : public PointCache::Source {
 public:
@@ -59,7 +59,7 @@ public:
 protected:
     std::int64_t frame_size() const { return 12 * std::int64_t(vertex_count); }
 
-    /// Compares the promised frames with the bytes behind the header.
+    /// Compares the number of frames in the header with the bytes behind it.
     void require_size(const char* format, bool may_have_more)
     {
         const std::int64_t bytes = file_.size() - first_frame_at_;
@@ -99,7 +99,7 @@ public:
             refuse(file, "the header says " + std::to_string(vertex_count) + " points (byte 16) and " +
                              std::to_string(frame_count) + " frames (byte 28); export the cache again");
 
-        // A run killed between data and count leaves a frame that does not count yet.
+        // A run killed between data and count leaves a frame that is not counted yet.
         first_frame_at_ = kPc2HeaderSize;
         require_size("PC2", file.stem().extension() == ".partial");
     }
@@ -200,4 +200,4 @@ PointCache read_cache(const path& file)
     return read_obj_cache(file);
 }
 
-} // namespace toile
+} // namespace toile::exports

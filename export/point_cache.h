@@ -5,15 +5,15 @@
 #include <optional>
 #include <vector>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 #include "core/mesh/obj.h"
 
-namespace toile {
+namespace toile::exports {
 
-/// A cache on disk, its frames read one by one: positions in vertex order.
+/// A cache on disk whose frames are read one by one: positions in vertex order.
 class PointCache {
 public:
-    /// Where the frames come from; one implementation per format.
+    /// Reader of the frames; one implementation per format.
     class Source {
     public:
         virtual ~Source() = default;
@@ -21,7 +21,7 @@ public:
 
         int vertex_count = 0;
         int frame_count = 0;
-        std::optional<double> fps; ///< [frames/s] unless the format or a single frame leaves it open
+        std::optional<double> fps; ///< [frames/s] empty if the format has no rate or there is a single frame
         double start_frame = 0.0;
         ObjMesh mesh; ///< of an OBJ: the first frame with its faces
     };
@@ -33,20 +33,20 @@ public:
     std::optional<double> fps() const { return source_->fps; }
     double start_frame() const { return source_->start_frame; }
 
-    /// The faces that an OBJ (sequence) carries, or null: PC2 and MDD have positions only.
+    /// Faces of an OBJ (sequence), or null: PC2 and MDD have positions only.
     const ObjMesh* mesh() const { return source_->mesh.polygons.empty() ? nullptr : &source_->mesh; }
 
     /// Positions of frame `index` in [0, frame_count()). Safe to call from several threads.
-    /// @throws InvalidInput for an index out of range or an OBJ frame that doesn't fit the first.
+    /// @throws InvalidInput for an index out of range or an OBJ frame that doesn't match the first.
     std::vector<Vec3> frame(int index) const;
 
 private:
     std::shared_ptr<const Source> source_;
 };
 
-/// Opens a .pc2, .mdd, .obj or an OBJ sequence: skirt_####.obj, or skirt.obj when only skirt_0000.obj and
-/// so on exist. Sizes are checked here against the header, so frame() finds every byte it needs.
-/// @throws InvalidInput naming the file, the byte or line, what is there and what to do.
+/// Opens a .pc2, .mdd, .obj or an OBJ sequence: skirt_####.obj, or skirt.obj if only skirt_0000.obj and so on
+/// exist. Sizes are checked here against the header, so frame() finds every byte it needs.
+/// @throws InvalidInput naming the file, the byte or line, the fault and a remedy.
 PointCache read_cache(const std::filesystem::path& file);
 
-} // namespace toile
+} // namespace toile::exports

@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 
-namespace toile {
+namespace toile::quadrature2d {
 
 namespace {
 
-/// A triangle's corner opposite to an edge in that edge's frame: along it from its first end, and beside it.
+/// Corner of a triangle opposite an edge, in the edge's frame: along it from its first end, and
+/// perpendicular.
 struct Apex {
     double length = 0.0;              ///< of the edge [m]
     double along = 0.0, beside = 0.0; ///< [m]
@@ -17,10 +18,12 @@ struct Apex {
 Apex apex_of(const Triangle& corner, const Mat2& rest_edges, const Edge& edge)
 {
     const std::array<Vec2, 3> at{Vec2::Zero(), rest_edges.col(0), rest_edges.col(1)};
-    const auto place = [&](int v) { return at[std::find(corner.begin(), corner.end(), v) - corner.begin()]; };
+    const auto position = [&](int v) {
+        return at[std::find(corner.begin(), corner.end(), v) - corner.begin()];
+    };
     const int opposite = corner[0] + corner[1] + corner[2] - edge.vertex[0] - edge.vertex[1];
-    const Vec2 side = place(edge.vertex[1]) - place(edge.vertex[0]);
-    const Vec2 away = place(opposite) - place(edge.vertex[0]);
+    const Vec2 side = position(edge.vertex[1]) - position(edge.vertex[0]);
+    const Vec2 away = position(opposite) - position(edge.vertex[0]);
     Apex apex;
     apex.length = side.norm();
     apex.along = away.dot(side) / apex.length;
@@ -33,23 +36,23 @@ Apex apex_of(const Triangle& corner, const Mat2& rest_edges, const Edge& edge)
 std::vector<MetricEdge> surface_metric(View<const Triangle> triangles, View<const Mat2> rest_edges,
                                        const Topology& topology)
 {
-    std::vector<MetricEdge> ways;
+    std::vector<MetricEdge> metric;
     for (const Edge& edge : topology.edges) {
         const auto apex = [&](int side) {
             return apex_of(triangles[edge.triangle[side]], rest_edges[edge.triangle[side]], edge);
         };
         const Apex left = apex(0);
-        ways.push_back({edge.vertex[0], edge.vertex[1], left.length});
+        metric.push_back({edge.vertex[0], edge.vertex[1], left.length});
         if (edge.is_border())
             continue;
         const Apex right = apex(1);
         const double height = left.beside + right.beside;
         const double crossing = left.along + (right.along - left.along) * left.beside / height;
         if (crossing > 0.0 && crossing < left.length)
-            ways.push_back(
+            metric.push_back(
                 {edge.opposite[0], edge.opposite[1], std::hypot(height, right.along - left.along)});
     }
-    return ways;
+    return metric;
 }
 
-} // namespace toile
+} // namespace toile::quadrature2d

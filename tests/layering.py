@@ -15,56 +15,108 @@ import sys
 import tempfile
 
 MAX_LINES = 600
+MAX_FILES = 25  # sources of a folder
 
-# Which folders of ours each folder's files may include, besides their own. Bottom of the order first; the
-# longest matching folder counts.
-BELOW_SCENES = ["core", "quadrature2d", "volume", "collision", "avatars", "garment"]
+# Rooms, bottom of the order first, and which rooms each one's files may include besides its own. cuda/ and cpu/
+# belong to the room that they lie in. The longest matching folder counts. A room that is listed alone stands for
+# all that lies in it.
+CORE = ["core"]
 MAY_INCLUDE = {
-    "core/backend": [],
-    "core/mesh": ["core/backend"],
-    "core/linear": ["core/backend", "core/mesh"],
-    "core/quadrature": ["core/backend", "core/mesh", "core/linear"],
-    "core/pd": ["core/backend", "core/mesh", "core/linear", "core/quadrature"],
-    "quadrature2d": ["core"],
-    "volume": ["core"],
-    "collision": ["core"],
-    # Certifies what contact detection did, so it knows nothing of it.
-    "collision/crossings": ["core", "collision/distance.h", "collision/surface_edges.h"],
-    "collision/untangle": ["core", "collision", "collision/crossings"],
-    "avatars": ["core"],
-    "export": ["core"],
-    "garment": ["core", "quadrature2d"],
+    "core/base": [],
+    "core/compute/cuda/runtime": ["core/base"],
+    "core/compute": ["core/base", "core/compute/cuda/runtime"],
+    "core/mesh": ["core/base", "core/compute"],
+    "core/linear": ["core/base", "core/compute", "core/mesh"],
+    "core/quadrature/clusters": ["core/base", "core/compute", "core/mesh", "core/linear"],
+    "core/quadrature/tables": ["core/base", "core/compute", "core/mesh", "core/linear", "core/quadrature/clusters"],
+    "core/quadrature": ["core/base", "core/compute", "core/mesh", "core/linear", "core/quadrature/clusters",
+                        "core/quadrature/tables"],
+    "core/pd/energy": ["core/base", "core/compute", "core/mesh", "core/linear"],
+    "core/pd/preconditioner": ["core/base", "core/compute", "core/linear", "core/pd/energy"],
+    "core/pd/minimiser": ["core/base", "core/compute", "core/linear", "core/pd/energy"],
+    "core/pd/step": ["core/base", "core/compute", "core/linear", "core/pd/energy", "core/pd/preconditioner",
+                     "core/pd/minimiser"],
+    "core/pd/rigid": ["core/base", "core/compute", "core/mesh", "core/pd/energy"],
+    "core/pd/cuda": ["core/base", "core/compute", "core/linear", "core/quadrature", "core/pd/energy",
+                     "core/pd/preconditioner", "core/pd/minimiser", "core/pd/step"],
+    "quadrature2d": CORE,
+    "volume": CORE,
+    "garment/fabric": CORE,
+    "garment/energy": CORE,
+    "garment/energy/air": CORE + ["garment/energy"],
+    "garment/energy/strain_limit": CORE + ["garment/energy"],
+    "garment/pattern": CORE + ["garment/energy", "quadrature2d"],
+    "collision/bvh": CORE,
+    "collision/geometry": CORE + ["collision/bvh"],
+    "collision/body": CORE + ["collision/bvh", "collision/geometry"],
+    "collision/self": CORE + ["collision/bvh", "collision/geometry", "collision/body"],
+    "collision/ccd": CORE + ["collision/bvh", "collision/geometry", "collision/self"],
+    "collision/contact": CORE + ["collision/bvh", "collision/geometry", "collision/body", "collision/self",
+                                 "collision/ccd"],
+    # Certifies what contact detection did, so it knows nothing of its searches and rules.
+    "collision/check": CORE + ["collision/bvh", "collision/geometry"],
+    "collision/repair": CORE + ["collision/bvh", "collision/geometry", "collision/body", "collision/self",
+                                "collision/ccd", "collision/contact", "collision/check"],
+    "avatars/model": CORE,
+    "avatars/import": CORE + ["avatars/model"],
+    "avatars/mannequin": CORE + ["avatars/model"],
+    "avatars": CORE + ["avatars/model", "avatars/import", "avatars/mannequin"],
+    "export": CORE,
+}
+BELOW_SCENES = CORE + ["quadrature2d", "volume", "collision", "avatars", "garment"]
+MAY_INCLUDE |= {
     "scenes/format": BELOW_SCENES,
-    "scenes": BELOW_SCENES + ["scenes/format"],
-    "apps/render": BELOW_SCENES + ["scenes", "export"],
-    "apps/toile": BELOW_SCENES + ["scenes", "export", "apps/render", "benchmarks"],
-    "python": BELOW_SCENES + ["scenes", "export"],
-    "benchmarks/quadrature": ["core", "quadrature2d"],
-    "benchmarks": ["core", "quadrature2d", "garment", "collision", "avatars", "scenes"],
-    "tests": BELOW_SCENES + ["scenes", "export", "apps", "benchmarks"],
+    "scenes/meshes": BELOW_SCENES + ["scenes/format"],
+    "scenes/colliders": BELOW_SCENES + ["scenes/format", "scenes/meshes"],
+    "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders"],
+}
+BELOW_APPS = BELOW_SCENES + ["scenes", "export"]
+MAY_INCLUDE |= {
+    "toile.h": BELOW_APPS,
+    "apps/preview": BELOW_APPS,
+    "apps/toile/terminal": BELOW_APPS,
+    "apps/toile/check": BELOW_APPS + ["apps/toile/terminal"],
+    "apps/toile/render": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/preview"],
+    "apps/toile/simulate": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check"],
+    "apps/toile": BELOW_APPS + ["apps/toile/terminal"],
+    "python": BELOW_APPS,
+    # Nothing that ships includes research.
+    "research/linear": CORE,
+    "research/methods": CORE + ["garment"],
+    "research/methods/xpbd": CORE + ["garment", "research/methods"],
+    "research/methods/vbd": CORE + ["garment", "research/methods"],
+    "research/paper_rule": CORE + ["quadrature2d"],
+    "research/scenes": BELOW_SCENES + ["scenes", "research"],
+    "research/benchmarks": BELOW_SCENES + ["scenes", "research"],
+    "research/bench": BELOW_APPS + ["apps/toile/terminal", "research"],
+    "tests": BELOW_APPS + ["apps", "research", "toile.h"],
 }
 
 # Modules of CMake whose name is not their folder.
-FOLDER_OF_MODULE = {"scene_format": "scenes/format", "render": "apps/render",
-                    "quadrature_figures": "benchmarks/quadrature", "crossings": "collision/crossings",
-                    "untangle": "collision/untangle"}
+FOLDER_OF_MODULE = {"scene_format": "scenes/format", "preview": "apps/preview", "app": "apps/toile",
+                    "benchmarks": "research/benchmarks", "quadrature_figures": "research/benchmarks/quadrature",
+                    "collision_check": "collision/check", "collision_repair": "collision/repair"}
+
+# Folders of programs within a module's folder.
+PROGRAMS = ["research/bench"]
 
 # Third-party headers by the start of their name, and the folders that own them. None: everybody may.
 # Tests may use any, as an oracle.
 OWNERS = {
     r"(unsupported/)?Eigen/": None,
     r"(suitesparse/)?(cholmod|SuiteSparse_config|umfpack|amd|camd|colamd|metis)\b": ["core/linear"],
-    r"(cuda|cublas|cusparse|cusolver|cooperative_groups|nvtx)|(cub|thrust|nv)/": ["core/backend"],
-    r"(tbb|oneapi|experimental)/": ["core/backend"],
-    r"xxhash\.h": ["core/backend"],
-    r"embree[34]/": ["collision", "benchmarks/near_pairs"],  # the benchmark times Embree against collision
-    r"assimp/": ["avatars"],
-    r"CGAL/": ["collision/crossings", "garment/pattern"],
-    r"(libpng/)?png\.h": ["apps/render"],
+    r"(cuda|cublas|cusparse|cusolver|cooperative_groups|nvtx)|(cub|thrust|nv)/": ["core/compute"],
+    r"(tbb|oneapi|experimental)/": ["core/compute"],
+    r"xxhash\.h": ["core/compute"],
+    # The benchmark times Embree against collision.
+    r"embree[34]/": ["collision/bvh", "research/benchmarks/near_pairs"],
+    r"assimp/": ["avatars/import"],
+    r"CGAL/": ["collision/check", "garment/pattern"],
+    r"(libpng/)?png\.h": ["apps/preview"],
     r"boost/multiprecision/": [],  # comes with CGAL; rational numbers of the tests
     r"nlohmann/": ["scenes/format", "apps"],
-    r"CLI/": ["apps"],
-    r"benchmark/": ["benchmarks"],
+    r"CLI/": ["apps/toile", "research/bench"],
+    r"benchmark/": ["research/benchmarks"],
     r"g(test|mock)/": [],
 }
 # Libraries that headers may show to everybody: TBB and vector types, because kernels are templates.
@@ -100,6 +152,40 @@ def layer_of(path):
     return max(layers, key=len, default=None)
 
 
+def allowed_to_folder(folder):
+    """What the rooms of a module's folder may include together."""
+    rooms = [room for room in MAY_INCLUDE if is_below(room, folder)] or [layer_of(folder)]
+    return {target for room in rooms if room for target in MAY_INCLUDE[room]}
+
+
+def circle_of_rooms():
+    """Rooms that may include each other in a circle, or None."""
+    def rooms_of(room):
+        for target in MAY_INCLUDE[room]:
+            yield from (other for other in MAY_INCLUDE if is_below(other, target) and not is_below(room, target)
+                        and other != room)
+
+    done, path = set(), []
+
+    def visit(room):
+        if room in path:
+            return path[path.index(room):] + [room]
+        if room in done:
+            return None
+        path.append(room)
+        circle = next(filter(None, map(visit, rooms_of(room))), None)
+        path.pop()
+        done.add(room)
+        return circle
+
+    return next(filter(None, map(visit, list(MAY_INCLUDE))), None)
+
+
+def is_for_gpu(path):
+    """True for what lies in a cuda/ folder or only CUDA code can include."""
+    return "/cuda/" in path or path.endswith((".cu", ".cuh"))
+
+
 def read_layers(file):
     """Dependencies per module from the file that CMake wrote."""
     modules = {}
@@ -117,6 +203,8 @@ def folder_of_module(module):
 
 def module_of(path, modules):
     """The module of CMake that the path belongs to, or None (programs and tests are no modules)."""
+    if any(is_below(path, program) for program in PROGRAMS):
+        return None
     owners = [module for module in modules if is_below(path, folder_of_module(module))]
     return max(owners, key=lambda module: len(folder_of_module(module)), default=None)
 
@@ -137,6 +225,9 @@ class Check:
         for folder, files in folders_of_tree(self.root):
             if os.path.basename(folder) in FORBIDDEN_FOLDERS:
                 self.fail(folder, 1, "no folder is called so; move each file to its first user")
+            sources = sum(name.endswith(CXX) for name in files)
+            if sources > MAX_FILES:
+                self.fail(folder, 1, f"the folder has {sources} sources, at most {MAX_FILES} may be; make rooms")
             for name in files:
                 if name.endswith(CODE):
                     self.file(name if folder == "." else f"{folder}/{name}")
@@ -165,6 +256,10 @@ class Check:
                                   "or a third party's in <>")
             return
         self.own_includes.append((file, line, header))
+        if file.endswith(".h") and is_for_gpu(header) and not is_for_gpu(file) and not is_below(file, "tests") \
+                and not is_below(file, "research"):
+            self.fail(file, line, f"an interface of the CPU's path may not include {header}; "
+                                  "declare what it needs, or move it into cuda/")
         layer, target = layer_of(file), layer_of(header)
         if layer is None or target is None:
             stranger = file if layer is None else header
@@ -201,12 +296,11 @@ class Check:
         for module, dependencies in self.modules.items():
             folder = folder_of_module(module)
             file = f"{folder}/CMakeLists.txt"
-            layer = layer_of(folder)
+            allowed = allowed_to_folder(folder)
             for dependency in dependencies:
                 target = folder_of_module(dependency)
-                # Where single headers of a module may be included, so may it be linked.
-                if layer and not any(is_below(target, allowed) or is_below(allowed, target)
-                                     for allowed in MAY_INCLUDE[layer]):
+                # Where one room of a module may be included, so may the module be linked.
+                if allowed and not any(is_below(target, room) or is_below(room, target) for room in allowed):
                     self.fail(file, self.line_of(file, dependency), f"{folder} may not depend on {target}")
                 elif dependency not in self.used[module]:
                     self.fail(file, self.line_of(file, dependency),
@@ -242,14 +336,14 @@ class Check:
 # A small tree that obeys every rule.
 GOOD_TREE = {
     "core/CMakeLists.txt": "add_module(core SOURCES mesh/a.cpp)\n",
-    "core/backend/types.h": "#include <Eigen/Core>\n#include <tbb/parallel_for.h>\n",
-    "core/mesh/a.h": '#include "core/backend/types.h"\n',
+    "core/compute/types.h": "#include <Eigen/Core>\n#include <tbb/parallel_for.h>\n",
+    "core/mesh/a.h": '#include "core/compute/types.h"\n',
     "core/mesh/a.cpp": '#include "core/mesh/a.h"\n#include <vector>\n#include <sys/stat.h>\n',
     "core/linear/solver.cpp": "#include <cholmod.h>\n",
-    "garment/CMakeLists.txt": "add_module(garment\n    SOURCES cloth.cpp\n    DEPENDS core)\n",
-    "garment/cloth.cpp": '#include "core/mesh/a.h"\n',
-    "collision/near.cpp": "#include <embree3/rtcore.h>\n",
-    "collision/near.h": "#include <vector>\n",
+    "garment/CMakeLists.txt": "add_module(garment\n    SOURCES energy/cloth.cpp\n    DEPENDS core)\n",
+    "garment/energy/cloth.cpp": '#include "core/mesh/a.h"\n',
+    "collision/bvh/near.cpp": "#include <embree3/rtcore.h>\n",
+    "collision/bvh/near.h": "#include <vector>\n",
     "tests/core/a_test.cpp": '#include "core/mesh/a.h"\n#include <gtest/gtest.h>\n#include <nlohmann/json.hpp>\n',
     "build/generated/x.cpp": "#include <nowhere/x.h>\n",
 }
@@ -257,33 +351,36 @@ GOOD_MODULES = {"core": [], "garment": ["core"], "collision": []}
 
 # Files to replace, modules to replace, and the start of the failure expected.
 VIOLATIONS = [
-    ({"core/backend/types.h": '\n#include "core/mesh/a.h"\n'}, {},
-     "core/backend/types.h:2: core/backend may not include core/mesh/a.h"),
-    ({"garment/cloth.cpp": '#include "core/mesh/a.h"\n#include "collision/near.h"\n'}, {},
-     "garment/cloth.cpp:2: garment may not include collision/near.h"),
+    ({"core/compute/types.h": '\n#include "core/mesh/a.h"\n'}, {},
+     "core/compute/types.h:2: core/compute may not include core/mesh/a.h"),
+    ({"garment/energy/cloth.cpp": '#include "core/mesh/a.h"\n#include "collision/bvh/near.h"\n'}, {},
+     "garment/energy/cloth.cpp:2: garment/energy may not include collision/bvh/near.h"),
     ({"core/mesh/a.cpp": '#include "tests/core/a_test.cpp"\n'}, {},
      "core/mesh/a.cpp:1: core/mesh may not include tests/core/a_test.cpp"),
     ({"core/mesh/a.cpp": '#include "a.h"\n'}, {}, 'core/mesh/a.cpp:1: "a.h" is no file of the tree'),
-    ({"collision/near.cpp": '#include "core/mesh/a.h"\n'}, {},
-     "collision/near.cpp:1: includes core/mesh/a.h, but DEPENDS of add_module(collision) lacks core"),
-    ({"garment/cloth.cpp": "#include <vector>\n"}, {},
+    ({"collision/bvh/near.cpp": '#include "core/mesh/a.h"\n'}, {},
+     "collision/bvh/near.cpp:1: includes core/mesh/a.h, but DEPENDS of add_module(collision) lacks core"),
+    ({"garment/energy/cloth.cpp": "#include <vector>\n"}, {},
      "garment/CMakeLists.txt:3: garment depends on core but includes none of its headers"),
     ({}, {"garment": ["core", "collision"]}, "garment/CMakeLists.txt:1: garment may not depend on collision"),
-    ({"garment/cloth.cpp": '#include "core/mesh/a.h"\n#include <embree3/rtcore.h>\n'}, {},
-     "garment/cloth.cpp:2: <embree3/rtcore.h> belongs to collision and benchmarks/near_pairs alone"),
-    ({"collision/crossings/find.cpp": '#include "collision/near.h"\n'}, {},
-     "collision/crossings/find.cpp:1: collision/crossings may not include collision/near.h"),
-    ({"core/pd/step.cpp": "#include <suitesparse/cholmod.h>\n"}, {},
-     "core/pd/step.cpp:1: <suitesparse/cholmod.h> belongs to core/linear alone"),
+    ({"garment/energy/cloth.cpp": '#include "core/mesh/a.h"\n#include <embree3/rtcore.h>\n'}, {},
+     "garment/energy/cloth.cpp:2: <embree3/rtcore.h> belongs to collision/bvh and research/benchmarks/near_pairs alone"),
+    ({"collision/contact/term.h": "", "collision/check/find.cpp": '#include "collision/contact/term.h"\n'}, {},
+     "collision/check/find.cpp:1: collision/check may not include collision/contact/term.h"),
+    ({"core/pd/step/step.cpp": "#include <suitesparse/cholmod.h>\n"}, {},
+     "core/pd/step/step.cpp:1: <suitesparse/cholmod.h> belongs to core/linear alone"),
     ({"core/mesh/a.cpp": "#include <gtest/gtest.h>\n"}, {},
      "core/mesh/a.cpp:1: <gtest/gtest.h> belongs to tests alone"),
-    ({"collision/near.h": '#include "collision/tree.h"\n', "collision/tree.h": "#include <embree3/rtcore.h>\n",
-      "tests/core/b_test.cpp": '#include "collision/near.h"\n', "apps/toile/main.cpp": '#include "collision/near.h"\n'},
-     {}, "apps/toile/main.cpp:1: collision/near.h shows <embree3/rtcore.h>, which belongs to collision and benchmarks/near_pairs alone"),
+    ({"collision/bvh/near.h": '#include "collision/bvh/tree.h"\n', "collision/bvh/tree.h": "#include <embree3/rtcore.h>\n",
+      "tests/core/b_test.cpp": '#include "collision/bvh/near.h"\n', "apps/toile/main.cpp": '#include "collision/bvh/near.h"\n'},
+     {}, "apps/toile/main.cpp:1: collision/bvh/near.h shows <embree3/rtcore.h>, which belongs to collision/bvh and research/benchmarks/near_pairs alone"),
     ({"core/mesh/a.cpp": "#include <boost/any.hpp>\n"}, {}, "core/mesh/a.cpp:1: <boost/any.hpp> has no owner"),
     ({"extras/a.cpp": '#include "core/mesh/a.h"\n'}, {}, "extras/a.cpp:1: extras/a.cpp is in no known layer"),
     ({"core/mesh/long.cpp": "\n" * 601}, {}, "core/mesh/long.cpp:601: the file has 601 lines"),
     ({"core/utils/a.h": ""}, {}, "core/utils:1: no folder is called so"),
+    ({f"core/mesh/file{i}.h": "" for i in range(26)}, {}, "core/mesh:1: the folder has 28 sources"),
+    ({"core/mesh/cuda/a.h": "", "core/mesh/b.h": '#include "core/mesh/cuda/a.h"\n'}, {},
+     "core/mesh/b.h:1: an interface of the CPU's path may not include core/mesh/cuda/a.h"),
 ]
 
 
@@ -298,7 +395,10 @@ def check_planted(files, modules):
 
 
 def self_test():
-    mistakes = [f"the good tree fails: {failure}" for failure in check_planted({}, {})]
+    mistakes = []
+    if circle := circle_of_rooms():
+        mistakes.append("rooms may include each other in a circle: " + " -> ".join(circle))
+    mistakes += [f"the good tree fails: {failure}" for failure in check_planted({}, {})]
     for files, modules, expected in VIOLATIONS:
         failures = check_planted(files, modules)
         if len(failures) != 1 or not failures[0].startswith(expected):

@@ -3,16 +3,16 @@
 #include <map>
 #include <memory>
 
-#include "apps/toile/command_line.h"
-#include "apps/toile/commands.h"
+#include "apps/toile/terminal/command_line.h"
+#include "apps/toile/terminal/commands.h"
 #include "avatars/load_avatar.h"
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "export/point_cache.h"
 #include "scenes/format/read_scene.h"
 
-namespace toile {
+namespace toile::app {
 
 namespace {
 
@@ -27,7 +27,7 @@ void print_extent(const std::string& key, View<const Vec3> points)
     std::cout << "\n";
 }
 
-/// Number of pieces that are connected through edges; vertices without a triangle count for none.
+/// Number of components connected through edges; vertices without a triangle are ignored.
 int count_pieces(const TriangleMesh& mesh)
 {
     std::vector<int> root(size_t(mesh.vertex_count()));
@@ -73,21 +73,21 @@ void print_obj(const std::filesystem::path& file)
 
 void print_avatar(const std::filesystem::path& file)
 {
-    AvatarSettings settings;
+    avatars::AvatarSettings settings;
     settings.file = file;
-    const std::unique_ptr<Avatar> avatar = load_avatar(settings);
+    const std::unique_ptr<avatars::Avatar> avatar = load_avatar(settings);
     std::vector<Vec3> positions(size_t(avatar->vertex_count()));
-    avatar->pose({}, identity_affine(), positions);
+    avatar->pose({}, avatars::identity_affine(), positions);
     print("vertices", avatar->vertex_count());
     print("triangles", avatar->triangles().size());
     print_extent("extent in the bind pose [m]", positions);
-    for (const Avatar::ClipName& clip : avatar->clips())
+    for (const avatars::Avatar::ClipName& clip : avatar->clips())
         print("clip", "\"" + clip.name + "\", " + std::to_string(clip.duration) + " s");
 }
 
 void print_cache(const std::filesystem::path& file)
 {
-    const PointCache cache = read_cache(file);
+    const exports::PointCache cache = exports::read_cache(file);
     print("frames", cache.frame_count());
     print("points", cache.vertex_count());
     if (cache.fps())
@@ -101,7 +101,7 @@ void print_cache(const std::filesystem::path& file)
 
 void print_scene(const std::filesystem::path& file)
 {
-    const Scene scene = read_scene(file);
+    const scenes::Scene scene = scenes::read_scene(file);
     print("name", scene.name);
     if (!scene.description.empty())
         print("description", scene.description);
@@ -131,14 +131,15 @@ int info(const std::filesystem::path& file)
 
 } // namespace
 
-Command add_info(CLI::App& program)
+Command add_info(CLI::App& parser)
 {
     Command command;
-    command.options = program.add_subcommand("info", "Say what is in a mesh, avatar, cache or scene");
+    command.options =
+        parser.add_subcommand("info", "Describe the contents of a mesh, avatar, cache or scene");
     auto file = std::make_shared<std::filesystem::path>();
     command.options->add_option("file", *file, "File")->required();
     command.run = [file] { return info(*file); };
     return command;
 }
 
-} // namespace toile
+} // namespace toile::app

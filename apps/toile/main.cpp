@@ -1,8 +1,20 @@
-#include "apps/toile/command_line.h"
-#include "core/backend/cuda/runtime.h"
+#include "apps/toile/terminal/command_line.h"
+#include "core/compute/cuda/runtime/runtime.h"
+
+namespace {
+
+std::vector<toile::app::Command> add_commands(CLI::App& parser)
+{
+    using namespace toile::app;
+    return {add_simulate(parser, nullptr), add_render(parser), add_check(parser), add_info(parser),
+            add_schema(parser)};
+}
+
+} // namespace
 
 int main(int argc, char** argv)
 {
-    toile::cuda::load_kernels_early();
-    return toile::run_command_line(argc, argv);
+    toile::cuda::load_kernels_eagerly();
+    return toile::app::run_command_line(
+        argc, argv, {"toile", "Simulates cloth and garments on animated bodies.", add_commands});
 }

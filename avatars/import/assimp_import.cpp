@@ -7,9 +7,9 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
-namespace toile {
+namespace toile::avatars {
 
 namespace {
 
@@ -59,7 +59,7 @@ private:
             add_node(*node.mChildren[i], joint);
     }
 
-    /// Appends a mesh. Skinned meshes share space 0; a rigid one is a space of its own node.
+    /// Appends a mesh. Skinned meshes share space 0; a rigid mesh has a space for its node.
     void add_mesh(const aiMesh& mesh, int node_joint)
     {
         SkinnedMesh& out = model_.mesh;
@@ -100,7 +100,8 @@ private:
         }
     }
 
-    /// The bone's index; equal ones (a skin's several meshes) are stored once, so that their seams can join.
+    /// Index of the bone. Equal bones (from several meshes of a skin) are stored once, so that their seams
+    /// weld.
     int add_bone(const Bone& bone)
     {
         std::vector<Bone>& bones = model_.mesh.bones;
@@ -113,7 +114,7 @@ private:
         return int(bones.size()) - 1;
     }
 
-    /// @throws InvalidInput for a file without surface, or with indices and positions that are none.
+    /// @throws InvalidInput for a file without surface, or with invalid indices or positions.
     void require_surface() const
     {
         const TriangleMesh& surface = model_.mesh.rest;
@@ -157,7 +158,7 @@ private:
     const aiScene& scene_;
     std::string source_;
     RiggedModel model_;
-    std::vector<std::pair<unsigned, int>> instances_; ///< mesh index, joint of the node that shows it
+    std::vector<std::pair<unsigned, int>> instances_; ///< mesh index, joint of its node
 };
 
 } // namespace
@@ -170,7 +171,7 @@ RiggedModel import_rigged_model(const std::filesystem::path& file)
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-    // Pivots kept as extra nodes would lay an FBX body on its side once a motion file without them drives it.
+    // Pivots as extra nodes would tip an FBX body onto its side once a motion file without them drives it.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
     if (!scene || !scene->mRootNode) {
@@ -181,4 +182,4 @@ RiggedModel import_rigged_model(const std::filesystem::path& file)
     return SceneReader(*scene, file.string()).read();
 }
 
-} // namespace toile
+} // namespace toile::avatars

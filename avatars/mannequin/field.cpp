@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace toile {
+namespace toile::avatars {
 
 namespace {
 
@@ -35,7 +35,7 @@ Loft::Loft(Frame frame, std::vector<Section> sections, double cap_low, double ca
 
 Section Loft::section_at(double s) const
 {
-    // The interval of s; beyond the ends the last section.
+    // Find the interval of s; beyond the ends use the last section.
     const int last = int(sections_.size()) - 1;
     if (s <= sections_.front().s)
         return sections_.front();
@@ -73,7 +73,7 @@ double Loft::distance(const Vec3& p) const
     const double v = local.dot(frame_.V) - section.v;
     const double depth = v >= 0.0 ? section.front : section.behind;
 
-    // Beyond an end the caps are half ellipsoids over the end section.
+    // Beyond an end, use the cap: a half ellipsoid over the end section.
     const double below = sections_.front().s - s;
     const double above = s - sections_.back().s;
     if (below > 0.0)
@@ -98,4 +98,4 @@ double RoundCone::distance(const Vec3& p) const
     return (p - a - t * axis).norm() - ((1.0 - t) * radius_a + t * radius_b);
 }
 
-} // namespace toile
+} // namespace toile::avatars

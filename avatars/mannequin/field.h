@@ -2,31 +2,30 @@
 
 #include <vector>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 
-namespace toile {
+namespace toile::avatars {
 
 /// Approximate signed distance of two shapes joined with a fillet, negative inside.
 ///
 ///   min(a, b) - (k/4) h^2,  h = max(1 - |a - b| / k, 0)        [Quilez, "smooth minimum", quadratic]
 ///
-/// Where the distances differ by more than k [m] it is the plain minimum, so far parts do not swell.
+/// If the distances differ by more than k [m] it is the plain minimum, so distant parts do not swell.
 double smooth_union(double a, double b, double k);
 
-/// Solid inside both, the edge between them rounded over k [m].
+/// Intersection of two solids, with the edge between them rounded over k [m].
 inline double smooth_intersection(double a, double b, double k) { return -smooth_union(-a, -b, k); }
 
 /// One cross-section of a Loft: an ellipse with separate half depths in front and behind.
 struct Section {
-    double s;      ///< place along the axis [m]
+    double s;      ///< position along the axis [m]
     double u, v;   ///< centre of the ellipse [m]
     double side;   ///< half width along +-U [m]
     double front;  ///< half depth along +V [m]
     double behind; ///< half depth along -V [m]
 };
 
-/// A body part: ellipses strung along a straight axis, joined by cubic Hermite curves, closed by half
-/// ellipsoids.
+/// A body part: ellipses along a straight axis, joined by cubic Hermite curves, closed by half ellipsoids.
 class Loft {
 public:
     struct Frame {
@@ -40,13 +39,14 @@ public:
     /// @param cap_low, cap_high  lengths of the end caps beyond the first and last section [m]
     Loft(Frame frame, std::vector<Section> sections, double cap_low, double cap_high);
 
-    /// Signed distance to first order: exact on the surface, in error by the curvature away from it [m].
+    /// Signed distance to first order: exact on the surface; its error grows with the curvature away from it
+    /// [m].
     double distance(const Vec3& p) const;
 
-    /// Place of p along the axis [m].
+    /// Position of p along the axis [m].
     double along(const Vec3& p) const { return (p - frame_.origin).dot(frame_.S); }
 
-    /// The point of the centre line at s.
+    /// Point of the centre line at s.
     Vec3 center(double s) const;
 
 private:
@@ -65,7 +65,7 @@ struct Ellipsoid {
     double distance(const Vec3& p) const;
 };
 
-/// A ball rolling from a to b while its radius changes; the exact distance where the radii are alike.
+/// A ball rolling from a to b while its radius changes; the distance is exact if the radii are equal.
 struct RoundCone {
     Vec3 a, b;
     double radius_a, radius_b; ///< [m]
@@ -73,4 +73,4 @@ struct RoundCone {
     double distance(const Vec3& p) const;
 };
 
-} // namespace toile
+} // namespace toile::avatars

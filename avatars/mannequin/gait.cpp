@@ -6,22 +6,22 @@
 
 #include "avatars/mannequin/rig.h"
 
-namespace toile {
+namespace toile::avatars {
 
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Keys per walk cycle. Joints turn less than 15 degrees between keys.
+/// Keys per walk cycle. Joints rotate less than 15 degrees between keys.
 constexpr int kKeysPerCycle = 40;
 
-/// Angle of the hanging arm from the vertical while walking: clear of the hips [degrees].
+/// Angle of the hanging arm from the vertical while walking [degrees]; the arm is clear of the hips.
 constexpr double kWalkingArmAngle = 18.0;
 
-/// Height over which both feet share the floor in double support [m]; smaller makes the pelvis jerk.
+/// Height over which both feet share the floor in double support [m]; a smaller value makes the pelvis jerk.
 constexpr double kFootBlend = 0.004;
 
-/// A periodic angle [degrees] given at ten equal steps of the cycle, which begins when the left heel lands.
+/// A periodic angle [degrees] at ten equal steps of the cycle, which begins when the left heel lands.
 using CycleTable = std::array<double, 10>;
 
 constexpr CycleTable kHipFlexion{22, 20, 13, 3, -8, -16, -13, 4, 20, 25};
@@ -31,16 +31,16 @@ constexpr CycleTable kAnkleFlexion{0, -6, -2, 3, 11, 6, -12, -2, 6, 4};
 /// Periodic cubic through the table (Catmull-Rom), phase in cycles.
 double sample_cycle(const CycleTable& table, double phase)
 {
-    const double place = (phase - std::floor(phase)) * table.size();
-    const int i = int(place) % int(table.size());
-    const double t = place - std::floor(place);
+    const double sample = (phase - std::floor(phase)) * table.size();
+    const int i = int(sample) % int(table.size());
+    const double t = sample - std::floor(sample);
     const auto at = [&](int k) { return table[(i + k + int(table.size())) % int(table.size())]; };
     const double slope1 = 0.5 * (at(1) - at(-1)), slope2 = 0.5 * (at(2) - at(0));
     return (1 + 2 * t) * (1 - t) * (1 - t) * at(0) + t * (1 - t) * (1 - t) * slope1 +
            t * t * (3 - 2 * t) * at(1) + t * t * (t - 1) * slope2;
 }
 
-Eigen::Quaterniond turn(double degrees, const Vec3& axis)
+Eigen::Quaterniond rotation(double degrees, const Vec3& axis)
 {
     return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * kPi / 180.0, axis));
 }
@@ -54,9 +54,11 @@ public:
         const double angle = 2.0 * kPi * phase;
         const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ();
 
-        // The pelvis turns with the leading leg and drops on the swinging side; the chest turns against it.
-        const Eigen::Quaterniond pelvis = turn(-6.0 * std::cos(angle), Y) * turn(4.0 * std::sin(angle), Z);
-        const Eigen::Quaterniond chest = turn(5.0 * std::cos(angle), Y) * turn(1.5, X);
+        // Rotate the pelvis with the leading leg and lower it on the swinging side; the chest
+        // counter-rotates.
+        const Eigen::Quaterniond pelvis =
+            rotation(-6.0 * std::cos(angle), Y) * rotation(4.0 * std::sin(angle), Z);
+        const Eigen::Quaterniond chest = rotation(5.0 * std::cos(angle), Y) * rotation(1.5, X);
         local_[kPelvis].rotation = pelvis;
         local_[kSpine].rotation = (pelvis.conjugate() * chest).slerp(0.5, Eigen::Quaterniond::Identity());
         local_[kChest].rotation = (pelvis * local_[kSpine].rotation).conjugate() * chest;
@@ -66,24 +68,25 @@ public:
             const double side = left ? 1.0 : -1.0;
             const double side_phase = left ? phase : phase + 0.5;
 
-            // Legs hang from the pelvis in the world's sagittal plane, turned inwards to a narrow track.
+            // Legs hang from the pelvis in the world's sagittal plane, rotated inwards to a narrow track.
             const int thigh = left ? kThighL : kThighR;
-            local_[thigh].rotation =
-                pelvis.conjugate() * turn(-sample_cycle(kHipFlexion, side_phase), X) * turn(-2.5 * side, Z);
-            local_[thigh + 1].rotation = turn(sample_cycle(kKneeFlexion, side_phase), X);
-            local_[thigh + 2].rotation = turn(-sample_cycle(kAnkleFlexion, side_phase), X);
+            local_[thigh].rotation = pelvis.conjugate() *
+                                     rotation(-sample_cycle(kHipFlexion, side_phase), X) *
+                                     rotation(-2.5 * side, Z);
+            local_[thigh + 1].rotation = rotation(sample_cycle(kKneeFlexion, side_phase), X);
+            local_[thigh + 2].rotation = rotation(-sample_cycle(kAnkleFlexion, side_phase), X);
 
             // Arms swing against the legs.
             const int arm = left ? kUpperArmL : kUpperArmR;
             const double swing = -std::cos(2.0 * kPi * side_phase);
-            local_[arm].rotation = chest.conjugate() * turn(-(16.0 * swing - 3.0), X) *
-                                   turn((kWalkingArmAngle - arm_angle_deg) * side, Z);
-            local_[arm + 1].rotation = turn(-(12.0 + 8.0 * swing), X);
+            local_[arm].rotation = chest.conjugate() * rotation(-(16.0 * swing - 3.0), X) *
+                                   rotation((kWalkingArmAngle - arm_angle_deg) * side, Z);
+            local_[arm + 1].rotation = rotation(-(12.0 + 8.0 * swing), X);
         }
     }
 
-    /// Height of the lowest sole point, with the pelvis at rest height [m]; a softened minimum, so that it
-    /// has no kink where the weight changes feet. It lies below the true one by up to kFootBlend log 6.
+    /// Height of the lowest sole point, with the pelvis at rest height [m]. A soft minimum has no kink where
+    /// the weight shifts to the other foot. It lies below the true one by up to kFootBlend log 6.
     double floor_height() const
     {
         std::vector<Affine> frames(skeleton_.size());
@@ -102,7 +105,7 @@ public:
         return lowest - kFootBlend * std::log(sum);
     }
 
-    /// How far the ankle is ahead of the pelvis [m].
+    /// Distance of the ankle in front of the pelvis [m].
     double ankle_ahead(int foot) const
     {
         std::vector<Affine> frames(skeleton_.size());
@@ -113,7 +116,7 @@ public:
     const JointTransform& local(int joint) const { return local_[joint]; }
 
 private:
-    /// Heel, ball and toe under the ankle joint [m].
+    /// Positions of heel, ball and toe relative to the ankle joint [m].
     static inline const std::array<Vec3, 3> kSole{Vec3(0.0, -0.075, -0.045), Vec3(0.015, -0.075, 0.110),
                                                   Vec3(0.022, -0.073, 0.192)};
 
@@ -129,7 +132,7 @@ Clip make_walk(const Skeleton& skeleton, double arm_angle_deg, double period, in
     for (int j = 0; j < kMannequinJointCount; ++j)
         clip.tracks.push_back({j, {}, {}, {}});
 
-    // Way per cycle: two steps, each as long as the feet are apart when a heel lands.
+    // Compute the distance per cycle: two steps, each the distance between the feet when a heel lands.
     const WalkPose landing(skeleton, arm_angle_deg, 0.0);
     const double stride = 2.0 * (landing.ankle_ahead(kFootL) - landing.ankle_ahead(kFootR));
 
@@ -138,10 +141,10 @@ Clip make_walk(const Skeleton& skeleton, double arm_angle_deg, double period, in
         const double phase = double(key % kKeysPerCycle) / kKeysPerCycle;
         const double time = key * period / kKeysPerCycle;
         const WalkPose pose(skeleton, arm_angle_deg, phase);
-        const double way = advance ? stride * key / kKeysPerCycle : 0.0;
+        const double distance = advance ? stride * key / kKeysPerCycle : 0.0;
         const double sway = 0.012 * std::sin(2.0 * kPi * phase); // over the standing leg
         clip.tracks[kPelvis].translation.push_back(
-            {time, pelvis_rest + Vec3(sway, -pose.floor_height(), way)});
+            {time, pelvis_rest + Vec3(sway, -pose.floor_height(), distance)});
         for (int j = 0; j < kMannequinJointCount; ++j)
             clip.tracks[j].rotation.push_back({time, pose.local(j).rotation});
     }
@@ -155,9 +158,9 @@ Clip make_turn(double duration)
     for (int key = 0; key <= kKeys; ++key) {
         const double u = double(key) / kKeys;
         const double gone = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
-        clip.tracks.front().rotation.push_back({u * duration, turn(360.0 * gone, Vec3::UnitY())});
+        clip.tracks.front().rotation.push_back({u * duration, rotation(360.0 * gone, Vec3::UnitY())});
     }
     return clip;
 }
 
-} // namespace toile
+} // namespace toile::avatars

@@ -1,21 +1,20 @@
 #pragma once
 
-#include "avatars/clip.h"
+#include "avatars/model/clip.h"
 
-namespace toile {
+namespace toile::avatars {
 
-/// Motions of the mannequin's skeleton (rig.h), at kFigureHeight.
+/// Walk of the mannequin's skeleton (rig.h), at kMannequinHeight.
 ///
-/// The walk's hip, knee and ankle angles have the shape of unhurried human gait (a small knee bend under
-/// load, a large one in swing), tuned by eye for flat feet on the floor, with the longer hip swing and the
-/// narrow track of a runway. The pelvis rides at the height where the lower foot just touches the floor.
-/// @param arm_angle_deg  of the bind pose; the walk lets the arms hang
+/// The hip, knee and ankle angles have the shape of unhurried human gait (a small knee bend under load, a
+/// large one in swing). They are tuned by eye for flat feet on the floor, with the longer hip swing and the
+/// narrow track of a runway. The pelvis is at the height where the lower foot just touches the floor.
+/// @param arm_angle_deg  of the bind pose; in the walk the arms hang
 /// @param period         [s] of two steps
 /// @param cycles         1 in place, or the number of cycles to advance along +Z
 Clip make_walk(const Skeleton& skeleton, double arm_angle_deg, double period, int cycles, bool advance);
 
-/// One full turn about the vertical in `duration` [s], starting and ending at rest, standing as in the bind
-/// pose.
+/// One full rotation about the vertical in `duration` [s], with zero velocity at both ends, in the bind pose.
 Clip make_turn(double duration);
 
-} // namespace toile
+} // namespace toile::avatars

@@ -5,9 +5,9 @@
 #include "avatars/mannequin/gait.h"
 #include "avatars/mannequin/polygonise.h"
 #include "avatars/mannequin/rig.h"
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
-namespace toile {
+namespace toile::avatars {
 
 namespace {
 
@@ -29,15 +29,15 @@ std::unique_ptr<Avatar> make_mannequin(const MannequinSettings& settings)
 
     constexpr double kTurnDuration = 2.4; // [s]
     constexpr int kWalkCycles = 6;
-    const Figure figure(settings.arm_angle_deg);
+    const MannequinShape shape(settings.arm_angle_deg);
     RiggedModel model;
-    model.skeleton = make_mannequin_skeleton(figure);
-    model.mesh = bind_mannequin(figure, model.skeleton, polygonise(figure, settings.edge_length));
+    model.skeleton = make_mannequin_skeleton(shape);
+    model.mesh = bind_mannequin(shape, model.skeleton, polygonise(shape, settings.edge_length));
     model.clips = {make_walk(model.skeleton, settings.arm_angle_deg, settings.walk_period, 1, false),
                    make_walk(model.skeleton, settings.arm_angle_deg, settings.walk_period, kWalkCycles, true),
                    make_turn(kTurnDuration)};
-    model.metres_from_file = (settings.height / kFigureHeight) * identity_affine();
+    model.metres_from_file = (settings.height / kMannequinHeight) * identity_affine();
     return std::make_unique<SkinnedAvatar>("mannequin", std::move(model));
 }
 
-} // namespace toile
+} // namespace toile::avatars

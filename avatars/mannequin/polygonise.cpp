@@ -5,21 +5,21 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/backend/error.h"
-#include "core/backend/parallel.h"
+#include "core/base/error.h"
+#include "core/compute/parallel.h"
 #include "core/mesh/topology.h"
 
-namespace toile {
+namespace toile::avatars {
 
 namespace {
 
-/// Rounds of spreading. The triangles' worst angle stops improving after about ten.
-constexpr int kRelaxRounds = 12;
+/// Passes of vertex relaxation. The triangles' worst angle stops improving after about ten.
+constexpr int kRelaxPasses = 12;
 
 /// Step of the difference quotient for the field's gradient [m].
 constexpr double kGradientStep = 1e-4;
 
-/// Grid points around the figure. x = 0 is a plane of points, which keeps the mesh nearly symmetric.
+/// Grid points around the shape. x = 0 is a plane of grid points, which keeps the mesh nearly symmetric.
 struct Grid {
     double h; ///< [m]
     Vec3 lower;
@@ -42,22 +42,22 @@ struct Grid {
     }
 };
 
-struct SampleFigure {
-    const Figure& figure;
+struct SampleShape {
+    const MannequinShape& shape;
     const Grid& grid;
     View<double> value; // [grid points] out [m]
 
-    void operator()(int i) const { value[i] = figure.distance(grid.point(i)); }
+    void operator()(int i) const { value[i] = shape.distance(grid.point(i)); }
 };
 
-/// Cell corners are numbered by bits: 1 = +x, 2 = +y, 4 = +z. Each inside corner is labelled by the lowest
-/// inside corner it reaches along cell edges through inside corners.
+/// Lowest inside corner that each inside corner of a cell reaches along cell edges through inside corners.
+/// Cell corners are numbered by bits: 1 = +x, 2 = +y, 4 = +z.
 std::array<int, 8> inside_parts(const std::array<double, 8>& value)
 {
     std::array<int, 8> part;
     for (int c = 0; c < 8; ++c)
         part[c] = value[c] < 0.0 ? c : -1;
-    for (int round = 0; round < 4; ++round)
+    for (int pass = 0; pass < 4; ++pass)
         for (int c = 0; c < 8; ++c)
             for (int bit = 1; bit < 8; bit <<= 1)
                 if (const int other = c ^ bit; part[c] >= 0 && part[other] >= 0)
@@ -65,7 +65,7 @@ std::array<int, 8> inside_parts(const std::array<double, 8>& value)
     return part;
 }
 
-/// Places a vertex per inside part of every cell that the surface crosses, and a quad around every crossed
+/// Creates a vertex per inside part of every cell that the surface crosses, and a quad around every crossed
 /// grid edge.
 class SurfaceNets {
 public:
@@ -99,7 +99,7 @@ private:
             value[c] = value_[corner_point(cell, c)];
         const std::array<int, 8> part = inside_parts(value);
 
-        // Each part's vertex is the mean of the crossings on its edges.
+        // The vertex of each part is the mean of the crossings on its edges.
         std::array<Vec3, 8> sum;
         std::array<int, 8> crossings{};
         sum.fill(Vec3::Zero());
@@ -108,10 +108,10 @@ private:
                 const int other = c ^ bit;
                 if (part[c] < 0 || part[other] >= 0)
                     continue;
-                const double share = value[c] / (value[c] - value[other]);
+                const double fraction = value[c] / (value[c] - value[other]);
                 const Vec3 from = grid_.point(corner_point(cell, c));
                 const Vec3 to = grid_.point(corner_point(cell, other));
-                sum[part[c]] += from + share * (to - from);
+                sum[part[c]] += from + fraction * (to - from);
                 ++crossings[part[c]];
             }
         for (int c = 0; c < 8; ++c) {
@@ -125,8 +125,8 @@ private:
         }
     }
 
-    /// The quad of the four cells around the grid edge from point p along `axis`, split along its shorter
-    /// diagonal.
+    /// Adds the quad of the four cells around the grid edge from point p along `axis`, split along its
+    /// shorter diagonal.
     void add_quad(int p, int axis)
     {
         const int q = p + grid_.stride(axis);
@@ -135,7 +135,7 @@ private:
         const int b = (axis + 1) % 3, c = (axis + 2) % 3;
         const int inside_bit = value_[p] < 0.0 ? 0 : 1 << axis;
 
-        // Cells in turn about the axis; the inside end is this corner of each of them.
+        // Visit the cells in cyclic order about the axis; the inside end is this corner of each of them.
         const std::array<std::array<int, 2>, 4> back{{{1, 1}, {0, 1}, {0, 0}, {1, 0}}};
         std::array<int, 4> v;
         for (int k = 0; k < 4; ++k) {
@@ -155,13 +155,13 @@ private:
 
     const Grid& grid_;
     View<const double> value_;
-    std::vector<int> vertex_of_; ///< [8 * cells] vertex of the part that a cell's corner belongs to
+    std::vector<int> vertex_of_; ///< [8 * cells] vertex of the inside part at a cell's corner
 };
 
-/// One round: towards the neighbours' mean, along the surface only, then back onto the field by Newton's
-/// rule.
+/// One relaxation pass: moves a vertex towards the mean of its neighbours along the surface, then back onto
+/// the field by Newton's method.
 struct RelaxVertices {
-    const Figure& figure;
+    const MannequinShape& shape;
     View<const Vec3> x;
     View<const Triangle> triangles;
     const Incidence& corners;
@@ -169,7 +169,7 @@ struct RelaxVertices {
 
     void operator()(int v) const
     {
-        // Mean of the incident triangles' centroids by area: evens out areas, not only angles.
+        // Average the incident triangles' centroids by area: this evens out areas, not only angles.
         Vec3 sum = Vec3::Zero();
         double total = 0.0;
         for (const int corner : corners.of(v)) {
@@ -183,7 +183,7 @@ struct RelaxVertices {
         const Vec3 g = gradient(x[v]);
         move -= move.dot(g) / g.squaredNorm() * g;
         const Vec3 moved = x[v] + 0.7 * move;
-        relaxed[v] = moved - figure.distance(moved) / g.squaredNorm() * g;
+        relaxed[v] = moved - shape.distance(moved) / g.squaredNorm() * g;
     }
 
     Vec3 gradient(const Vec3& p) const
@@ -191,7 +191,7 @@ struct RelaxVertices {
         Vec3 g;
         for (int k = 0; k < 3; ++k) {
             const Vec3 step = kGradientStep * Vec3::Unit(k);
-            g[k] = (figure.distance(p + step) - figure.distance(p - step)) / (2.0 * kGradientStep);
+            g[k] = (shape.distance(p + step) - shape.distance(p - step)) / (2.0 * kGradientStep);
         }
         return g;
     }
@@ -199,26 +199,26 @@ struct RelaxVertices {
 
 } // namespace
 
-TriangleMesh polygonise(const Figure& figure, double edge_length)
+TriangleMesh polygonise(const MannequinShape& shape, double edge_length)
 {
-    const Loft& arm = figure.arm();
+    const Loft& arm = shape.arm();
     const double reach = std::max(arm.center(0.76).x(), 0.25) + 0.05;
-    const Grid grid(edge_length, {reach, kFigureHeight + 0.02, 0.30});
+    const Grid grid(edge_length, {reach, kMannequinHeight + 0.02, 0.30});
     std::vector<double> value(grid.count());
-    parallel_for(kCpu, "avatars/mannequin_field", grid.count(), SampleFigure{figure, grid, value});
+    parallel_for(kCpu, "avatars/mannequin_field", grid.count(), SampleShape{shape, grid, value});
     TriangleMesh mesh = SurfaceNets(grid, value).mesh;
 
     const Topology topology = build_topology(mesh.triangles, mesh.vertex_count(), "mannequin");
     if (!topology.is_closed())
         throw InvalidInput("mannequin: the surface is not closed at this edge_length; make it smaller");
     std::vector<Vec3> relaxed(mesh.positions.size());
-    for (int round = 0; round < kRelaxRounds; ++round) {
+    for (int pass = 0; pass < kRelaxPasses; ++pass) {
         parallel_for(
             kCpu, "avatars/mannequin_relax", mesh.vertex_count(),
-            RelaxVertices{figure, mesh.positions, mesh.triangles, topology.corners_of_vertex, relaxed});
+            RelaxVertices{shape, mesh.positions, mesh.triangles, topology.corners_of_vertex, relaxed});
         mesh.positions.swap(relaxed);
     }
     return mesh;
 }
 
-} // namespace toile
+} // namespace toile::avatars

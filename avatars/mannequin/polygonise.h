@@ -1,15 +1,15 @@
 #pragma once
 
-#include "avatars/mannequin/figure.h"
+#include "avatars/mannequin/mannequin_shape.h"
 #include "core/mesh/triangle_mesh.h"
 
-namespace toile {
+namespace toile::avatars {
 
-/// The figure's skin as a triangle mesh of about `edge_length` [m]: dual contouring of a regular grid
-/// ("surface nets", [Gibson 1998]) with one vertex per connected inside part of a cell, then vertices spread
-/// evenly along the surface and put back onto the field.
+/// Skin of the mannequin as a triangle mesh with edges of about `edge_length` [m]. Dual contouring of a
+/// regular grid ("surface nets", [Gibson 1998]) has one vertex per connected inside part of a cell. Then
+/// vertices are distributed evenly along the surface and projected back onto the field.
 /// @return closed and manifold; both are checked
-/// @throws InvalidInput when the grid is too coarse to tell neighbouring parts apart.
-TriangleMesh polygonise(const Figure& figure, double edge_length);
+/// @throws InvalidInput if the grid is too coarse to separate neighbouring parts.
+TriangleMesh polygonise(const MannequinShape& shape, double edge_length);
 
-} // namespace toile
+} // namespace toile::avatars

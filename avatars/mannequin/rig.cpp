@@ -6,64 +6,65 @@
 
 #include "core/mesh/topology.h"
 
-namespace toile {
+namespace toile::avatars {
 
 namespace {
 
 using Weights = std::array<double, kMannequinJointCount>;
 
-/// Rounds in which a vertex takes on half of its neighbours' mean; each widens a joint by about one edge.
-constexpr int kDiffusionRounds = 4;
+/// Passes that average each vertex's weights with their mean over its neighbours. Each widens a joint by
+/// about one edge.
+constexpr int kDiffusionPasses = 4;
 
 constexpr int kMaxBones = 4;
 
 /// Weights below this are noise of the diffusion and are dropped [-].
-constexpr double kLeastWeight = 0.01;
+constexpr double kMinWeight = 0.01;
 
-/// 0 below low, 1 above high, smooth between; low may be the larger one.
+/// 0 below low, 1 above high, smooth between; low may be larger than high.
 double ramp(double value, double low, double high)
 {
     const double u = std::clamp((value - low) / (high - low), 0.0, 1.0);
     return u * u * (3.0 - 2.0 * u);
 }
 
-/// Hands `share` of one joint's weight on to another.
-void hand_on(Weights& weights, int from, int to, double share)
+/// Transfers a fraction of one joint's weight to another.
+void transfer_weight(Weights& weights, int from, int to, double fraction)
 {
-    weights[to] += share * weights[from];
-    weights[from] *= 1.0 - share;
+    weights[to] += fraction * weights[from];
+    weights[from] *= 1.0 - fraction;
 }
 
-Weights weights_at(const Figure& figure, const Vec3& p)
+Weights weights_at(const MannequinShape& shape, const Vec3& p)
 {
     Weights weights{};
     weights[kPelvis] = 1.0;
     const bool left = p.x() >= 0.0;
     const Vec3 q(std::abs(p.x()), p.y(), p.z());
 
-    // Up the trunk.
-    hand_on(weights, kPelvis, kSpine, ramp(p.y(), 0.98, 1.09));
-    hand_on(weights, kSpine, kChest, ramp(p.y(), 1.11, 1.23));
-    hand_on(weights, kChest, kNeck, ramp(p.y(), 1.44, 1.50));
-    hand_on(weights, kNeck, kHead, ramp(p.y(), 1.53, 1.57));
+    // Blend weights up the trunk.
+    transfer_weight(weights, kPelvis, kSpine, ramp(p.y(), 0.98, 1.09));
+    transfer_weight(weights, kSpine, kChest, ramp(p.y(), 1.11, 1.23));
+    transfer_weight(weights, kChest, kNeck, ramp(p.y(), 1.44, 1.50));
+    transfer_weight(weights, kNeck, kHead, ramp(p.y(), 1.53, 1.57));
 
-    // Down the leg: from the groin up to the hip bone outside, half each in the middle.
+    // Blend weights down the leg: from the groin up to the hip bone outside, half each in the middle.
     const int thigh = left ? kThighL : kThighR;
     const double groin = p.y() - 0.25 * (q.x() - 0.09);
-    hand_on(weights, kPelvis, thigh, ramp(groin, 0.97, 0.80) * ramp(q.x(), -0.01, 0.03));
-    const double s_leg = figure.leg().along(q);
-    hand_on(weights, thigh, thigh + 1, ramp(s_leg, kKnee - 0.05, kKnee + 0.05));
-    hand_on(weights, thigh + 1, thigh + 2, ramp(s_leg, kAnkle - 0.045, kAnkle + 0.005));
+    transfer_weight(weights, kPelvis, thigh, ramp(groin, 0.97, 0.80) * ramp(q.x(), -0.01, 0.03));
+    const double s_leg = shape.leg().along(q);
+    transfer_weight(weights, thigh, thigh + 1, ramp(s_leg, kKnee - 0.05, kKnee + 0.05));
+    transfer_weight(weights, thigh + 1, thigh + 2, ramp(s_leg, kAnkle - 0.045, kAnkle + 0.005));
 
-    // Down the arm.
+    // Blend weights down the arm.
     const int upper_arm = left ? kUpperArmL : kUpperArmR;
-    const double arm = ramp(figure.trunk_distance(p) - figure.arm_distance(p), -0.035, 0.035);
+    const double arm = ramp(shape.trunk_distance(p) - shape.arm_distance(p), -0.035, 0.035);
     for (const int trunk :
          {kPelvis, kSpine, kChest, kNeck, kHead, kThighL, kShinL, kFootL, kThighR, kShinR, kFootR})
-        hand_on(weights, trunk, upper_arm, arm);
-    const double s_arm = figure.arm().along(q);
-    hand_on(weights, upper_arm, upper_arm + 1, ramp(s_arm, kElbow - 0.035, kElbow + 0.035));
-    hand_on(weights, upper_arm + 1, upper_arm + 2, ramp(s_arm, kWrist - 0.02, kWrist + 0.025));
+        transfer_weight(weights, trunk, upper_arm, arm);
+    const double s_arm = shape.arm().along(q);
+    transfer_weight(weights, upper_arm, upper_arm + 1, ramp(s_arm, kElbow - 0.035, kElbow + 0.035));
+    transfer_weight(weights, upper_arm + 1, upper_arm + 2, ramp(s_arm, kWrist - 0.02, kWrist + 0.025));
     return weights;
 }
 
@@ -74,7 +75,7 @@ void diffuse(std::vector<Weights>& weights, const std::vector<Edge>& edges)
     for (const Edge& edge : edges)
         for (const int v : edge.vertex)
             ++neighbours[v];
-    for (int round = 0; round < kDiffusionRounds; ++round) {
+    for (int pass = 0; pass < kDiffusionPasses; ++pass) {
         sum.assign(weights.size(), Weights{});
         for (const Edge& edge : edges)
             for (int j = 0; j < kMannequinJointCount; ++j) {
@@ -87,12 +88,12 @@ void diffuse(std::vector<Weights>& weights, const std::vector<Edge>& edges)
     }
 }
 
-/// The heaviest bones of one vertex.
+/// Influences of the heaviest bones of one vertex.
 std::vector<Influence> heaviest(const Weights& weights)
 {
     std::vector<Influence> parts;
     for (int j = 0; j < kMannequinJointCount; ++j)
-        if (weights[j] >= kLeastWeight)
+        if (weights[j] >= kMinWeight)
             parts.push_back({j, weights[j]});
     std::stable_sort(parts.begin(), parts.end(),
                      [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
@@ -105,16 +106,16 @@ Vec3 mirror(const Vec3& p) { return {-p.x(), p.y(), p.z()}; }
 
 } // namespace
 
-Skeleton make_mannequin_skeleton(const Figure& figure)
+Skeleton make_mannequin_skeleton(const MannequinShape& shape)
 {
     struct Row {
         const char* name;
         int parent;
-        Vec3 place; ///< [m]
+        Vec3 position; ///< [m]
     };
-    const Vec3 shoulder = figure.shoulder(), elbow = figure.arm().center(kElbow),
-               wrist = figure.arm().center(kWrist);
-    const Vec3 hip = figure.hip(), knee = figure.leg().center(kKnee), ankle = figure.leg().center(kAnkle);
+    const Vec3 shoulder = shape.shoulder(), elbow = shape.arm().center(kElbow),
+               wrist = shape.arm().center(kWrist);
+    const Vec3 hip = shape.hip(), knee = shape.leg().center(kKnee), ankle = shape.leg().center(kAnkle);
     const std::array<Row, kMannequinJointCount> rows{{
         {"pelvis", -1, {0.0, 0.930, 0.0}},
         {"spine", kPelvis, {0.0, 1.040, -0.010}},
@@ -138,17 +139,18 @@ Skeleton make_mannequin_skeleton(const Figure& figure)
     Skeleton skeleton;
     for (const Row& row : rows) {
         Joint joint{row.name, row.parent, {}};
-        joint.rest.translation = row.parent < 0 ? row.place : Vec3(row.place - rows[row.parent].place);
+        joint.rest.translation =
+            row.parent < 0 ? row.position : Vec3(row.position - rows[row.parent].position);
         skeleton.add(std::move(joint));
     }
     return skeleton;
 }
 
-SkinnedMesh bind_mannequin(const Figure& figure, const Skeleton& skeleton, TriangleMesh mesh)
+SkinnedMesh bind_mannequin(const MannequinShape& shape, const Skeleton& skeleton, TriangleMesh mesh)
 {
     std::vector<Weights> weights;
     for (const Vec3& p : mesh.positions)
-        weights.push_back(weights_at(figure, p));
+        weights.push_back(weights_at(shape, p));
     diffuse(weights, build_topology(mesh.triangles, mesh.vertex_count(), "mannequin").edges);
 
     SkinnedMesh skin;
@@ -168,4 +170,4 @@ SkinnedMesh bind_mannequin(const Figure& figure, const Skeleton& skeleton, Trian
     return skin;
 }
 
-} // namespace toile
+} // namespace toile::avatars

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "avatars/mannequin/figure.h"
-#include "avatars/skinned_avatar.h"
+#include "avatars/mannequin/mannequin_shape.h"
+#include "avatars/model/skinned_avatar.h"
 
-namespace toile {
+namespace toile::avatars {
 
-/// The mannequin's joints, parents first; also their indices in its skeleton. Left is +X.
+/// Joints of the mannequin, parents first; also their indices in its skeleton. Left is +X.
 enum MannequinJoint {
     kPelvis,
     kSpine,
@@ -27,13 +27,13 @@ enum MannequinJoint {
     kMannequinJointCount
 };
 
-/// Joint frames are parallel to the world axes in the bind pose, so that clips can speak of the X axis when
-/// they bend a knee.
-Skeleton make_mannequin_skeleton(const Figure& figure);
+/// Skeleton of the mannequin. Joint frames are parallel to the world axes in the bind pose, so that clips can
+/// refer to the X axis when they bend a knee.
+Skeleton make_mannequin_skeleton(const MannequinShape& shape);
 
-/// Ties the skin to the joints, one bone per joint. A vertex belongs to trunk or arm by the distances of
-/// those parts, along a part by its place between the joints; then weights diffuse over the surface, never
-/// through the air. At most four bones a vertex.
-SkinnedMesh bind_mannequin(const Figure& figure, const Skeleton& skeleton, TriangleMesh mesh);
+/// Binds the skin to the joints, one bone per joint. The distances to trunk and arm assign a vertex to one of
+/// them; its position between the joints gives the weights along that part. Then weights diffuse over the
+/// surface, never through the air. At most four bones per vertex.
+SkinnedMesh bind_mannequin(const MannequinShape& shape, const Skeleton& skeleton, TriangleMesh mesh);
 
-} // namespace toile
+} // namespace toile::avatars

@@ -24,7 +24,6 @@ BUILD=(
     libpng-dev
     libcli11-dev
     libgtest-dev
-    libbenchmark-dev
 )
 LINT=(clang-format:clang-format clang-tidy:clang-tidy git:git)
 OPTIONAL=("ffmpeg:the demo also writes MP4 films" "ccache:rebuilds take seconds")

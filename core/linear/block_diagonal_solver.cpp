@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/backend/parallel.h"
+#include "core/compute/parallel.h"
 
 namespace toile {
 

@@ -7,11 +7,11 @@
 
 namespace toile {
 
-/// The global step of several cloths that are stepped together: H is block-diagonal, and every block keeps
-/// the solver that its cloth would have alone, so equal cloths go on sharing factors and tables.
+/// Global solver for several cloths that are stepped together. H is block-diagonal, and every block keeps the
+/// solver that its cloth would have alone, so equal cloths still share factors and tables.
 class BlockDiagonalSolver : public GlobalSolver {
 public:
-    /// Rows of H that belong together, in ascending order, and their solver.
+    /// Size of a block of H, in ascending order of rows, and its solver.
     struct Block {
         int size;
         std::unique_ptr<GlobalSolver> solver;
@@ -19,7 +19,7 @@ public:
 
     explicit BlockDiagonalSolver(std::vector<Block> blocks);
 
-    /// @throws InvalidInput where an entry of H lies outside the blocks
+    /// @throws InvalidInput if an entry of H lies outside the blocks
     void update(const SparseMatrix& H, View<const unsigned char> fixed) override;
     void begin_step() override;
     void solve(View<const Vec3> b, View<Vec3> x) const override;

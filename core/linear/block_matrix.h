@@ -3,30 +3,30 @@
 #include <utility>
 #include <vector>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 
 namespace toile {
 
-/// Symmetric sparse matrix of 3 x 3 blocks, [3n x 3n], whose pattern stays while its values change: both
-/// triangles stored, rows contiguous, columns ascending, the diagonal always there.
+/// Symmetric sparse matrix of 3 x 3 blocks, [3n x 3n], with a fixed pattern and changing values. Both
+/// triangles are stored, rows contiguous, columns ascending; every diagonal block exists.
 class BlockMatrix {
 public:
     BlockMatrix() = default;
 
-    /// All blocks zero.
+    /// Sets all blocks to zero.
     /// @param couplings  pairs (i, j) of block rows that share entries, in any order, repeats allowed
     BlockMatrix(int rows, const std::vector<std::pair<int, int>>& couplings);
 
     int rows() const { return int(diagonal_.size()); }
     void set_zero();
 
-    /// Block (row, column), which must be in the pattern. O(log of the row's length). Tasks that write rows
-    /// of their own may run in parallel.
+    /// Block (row, column), which must be in the pattern. O(log of the row's length). Tasks that write
+    /// different rows may run in parallel.
     Mat3& block(int row, int column);
 
     const Mat3& diagonal(int row) const { return blocks_[diagonal_[row]]; }
 
-    /// Row `row` times x [n].
+    /// Product of row `row` with x [n].
     Vec3 row_times(int row, View<const Vec3> x) const
     {
         Vec3 sum = Vec3::Zero();
@@ -52,12 +52,13 @@ private:
     std::vector<Mat3> blocks_;
 };
 
-/// Rows and columns of a BlockMatrix from `first` on, numbered from 0: where one cloth of several writes.
+/// Rows and columns of a BlockMatrix from `first` on, numbered from 0: the part that one of several cloths
+/// writes.
 class BlockWindow {
 public:
     BlockWindow(BlockMatrix& matrix, int first = 0) : matrix_(&matrix), first_(first) {}
 
-    /// See BlockMatrix::block.
+    /// Block of the matrix, see BlockMatrix::block.
     Mat3& block(int row, int column) const { return matrix_->block(first_ + row, first_ + column); }
 
     BlockWindow from(int row) const { return {*matrix_, first_ + row}; }

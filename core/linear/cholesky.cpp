@@ -6,10 +6,11 @@
 
 #include <cholmod.h>
 
-#include "core/backend/error.h"
-#include "core/backend/stages.h"
+#include "core/base/error.h"
+#include "core/base/stages.h"
 
-/// OpenBLAS, where it is the installed BLAS: with many threads its small dense kernels ran 12 times slower.
+/// Sets OpenBLAS's threads, if it is the installed BLAS. With many threads its small dense kernels ran 12
+/// times slower.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace toile {
@@ -100,8 +101,8 @@ SupernodalFactor copy_factor(const cholmod_factor& L)
     return copy;
 }
 
-/// The first column whose diagonal is not a positive number; n when all are. LAPACKs differ in whether they
-/// let NaN pass.
+/// First column whose diagonal is not a positive number; n if all are positive. LAPACKs differ in whether
+/// they let NaN pass.
 int first_bad_pivot(const SupernodalFactor& L)
 {
     for (const SupernodalFactor::Supernode& node : L.supernodes)

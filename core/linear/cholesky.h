@@ -10,14 +10,13 @@ namespace toile {
 /// Sparse Cholesky factorisation A = P^T L L^T P of a symmetric positive definite matrix, for right-hand
 /// sides of 3-vectors.
 ///
-/// CHOLMOD orders (METIS nested dissection) and factors; the solves run on our own row-major copy of its
-/// supernodes with x, y and z in one SIMD register, several times faster than CHOLMOD's three-column solve
-/// (benchmarks/linear).
+/// CHOLMOD orders (METIS nested dissection) and factors. The solves run on a row-major copy of its supernodes
+/// with x, y and z in one SIMD register: several times faster than CHOLMOD's three-column solve.
 class Cholesky {
 public:
     /// Orders and factors A. O(n^1.5) time for surfaces, O(n log n) memory.
     /// @param A  compressed
-    /// @throws InvalidInput when A is not positive definite, naming the first bad pivot.
+    /// @throws InvalidInput if A is not positive definite, naming the first bad pivot.
     explicit Cholesky(const SparseMatrix& A);
     ~Cholesky();
     Cholesky(Cholesky&&) noexcept;
@@ -31,7 +30,7 @@ public:
     void solve(View<const Vec3> b, View<Vec3> x) const;
 
     const SupernodalFactor& factor() const { return *factor_; }
-    /// The same, to be kept beyond the next refactor(): it is never changed.
+    /// Factor to be kept beyond the next refactor(), which does not change it.
     std::shared_ptr<const SupernodalFactor> shared_factor() const { return factor_; }
 
     int size() const;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/backend/stages.h"
+#include "core/base/stages.h"
 #include "core/linear/shared_factor.h"
 
 namespace toile {

@@ -9,15 +9,15 @@
 
 namespace toile {
 
-/// Exact: the Cholesky factor of H. The ordering is kept while the pattern stays; equal H of other solvers in
-/// the process are factored once (shared_factor.h).
+/// Exact global solver: the Cholesky factor of H. The ordering is kept while the pattern stays. Equal H of
+/// other solvers in the process are factored once (shared_factor.h).
 class DirectSolver : public GlobalSolver {
 public:
     void update(const SparseMatrix& H, View<const unsigned char> fixed) override;
     void solve(View<const Vec3> b, View<Vec3> x) const override;
     bool is_symmetric() const override { return true; }
 
-    /// Of the last H; null before update().
+    /// Factor of the last H; null before update().
     const std::shared_ptr<const SupernodalFactor>& factor() const { return factor_; }
 
 private:
@@ -25,7 +25,7 @@ private:
 
     std::shared_ptr<const SupernodalFactor> factor_;
     std::optional<Cholesky> cholesky_; ///< none while all factors came from other solvers
-    std::vector<int> first_, columns_; ///< the pattern it was ordered for
+    std::vector<int> first_, columns_; ///< pattern for which cholesky_ was ordered
 };
 
 } // namespace toile

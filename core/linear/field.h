@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/backend/parallel.h"
+#include "core/compute/parallel.h"
 
 namespace toile {
 
-/// Linear algebra on fields of 3-vectors [vertices], deterministic for every thread count.
+/// Linear algebra on fields of 3-vectors [vertices], with the same bits for every thread count.
 
-/// Items per task: a vector update is so short that smaller tasks would cost more than they share.
+/// Items per task. A vector update is so short that smaller tasks would cost more than they save.
 inline constexpr int kFieldGrain = 4096;
 
 /// a . b
@@ -25,7 +25,7 @@ inline void axpy(double factor, View<const Vec3> x, View<Vec3> y)
         kCpu, "field/axpy", y.size(), [&](int i) { y[i] += factor * x[i]; }, kFieldGrain);
 }
 
-/// y += factor x, returns y . z: one pass over memory instead of two.
+/// y += factor x, returns y . z. One pass over memory instead of two.
 inline double axpy_dot(double factor, View<const Vec3> x, View<Vec3> y, View<const Vec3> z)
 {
     return parallel_sum(kCpu, y.size(), 0.0, [&](int i) {
@@ -41,7 +41,7 @@ inline void xpay(View<const Vec3> x, double factor, View<Vec3> y)
         kCpu, "field/xpay", y.size(), [&](int i) { y[i] = x[i] + factor * y[i]; }, kFieldGrain);
 }
 
-/// Largest vector length; NaN when any entry is.
+/// Max length of the vectors; NaN if any entry is.
 inline double max_norm(View<const Vec3> x)
 {
     double largest = 0.0;

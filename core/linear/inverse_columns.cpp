@@ -11,26 +11,27 @@ using Row = InverseColumns::Row;
 /// Rows of a product computed together: their accumulators fill half of the vector registers.
 constexpr int kTile = 4;
 
-/// own[k] -= sum_r L(r, k) y[rows[r]] for `Count` columns from `L` on, the rows of L `stride` apart.
+/// y_node[k] -= sum_r L(r, k) y[rows[r]] for `Count` columns from `L` on, the rows of L `stride` apart.
 template <int Count>
-void subtract_transposed(const double* L, int stride, const int* rows, int row_count, const Row* y, Row* own)
+void subtract_transposed(const double* L, int stride, const int* rows, int row_count, const Row* y,
+                         Row* y_node)
 {
     std::array<Row, Count> sum{};
     for (int r = 0; r < row_count; ++r)
         for (int k = 0; k < Count; ++k)
             sum[k] += L[long(r) * stride + k] * y[rows[r]];
     for (int k = 0; k < Count; ++k)
-        own[k] -= sum[k];
+        y_node[k] -= sum[k];
 }
 
-/// y[rows[k]] -= sum_j L(k, j) own[j] for `Count` rows of L of length `width`.
+/// y[rows[k]] -= sum_j L(k, j) y_node[j] for `Count` rows of L of length `width`.
 template <int Count>
-void subtract(const double* L, int width, const int* rows, const Row* own, Row* y)
+void subtract(const double* L, int width, const int* rows, const Row* y_node, Row* y)
 {
     std::array<Row, Count> sum{};
     for (int j = 0; j < width; ++j)
         for (int k = 0; k < Count; ++k)
-            sum[k] += L[long(k) * width + j] * own[j];
+            sum[k] += L[long(k) * width + j] * y_node[j];
     for (int k = 0; k < Count; ++k)
         y[rows[k]] -= sum[k];
 }
@@ -38,18 +39,18 @@ void subtract(const double* L, int width, const int* rows, const Row* own, Row* 
 void backward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Row* y)
 {
     const int width = node.width;
-    Row* own = y + node.first_column;
+    Row* y_node = y + node.first_column;
     const double* below = L + long(width) * width;
     int j = 0;
     for (; j + kTile <= width; j += kTile)
-        subtract_transposed<kTile>(below + j, width, rows, node.row_count, y, own + j);
+        subtract_transposed<kTile>(below + j, width, rows, node.row_count, y, y_node + j);
     for (; j < width; ++j)
-        subtract_transposed<1>(below + j, width, rows, node.row_count, y, own + j);
+        subtract_transposed<1>(below + j, width, rows, node.row_count, y, y_node + j);
     for (int i = width - 1; i >= 0; --i) {
-        Row sum = own[i];
+        Row sum = y_node[i];
         for (int k = i + 1; k < width; ++k)
-            sum -= L[long(k) * width + i] * own[k];
-        own[i] = L[long(i) * width + i] * sum;
+            sum -= L[long(k) * width + i] * y_node[k];
+        y_node[i] = L[long(i) * width + i] * sum;
     }
 }
 
@@ -58,20 +59,20 @@ void backward_node(const SupernodalFactor::Supernode& node, const int* rows, con
 void forward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Row* y)
 {
     const int width = node.width;
-    Row* own = y + node.first_column;
+    Row* y_node = y + node.first_column;
     for (int i = 0; i < width; ++i) {
         const double* row = L + long(i) * width;
-        Row sum = own[i];
+        Row sum = y_node[i];
         for (int j = 0; j < i; ++j)
-            sum -= row[j] * own[j];
-        own[i] = row[i] * sum;
+            sum -= row[j] * y_node[j];
+        y_node[i] = row[i] * sum;
     }
     const double* below = L + long(width) * width;
     int r = 0;
     for (; r + kTile <= node.row_count; r += kTile)
-        subtract<kTile>(below + long(r) * width, width, rows + r, own, y);
+        subtract<kTile>(below + long(r) * width, width, rows + r, y_node, y);
     for (; r < node.row_count; ++r)
-        subtract<1>(below + long(r) * width, width, rows + r, own, y);
+        subtract<1>(below + long(r) * width, width, rows + r, y_node, y);
 }
 
 InverseColumns::InverseColumns(const SupernodalFactor& factor)
@@ -94,7 +95,7 @@ void InverseColumns::solve(View<const int> columns, Block& block) const
     backward(block);
 }
 
-/// L y = b where it is not zero.
+/// Solves L y = b on the supernodes that b reaches.
 void InverseColumns::forward(View<const int> columns, Block& block) const
 {
     thread_local std::vector<char> is_reached;
@@ -116,7 +117,7 @@ void InverseColumns::forward(View<const int> columns, Block& block) const
     }
 }
 
-/// L^T x = y
+/// Solves L^T x = y.
 void InverseColumns::backward(Block& block) const
 {
     for (int s = int(factor_.supernodes.size()) - 1; s >= 0; --s) {

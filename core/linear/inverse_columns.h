@@ -3,19 +3,19 @@
 #include <array>
 #include <vector>
 
-#include "core/backend/lanes.h"
+#include "core/compute/lanes.h"
 #include "core/linear/supernodal_factor.h"
 
 namespace toile {
 
 /// Columns of A^-1 from a factor A = P^T L L^T P, a block at a time: rows of the kernel that quadrature
 /// tabulates. One pass over L serves all columns of a block, so that the work is in products of small dense
-/// matrices; forward substitution visits only the supernodes between the block's columns and the root.
+/// matrices. Forward substitution visits only the supernodes between the block's columns and the root.
 class InverseColumns {
 public:
-    static constexpr int kColumns = 32; ///< of a block
+    static constexpr int kColumns = 32; ///< columns of a block
 
-    /// One row of a block: an entry of each column.
+    /// Row of a block: an entry of each column.
     struct Row {
         std::array<Lanes, kColumns / kLanes> lanes{};
 
@@ -46,7 +46,7 @@ public:
         }
     };
 
-    /// [n] row k belongs to row factor.permutation[k] of A.
+    /// [n] rows; row k belongs to row factor.permutation[k] of A.
     using Block = std::vector<Row>;
 
     /// @param factor  borrowed
@@ -54,11 +54,11 @@ public:
 
     int size() const { return int(row_of_.size()); }
 
-    /// Where row `i` of A stands in a block.
+    /// Row of a block that belongs to row `i` of A.
     int row_of(int i) const { return row_of_[i]; }
 
-    /// Columns `columns` of A^-1 into `block`, one per lane; lanes beyond them are zero. Safe to call from
-    /// several threads, with a block each.
+    /// Solves for columns `columns` of A^-1, one per lane of `block`; lanes beyond them are zero. Safe to
+    /// call from several threads, with a block each.
     /// @param columns  at most kColumns
     void solve(View<const int> columns, Block& block) const;
 
@@ -71,10 +71,10 @@ private:
     std::vector<int> node_of_column_; ///< [n] supernode
 };
 
-/// Forward substitution with one supernode: y_own = L11^-1 y_own, y_below -= L21 y_own.
-/// @param rows  [row_count] where the rows below the diagonal block stand in y
+/// Forward substitution with one supernode: y_node = L11^-1 y_node, y_below -= L21 y_node.
+/// @param rows  [row_count] indices in y of the rows below the diagonal block
 /// @param L     the supernode's block
-/// @param y     its own rows from first_column on
+/// @param y     the supernode's rows begin at first_column
 void forward_node(const SupernodalFactor::Supernode& node, const int* rows, const double* L,
                   InverseColumns::Row* y);
 

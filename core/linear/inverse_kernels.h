@@ -2,13 +2,13 @@
 
 #include <cstddef>
 
-#include "core/backend/cuda/async_copy.h"
+#include "core/compute/async_copy.h"
 #include "core/linear/forward_plan.h"
 
-/// Columns of A^-1 from an InvertedFactor on a GPU: what DeviceInverseColumns launches, level by level.
+/// Kernels for columns of A^-1 from an InvertedFactor, launched level by level by DeviceInverseColumns.
 namespace toile {
 
-/// Rows of equally many numbers, one for every column of the inverse that is solved for.
+/// Rows of equal length, with one entry for every column of the inverse that is solved for.
 struct ColumnBlock {
     double* data = nullptr;
     int stride = 0;
@@ -16,15 +16,13 @@ struct ColumnBlock {
     TOILE_HD double* row(int i) const { return data + std::size_t(i) * stride; }
 };
 
-/// Fronts before their node is eliminated: the unit vectors, and what the node's children pass on, in their
-/// order.
-///
-/// Item i is a column of a row of a tile.
+/// Assembles the fronts of nodes before their elimination: unit vectors, plus the children's updates in their
+/// order. Item i is a column of a row of a tile.
 struct AssembleFronts {
     InvertedFactorView factor;
     View<const RowTile> tiles; ///< of one level
     View<const int> front_of;  ///< [nodes]
-    View<const int> unit_row;  ///< [columns] row of a column's 1, -1 where there is none
+    View<const int> unit_row;  ///< [columns] row of a column's 1, -1 if it has none
     ColumnBlock fronts;
 
     TOILE_HD void operator()(int i) const
@@ -35,9 +33,10 @@ struct AssembleFronts {
         const int local = tile.first_row + i / unit_row.size() % RowTile::kRows;
         if (local >= node.height())
             return;
-        const bool is_own = local < node.width;
-        const int row = is_own ? node.first_column + local : factor.rows[node.first_row + local - node.width];
-        double sum = is_own && unit_row[column] == row ? 1.0 : 0.0;
+        const bool is_pivot = local < node.width;
+        const int row =
+            is_pivot ? node.first_column + local : factor.rows[node.first_row + local - node.width];
+        double sum = is_pivot && unit_row[column] == row ? 1.0 : 0.0;
         for (int c = factor.first_child[tile.node]; c < factor.first_child[tile.node + 1]; ++c)
             if (const int child = factor.children[c]; front_of[child] >= 0)
                 sum += passed_on(child, row, column);
@@ -45,7 +44,7 @@ struct AssembleFronts {
     }
 
 private:
-    /// What a child's front holds of a row of the matrix.
+    /// Update of a matrix row from a child's front.
     TOILE_HD double passed_on(int child, int row, int column) const
     {
         const InvertedNode& node = factor.nodes[child];
@@ -64,16 +63,16 @@ private:
     }
 };
 
-/// A tile of a product of a node's block with rows of columns: kRows x kColumns numbers, a thread has
-/// kOwnRows x kOwnColumns of them.
+/// Tile of a product of a node's block with rows of columns: kRows x kColumns numbers. A thread computes
+/// kThreadRows x kThreadColumns of them.
 struct ProductTile {
     static constexpr int kRows = RowTile::kRows;
     static constexpr int kColumns = 128;
     static constexpr int kDepth = 8; ///< summands of a step
     static constexpr int kThreads = 128;
-    static constexpr int kOwnRows = 8, kOwnColumns = 4;
-    static_assert(kThreads * kOwnRows * kOwnColumns == kRows * kColumns);
-    static_assert(kThreads == kDepth * kRows / 2); // SubstituteBack fetches a pair of the block a thread
+    static constexpr int kThreadRows = 8, kThreadColumns = 4;
+    static_assert(kThreads * kThreadRows * kThreadColumns == kRows * kColumns);
+    static_assert(kThreads == kDepth * kRows / 2); // SubstituteBack loads a pair of the block per thread
 
     /// Two numbers: one load of 16 bytes.
     struct alignas(16) Pair {
@@ -84,15 +83,15 @@ struct ProductTile {
         Pair columns[kDepth][kColumns / 2];
     };
     struct Sums {
-        double of[kOwnRows][kOwnColumns];
+        double of[kThreadRows][kThreadColumns];
     };
 
     // Threads of a tile: a warp has 16 x 64 of its numbers. A thread's columns are two pairs, so that 16
-    // threads side by side read 256 bytes in a row.
-    TOILE_HD static int first_row(int thread) { return (thread / 64 * 2 + thread / 16 % 2) * kOwnRows; }
+    // adjacent threads read 256 contiguous bytes.
+    TOILE_HD static int first_row(int thread) { return (thread / 64 * 2 + thread / 16 % 2) * kThreadRows; }
     TOILE_HD static int pair(int thread, int k) { return thread / 32 % 2 * 32 + k * 16 + thread % 16; }
 
-    /// Fetches the rows of a step into the stage, a warp one row at a time.
+    /// Loads the rows of a step into the stage, half a row per warp.
     /// @param row_of  row_of(k) of the step's k-th summand
     template <typename RowOf>
     TOILE_HD static void load_columns(int thread, const RowOf& row_of, Stage& stage)
@@ -105,25 +104,25 @@ struct ProductTile {
     TOILE_HD static void add(int thread, const Stage& stage, Sums& sums)
     {
         for (int k = 0; k < kDepth; ++k) {
-            double a[kOwnRows], b[kOwnColumns];
-            for (int i = 0; i < kOwnRows / 2; ++i) {
+            double a[kThreadRows], b[kThreadColumns];
+            for (int i = 0; i < kThreadRows / 2; ++i) {
                 const Pair two = stage.block[k][first_row(thread) / 2 + i];
                 a[2 * i] = two.value[0];
                 a[2 * i + 1] = two.value[1];
             }
-            for (int j = 0; j < kOwnColumns / 2; ++j) {
+            for (int j = 0; j < kThreadColumns / 2; ++j) {
                 const Pair two = stage.columns[k][pair(thread, j)];
                 b[2 * j] = two.value[0];
                 b[2 * j + 1] = two.value[1];
             }
-            for (int i = 0; i < kOwnRows; ++i)
-                for (int j = 0; j < kOwnColumns; ++j)
+            for (int i = 0; i < kThreadRows; ++i)
+                for (int j = 0; j < kThreadColumns; ++j)
                     sums.of[i][j] += a[i] * b[j];
         }
     }
 };
 
-/// The part of a thread in tile `item` of a level's products: tiles of rows, each with all tiles of columns.
+/// Work of a thread in tile `item` of a level's products: each tile of rows with all tiles of columns.
 template <typename Kernel>
 TOILE_HD typename Kernel::Work tile_of_level(const Kernel& kernel, int item, int thread)
 {
@@ -136,8 +135,8 @@ TOILE_HD typename Kernel::Work tile_of_level(const Kernel& kernel, int item, int
             thread};
 }
 
-/// Forward substitution with one level's nodes: y_own = L11^-1 c_own goes to `solved`, and to the rows below
-/// of the fronts is added -L21 y_own = (-L21 L11^-1) c_own.
+/// Forward substitution with one level's nodes. Stores y_pivot = L11^-1 c_pivot in `solved`. Adds
+/// -L21 y_pivot = (-L21 L11^-1) c_pivot to the rows below in the fronts.
 struct EliminateNodes : ProductTile {
     InvertedFactorView factor;
     View<const RowTile> tiles; ///< of one level's fronts
@@ -150,7 +149,7 @@ struct EliminateNodes : ProductTile {
         InvertedNode node;
         int first_row, first_column, front, thread;
 
-        /// The block's rows of L11^-1 end at the diagonal.
+        /// Number of summands: rows of L11^-1 end at the diagonal of the tile's last row.
         TOILE_HD int summands() const
         {
             return first_row + kRows < node.width ? first_row + kRows : node.width;
@@ -169,24 +168,24 @@ struct EliminateNodes : ProductTile {
             load_columns(
                 thread,
                 [&](int k) {
-                    const int own = step * kDepth + k;
-                    return kernel.fronts.row(front + (own < node.width ? own : 0)) + first_column;
+                    const int pivot = step * kDepth + k;
+                    return kernel.fronts.row(front + (pivot < node.width ? pivot : 0)) + first_column;
                 },
                 stage);
         }
         TOILE_HD void add(const Stage& stage, Sums& sums) const { ProductTile::add(thread, stage, sums); }
         TOILE_HD void store(const Sums& sums) const
         {
-            for (int i = 0; i < kOwnRows; ++i) {
+            for (int i = 0; i < kThreadRows; ++i) {
                 const int local = first_row + ProductTile::first_row(thread) + i;
                 if (local >= node.height())
                     return;
-                const bool is_own = local < node.width;
+                const bool is_pivot = local < node.width;
                 double* const row =
-                    (is_own ? kernel.solved : kernel.fronts).row(front + local) + first_column;
-                for (int j = 0; j < kOwnColumns; ++j) {
+                    (is_pivot ? kernel.solved : kernel.fronts).row(front + local) + first_column;
+                for (int j = 0; j < kThreadColumns; ++j) {
                     double& number = row[2 * pair(thread, j / 2) + j % 2];
-                    number = is_own ? sums.of[i][j] : number + sums.of[i][j];
+                    number = is_pivot ? sums.of[i][j] : number + sums.of[i][j];
                 }
             }
         }
@@ -195,7 +194,7 @@ struct EliminateNodes : ProductTile {
     TOILE_HD Work work(int item, int thread) const { return tile_of_level(*this, item, thread); }
 };
 
-/// Back substitution with one level's nodes: x_own = L11^-T y_own + (-L21 L11^-1)^T x_below.
+/// Back substitution with one level's nodes: x_pivot = L11^-T y_pivot + (-L21 L11^-1)^T x_below.
 struct SubstituteBack : ProductTile {
     InvertedFactorView factor;
     View<const RowTile> tiles; ///< of one level's columns
@@ -208,17 +207,18 @@ struct SubstituteBack : ProductTile {
         InvertedNode node;
         int first_row, first_column, front, thread;
 
-        /// The columns of L11^-1 begin at the diagonal; y is zero where no front is.
+        /// First row with summands: columns of L11^-1 begin at the diagonal. y is zero in nodes
+        /// without a front.
         TOILE_HD int begin() const { return front >= 0 ? first_row : node.width; }
         TOILE_HD int steps() const { return (node.height() - begin() + kDepth - 1) / kDepth; }
         TOILE_HD void load(int step, Stage& stage) const
         {
-            // Where the block ends there are zeros instead, and any row for them.
+            // Beyond the end of the block, load zeros and any row for them.
             const int first = begin() + step * kDepth;
-            const int k = thread / (kRows / 2), own = first_row + thread % (kRows / 2) * 2;
-            const bool is_outside = first + k >= node.height() || own >= node.stride;
+            const int k = thread / (kRows / 2), pivot = first_row + thread % (kRows / 2) * 2;
+            const bool is_outside = first + k >= node.height() || pivot >= node.stride;
             const std::size_t at =
-                is_outside ? 0 : node.first_value + std::size_t(first + k) * node.stride + own;
+                is_outside ? 0 : node.first_value + std::size_t(first + k) * node.stride + pivot;
             copy_async(&stage.block[k][thread % (kRows / 2)],
                        reinterpret_cast<const Pair*>(kernel.factor.values.data() + at), is_outside);
             load_columns(
@@ -227,12 +227,12 @@ struct SubstituteBack : ProductTile {
         TOILE_HD void add(const Stage& stage, Sums& sums) const { ProductTile::add(thread, stage, sums); }
         TOILE_HD void store(const Sums& sums) const
         {
-            for (int i = 0; i < kOwnRows; ++i) {
-                const int own = first_row + ProductTile::first_row(thread) + i;
-                if (own >= node.width)
+            for (int i = 0; i < kThreadRows; ++i) {
+                const int pivot = first_row + ProductTile::first_row(thread) + i;
+                if (pivot >= node.width)
                     return;
-                double* const to = kernel.x.row(node.first_column + own) + first_column;
-                for (int j = 0; j < kOwnColumns; ++j)
+                double* const to = kernel.x.row(node.first_column + pivot) + first_column;
+                for (int j = 0; j < kThreadColumns; ++j)
                     to[2 * pair(thread, j / 2) + j % 2] = sums.of[i][j];
             }
         }

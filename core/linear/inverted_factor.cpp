@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "core/backend/error.h"
-#include "core/backend/parallel.h"
+#include "core/base/error.h"
+#include "core/compute/parallel.h"
 #include "core/linear/inverse_columns.h"
 
 namespace toile {
@@ -27,7 +27,7 @@ std::vector<int> supernodes_of_columns(const SupernodalFactor& factor)
     return result;
 }
 
-/// kColumns columns of one node's block, from L of the supernodes that it was.
+/// Computes kColumns columns of a node's block from the supernodes of L that it replaces.
 class BlockColumns {
 public:
     explicit BlockColumns(const SupernodalFactor& factor)
@@ -36,7 +36,7 @@ public:
     }
 
     /// @param rows    below the node's diagonal block
-    /// @param first   column of the block
+    /// @param first   first column, in the block
     /// @param values  of the block
     void write(const InvertedNode& node, View<const Supernode> supernodes, const int* rows, int first,
                double* values)
@@ -69,7 +69,7 @@ private:
     }
 
     const SupernodalFactor& factor_;
-    std::vector<int> local_of_row_; ///< [n] place in y_
+    std::vector<int> local_of_row_; ///< [n] row in y_
     std::vector<int> local_rows_;
     std::vector<Row> y_; ///< [node's height]
 };
@@ -86,7 +86,8 @@ InvertedFactor::InvertedFactor(const SupernodalFactor& factor)
     invert(factor);
 }
 
-/// One node for every largest subtree of at most kMergedColumns columns and every supernode above them.
+/// Makes one node of every maximal subtree of at most kMergedColumns columns and of every supernode above
+/// them.
 void InvertedFactor::merge(const SupernodalFactor& factor)
 {
     const int count = int(factor.supernodes.size());

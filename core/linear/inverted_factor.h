@@ -4,20 +4,20 @@
 
 namespace toile {
 
-/// A supernode of an InvertedFactor: columns of L that are eliminated together.
+/// Supernode of an InvertedFactor: columns of L that are eliminated together.
 struct InvertedNode {
     int first_column = 0;
     int width = 0;
     int first_row = 0; ///< into rows: the indices below the diagonal block
     int row_count = 0;
-    int parent = -1; ///< the node of the first of these rows
+    int parent = -1; ///< node of the first of these rows
     int stride = 0;  ///< between the rows of the block, even
     std::size_t first_value = 0;
 
     TOILE_HD int height() const { return width + row_count; }
 };
 
-/// An InvertedFactor as kernels read it.
+/// View of an InvertedFactor for kernels.
 struct InvertedFactorView {
     View<const InvertedNode> nodes;
     View<const int> rows;
@@ -25,29 +25,29 @@ struct InvertedFactorView {
     View<const int> first_child, children;
 };
 
-/// A supernodal factor in which both substitutions are products with dense blocks, so that no thread waits
-/// for another within a supernode: selective inversion [Raghavan 1998].
+/// Supernodal factor in which both substitutions are products with dense blocks: selective inversion
+/// [Raghavan 1998]. No thread waits for another within a supernode.
 //
 //      columns [first_column, first_column + width)
 //        |  L11^-1      |   width x width, lower triangle
 //        | -L21 L11^-1  |   (rows below) x width; their indices in `rows`
 //
-/// Subtrees of few columns become one node, whose block is full: on a GPU many small products cost more than
-/// fewer with zeros.
+/// Subtrees of few columns become one node with a full block. On a GPU many small products cost more than
+/// fewer ones with zeros.
 class InvertedFactor {
 public:
-    /// Most columns of a subtree that becomes one node: two tiles (inverse_kernels.h). With 96 a block has a
+    /// Max columns of a subtree that becomes one node: two tiles (inverse_kernels.h). With 96 a block has a
     /// third more entries.
     static constexpr int kMergedColumns = 64;
 
-    /// On all threads; as many products as the square of a node's columns times its rows.
-    /// @throws InvalidInput where the blocks hold more numbers than an int counts
+    /// Inverts the blocks on all threads. A node costs its columns squared times its rows.
+    /// @throws InvalidInput if the blocks hold more numbers than an int counts
     explicit InvertedFactor(const SupernodalFactor& factor);
 
     int size() const { return int(permutation_.size()); }
     int level_count() const { return int(first_of_level_.size()) - 1; }
 
-    /// Nodes of a level, the roots' is 0: none depends on another of them.
+    /// Nodes of a level, which do not depend on each other; level 0 has the roots.
     View<const int> level(int level) const
     {
         return View<const int>(nodes_of_levels_)
@@ -71,7 +71,7 @@ private:
     void invert(const SupernodalFactor& factor);
 
     std::vector<InvertedNode> nodes_;
-    std::vector<int> first_supernode_; ///< [nodes + 1] of those that a node is made of
+    std::vector<int> first_supernode_; ///< [nodes + 1] first of the supernodes that a node replaces
     std::vector<int> rows_, permutation_, node_of_column_;
     std::vector<double> values_;
     std::vector<int> first_child_, children_;

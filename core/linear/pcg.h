@@ -7,23 +7,23 @@
 namespace toile {
 
 /// Preconditioned conjugate gradients for A x = b on 3-vector fields, started at x = 0 [Saad 2003, alg. 9.1].
-/// Flexible: [Notay 2000].
+/// The flexible form follows [Notay 2000].
 class Pcg {
 public:
     struct Settings {
-        double tolerance = 0.1; ///< [-] of |r| / |b|
+        double tolerance = 0.1; ///< [-] |r| / |b| to reach
         int max_iterations = 4;
         bool is_flexible = false; ///< for a preconditioner that is not symmetric: Polak-Ribiere's beta
 
-        /// Ends with an iteration that gains less than this share [-] of what one has gained on average, of
-        /// the quadratic 1/2 x . A x - b . x [Nash & Sofer 1990]; 0: never.
-        double least_gain = 0.0;
-        int least_iterations = 0; ///< before that counts
+        /// Min gain [-] of an iteration over the mean gain so far, in the quadratic 1/2 x . A x - b . x
+        /// [Nash & Sofer 1990]. An iteration below it is the last; 0: no such test.
+        double min_gain = 0.0;
+        int min_iterations = 0; ///< iterations before min_gain counts
 
         TOILE_HD bool is_worth_more(int iterations, double gain, double total_gain) const
         {
-            return iterations < least_iterations || least_gain == 0.0 ||
-                   iterations * gain > least_gain * total_gain;
+            return iterations < min_iterations || min_gain == 0.0 ||
+                   iterations * gain > min_gain * total_gain;
         }
     };
     struct Outcome {
@@ -59,8 +59,8 @@ public:
             xpay(z_, outcome.iterations > 0 ? change / rz_previous : 0.0, p_);
             multiply(View<const Vec3>(p_), View<Vec3>(product_));
             const double curvature = dot(p_, product_);
-            if (!(curvature >
-                  0.0)) // rounding, or A is indefinite after all: the iterate so far is the answer
+            // By rounding, or because A is indefinite after all: the iterate so far is the answer.
+            if (!(curvature > 0.0))
                 break;
             const double step = settings.is_flexible ? dot(r_, p_) / curvature : rz / curvature;
             if (settings.is_flexible)

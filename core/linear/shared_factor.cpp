@@ -1,6 +1,6 @@
 #include "core/linear/shared_factor.h"
 
-#include "core/backend/shared_by_key.h"
+#include "core/compute/shared_by_key.h"
 
 namespace toile {
 

@@ -8,9 +8,9 @@
 
 namespace toile {
 
-/// Factor of H that equal matrices of this process share: five equal cloths factor once. Freed with its last
+/// Factor of H, shared by equal matrices of this process: five equal cloths factor once. Freed with its last
 /// user. Pattern and values are compared by their hash, bit by bit.
-/// @param make  called where nobody has a factor of this H
+/// @param make  called if no factor of this H is in use
 std::shared_ptr<const SupernodalFactor>
 shared_factor(const SparseMatrix& H, const std::function<std::shared_ptr<const SupernodalFactor>()>& make);
 

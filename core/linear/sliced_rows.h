@@ -4,19 +4,19 @@
 #include <array>
 #include <vector>
 
-#include "core/backend/cuda/team.h"
+#include "core/compute/team.h"
 #include "core/linear/sparse_matrix.h"
 
 namespace toile {
 
-/// An entry of a sparse matrix: one load of 8 bytes on a GPU.
+/// Entry of a sparse matrix: one load of 8 bytes on a GPU.
 struct alignas(8) RowEntry {
     int column;
     float value;
 };
 
-/// Entries k, k + kWarp and so on of a row, all of which are loaded before any is waited for; zeros from
-/// `end` on.
+/// Entries k, k + kWarp and so on of a row; zeros from `end` on. All of them are loaded before any is waited
+/// for.
 template <int Count>
 TOILE_HD std::array<RowEntry, Count> entries_from(View<const RowEntry> entries, int row, int k, int end)
 {
@@ -26,9 +26,9 @@ TOILE_HD std::array<RowEntry, Count> entries_from(View<const RowEntry> entries, 
     return some;
 }
 
-/// Rows of a sparse matrix in slices, one for each warp: `Threads` threads a row, each with every so many-th
-/// entry. What a warp loads at once is side by side. Rows of a slice are as long as its longest, in whole
-/// warps of entries; what is missing is 0 at the diagonal.
+/// Rows of a sparse matrix in slices, one for each warp. Each row has `Threads` threads, which take its
+/// entries cyclically, so that a warp's loads are contiguous. All rows of a slice have the length of its
+/// longest row, rounded up to whole warps of entries. Padding is 0 at the diagonal.
 template <int Threads>
 struct RowsInSlices {
     static constexpr int kThreads = Threads; ///< of a row
@@ -46,10 +46,10 @@ struct RowsInSlices {
             int longest = 0;
             for (int row = begin; row < std::min(begin + kRows, rows); ++row)
                 longest = std::max(longest, row_first[row + 1] - row_first[row]);
-            for (int round = 0; round < longest; round += kThreads)
+            for (int offset = 0; offset < longest; offset += kThreads)
                 for (int item = 0; item < kWarp; ++item) {
                     const int row = std::min(begin + item / kThreads, rows - 1);
-                    const int k = row_first[row] + round + item % kThreads;
+                    const int k = row_first[row] + offset + item % kThreads;
                     entries.push_back(k < row_first[row + 1] ? RowEntry{columns[k], values[k]}
                                                              : RowEntry{row, 0.0F});
                 }
@@ -59,7 +59,7 @@ struct RowsInSlices {
 };
 
 using SlicedRows = RowsInSlices<4>;
-using WholeRows = RowsInSlices<1>; ///< a thread a row: for kernels with much else to do for it
+using WholeRows = RowsInSlices<1>; ///< one thread per row: for kernels with much other work per row
 
 /// @param A  compressed
 template <typename Rows = SlicedRows>

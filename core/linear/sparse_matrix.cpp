@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
 namespace toile {
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/SparseCore>
 
-#include "core/backend/hash.h"
-#include "core/backend/types.h"
+#include "core/compute/hash.h"
+#include "core/compute/types.h"
 
 namespace toile {
 
@@ -15,11 +15,11 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 /// Entries (row, column, value) that are summed into a SparseMatrix in the order they were added.
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Of the pattern and the bits of the values.
+/// Hash of the pattern and the bits of the values.
 /// @param A  compressed
 Hash128 hash_of(const SparseMatrix& A);
 
-/// One row of A times a field of vectors.
+/// Product of one row of A with a field of vectors.
 template <typename Vec>
 Vec row_times(const SparseMatrix& A, int row, View<const Vec> x)
 {
@@ -34,7 +34,7 @@ inline Vec3 row_times(const SparseMatrix& A, int row, View<const Vec3> x)
 }
 
 /// Rows and columns [first, first + size) of H.
-/// @throws InvalidInput where an entry of these rows lies outside the block
+/// @throws InvalidInput if an entry of these rows lies outside the block
 SparseMatrix diagonal_block(const SparseMatrix& H, int first, int size);
 
 } // namespace toile

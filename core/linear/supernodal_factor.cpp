@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/backend/parallel.h"
+#include "core/compute/parallel.h"
 
 namespace toile {
 
@@ -14,11 +14,11 @@ using Vec4 = Eigen::Vector4d;
 /// multiply-adds.
 constexpr int kBlock = 8;
 
-/// Largest share of L's entries that one subtree may hold. Smaller: more threads find work, more of it stays
+/// Max fraction of L's entries in one subtree. With a smaller one more threads find work, but more of L stays
 /// above the subtrees, where one thread works alone.
 constexpr double kLargestSubtree = 1.0 / 12.0;
 
-/// Entries of L below which a solve is not worth splitting.
+/// Min number of entries of L for which a solve is split.
 constexpr long kMinParallelEntries = 200'000;
 
 /// acc[k] = sum_j L(k, j) y[j] for `Count` rows of length `width`, `stride` apart.
@@ -49,40 +49,40 @@ void multiply_columns(const double* L, int stride, int row_count, const Vec4* y,
         acc[k] = sum[k];
 }
 
-/// L y = b on one supernode: the triangle first, then its share of the rows below.
+/// Solves L y = b on one supernode: the triangle first, then its update of the rows below.
 void forward(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Vec4* y)
 {
     const int width = node.width;
-    Vec4* own = y + node.first_column;
+    Vec4* y_node = y + node.first_column;
     for (int i = 0; i < width; ++i) {
         const double* row = L + long(i) * width;
-        Vec4 sum = own[i];
+        Vec4 sum = y_node[i];
         for (int j = 0; j < i; ++j)
-            sum -= row[j] * own[j];
-        own[i] = row[i] * sum;
+            sum -= row[j] * y_node[j];
+        y_node[i] = row[i] * sum;
     }
 
     const double* below = L + long(width) * width;
     Vec4 acc[kBlock];
     int r = 0;
     for (; r + kBlock <= node.row_count; r += kBlock) {
-        multiply_rows<kBlock>(below + long(r) * width, width, width, own, acc);
+        multiply_rows<kBlock>(below + long(r) * width, width, width, y_node, acc);
         for (int k = 0; k < kBlock; ++k)
             y[rows[r + k]] -= acc[k];
     }
     for (; r < node.row_count; ++r) {
-        multiply_rows<1>(below + long(r) * width, width, width, own, acc);
+        multiply_rows<1>(below + long(r) * width, width, width, y_node, acc);
         y[rows[r]] -= acc[0];
     }
 }
 
-/// L^T x = y on one supernode: subtract what the rows below contribute, then the transposed triangle.
+/// Solves L^T x = y on one supernode: the update from the rows below first, then the transposed triangle.
 /// @param gathered  scratch for the values of the rows below [row_count]
 void backward(const SupernodalFactor::Supernode& node, const int* rows, const double* L, Vec4* y,
               Vec4* gathered)
 {
     const int width = node.width;
-    Vec4* own = y + node.first_column;
+    Vec4* y_node = y + node.first_column;
     for (int r = 0; r < node.row_count; ++r)
         gathered[r] = y[rows[r]];
 
@@ -92,22 +92,22 @@ void backward(const SupernodalFactor::Supernode& node, const int* rows, const do
     for (; j + kBlock <= width; j += kBlock) {
         multiply_columns<kBlock>(below + j, width, node.row_count, gathered, acc);
         for (int k = 0; k < kBlock; ++k)
-            own[j + k] -= acc[k];
+            y_node[j + k] -= acc[k];
     }
     for (; j < width; ++j) {
         multiply_columns<1>(below + j, width, node.row_count, gathered, acc);
-        own[j] -= acc[0];
+        y_node[j] -= acc[0];
     }
 
     for (int i = width - 1; i >= 0; --i) {
-        Vec4 sum = own[i];
+        Vec4 sum = y_node[i];
         for (int k = i + 1; k < width; ++k)
-            sum -= L[long(k) * width + i] * own[k];
-        own[i] = L[long(i) * width + i] * sum;
+            sum -= L[long(k) * width + i] * y_node[k];
+        y_node[i] = L[long(i) * width + i] * sum;
     }
 }
 
-/// Scratch of the calling thread, grown once: a solve allocates nothing after the first.
+/// Scratch of the calling thread, grown once: later solves allocate nothing.
 Vec4* scratch(size_t count)
 {
     thread_local std::vector<Vec4, Eigen::aligned_allocator<Vec4>> memory;
@@ -120,14 +120,14 @@ Vec4* scratch(size_t count)
 
 void SupernodalFactor::plan()
 {
-    most_rows_ = 0;
+    max_rows_ = 0;
     for (const Supernode& node : supernodes)
-        most_rows_ = std::max(most_rows_, node.row_count);
+        max_rows_ = std::max(max_rows_, node.row_count);
     split_tree();
     redirect_rows();
 }
 
-/// Cuts the heaviest subtree at its root until none is heavier than kLargestSubtree.
+/// Splits subtrees at their roots until none holds more than the fraction kLargestSubtree of L.
 void SupernodalFactor::split_tree()
 {
     const int count = int(supernodes.size());
@@ -172,7 +172,7 @@ void SupernodalFactor::split_tree()
               [](const Subtree& a, const Subtree& b) { return a.first < b.first; });
 }
 
-/// Gives every subtree its own slots, behind the n columns, for what it subtracts from the top's columns.
+/// Gives every subtree separate slots, behind the n columns, for its updates of the top's columns.
 void SupernodalFactor::redirect_rows()
 {
     top_columns_.clear();
@@ -196,7 +196,7 @@ void SupernodalFactor::solve(View<const Vec3> b, View<Vec3> x) const
 {
     const int n = int(permutation.size());
     const int trees = int(subtrees_.size()), slots = int(top_columns_.size());
-    Vec4* y = scratch(size_t(n) + size_t(trees) * slots + size_t(trees + 1) * most_rows_);
+    Vec4* y = scratch(size_t(n) + size_t(trees) * slots + size_t(trees + 1) * max_rows_);
     Vec4* updates = y + n;
     Vec4* gathered = updates + size_t(trees) * slots;
     for (int k = 0; k < n; ++k)
@@ -207,9 +207,9 @@ void SupernodalFactor::solve(View<const Vec3> b, View<Vec3> x) const
         const Supernode& node = supernodes[s];
         forward(node, forward_rows_.data() + node.first_row, values.data() + node.first_value, y);
     };
-    const auto backward_node = [&](int s, Vec4* own_scratch) {
+    const auto backward_node = [&](int s, Vec4* node_scratch) {
         const Supernode& node = supernodes[s];
-        backward(node, rows.data() + node.first_row, values.data() + node.first_value, y, own_scratch);
+        backward(node, rows.data() + node.first_row, values.data() + node.first_value, y, node_scratch);
     };
     parallel_tasks(kCpu, trees, [&](int t) {
         for (int s = subtrees_[t].first; s < subtrees_[t].last; ++s)
@@ -221,10 +221,10 @@ void SupernodalFactor::solve(View<const Vec3> b, View<Vec3> x) const
     for (const int s : top_)
         forward_node(s);
     for (auto s = top_.rbegin(); s != top_.rend(); ++s)
-        backward_node(*s, gathered + size_t(trees) * most_rows_);
+        backward_node(*s, gathered + size_t(trees) * max_rows_);
     parallel_tasks(kCpu, trees, [&](int t) {
         for (int s = subtrees_[t].last - 1; s >= subtrees_[t].first; --s)
-            backward_node(s, gathered + size_t(t) * most_rows_);
+            backward_node(s, gathered + size_t(t) * max_rows_);
     });
     for (int k = 0; k < n; ++k)
         x[permutation[k]] = y[k].head<3>();

@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 
 namespace toile {
 
-/// Lower triangular factor L in supernodes: runs of columns that share their row pattern, each stored as one
+/// Lower triangular factor L in supernodes: runs of columns with the same row pattern, each stored as one
 /// dense block with contiguous rows.
 //
 //      columns [first_column, first_column + width)
@@ -30,15 +30,15 @@ public:
     std::vector<int> permutation; ///< [n] row k of L is row permutation[k] of the matrix
 
     /// Splits the elimination tree into subtrees that are solved in parallel and the nodes above them. Call
-    /// once after filling the arrays. The split depends on L alone, so the bits of a solve do not depend on
-    /// the thread count.
+    /// once after filling the arrays. The split depends on L alone, so a solve has the same bits for every
+    /// thread count.
     void plan();
 
     /// x = P^T L^-T L^-1 P b
     void solve(View<const Vec3> b, View<Vec3> x) const;
 
 private:
-    /// Supernodes [first, last) that depend on nothing outside.
+    /// Supernodes [first, last) that depend on no others.
     struct Subtree {
         int first = 0, last = 0;
     };
@@ -49,8 +49,8 @@ private:
     std::vector<Subtree> subtrees_;
     std::vector<int> top_;          ///< supernodes above the subtrees, ascending
     std::vector<int> top_columns_;  ///< their columns, ascending
-    int most_rows_ = 0;             ///< largest row_count
-    std::vector<int> forward_rows_; ///< rows, those of a subtree's updates to the top sent to its own slots
+    int max_rows_ = 0;              ///< largest row_count
+    std::vector<int> forward_rows_; ///< rows; a subtree's updates to the top go to its own slots
 };
 
 } // namespace toile

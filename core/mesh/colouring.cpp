@@ -6,7 +6,7 @@ std::vector<std::vector<int>> colour_items(const Incidence& keys_of_item, int ke
 {
     std::vector<std::vector<int>> items_of_colour;
     std::vector<std::vector<int>> colours_of_key(key_count);
-    std::vector<int> last_item_near; // [colours] the last item that met this colour on one of its keys
+    std::vector<int> last_item_near; // [colours] last item with a key that has this colour
     const int items = int(keys_of_item.first.size()) - 1;
     for (int item = 0; item < items; ++item) {
         for (const int key : keys_of_item.of(item))

@@ -6,9 +6,9 @@
 
 namespace toile {
 
-/// Colours items so that no two of one colour share a key, greedily in the order of the items: what one
-/// colour writes, none of its other items reads.
-/// @param keys_of_item  per item the keys it holds, in [0, key_count)
+/// Colours items so that no two of one colour share a key, greedily in the order of the items. Items of one
+/// colour may then write their keys in parallel.
+/// @param keys_of_item  keys of each item, in [0, key_count)
 /// @return items per colour, ascending
 std::vector<std::vector<int>> colour_items(const Incidence& keys_of_item, int key_count);
 

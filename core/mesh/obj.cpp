@@ -9,14 +9,14 @@
 #include <string_view>
 #include <utility>
 
-#include "core/backend/atomic_file.h"
-#include "core/backend/error.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
 
 namespace toile {
 
 namespace {
 
-/// Reads one OBJ file line by line, keeping the place for error messages.
+/// Reads one OBJ file line by line, keeping the line number for error messages.
 class ObjReader {
 public:
     explicit ObjReader(const std::filesystem::path& file) : file_(file), stream_(file)
@@ -39,7 +39,7 @@ public:
             else if (keyword == "f")
                 read_face();
         }
-        // A folder opens like a file and fails at the first read only.
+        // A folder opens like a file and fails only at the first read.
         if (stream_.bad())
             throw InvalidInput(file_.string() + ": can't be read; give a file, not a folder");
         drop_incomplete_texture();
@@ -107,7 +107,7 @@ private:
         mesh_.polygon_uvs.push_back(std::move(uvs));
     }
 
-    /// Texture indices are kept only when every face has them.
+    /// Drops texture indices unless every face has them.
     void drop_incomplete_texture()
     {
         for (const std::vector<int>& uvs : mesh_.polygon_uvs)

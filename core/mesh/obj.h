@@ -3,27 +3,27 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace toile {
 
-/// A Wavefront OBJ surface as stored: vertex order, polygons and texture coordinates kept, so that a cache
-/// written in vertex order plays on the mesh it came from (assimp reorders; 0 of 9 612 vertices stay).
+/// Wavefront OBJ surface as stored. Vertex order, polygons and texture coordinates are kept, so that a cache
+/// in vertex order plays on the mesh it came from (assimp reorders; 0 of 9 612 vertices stay).
 struct ObjMesh {
     std::vector<Vec3> positions;               ///< [v lines]
     std::vector<Vec2> texture_coordinates;     ///< [vt lines]; may be empty
     std::vector<std::vector<int>> polygons;    ///< vertex indices, 0-based
     std::vector<std::vector<int>> polygon_uvs; ///< texture indices per corner, or empty; parallel to polygons
 
-    /// Fans every polygon from its first corner.
+    /// Triangulates every polygon as a fan from its first corner.
     TriangleMesh triangulated() const;
 };
 
-/// Reads v, vt and f lines (negative indices too); ignores what else the format allows. Texture indices are
-/// kept only when every face has them.
-/// @throws InvalidInput naming file and line: missing file, a number that does not parse or is not finite,
-///         an index out of range, a face of fewer than three corners.
+/// Reads v, vt and f lines (negative indices too); ignores other lines of the format. Texture indices are
+/// kept only if every face has them.
+/// @throws InvalidInput naming file and line: missing file, a number that does not parse or is not finite, an
+///         index out of range, a face of fewer than three corners.
 ObjMesh read_obj(const std::filesystem::path& file);
 
 /// Writes positions with 9 significant digits and the polygons (with texture coordinates where present).

@@ -5,16 +5,17 @@
 
 namespace toile {
 
-Mat3 turned_by(const Vec3& turn)
+Mat3 rotation_from_vector(const Vec3& rotation_vector)
 {
-    const double angle = turn.norm();
-    return angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3(Mat3::Identity());
+    const double angle = rotation_vector.norm();
+    return angle > 0.0 ? Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix()
+                       : Mat3(Mat3::Identity());
 }
 
-Vec3 turn_of(const Mat3& R)
+Vec3 rotation_vector_of(const Mat3& R)
 {
-    const Eigen::AngleAxisd turn(R);
-    return turn.angle() * turn.axis();
+    const Eigen::AngleAxisd angle_axis(R);
+    return angle_axis.angle() * angle_axis.axis();
 }
 
 Mat3 nearest_rotation(const Mat3& A)

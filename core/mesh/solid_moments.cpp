@@ -5,15 +5,15 @@
 
 #include <Eigen/Geometry>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "core/mesh/topology.h"
 
 namespace toile {
 
 namespace {
 
-/// Least volume of a solid, of its bounding box's diagonal cubed [-]: thinner ones turn about their flat axes
-/// by rounding alone.
+/// Min volume of a solid over the cube of its bounding box's diagonal [-]. Rounding alone would rotate
+/// thinner ones about their flat axes.
 constexpr double kThinnest = 1e-9;
 
 void require_closed(const TriangleMesh& surface, const std::string& source)
@@ -34,8 +34,8 @@ SolidMoments solid_moments(const TriangleMesh& surface, const std::string& sourc
     const Bounds box = bounds(surface.positions);
     const Vec3 origin = box.center(); // near the solid, so that little cancels
 
-    // A tetrahedron (0, a, b, c) has volume a . (b x c) / 6, and its integral of X X^T is volume / 20 times
-    // the sum of the corners' squares and the square of their sum.
+    // A tetrahedron (0, a, b, c) has volume a . (b x c) / 6. Its integral of X X^T is volume / 20 times the
+    // sum of the corners' squares and the square of their sum.
     SolidMoments all;
     Vec3 first = Vec3::Zero();
     for (const Triangle& t : surface.triangles) {

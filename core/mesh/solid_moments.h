@@ -13,13 +13,13 @@ struct SolidMoments {
     Mat3 second = Mat3::Zero(); ///< integral of (X - centre) (X - centre)^T [m^5]
 };
 
-/// Exact up to rounding: the tetrahedra from a point to every triangle, with their sign, summed up (the
-/// divergence theorem) [Mirtich 1996, Fast and accurate computation of polyhedral mass properties].
+/// Moments of the solid inside a closed surface, exact up to rounding: sums the signed tetrahedra from a
+/// point to every triangle (the divergence theorem) [Mirtich 1996, Fast and accurate computation of
+/// polyhedral mass properties].
 /// @param surface  [vertices], [triangles] counter-clockwise seen from outside; several closed parts may be
-///                 one solid. Vertices that no triangle uses count for nothing.
+///                 one solid. Vertices that no triangle uses are ignored.
 /// @param source   named in errors
-/// @throws InvalidInput for a surface that is not closed (naming an edge), is turned inside out or holds no
-///         volume
+/// @throws InvalidInput for a surface that is not closed (naming an edge), is inside out or has no volume
 SolidMoments solid_moments(const TriangleMesh& surface, const std::string& source);
 
 } // namespace toile

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
 namespace toile {
 
@@ -13,7 +13,7 @@ namespace {
 struct HalfEdge {
     int low, high;
     int triangle, corner;
-    bool ascending; ///< the triangle runs it from low to high
+    bool ascending; ///< the triangle runs along it from low to high
 };
 
 std::string edge_name(const HalfEdge& half)

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 
 namespace toile {
 
@@ -34,23 +34,23 @@ struct Incidence {
     }
 };
 
-/// How a triangle surface hangs together.
+/// Adjacency of a triangle surface.
 struct Topology {
     std::vector<Edge> edges;                       ///< sorted by (smaller, larger) vertex index
     std::vector<std::array<int, 3>> triangle_edge; ///< [triangles] edge from corner k to corner k + 1
     Incidence corners_of_vertex;                   ///< per vertex: 3 * triangle + corner, ascending
 
-    /// Closed: no border edge.
+    /// True if there is no border edge.
     bool is_closed() const;
 };
 
 /// Builds the topology. O(n log n).
 /// @param source  named in errors, e.g. the file
-/// @throws InvalidInput naming the first edge with more than two triangles, or two that run it in the same
-///         direction (flipped winding).
+/// @throws InvalidInput naming the first edge with more than two triangles, or with two that run along it in
+///         the same direction (flipped winding).
 Topology build_topology(View<const Triangle> triangles, int vertex_count, const std::string& source);
 
-/// Corners (3 * triangle + corner) per vertex, ascending: where per-corner values are gathered from.
+/// Corners (3 * triangle + corner) per vertex, ascending: for gathering per-corner values.
 Incidence corners_of_vertices(View<const Triangle> triangles, int vertex_count);
 
 } // namespace toile

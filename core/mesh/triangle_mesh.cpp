@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
 namespace toile {
 

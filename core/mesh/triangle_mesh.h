@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 
 namespace toile {
 
-/// A triangle surface: positions and the triangles between them.
+/// Triangle surface: positions and the triangles between them.
 struct TriangleMesh {
     std::vector<Vec3> positions;     ///< [vertices] [m]
     std::vector<Triangle> triangles; ///< [triangles] counter-clockwise seen from outside
@@ -16,14 +16,14 @@ struct TriangleMesh {
     int triangle_count() const { return int(triangles.size()); }
 };
 
-/// A surface that moves during a time step, with positions given. Points move linearly in time.
+/// Surface that moves linearly in time from given start to given end positions of a step.
 struct MovingMesh {
     std::vector<Triangle> triangles; ///< [triangles]
     std::vector<Vec3> x_t0;          ///< [vertices] at the start of the step [m]
     std::vector<Vec3> x_t1;          ///< [vertices] at its end [m]
 };
 
-/// Longest diagonal and centre of a point set's bounding box.
+/// Bounding box of a point set.
 struct Bounds {
     Vec3 lower = Vec3::Constant(1e300);
     Vec3 upper = Vec3::Constant(-1e300);
@@ -39,13 +39,13 @@ struct Bounds {
 };
 Bounds bounds(View<const Vec3> points);
 
-/// Throws InvalidInput for what no solver can use, naming `source` and the first offending element:
-/// no triangle, an index out of range, a repeated corner, a position that is not finite, a triangle whose
-/// height is below kMinHeightRatio of its longest edge.
+/// Throws InvalidInput for a mesh that no solver can use, naming `source` and the first offending element: no
+/// triangle, an index out of range, a repeated corner, a position that is not finite, a triangle whose height
+/// is below kMinHeightRatio of its longest edge.
 void require_usable(const TriangleMesh& mesh, const std::string& source);
 
-/// Least height of a triangle over its longest edge [-]. Thinner ones count as zero-area: their rest shape
-/// has no direction left in double precision once squared twice by the bending energy.
+/// Min height of a triangle over its longest edge [-]. Thinner ones count as zero-area: the bending energy
+/// squares their rest shape twice, after which it has no direction left in double precision.
 inline constexpr double kMinHeightRatio = 1e-6;
 
 /// Area-weighted vertex normals, unit length (zero for an isolated vertex). [vertices]

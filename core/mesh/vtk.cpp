@@ -11,13 +11,13 @@
 
 #include <Eigen/Geometry>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
 namespace toile {
 
 namespace {
 
-/// VTK_TETRA.
+/// Cell type VTK_TETRA.
 constexpr int kTetrahedron = 10;
 
 /// Reads a legacy VTK file word by word, keeping the line for error messages.

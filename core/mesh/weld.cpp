@@ -10,7 +10,7 @@ namespace toile {
 
 namespace {
 
-/// Vertices hashed by grid cells of one welding distance, so that partners lie in neighbouring cells.
+/// Vertices hashed by grid cells of one welding distance, so that matches lie in neighbouring cells.
 class WeldGrid {
 public:
     WeldGrid(const std::vector<Vec3>& positions, double distance)
@@ -18,7 +18,7 @@ public:
     {
     }
 
-    /// The lowest kept vertex within the distance of p, or -1.
+    /// Lowest kept vertex within the distance of p, or -1.
     int find(const Vec3& p) const
     {
         int best = -1;
@@ -45,7 +45,7 @@ private:
                 int64_t(std::floor(p.z() / cell_size_))};
     }
 
-    /// Mixes the cell's coordinates; a collision only adds candidates.
+    /// Hash of the cell's coordinates; a collision only adds candidates.
     static uint64_t key(const std::array<int64_t, 3>& c)
     {
         return uint64_t(c[0]) * 73856093u ^ uint64_t(c[1]) * 19349663u ^ uint64_t(c[2]) * 83492791u;

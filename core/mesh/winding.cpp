@@ -7,17 +7,17 @@ namespace toile {
 
 namespace {
 
-/// One side of a face, with its end points in ascending order for matching.
+/// Side of a face, with its end points in ascending order for matching.
 struct Side {
     int low, high;
     int face;
-    bool ascending; ///< the face runs it from low to high
+    bool ascending; ///< the face runs along it from low to high
 };
 
-/// A face across an edge.
+/// Neighbour of a face across an edge.
 struct Neighbour {
     int face;
-    bool agrees; ///< it runs the shared edge the other way
+    bool agrees; ///< it runs along the shared edge in the opposite direction
 };
 
 std::vector<Side> sorted_sides(const std::vector<std::vector<int>>& faces)
@@ -55,9 +55,9 @@ std::vector<std::vector<Neighbour>> neighbours_of(const std::vector<std::vector<
     return neighbours;
 }
 
-/// The piece around `first`, and in `turned` which of its faces differ from it.
+/// Piece that contains `first`; marks in `flipped` its faces that disagree with `first`.
 std::vector<int> flood(int first, const std::vector<std::vector<Neighbour>>& neighbours,
-                       std::vector<char>& visited, std::vector<char>& turned)
+                       std::vector<char>& visited, std::vector<char>& flipped)
 {
     std::vector<int> piece{first};
     visited[first] = 1;
@@ -66,39 +66,39 @@ std::vector<int> flood(int first, const std::vector<std::vector<Neighbour>>& nei
             if (visited[neighbour.face] != 0)
                 continue;
             visited[neighbour.face] = 1;
-            turned[neighbour.face] = char((turned[piece[next]] != 0) == neighbour.agrees);
+            flipped[neighbour.face] = char((flipped[piece[next]] != 0) == neighbour.agrees);
             piece.push_back(neighbour.face);
         }
     return piece;
 }
 
-/// The other way round from the same first corner, so that a face's fan of triangles stays the same.
-void turn(std::vector<int>& corners) { std::reverse(corners.begin() + 1, corners.end()); }
+/// Reverses a face from the same first corner, so that its fan of triangles stays the same.
+void flip(std::vector<int>& corners) { std::reverse(corners.begin() + 1, corners.end()); }
 
 } // namespace
 
 int make_windings_agree(ObjMesh& mesh)
 {
     const std::vector<std::vector<Neighbour>> neighbours = neighbours_of(mesh.polygons);
-    std::vector<char> visited(mesh.polygons.size(), 0), turned(mesh.polygons.size(), 0);
-    int turned_count = 0;
+    std::vector<char> visited(mesh.polygons.size(), 0), flipped(mesh.polygons.size(), 0);
+    int flipped_count = 0;
     for (size_t f = 0; f < mesh.polygons.size(); ++f) {
         if (visited[f] != 0)
             continue;
-        const std::vector<int> piece = flood(int(f), neighbours, visited, turned);
+        const std::vector<int> piece = flood(int(f), neighbours, visited, flipped);
         const auto differing =
-            std::count_if(piece.begin(), piece.end(), [&](int face) { return turned[face] != 0; });
+            std::count_if(piece.begin(), piece.end(), [&](int face) { return flipped[face] != 0; });
         const bool keep_others = 2 * differing > std::ptrdiff_t(piece.size());
         for (const int face : piece) {
-            if ((turned[face] != 0) == keep_others)
+            if ((flipped[face] != 0) == keep_others)
                 continue;
-            turn(mesh.polygons[face]);
+            flip(mesh.polygons[face]);
             if (!mesh.polygon_uvs.empty())
-                turn(mesh.polygon_uvs[face]);
-            ++turned_count;
+                flip(mesh.polygon_uvs[face]);
+            ++flipped_count;
         }
     }
-    return turned_count;
+    return flipped_count;
 }
 
 } // namespace toile

@@ -2,30 +2,30 @@
 
 #include <utility>
 
-#include "core/backend/parallel.h"
+#include "core/compute/parallel.h"
 
 namespace toile {
 
 namespace {
 
-/// The threads that build tables of one body.
+/// Threads that build the tables of one body.
 constexpr int kThreads = 1;
 
-/// `make`, called once. For one thread at a time.
-AutoSolver::MakePlaces made_once(AutoSolver::MakePlaces make)
+/// Wrapper that calls `make` once. For one thread at a time.
+AutoSolver::MakePoints made_once(AutoSolver::MakePoints make)
 {
-    return [make = std::move(make), places = std::make_shared<std::vector<Place>>()] {
-        if (places->empty())
-            *places = make();
-        return *places;
+    return [make = std::move(make), points = std::make_shared<std::vector<EmbeddedPoint>>()] {
+        if (points->empty())
+            *points = make();
+        return *points;
     };
 }
 
 } // namespace
 
-AutoSolver::AutoSolver(MakePlaces places, std::shared_ptr<TableStore> store, TableCache::Warn warn,
+AutoSolver::AutoSolver(MakePoints points, std::shared_ptr<TableStore> store, TableCache::Warn warn,
                        Settings settings)
-    : places_(made_once(std::move(places))), warn_(std::move(warn)), settings_(std::move(settings)),
+    : points_(made_once(std::move(points))), warn_(std::move(warn)), settings_(std::move(settings)),
       background_(std::move(store), kThreads, [warnings = warnings_](const std::string& text) {
           const std::lock_guard lock(warnings->mutex);
           warnings->texts.push_back(text);
@@ -42,8 +42,8 @@ void AutoSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
     direct_.update(H, fixed);
     solves_ = 0;
 
-    // Tables are built beside the simulation: with one thread alone there is no beside.
-    if (has_failed_ || fixed.size() < settings_.least_vertices || thread_count(kCpu) < 2)
+    // Tables are built beside the simulation, which needs a second thread.
+    if (has_failed_ || fixed.size() < settings_.min_vertices || thread_count(kCpu) < 2)
         return;
     H_ = H;
     fixed_.assign(fixed.begin(), fixed.end());
@@ -63,7 +63,7 @@ void AutoSolver::solve(View<const Vec3> b, View<Vec3> x) const
 void AutoSolver::begin_step()
 {
     pass_warnings_on();
-    if (phase_ == Phase::New && solves_ >= settings_.least_solves)
+    if (phase_ == Phase::New && solves_ >= settings_.min_solves)
         find_costs();
     if (phase_ == Phase::Saving || phase_ == Phase::Building)
         take_tables();
@@ -80,18 +80,18 @@ void AutoSolver::find_costs()
     costs_ = settings_.expect(*direct_.factor());
     phase_ = costs_.pays() ? Phase::Saving : Phase::Direct;
     if (phase_ == Phase::Saving) {
-        const StageScope look("auto/look");
+        const StageScope search("auto/search");
         begin_tables(true);
     }
 }
 
-void AutoSolver::begin_tables(bool only_at_hand)
+void AutoSolver::begin_tables(bool only_stored)
 {
-    background_.start({H_, fixed_, places_, {}, only_at_hand, direct_.factor()});
+    background_.start({H_, fixed_, points_, {}, only_stored, direct_.factor()});
 }
 
-/// Takes what the background has ready, if anything. Promises are cheap: only tables that are faster now are
-/// taken, others dropped for this H.
+/// Takes tables that are ready, if any. They are timed first: if they are not faster than the factor now,
+/// they are dropped for this H.
 void AutoSolver::take_tables()
 try {
     std::shared_ptr<const QuadratureTables> tables = background_.take_if_ready();

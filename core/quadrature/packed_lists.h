@@ -2,20 +2,20 @@
 
 #include <cstdint>
 
-#include "core/backend/bits.h"
-#include "core/quadrature/leaf_sum.h"
+#include "core/compute/bits.h"
+#include "core/quadrature/clusters/leaf_sum.h"
 
 namespace toile {
 
-/// Lists of a KernelTable with a byte for every weight, which is
+/// Lists of a KernelTable with one byte per weight,
 ///
-///   base + scale (byte - 128)
+///   weight = base + scale (byte - 128)
 ///
-/// Towards a leaf all weights have one base, towards a cluster those of each function; all of an entry have
-/// one scale. What a kernel has in common between neighbours, its largest part by far where a body is free or
-/// stiff, is in the base and so in single precision.
+/// Entries towards a leaf have one base for all weights; entries towards a cluster have one base per
+/// function. Each entry has one scale. The base, in single precision, holds what neighbouring kernel values
+/// have in common: by far their largest part if a body is free or stiff.
 struct PackedView {
-    static constexpr int kWords = KernelView::kTargets / 4; ///< of four bytes, of the targets
+    static constexpr int kWords = KernelView::kTargets / 4; ///< four-byte words per row of targets
 
     View<const int> near_first;           ///< [leaves + 1] into near_leaf
     View<const int> near_leaf;            ///< source leaves
@@ -27,41 +27,40 @@ struct PackedView {
     View<const float> far_scales;         ///< [far_cluster][rank + 1] bases of the functions, scale [m/N]
 };
 
-/// Numbers that a thread loads at once.
+/// Numbers that a thread loads with one instruction.
 template <typename Number, int Count>
 struct alignas(sizeof(Number) * (Count % 4 == 0   ? 4
                                  : Count % 2 == 0 ? 2
                                                   : 1)) LoadedNumbers {
     Number number[Count];
 
-    /// @param from  aligned as this is
+    /// @param numbers  with the alignment of LoadedNumbers
     TOILE_HD static LoadedNumbers from(const Number* numbers)
     {
         return *reinterpret_cast<const LoadedNumbers*>(numbers);
     }
 };
 
-/// The rows of a leaf's list that a thread has: source nodes, or functions of clusters, next, next + step and
-/// so on.
+/// Rows of a leaf's list for one thread: source nodes, or functions of clusters, next, next + step and so on.
 struct ListRows {
     int next = 0;
     int end = 0;
     int step = 1;
 };
 
-/// LeafSum over packed lists: of all targets, from every `step`-th source node and function of a cluster.
+/// LeafSum over packed lists: all targets, from every `step`-th source node and function of a cluster.
 ///
-/// A thread has one of those at a time, and its neighbour the next: what they load is side by side. Threads
-/// that take whole entries load three times as often from places far apart. Of a few rows all is loaded
-/// before any of it is needed, so that loads don't wait for each other.
+/// A thread processes one row at a time and its neighbour the next one, so their loads are adjacent. Threads
+/// that process whole entries need three times as many loads, from scattered addresses. A few rows are loaded
+/// together before any is used, so that loads do not wait for each other.
 template <int Rank>
 struct PackedSum {
     using Targets = Floats<KernelView::kTargets>;
 
-    /// All but what bases add; what is not packed may be added to it.
+    /// Sum without the contribution of the bases; unpacked entries may be added to it.
     LeafSum<Rank, Targets> sum;
 
-    /// The rows of a leaf that are thread `thread`'s of `threads`.
+    /// Rows of a leaf for thread `thread` of `threads`.
     TOILE_HD static ListRows near_rows(const PackedView& table, int leaf, int thread, int threads)
     {
         return {table.near_first[leaf] * kNodes + thread, table.near_first[leaf + 1] * kNodes, threads};
@@ -95,7 +94,7 @@ struct PackedSum {
         });
     }
 
-    /// What has been added up along an axis.
+    /// Sum along axis a.
     TOILE_HD Targets total(int a) const
     {
         Targets all = sum.axis[a];
@@ -106,12 +105,12 @@ struct PackedSum {
 private:
     using Codes = LoadedNumbers<std::uint32_t, PackedView::kWords>;
     static constexpr int kNodes = ClusterTree::kLeaf;
-    static constexpr int kAtOnce = 3; ///< rows: with more, registers are short
+    static constexpr int kAtOnce = 3; ///< rows; more would run out of registers
 
     struct Row {
         Codes codes;
         float base, scale;
-        int value; ///< number of what it weighs
+        int value; ///< index of the value that the row weighs
     };
 
     TOILE_HD static Codes codes(const View<const std::uint32_t>& all, int k)
@@ -119,12 +118,12 @@ private:
         return Codes::from(all.data() + std::size_t(k) * PackedView::kWords);
     }
 
-    /// @param load  row k of the list
+    /// @param load  load(k): row k of the list
     template <typename Vector, typename Load>
     TOILE_HD void add_rows(const ListRows& list, View<const Vector> values, const Load& load)
     {
         for (int first = list.next; first < list.end; first += kAtOnce * list.step) {
-            Row rows[kAtOnce] = {}; // beyond the end of the list they weigh nothing
+            Row rows[kAtOnce] = {}; // rows beyond the end weigh nothing
             Vector value[kAtOnce];
             for (int j = 0; j < kAtOnce; ++j)
                 if (const int k = first + j * list.step; k < list.end)
@@ -136,8 +135,8 @@ private:
         }
     }
 
-    /// A weight is base + scale (byte - 128), and what one_and_byte() has in common of all bytes comes to
-    /// common_ as the base does.
+    /// Weight = base + scale (byte - 128). The constant part of one_and_byte() goes to common_, like the
+    /// base.
     template <typename Vector>
     TOILE_HD void add_row(const Row& row, const Vector& value)
     {
@@ -152,7 +151,7 @@ private:
         }
     }
 
-    float common_[3] = {0.0F, 0.0F, 0.0F}; ///< of all targets: what bases add
+    float common_[3] = {0.0F, 0.0F, 0.0F}; ///< sum of the bases, equal for all targets
 };
 
 } // namespace toile

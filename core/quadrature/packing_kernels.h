@@ -3,32 +3,33 @@
 #include <cmath>
 
 #include "core/quadrature/packed_lists.h"
-#include "core/quadrature/table_kernels.h"
+#include "core/quadrature/tables/table_kernels.h"
 
-/// Sorting the entries of a KernelTable into those whose weights may be bytes (PackedView) and the rest.
+/// Splits the entries of a KernelTable into those whose weights may be bytes (PackedView) and the rest.
 namespace toile {
 
-/// Which entries may be packed: those in which a byte's rounding is a small part of what clusters may leave
-/// out anyway (KernelTable::Settings::tolerance),
+/// Criterion for packing an entry: the rounding of a byte is a small fraction of the error that clusters may
+/// have (KernelTable::Settings::tolerance),
 ///
-///   sqrt(H_ii mean_C(H_jj)) scale / 2 <= kShare tolerance (|C| / 8)^(1/4)
+///   sqrt(H_ii mean_C(H_jj)) scale / 2 <= kFraction tolerance (|C| / 8)^(1/4)
 ///
-/// Asked entry by entry, for rounding weighs with the stiffness: docs/benchmarks/gpu.md has what it costs.
+/// Evaluated per entry, because the effect of rounding grows with the stiffness. Costs: docs/journal/gpu.md.
 struct PackingRule {
-    /// [-] Square sheets of all stiffnesses have next to no entry above it. At 1 contraction would suffer.
-    static constexpr double kShare = 0.1;
+    /// [-] Square sheets of all stiffnesses have next to no entry above it. At 1 the contraction would
+    /// suffer.
+    static constexpr double kFraction = 0.1;
 
     View<const double> limits;           ///< [clusters] far_limits()
-    View<const double> largest_diagonal; ///< [leaves] of H_ii
+    View<const double> largest_diagonal; ///< [leaves] maximum of H_ii
 
     TOILE_HD bool allows(int leaf, int cluster, float scale) const
     {
         const double rounding = 0.5 * double(scale);
-        return largest_diagonal[leaf] * rounding * rounding <= kShare * kShare * limits[cluster];
+        return largest_diagonal[leaf] * rounding * rounding <= kFraction * kFraction * limits[cluster];
     }
 };
 
-/// How the weights of an entry are packed: in `rows` parts with a base each.
+/// Packing of an entry's weights: `rows` parts with a base each.
 class EntryPacking {
 public:
     static constexpr int kSteps = 255; ///< of a byte
@@ -45,7 +46,7 @@ public:
     TOILE_HD float scale() const { return scale_; }
     TOILE_HD float base(int row) const { return float(double(low(row)) + 128.0 * double(scale_)); }
 
-    /// Four neighbouring weights of a row.
+    /// Codes of four neighbouring weights of a row.
     TOILE_HD std::uint32_t codes(const float* first, float base) const
     {
         std::uint32_t word = 0;
@@ -60,17 +61,17 @@ public:
 private:
     TOILE_HD float low(int row) const
     {
-        float least = weights_[row * size_];
+        float min_weight = weights_[row * size_];
         for (int i = 1; i < size_; ++i)
-            least = std::fmin(least, weights_[row * size_ + i]);
-        return least;
+            min_weight = std::fmin(min_weight, weights_[row * size_ + i]);
+        return min_weight;
     }
     TOILE_HD float high(int row) const
     {
-        float most = weights_[row * size_];
+        float max_weight = weights_[row * size_];
         for (int i = 1; i < size_; ++i)
-            most = std::fmax(most, weights_[row * size_ + i]);
-        return most;
+            max_weight = std::fmax(max_weight, weights_[row * size_ + i]);
+        return max_weight;
     }
 
     const float* weights_;
@@ -78,12 +79,12 @@ private:
     float scale_;
 };
 
-/// The entries of a leaf towards leaves, or towards clusters.
+/// Entries of all leaves towards leaves, or towards clusters.
 struct EntryList {
     View<const int> first;  ///< [leaves + 1]
     View<const int> source; ///< [entries] leaf or cluster
     View<const float> weights;
-    int rows; ///< parts of an entry's weights that have a base each
+    int rows; ///< parts of an entry's weights, with a base each
     int row_size;
 
     TOILE_HD const float* of(int entry) const
@@ -92,7 +93,7 @@ struct EntryList {
     }
     TOILE_HD EntryPacking packing(int entry) const { return {of(entry), rows, row_size}; }
 
-    /// Towards leaves, or clusters, of a table.
+    /// Lists of a table towards leaves (near) or clusters (far).
     TOILE_HD static EntryList near(const KernelView& table)
     {
         return {table.near_first, table.near_leaf, table.near_weights, 1,
@@ -104,7 +105,8 @@ struct EntryList {
     }
 };
 
-/// 1 where entry e may be packed. Clusters at the lowest level are leaves: one numbering serves both lists.
+/// Sets 1 for an entry e that may be packed. Clusters of the lowest level are leaves, so one numbering serves
+/// both lists.
 struct ChooseToPack {
     EntryList list;
     PackingRule rule;
@@ -117,35 +119,35 @@ struct ChooseToPack {
     }
 };
 
-/// Where entries go: chosen ones in their order, and the others in theirs.
-struct PackedPlaces {
+/// Output positions of the entries: packed ones and the others, each in their order.
+struct PackedSlots {
     View<const int> chosen;  ///< [entries + 1], 0 in the last
-    View<const long> before; ///< [entries + 1] chosen ones before an entry
+    View<const long> before; ///< [entries + 1] packed entries before an entry
 
     TOILE_HD int packed(int e) const { return int(before[e]); }
     TOILE_HD int rest(int e) const { return e - int(before[e]); }
 };
 
-/// Begin of the two lists of a leaf, and of what is behind the last.
+/// First entries of a leaf in the two lists; item `leaves` gives the end of the last.
 struct SplitFirsts {
-    PackedPlaces places;
+    PackedSlots slots;
     View<const int> first;
     View<int> packed_first, rest_first; ///< [leaves + 1] out
 
     TOILE_HD void operator()(int leaf) const
     {
-        packed_first[leaf] = places.packed(first[leaf]);
-        rest_first[leaf] = places.rest(first[leaf]);
+        packed_first[leaf] = slots.packed(first[leaf]);
+        rest_first[leaf] = slots.rest(first[leaf]);
     }
 };
 
-/// Puts entry e where it belongs: bytes, or the weights as they are.
+/// Writes entry e to its list, as bytes or with its weights unchanged.
 struct SplitEntry {
     EntryList list;
-    PackedPlaces places;
+    PackedSlots slots;
     bool is_near;
-    View<int> packed_source;          ///< out, as all that follow
-    View<std::uint32_t> packed_codes; ///< as PackedView's
+    View<int> packed_source;          ///< out, like the members below
+    View<std::uint32_t> packed_codes; ///< see PackedView
     View<float> packed_scales;
     View<int> rest_source;
     View<float> rest_weights;
@@ -153,20 +155,20 @@ struct SplitEntry {
     TOILE_HD void operator()(int e) const
     {
         const int size = list.rows * list.row_size;
-        if (places.chosen[e] == 0) {
-            const int to = places.rest(e);
+        if (slots.chosen[e] == 0) {
+            const int to = slots.rest(e);
             rest_source[to] = list.source[e];
             for (int i = 0; i < size; ++i)
                 rest_weights[std::size_t(to) * size + i] = list.of(e)[i];
             return;
         }
-        const int to = places.packed(e);
+        const int to = slots.packed(e);
         packed_source[to] = list.source[e];
         is_near ? pack_near(e, to) : pack_far(e, to);
     }
 
 private:
-    /// One base for all weights.
+    /// Writes one base for all weights.
     TOILE_HD void pack_near(int e, int to) const
     {
         const EntryPacking packing = list.packing(e);
@@ -178,7 +180,7 @@ private:
             packed_codes[to * kWords + word] = packing.codes(list.of(e) + 4 * word, base);
     }
 
-    /// A base for each function.
+    /// Writes one base per function.
     TOILE_HD void pack_far(int e, int to) const
     {
         const EntryPacking packing = list.packing(e);

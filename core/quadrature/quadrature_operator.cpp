@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "core/backend/parallel.h"
-#include "core/quadrature/gather_leaf.h"
+#include "core/compute/parallel.h"
+#include "core/quadrature/clusters/gather_leaf.h"
 
 namespace toile {
 
-/// P_C^T b for all clusters, leaves first.
+/// Computes P_C^T b for all clusters, leaves first.
 void QuadratureOperator::gather_moments(View<const Vec3> b, View<Vec3f> moments) const
 {
     const ClusterTree& tree = tables_->tree;

@@ -3,23 +3,23 @@
 #include <memory>
 #include <utility>
 
-#include "core/quadrature/quadrature_tables.h"
+#include "core/quadrature/tables/quadrature_tables.h"
 
 namespace toile {
 
-/// Applies finished tables: x = H^-1 b, nearly. Two passes: moments of b up the cluster tree, then a sum over
-/// each target's lists. O(n log n) numbers are read. Fixed nodes are left out of both: their kernel rows are
-/// the identity's.
+/// Approximate x = H^-1 b with finished tables. Two passes: an upward pass computes moments of b on the
+/// cluster tree, then each target sums over its lists. Reads O(n log n) numbers. Both passes leave out fixed
+/// nodes: their rows of the kernel are the identity's.
 class QuadratureOperator {
 public:
-    QuadratureOperator() = default; ///< without tables: only to be assigned to
+    QuadratureOperator() = default; ///< no tables; only for assignment
     explicit QuadratureOperator(std::shared_ptr<const QuadratureTables> tables) : tables_(std::move(tables))
     {
     }
 
     const QuadratureTables& tables() const { return *tables_; }
 
-    /// As GlobalSolver::solve(). Safe to call from several threads.
+    /// See GlobalSolver::solve(). Safe to call from several threads.
     void solve(View<const Vec3> b, View<Vec3> x) const;
 
 private:

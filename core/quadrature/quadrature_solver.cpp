@@ -4,16 +4,16 @@
 
 namespace toile {
 
-QuadratureSolver::QuadratureSolver(std::vector<Place> places, Settings settings,
+QuadratureSolver::QuadratureSolver(std::vector<EmbeddedPoint> points, Settings settings,
                                    std::shared_ptr<TableStore> store, TableListener listener)
-    : places_(std::move(places)), settings_(settings), store_(std::move(store)),
+    : points_(std::move(points)), settings_(settings), store_(std::move(store)),
       listener_(std::move(listener))
 {
 }
 
 void QuadratureSolver::update(const SparseMatrix& H, View<const unsigned char> fixed)
 {
-    operator_ = QuadratureOperator(store_->get({H, fixed, places_, settings_}, listener_));
+    operator_ = QuadratureOperator(store_->get({H, fixed, points_, settings_}, listener_));
 }
 
 } // namespace toile

@@ -6,29 +6,30 @@
 #include <limits>
 #include <vector>
 
-#include "core/backend/parallel.h"
+#include "core/compute/parallel.h"
 #include "core/linear/inverse_columns.h"
-#include "core/quadrature/gather_leaf.h"
+#include "core/quadrature/clusters/gather_leaf.h"
 
 namespace toile {
 
 namespace {
 
-/// Of the whole application to its second pass [-]: the moments.
+/// Ratio of the whole application to its second pass [-]; the rest is the moments.
 constexpr double kMoments = 1.1;
 
-/// Numbers per node that are read from near nodes, whatever the size; the others belong to clusters. Counted
-/// on grids of 5 000 to 22 500 nodes.
+/// Numbers per node that are read from near nodes, independent of the size; the others belong to clusters.
+/// Counted on grids of 5 000 to 22 500 nodes.
 constexpr double kNearGathers = 38.0;
 
-/// Of the whole build to its columns of the inverse [-]: lists and weights. 1.4 to 1.7 on those grids.
+/// Ratio of the whole build to its columns of the inverse [-]; the rest is lists and weights. 1.4 to 1.7 on
+/// those grids.
 constexpr double kLists = 1.5;
 
-/// [bytes] of weights that are read at most; larger tables are extrapolated from those. Beyond the caches of
-/// most machines, as the whole table would be.
-constexpr double kMostBytes = 64e6;
+/// [bytes] Limit of the weights that are read; larger tables are extrapolated. Exceeds the caches of most
+/// machines, as the whole table would.
+constexpr double kMaxBytes = 64e6;
 
-constexpr int kRepeats = 5; ///< of what is timed
+constexpr int kRepeats = 5; ///< of a timing
 
 template <typename Work>
 double seconds_of(const Work& work)
@@ -38,24 +39,24 @@ double seconds_of(const Work& work)
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Least of kRepeats: what interrupts only ever adds.
+/// Minimum of kRepeats timings: interruptions only add time.
 template <typename Work>
-double least_seconds_of(const Work& work)
+double min_seconds_of(const Work& work)
 {
-    double least = std::numeric_limits<double>::infinity();
+    double min_seconds = std::numeric_limits<double>::infinity();
     for (int repeat = 0; repeat < kRepeats; ++repeat)
-        least = std::min(least, seconds_of(work));
-    return least;
+        min_seconds = std::min(min_seconds, seconds_of(work));
+    return min_seconds;
 }
 
 double direct_seconds(const SupernodalFactor& factor)
 {
     const std::vector<Vec3> b(factor.permutation.size(), Vec3::Ones());
     std::vector<Vec3> x(b.size());
-    return least_seconds_of([&] { factor.solve(b, x); });
+    return min_seconds_of([&] { factor.solve(b, x); });
 }
 
-/// The first `leaves` lists of a table with `all_leaves`: near nodes, and clusters spread over all there are.
+/// The first `leaves` lists of a table with `all_leaves`: near nodes, and clusters spread over all of them.
 KernelTable table_of_expected_shape(int leaves, int all_leaves, double gathers)
 {
     KernelTable table;
@@ -80,7 +81,7 @@ double expected_quadrature_seconds(int n)
     const double gathers = expected_gathers(n);
     const int all_leaves = (n + ClusterTree::kLeaf - 1) / ClusterTree::kLeaf;
     const double leaf_bytes = gathers * KernelTable::kTargets * sizeof(float);
-    const int leaves = std::min(all_leaves, int(kMostBytes / leaf_bytes));
+    const int leaves = std::min(all_leaves, int(kMaxBytes / leaf_bytes));
     const KernelTable table = table_of_expected_shape(leaves, all_leaves, gathers);
 
     // Twice as many clusters as leaves: the tree is binary.
@@ -93,7 +94,7 @@ double expected_quadrature_seconds(int n)
     std::vector<Vec3> x(n);
     const GatherLeaf<kRank> gather{table.view(), sources, moments, nodes, x};
     const double seconds =
-        least_seconds_of([&] { parallel_for(kCpu, "quadrature/gather", leaves, gather, kLeafGrain); });
+        min_seconds_of([&] { parallel_for(kCpu, "quadrature/gather", leaves, gather, kLeafGrain); });
     return kMoments * seconds * all_leaves / leaves;
 }
 
@@ -116,7 +117,7 @@ double expected_gathers(int vertex_count) { return 168.0 * std::pow(1e-4 * verte
 
 SolveCosts expected_costs(const SupernodalFactor& factor)
 {
-    Stages unrecorded; // the run's counters are about the run's own solves
+    Stages unrecorded; // the run's counters count only the run's solves
     const Stages::Activate activate(unrecorded);
     return {direct_seconds(factor), expected_quadrature_seconds(int(factor.permutation.size())),
             expected_build_seconds(factor)};
@@ -128,7 +129,7 @@ SolveCosts measured_costs(const SupernodalFactor& factor, const QuadratureOperat
     const Stages::Activate activate(unrecorded);
     const std::vector<Vec3> b(factor.permutation.size(), Vec3::Ones());
     std::vector<Vec3> x(b.size());
-    return {direct_seconds(factor), least_seconds_of([&] { quadrature.solve(b, x); }), 0.0};
+    return {direct_seconds(factor), min_seconds_of([&] { quadrature.solve(b, x); }), 0.0};
 }
 
 } // namespace toile

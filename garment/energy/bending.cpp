@@ -4,22 +4,22 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/backend/error.h"
-#include "core/backend/parallel.h"
+#include "core/base/error.h"
+#include "core/compute/parallel.h"
 #include "garment/energy/bending_kernels.h"
-#include "garment/energy/device_elasticity.h"
+#include "garment/energy/cuda/elasticity.h"
 
-namespace toile {
+namespace toile::garment {
 
 namespace {
 
-/// Stiffest bending term of a triangle relative to one of an equilateral triangle of the mean area [-].
+/// Maximum bending stiffness of a triangle relative to an equilateral triangle of the mean area [-].
 /// Slivers would exceed it by the fourth power of their aspect ratio and ruin the conditioning of H.
 constexpr double kMaxRelativeStiffness = 1e3;
 
-/// Share of the membrane's diagonal below which bending is left out of H [-]: H then bounds the Hessian to as
-/// much, and steps up to twice the bound descend. Cotton on 1 cm cells lies at 5e-4, jersey on 6 mm cells at
-/// 2e-2.
+/// Fraction of the membrane's diagonal below which bending is left out of H [-]. H then bounds the Hessian up
+/// to that fraction, and steps up to twice the bound descend. Cotton on 1 cm cells lies at 5e-4, jersey on
+/// 6 mm cells at 2e-2.
 constexpr double kNegligible = 0.1;
 
 void require_valid(const Bending::Settings& s, const std::string& source)
@@ -33,7 +33,7 @@ void require_valid(const Bending::Settings& s, const std::string& source)
     check("weft", s.weft);
 }
 
-/// Which terms have a vertex in their stencil: those of v are term[first[v]] to term[first[v + 1]].
+/// Terms whose stencil contains a vertex: for v, term[first[v]] to term[first[v + 1]].
 struct TermsOfVertices {
     std::vector<int> first, term;
 };
@@ -79,8 +79,8 @@ SparseMatrix pattern_of(const std::vector<Bending::Term>& terms, int n)
     return K;
 }
 
-/// Adds rows^T stiffness rows. Into the matrix, not to a list of entries that is added up at the end: that
-/// would be four times as long as the matrix.
+/// Adds rows^T stiffness rows directly to the matrix. A list of triplets would be four times as long as the
+/// matrix.
 void add_block(const Bending::Term& term, SparseMatrix& K)
 {
     const CurvatureStencil& stencil = term.stencil;
@@ -114,7 +114,7 @@ std::vector<Bending::Term> Bending::terms(const RestShape& rest, const Settings&
     for (size_t t = 0; t < stencils.size(); ++t) {
         if (stencils[t].vertex.empty())
             continue;
-        // The largest diagonal entry of the block rows^T stiffness rows is limited.
+        // Limit the largest diagonal entry of the block rows^T stiffness rows.
         Vec3 stiffness = rest.areas[t] * rigidity;
         const double peak = (stiffness.transpose() * stencils[t].weights.cwiseAbs2()).maxCoeff();
         if (peak > largest)
@@ -163,9 +163,9 @@ double Bending::add_gradient(View<const Vec3> x, View<Vec3> gradient)
                           View<const int>(K_.innerIndexPtr(), int(K_.nonZeros())),
                           View<const double>(K_.valuePtr(), int(K_.nonZeros())), x};
     parallel_for(kCpu, "bending/multiply", n, [&](int i) {
-        const Vec3 own = bend.gradient(i);
-        gradient[i] += own;
-        vertex_energy_[i] = bend.energy(i, own);
+        const Vec3 vertex_gradient = bend.gradient(i);
+        gradient[i] += vertex_gradient;
+        vertex_energy_[i] = bend.energy(i, vertex_gradient);
     });
     return parallel_sum(kCpu, x.size(), 0.0, [&](int i) { return vertex_energy_[i]; });
 }
@@ -176,4 +176,4 @@ bool Bending::add_to(DeviceEnergies& energies, int first_vertex)
     return true;
 }
 
-} // namespace toile
+} // namespace toile::garment

@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "core/pd/energy.h"
+#include "core/pd/energy/energy.h"
 #include "garment/energy/curvature_stencil.h"
 #include "garment/energy/rest_shape.h"
 
-namespace toile {
+namespace toile::garment {
 
 /// Resistance of cloth to bending, quadratic in the positions and therefore constant in H.
 ///
@@ -30,9 +30,10 @@ public:
     Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings,
             const std::string& source);
 
-    /// Leaves bending out of H where it is far below the diagonal of the membrane's part [vertices] [N/m] at
-    /// every vertex: the membrane's majoriser covers bending at least ten times over, and without the second
-    /// ring of neighbours L has a third of the entries (docs/garment/bending.md). True when it did.
+    /// Leaves bending out of H if it is far below the diagonal of the membrane's part [vertices] [N/m] at
+    /// every vertex. The membrane's majoriser then covers bending at least ten times over. Without the second
+    /// ring of neighbours L has a third of the entries (docs/theory/bending.md).
+    /// @return true if bending is left out
     bool leave_to(View<const double> membrane_diagonal);
 
     std::string_view name() const override { return "garment/bending"; }
@@ -44,13 +45,13 @@ public:
     /// K [vertices x vertices] [N/m]: W = 1/2 x^T K x for x, y and z alike; rows sum to zero.
     const SparseMatrix& matrix() const { return K_; }
 
-    /// One triangle's share of W: 1/2 sum_k stiffness_k |row_k x|^2 over the rows of the stencil.
+    /// Contribution of one triangle to W: 1/2 sum_k stiffness_k |row_k x|^2 over the rows of the stencil.
     struct Term {
         CurvatureStencil stencil;
         Vec3 stiffness; ///< [N m^3] A_t (D_u, 2 sqrt(D_u D_v), D_v), less for slivers
     };
 
-    /// The shares of all triangles that have neighbours; their sum is K.
+    /// Contributions of all triangles with neighbours; their sum is K.
     /// @throws InvalidInput as the constructor does.
     static std::vector<Term> terms(const RestShape& rest, const Settings& settings,
                                    const std::string& source);
@@ -61,4 +62,4 @@ private:
     std::vector<double> vertex_energy_;
 };
 
-} // namespace toile
+} // namespace toile::garment

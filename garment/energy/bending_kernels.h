@@ -1,13 +1,13 @@
 #pragma once
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 #include "core/linear/sliced_rows.h"
 
-namespace toile {
+namespace toile::garment {
 
 /// Bending at vertex i: row i of K times the positions.
 ///
-/// Rows of K sum to zero, so differences to the own vertex replace positions: no rounding far from the
+/// Rows of K sum to zero, so differences to vertex i replace positions. This avoids rounding far from the
 /// origin.
 struct BendVertex {
     View<const int> first;    ///< [vertices + 1] entries of K's rows
@@ -15,7 +15,7 @@ struct BendVertex {
     View<const double> value; ///< [entries] [N/m]
     View<const Vec3> x;       ///< [vertices] [m]
 
-    /// Its gradient [N].
+    /// Gradient at vertex i [N].
     TOILE_HD Vec3 gradient(int i) const
     {
         const Vec3 here = x[i];
@@ -25,26 +25,26 @@ struct BendVertex {
         return sum;
     }
 
-    /// Its share of the energy 1/2 x^T K x [J].
+    /// Contribution of vertex i to the energy 1/2 x^T K x [J].
     TOILE_HD double energy(int i, const Vec3& gradient) const { return 0.5 * x[i].dot(gradient); }
 };
 
-/// BendVertex for a GPU, where bandwidth is short, by a team of threads: rows in slices, their entries in
-/// single precision.
+/// BendVertex for a GPU, by a team of threads: rows in slices, their entries in single precision to save
+/// bandwidth.
 struct BendByTeam {
-    static constexpr int kAtOnce = 6; ///< entries of a thread: all of most rows, which have some 23
+    static constexpr int kAtOnce = 6; ///< entries per thread: covers most rows, which have about 23
 
-    View<const int> first;        ///< [slices + 1] of SlicedRows; vertices behind them do not bend
+    View<const int> first;        ///< [slices + 1] of SlicedRows; vertices beyond them do not bend
     View<const RowEntry> entries; ///< of K [N/m]
     View<const Vec3> x;           ///< [vertices] [m]
 
-    /// Of a vertex: what a thread finds, or all.
-    struct Share {
+    /// Result at a vertex: partial sum of one thread, or the total.
+    struct Partial {
         Vec3 gradient; ///< [N]
         double energy; ///< [J]
     };
     template <typename Team>
-    TOILE_HD Share of_thread(int i, const Team& team) const
+    TOILE_HD Partial of_thread(int i, const Team& team) const
     {
         const int slice = i / SlicedRows::kRows;
         if (slice + 1 >= first.size())
@@ -60,13 +60,14 @@ struct BendByTeam {
     }
 
     template <typename Team>
-    TOILE_HD static Share of_all(const Team& team, const Share& own)
+    TOILE_HD static Partial of_all(const Team& team, const Partial& local)
     {
-        Share all{own.gradient, team.sum(1, own.energy)}; // where digits cancel, before they are dropped
+        Partial all{local.gradient,
+                    team.sum(1, local.energy)}; // digits cancel here, so sum before rounding to float
         for (int a = 0; a < 3; ++a)
-            all.gradient[a] = double(team.sum(1, float(own.gradient[a])));
+            all.gradient[a] = double(team.sum(1, float(local.gradient[a])));
         return all;
     }
 };
 
-} // namespace toile
+} // namespace toile::garment

@@ -5,42 +5,42 @@
 
 #include <Eigen/Dense>
 
-namespace toile {
+namespace toile::garment {
 
 namespace {
 
 /// Weight of the edge-averaged operator beside the exact fit [-]. The six points of a fit may lie nearly on a
-/// conic, and a border triangle has fewer than six; larger is smoother there and less exact on irregular
-/// meshes.
+/// conic, and a border triangle has fewer than six. A larger weight is smoother in those cases and less exact
+/// on irregular meshes.
 constexpr double kAveragedWeight = 0.05;
 
-/// Weights below this share of the stencil's largest are dropped [-]: on regular meshes the outer ring
+/// Weights below this fraction of the stencil's largest are dropped [-]: on regular meshes the outer ring
 /// cancels exactly, and dropping it halves the entries of H.
 constexpr double kNegligibleWeight = 1e-10;
 
-/// Corners of triangle t in its own material axes.
+/// Corners of triangle t in its material axes.
 std::array<Vec2, 3> flat_corners(const RestShape& rest, int t)
 {
     return {Vec2(0.0, 0.0), Vec2(rest.edges[t].col(0)), Vec2(rest.edges[t].col(1))};
 }
 
-/// The other triangle at edge k of t, or -1 at the border.
+/// Triangle across edge k of t, or -1 at the border.
 int neighbour(const RestShape& rest, int t, int k)
 {
     const Edge& edge = rest.topology.edges[rest.topology.triangle_edge[t][k]];
     return edge.triangle[0] == t ? edge.triangle[1] : edge.triangle[0];
 }
 
-/// Which edge of triangle s is edge k of its neighbour t.
+/// Index in triangle s of the edge that is edge k of its neighbour t.
 int shared_edge(const RestShape& rest, int t, int k, int s)
 {
     const std::array<int, 3>& edges = rest.topology.triangle_edge[s];
     return int(std::find(edges.begin(), edges.end(), rest.topology.triangle_edge[t][k]) - edges.begin());
 }
 
-/// Position of the vertex across edge k, unfolded into the plane of triangle t: same place along the shared
-/// edge and same height above it. Every triangle's handedness is its own, so mirrored pattern pieces unfold
-/// alike.
+/// Position of the vertex across edge k, unfolded into the plane of triangle t: same position along the
+/// shared edge and same height above it. The handedness of each triangle is independent, so mirrored pattern
+/// pieces unfold identically.
 Vec2 unfold(const RestShape& rest, int t, int k, int s, int m)
 {
     const std::array<Vec2, 3> ours = flat_corners(rest, t);
@@ -51,7 +51,7 @@ Vec2 unfold(const RestShape& rest, int t, int k, int s, int m)
     const double height =
         std::abs(their_edge.x() * to_flap.y() - their_edge.y() * to_flap.x()) / their_edge.norm();
 
-    // The edge runs backwards in the neighbour: its corner m is our corner k + 1.
+    // The edge is reversed in the neighbour: its corner m is our corner k + 1.
     const Vec2 our_edge = ours[k] - ours[(k + 1) % 3];
     Vec2 away = Vec2(-our_edge.y(), our_edge.x()).normalized();
     if (away.dot(ours[(k + 2) % 3] - ours[k]) > 0.0)
@@ -66,7 +66,7 @@ struct Deviation {
     double height = 0.0; ///< of the vertex above the edge [m]
 };
 
-/// The quadratic through a triangle and its neighbours' far vertices.
+/// The quadratic through a triangle and the opposite vertices of its neighbours.
 struct Fit {
     std::array<Deviation, 3> deviation;
     Mat3 slopes;  ///< fit's slopes across the edges, by deviations [1/m]
@@ -80,7 +80,7 @@ Fit fit_triangle(const RestShape& rest, int t)
     const std::array<Vec2, 3> corner = flat_corners(rest, t);
     const Mat2 to_barycentric = rest.edges_inv[t];
     Fit result;
-    Mat3 deviations = Mat3::Zero(); // of the far vertices, by second derivatives
+    Mat3 deviations = Mat3::Zero(); // of the opposite vertices, by second derivatives
     Mat3 averaged = Mat3::Zero();   // second derivatives of the edge-averaged operator, by deviations
     for (int k = 0; k < 3; ++k) {
         const Vec2 edge = corner[(k + 1) % 3] - corner[k];
@@ -117,7 +117,7 @@ Fit fit_triangle(const RestShape& rest, int t)
     return result;
 }
 
-/// Sums weights per vertex while a stencil is put together.
+/// Accumulates weights per vertex while a stencil is assembled.
 class StencilSum {
 public:
     void add(const Vec3& factor, const Deviation& deviation)
@@ -148,9 +148,9 @@ public:
 private:
     Vec3& column(int v)
     {
-        const auto place = std::find(vertex_.begin(), vertex_.end(), v);
-        if (place != vertex_.end())
-            return columns_[place - vertex_.begin()];
+        const auto found = std::find(vertex_.begin(), vertex_.end(), v);
+        if (found != vertex_.end())
+            return columns_[found - vertex_.begin()];
         vertex_.push_back(v);
         columns_.push_back(Vec3::Zero());
         return columns_.back();
@@ -162,18 +162,18 @@ private:
 
 CurvatureStencil assemble(const RestShape& rest, const std::vector<Fit>& fits, int t)
 {
-    const Fit& own = fits[t];
+    const Fit& fit = fits[t];
     StencilSum sum;
     for (int k = 0; k < 3; ++k) {
-        const Vec3 hessian = own.hessian.col(k);
+        const Vec3 hessian = fit.hessian.col(k);
         const int s = neighbour(rest, t, k);
-        const double share = s < 0 ? 1.0 : 0.5;
+        const double fraction = s < 0 ? 1.0 : 0.5;
         for (int j = 0; j < 3; ++j)
-            sum.add(share * own.slopes(k, j) * hessian, own.deviation[j]);
+            sum.add(fraction * fit.slopes(k, j) * hessian, fit.deviation[j]);
         if (s < 0)
             continue;
 
-        sum.add(0.5 / own.deviation[k].height * hessian, own.deviation[k]);
+        sum.add(0.5 / fit.deviation[k].height * hessian, fit.deviation[k]);
         const int e = shared_edge(rest, t, k, s);
         for (int j = 0; j < 3; ++j)
             sum.add(-0.5 * fits[s].slopes(e, j) * hessian, fits[s].deviation[j]);
@@ -197,4 +197,4 @@ std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest)
     return stencils;
 }
 
-} // namespace toile
+} // namespace toile::garment

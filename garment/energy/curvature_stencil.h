@@ -4,7 +4,7 @@
 
 #include "garment/energy/rest_shape.h"
 
-namespace toile {
+namespace toile::garment {
 
 /// Second derivatives of a function on one triangle as weights on the vertices around it.
 struct CurvatureStencil {
@@ -14,20 +14,19 @@ struct CurvatureStencil {
 
 /// Stencils of all triangles, from the slopes phi across the triangle's edges:
 ///
-///   S_t = sum_k (l_k / A) phi_tk m_k m_k^T          (divergence theorem; m_k outward edge normals in the
-///   plane)
+///   S_t = sum_k (l_k / A) phi_tk m_k m_k^T     (divergence theorem; m_k in-plane outward edge normals)
 ///
 /// phi_tk is the slope of the surface across edge k at its midpoint, relative to the plane of triangle t. Two
-/// conditions make an operator converge on any triangulation: S_t exact for quadratics, and the slopes of
-/// both sides adding up to the whole jump theta_k, so that sum_t A_t S_t telescopes. The edge-averaged
-/// operator phi = theta / 2 [Grinspun et al. 2006] has only the second (10 to 20 % too stiff on irregular
-/// meshes), the quadratic through the triangle's six vertices only the first (5 to 12 % too soft, at every
-/// resolution). Both hold for the fit's slopes, symmetrised across each edge:
+/// conditions make an operator converge on any triangulation. S_t must be exact for quadratics. The slopes
+/// of both sides must add up to the whole jump theta_k, so that sum_t A_t S_t telescopes. The edge-averaged
+/// operator phi = theta / 2 [Grinspun et al. 2006] meets only the second (10 to 20 % too stiff on irregular
+/// meshes). The quadratic through the triangle's six vertices meets only the first (5 to 12 % too soft, at
+/// every resolution). The slopes of that fit, symmetrised across each edge, meet both:
 ///
 ///   phi_tk = ( theta_k + fit_t(k) - fit_s(k) ) / 2,   s the triangle across edge k
 ///
-/// which is within 1 % on the same meshes and converges (docs/garment/bending.md). At the border phi is the
-/// fit's own slope: the moment-free edge.
+/// The result is within 1 % on the same meshes and converges (docs/journal/bending.md). At the border phi is
+/// the fit's own slope: the moment-free edge.
 std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest);
 
-} // namespace toile
+} // namespace toile::garment

@@ -4,12 +4,12 @@
 
 #include <Eigen/LU>
 
-#include "core/backend/error.h"
-#include "core/backend/parallel.h"
-#include "garment/energy/device_elasticity.h"
+#include "core/base/error.h"
+#include "core/compute/parallel.h"
+#include "garment/energy/cuda/elasticity.h"
 #include "garment/energy/membrane_lanes.h"
 
-namespace toile {
+namespace toile::garment {
 
 namespace {
 
@@ -103,4 +103,4 @@ bool Membrane::add_to(DeviceEnergies& energies, int first_vertex)
     return true;
 }
 
-} // namespace toile
+} // namespace toile::garment

@@ -3,12 +3,12 @@
 #include <memory>
 #include <vector>
 
-#include "core/pd/energy.h"
+#include "core/pd/energy/energy.h"
 #include "garment/energy/membrane_kernels.h"
 #include "garment/energy/rest_shape.h"
 #include "garment/energy/stretch_curvature.h"
 
-namespace toile {
+namespace toile::garment {
 
 /// Resistance of woven cloth to in-plane stretch and shear, as a Projective Dynamics energy.
 ///
@@ -50,4 +50,4 @@ private:
     std::vector<StretchCurvature> curvature_; ///< [triangles] scratch
 };
 
-} // namespace toile
+} // namespace toile::garment

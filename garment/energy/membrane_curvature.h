@@ -4,16 +4,16 @@
 
 #include "garment/energy/membrane_kernels.h"
 
-namespace toile {
+namespace toile::garment {
 
-/// Relative difference of two principal stretches below which they count as one [-]: their eigenvectors are
-/// then rounding noise.
+/// Relative difference below which two principal stretches count as equal [-]: their eigenvectors are then
+/// rounding noise.
 constexpr double kSameStretch = 1e-9;
 
-/// How the closest isometry R of a deformation gradient F = U diag(sigma) V^T turns with F. Its derivative
-/// has three eigenvalues that are not zero [Smith et al. 2019 have them for 3 x 3]:
+/// Derivative of the closest isometry R of a deformation gradient F = U diag(sigma) V^T with respect to F. It
+/// has three non-zero eigenvalues [Smith et al. 2019 give them for 3 x 3]:
 ///
-///   twist              2 / (sigma_1 + sigma_2), along the mode (R J) / sqrt(2), J the turn by 90 degrees
+///   twist              2 / (sigma_1 + sigma_2), along the mode (R J) / sqrt(2), J the rotation by 90 degrees
 ///   out of the plane   1 / sigma_1, 1 / sigma_2: S^(-1) with S = V diag(sigma) V^T
 template <typename T>
 struct IsometryDerivative {
@@ -21,7 +21,7 @@ struct IsometryDerivative {
     T S00, S01, S11;              ///< S^(-1)
     T twist;                      ///< half the eigenvalue above
     T alpha, beta;                ///< out of the plane: alpha I + beta S^(-1)
-    decltype(T() < T()) is_valid; ///< false: collapsed, the rest means nothing
+    decltype(T() < T()) is_valid; ///< false: collapsed, the other members are meaningless
 };
 
 /// @param is_projected  cuts every eigenvalue at 1, which makes I - dR/dF positive semi-definite
@@ -62,13 +62,13 @@ TOILE_HD IsometryDerivative<T> isometry_derivative(const Mat32Of<T>& F, bool is_
     return D;
 }
 
-/// Second derivative of the membrane's energy per area by F: blocks for the columns u, v. [N/m]
+/// Second derivative of the membrane's energy per area by F: blocks for the columns u and v [N/m].
 template <typename T>
 struct MembraneCurvature {
     Mat3Of<T> uu, uv, vv;
 };
 
-/// With a = F u / |F u| and n the normal, per term:
+/// Second derivative of the membrane's energy per area. With a = F u / |F u| and n the normal, per term:
 ///
 ///   warp   w ( a a^T + (1 - 1/|F u|) (I - a a^T) );   weft likewise
 ///   shear  w ( I - dR/dF )
@@ -87,8 +87,8 @@ TOILE_HD MembraneCurvature<T> membrane_curvature(const Mat32Of<T>& F, const Memb
     H.vv =
         (-w * D.twist) * (D.R0 * D.R0.transpose()) - (w * (D.alpha + D.beta * D.S11)) * (n * n.transpose());
 
-    // The identity of the shear term; all that a collapsed triangle has.
-    Mat3Of<T>* own[2] = {&H.uu, &H.vv};
+    // Add the identity of the shear term; a collapsed triangle has nothing else.
+    Mat3Of<T>* diagonal[2] = {&H.uu, &H.vv};
     const double yarn[2] = {weights.warp, weights.weft};
     for (int k = 0; k < 2; ++k) {
         const T length = square_root(F.col(k).squaredNorm());
@@ -97,12 +97,12 @@ TOILE_HD MembraneCurvature<T> membrane_curvature(const Mat32Of<T>& F, const Memb
         T tension = one - inverse;
         if (is_projected)
             tension = select(tension > zero, tension, zero);
-        *own[k] += (T(yarn[k]) * (one - tension)) * (along * along.transpose());
+        *diagonal[k] += (T(yarn[k]) * (one - tension)) * (along * along.transpose());
         const T identity = T(weights.shear) + T(yarn[k]) * tension;
         for (int i = 0; i < 3; ++i)
-            (*own[k])(i, i) += identity;
+            (*diagonal[k])(i, i) += identity;
     }
     return H;
 }
 
-} // namespace toile
+} // namespace toile::garment

@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "core/backend/lanes.h"
+#include "core/compute/lanes.h"
 
-namespace toile {
+namespace toile::garment {
 
-/// det(C + d I) at or below which a triangle counts as collapsed [-]; 4 at rest. Raising it freezes thin
-/// triangles; lowering it lets rounding noise choose their direction.
+/// Largest det(C + d I) of a collapsed triangle [-]; 4 in the rest shape. A larger value freezes thin
+/// triangles; a smaller one lets rounding noise choose their direction.
 constexpr double kCollapsed = 1e-24;
 
 /// Isometry closest to the deformation gradient F.
@@ -79,7 +79,7 @@ TOILE_HD MembraneResponse<T> project_membrane(const Mat32Of<T>& F, const Mat2Of<
     return response;
 }
 
-/// The gradients at two corners of a triangle in single precision, two loads of 16 bytes. Where forces of
+/// Gradients at two corners of a triangle in single precision, two loads of 16 bytes. Where the forces of
 /// neighbours cancel, a vertex of cloth at 1e4 N/m keeps four digits of its weight.
 struct CornerPair {
     PaddedVec3 column[2];
@@ -92,9 +92,8 @@ struct CornerPair {
     }
 };
 
-/// project_membrane() triangle by triangle, as a GPU runs it; the CPU takes eight at a time
-/// (membrane_lanes.h).
-/// @tparam Corners  of which corner_gradient is: Mat32 or CornerPair
+/// project_membrane() for one triangle, as a GPU runs it; the CPU runs eight at a time (membrane_lanes.h).
+/// @tparam Corners  type of corner_gradient: Mat32 or CornerPair
 template <typename Corners>
 struct ProjectMembraneTriangle {
     View<const Vec3> x;        ///< [vertices] positions [m]
@@ -106,24 +105,24 @@ struct ProjectMembraneTriangle {
     View<Corners> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
     View<double> energy;           ///< [triangles] out: [J]
 
-    /// What no launch changes.
-    struct Early {
+    /// Inputs that no launch changes.
+    struct Prologue {
         Triangle tri;
         Mat2 rest_inv;
         double area;
         MembraneWeights weights;
     };
-    TOILE_HD Early early(int t) const { return {tri[t], rest_inv[t], area[t], weights[fabric[t]]}; }
+    TOILE_HD Prologue prologue(int t) const { return {tri[t], rest_inv[t], area[t], weights[fabric[t]]}; }
 
-    TOILE_HD void operator()(int t) const { (*this)(t, early(t)); }
-    TOILE_HD void operator()(int t, const Early& own) const
+    TOILE_HD void operator()(int t) const { (*this)(t, prologue(t)); }
+    TOILE_HD void operator()(int t, const Prologue& local) const
     {
         Mat32 edges;
-        edges.col(0) = x[own.tri[1]] - x[own.tri[0]];
-        edges.col(1) = x[own.tri[2]] - x[own.tri[0]];
-        const Mat32 F = edges.lazyProduct(own.rest_inv);
+        edges.col(0) = x[local.tri[1]] - x[local.tri[0]];
+        edges.col(1) = x[local.tri[2]] - x[local.tri[0]];
+        const Mat32 F = edges.lazyProduct(local.rest_inv);
         const MembraneResponse<double> response =
-            project_membrane<double>(F, own.rest_inv, own.area, own.weights);
+            project_membrane<double>(F, local.rest_inv, local.area, local.weights);
         energy[t] = response.energy;
         corner_gradient[t] = response.corner_gradient;
     }
@@ -151,4 +150,4 @@ struct GatherCorners {
     }
 };
 
-} // namespace toile
+} // namespace toile::garment

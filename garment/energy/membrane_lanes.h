@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "core/pd/energy.h"
+#include "core/pd/energy/energy.h"
 #include "garment/energy/membrane_curvature.h"
 #include "garment/energy/stretch_curvature.h"
 
-namespace toile {
+namespace toile::garment {
 
 /// Deformation gradients of a block of eight triangles.
 inline Mat32Of<Lanes> deformation_gradients(View<const Vec3> x, View<const Triangle> tri,
@@ -71,4 +71,4 @@ struct CurveMembrane {
     }
 };
 
-} // namespace toile
+} // namespace toile::garment

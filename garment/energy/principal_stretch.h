@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 
-namespace toile {
+namespace toile::garment {
 
 /// Singular values and right singular vectors of a deformation gradient F [3 x 2], closed form.
 struct PrincipalStretch {
@@ -26,8 +26,8 @@ struct PrincipalStretch {
 
 TOILE_HD inline PrincipalStretch principal_stretch(const Mat32& F)
 {
-    // Eigenvectors of C = F^T F from its deviator (half, b), at half of that one's angle: the larger of the
-    // sine and the cosine first, where nothing cancels.
+    // Compute the eigenvectors of C = F^T F from its deviator (half, b): they lie at half the deviator's
+    // angle. The larger of sine and cosine comes first, since it has no cancellation.
     const double a = F.col(0).squaredNorm(), b = F.col(0).dot(F.col(1)), c = F.col(1).squaredNorm();
     const double mean = 0.5 * (a + c), half = 0.5 * (a - c);
     const double radius = std::sqrt(half * half + b * b);
@@ -47,7 +47,7 @@ TOILE_HD inline PrincipalStretch principal_stretch(const Mat32& F)
     return result;
 }
 
-/// Largest singular value of F alone.
+/// Largest singular value of F, without the singular vectors.
 TOILE_HD inline double largest_stretch(const Mat32& F)
 {
     const double a = F.col(0).squaredNorm(), b = F.col(0).dot(F.col(1)), c = F.col(1).squaredNorm();
@@ -55,4 +55,4 @@ TOILE_HD inline double largest_stretch(const Mat32& F)
     return std::sqrt(0.5 * (a + c) + std::sqrt(half * half + b * b));
 }
 
-} // namespace toile
+} // namespace toile::garment

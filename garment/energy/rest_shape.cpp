@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace toile {
+namespace toile::garment {
 
 namespace {
 
@@ -25,10 +25,10 @@ Vec3 warp_direction(const Vec3& normal, const Vec3& grain)
     return normal.unitOrthogonal();
 }
 
-/// Longest edge over its altitude of the thinnest triangle that is no sliver [-].
+/// Maximum longest edge over its altitude of a triangle that is not a sliver [-].
 constexpr double kMaxAspect = 100.0;
 
-/// Derives areas and topology once triangles and edges are known.
+/// Completes a shape that has triangles and edges with areas and topology.
 RestShape complete(RestShape shape, int vertex_count, const std::string& source)
 {
     shape.topology = build_topology(shape.triangles, vertex_count, source);
@@ -79,7 +79,7 @@ RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<T
     return complete(std::move(shape), int(uv.size()), source);
 }
 
-RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, double turn,
+RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, double rotation,
                                 const std::string& source)
 {
     require_usable(mesh, source);
@@ -90,7 +90,7 @@ RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, dou
         const Vec3 e2 = mesh.positions[t[2]] - mesh.positions[t[0]];
         const Vec3 normal = e1.cross(e2).normalized();
         const Vec3 straight = warp_direction(normal, grain);
-        const Vec3 u = std::cos(turn) * straight + std::sin(turn) * normal.cross(straight);
+        const Vec3 u = std::cos(rotation) * straight + std::sin(rotation) * normal.cross(straight);
         const Vec3 v = normal.cross(u);
         Mat2 edges;
         edges << u.dot(e1), u.dot(e2), v.dot(e1), v.dot(e2);
@@ -99,4 +99,4 @@ RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, dou
     return complete(std::move(shape), mesh.vertex_count(), source);
 }
 
-} // namespace toile
+} // namespace toile::garment

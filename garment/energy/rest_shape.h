@@ -6,12 +6,12 @@
 #include "core/mesh/topology.h"
 #include "core/mesh/triangle_mesh.h"
 
-namespace toile {
+namespace toile::garment {
 
 /// Undeformed cloth, triangle by triangle, in material axes: u along the warp, v along the weft.
 ///
-/// Only edge lengths and the grain direction of each triangle matter, so that a flat pattern, a set of sewn
-/// panels and a garment modelled in 3-D are all the same to the energies.
+/// The energies depend only on edge lengths and the grain direction of each triangle. A flat pattern, a set
+/// of sewn panels and a garment modelled in 3-D are therefore equivalent to them.
 struct RestShape {
     std::vector<Triangle> triangles; ///< [triangles]
     std::vector<Mat2> edges;         ///< [triangles] columns x1 - x0, x2 - x0 in (u, v) [m]
@@ -35,8 +35,8 @@ struct RestShape {
         return now * edges_inv[triangle];
     }
 
-    /// Longest edge more than a hundred times its altitude. The strain across such a triangle is the noise of
-    /// its neighbours' motion; the strain along it is theirs too, so limits on them suffice.
+    /// True if the longest edge is over a hundred times its altitude. The strain across such a triangle is
+    /// noise of its neighbours' motion. The strain along it is theirs too, so limits on them suffice.
     bool is_sliver(int triangle) const;
 
     /// Lumped vertex areas: a third of every adjacent triangle [m^2].
@@ -50,12 +50,12 @@ struct RestShape {
 RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<Triangle>& triangles,
                                 const std::string& source);
 
-/// Rest shape of a surface in space; every triangle is laid flat on its own.
-/// @param grain  direction that the warp follows, projected onto each triangle; triangles perpendicular to it
-///               use the next coordinate axis
-/// @param turn   angle [rad] by which the warp is then turned in the cloth, counter-clockwise seen from
-/// outside
-RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, double turn,
+/// Rest shape of a surface in space; every triangle is flattened individually.
+/// @param grain     direction that the warp follows, projected onto each triangle; triangles perpendicular to
+///                  it use the next coordinate axis
+/// @param rotation  angle [rad] by which the warp is then rotated in the cloth, counter-clockwise seen from
+///                  outside
+RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, double rotation,
                                 const std::string& source);
 
-} // namespace toile
+} // namespace toile::garment

@@ -1,8 +1,8 @@
 #include "garment/energy/springs.h"
 
-#include "garment/energy/device_springs.h"
+#include "garment/energy/cuda/springs.h"
 
-namespace toile {
+namespace toile::garment {
 
 Springs::Springs(const std::vector<Spring>& springs)
 {
@@ -12,21 +12,21 @@ Springs::Springs(const std::vector<Spring>& springs)
 
 void Springs::add_hessian(Triplets& H) const
 {
-    for (const PlacedSpring& spring : springs_)
+    for (const AnchorSpring& spring : springs_)
         H.emplace_back(spring.vertex, spring.vertex, spring.stiffness);
 }
 
 double Springs::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
     double value = 0.0;
-    for (const PlacedSpring& spring : springs_)
+    for (const AnchorSpring& spring : springs_)
         value += spring.pull(x, gradient);
     return value;
 }
 
 void Springs::add_curvature(View<const Vec3>, Definiteness, BlockWindow K)
 {
-    for (const PlacedSpring& spring : springs_)
+    for (const AnchorSpring& spring : springs_)
         K.block(spring.vertex, spring.vertex).diagonal().array() += spring.stiffness;
 }
 
@@ -36,4 +36,4 @@ bool Springs::add_to(DeviceEnergies& energies, int first_vertex)
     return true;
 }
 
-} // namespace toile
+} // namespace toile::garment

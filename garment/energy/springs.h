@@ -2,15 +2,14 @@
 
 #include <vector>
 
-#include "core/pd/energy.h"
+#include "core/pd/energy/energy.h"
 #include "garment/energy/springs_kernels.h"
 
-namespace toile {
+namespace toile::garment {
 
-/// Springs of zero rest length from vertices to moving points: attachments that give.
+/// Springs of zero rest length from vertices to moving points: compliant attachments.
 ///
-///   W = sum_j k_j/2 |x_i(j) - target_j|^2                       [Bouaziz et al. 2014, sec. 4, positional
-///   constraint]
+///   W = sum_j k_j/2 |x_i(j) - target_j|^2          [Bouaziz et al. 2014, sec. 4, positional constraint]
 class Springs : public Energy {
 public:
     struct Spring {
@@ -23,21 +22,21 @@ public:
     std::string_view name() const override { return "garment/springs"; }
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
-    void add_constant_curvature(Triplets&) const override {} ///< springs are released
+    void add_constant_curvature(Triplets&) const override {} ///< springs may be released
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
     bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
-    /// Moves the far ends [springs] [m].
+    /// Moves the target of a spring [m].
     void set_target(int spring, const Vec3& target) { springs_[spring].target = target; }
 
-    /// Lets go of a vertex. H keeps the spring's share, which is still a valid bound.
+    /// Releases a vertex. H keeps the spring's contribution, which is still a valid bound.
     void release(int spring) { springs_[spring].stiffness = 0.0; }
 
-    /// As they are now; stiffness 0 where released.
-    const std::vector<PlacedSpring>& placed() const { return springs_; }
+    /// Current springs [springs]; stiffness 0 if released.
+    const std::vector<AnchorSpring>& anchors() const { return springs_; }
 
 private:
-    std::vector<PlacedSpring> springs_;
+    std::vector<AnchorSpring> springs_;
 };
 
-} // namespace toile
+} // namespace toile::garment

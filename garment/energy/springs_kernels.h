@@ -1,11 +1,11 @@
 #pragma once
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 
-namespace toile {
+namespace toile::garment {
 
-/// A spring of zero rest length and where it pulls to.
-struct PlacedSpring {
+/// A spring of zero rest length between a vertex and a target position.
+struct AnchorSpring {
     int vertex = 0;
     double stiffness = 0.0;            ///< [N/m]
     Vec3 target = Vec3(0.0, 0.0, 0.0); ///< [m]
@@ -19,10 +19,10 @@ struct PlacedSpring {
     }
 };
 
-/// The springs of the k-th held vertex.
-struct PullHeldVertex {
-    View<const PlacedSpring> springs; ///< ascending by vertex
-    View<const int> first;            ///< [held vertices + 1]
+/// Gradient and energy of the springs of the k-th attached vertex.
+struct PullAnchoredVertex {
+    View<const AnchorSpring> springs; ///< ascending by vertex
+    View<const int> first;            ///< [attached vertices + 1]
     View<const Vec3> x;               ///< [vertices] [m]
     View<Vec3> gradient;              ///< [vertices] added to [N]
     View<double> energy;              ///< [vertices] added to [J]
@@ -34,4 +34,4 @@ struct PullHeldVertex {
     }
 };
 
-} // namespace toile
+} // namespace toile::garment

@@ -7,7 +7,7 @@
 #include "core/linear/block_matrix.h"
 #include "garment/energy/principal_stretch.h"
 
-namespace toile {
+namespace toile::garment {
 
 /// Second derivative of an energy per area of a triangle by its deformation gradient F: 3 x 3 blocks for the
 /// columns u and v of F; vu is the transpose of uv. [N/m]
@@ -50,14 +50,14 @@ inline void add_triangle_couplings(View<const Triangle> triangles,
 }
 
 /// Second derivative of 1/2 |G - P(G)|^2, P the projection onto the matrices with singular values up to
-/// `allowed`. With f(s) = max(s - allowed, 0) of the singular values s_1 >= s_2 its eigenvalues are, all of
-/// them at least zero because the set is convex:
+/// `allowed`. Let f(s) = max(s - allowed, 0) of the singular values s_1 >= s_2. The eigenvalues are at least
+/// zero because the set is convex:
 ///
 ///   stretches          f'(s_1), f'(s_2)
 ///   twist, flip        (f_1 + f_2) / (s_1 + s_2),  (f_1 - f_2) / (s_1 - s_2)
 ///   out of the plane   f_1 / s_1, f_2 / s_2
 ///
-/// after [Smith et al. 2019], whose 3 x 3 case has three of each. Zero where s_1 is allowed.
+/// after [Smith et al. 2019], whose 3 x 3 case has three of each. Zero if s_1 <= allowed.
 inline StretchCurvature excess_curvature(const Mat32& G, double allowed)
 {
     StretchCurvature H;
@@ -85,4 +85,4 @@ inline StretchCurvature excess_curvature(const Mat32& G, double allowed)
     return H;
 }
 
-} // namespace toile
+} // namespace toile::garment

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
-namespace toile {
+namespace toile::garment {
 
 void Fabric::validate(const std::string& source) const
 {
@@ -58,4 +58,4 @@ const Fabric& fabric_preset(const std::string& name, const std::string& source)
                        (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?") + " Fabrics: " + list);
 }
 
-} // namespace toile
+} // namespace toile::garment

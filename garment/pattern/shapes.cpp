@@ -5,9 +5,9 @@
 #include <numbers>
 #include <string>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
-namespace toile {
+namespace toile::garment {
 
 namespace {
 
@@ -19,14 +19,14 @@ int pieces(double length, double resolution) { return std::max(1, int(std::lroun
 struct Ring {
     int first = 0;
     int count = 1;
-    double shift = 0.0; ///< angle of the first vertex in spacings
+    double shift = 0.0; ///< angle of the first vertex, in vertex spacings
 
     int vertex(int k) const { return first + k % count; }
-    /// Middle between vertices k and k + 1 [turns].
+    /// Middle between vertices k and k + 1 [revolutions].
     double middle(int k) const { return (k + 0.5 + shift) / count; }
 };
 
-/// Triangulates the band between two rings by advancing on the one that is behind in angle.
+/// Triangulates the band between two rings by advancing on the ring that is behind in angle.
 void bridge_rings(const Ring& inner, const Ring& outer, std::vector<Triangle>& out)
 {
     int i = 0, o = 0;
@@ -113,4 +113,4 @@ TriangleMesh cut_skirt(const SkirtCut& cut)
     return mesh;
 }
 
-} // namespace toile
+} // namespace toile::garment

@@ -2,10 +2,10 @@
 
 #include "core/mesh/triangle_mesh.h"
 
-namespace toile {
+namespace toile::garment {
 
-/// Cloth cut by ourselves: flat sheets and a simple skirt, as triangle surfaces in space (Y up, normals up or
-/// outwards). Their own shape is their rest shape.
+/// Generated cloth: flat sheets and a simple skirt, as triangle surfaces in space (Y up, normals up or
+/// outwards). Their initial shape is their rest shape.
 
 /// A rectangle in the plane y = 0, centred, `size` [m] along x and z, edges of about `resolution` [m].
 /// Diagonals alternate, so that neither is preferred.
@@ -23,7 +23,7 @@ struct SkirtCut {
 
 /// A skirt as a truncated cone around the Y axis: waist at y = 0, hem below. A quarter, half or full circle
 /// skirt is the cone whose length equals (hem_radius - waist_radius) / sin(opening).
-/// @throws InvalidInput when the hem lies further out than the length reaches.
+/// @throws InvalidInput if the hem lies further out than the length reaches.
 TriangleMesh cut_skirt(const SkirtCut& cut);
 
-} // namespace toile
+} // namespace toile::garment

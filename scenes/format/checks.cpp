@@ -19,37 +19,38 @@ namespace {
 
 using namespace scene;
 
-/// Vertices of one generated cloth above which a typing error is more likely than patience.
-constexpr double kMostVertices = 5e6;
+/// Maximum number of vertices of one generated cloth; more is probably a typing error.
+constexpr double kMaxVertices = 5e6;
 
-void check_keyframes(const Document& document, const std::string& place, const std::vector<Keyframe>& frames)
+void check_keyframes(const Document& document, const std::string& key_path,
+                     const std::vector<Keyframe>& frames)
 {
     for (size_t i = 1; i < frames.size(); ++i)
         if (frames[i].time <= frames[i - 1].time)
-            document.refuse(below(below(below(place, "keyframes"), i), "time"),
+            document.refuse(below(below(below(key_path, "keyframes"), i), "time"),
                             as_written(frames[i].time) + " s does not follow " +
                                 as_written(frames[i - 1].time) +
                                 " s; put keyframes in ascending order of time");
 }
 
-void check_extension(const Document& document, const std::string& place, const std::filesystem::path& file,
+void check_extension(const Document& document, const std::string& key_path, const std::filesystem::path& file,
                      const std::vector<std::string>& known)
 {
     std::string extension = file.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
-    if (!holds(known, extension))
-        document.refuse(place, as_written(file.string()) + " is of an unknown format; use " +
-                                   enumerate(known, "or"));
+    if (!contains(known, extension))
+        document.refuse(key_path, as_written(file.string()) + " is of an unknown format; use " +
+                                      enumerate(known, "or"));
 }
 
 // --- avatars ---
 
-/// Keys that only an animated figure understands, with what shows that they were used.
-void check_avatar_motion(const Document& document, const std::string& place, const Avatar& avatar)
+/// Checks keys that only an animated avatar supports.
+void check_avatar_motion(const Document& document, const std::string& key_path, const Avatar& avatar)
 {
     const bool from_file = std::holds_alternative<std::filesystem::path>(avatar.shape);
-    const bool is_figure = from_file || std::holds_alternative<Mannequin>(avatar.shape);
+    const bool is_skinned = from_file || std::holds_alternative<Mannequin>(avatar.shape);
     const Preroll& preroll = avatar.preroll;
     const std::pair<const char*, bool> used[] = {
         {"clip", !avatar.clip.empty()},
@@ -59,40 +60,41 @@ void check_avatar_motion(const Document& document, const std::string& place, con
         {"start", avatar.start != 0.0},
         {"preroll", preroll.hold != 0.0 || preroll.ease != 0.0 || preroll.from_bind}};
     for (const auto& [key, is_used] : used) {
-        if (is_used && !is_figure)
-            document.refuse(below(place, key), "a shape has no clips; move it with keyframes");
+        if (is_used && !is_skinned)
+            document.refuse(below(key_path, key), "a shape has no clips; move it with keyframes");
         if (is_used && avatar.clip.empty())
-            document.refuse(below(place, key), "has no effect without a clip; name the clip to play");
+            document.refuse(below(key_path, key), "has no effect without a clip; name the clip to play");
     }
-    if (!avatar.keyframes.empty() && (!avatar.clip.empty() || (is_figure && !from_file)))
-        document.refuse(below(place, "keyframes"),
-                        "an animated figure is not moved by keyframes; remove them " +
+    if (!avatar.keyframes.empty() && (!avatar.clip.empty() || (is_skinned && !from_file)))
+        document.refuse(below(key_path, "keyframes"),
+                        "an animated avatar is not moved by keyframes; remove them " +
                             std::string("or the clip"));
-    if (!avatar.exclude_bones.empty() && !is_figure)
-        document.refuse(below(place, "exclude_bones"), "a shape has no bones");
+    if (!avatar.exclude_bones.empty() && !is_skinned)
+        document.refuse(below(key_path, "exclude_bones"), "a shape has no bones");
     if (avatar.unit && !from_file)
-        document.refuse(below(place, "unit"), "only a file has a unit; lengths here are in metres");
+        document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
 }
 
-void check_avatars(const Document& document, const Scene& scene)
+void check_avatars(const Document& document, const scenes::Scene& scene)
 {
     check_names(document, "avatars", names_of(scene.avatars));
     for (size_t i = 0; i < scene.avatars.size(); ++i) {
         const Avatar& avatar = scene.avatars[i];
-        const std::string place = below("avatars", i);
+        const std::string key_path = below("avatars", i);
         if (avatar.name == kFixed)
-            document.refuse(below(place, "name"), "\"fixed\" stands for the world in attachments; choose " +
-                                                      std::string("another name"));
+            document.refuse(below(key_path, "name"),
+                            "\"fixed\" stands for the world in attachments; choose " +
+                                std::string("another name"));
         if (const auto* file = std::get_if<std::filesystem::path>(&avatar.shape))
-            check_extension(document, below(place, "file"), *file, {".glb", ".gltf", ".fbx", ".obj"});
-        check_avatar_motion(document, place, avatar);
-        check_keyframes(document, place, avatar.keyframes);
+            check_extension(document, below(key_path, "file"), *file, {".glb", ".gltf", ".fbx", ".obj"});
+        check_avatar_motion(document, key_path, avatar);
+        check_keyframes(document, key_path, avatar.keyframes);
     }
 }
 
 // --- cloths ---
 
-/// Vertices that a generated shape has, to a few per cent: area over that of two equilateral triangles.
+/// Vertices of a generated shape, to a few per cent: area over that of two equilateral triangles.
 double vertices_of(const ClothShape& shape)
 {
     const auto count = [](double area, double resolution) {
@@ -107,54 +109,55 @@ double vertices_of(const ClothShape& shape)
     return 0.0;
 }
 
-void check_skirt(const Document& document, const std::string& place, const Skirt& skirt)
+void check_skirt(const Document& document, const std::string& key_path, const Skirt& skirt)
 {
     const double widest = skirt.waist_radius + skirt.length;
     if (skirt.hem_radius < skirt.waist_radius || skirt.hem_radius > widest)
-        document.refuse(below(place, "hem_radius"),
+        document.refuse(below(key_path, "hem_radius"),
                         as_written(skirt.hem_radius) + " m does not fit the cloth; give a radius from " +
                             as_written(skirt.waist_radius) + " (waist_radius) to " + as_written(widest) +
                             " (waist_radius + length)");
 }
 
-void check_cloths(const Document& document, const Scene& scene)
+void check_cloths(const Document& document, const scenes::Scene& scene)
 {
     if (scene.cloths.empty() && scene.solids.empty())
         document.refuse("cloths", "the list is empty; add a cloth");
     check_names(document, "cloths", names_of(scene.cloths));
     for (size_t i = 0; i < scene.cloths.size(); ++i) {
         const Cloth& cloth = scene.cloths[i];
-        const std::string place = below("cloths", i);
+        const std::string key_path = below("cloths", i);
         if (const auto* file = std::get_if<std::filesystem::path>(&cloth.shape))
-            check_extension(document, below(place, "file"), *file, {".obj"});
+            check_extension(document, below(key_path, "file"), *file, {".obj"});
         else if (cloth.unit != LengthUnit::Metre)
-            document.refuse(below(place, "unit"), "only a file has a unit; lengths here are in metres");
+            document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
         if (const auto* skirt = std::get_if<Skirt>(&cloth.shape))
-            check_skirt(document, below(place, "skirt"), *skirt);
-        if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMostVertices)
-            document.refuse(place, "resolution and subdivide make more than 5 million vertices; choose a " +
-                                       std::string("coarser resolution"));
+            check_skirt(document, below(key_path, "skirt"), *skirt);
+        if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMaxVertices)
+            document.refuse(key_path,
+                            "resolution and subdivide make more than 5 million vertices; choose a " +
+                                std::string("coarser resolution"));
     }
 }
 
 // --- solids ---
 
-/// Their names are those of caches and of friction pairs, so no cloth or avatar has them.
-void check_solids(const Document& document, const Scene& scene)
+/// Checks solids. Their names serve caches and friction pairs, so no cloth or avatar may share them.
+void check_solids(const Document& document, const scenes::Scene& scene)
 {
     check_names(document, "solids", names_of(scene.solids));
     const std::vector<std::string> cloths = names_of(scene.cloths), avatars = names_of(scene.avatars);
     for (size_t i = 0; i < scene.solids.size(); ++i) {
         const Solid& solid = scene.solids[i];
-        const std::string place = below("solids", i);
-        if (holds(cloths, solid.name) || holds(avatars, solid.name))
-            document.refuse(below(place, "name"),
+        const std::string key_path = below("solids", i);
+        if (contains(cloths, solid.name) || contains(avatars, solid.name))
+            document.refuse(below(key_path, "name"),
                             as_written(solid.name) +
                                 " is the name of a cloth or avatar; choose another name");
         if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
-            check_extension(document, below(place, "file"), *file, {".obj", ".vtk"});
+            check_extension(document, below(key_path, "file"), *file, {".obj", ".vtk"});
         else if (solid.unit != LengthUnit::Metre)
-            document.refuse(below(place, "unit"), "only a file has a unit; lengths here are in metres");
+            document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
     }
     if (scene.solids.empty())
         return;
@@ -170,11 +173,11 @@ void check_solids(const Document& document, const Scene& scene)
 
 // --- fabrics ---
 
-/// Every base is a preset, every cloth's fabric exists, and the numbers make a possible material.
-void check_fabrics(const Document& document, const Scene& scene)
+/// Checks that every base is a preset, every cloth's fabric exists, and the numbers make a possible material.
+void check_fabrics(const Document& document, const scenes::Scene& scene)
 {
     std::vector<std::string> presets;
-    for (const toile::Fabric& fabric : fabric_presets())
+    for (const garment::Fabric& fabric : garment::fabric_presets())
         presets.push_back(fabric.name);
     for (const auto& [name, fabric] : scene.fabrics)
         require_known(document, below(below("fabrics", name), "base"), "preset", fabric.base, presets);
@@ -185,28 +188,29 @@ void check_fabrics(const Document& document, const Scene& scene)
     known.insert(known.end(), presets.begin(), presets.end());
     for (size_t i = 0; i < scene.cloths.size(); ++i) {
         require_known(document, below(below("cloths", i), "fabric"), "fabric", scene.cloths[i].fabric, known);
-        static_cast<void>(fabric_of(scene, scene.cloths[i]));
+        static_cast<void>(scenes::fabric_of(scene, scene.cloths[i]));
     }
 }
 
 // --- attachments ---
 
-void check_selection(const Document& document, const std::string& place, const Selection& select,
+void check_selection(const Document& document, const std::string& key_path, const Selection& select,
                      const std::vector<std::string>& avatars)
 {
     if (const auto* box = std::get_if<SelectBox>(&select.by);
         box != nullptr && (box->lower.array() > box->upper.array()).any())
-        document.refuse(below(place, "box"), "a coordinate of lower exceeds that of upper; exchange them");
+        document.refuse(below(key_path, "box"), "a coordinate of lower exceeds that of upper; exchange them");
     if (const auto* near = std::get_if<SelectNearAvatar>(&select.by))
-        require_known(document, below(below(place, "all_within"), "avatar"), "avatar", near->avatar, avatars);
+        require_known(document, below(below(key_path, "all_within"), "avatar"), "avatar", near->avatar,
+                      avatars);
     const auto* vertices = std::get_if<std::vector<int>>(&select.by);
     const auto* points = std::get_if<std::vector<Vec3>>(&select.by);
     if ((vertices != nullptr && vertices->empty()) || (points != nullptr && points->empty()))
-        document.refuse(below(place, vertices != nullptr ? "vertices" : "nearest"),
+        document.refuse(below(key_path, vertices != nullptr ? "vertices" : "nearest"),
                         "the list is empty; name at least one or remove the attachment");
 }
 
-void check_attachments(const Document& document, const Scene& scene)
+void check_attachments(const Document& document, const scenes::Scene& scene)
 {
     const std::vector<std::string> cloths = names_of(scene.cloths);
     const std::vector<std::string> avatars = names_of(scene.avatars);
@@ -214,44 +218,43 @@ void check_attachments(const Document& document, const Scene& scene)
     targets.emplace_back(kFixed);
     for (size_t i = 0; i < scene.attachments.size(); ++i) {
         const Attachment& attachment = scene.attachments[i];
-        const std::string place = below("attachments", i);
-        require_known(document, below(place, "cloth"), "cloth", attachment.cloth, cloths);
-        check_selection(document, below(place, "select"), attachment.select, avatars);
-        require_known(document, below(place, "to"), "avatar", attachment.to, targets);
+        const std::string key_path = below("attachments", i);
+        require_known(document, below(key_path, "cloth"), "cloth", attachment.cloth, cloths);
+        check_selection(document, below(key_path, "select"), attachment.select, avatars);
+        require_known(document, below(key_path, "to"), "avatar", attachment.to, targets);
         if (!attachment.keyframes.empty() && attachment.to != kFixed)
-            document.refuse(below(place, "keyframes"),
-                            "an avatar carries these vertices already; remove the " +
+            document.refuse(below(key_path, "keyframes"),
+                            "an avatar moves these vertices already; remove the " +
                                 std::string("keyframes or write \"to\": \"fixed\""));
-        check_keyframes(document, place, attachment.keyframes);
+        check_keyframes(document, key_path, attachment.keyframes);
     }
 }
 
 // --- contact ---
 
-void check_contact(const Document& document, const Scene& scene)
+void check_contact(const Document& document, const scenes::Scene& scene)
 {
     const std::vector<std::string> avatars = names_of(scene.avatars), solids = names_of(scene.solids);
     std::vector<std::string> known = avatars;
     known.insert(known.end(), solids.begin(), solids.end());
     for (const Cloth& cloth : scene.cloths)
-        if (!holds(known, cloth.fabric))
+        if (!contains(known, cloth.fabric))
             known.push_back(cloth.fabric);
     const std::vector<FrictionPair>& pairs = scene.contact.friction_pairs;
     for (size_t i = 0; i < pairs.size(); ++i) {
-        const std::string place = below(below(below("contact", "friction_pairs"), i), "between");
+        const std::string key_path = below(below(below("contact", "friction_pairs"), i), "between");
         if (pairs[i].between.size() != 2)
-            document.refuse(place,
-                            std::to_string(pairs[i].between.size()) + " names; friction is between two");
+            document.refuse(key_path, std::to_string(pairs[i].between.size()) + " names; give exactly two");
         for (const std::string& name : pairs[i].between)
-            require_known(document, place, "fabric in use, avatar or solid", name, known);
-        if (holds(avatars, pairs[i].between[0]) && holds(avatars, pairs[i].between[1]))
-            document.refuse(place, "avatars don't rub on each other; name a fabric or solid");
+            require_known(document, key_path, "fabric in use, avatar or solid", name, known);
+        if (contains(avatars, pairs[i].between[0]) && contains(avatars, pairs[i].between[1]))
+            document.refuse(key_path, "avatars have no friction with each other; name a fabric or solid");
     }
 }
 
 // --- export ---
 
-void check_exports(const Document& document, const Scene& scene)
+void check_exports(const Document& document, const scenes::Scene& scene)
 {
     std::vector<std::string> cloths = names_of(scene.cloths);
     for (const Solid& solid : scene.solids)
@@ -259,8 +262,8 @@ void check_exports(const Document& document, const Scene& scene)
     std::set<std::filesystem::path> seen;
     for (size_t i = 0; i < scene.exports.size(); ++i) {
         const Export& entry = scene.exports[i];
-        const std::string place = below("export", i);
-        const std::string at_file = below(place, "file");
+        const std::string key_path = below("export", i);
+        const std::string at_file = below(key_path, "file");
         check_extension(document, at_file, entry.file, {".pc2", ".mdd", ".obj"});
         const std::filesystem::path file = entry.file.lexically_normal();
         if (file.is_absolute() || *file.begin() == "..")
@@ -270,18 +273,18 @@ void check_exports(const Document& document, const Scene& scene)
             document.refuse(at_file, as_written(entry.file.string()) +
                                          " is written by an earlier entry; choose " + "another file");
         if (!entry.cloth.empty())
-            require_known(document, below(place, "cloth"), scene.solids.empty() ? "cloth" : "cloth or solid",
-                          entry.cloth, cloths);
+            require_known(document, below(key_path, "cloth"),
+                          scene.solids.empty() ? "cloth" : "cloth or solid", entry.cloth, cloths);
         else if (cloths.size() > 1)
-            document.refuse(place, "the scene has " + std::to_string(cloths.size()) +
-                                       (scene.solids.empty() ? " cloths" : " cloths and solids") +
-                                       "; name the one to write with the key \"cloth\"");
+            document.refuse(key_path, "the scene has " + std::to_string(cloths.size()) +
+                                          (scene.solids.empty() ? " cloths" : " cloths and solids") +
+                                          "; name the one to write with the key \"cloth\"");
     }
 }
 
 } // namespace
 
-void require_consistent(const Document& document, const Scene& scene)
+void require_consistent(const Document& document, const scenes::Scene& scene)
 {
     check_avatars(document, scene);
     check_cloths(document, scene);

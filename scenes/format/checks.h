@@ -5,9 +5,9 @@
 
 namespace toile::scene_format {
 
-/// Checks what no key can tell alone: names that must be unique or exist, keys that exclude each other,
-/// keyframes in order, meshes of a size that a machine can hold.
+/// Checks that involve several keys: names that must be unique or exist, keys that exclude each other,
+/// keyframes in order, meshes of a feasible size.
 /// @throws InvalidInput for the first contradiction, in the order of the document.
-void require_consistent(const Document& document, const Scene& scene);
+void require_consistent(const Document& document, const scenes::Scene& scene);
 
 } // namespace toile::scene_format

@@ -2,24 +2,24 @@
 
 #include "scenes/format/field.h"
 
-/// The scene file, said once: every key with its member, its allowed values and a sentence for the user.
+/// Single description of the scene file: every key with its member, its allowed values and a sentence.
 ///
 /// describe(visitor, object) calls, in the order of the documentation,
-///   visitor.field(key, member, [range,] sentence)      may be absent, keeps its default then
+///   visitor.field(key, member, [range,] sentence)       optional; absent keeps the default
 ///   visitor.required(key, member, [range,] sentence)
 ///   visitor.number_or_off(key, member, range, sentence) a number or the word "off"
 ///   visitor.pair(key, member, range, sentence)          {"warp": number, "weft": number}, each optional
 ///   visitor.one_of(variant, Alternative...)             exactly one of the keys, which chooses the member
 ///   visitor.version(key, number, sentence)              must be present and equal
-/// and never reads the object itself, so that a visitor may come without one. Visitors: keys.h, reader.h,
-/// schema.cpp.
+/// describe() never reads the object itself, so a visitor needs none. Visitors: keys.h, reader.h,
+/// schema_writer.h.
 namespace toile::scene_format {
 
 template <typename V>
 void describe(V& v, Keyframe& k)
 {
     v.required("time", k.time, kTime, "Seconds from sample 0.");
-    v.field("translate", k.translate, kPlace, "Added to the object's own translate.");
+    v.field("translate", k.translate, kPosition, "Added to the object's own translate.");
     v.field("rotate_deg", k.rotate_deg, kAngle, "Added to the object's own rotate_deg.");
 }
 
@@ -44,14 +44,14 @@ void describe(V& v, Air& a)
 template <typename V>
 void describe(V& v, Mannequin& m)
 {
-    v.field("height", m.height, between(1.0, 2.5, "m"), "Crown above soles.");
+    v.field("height", m.height, between(1.0, 2.5, "m"), "Height from the soles to the crown.");
 }
 
 template <typename V>
 void describe(V& v, Plane& p)
 {
     v.field("preview_size", p.preview_size, above_zero(1000.0, "m"),
-            "Side of the square that pictures show; contact knows no border.");
+            "Side of the square drawn in pictures; for contact the plane is infinite.");
 }
 
 template <typename V>
@@ -76,9 +76,9 @@ void describe(V& v, Box& b)
 template <typename V>
 void describe(V& v, Preroll& p)
 {
-    v.field("hold", p.hold, between(0.0, 60.0, "s"), "Time of standing still before the clip moves.");
+    v.field("hold", p.hold, between(0.0, 60.0, "s"), "Time at rest before the clip starts.");
     v.field("ease", p.ease, between(0.0, 60.0, "s"),
-            "Time of the blend from the bind pose and of speeding up, each.");
+            "Duration of the blend from the bind pose and of the acceleration, each.");
     v.field("from_bind", p.from_bind, "Stand in the bind pose first and blend into the clip's pose.");
 }
 
@@ -88,24 +88,26 @@ void describe(V& v, Avatar& a)
     v.required("name", a.name, "Name, for attachments and messages.");
     v.one_of(a.shape, Alternative<std::filesystem::path>{"file", "Body to load: .glb, .gltf, .fbx or .obj."},
              Alternative<Mannequin>{"mannequin",
-                                    "The built-in figure; its clips are walk_in_place, walk and turn."},
+                                    "The built-in mannequin; its clips are walk_in_place, walk and turn."},
              Alternative<Plane>{"plane", "Endless floor: y = 0, solid below."},
              Alternative<Sphere>{"sphere", "Sphere."}, Alternative<Capsule>{"capsule", "Capsule along Y."},
              Alternative<Box>{"box", "Box with edges along the axes."});
     v.field("unit", a.unit, "Length unit of the file; absent: what its format says (.fbx cm, others m).");
     v.field("scale", a.scale, above_zero(1e6), "Factor on the file's lengths.");
-    v.field("translate", a.translate, kPlace, "Moves the avatar, after scale and rotate_deg.");
-    v.field("rotate_deg", a.rotate_deg, kAngle, "Turns about the fixed X axis, then Y, then Z.");
+    v.field("translate", a.translate, kPosition, "Moves the avatar, after scale and rotate_deg.");
+    v.field("rotate_deg", a.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
     v.field("clip", a.clip, "Animation to play, by name; empty: the bind pose.");
     v.field("loop", a.loop, "Repeat the clip; otherwise its last pose stays.");
-    v.field("accumulate_root", a.accumulate_root, "A repeated walk goes on instead of jumping back.");
+    v.field("accumulate_root", a.accumulate_root,
+            "Repeated cycles continue the root motion instead of jumping back.");
     v.field("speed", a.speed, between(0.0, 10.0),
             "Seconds of the clip per second of the scene; 0 freezes it.");
-    v.field("start", a.start, kTime, "Time in the clip at which it begins.");
-    v.field("preroll", a.preroll, "How the figure comes from rest into its clip.");
+    v.field("start", a.start, kTime, "Time in the clip at which playback begins.");
+    v.field("preroll", a.preroll, "Start of the avatar from a standstill into its clip.");
     v.field("keyframes", a.keyframes, "Moves a shape or a body without animation.");
-    v.field("exclude_bones", a.exclude_bones,
-            "Cloth passes through what follows these bones of the figure, or bones below them; it is drawn.");
+    v.field(
+        "exclude_bones", a.exclude_bones,
+        "Cloth passes through the faces that follow these bones or bones below them; pictures show them.");
     v.field("friction", a.friction, between(0.0, 10.0), "Coulomb coefficient; absent: contact.friction.");
     v.field("color", a.color, kColor, "Red, green, blue in pictures.");
 }
@@ -114,14 +116,14 @@ template <typename V>
 void describe(V& v, Rectangle& r)
 {
     v.field("size", r.size, above_zero(100.0, "m"), "Lengths along X (warp) and Z (weft).");
-    v.field("resolution", r.resolution, kResolution, "Edge length wanted in the mesh.");
+    v.field("resolution", r.resolution, kResolution, "Target edge length of the mesh.");
 }
 
 template <typename V>
 void describe(V& v, Disc& d)
 {
     v.field("radius", d.radius, above_zero(100.0, "m"), "Radius about the origin.");
-    v.field("resolution", d.resolution, kResolution, "Edge length wanted in the mesh.");
+    v.field("resolution", d.resolution, kResolution, "Target edge length of the mesh.");
 }
 
 template <typename V>
@@ -131,7 +133,7 @@ void describe(V& v, Skirt& s)
     v.field("hem_radius", s.hem_radius, above_zero(10.0, "m"),
             "Radius of the hem's cone, from waist_radius to waist_radius + length.");
     v.field("length", s.length, above_zero(10.0, "m"), "Along the cloth, from waist to hem.");
-    v.field("resolution", s.resolution, kResolution, "Edge length wanted in the mesh.");
+    v.field("resolution", s.resolution, kResolution, "Target edge length of the mesh.");
 }
 
 template <typename V>
@@ -144,18 +146,18 @@ void describe(V& v, Cloth& c)
         Alternative<Rectangle>{"rectangle", "Flat rectangle, horizontal, about the origin."},
         Alternative<Disc>{"disc", "Flat disc, horizontal, about the origin."},
         Alternative<Skirt>{"skirt", "Conical skirt about the Y axis, waist at y = 0, hanging down."});
-    v.field("subdivide", c.subdivide, between(0, 4), "Times every triangle is split into four.");
+    v.field("subdivide", c.subdivide, between(0, 4), "Number of times every triangle is split into four.");
     v.field("unit", c.unit, "Length unit of the file.");
     v.field("scale", c.scale, above_zero(1e6), "Factor on the cloth's lengths, at rest too.");
-    v.field("translate", c.translate, kPlace, "Moves the cloth, after scale and rotate_deg.");
-    v.field("rotate_deg", c.rotate_deg, kAngle, "Turns about the fixed X axis, then Y, then Z.");
+    v.field("translate", c.translate, kPosition, "Moves the cloth, after scale and rotate_deg.");
+    v.field("rotate_deg", c.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
     v.field("fabric", c.fabric, "A key of fabrics or the name of a preset.");
-    v.field("grain_deg", c.grain_deg, kAngle, "Turns the warp direction in the cloth's plane.");
+    v.field("grain_deg", c.grain_deg, kAngle, "Rotation of the warp direction in the cloth's plane.");
     v.field("thickness", c.thickness, above_zero(0.05, "m"), "Replaces the fabric's thickness.");
     v.field("layer", c.layer, between(-100, 100),
-            "Where cloths cross at the start, the one of the higher layer is brought outside.");
+            "If cloths cross at the start, the repair moves the one with the higher layer outside.");
     v.field("color", c.color, kColor, "Red, green, blue in pictures.");
-    v.field("pattern", c.pattern, "What pictures show on the cloth.");
+    v.field("pattern", c.pattern, "Pattern of the cloth in pictures.");
 }
 
 template <typename V>
@@ -169,13 +171,14 @@ void describe(V& v, Solid& s)
              Alternative<Box>{"box", "Box with edges along the axes."});
     v.field("unit", s.unit, "Length unit of the file.");
     v.field("scale", s.scale, above_zero(1e6), "Factor on the solid's lengths.");
-    v.field("translate", s.translate, kPlace, "Moves the solid, after scale and rotate_deg.");
-    v.field("rotate_deg", s.rotate_deg, kAngle, "Turns about the fixed X axis, then Y, then Z.");
+    v.field("translate", s.translate, kPosition, "Moves the solid, after scale and rotate_deg.");
+    v.field("rotate_deg", s.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
     v.field("density", s.density, above_zero(1e5, "kg/m^3"), "Mass per volume.");
-    v.field("velocity", s.velocity, between(-100.0, 100.0, "m/s"), "Of its centre of mass, at the start.");
+    v.field("velocity", s.velocity, between(-100.0, 100.0, "m/s"),
+            "Velocity of its centre of mass at the start.");
     v.field("spin", s.spin, between(-1000.0, 1000.0, "rad/s"), "Angular velocity at the start.");
     v.field("friction", s.friction, between(0.0, 10.0),
-            "Coulomb coefficient with what no friction pair names, the lesser one of two solids; absent: "
+            "Coulomb coefficient if no friction pair applies; two solids use the smaller one. Absent: "
             "contact.friction, or the avatar's.");
     v.field("color", s.color, kColor, "Red, green, blue in pictures.");
 }
@@ -183,7 +186,7 @@ void describe(V& v, Solid& s)
 template <typename V>
 void describe(V& v, Fabric& f)
 {
-    // Threads pull and bend independently; both directions of a pair share one range and one sentence.
+    // Warp and weft are independent; both directions of a pair share one range and one sentence.
     const Range bend = between(0.0, 1.0, "N m");
     v.field("base", f.base, "Preset that gives every number left out here.");
     v.field("areal_density", f.areal_density, above_zero(10.0, "kg/m^2"), "Mass per area.");
@@ -191,24 +194,23 @@ void describe(V& v, Fabric& f)
     v.field("shear", f.shear, kStiffness, "Resistance to shear between warp and weft.");
     v.pair("bend", f.bend, bend, "Bending rigidity across the threads; 0 turns bending off.");
     v.field("strain_limit", f.strain_limit, between(1.001, 10.0),
-            "Largest length over rest length, e.g. 1.06.");
+            "Maximum length over rest length, e.g. 1.06.");
     v.field("thickness", f.thickness, above_zero(0.05, "m"), "Thickness of the cloth.");
-    v.field("damping", f.damping, between(0.0, 1000.0, "1/s"),
-            "Rate at which velocities die away, air apart.");
+    v.field("damping", f.damping, between(0.0, 1000.0, "1/s"), "Decay rate of velocities, besides air drag.");
 }
 
 template <typename V>
 void describe(V& v, SelectBox& b)
 {
-    v.required("lower", b.lower, kPlace, "Corner with the least coordinates.");
-    v.required("upper", b.upper, kPlace, "Corner with the greatest coordinates.");
+    v.required("lower", b.lower, kPosition, "Corner with the minimum coordinates.");
+    v.required("upper", b.upper, kPosition, "Corner with the maximum coordinates.");
 }
 
 template <typename V>
 void describe(V& v, SelectNearAvatar& n)
 {
     v.required("avatar", n.avatar, "Name of the avatar.");
-    v.required("distance", n.distance, between(0.0, 10.0, "m"), "Largest distance from its surface.");
+    v.required("distance", n.distance, between(0.0, 10.0, "m"), "Maximum distance from its surface.");
 }
 
 template <typename V>
@@ -219,7 +221,7 @@ void describe(V& v, Selection& s)
                                            between(0, 1e8)},
              Alternative<SelectBox>{"box", "Vertices that start inside a box of the world."},
              Alternative<std::vector<Vec3>>{
-                 "nearest", "For each point of the world the vertex that starts nearest.", kPlace},
+                 "nearest", "For each point of the world the vertex nearest to it at the start.", kPosition},
              Alternative<SelectNearAvatar>{"all_within", "Vertices that start near an avatar."});
 }
 
@@ -228,10 +230,11 @@ void describe(V& v, Attachment& a)
 {
     v.required("cloth", a.cloth, "Name of the cloth.");
     v.required("select", a.select, "Which of its vertices.");
-    v.field("to", a.to, "\"fixed\": held in the world; or the name of the avatar that carries them.");
-    v.field("keyframes", a.keyframes, "Moves the held vertices; needs \"to\": \"fixed\".");
-    v.field("release", a.release, kTime, "Time at which the vertices are let go; absent: never.");
-    v.field("stiffness", a.stiffness, kStiffness, "Hold by a spring per vertex; absent: hold exactly.");
+    v.field("to", a.to,
+            "\"fixed\": attached to the world; or the name of the avatar whose surface moves them.");
+    v.field("keyframes", a.keyframes, "Moves the attached vertices; needs \"to\": \"fixed\".");
+    v.field("release", a.release, kTime, "Time at which the attachment ends; absent: never.");
+    v.field("stiffness", a.stiffness, kStiffness, "Attach by a spring per vertex; absent: attach exactly.");
 }
 
 template <typename V>
@@ -246,14 +249,13 @@ template <typename V>
 void describe(V& v, Contact& c)
 {
     v.field("gap", c.gap, between(0.0, 0.1, "m"),
-            "Kept between cloth or solid and avatar, beyond half the cloth's thickness. Cloths keep their "
-            "thickness; solids half of this around them.");
-    v.field("stiffness", c.stiffness, between(0.001, 1000.0),
-            "Factor on the stiffness that the solver chooses.");
+            "Distance kept between cloth or solid and avatar, plus half the cloth's thickness. Two cloths "
+            "keep their thickness instead; a solid adds half of this value.");
+    v.field("stiffness", c.stiffness, between(0.001, 1000.0), "Factor on the solver's default stiffness.");
     v.field("friction", c.friction, between(0.0, 10.0),
-            "Coulomb coefficient of avatars and solids that give none, and between cloths.");
-    v.field("friction_pairs", c.friction_pairs, "Friction of two materials in particular.");
-    v.field("self", c.self, "Cloth touches itself and other cloth. Not with xpbd and vbd.");
+            "Coulomb coefficient of avatars and solids without their own, and between cloths.");
+    v.field("friction_pairs", c.friction_pairs, "Friction of particular pairs of materials.");
+    v.field("self", c.self, "Contact of cloth with itself and other cloth. Not with xpbd and vbd.");
     v.field("repair_start", c.repair_start,
             "Move cloth that starts inside avatars or through cloth; otherwise only report it.");
 }
@@ -261,9 +263,9 @@ void describe(V& v, Contact& c)
 template <typename V>
 void describe(V& v, Sleep& s)
 {
-    v.field("enabled", s.enabled, "Skip the work for cloth that has come to rest.");
+    v.field("enabled", s.enabled, "Skip the steps of cloth that has come to rest.");
     v.field("speed", s.speed, above_zero(1.0, "m/s"),
-            "Cloth whose fastest vertex stays slower counts as resting.");
+            "Cloth falls asleep if its fastest vertex stays slower than this.");
 }
 
 template <typename V>
@@ -271,34 +273,30 @@ void describe(V& v, Solver& s)
 {
     v.field("substeps", s.substeps, between(1, 1000), "Time steps from one sample to the next.");
     v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
-            "Error that a step may end with: the estimated RMS distance to its solution (see stop), and the "
-            "next move of any vertex. xpbd and vbd do not ask.");
+            "Maximum error at the end of a step: the estimated RMS distance to its solution (see stop), and "
+            "the next move of any vertex. Ignored by xpbd and vbd.");
     v.field("stop", s.stop,
-            "What the tolerance bounds: error and move, or the move alone, as papers state it. That is to "
-            "compare with them: cloth that has landed on others then hangs in the air. xpbd and vbd do not "
-            "ask.");
-    v.field(
-        "max_iterations", s.max_iterations, between(1, 10000),
-        "Iterations after which a minimisation ends anyway. Where cloth may touch something a step has two "
-        "short ones of six, each followed by a look at what it touches, and up to three whole ones. With vbd "
-        "the sweeps of a step, with xpbd the substeps of one pass: all of them are done.");
+            "Quantity that the tolerance bounds: error and move, or the move alone, as in papers. The latter "
+            "is only for comparison: cloth that has landed on others then hangs in the air. Ignored by xpbd "
+            "and vbd.");
+    v.field("max_iterations", s.max_iterations, between(1, 10000),
+            "Iteration limit of a minimisation. With contact, a step has two short minimisations of six "
+            "iterations, each followed by an update of the contacts, and up to three full ones. For vbd the "
+            "number of sweeps of a step, for xpbd of substeps with one pass each; all of them are done.");
     v.field("method", s.method,
-            "How the global linear system is solved: exactly (direct), by quadrature of its kernel, by "
-            "whichever of the two is faster (auto), or by a baseline to compare with. xpbd and vbd replace "
-            "the whole time step.");
-    v.field(
-        "outer", s.outer,
-        "How each step is minimised: by L-BFGS, or by a method to compare with. An iteration of newton-pcg "
-        "costs many of the others'; local-global is slow and stops early.");
-    v.field(
-        "contact_preconditioner", s.contact_preconditioner,
-        "How conjugate gradients know contact while it presses: by a bound for each vertex (block), exactly, "
-        "contact by contact (sherman-morrison) or by Chebyshev steps. The paper's does not converge: it is "
-        "there to compare with.");
-    v.field("sleep", s.sleep, "When resting cloth is skipped.");
+            "Solver of the global linear system: exact (direct), quadrature of its kernel, the faster of the "
+            "two (auto), or a baseline for comparison. xpbd and vbd replace the whole time step.");
+    v.field("outer", s.outer,
+            "Minimiser of a step: L-BFGS, or a method for comparison. An iteration of newton-pcg costs many "
+            "of the others'; local-global is slow and stops early.");
+    v.field("contact_preconditioner", s.contact_preconditioner,
+            "Active contact in the preconditioner of conjugate gradients: a bound for each vertex (block), "
+            "exact, contact by contact (sherman-morrison), or Chebyshev steps. The paper's does not converge "
+            "and is only for comparison.");
+    v.field("sleep", s.sleep, "Conditions for skipping cloth at rest.");
     v.field("threads", s.threads, between(0, 1024),
-            "Threads to use; 0: all. The result does not depend on it, but where auto changes from direct to "
-            "quadrature.");
+            "Threads to use; 0: all. The result does not depend on it, except when auto changes from direct "
+            "to quadrature.");
 }
 
 template <typename V>
@@ -316,12 +314,12 @@ void describe(V& v, Render& r)
     v.field("azimuth_deg", r.azimuth_deg, kAngle, "Camera about the vertical, from +Z (0) towards +X (90).");
     v.field("elevation_deg", r.elevation_deg, between(-89.0, 89.0, "degrees"), "Camera above the horizon.");
     v.field("zoom", r.zoom, between(0.01, 100.0), "1 fits everything into the picture.");
-    v.number_or_off("ground", r.ground, kPlace, "Height of the floor in pictures, or \"off\".");
+    v.number_or_off("ground", r.ground, kPosition, "Height of the floor in pictures, or \"off\".");
     v.field("samples", r.samples, between(1, 1024), "Light paths per pixel; powers of two are spread best.");
 }
 
 template <typename V>
-void describe(V& v, Scene& s)
+void describe(V& v, scenes::Scene& s)
 {
     v.version("toile", 1, "Version of the format.");
     v.field("name", s.name, "Title; empty: the file's name.");
@@ -330,15 +328,15 @@ void describe(V& v, Scene& s)
                "Samples to write. Sample 0 is the start state, after settling.");
     v.field("fps", s.fps, between(1.0, 10000.0, "1/s"), "Samples per second.");
     v.field("gravity", s.gravity, between(-1000.0, 1000.0, "m/s^2"), "Acceleration of free fall.");
-    v.field("wind", s.wind, "Air that moves.");
+    v.field("wind", s.wind, "Moving air.");
     v.field("air", s.air, "Drag of the air on cloth.");
     v.field("settle", s.settle, between(0.0, 600.0, "s"),
-            "Simulated before sample 0 while avatars hold their first pose.");
-    v.field("avatars", s.avatars, "Bodies that cloth touches.");
-    v.required("cloths", s.cloths, "What is simulated; at least one, or a solid.");
-    v.field("solids", s.solids, "Rigid bodies that cloth pulls, carries and meets. Need contact.self.");
+            "Time simulated before sample 0, with avatars in their first pose.");
+    v.field("avatars", s.avatars, "Bodies that cloth collides with.");
+    v.required("cloths", s.cloths, "Cloths to simulate; at least one, or a solid.");
+    v.field("solids", s.solids, "Rigid bodies simulated together with the cloth. Need contact.self.");
     v.field("fabrics", s.fabrics, "Fabrics of the scene's own, by name.");
-    v.field("attachments", s.attachments, "Vertices that are held.");
+    v.field("attachments", s.attachments, "Vertices attached to the world or to avatars.");
     v.field("contact", s.contact, "Contact of cloth and solids with avatars, themselves and each other.");
     v.field("solver", s.solver, "Accuracy and effort.");
     v.field("export", s.exports, "Caches to write; empty: one PC2 per cloth and solid, named after it.");

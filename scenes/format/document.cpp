@@ -7,13 +7,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
 namespace toile::scene_format {
 
 namespace {
 
-/// What nlohmann says after "line 3, column 5: ", shortened to the fact.
+/// Message of nlohmann without its "line 3, column 5: ".
 std::string fact_of(const Json::exception& error)
 {
     const std::string what = error.what();
@@ -25,7 +25,7 @@ std::string fact_of(const Json::exception& error)
     return after_id == std::string::npos ? what : what.substr(after_id + 2);
 }
 
-/// "3:5" for a byte of the text, counted from 1 as editors do.
+/// Line and column of a byte of the text, counted from 1 as in editors: "3:5".
 std::string line_and_column(const std::string& text, size_t byte)
 {
     const size_t end = std::min(byte > 0 ? byte - 1 : 0, text.size());
@@ -35,7 +35,7 @@ std::string line_and_column(const std::string& text, size_t byte)
     return std::to_string(line) + ":" + std::to_string(column);
 }
 
-/// The data folder: environment first, else the one chosen when the program was built.
+/// Data folder: the environment variable, else the folder chosen at build time.
 std::string data_folder()
 {
     const char* chosen = std::getenv("TOILE_DATA_DIR");
@@ -44,16 +44,16 @@ std::string data_folder()
 
 } // namespace
 
-void Document::refuse(const std::string& place, const std::string& why) const
+void Document::refuse(const std::string& key_path, const std::string& why) const
 {
-    throw InvalidInput(source_.string() + ": " + (place.empty() ? "" : place + ": ") + why);
+    throw InvalidInput(source_.string() + ": " + (key_path.empty() ? "" : key_path + ": ") + why);
 }
 
 Json Document::parse(const std::string& text) const
 {
-    // One set of keys per open object tells a key that is given twice.
+    // One set of keys per open object detects a repeated key.
     std::vector<std::set<std::string>> open;
-    const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+    const auto check_event = [&](int, Json::parse_event_t event, Json& parsed) {
         if (event == Json::parse_event_t::object_start)
             open.emplace_back();
         else if (event == Json::parse_event_t::object_end)
@@ -63,7 +63,7 @@ Json Document::parse(const std::string& text) const
         return true;
     };
     try {
-        return Json::parse(text, watch);
+        return Json::parse(text, check_event);
     } catch (const Json::parse_error& error) {
         throw InvalidInput(source_.string() + ":" + line_and_column(text, error.byte) +
                            ": not valid JSON: " + fact_of(error));
@@ -72,24 +72,24 @@ Json Document::parse(const std::string& text) const
     }
 }
 
-std::filesystem::path Document::existing_file(const std::string& text, const std::string& place) const
+std::filesystem::path Document::existing_file(const std::string& text, const std::string& key_path) const
 {
     static const std::string kVariable = "${TOILE_DATA_DIR}";
     std::string expanded = text;
     if (const size_t at = text.find(kVariable); at != std::string::npos) {
         const std::string folder = data_folder();
         if (!std::filesystem::is_directory(folder))
-            refuse(place, "the data folder " + as_written(folder) +
-                              " does not exist; set the environment variable TOILE_DATA_DIR");
+            refuse(key_path, "the data folder " + as_written(folder) +
+                                 " does not exist; set the environment variable TOILE_DATA_DIR");
         expanded.replace(at, kVariable.size(), folder);
     }
     if (expanded.find("${") != std::string::npos)
-        refuse(place, as_written(text) + " names an unknown variable; only " + kVariable + " is known");
+        refuse(key_path, as_written(text) + " names an unknown variable; only " + kVariable + " is known");
 
     const std::filesystem::path file = source_.parent_path() / expanded;
     if (!std::filesystem::is_regular_file(file))
-        refuse(place, "the file " + as_written(file.lexically_normal().string()) +
-                          " does not exist; paths are " + "relative to the scene's folder");
+        refuse(key_path, "the file " + as_written(file.lexically_normal().string()) +
+                             " does not exist; paths are " + "relative to the scene's folder");
     return file.lexically_normal();
 }
 
@@ -102,14 +102,14 @@ std::string as_written(const Json& value)
     return text;
 }
 
-std::string below(const std::string& place, const std::string& key)
+std::string below(const std::string& key_path, const std::string& key)
 {
-    return place.empty() ? key : place + "." + key;
+    return key_path.empty() ? key : key_path + "." + key;
 }
 
-std::string below(const std::string& place, size_t index)
+std::string below(const std::string& key_path, size_t index)
 {
-    return place + "[" + std::to_string(index) + "]";
+    return key_path + "[" + std::to_string(index) + "]";
 }
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates)

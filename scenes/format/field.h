@@ -8,7 +8,7 @@
 
 #include "scenes/format/scene.h"
 
-/// Vocabulary of describe.h: the values a number may take, the words of an enumeration, alternatives.
+/// Types used by describe.h: ranges of numbers, words of enumerations, alternatives.
 namespace toile::scene_format {
 
 using namespace scene; // the described structs
@@ -30,11 +30,11 @@ struct Range {
 std::string to_sentence(const Range& range);
 
 constexpr Range between(double lower, double upper, const char* unit = "") { return {lower, upper, unit}; }
-/// A positive number, up to a bound that only a mistake (another unit, a typing error) exceeds.
+/// A positive number, up to a bound that only a mistake (wrong unit, typing error) exceeds.
 constexpr Range above_zero(double upper, const char* unit = "") { return {0.0, upper, unit, true}; }
 
-/// Placements. A kilometre tells metres from a file in another unit that nobody declared.
-inline constexpr Range kPlace{-1000.0, 1000.0, "m"};
+/// Range of positions. Its limit of a kilometre reveals files in an undeclared unit other than metres.
+inline constexpr Range kPosition{-1000.0, 1000.0, "m"};
 inline constexpr Range kAngle{-3600.0, 3600.0, "degrees"};
 inline constexpr Range kTime{0.0, 86400.0, "s"};
 inline constexpr Range kColor{0.0, 1.0};
@@ -50,7 +50,7 @@ struct Alternative {
     Range range{0.0, 0.0}; ///< used when T is a list of numbers
 };
 
-/// Words of an enumeration in a file.
+/// Words of an enumeration in scene files.
 template <typename E>
 struct Words;
 

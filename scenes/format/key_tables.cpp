@@ -4,15 +4,15 @@
 
 #include "scenes/format/schema.h"
 
-namespace toile {
+namespace toile::scenes {
 
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-std::string place_below(const std::string& place, const std::string& key)
+std::string path_below(const std::string& key_path, const std::string& key)
 {
-    return place.empty() ? key : place + "." + key;
+    return key_path.empty() ? key : key_path + "." + key;
 }
 
 std::string type_text(const OrderedJson& schema)
@@ -47,22 +47,22 @@ std::string range_text(const OrderedJson& schema)
            number["maximum"].dump();
 }
 
-void append_table(const OrderedJson& schema, const std::string& place, std::string& text);
+void append_table(const OrderedJson& schema, const std::string& key_path, std::string& text);
 
-/// Tables of the objects that the value of a key consists of.
-void append_children(const OrderedJson& schema, const std::string& place, std::string& text)
+/// Appends tables of the objects nested in the value of a key.
+void append_children(const OrderedJson& schema, const std::string& key_path, std::string& text)
 {
     if (schema.contains("properties"))
-        append_table(schema, place, text);
+        append_table(schema, key_path, text);
     else if (schema.contains("items") && schema["items"].contains("properties"))
-        append_table(schema["items"], place + "[]", text);
+        append_table(schema["items"], key_path + "[]", text);
     else if (schema.contains("additionalProperties") && schema["additionalProperties"].is_object())
-        append_table(schema["additionalProperties"], place + ".*", text);
+        append_table(schema["additionalProperties"], key_path + ".*", text);
 }
 
-void append_table(const OrderedJson& schema, const std::string& place, std::string& text)
+void append_table(const OrderedJson& schema, const std::string& key_path, std::string& text)
 {
-    text += "\n## " + (place.empty() ? "The file" : "`" + place + "`") + "\n\n";
+    text += "\n## " + (key_path.empty() ? "The file" : "`" + key_path + "`") + "\n\n";
     if (schema.contains("oneOf")) {
         text += "Exactly one of";
         for (const OrderedJson& choice : schema["oneOf"])
@@ -80,7 +80,7 @@ void append_table(const OrderedJson& schema, const std::string& place, std::stri
                 " | " + member["description"].get<std::string>() + " |\n";
     }
     for (const auto& [key, member] : schema["properties"].items())
-        append_children(member, place_below(place, key), text);
+        append_children(member, path_below(key_path, key), text);
 }
 
 } // namespace
@@ -95,4 +95,4 @@ std::string scene_key_tables()
     return text;
 }
 
-} // namespace toile
+} // namespace toile::scenes

@@ -8,20 +8,20 @@
 
 namespace toile::scene_format {
 
-bool holds(const std::vector<std::string>& names, const std::string& name)
+bool contains(const std::vector<std::string>& names, const std::string& name)
 {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void require_known(const Document& document, const std::string& place, const std::string& kind,
+void require_known(const Document& document, const std::string& key_path, const std::string& kind,
                    const std::string& name, const std::vector<std::string>& names)
 {
-    if (holds(names, name))
+    if (contains(names, name))
         return;
     const std::string near = did_you_mean(name, names);
     const std::string known =
         names.empty() ? "; the scene has none" : "; known are " + enumerate(names, "and");
-    document.refuse(place, "no " + kind + " is named " + as_written(name) + (near.empty() ? known : near));
+    document.refuse(key_path, "no " + kind + " is named " + as_written(name) + (near.empty() ? known : near));
 }
 
 void check_names(const Document& document, const std::string& list, const std::vector<std::string>& names)
@@ -29,14 +29,15 @@ void check_names(const Document& document, const std::string& list, const std::v
     std::set<std::string> seen;
     for (size_t i = 0; i < names.size(); ++i) {
         const std::string& name = names[i];
-        const std::string place = below(below(list, i), "name");
+        const std::string key_path = below(below(list, i), "name");
         const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
             return std::isalnum(c) != 0 || c == '_' || c == '-';
         });
         if (name.empty() || !plain)
-            document.refuse(place, as_written(name) + " can't name a file; use letters, digits, _ and -");
+            document.refuse(key_path, as_written(name) + " can't name a file; use letters, digits, _ and -");
         if (!seen.insert(name).second)
-            document.refuse(place, as_written(name) + " is taken by an earlier entry; choose another name");
+            document.refuse(key_path,
+                            as_written(name) + " is taken by an earlier entry; choose another name");
     }
 }
 

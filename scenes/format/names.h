@@ -5,10 +5,10 @@
 
 #include "scenes/format/document.h"
 
-/// Names within a scene: what its objects are called, and whether what is referred to exists.
+/// Names within a scene: lists, uniqueness, and existence of names referred to.
 namespace toile::scene_format {
 
-/// Of objects with a name, in their order.
+/// Names of objects, in their order.
 template <typename Object>
 std::vector<std::string> names_of(const std::vector<Object>& objects)
 {
@@ -19,14 +19,14 @@ std::vector<std::string> names_of(const std::vector<Object>& objects)
     return names;
 }
 
-bool holds(const std::vector<std::string>& names, const std::string& name);
+bool contains(const std::vector<std::string>& names, const std::string& name);
 
-/// @throws InvalidInput when `name` is not in `names`: no cloth is named "skrit"; did you mean "skirt"?
-void require_known(const Document& document, const std::string& place, const std::string& kind,
+/// @throws InvalidInput if `name` is not in `names`: no cloth is named "skrit"; did you mean "skirt"?
+void require_known(const Document& document, const std::string& key_path, const std::string& kind,
                    const std::string& name, const std::vector<std::string>& names);
 
-/// Names go into messages and file names: letters, digits, _ and -; unique within their list.
-/// @throws InvalidInput for the first name that is not.
+/// Checks names that appear in messages and file names: letters, digits, _ and -; unique within their list.
+/// @throws InvalidInput for the first invalid name.
 void check_names(const Document& document, const std::string& list, const std::vector<std::string>& names);
 
 } // namespace toile::scene_format

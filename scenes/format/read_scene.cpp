@@ -3,15 +3,15 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "scenes/format/checks.h"
 #include "scenes/format/reader.h"
 
-namespace toile {
+namespace toile::scenes {
 
 namespace {
 
-/// Replaces the path of every file alternative by the file it names.
+/// Replaces the path of every file alternative by the path of the existing file.
 template <typename Object>
 void resolve_files(const scene_format::Document& document, const std::string& list,
                    std::vector<Object>& objects)
@@ -54,4 +54,4 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& source)
     return scene;
 }
 
-} // namespace toile
+} // namespace toile::scenes

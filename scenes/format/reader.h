@@ -10,33 +10,33 @@
 
 namespace toile::scene_format {
 
-// Values. Each reads `json`, found at `place`, into `value`, or refuses it with the allowed values.
-// A range of null allows every number.
+// Readers of values. Each reads `json` at `key_path` into `value`, or throws InvalidInput with the allowed
+// values. A null range allows every number.
 
-void read_value(const Document& document, const Json& json, const std::string& place, bool& value);
-void read_value(const Document& document, const Json& json, const std::string& place, std::string& value);
-void read_value(const Document& document, const Json& json, const std::string& place,
+void read_value(const Document& document, const Json& json, const std::string& key_path, bool& value);
+void read_value(const Document& document, const Json& json, const std::string& key_path, std::string& value);
+void read_value(const Document& document, const Json& json, const std::string& key_path,
                 std::filesystem::path& value);
-void read_value(const Document& document, const Json& json, const std::string& place, double& value,
+void read_value(const Document& document, const Json& json, const std::string& key_path, double& value,
                 const Range& range);
-void read_value(const Document& document, const Json& json, const std::string& place, int& value,
+void read_value(const Document& document, const Json& json, const std::string& key_path, int& value,
                 const Range& range);
-/// `count` numbers.
-void read_numbers(const Document& document, const Json& json, const std::string& place, double* values,
+/// Reads `count` numbers.
+void read_numbers(const Document& document, const Json& json, const std::string& key_path, double* values,
                   int count, const Range& range);
-/// The index of the word in `words`.
-size_t read_word(const Document& document, const Json& json, const std::string& place,
+/// Reads a word and returns its index in `words`.
+size_t read_word(const Document& document, const Json& json, const std::string& key_path,
                  const std::vector<std::string>& words);
-/// @throws InvalidInput when `json` is not an object or has a key that is not in `keys`.
-void require_object(const Document& document, const Json& json, const std::string& place,
+/// @throws InvalidInput if `json` is not an object or has a key that is not in `keys`.
+void require_object(const Document& document, const Json& json, const std::string& key_path,
                     const std::vector<std::string>& keys);
-void require_array(const Document& document, const Json& json, const std::string& place);
+void require_array(const Document& document, const Json& json, const std::string& key_path);
 
 /// Visitor that fills an object from JSON.
 class Reader {
 public:
-    Reader(const Document& document, const Json& object, std::string place)
-        : document_(document), object_(object), place_(std::move(place))
+    Reader(const Document& document, const Json& object, std::string key_path)
+        : document_(document), object_(object), key_path_(std::move(key_path))
     {
     }
 
@@ -44,14 +44,14 @@ public:
     void field(const char* key, T& value, const char*)
     {
         if (object_.contains(key))
-            read(object_[key], below(place_, key), value);
+            read(object_[key], below(key_path_, key), value);
     }
 
     template <typename T>
     void field(const char* key, T& value, const Range& range, const char*)
     {
         if (object_.contains(key))
-            read(object_[key], below(place_, key), value, range);
+            read(object_[key], below(key_path_, key), value, range);
     }
 
     template <typename T, typename... Rest>
@@ -74,7 +74,7 @@ public:
 
 private:
     void require_key(const char* key) const;
-    /// Refuses none and more than one of `keys`.
+    /// Requires exactly one of `keys`.
     void require_one(const std::vector<std::string>& keys) const;
 
     template <typename Variant, typename T>
@@ -83,80 +83,80 @@ private:
         if (!object_.contains(alternative.key))
             return;
         const Json& json = object_[alternative.key];
-        const std::string place = below(place_, alternative.key);
+        const std::string key_path = below(key_path_, alternative.key);
         T& value = variant.template emplace<T>();
         if constexpr (std::is_same_v<T, std::vector<int>> || std::is_same_v<T, std::vector<Vec3>>)
-            read(json, place, value, alternative.range);
+            read(json, key_path, value, alternative.range);
         else
-            read(json, place, value);
+            read(json, key_path, value);
     }
 
-    // Scalars and text end in read_value().
+    // Scalars and text: read_value() above.
     template <typename T, typename... R>
     requires requires(const Document& d, const Json& j, T& v, const R&... r)
     {
         read_value(d, j, std::string(), v, r...);
     }
-    void read(const Json& json, const std::string& place, T& value, const R&... range)
+    void read(const Json& json, const std::string& key_path, T& value, const R&... range)
     {
-        read_value(document_, json, place, value, range...);
+        read_value(document_, json, key_path, value, range...);
     }
 
     template <int kSize>
-    void read(const Json& json, const std::string& place, Eigen::Matrix<double, kSize, 1>& value,
+    void read(const Json& json, const std::string& key_path, Eigen::Matrix<double, kSize, 1>& value,
               const Range& range)
     {
-        read_numbers(document_, json, place, value.data(), kSize, range);
+        read_numbers(document_, json, key_path, value.data(), kSize, range);
     }
 
     template <typename E>
     requires std::is_enum_v<E>
-    void read(const Json& json, const std::string& place, E& value)
+    void read(const Json& json, const std::string& key_path, E& value)
     {
         std::vector<std::string> words;
         words.reserve(std::size(Words<E>::kAll));
         for (const auto& entry : Words<E>::kAll)
             words.emplace_back(entry.first);
-        value = Words<E>::kAll[read_word(document_, json, place, words)].second;
+        value = Words<E>::kAll[read_word(document_, json, key_path, words)].second;
     }
 
     template <typename T, typename... R>
-    void read(const Json& json, const std::string& place, std::optional<T>& value, const R&... range)
+    void read(const Json& json, const std::string& key_path, std::optional<T>& value, const R&... range)
     {
-        read(json, place, value.emplace(), range...);
+        read(json, key_path, value.emplace(), range...);
     }
 
     template <typename T, typename... R>
-    void read(const Json& json, const std::string& place, std::vector<T>& values, const R&... range)
+    void read(const Json& json, const std::string& key_path, std::vector<T>& values, const R&... range)
     {
-        require_array(document_, json, place);
+        require_array(document_, json, key_path);
         values.resize(json.size());
         for (size_t i = 0; i < values.size(); ++i)
-            read(json[i], below(place, i), values[i], range...);
+            read(json[i], below(key_path, i), values[i], range...);
     }
 
     template <typename T>
-    void read(const Json& json, const std::string& place, std::map<std::string, T>& values)
+    void read(const Json& json, const std::string& key_path, std::map<std::string, T>& values)
     {
         if (!json.is_object())
-            document_.refuse(place, as_written(json) + " is not an object; write {\"name\": {...}}");
+            document_.refuse(key_path, as_written(json) + " is not an object; write {\"name\": {...}}");
         for (const auto& [name, member] : json.items())
-            read(member, below(place, name), values[name]);
+            read(member, below(key_path, name), values[name]);
     }
 
     // Described structs.
     template <typename T>
     requires requires(KeyCollector& v, T& object) { describe(v, object); }
-    void read(const Json& json, const std::string& place, T& value)
+    void read(const Json& json, const std::string& key_path, T& value)
     {
-        require_object(document_, json, place, keys_of<T>());
-        Reader reader(document_, json, place);
+        require_object(document_, json, key_path, keys_of<T>());
+        Reader reader(document_, json, key_path);
         describe(reader, value);
     }
 
     const Document& document_;
     const Json& object_;
-    std::string place_;
+    std::string key_path_;
 };
 
 } // namespace toile::scene_format

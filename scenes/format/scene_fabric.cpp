@@ -1,6 +1,6 @@
 #include "scenes/format/scene_fabric.h"
 
-namespace toile {
+namespace toile::scenes {
 
 namespace {
 
@@ -10,10 +10,11 @@ void replace(double& value, const std::optional<double>& by)
         value = *by;
 }
 
-/// The base preset with the numbers that the scene replaces.
-Fabric own_fabric(const std::string& name, const scene::Fabric& settings, const std::string& source)
+/// The base preset with the numbers replaced by the scene.
+garment::Fabric custom_fabric(const std::string& name, const scene::Fabric& settings,
+                              const std::string& source)
 {
-    Fabric fabric = fabric_preset(settings.base, source);
+    garment::Fabric fabric = garment::fabric_preset(settings.base, source);
     fabric.name = name;
     replace(fabric.areal_density, settings.areal_density);
     replace(fabric.stretch_warp, settings.stretch.warp);
@@ -30,15 +31,16 @@ Fabric own_fabric(const std::string& name, const scene::Fabric& settings, const 
 
 } // namespace
 
-Fabric fabric_of(const Scene& scene, const scene::Cloth& cloth)
+garment::Fabric fabric_of(const Scene& scene, const scene::Cloth& cloth)
 {
     const std::string source = scene.source.string();
-    const auto own = scene.fabrics.find(cloth.fabric);
-    Fabric fabric = own != scene.fabrics.end() ? own_fabric(own->first, own->second, source)
-                                               : fabric_preset(cloth.fabric, source);
+    const auto custom = scene.fabrics.find(cloth.fabric);
+    garment::Fabric fabric = custom != scene.fabrics.end()
+                                 ? custom_fabric(custom->first, custom->second, source)
+                                 : garment::fabric_preset(cloth.fabric, source);
     replace(fabric.thickness, cloth.thickness);
     fabric.validate(source);
     return fabric;
 }
 
-} // namespace toile
+} // namespace toile::scenes

@@ -3,12 +3,12 @@
 #include "garment/fabric/fabric.h"
 #include "scenes/format/scene.h"
 
-namespace toile {
+namespace toile::scenes {
 
-/// The material of a cloth of the scene: the scene's own fabric of that name or else the preset, and the
-/// cloth's thickness if it has one.
-/// @throws InvalidInput naming the scene and the number, when the numbers together make no material
-///         (shear stiffer than stretch allows).
-Fabric fabric_of(const Scene& scene, const scene::Cloth& cloth);
+/// Material of a cloth of the scene: the scene's fabric of that name, else the preset, with the cloth's
+/// thickness if given.
+/// @throws InvalidInput naming the scene and the number, if the numbers together make no material (shear
+///         stiffer than stretch allows).
+garment::Fabric fabric_of(const Scene& scene, const scene::Cloth& cloth);
 
-} // namespace toile
+} // namespace toile::scenes

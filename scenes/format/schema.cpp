@@ -2,9 +2,7 @@
 
 #include "scenes/format/schema_writer.h"
 
-namespace toile {
-
-namespace scene_format {
+namespace toile::scene_format {
 
 OrderedJson number_schema(const char* type, const Range& range)
 {
@@ -28,22 +26,24 @@ OrderedJson SchemaWriter::schema() const
 
 void SchemaWriter::add(const char* key, OrderedJson schema, const std::string& help)
 {
-    // The sentence comes first: that is the order in which a person reads.
+    // The description comes first, for human readers.
     OrderedJson described = {{"description", help}};
     described.update(schema);
     properties_[key] = described;
 }
 
-} // namespace scene_format
+} // namespace toile::scene_format
+
+namespace toile::scenes {
 
 std::string scene_schema()
 {
     scene_format::OrderedJson schema = {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},
         {"title", "Toile scene"},
-        {"description", "What is simulated. SI units, Y up, paths relative to the file."}};
+        {"description", "A scene to simulate. SI units, Y up, paths relative to the file."}};
     schema.update(scene_format::object_schema(Scene()));
     return schema.dump(2) + "\n";
 }
 
-} // namespace toile
+} // namespace toile::scenes

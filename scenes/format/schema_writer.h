@@ -13,7 +13,7 @@ OrderedJson object_schema(const T& defaults);
 
 OrderedJson number_schema(const char* type, const Range& range);
 
-/// Visitor that collects the schema of an object; defaults are the values of the object visited.
+/// Visitor that collects the schema of an object; defaults are the values of the visited object.
 class SchemaWriter {
 public:
     template <typename T>
@@ -72,9 +72,9 @@ private:
         one_of_.push_back({{"required", {alternative.key}}});
     }
 
-    /// Schema of a value. Numbers, texts and words carry `value` as their default; objects carry the defaults
+    /// Schema of a value. Numbers, texts and words have `value` as their default; objects have the defaults
     /// of their members; lists, maps and files have none.
-    /// @param range  of numbers; left out for the rest
+    /// @param range  of numbers; omitted for other types
     template <typename T, typename... R>
     static OrderedJson value_schema(const T& value, const R&... range)
     {

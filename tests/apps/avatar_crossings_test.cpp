@@ -1,18 +1,23 @@
-#include "apps/toile/avatar_crossings.h"
+#include "apps/toile/check/avatar_crossings.h"
 
 #include <gtest/gtest.h>
 
 #include "core/mesh/obj.h"
 #include "core/mesh/weld.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/shape_mesh.h"
+#include "scenes/meshes/shape_mesh.h"
 #include "tests/support/temporary_folder.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace app;
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
-/// Crossings of a body with a triangle of 2 cm around each of `places` [m].
-AvatarCrossings crossings_at(const TriangleMesh& body, const std::vector<Vec3>& places)
+/// Crossings of a body with a triangle of 2 cm around each of `centers` [m].
+AvatarCrossings crossings_at(const TriangleMesh& body, const std::vector<Vec3>& centers)
 {
     const TemporaryFolder folder;
     write_obj(folder.path() / "body.obj", body);
@@ -20,11 +25,11 @@ AvatarCrossings crossings_at(const TriangleMesh& body, const std::vector<Vec3>& 
                                    "avatars": [{"name": "b", "file": "body.obj"}]})");
     std::vector<Triangle> triangles;
     std::vector<Vec3> x;
-    for (const Vec3& place : places) {
+    for (const Vec3& center : centers) {
         const int first = int(x.size());
         triangles.push_back(Triangle(first, first + 1, first + 2));
-        x.insert(x.end(), {place + Vec3(-0.01, 0.001, 0), place + Vec3(0.01, 0.001, 0.001),
-                           place + Vec3(0.0003, -0.01, 0)});
+        x.insert(x.end(), {center + Vec3(-0.01, 0.001, 0), center + Vec3(0.01, 0.001, 0.001),
+                           center + Vec3(0.0003, -0.01, 0)});
     }
     return find_avatar_crossings(ScenePenetration(read_scene(folder.path() / "scene.json")), triangles, x);
 }
@@ -42,7 +47,7 @@ void add_box(TriangleMesh& body, const Vec3& half_size, const Vec3& center)
 
 const Vec3 kOpenWall(-0.5, 0.13, 0.11);
 
-TEST(AvatarCrossings, SeamsOfDoubledVerticesAreClean)
+TEST(AvatarCrossings, CountsCrossingsAtDoubledVerticesAsClean)
 {
     TriangleMesh body;
     add_box(body, Vec3::Constant(0.5), Vec3::Zero());
@@ -55,7 +60,7 @@ TEST(AvatarCrossings, SeamsOfDoubledVerticesAreClean)
     EXPECT_EQ(found.elsewhere, 0);
 }
 
-TEST(AvatarCrossings, TrianglesThatCrossTheirOwnBodyAreNot)
+TEST(AvatarCrossings, CountsSelfIntersectingTrianglesSeparately)
 {
     // A needle through a wall: the wall's two triangles have their corners and centres in the open.
     TriangleMesh body;
@@ -66,7 +71,7 @@ TEST(AvatarCrossings, TrianglesThatCrossTheirOwnBodyAreNot)
     EXPECT_EQ(found.elsewhere, 1);
 }
 
-TEST(AvatarCrossings, BuriedTrianglesAreNot)
+TEST(AvatarCrossings, CountsBuriedTrianglesSeparately)
 {
     // A small box within a large one crosses nothing.
     TriangleMesh body;
@@ -77,17 +82,17 @@ TEST(AvatarCrossings, BuriedTrianglesAreNot)
     EXPECT_EQ(found.elsewhere, 1);
 }
 
-TEST(AvatarCrossings, FacesOfExcludedBonesAreNotThere)
+TEST(AvatarCrossings, OmitsTheFacesOfExcludedBones)
 {
     // The column's tip begins at y = 0.5, where a lid closes the base.
     const std::string file = std::string(TOILE_SOURCE_DIR) + "/tests/avatars/bending_column.gltf";
-    const auto crossings = [&](const std::string& bones, const Vec3& place) {
+    const auto crossings = [&](const std::string& bones, const Vec3& center) {
         const Scene scene = parse_scene(R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "disc": {}}],
             "avatars": [{"name": "b", "file": ")" +
                                             file + R"(", "exclude_bones": )" + bones + "}]}",
                                         "column.json");
-        const std::vector<Vec3> x{place + Vec3(-0.01, 0.01, 0.0), place + Vec3(0.01, 0.01, 0.001),
-                                  place + Vec3(0.0003, -0.01, 0.0)};
+        const std::vector<Vec3> x{center + Vec3(-0.01, 0.01, 0.0), center + Vec3(0.01, 0.01, 0.001),
+                                  center + Vec3(0.0003, -0.01, 0.0)};
         return find_avatar_crossings(ScenePenetration(scene), std::vector<Triangle>{Triangle(0, 1, 2)}, x)
             .clean.size();
     };
@@ -100,4 +105,4 @@ TEST(AvatarCrossings, FacesOfExcludedBonesAreNotThere)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -2,15 +2,16 @@
 
 #include "tests/apps/program.h"
 
-namespace toile {
+namespace toile::test {
+
 namespace {
 
 struct BadRun {
     std::vector<std::string> arguments;
-    std::vector<std::string> says; ///< file, place and remedy
+    std::vector<std::string> says; ///< file, location and remedy
 };
 
-/// NAME.obj, and NAME.json with it as the only cloth.
+/// Writes NAME.obj and NAME.json, whose only cloth it is.
 void write_cloth(const TemporaryFolder& folder, const std::string& name, const std::string& obj)
 {
     folder.write(name + ".obj", obj);
@@ -18,20 +19,20 @@ void write_cloth(const TemporaryFolder& folder, const std::string& name, const s
                  R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "file": ")" + name + R"(.obj"}]})");
 }
 
-/// The skinned column of the avatar tests, one of its joints pointing to a node that is not there.
+/// Writes the skinned column of the avatar tests with a joint that points to a missing node.
 void write_body_without_bone(const TemporaryFolder& folder)
 {
     std::string body =
         bytes_of(std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf");
     const std::string joints = R"("joints": [ 1, 2 ])";
-    const size_t place = body.find(joints);
-    ASSERT_NE(place, std::string::npos);
-    folder.write("bone.gltf", body.replace(place, joints.size(), R"("joints": [ 1, 9 ])"));
+    const size_t at = body.find(joints);
+    ASSERT_NE(at, std::string::npos);
+    folder.write("bone.gltf", body.replace(at, joints.size(), R"("joints": [ 1, 9 ])"));
     folder.write("bone.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "disc": {}}],
                                   "avatars": [{"name": "b", "file": "bone.gltf", "clip": "bend"}]})");
 }
 
-/// Files that the runs below find: a good scene with its cache, and broken ones.
+/// Fills the folder with the files of the runs below: a good scene with its cache, and broken ones.
 void fill(const TemporaryFolder& folder)
 {
     folder.write("good.json", small_scene(3));
@@ -73,7 +74,7 @@ const std::vector<BadRun> kBadRuns{
     {{"simulate", "good.json", "--backend", "magic"}, {"--backend", "magic", "cuda"}},
     {{"simulate", "good.json", "--devices", "0,1"}, {"--devices: 0,1", "backend cpu", "--backend cuda"}},
     {{"simulate", "good.json", "--backend", "cuda", "--devices", "0,x"}, {"--devices", "\"x\"", "e.g. 0,1"}},
-    {{"simulate", "good.json", "--backend", "auto", "--devices", "1,1"}, {"--devices", "1 is there twice"}},
+    {{"simulate", "good.json", "--backend", "auto", "--devices", "1,1"}, {"--devices", "1 appears twice"}},
     {{"simulate", "good.json", "--backend", "auto", "--devices", ""}, {"--devices", "empty", "e.g. 0,1"}},
     {{"simulate", "good.json", "-o", "file/there"}, {"file/there"}},
     {{"simulate", "good.json", "other/good.json"}, {"other/good.json", "out/good", "a name of its own"}},
@@ -115,23 +116,26 @@ const std::vector<BadRun> kBadRuns{
      {"same cloth \"sheet\"", "one cache of each"}},
     {{"check", "bare", "--scene", "good.json"}, {"bare", "no cache of good.json", "looked for sheet.pc2"}},
     {{"check", ".", "--scene", "good.json", "--cloth", "sheet"}, {"--cloth", "single cache"}},
-    {{"bench", "strss"}, {"strss", "did you mean \"stress\"?"}},
-    {{"bench", "stress", "--only", "nothing"}, {"--only", "nothing", "docs/benchmarks/README.md"}},
-    {{"bench", "stress", "-o", "file/there"}, {"file/there", "choose a writable folder"}},
-    {{"bench", "sheet", "--only", "nothing"}, {"--only", "nothing", "docs/benchmarks/speed.md"}},
-    {{"bench", "sheet", "good.json"}, {"sheet", "only stages"}},
-    {{"bench", "contact", "--only", "nothing"}, {"--only", "nothing", "docs/benchmarks/contact.md"}},
-    {{"bench", "contact", "good.json"}, {"contact", "only stages"}},
-    {{"bench", "contact", "--threads", "0"}, {"--threads", "toile bench --help"}},
-    {{"bench", "stress", "--threads", "2"}, {"stress", "only contact"}},
-    {{"bench", "stages", "none.json"}, {"none.json"}},
-    {{"bench", "stages", "good.json", "--frames", "1"}, {"--frames", "give 2 or more"}},
     {{"info", "none.obj"}, {"none.obj", "can't be found"}},
     {{"info", "text.xyz"}, {"text.xyz", "known are"}},
     {{"info", "mesh.obj"}, {"mesh.obj:2", "decimal number"}},
 };
 
-/// Names of files that appeared, disappeared or changed.
+/// The same of the program that measures.
+const std::vector<BadRun> kBadMeasurements{
+    {{"strss"}, {"strss", "did you mean \"stress\"?"}},
+    {{"stress", "--only", "nothing"}, {"--only", "nothing", "docs/journal/stress.md"}},
+    {{"stress", "-o", "file/there"}, {"file/there", "choose a writable folder"}},
+    {{"stress", "--threads", "2"}, {"unknown option --threads"}},
+    {{"sheet", "--only", "nothing"}, {"--only", "nothing", "docs/journal/cpu_speed.md"}},
+    {{"sheet", "good.json"}, {"good.json", "toile-bench sheet --help"}},
+    {{"contact", "--only", "nothing"}, {"--only", "nothing", "docs/journal/contact_stress.md"}},
+    {{"contact", "--threads", "0"}, {"--threads", "toile-bench contact --help"}},
+    {{"stages", "none.json"}, {"none.json"}},
+    {{"stages", "good.json", "--frames", "1"}, {"--frames", "give 2 or more"}},
+};
+
+/// Names of the files that appeared, disappeared or changed.
 std::string changed_files(const std::map<std::string, std::string>& before,
                           const std::map<std::string, std::string>& after)
 {
@@ -145,17 +149,17 @@ std::string changed_files(const std::map<std::string, std::string>& before,
     return names;
 }
 
-TEST(BadInput, GivesOneLineExitCodeTwoAndTouchesNothing)
+void expect_refused(const char* program, const std::vector<BadRun>& runs)
 {
     const TemporaryFolder folder;
     fill(folder);
     const auto before = folder.snapshot();
-    for (const BadRun& bad : kBadRuns) {
-        std::string command = "toile";
+    for (const BadRun& bad : runs) {
+        std::string command = program;
         for (const std::string& argument : bad.arguments)
             command += " " + argument;
         SCOPED_TRACE(command);
-        const Finished run = run_toile(bad.arguments, folder.path());
+        const Finished run = run_program(program, bad.arguments, folder.path());
         EXPECT_EQ(run.exit_code, 2);
         EXPECT_EQ(run.output, "");
         EXPECT_EQ(run.error_lines(), 1) << run.errors;
@@ -166,5 +170,28 @@ TEST(BadInput, GivesOneLineExitCodeTwoAndTouchesNothing)
     }
 }
 
+TEST(BadInput, GivesOneLineAndExitCodeTwoAndChangesNoFile) { expect_refused(TOILE_PROGRAM, kBadRuns); }
+
+TEST(BadInput, IsRefusedByTheBenchmarksInTheSameWay)
+{
+    expect_refused(TOILE_BENCH_PROGRAM, kBadMeasurements);
+}
+
+/// Methods of the literature run in toile-bench alone.
+TEST(BadInput, NamesTheProgramThatRunsBaselines)
+{
+    const TemporaryFolder folder;
+    fill(folder);
+    const std::vector<std::string> arguments{"simulate", "good.json",  "--solver",
+                                             "vbd",      "--no-cache", "--quiet"};
+    const Finished refused = run_toile(arguments, folder.path());
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_EQ(refused.error_lines(), 1) << refused.errors;
+    EXPECT_NE(refused.errors.find("toile-bench simulate"), std::string::npos) << refused.errors;
+    const Finished measured = run_program(TOILE_BENCH_PROGRAM, arguments, folder.path());
+    EXPECT_NE(measured.exit_code, 2) << measured.errors;
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / "good" / "sheet.pc2")) << measured.errors;
+}
+
 } // namespace
-} // namespace toile
+} // namespace toile::test

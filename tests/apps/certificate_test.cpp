@@ -8,12 +8,15 @@
 #include "export/point_cache.h"
 #include "tests/apps/program.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 using Json = nlohmann::json;
 
-/// Two square sheets, the second `height` above the first [m], without any gravity.
+/// Two square sheets, the second `height` above the first [m], without gravity.
 std::string two_sheets(double height)
 {
     const auto cloth = [](const std::string& name, double y) {
@@ -25,7 +28,7 @@ std::string two_sheets(double height)
            cloth("upper", height) + "]}";
 }
 
-/// Rewrites a cache with what `change(frame, positions)` makes of it.
+/// Rewrites a cache with the positions that `change(frame, positions)` produces.
 template <typename Change>
 void rewrite(const std::filesystem::path& file, const Change& change)
 {
@@ -51,7 +54,7 @@ Json json_in(const TemporaryFolder& folder, const char* file)
     return Json::parse(bytes_of(folder.path() / file));
 }
 
-TEST(Certificate, HasTheKeysThatItPromises)
+TEST(Certificate, HasTheDocumentedKeys)
 {
     const TemporaryFolder folder;
     folder.write("drop.json", small_scene(3));
@@ -93,7 +96,7 @@ TEST(Certificate, MeasuresTheGapOfTwoCloths)
     EXPECT_EQ(found["min_gap_frame"], 1);
 }
 
-TEST(Certificate, FindsOneClothInAnother)
+TEST(Certificate, FindsClothCrossingAnotherCloth)
 {
     const TemporaryFolder folder;
     folder.write("two.json", two_sheets(0.1));
@@ -127,14 +130,14 @@ TEST(Certificate, FindsOneClothInAnother)
     EXPECT_NEAR(first["point_m"][1], 0.0, 1e-6);
     EXPECT_LT(first["b"]["triangle"], 200);
 
-    // Alone it crosses nothing, and the certificate says who was not looked at.
+    // Alone it crosses nothing, and the certificate names the cloth that was not checked.
     const Json alone = check({"out/upper.pc2"}, "out/upper.certificate.json", 0);
     EXPECT_EQ(alone["cloth_cloth_crossings"], 0);
     EXPECT_EQ(alone["cloths"].size(), 1u);
     EXPECT_EQ(alone["cloths_left_out"], Json({"lower"}));
 }
 
-TEST(Certificate, IsOfTheFramesThatAllCachesHave)
+TEST(Certificate, CoversTheFramesThatAllCachesHave)
 {
     const TemporaryFolder folder;
     folder.write("two.json", two_sheets(0.1));
@@ -149,9 +152,9 @@ TEST(Certificate, IsOfTheFramesThatAllCachesHave)
     EXPECT_EQ(found["frames_left_out"], 1);
 }
 
-TEST(Simulate, EndsByCheckingWhatItWrote)
+TEST(Simulate, ChecksItsOutputAtTheEnd)
 {
-    // The sheets start in each other and are left so.
+    // The sheets start in each other, and the start pose is not repaired.
     const TemporaryFolder folder;
     std::string crossed = two_sheets(0.0);
     crossed.replace(crossed.find(R"("translate")"), 0, R"("rotate_deg": [90, 0, 20], )");
@@ -166,7 +169,7 @@ TEST(Simulate, EndsByCheckingWhatItWrote)
     EXPECT_EQ(run.output, "./lower.pc2\n./upper.pc2\n./certificate.json\n");
     EXPECT_EQ(json_in(folder, "certificate.json")["first_bad_frame"], 0);
 
-    // Caches that were not checked have no certificate, not even an old one.
+    // Unchecked caches have no certificate, not even an old one.
     std::vector<std::string> unchecked = simulate;
     unchecked.push_back("--no-check");
     EXPECT_EQ(run_toile(unchecked, folder.path()).exit_code, 0);
@@ -174,4 +177,4 @@ TEST(Simulate, EndsByCheckingWhatItWrote)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -9,13 +9,18 @@
 #include "core/mesh/weld.h"
 #include "export/cache_writer.h"
 #include "export/point_cache.h"
-#include "scenes/shape_mesh.h"
+#include "scenes/meshes/shape_mesh.h"
 #include "tests/apps/program.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace collision;
+using namespace exports;
+using namespace scenes;
+
 namespace {
 
-/// A cache of the small scene's sheet: the start positions, changed by `change(frame, positions)`.
+/// Cache of the small scene's sheet: the start positions, changed by `change(frame, positions)`.
 template <typename Change>
 void write_cache(const TemporaryFolder& folder, int frames, const Change& change)
 {
@@ -83,7 +88,7 @@ TriangleMesh overlapping_boxes()
     return both;
 }
 
-TEST(Check, TellsDepthWhereABodyIntersectsItselfApart)
+TEST(Check, ReportsDepthInSelfIntersectionsSeparately)
 {
     const TemporaryFolder folder;
     write_cache(folder, 2, [](int, std::vector<Vec3>&) {});
@@ -96,16 +101,16 @@ TEST(Check, TellsDepthWhereABodyIntersectsItselfApart)
         folder.write("drop.json", scene);
         return certificate(folder, 1);
     };
-    // The sheet of 0.4 m lies 2 cm below the tops: on one box alone, then around the overlap too.
+    // The sheet of 0.4 m lies 2 cm below the tops: on one box alone, then over the overlap too.
     const auto beside = found_at(-0.05);
     EXPECT_NEAR(beside["max_penetration_m"], 0.02, 1e-6);
     EXPECT_EQ(beside["max_penetration_in_self_intersections_m"], 0.0);
     EXPECT_EQ(beside["cloth_avatar_crossings_in_self_intersections"], 0);
-    const auto around = found_at(-0.5);
-    EXPECT_GT(around["max_penetration_in_self_intersections_m"], 0.01);
+    const auto folded = found_at(-0.5);
+    EXPECT_GT(folded["max_penetration_in_self_intersections_m"], 0.01);
     // Within one box the sheet crosses the walls of the other, which are buried.
-    EXPECT_GT(around["cloth_avatar_crossings_in_self_intersections"], 10);
-    EXPECT_EQ(around["cloth_avatar_crossings"], 0);
+    EXPECT_GT(folded["cloth_avatar_crossings_in_self_intersections"], 10);
+    EXPECT_EQ(folded["cloth_avatar_crossings"], 0);
     // Halfway over the edge of the left box it crosses a wall in the open.
     EXPECT_GT(found_at(0.45)["cloth_avatar_crossings"], 5);
     const Finished run =
@@ -127,7 +132,7 @@ TEST(Check, MeasuresStrain)
     EXPECT_EQ(found["first_bad_frame"], 1);
 }
 
-TEST(Check, CountsNumbersThatAreNotFinite)
+TEST(Check, CountsNonFiniteNumbers)
 {
     const TemporaryFolder folder;
     write_cache(folder, 4, [](int frame, std::vector<Vec3>& x) {
@@ -140,4 +145,4 @@ TEST(Check, CountsNumbersThatAreNotFinite)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

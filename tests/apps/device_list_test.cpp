@@ -1,10 +1,14 @@
-#include "apps/toile/device_list.h"
+#include "apps/toile/simulate/device_list.h"
 
 #include <gtest/gtest.h>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
+#include "core/compute/cuda/runtime/device.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace app;
+
 namespace {
 
 std::string refused(const std::function<void()>& action)
@@ -23,7 +27,7 @@ TEST(DeviceList, KeepsTheOrder)
     EXPECT_EQ(parse_devices("3,0,12"), std::vector<int>({3, 0, 12}));
 }
 
-TEST(DeviceList, RefusesWhatIsNoNumber)
+TEST(DeviceList, RefusesWordsThatAreNoNumber)
 {
     EXPECT_EQ(refused([] { parse_devices(""); }),
               "--devices: is empty; give numbers of GPUs with commas between, e.g. 0,1");
@@ -38,18 +42,18 @@ TEST(DeviceList, RefusesWhatIsNoNumber)
 TEST(DeviceList, RefusesTheSameNumberTwice)
 {
     EXPECT_EQ(refused([] { parse_devices("1,0,1"); }),
-              "--devices: 1 is there twice in \"1,0,1\"; name each GPU once");
+              "--devices: 1 appears twice in \"1,0,1\"; name each GPU once");
 }
 
-TEST(DeviceList, RefusesWhatTheMachineDoesNotHave)
+TEST(DeviceList, RefusesMissingDevices)
 {
-    const std::vector<CudaDevice> there{{0, "Card A", 1, 1, 9, 0}, {1, "Card B", 1, 1, 9, 0}};
-    EXPECT_EQ(refused([&] { require_devices({1, 0}, there); }), "");
+    const std::vector<CudaDevice> available{{0, "Card A", 1, 1, 9, 0}, {1, "Card B", 1, 1, 9, 0}};
+    EXPECT_EQ(refused([&] { require_devices({1, 0}, available); }), "");
     EXPECT_EQ(refused([&] {
-                  require_devices({0, 2, 5}, there);
+                  require_devices({0, 2, 5}, available);
               }),
               "--devices: there is no GPU 2; this machine has 2: 0 (Card A), 1 (Card B)");
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

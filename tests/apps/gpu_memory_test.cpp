@@ -4,11 +4,14 @@
 
 #include "export/point_cache.h"
 #include "tests/apps/program.h"
-#include "tests/core/cuda/on_device.h"
-#include "tests/core/cuda/taken_memory.h"
+#include "tests/core/compute/cuda/on_device.h"
+#include "tests/core/compute/cuda/taken_memory.h"
 
-/// Scenes on a GPU whose memory something else has taken.
-namespace toile {
+/// Scenes on a GPU with little free memory.
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 constexpr int kFrames = 3;
@@ -34,8 +37,9 @@ protected:
         folder_.write("cloths.json", cloths_scene());
     }
 
-    /// Runs the scene in a process of its own. It ends well, or with one line that says what for memory was
-    /// missing; never with a cache that is not whole, or a partial that does not read.
+    /// Runs the scene in a separate process with so much memory free. The run succeeds, or ends with one line
+    /// that names the purpose of the missing memory. It never leaves an incomplete cache or an unreadable
+    /// partial one.
     Finished run_with(int mebibytes)
     {
         const auto taken = test::take_all_but(std::size_t(mebibytes) << 20, space());
@@ -70,9 +74,9 @@ private:
     TemporaryFolder folder_;
 };
 
-/// Around the least that the scene runs with, it is its own arrays that find no room, in places that depend
-/// on how much is left.
-TEST_F(GpuMemoryTest, EndsCleanlyWhereItIsTooLittle)
+/// Near the minimum that the scene needs, arrays of the scene fail to allocate. Which of them depends on the
+/// memory left.
+TEST_F(GpuMemoryTest, EndsCleanlyWhenMemoryIsTooSmall)
 {
     int enough = 4096, too_little = 0;
     ASSERT_EQ(run_with(enough).exit_code, 0);
@@ -81,14 +85,14 @@ TEST_F(GpuMemoryTest, EndsCleanlyWhereItIsTooLittle)
         const int left = (enough + too_little) / 2;
         const Finished run = run_with(left);
         (run.exit_code == 0 ? enough : too_little) = left;
-        names_array |= test::holds_in_order(run.errors, "CUDA device 0 (", ") is out of memory: '",
-                                            "' asked for ", " MiB, ", " MiB are free");
+        names_array |= test::contains_in_order(run.errors, "CUDA device 0 (", ") is out of memory: '",
+                                               "' asked for ", " MiB, ", " MiB are free");
     }
     EXPECT_GT(too_little, 0);
     EXPECT_TRUE(names_array);
 }
 
-TEST_F(GpuMemoryTest, IsAskedForBeforeAutoTakesTheGpu)
+TEST_F(GpuMemoryTest, IsCheckedBeforeAutoSelectsTheGpu)
 {
     EXPECT_EQ(run_on("auto").errors, "");
     const auto run_with_left = [&](int mebibytes) {
@@ -98,12 +102,12 @@ TEST_F(GpuMemoryTest, IsAskedForBeforeAutoTakesTheGpu)
         return run.errors;
     };
     const std::string too_little = run_with_left(1024), nothing = run_with_left(50);
-    EXPECT_TRUE(test::holds_in_order(too_little, "the backend is cpu: CUDA device 0 (", ") has ",
-                                     " MiB left, 51005 vertices may take ", " MiB"))
+    EXPECT_TRUE(test::contains_in_order(too_little, "the backend is cpu: CUDA device 0 (", ") has ",
+                                        " MiB left, 51005 vertices may take ", " MiB"))
         << too_little;
-    EXPECT_TRUE(test::holds_in_order(nothing, "the backend is cpu: ", "CUDA device 0 (", "out of memory"))
+    EXPECT_TRUE(test::contains_in_order(nothing, "the backend is cpu: ", "CUDA device 0 (", "out of memory"))
         << nothing;
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -7,14 +7,19 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
-#include "apps/toile/frame_range.h"
-#include "apps/toile/progress.h"
-#include "apps/toile/strain.h"
-#include "apps/toile/table_progress.h"
-#include "core/backend/error.h"
-#include "scenes/shape_mesh.h"
+#include "apps/toile/check/strain.h"
+#include "apps/toile/render/frame_range.h"
+#include "apps/toile/simulate/table_progress.h"
+#include "apps/toile/terminal/progress.h"
+#include "core/base/error.h"
+#include "scenes/meshes/shape_mesh.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace app;
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
 TEST(StrainMeter, IsZeroAtRestAndAfterARigidMotion)
@@ -55,7 +60,7 @@ TEST(StrainMeter, AgreesWithTheSingularValuesOfRandomDeformations)
     }
 }
 
-/// Volume by the divergence theorem: positive only when the triangles face outwards.
+/// Volume by the divergence theorem; positive only if the triangles face outwards.
 double volume(const TriangleMesh& mesh)
 {
     double sum = 0.0;
@@ -95,14 +100,14 @@ TEST(FrameRange, ReadsFirstLastAndStep)
         EXPECT_THROW(parse_frame_range(bad, 3), InvalidInput) << bad;
 }
 
-TEST(ClockText, ShowsHoursOnlyWhenThereAreSome)
+TEST(ClockText, ShowsHoursOnlyFromOneHourOn)
 {
     EXPECT_EQ(clock_text(0.4), "0:00");
     EXPECT_EQ(clock_text(75.0), "1:15");
     EXPECT_EQ(clock_text(3675.0), "1:01:15");
 }
 
-/// What TableProgress prints on the way to finished tables, with a pause after the first call.
+/// Output of TableProgress until the tables are finished, with a pause after the first call.
 std::string told_of_tables(bool quiet, std::chrono::milliseconds pause)
 {
     testing::internal::CaptureStderr();
@@ -117,7 +122,7 @@ std::string told_of_tables(bool quiet, std::chrono::milliseconds pause)
     return testing::internal::GetCapturedStderr();
 }
 
-TEST(TableProgress, TellsWhatTakesLongerThanHalfASecond)
+TEST(TableProgress, ReportsBuildsLongerThanHalfASecond)
 {
     EXPECT_EQ(told_of_tables(false, std::chrono::milliseconds(0)), "");
     EXPECT_EQ(told_of_tables(true, std::chrono::milliseconds(600)), "");
@@ -126,11 +131,11 @@ TEST(TableProgress, TellsWhatTakesLongerThanHalfASecond)
     EXPECT_NE(told.find(" left\ntables of cloth \"skirt\": 100 %, built in "), std::string::npos) << told;
 }
 
-TEST(TableProgress, WritesDurationsForPeople)
+TEST(TableProgress, FormatsDurations)
 {
     EXPECT_EQ(duration_text(3.2), "3 s");
     EXPECT_EQ(duration_text(75.0), "1:15");
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -10,13 +10,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace toile {
+namespace toile::test {
 
 namespace {
 
-/// Forks and starts the program with both streams going to files.
-pid_t start(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-            const std::filesystem::path& streams)
+/// Forks and starts the program; both streams go to files.
+pid_t start(const char* program, const std::vector<std::string>& arguments,
+            const std::filesystem::path& folder, const std::filesystem::path& streams)
 {
     const pid_t process = ::fork();
     if (process != 0)
@@ -27,12 +27,12 @@ pid_t start(const std::vector<std::string>& arguments, const std::filesystem::pa
     };
     redirect("output", STDOUT_FILENO);
     redirect("errors", STDERR_FILENO);
-    std::vector<char*> words{const_cast<char*>(TOILE_PROGRAM)};
+    std::vector<char*> words{const_cast<char*>(program)};
     for (const std::string& argument : arguments)
         words.push_back(const_cast<char*>(argument.c_str()));
     words.push_back(nullptr);
     if (::chdir(folder.c_str()) == 0)
-        ::execv(TOILE_PROGRAM, words.data());
+        ::execv(program, words.data());
     ::_exit(127);
 }
 
@@ -58,17 +58,23 @@ int Finished::error_lines() const
     return count;
 }
 
-Finished run_toile(const std::vector<std::string>& arguments, const std::filesystem::path& folder)
+Finished run_program(const char* program, const std::vector<std::string>& arguments,
+                     const std::filesystem::path& folder)
 {
     const TemporaryFolder streams;
-    return wait_for(start(arguments, folder, streams.path()), streams.path());
+    return wait_for(start(program, arguments, folder, streams.path()), streams.path());
+}
+
+Finished run_toile(const std::vector<std::string>& arguments, const std::filesystem::path& folder)
+{
+    return run_program(TOILE_PROGRAM, arguments, folder);
 }
 
 Finished run_and_interrupt(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                            const std::filesystem::path& file)
 {
     const TemporaryFolder streams;
-    const pid_t process = start(arguments, folder, streams.path());
+    const pid_t process = start(TOILE_PROGRAM, arguments, folder, streams.path());
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (!std::filesystem::exists(file) && std::chrono::steady_clock::now() < give_up)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -86,4 +92,4 @@ std::string small_scene(int frames, const std::string& more_keys)
            (more_keys.empty() ? "" : ", " + more_keys) + "}";
 }
 
-} // namespace toile
+} // namespace toile::test

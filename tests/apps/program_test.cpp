@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include <nlohmann/json.hpp>
 
 #include <signal.h>
@@ -10,7 +12,10 @@
 #include "core/mesh/obj.h"
 #include "export/point_cache.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 TEST(Simulate, WritesOneCachePerClothAndTheMeshItPlaysOn)
@@ -59,7 +64,7 @@ TEST(Simulate, ObeysOptionsAndTheExportList)
     EXPECT_FALSE(report["stages"].empty());
 }
 
-TEST(Simulate, SaysHowTheStartPoseWasRepaired)
+TEST(Simulate, ReportsTheRepairOfTheStartPose)
 {
     const TemporaryFolder folder;
     folder.write("sunk.json", R"({"toile": 1, "frames": 1,
@@ -85,7 +90,7 @@ TEST(Simulate, SaysHowTheStartPoseWasRepaired)
     EXPECT_EQ(start["places"][0]["position_m"].size(), 3u);
 }
 
-/// Files of this process and those that it starts may be so long while it lives [bytes].
+/// Limits the size of files of this process and its children during its lifetime [bytes].
 class FileLimit {
 public:
     explicit FileLimit(rlim_t bytes) : handler_(::signal(SIGXFSZ, SIG_IGN))
@@ -107,7 +112,7 @@ private:
     void (*handler_)(int);
 };
 
-TEST(Simulate, NamesThePartialWhereTheMachineRefuses)
+TEST(Simulate, NamesThePartialCacheWhenWritingFails)
 {
     const TemporaryFolder folder;
     folder.write("drop.json", small_scene(60));
@@ -195,7 +200,7 @@ TEST(Schema, PrintsJsonAndTables)
               std::string::npos);
 }
 
-TEST(Help, IsNoError)
+TEST(Help, ExitsWithoutError)
 {
     const TemporaryFolder folder;
     for (const std::vector<std::string>& arguments :
@@ -207,5 +212,14 @@ TEST(Help, IsNoError)
     }
 }
 
+TEST(Version, NamesCommitConfigurationAndBackends)
+{
+    const TemporaryFolder folder;
+    const std::string output = run_toile({"--version"}, folder.path()).output;
+    const std::regex expected("toile \\d+\\.\\d+\\.\\d+ \\(commit ([0-9a-f]{7,}\\+?|unknown), \\w+\\)\n"
+                              "backends: cpu(, cuda \\d+\\.\\d+ \\(.+\\))?\n");
+    EXPECT_TRUE(std::regex_match(output, expected)) << output;
+}
+
 } // namespace
-} // namespace toile
+} // namespace toile::test

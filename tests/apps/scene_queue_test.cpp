@@ -1,4 +1,4 @@
-#include "apps/toile/scene_queue.h"
+#include "apps/toile/simulate/scene_queue.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,24 +9,27 @@
 
 #include <gtest/gtest.h>
 
-namespace toile {
+namespace toile::test {
+
+using namespace app;
+
 namespace {
 
-/// GPUs that do nothing but break, and what becomes of scenes on them.
+/// GPUs that run nothing and may fail, with a record of the scenes on them.
 class FakeGpus {
 public:
-    std::map<int, std::size_t> breaks_with;          ///< a GPU, and the scene that it is lost with
+    std::map<int, std::size_t> breaks_with;          ///< GPU -> scene at which it is lost
     std::set<std::size_t> bad;                       ///< scenes that fail on every GPU
-    std::size_t interrupted_after = std::size_t(-1); ///< scenes
+    std::size_t interrupted_after = std::size_t(-1); ///< number of scenes
 
-    std::map<std::size_t, int> ran_on;           ///< scene -> GPU; failed ones too
+    std::map<std::size_t, int> ran_on;           ///< scene -> GPU, failed scenes included
     std::map<std::size_t, std::string> left_out; ///< scene -> reason
 
     SceneQueue::Calls calls()
     {
         SceneQueue::Calls calls;
         calls.run = [this](std::size_t scene, int device) { return run(scene, device); };
-        calls.answers = [this](int device) {
+        calls.is_responding = [this](int device) {
             const std::lock_guard lock(mutex_);
             return !lost_.contains(device);
         };
@@ -53,7 +56,7 @@ private:
             if (lost_.contains(device) || bad.contains(scene))
                 return false;
         }
-        // Long enough for the other GPU to take its share.
+        // Long enough for the other GPU to take scenes too.
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return true;
     }
@@ -70,7 +73,7 @@ TEST(SceneQueue, RunsEveryScene)
     EXPECT_TRUE(gpus.left_out.empty());
 }
 
-TEST(SceneQueue, LeavesGpusAloneThatThereIsNoSceneFor)
+TEST(SceneQueue, UsesNoMoreGpusThanScenes)
 {
     FakeGpus gpus;
     EXPECT_TRUE(SceneQueue(2, gpus.calls()).run({3, 5, 7}));
@@ -78,7 +81,7 @@ TEST(SceneQueue, LeavesGpusAloneThatThereIsNoSceneFor)
         EXPECT_NE(device, 7) << scene;
 }
 
-TEST(SceneQueue, GoesOnWithTheGpuWhereASceneFails)
+TEST(SceneQueue, KeepsTheGpuAfterASceneFails)
 {
     FakeGpus gpus;
     gpus.bad = {0, 2};
@@ -87,8 +90,8 @@ TEST(SceneQueue, GoesOnWithTheGpuWhereASceneFails)
     EXPECT_TRUE(gpus.left_out.empty());
 }
 
-/// Only the scene that it was lost with fails, on whichever GPU that is.
-TEST(SceneQueue, GivesTheScenesOfALostGpuToTheOthers)
+/// Only the scene at which the GPU is lost fails, on whichever GPU that is.
+TEST(SceneQueue, MovesTheScenesOfALostGpuToTheOthers)
 {
     for (const int lost : {0, 1})
         for (const std::size_t scene : {0, 1}) {
@@ -107,7 +110,7 @@ TEST(SceneQueue, GivesTheScenesOfALostGpuToTheOthers)
         }
 }
 
-TEST(SceneQueue, NamesEverySceneThatNoGpuIsLeftFor)
+TEST(SceneQueue, NamesEverySceneLeftWithoutAGpu)
 {
     FakeGpus gpus;
     gpus.breaks_with[2] = 1;
@@ -118,8 +121,8 @@ TEST(SceneQueue, NamesEverySceneThatNoGpuIsLeftFor)
         EXPECT_EQ(gpus.left_out[scene], "was not run: GPU 2 no longer answers") << scene;
 }
 
-/// Whichever of the two takes which scene, both are lost with their first.
-TEST(SceneQueue, EndsWhereAllGpusAreLost)
+/// Each GPU is lost with its first scene, whichever of the two scenes it takes.
+TEST(SceneQueue, EndsWhenAllGpusAreLost)
 {
     FakeGpus gpus;
     SceneQueue::Calls calls = gpus.calls();
@@ -127,14 +130,14 @@ TEST(SceneQueue, EndsWhereAllGpusAreLost)
         run(scene, device);
         return false;
     };
-    calls.answers = [](int) { return false; };
+    calls.is_responding = [](int) { return false; };
     EXPECT_FALSE(SceneQueue(6, calls).run({0, 1}));
     EXPECT_EQ(gpus.ran_on.size(), 2u);
     ASSERT_EQ(gpus.left_out.size(), 4u);
     EXPECT_EQ(gpus.left_out.begin()->second, "was not run: GPUs 0, 1 no longer answer");
 }
 
-TEST(SceneQueue, SaysOfAnInterruptWhatItLeaves)
+TEST(SceneQueue, NamesTheScenesLeftByAnInterrupt)
 {
     FakeGpus gpus;
     gpus.interrupted_after = 2;
@@ -144,4 +147,4 @@ TEST(SceneQueue, SaysOfAnInterruptWhatItLeaves)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -5,8 +5,11 @@
 #include "export/point_cache.h"
 #include "tests/apps/program.h"
 
-/// Several scenes in one call of simulate. Here on the CPU: one after the other.
-namespace toile {
+/// Several scenes in one call of simulate: on the CPU, one after the other.
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 std::string bytes_in(const TemporaryFolder& folder, const char* file)
@@ -14,7 +17,7 @@ std::string bytes_in(const TemporaryFolder& folder, const char* file)
     return bytes_of(folder.path() / file);
 }
 
-TEST(SimulateScenes, LeavesWhatEachLeavesAlone)
+TEST(SimulateScenes, WritesTheOutputOfSeparateRuns)
 {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder.path() / "more");
@@ -35,7 +38,7 @@ TEST(SimulateScenes, LeavesWhatEachLeavesAlone)
     EXPECT_EQ(bytes_in(folder, "out/b/sheet.pc2"), bytes_in(folder, "alone/sheet.pc2"));
 }
 
-TEST(SimulateScenes, GoesOnWhereOneFails)
+TEST(SimulateScenes, ContinuesAfterASceneFails)
 {
     const TemporaryFolder folder;
     folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
@@ -49,7 +52,7 @@ TEST(SimulateScenes, GoesOnWhereOneFails)
     EXPECT_NE(run.errors.find("flat.obj: triangle 0"), std::string::npos) << run.errors;
 }
 
-TEST(SimulateScenes, BeginsNoneAfterAnInterrupt)
+TEST(SimulateScenes, StartsNoSceneAfterAnInterrupt)
 {
     const TemporaryFolder folder;
     folder.write("a.json", small_scene(1000000));
@@ -67,4 +70,4 @@ TEST(SimulateScenes, BeginsNoneAfterAnInterrupt)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

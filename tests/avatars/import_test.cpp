@@ -1,15 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "avatars/load_avatar.h"
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "tests/avatars/column.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace avatars;
 
 namespace {
 
@@ -25,7 +28,7 @@ std::unique_ptr<Avatar> load(const std::filesystem::path& file)
     return load_avatar(settings);
 }
 
-/// The one-line message of load_avatar(), or "" when it accepts.
+/// One-line message of load_avatar(); empty if it accepts the file.
 std::string refusal(const AvatarSettings& settings)
 {
     try {
@@ -36,15 +39,15 @@ std::string refusal(const AvatarSettings& settings)
     }
 }
 
-/// The column's file with one piece of text replaced, in a file of its own.
+/// Column's file with one piece of text replaced, saved under another name.
 AvatarSettings edited_column(const std::string& name, const std::string& from, const std::string& to)
 {
     std::stringstream content;
     content << std::ifstream(column_file()).rdbuf();
     std::string text = content.str();
-    const size_t place = text.find(from);
-    EXPECT_NE(place, std::string::npos) << from;
-    text.replace(place, from.size(), to);
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
     AvatarSettings settings;
     settings.file = std::filesystem::path(testing::TempDir()) / name;
     std::ofstream(settings.file) << text;
@@ -87,7 +90,10 @@ INSTANTIATE_TEST_SUITE_P(Import, RealBody,
                                          BodyFacts{"avatars/mh_man.glb", 13380, 26756, 1.78},
                                          BodyFacts{"avatars/gc_mean_all.glb", 23752, 47500, 1.72},
                                          BodyFacts{"avatars/cesium_man.gltf", 2338, 4672, 1.507},
-                                         BodyFacts{"avatars/arnaud.fbx", 3337, 6670, 1.83}));
+                                         BodyFacts{"avatars/arnaud.fbx", 3337, 6670, 1.83}),
+                         [](const auto& body) {
+                             return std::filesystem::path(body.param.file).stem().string();
+                         });
 
 TEST(Import, TheDanceMovesTheWomanByMetres)
 {
@@ -130,7 +136,7 @@ TEST(Import, KeepsTheVertexOrderOfAnObj)
     EXPECT_EQ(posed(*avatar, {}), mesh.positions);
 }
 
-TEST(Import, BringsUnitsToMetresAndTheUpAxisToY)
+TEST(Import, ConvertsUnitsToMetresAndTheUpAxisToY)
 {
     AvatarSettings settings;
     settings.file = column_file();
@@ -142,7 +148,7 @@ TEST(Import, BringsUnitsToMetresAndTheUpAxisToY)
         EXPECT_LT((x[v] - 0.0254 * Vec3(original[v].x(), original[v].z(), -original[v].y())).norm(), 1e-15);
 }
 
-TEST(Import, RefusesInOneLine)
+TEST(Import, RefusesBadFilesInOneLine)
 {
     AvatarSettings missing;
     missing.file = "no/such/body.glb";
@@ -174,4 +180,4 @@ TEST(Import, NamesTheNearestClipAndListsAll)
     }
 }
 
-} // namespace toile
+} // namespace toile::test

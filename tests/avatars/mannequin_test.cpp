@@ -5,22 +5,24 @@
 
 #include "avatars/mannequin/mannequin.h"
 #include "avatars/mannequin/rig.h"
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "core/mesh/topology.h"
 #include "tests/avatars/column.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace avatars;
 
 namespace {
 
-/// One mannequin for all tests that only look at it.
+/// Mannequin shared by all tests that only read it.
 SkinnedAvatar& mannequin()
 {
     static const std::unique_ptr<Avatar> avatar = make_mannequin();
     return dynamic_cast<SkinnedAvatar&>(*avatar);
 }
 
-/// True when segment pq crosses the triangle's interior.
+/// True if segment pq crosses the triangle's interior.
 bool pierces(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c)
 {
     const auto volume = [](const Vec3& o, const Vec3& u, const Vec3& v, const Vec3& w) {
@@ -32,7 +34,7 @@ bool pierces(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const V
     return (s > 0.0 && t > 0.0 && u > 0.0) || (s < 0.0 && t < 0.0 && u < 0.0);
 }
 
-/// Edges that pierce a triangle with which they share no vertex, by sweeping along y.
+/// Number of edges that cross a triangle with which they share no vertex, by a sweep along y.
 int count_crossings(const std::vector<Vec3>& x, const std::vector<Triangle>& triangles)
 {
     const Topology topology = build_topology(triangles, int(x.size()), "mannequin");
@@ -87,7 +89,7 @@ TEST(Mannequin, IsOneClosedManifoldFacingOutwards)
     EXPECT_LT(volume, 0.070);
 }
 
-TEST(Mannequin, StandsOnTheFloorAndIsAsTallAsAsked)
+TEST(Mannequin, StandsOnTheFloorAndHasTheRequestedHeight)
 {
     for (const double height : {1.60, 1.75}) {
         MannequinSettings settings;
@@ -121,17 +123,17 @@ TEST(Mannequin, HasTrianglesThatAClothCanRestOn)
 {
     SkinnedAvatar& avatar = mannequin();
     const std::vector<Vec3> x = posed(avatar, {});
-    double least_angle = 1e300;
+    double min_angle = 1e300;
     for (const Triangle& t : avatar.triangles())
         for (int k = 0; k < 3; ++k) {
             const Vec3 u = x[t[(k + 1) % 3]] - x[t[k]], v = x[t[(k + 2) % 3]] - x[t[k]];
-            least_angle = std::min(least_angle, std::atan2(u.cross(v).norm(), u.dot(v)));
+            min_angle = std::min(min_angle, std::atan2(u.cross(v).norm(), u.dot(v)));
         }
-    EXPECT_GT(least_angle, 15.0 * 3.14159265 / 180.0);
+    EXPECT_GT(min_angle, 15.0 * 3.14159265 / 180.0);
     EXPECT_EQ(count_crossings(x, avatar.triangles()), 0);
 }
 
-TEST(Mannequin, IsTheSameEveryTimeAndQuicklyMade)
+TEST(Mannequin, IsReproducibleAndFastToBuild)
 {
     const auto begin = std::chrono::steady_clock::now();
     const auto again = make_mannequin();
@@ -139,7 +141,7 @@ TEST(Mannequin, IsTheSameEveryTimeAndQuicklyMade)
     EXPECT_EQ(posed(*again, {1, 0.4}), posed(mannequin(), {1, 0.4}));
 }
 
-TEST(Mannequin, WeighsEveryVertexOnceWithAtMostFourNearbyBones)
+TEST(Mannequin, BindsEveryVertexToAtMostFourNearbyBonesWithUnitSum)
 {
     const SkinnedMesh& mesh = mannequin().model().mesh;
     for (int v = 0; v < mesh.rest.vertex_count(); ++v) {
@@ -149,7 +151,7 @@ TEST(Mannequin, WeighsEveryVertexOnceWithAtMostFourNearbyBones)
             const Influence& part = mesh.influences[k];
             sum += part.weight;
             const bool arm = part.bone >= kUpperArmL && part.bone <= kHandR;
-            // No arm drags the middle of the trunk or the other side.
+            // An arm moves neither the middle of the trunk nor the other side.
             if (arm) {
                 const double side = part.bone <= kHandL ? 1.0 : -1.0;
                 EXPECT_GT(side * mesh.rest.positions[v].x(), 0.08) << "vertex " << v;
@@ -178,10 +180,10 @@ TEST(Mannequin, WalksInACycleThatClosesAndAdvancesAlongZ)
     EXPECT_EQ(begin, end);
 
     const int walk = avatar.clip_index("walk");
-    const double way =
+    const double distance =
         bounds(posed(avatar, {walk, 6.6})).center().z() - bounds(posed(avatar, {walk, 0.0})).center().z();
-    EXPECT_GT(way / 6.6, 0.9); // [m/s]
-    EXPECT_LT(way / 6.6, 1.5);
+    EXPECT_GT(distance / 6.6, 0.9); // [m/s]
+    EXPECT_LT(distance / 6.6, 1.5);
 }
 
 TEST(Mannequin, NeverCrossesItselfWhileWalking)
@@ -205,4 +207,4 @@ TEST(Mannequin, RefusesSettingsOutOfRange)
     }
 }
 
-} // namespace toile
+} // namespace toile::test

@@ -2,13 +2,15 @@
 
 #include <cmath>
 
-#include "avatars/motion.h"
+#include "avatars/model/motion.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace avatars;
 
 namespace {
 
-/// Two seconds' standing in the bind pose, one of blend, one of ramp, at 1.5 times speed.
+/// Two seconds in the bind pose, one of blend, one of ramp, at 1.5 times speed.
 Motion rolled_in()
 {
     Motion motion;
@@ -26,10 +28,10 @@ constexpr double kDuration = 10.0; // [s]
 TEST(PreRoll, HoldsThenBlendsThenRuns)
 {
     const Motion motion = rolled_in();
-    EXPECT_EQ(pose_at(motion, 0, kDuration, 0.0).bind_share, 1.0);
-    EXPECT_EQ(pose_at(motion, 0, kDuration, 2.0).bind_share, 1.0);
-    EXPECT_NEAR(pose_at(motion, 0, kDuration, 2.5).bind_share, 0.5, 1e-15);
-    EXPECT_EQ(pose_at(motion, 0, kDuration, 3.0).bind_share, 0.0);
+    EXPECT_EQ(pose_at(motion, 0, kDuration, 0.0).bind_weight, 1.0);
+    EXPECT_EQ(pose_at(motion, 0, kDuration, 2.0).bind_weight, 1.0);
+    EXPECT_NEAR(pose_at(motion, 0, kDuration, 2.5).bind_weight, 0.5, 1e-15);
+    EXPECT_EQ(pose_at(motion, 0, kDuration, 3.0).bind_weight, 0.0);
     EXPECT_EQ(pose_at(motion, 0, kDuration, 3.0).time, 0.25);
     // The ramp gains half of its length, then full speed.
     EXPECT_NEAR(pose_at(motion, 0, kDuration, 4.0).time, 0.25 + 1.5 * 0.5, 1e-15);
@@ -41,13 +43,13 @@ TEST(PreRoll, IsContinuousInPositionAndVelocity)
     const Motion motion = rolled_in();
     const double h = 1e-4; // [s]
     const auto time = [&](double t) { return pose_at(motion, 0, kDuration, t).time; };
-    const auto share = [&](double t) { return pose_at(motion, 0, kDuration, t).bind_share; };
+    const auto fraction = [&](double t) { return pose_at(motion, 0, kDuration, t).bind_weight; };
     for (double t = 0.01; t < 5.0; t += 0.5 * h) {
-        // A jump in value would exceed the top rate; a jump in rate the largest acceleration, 6 per s^2.
+        // A jump in value would exceed the max rate; a jump in rate the max acceleration, 6 per s^2.
         ASSERT_LE(std::abs(time(t + h) - time(t)), 1.51 * h) << t;
-        ASSERT_LE(std::abs(share(t + h) - share(t)), 1.51 * h) << t;
+        ASSERT_LE(std::abs(fraction(t + h) - fraction(t)), 1.51 * h) << t;
         ASSERT_LE(std::abs(time(t + h) - 2.0 * time(t) + time(t - h)), 6.1 * h * h) << t;
-        ASSERT_LE(std::abs(share(t + h) - 2.0 * share(t) + share(t - h)), 6.1 * h * h) << t;
+        ASSERT_LE(std::abs(fraction(t + h) - 2.0 * fraction(t) + fraction(t - h)), 6.1 * h * h) << t;
     }
     EXPECT_NEAR((time(4.5 + h) - time(4.5)) / h, 1.5, 1e-9);
 }
@@ -56,7 +58,7 @@ TEST(PreRoll, WithoutBindPoseHoldsTheClipsFirstPose)
 {
     Motion motion = rolled_in();
     motion.pre_roll.from_bind = false;
-    EXPECT_EQ(pose_at(motion, 0, kDuration, 1.0).bind_share, 0.0);
+    EXPECT_EQ(pose_at(motion, 0, kDuration, 1.0).bind_weight, 0.0);
     EXPECT_EQ(pose_at(motion, 0, kDuration, 2.0).time, 0.25);
     EXPECT_NEAR(pose_at(motion, 0, kDuration, 3.0).time, 0.25 + 0.75, 1e-15);
 }
@@ -90,4 +92,4 @@ TEST(Motion, LoopsAndCountsCyclesOnlyWhereTheRootAccumulates)
     EXPECT_EQ(pose_at(motion, 0, 2.0, 5.5).cycles, 2);
 }
 
-} // namespace toile
+} // namespace toile::test

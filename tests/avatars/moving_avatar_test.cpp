@@ -3,12 +3,14 @@
 #include <tbb/global_control.h>
 
 #include "avatars/load_avatar.h"
-#include "avatars/moving_avatar.h"
-#include "core/backend/error.h"
-#include "core/backend/stages.h"
+#include "avatars/model/moving_avatar.h"
+#include "core/base/error.h"
+#include "core/base/stages.h"
 #include "tests/avatars/column.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace avatars;
 
 namespace {
 
@@ -47,7 +49,7 @@ std::string refusal(const Motion& motion, const Placement& placement = {})
 
 } // namespace
 
-TEST(MovingAvatar, HandsTheEndOfAStepToTheNext)
+TEST(MovingAvatar, StartsAStepWhereTheLastEnded)
 {
     MovingAvatar avatar = column(play("bend"));
     EXPECT_EQ(x_t0(avatar), x_t1(avatar));
@@ -69,13 +71,13 @@ TEST(MovingAvatar, WithoutClipNeverMoves)
     }
 }
 
-TEST(MovingAvatar, MovesInStepsThatChangeItsPose)
+TEST(MovingAvatar, MovesOnlyInStepsThatChangeItsPose)
 {
     Motion motion = play("bend");
     motion.pre_roll.hold = 0.45;
     MovingAvatar avatar = column(motion);
     EXPECT_FALSE(avatar.is_static());
-    // Held until 0.45 s, at the clip's end from 1.45 s on.
+    // The pose is constant until 0.45 s and from 1.45 s, the clip's end, on.
     for (int step = 1; step <= 20; ++step) {
         avatar.advance_to(0.1 * step);
         EXPECT_EQ(avatar.moved(), step >= 5 && step <= 15) << step;
@@ -83,27 +85,27 @@ TEST(MovingAvatar, MovesInStepsThatChangeItsPose)
     EXPECT_EQ(x_t0(avatar), x_t1(avatar));
 }
 
-TEST(MovingAvatar, IsCarriedAsAWhole)
+TEST(MovingAvatar, MovesAsAWhole)
 {
-    MovingAvatar standing = column(play("bend")), carried = column(play("bend"));
+    MovingAvatar standing = column(play("bend")), transformed = column(play("bend"));
     standing.advance_to(0.25);
     const std::vector<Vec3> start = x_t1(standing);
-    Affine there = identity_affine();
-    there.leftCols<3>() = Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix();
-    there.col(3) = Vec3(0.1, 0.2, 0.3);
-    carried.advance_to(0.25, there);
-    const std::vector<Vec3> end = x_t1(carried);
+    Affine target = identity_affine();
+    target.leftCols<3>() = Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix();
+    target.col(3) = Vec3(0.1, 0.2, 0.3);
+    transformed.advance_to(0.25, target);
+    const std::vector<Vec3> end = x_t1(transformed);
     for (size_t v = 0; v < start.size(); ++v)
-        EXPECT_LT((end[v] - apply(there, start[v])).norm(), 1e-14);
-    carried.advance_to(0.25, there);
-    EXPECT_FALSE(carried.moved());
-    carried.advance_to(0.25);
-    EXPECT_TRUE(carried.moved());
-    EXPECT_EQ(x_t0(carried), end);
-    EXPECT_EQ(x_t1(carried), start);
+        EXPECT_LT((end[v] - apply(target, start[v])).norm(), 1e-14);
+    transformed.advance_to(0.25, target);
+    EXPECT_FALSE(transformed.moved());
+    transformed.advance_to(0.25);
+    EXPECT_TRUE(transformed.moved());
+    EXPECT_EQ(x_t0(transformed), end);
+    EXPECT_EQ(x_t1(transformed), start);
 }
 
-TEST(MovingAvatar, IsSkinnedOnlyWhenAsked)
+TEST(MovingAvatar, IsSkinnedOnlyOnDemand)
 {
     Stages stages;
     const Stages::Activate recording(stages);
@@ -114,7 +116,7 @@ TEST(MovingAvatar, IsSkinnedOnlyWhenAsked)
     EXPECT_EQ(stages.calls("avatars/skin"), 1);
 }
 
-TEST(MovingAvatar, StandsWhereItIsPlaced)
+TEST(MovingAvatar, AppliesItsPlacement)
 {
     Placement placement;
     placement.translate = {1.0, 2.0, 3.0};
@@ -129,7 +131,7 @@ TEST(MovingAvatar, StandsWhereItIsPlaced)
     }
 }
 
-TEST(MovingAvatar, WalksOnWhereTheRootAccumulates)
+TEST(MovingAvatar, ContinuesFromItsAccumulatedRoot)
 {
     Motion motion = play("slide");
     motion.loop = true;
@@ -170,4 +172,4 @@ TEST(MovingAvatar, RefusesMotionsItCannotPlay)
     EXPECT_NE(refusal({}, placement).find("scale = 0"), std::string::npos);
 }
 
-} // namespace toile
+} // namespace toile::test

@@ -3,14 +3,16 @@
 #include <random>
 
 #include "avatars/import/assimp_import.h"
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "tests/avatars/column.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace avatars;
 
 namespace {
 
-/// Linear blend skinning as the textbook writes it: 4x4 matrices, parents by recursion, no shared code.
+/// Textbook linear blend skinning: 4x4 matrices, parents by recursion, no shared code.
 class TextbookSkinning {
 public:
     TextbookSkinning(const RiggedModel& model, const Clip& clip, double time)
@@ -61,9 +63,9 @@ private:
                 local.rotation = value_at(track.rotation, time_, local.rotation, arc);
                 local.scale = value_at(track.scale, time_, local.scale, line);
             }
-        Eigen::Affine3d own = Eigen::Affine3d::Identity();
-        own.translate(local.translation).rotate(local.rotation).scale(local.scale);
-        return j.parent < 0 ? own.matrix() : Eigen::Matrix4d(global(j.parent) * own.matrix());
+        Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+        transform.translate(local.translation).rotate(local.rotation).scale(local.scale);
+        return j.parent < 0 ? transform.matrix() : Eigen::Matrix4d(global(j.parent) * transform.matrix());
     }
 
     const RiggedModel& model_;
@@ -76,8 +78,8 @@ void expect_like_textbook(RiggedModel model, int vertex_step)
     const RiggedModel copy = model;
     SkinnedAvatar avatar("test", std::move(model));
     for (size_t c = 0; c < copy.clips.size(); ++c)
-        for (const double share : {0.0, 0.13, 0.5, 0.97}) {
-            const double time = share * copy.clips[c].duration;
+        for (const double fraction : {0.0, 0.13, 0.5, 0.97}) {
+            const double time = fraction * copy.clips[c].duration;
             const std::vector<Vec3> x = posed(avatar, {int(c), time});
             const TextbookSkinning oracle(copy, copy.clips[c], time);
             for (int v = 0; v < avatar.vertex_count(); v += vertex_step)
@@ -86,7 +88,7 @@ void expect_like_textbook(RiggedModel model, int vertex_step)
         }
 }
 
-/// Weight sums of all vertices, smallest and largest.
+/// Min and max over vertices of the sum of weights.
 std::pair<double, double> weight_sums(const SkinnedMesh& mesh)
 {
     std::pair<double, double> range{1e300, -1e300};
@@ -114,7 +116,7 @@ TEST(Skinning, AgreesWithTheTextbookOnAScannedBody)
     expect_like_textbook(import_rigged_model(file), 97);
 }
 
-TEST(Skinning, ABoneTurnCarriesItsRigidPart)
+TEST(Skinning, BoneRotationMovesItsRigidPart)
 {
     RiggedModel model = import_rigged_model(column_file());
     const std::vector<Vec3> rest = model.mesh.rest.positions;
@@ -122,21 +124,22 @@ TEST(Skinning, ABoneTurnCarriesItsRigidPart)
     const std::vector<Vec3> x = posed(avatar, {avatar.clip_index("bend"), 1.0});
     for (int v = 0; v < avatar.vertex_count(); ++v) {
         const Vec3& r = rest[v];
-        const Vec3 turned(-(r.y() - 0.5), 0.5 + r.x(), r.z());
+        const Vec3 rotated(-(r.y() - 0.5), 0.5 + r.x(), r.z());
         if (r.y() > 0.9)
-            EXPECT_LT((x[v] - turned).norm(), 1e-6) << "the tip's ring turns about the tip";
+            EXPECT_LT((x[v] - rotated).norm(), 1e-6) << "the tip's ring turns about the tip";
         else if (r.y() < 0.1)
             EXPECT_LT((x[v] - r).norm(), 1e-12) << "the base's ring stays";
         else
-            EXPECT_LT((x[v] - (5.0 * r + 4.0 * turned) / 9.0).norm(), 1e-6) << "the middle ring blends 5 : 4";
+            EXPECT_LT((x[v] - (5.0 * r + 4.0 * rotated) / 9.0).norm(), 1e-6)
+                << "the middle ring blends 5 : 4";
     }
 }
 
 TEST(Skinning, ScalesStoredWeightsToOne)
 {
-    const auto [least, most] = weight_sums(import_rigged_model(column_file()).mesh);
-    EXPECT_NEAR(least, 1.0, 1e-14);
-    EXPECT_NEAR(most, 1.0, 1e-14);
+    const auto [min_sum, max_sum] = weight_sums(import_rigged_model(column_file()).mesh);
+    EXPECT_NEAR(min_sum, 1.0, 1e-14);
+    EXPECT_NEAR(max_sum, 1.0, 1e-14);
 }
 
 TEST(Skinning, RefusesAVertexWithoutWeight)
@@ -155,7 +158,7 @@ TEST(Skinning, RefusesAVertexWithoutWeight)
 
 TEST(WeldSeams, JoinsBorderVerticesAndAveragesTheirWeights)
 {
-    // Two triangles that share an edge in space but not in indices.
+    // Two triangles with a common edge in space but not in indices.
     SkinnedMesh mesh;
     mesh.rest.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     mesh.rest.triangles = {{0, 1, 2}, {3, 4, 5}};
@@ -189,7 +192,7 @@ TEST(WeldSeams, KeepsVerticesApartWhoseEdgeWouldGetThreeTriangles)
     EXPECT_EQ(mesh.rest.vertex_count(), 9);
 }
 
-TEST(Skeleton, NamesTheUserAndTheNearestJointWhenOneIsMissing)
+TEST(Skeleton, NamesTheNearestJointWhenOneIsMissing)
 {
     Skeleton skeleton;
     skeleton.add({"left_elbow", -1, {}});
@@ -203,4 +206,4 @@ TEST(Skeleton, NamesTheUserAndTheNearestJointWhenOneIsMissing)
     }
 }
 
-} // namespace toile
+} // namespace toile::test

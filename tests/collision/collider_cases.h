@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "collision/detect.h"
+#include "collision/body/detect.h"
 #include "tests/collision/shapes_for_tests.h"
 #include "tests/collision/soups.h"
 
 namespace toile::test {
+
+using namespace collision;
 
 struct ColliderCase {
     std::string name;
@@ -19,7 +21,7 @@ struct ColliderCase {
     DetectSettings settings;
 };
 
-/// Every vertex of the mesh goes its own way.
+/// Mesh whose vertices all move independently.
 inline MovingMesh shaken(const TriangleMesh& mesh, double size, Random& random)
 {
     MovingMesh moving{mesh.triangles, mesh.positions, mesh.positions};
@@ -28,8 +30,8 @@ inline MovingMesh shaken(const TriangleMesh& mesh, double size, Random& random)
     return moving;
 }
 
-/// A sheet around a ball with dents, in front of it and behind.
-inline ColliderCase around_a_ball(Random& random, int cells, int levels)
+/// Sheet around a dented ball, in front of its surface and behind.
+inline ColliderCase ball_case(Random& random, int cells, int levels)
 {
     ColliderCase made{"around a ball", testing::sheet_mesh(0.5, cells, 0.0), {}, {}, {}};
     const Vec3 center(0.4, 1.2, -0.3);
@@ -39,15 +41,15 @@ inline ColliderCase around_a_ball(Random& random, int cells, int levels)
     made.mesh = shaken(ball, 0.003, random);
     for (Vec3& x : made.cloth.positions) {
         const double along = std::hypot(x.x(), x.z()) / 0.15;
-        const double turn = std::atan2(x.z(), x.x());
-        const Vec3 outwards(std::sin(along) * std::cos(turn), std::cos(along),
-                            std::sin(along) * std::sin(turn));
+        const double azimuth = std::atan2(x.z(), x.x());
+        const Vec3 outwards(std::sin(along) * std::cos(azimuth), std::cos(along),
+                            std::sin(along) * std::sin(azimuth));
         x = center + (0.155 + random.uniform(-0.006, 0.006)) * outwards + 0.001 * random.point();
     }
     return made;
 }
 
-/// Vertices that look less far than others, and some nowhere.
+/// Gives some vertices a smaller search radius, and some none.
 inline void add_reach(ColliderCase& made, Random& random)
 {
     for (size_t v = 0; v < made.cloth.positions.size(); ++v)
@@ -55,7 +57,7 @@ inline void add_reach(ColliderCase& made, Random& random)
                                                   : made.settings.radius * random.uniform(0.2, 1.0));
 }
 
-/// Soup in soup: unconnected and shared corners, triangles twice.
+/// Soup in soup: unconnected triangles, shared corners and repeated triangles.
 inline ColliderCase soup_in_soup(Random& random)
 {
     const auto mesh = [&] {
@@ -73,7 +75,7 @@ inline ColliderCase soup_in_soup(Random& random)
     return made;
 }
 
-/// A sheet between two balls that overlap, and in the groove around them.
+/// Sheet between two overlapping balls and in the groove around them.
 inline ColliderCase between_balls(Random& random)
 {
     ColliderCase made{"between balls", testing::sheet_mesh(0.4, 40, 0.0), {}, {}, {}};

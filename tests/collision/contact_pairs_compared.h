@@ -1,6 +1,6 @@
 #pragma once
 
-/// Pairs of cloth and colliders found twice: by CPU and GPU, or in two runs.
+/// Comparison of two results of a query of pairs of cloth and colliders: by CPU and GPU, or in two runs.
 
 #include <algorithm>
 #include <cmath>
@@ -10,23 +10,25 @@
 
 #include <gtest/gtest.h>
 
-#include "collision/contact_pair.h"
+#include "collision/geometry/contact_pair.h"
 
 namespace toile::test {
 
-/// Largest differences between machines of points and motions [m], and of weights [-].
+using namespace collision;
+
+/// Max differences between machines of points and motions [m], and of weights [-].
 inline constexpr double kContactTolerance = 1e-12;
 
-/// Of normals [-]: what needles make of their faces', and rounding of coordinates of some metres over the
-/// distance that a normal is the direction of.
+/// Max difference of normals [-], due to the face normals of needles. Rounding of coordinates of some metres
+/// comes on top, divided by the distance whose direction is the normal.
 inline constexpr double kNormalTolerance = 1e-11;
 inline constexpr double kNormalRounding = 1e-14; ///< [m]
 
-/// Pairs that are not the same but for rounding; counts, so that one line tells.
+/// Differences of two lists of pairs, accumulated for one message.
 struct ContactDifferences {
     int keys = 0, not_finite = 0;
     double numbers = 0.0; ///< [m] of points and motions, and of weights
-    double normal = 0.0;  ///< [-] less what rounding explains
+    double normal = 0.0;  ///< [-] less the part explained by rounding
 
     void add(const ContactPair& a, const ContactPair& b, View<const Vec3> x)
     {
@@ -41,7 +43,7 @@ struct ContactDifferences {
     }
 };
 
-/// Entry by entry.
+/// Compares entry by entry.
 /// @param x  cloth positions [m]
 inline void expect_same(const std::vector<ContactPair>& cpu, const std::vector<ContactPair>& gpu,
                         View<const Vec3> x, const std::string& what)

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Meshes that have moved, for bounds of how.
+/// Moved meshes, for tests of motion bounds.
 
 #include "core/mesh/triangle_mesh.h"
 #include "tests/collision/soups.h"
@@ -14,8 +14,8 @@ struct MotionCase {
     Bounds box() const { return bounds(now); }
 };
 
-/// A fine sheet that moves by a little more from one end to the other, and triangles of all sizes, some
-/// across many cells, each vertex moving by itself.
+/// Fine sheet whose displacement grows slightly from one end to the other, and triangles of all sizes, some
+/// across many cells, each vertex moving independently.
 inline MotionCase motion_case(Random& random)
 {
     Soup soup = random_soup(random);

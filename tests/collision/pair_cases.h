@@ -1,17 +1,17 @@
 #pragma once
 
-/// Random pairs of primitives of every awkward kind, and their distance in quadruple precision.
+/// Random pairs of primitives in degenerate configurations, and their distance in quadruple precision.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 
-#include "core/backend/types.h"
+#include "core/compute/types.h"
 
 namespace toile::test {
 
-/// 33 digits: what doubles of any awkward place leave is far below what a double can tell.
+/// 33 digits: the errors of double precision in any degenerate case are far above its rounding.
 using Quad = __float128;
 using QuadVec = std::array<Quad, 3>;
 
@@ -37,7 +37,7 @@ inline Quad point_segment2(const QuadVec& p, const QuadVec& a, const QuadVec& b)
     return dot(d, d);
 }
 
-/// Squared distance of a pair: the least over all features, those inside only where they are.
+/// Squared distance of a pair: the min over all features, interior minima only if they exist.
 inline Quad distance2(bool is_edge_edge, const std::array<QuadVec, 4>& x)
 {
     const auto& [p, a, b, c] = x;
@@ -86,7 +86,7 @@ public:
     {
         return std::uniform_real_distribution<double>(low, high)(engine_);
     }
-    /// Uniform in the logarithm.
+    /// Random number, uniform in the logarithm.
     double scale(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
     int below(int count) { return std::uniform_int_distribution<int>(0, count - 1)(engine_); }
     Vec3 point() { return Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)); }
@@ -97,7 +97,7 @@ private:
 
 enum class Awkward { kNone, kParallel, kCollapsed, kCoincident, kCoplanar, kFast, kTiny, kCount };
 
-/// Sizes of about 1 m (what matters are ratios), up to 2 m from the origin.
+/// Pair of size about 1 m (only ratios matter), up to 2 m from the origin.
 struct PairCase {
     Awkward kind;
     bool is_edge_edge;
@@ -113,13 +113,13 @@ inline PairCase random_case(Random& random)
     }
     const double tiny = random.scale(1e-9, 1.0);
     switch (c.kind) {
-    case Awkward::kParallel: // edges; a triangle's normal plane for the vertex's motion
+    case Awkward::kParallel: // edges; for a triangle, the vertex moves in its normal plane
         c.x[3] = c.x[2] + random.uniform(-2, 2) * (c.x[1] - c.x[0]) + random.below(2) * tiny * random.point();
         break;
     case Awkward::kCollapsed: // corners on one line, or a needle
         c.x[3] = c.x[1] + random.uniform(-1, 2) * (c.x[2] - c.x[1]) + random.below(2) * tiny * random.point();
         break;
-    case Awkward::kCoincident: // some corners are one point
+    case Awkward::kCoincident: // some corners coincide
         c.x[2 + random.below(2)] = c.x[1];
         if (random.below(4) == 0)
             c.x[2] = c.x[3];
@@ -128,7 +128,7 @@ inline PairCase random_case(Random& random)
         for (int k = 0; k < 4; ++k)
             c.x[k][1] = 0.25;
         break;
-    case Awkward::kFast: // 100 m/s for a frame, and more
+    case Awkward::kFast: // at least 100 m/s for a frame
         for (Vec3& move : c.move)
             move *= random.scale(1.0, 1e3);
         break;

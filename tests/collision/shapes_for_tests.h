@@ -8,7 +8,7 @@
 
 namespace toile::testing {
 
-/// The axis-aligned box from lower to upper: 8 vertices, 12 triangles, outward.
+/// Axis-aligned box from lower to upper: 8 vertices, 12 triangles, facing outwards.
 inline TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper)
 {
     TriangleMesh mesh;
@@ -20,7 +20,7 @@ inline TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper)
     return mesh;
 }
 
-/// A sphere from a subdivided octahedron: 8 * 4^levels triangles, outward.
+/// Sphere from a subdivided octahedron: 8 * 4^levels triangles, facing outwards.
 inline TriangleMesh sphere_mesh(const Vec3& center, double radius, int levels)
 {
     TriangleMesh mesh;
@@ -32,7 +32,7 @@ inline TriangleMesh sphere_mesh(const Vec3& center, double radius, int levels)
     return mesh;
 }
 
-/// A horizontal square sheet, cells x cells quads, normals up, centred above (0, height, 0).
+/// Horizontal square sheet, cells x cells quads, normals up, centred above (0, height, 0).
 inline TriangleMesh sheet_mesh(double side, int cells, double height)
 {
     TriangleMesh mesh;

@@ -1,14 +1,16 @@
 #pragma once
 
-/// Triangle soups whose vertices move, for searches of near pairs.
+/// Moving triangle soups, for searches of near pairs.
 
 #include <cmath>
 #include <vector>
 
-#include "collision/ways.h"
+#include "collision/geometry/trajectories.h"
 #include "tests/collision/pair_cases.h"
 
 namespace toile::test {
+
+using namespace collision;
 
 struct Soup {
     std::vector<Triangle> triangles;
@@ -16,7 +18,7 @@ struct Soup {
     std::vector<Vec3> motion;
     std::vector<double> slack;
 
-    Ways ways() const { return {motion, slack}; }
+    Trajectories trajectories() const { return {motion, slack}; }
     void stand_still()
     {
         motion.assign(x.size(), Vec3::Zero());
@@ -40,7 +42,7 @@ inline void add_sheet(Soup& soup, int side, double edge, double height)
     soup.stand_still();
 }
 
-/// Unconnected and shared corners, some triangles collapsed, some twice.
+/// Unconnected and shared corners, some triangles collapsed, some repeated.
 inline Soup random_soup(Random& random)
 {
     Soup soup;
@@ -56,7 +58,7 @@ inline Soup random_soup(Random& random)
     return soup;
 }
 
-/// A sheet in zigzag, its layers close, each vertex moving by itself while all fall.
+/// Sheet folded in zigzag with close layers, each vertex moving independently on top of a common fall.
 inline Soup folded_sheet(Random& random)
 {
     Soup soup;

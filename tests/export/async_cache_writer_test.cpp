@@ -10,12 +10,15 @@
 
 #include "tests/export/export_fixtures.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 using AsyncCacheWriterTest = ExportTest;
 
-TEST_F(AsyncCacheWriterTest, LeavesTheSameBytesAsWritingAtOnce)
+TEST_F(AsyncCacheWriterTest, WritesTheSameBytesAsASynchronousWriter)
 {
     const CacheLayout layout = cache_layout(quad_mesh(), 40);
     const auto direct = make_cache_writer(file("direct.pc2"), layout);
@@ -33,8 +36,8 @@ TEST_F(AsyncCacheWriterTest, LeavesTheSameBytesAsWritingAtOnce)
     EXPECT_EQ(bytes_of(file("queued.pc2")), bytes_of(file("direct.pc2")));
 }
 
-/// Each is asked for once, by the thread that writes, and nobody has it any more when it is written.
-TEST_F(AsyncCacheWriterTest, AsksForLatePositionsWhereItWrites)
+/// Late positions are requested once, by the writer thread, and released when they are written.
+TEST_F(AsyncCacheWriterTest, RequestsLatePositionsOnTheWriterThread)
 {
     const CacheLayout layout = cache_layout(quad_mesh(), 9);
     const auto direct = make_cache_writer(file("direct.pc2"), layout);
@@ -61,7 +64,7 @@ TEST_F(AsyncCacheWriterTest, AsksForLatePositionsWhereItWrites)
         EXPECT_TRUE(positions.expired());
 }
 
-TEST_F(AsyncCacheWriterTest, SurfacesWhatLatePositionsThrow)
+TEST_F(AsyncCacheWriterTest, RethrowsErrorsOfLatePositions)
 {
     AsyncCacheWriter writer(make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 9)), 2);
     writer.write(0, frame_positions(0, 7));
@@ -71,7 +74,7 @@ TEST_F(AsyncCacheWriterTest, SurfacesWhatLatePositionsThrow)
     EXPECT_EQ(read_cache(file("a.partial.pc2")).frame_count(), 1);
 }
 
-TEST_F(AsyncCacheWriterTest, DeliversWhatWasQueuedWhenDestroyed)
+TEST_F(AsyncCacheWriterTest, WritesQueuedFramesWhenDestroyed)
 {
     {
         AsyncCacheWriter writer(make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 9)));
@@ -81,7 +84,7 @@ TEST_F(AsyncCacheWriterTest, DeliversWhatWasQueuedWhenDestroyed)
     EXPECT_FALSE(std::filesystem::exists(file("a.pc2")));
 }
 
-/// A disk that is slow and full from frame 3 on.
+/// Disk that is slow and full from frame 3 on.
 class FullDisk final : public CacheWriter {
 public:
     explicit FullDisk(std::vector<int>& written) : written_(written) {}
@@ -99,7 +102,7 @@ private:
     std::vector<int>& written_;
 };
 
-TEST_F(AsyncCacheWriterTest, SurfacesAnErrorAtALaterWriteAndWritesNothingBehindIt)
+TEST_F(AsyncCacheWriterTest, RethrowsAnErrorAtALaterWriteAndWritesNothingMore)
 {
     std::vector<int> written;
     AsyncCacheWriter writer(std::make_unique<FullDisk>(written), 2);
@@ -108,7 +111,7 @@ TEST_F(AsyncCacheWriterTest, SurfacesAnErrorAtALaterWriteAndWritesNothingBehindI
     EXPECT_EQ(written, (std::vector<int>{0, 1, 2}));
 }
 
-TEST_F(AsyncCacheWriterTest, SurfacesTheErrorOfTheLastFrameAtFinish)
+TEST_F(AsyncCacheWriterTest, RethrowsTheErrorOfTheLastFrameAtFinish)
 {
     std::vector<int> written;
     AsyncCacheWriter writer(std::make_unique<FullDisk>(written), 8);
@@ -118,4 +121,4 @@ TEST_F(AsyncCacheWriterTest, SurfacesTheErrorOfTheLastFrameAtFinish)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -4,14 +4,17 @@
 
 #include "tests/export/export_fixtures.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 using testing::HasSubstr;
 
 using CacheWriterTest = ExportTest;
 
-/// One vertex (1, -2, 0.5), then (0, 0, 3), starting at scene frame 5.
+/// Writes one vertex (1, -2, 0.5), then (0, 0, 3), starting at scene frame 5.
 void write_two_frames(const std::filesystem::path& file)
 {
     CacheLayout layout;
@@ -25,8 +28,8 @@ void write_two_frames(const std::filesystem::path& file)
     writer->finish();
 }
 
-// Bytes written by hand from the formats' descriptions: 1.0f is 3f800000, -2.0f c0000000, 0.5f 3f000000,
-// 3.0f 40400000, 5.0f 40a00000, 2.5f 40200000.
+// Bytes by hand from the formats' descriptions: 1.0f is 3f800000, -2.0f c0000000, 0.5f 3f000000, 3.0f
+// 40400000, 5.0f 40a00000, 2.5f 40200000.
 TEST_F(CacheWriterTest, WritesPc2ByteForByte)
 {
     write_two_frames(file("a.pc2"));
@@ -61,7 +64,7 @@ TEST_F(CacheWriterTest, LeavesTheOldCacheIntactUntilItFinishes)
     }
 }
 
-TEST_F(CacheWriterTest, RefusesToFinishShortAndSaysWhereTheFramesAre)
+TEST_F(CacheWriterTest, RefusesToFinishShortAndNamesThePartialFile)
 {
     for (const std::string name : {"a.pc2", "a.mdd", "a.obj"}) {
         const auto writer = make_cache_writer(file(name), cache_layout(quad_mesh(), 3));
@@ -82,7 +85,7 @@ TEST_F(CacheWriterTest, RefusesFramesOutOfOrderOrOfAnotherSize)
     EXPECT_THAT(refusal([&] { writer->write(2, frame_positions(2, 7)); }), HasSubstr("frame 2 came where"));
 }
 
-TEST_F(CacheWriterTest, RefusesAnUnwritablePlaceBeforeTheFirstFrame)
+TEST_F(CacheWriterTest, RefusesAnUnwritablePathBeforeTheFirstFrame)
 {
     write_bytes(file("plain"), "a file, not a folder");
     for (const std::string name : {"a.pc2", "a.mdd", "a.obj", "a_##.obj"}) {
@@ -145,4 +148,4 @@ TEST_F(CacheWriterTest, KeepsQuadsAndTextureCoordinatesInObj)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -2,12 +2,15 @@
 
 #include "tests/export/export_fixtures.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 using ExportExample = ExportTest;
 
-// Shown in docs/export/README.md.
+// Shown in docs/guide/caches.md.
 TEST_F(ExportExample, WritesACacheAndReadsItBack)
 {
     const ObjMesh mesh = quad_mesh();
@@ -28,4 +31,4 @@ TEST_F(ExportExample, WritesACacheAndReadsItBack)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -8,7 +8,9 @@
 #include "export/point_cache.h"
 #include "tests/support/temporary_folder.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
 
 using ExportTest = FileTest;
 
@@ -26,7 +28,7 @@ inline ObjMesh quad_mesh()
     return mesh;
 }
 
-/// Positions that floats hold exactly and that tell frame, vertex and axis apart.
+/// Positions exact in single precision and distinct for every frame, vertex and axis.
 inline std::vector<Vec3> frame_positions(int frame, int vertex_count)
 {
     std::vector<Vec3> positions;
@@ -47,4 +49,4 @@ inline void write_bytes(const std::filesystem::path& file, const std::string& by
     std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
 }
 
-} // namespace toile
+} // namespace toile::test

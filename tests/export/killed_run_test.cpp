@@ -6,14 +6,17 @@
 
 #include "tests/export/export_fixtures.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 using testing::HasSubstr;
 
 class KilledRun : public ExportTest {
 protected:
-    /// Runs `simulate` in another process, which is killed at its end without any clean-up.
+    /// Runs `simulate` in another process, which is killed at its end without clean-up.
     static void run_and_kill(const std::function<void()>& simulate)
     {
         const pid_t child = ::fork();
@@ -27,7 +30,7 @@ protected:
         ASSERT_TRUE(WIFSIGNALED(status));
     }
 
-    /// A run of 5 frames killed after 3.
+    /// Kills a run of 5 frames after 3.
     void kill_after_three(const std::string& name) const
     {
         run_and_kill([&] {
@@ -66,7 +69,7 @@ TEST_F(KilledRun, LeavesAReadablePartialWhenKilledWithinAFrame)
     expect_frames(file("skirt.partial.pc2"), 3);
 }
 
-TEST_F(KilledRun, ResumesWhereACheckpointWas)
+TEST_F(KilledRun, ResumesAtACheckpoint)
 {
     for (const std::string name : {"skirt.pc2", "skirt.mdd", "skirt.obj"}) {
         kill_after_three(name);
@@ -91,7 +94,7 @@ TEST_F(KilledRun, LosesTheFramesBehindTheCheckpointWhenResumed)
     expect_frames(file("skirt.partial/skirt_####.obj"), 2);
 }
 
-TEST_F(KilledRun, ResumesNothingThatIsNotThere)
+TEST_F(KilledRun, RefusesToResumeMissingFrames)
 {
     CacheLayout layout = cache_layout(quad_mesh(), 5);
     layout.resume_at = 4;
@@ -106,4 +109,4 @@ TEST_F(KilledRun, ResumesNothingThatIsNotThere)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

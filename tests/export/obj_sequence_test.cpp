@@ -4,7 +4,10 @@
 
 #include "tests/export/export_fixtures.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 using testing::HasSubstr;
@@ -92,4 +95,4 @@ TEST_F(ObjSequenceTest, NamesTheMissingAndTheMisfittingFrame)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -4,7 +4,10 @@
 
 #include "tests/export/export_fixtures.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace exports;
+
 namespace {
 
 using testing::AllOf;
@@ -12,7 +15,7 @@ using testing::HasSubstr;
 
 class PointCacheTest : public ExportTest {
 protected:
-    /// Four frames of seven vertices at 25 frames a second, the first shown at scene frame 10.
+    /// Writes four frames of seven vertices at 25 frames a second, the first at scene frame 10.
     std::filesystem::path write_cache(const std::string& name) const
     {
         CacheLayout layout = cache_layout(quad_mesh(), 4);
@@ -31,7 +34,7 @@ protected:
     }
 };
 
-TEST_F(PointCacheTest, GivesBackEveryFrameInVertexOrder)
+TEST_F(PointCacheTest, ReadsEveryFrameInVertexOrder)
 {
     for (const std::string name : {"a.pc2", "a.mdd", "a.obj"}) {
         const PointCache cache = read_cache(write_cache(name));
@@ -44,13 +47,13 @@ TEST_F(PointCacheTest, GivesBackEveryFrameInVertexOrder)
     }
 }
 
-TEST_F(PointCacheTest, KnowsTheFrameRateOfMddOnly)
+TEST_F(PointCacheTest, ReadsTheFrameRateOfMddOnly)
 {
     EXPECT_NEAR(read_cache(write_cache("a.mdd")).fps().value_or(0.0), 25.0, 1e-4);
     EXPECT_FALSE(read_cache(write_cache("a.pc2")).fps().has_value());
 }
 
-TEST_F(PointCacheTest, SaysHowMuchOfATruncatedFileIsThere)
+TEST_F(PointCacheTest, ReportsTheFramesOfATruncatedFile)
 {
     for (const std::string name : {"a.pc2", "a.mdd"}) {
         const std::string bytes = bytes_of(write_cache(name));
@@ -62,7 +65,7 @@ TEST_F(PointCacheTest, SaysHowMuchOfATruncatedFileIsThere)
     }
 }
 
-TEST_F(PointCacheTest, RefusesWhatIsNoCache)
+TEST_F(PointCacheTest, RefusesOtherFiles)
 {
     std::string bytes = bytes_of(write_cache("a.pc2"));
     EXPECT_THAT(refusal_after("a.pc2", bytes + "x"), HasSubstr("1 bytes follow the last frame at byte 368"));
@@ -92,4 +95,4 @@ TEST_F(PointCacheTest, NamesAMissingFileAndAnUnknownExtension)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -1,4 +1,4 @@
-#include "garment/energy/aerodynamics.h"
+#include "garment/energy/air/aerodynamics.h"
 
 #include <cmath>
 
@@ -8,13 +8,16 @@
 #include "tests/garment/sheets.h"
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 constexpr double kDensity = 1.2, kNormal = 1.1, kTangential = 0.04;
 constexpr double kArealDensity = 0.15; // [kg/m^2]
 constexpr double kGravity = 9.81;
 
-/// A rigid flat sheet in the air: the acceleration is applied without any other force.
+/// Rigid flat sheet in the air: the acceleration is applied without any other force.
 struct Flight {
     Sheet sheet = make_sheet(Vec2(0.4, 0.3), 4, 3, Pattern::Irregular);
     std::shared_ptr<const RestShape> rest = sheet.rest();
@@ -34,7 +37,7 @@ struct Flight {
         air.add_acceleration(x, v, masses, wind, dt, a);
         return a;
     }
-    /// Moves as a stiff sheet does: every vertex with the mean acceleration.
+    /// Moves every vertex with the mean acceleration, like a stiff sheet.
     void step(double dt)
     {
         Vec3 mean = Vec3::Zero();
@@ -46,7 +49,7 @@ struct Flight {
         }
     }
 
-    /// Steps of dt [s] for `duration` [s]; then no vertex may be pushed away from `terminal`.
+    /// Steps of dt [s] for `duration` [s]; then expects the velocity `terminal` at every vertex.
     void expect_terminal_velocity(const Vec3& terminal, double dt, double duration)
     {
         for (int k = 0; k < int(duration / dt); ++k)
@@ -88,18 +91,18 @@ TEST(Aerodynamics, PushesWithTheDragOfAPlateForShortSteps)
 
 TEST(Aerodynamics, IsTheSameFromAllSidesAndFarAway)
 {
-    Flight flight, turned;
-    const Mat3 turn = Eigen::AngleAxisd(1.3, Vec3(3, -1, 2).normalized()).toRotationMatrix();
+    Flight flight, rotated;
+    const Mat3 rotation = Eigen::AngleAxisd(1.3, Vec3(3, -1, 2).normalized()).toRotationMatrix();
     flight.wind = Vec3(3.0, -5.0, 1.0);
-    turned.wind = turn * flight.wind;
+    rotated.wind = rotation * flight.wind;
     for (size_t i = 0; i < flight.x.size(); ++i) {
         flight.v[i] = Vec3(std::sin(double(i)), 0.3, -0.1 * double(i));
-        turned.v[i] = turn * flight.v[i];
-        turned.x[i] = turn * flight.x[i] + Vec3(10, 20, 30);
+        rotated.v[i] = rotation * flight.v[i];
+        rotated.x[i] = rotation * flight.x[i] + Vec3(10, 20, 30);
     }
-    const std::vector<Vec3> a = flight.acceleration(0.01), b = turned.acceleration(0.01);
+    const std::vector<Vec3> a = flight.acceleration(0.01), b = rotated.acceleration(0.01);
     for (size_t i = 0; i < a.size(); ++i)
-        EXPECT_LT((turn * a[i] - b[i]).norm(), 1e-11 * (1.0 + a[i].norm()));
+        EXPECT_LT((rotation * a[i] - b[i]).norm(), 1e-11 * (1.0 + a[i].norm()));
 }
 
 TEST(Aerodynamics, DoesNothingToClothThatMovesWithTheWind)
@@ -113,7 +116,7 @@ TEST(Aerodynamics, DoesNothingToClothThatMovesWithTheWind)
 
 TEST(Aerodynamics, IsStableInAnyWindWithAnyFabric)
 {
-    // A millionth of a gram per square metre in a wind of 10 km/s: the cloth is carried off, no faster.
+    // A millionth of a gram per square metre in a wind of 10 km/s: the cloth moves with the wind, no faster.
     for (const double areal_density : {1e-9, 1e-3, 1.0}) {
         Flight flight(areal_density);
         flight.wind = Vec3(0.0, 1e4, 0.0);

@@ -8,8 +8,11 @@
 #include "garment/energy/bending.h"
 #include "tests/garment/sheets.h"
 
-/// Bending as a GPU runs it, on the CPU against its own. No GPU is needed.
+/// GPU kernels of bending, run on the CPU and compared with Bending. No GPU is needed.
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 struct OneThread {
@@ -38,9 +41,9 @@ TEST(BendByTeam, GivesTheGradientAndEnergyOfTheCpu)
     const BendByTeam bending_of{rows.first, rows.entries, x};
     for (int i = 0; i < n; ++i)
         for (int thread = 0; thread < SlicedRows::kThreads; ++thread) {
-            const BendByTeam::Share share = bending_of.of_thread(i, OneThread{thread});
-            found[i] += share.gradient;
-            energy[i] += share.energy;
+            const BendByTeam::Partial partial = bending_of.of_thread(i, OneThread{thread});
+            found[i] += partial.gradient;
+            energy[i] += partial.energy;
         }
 
     double largest = 0.0, difference = 0.0;

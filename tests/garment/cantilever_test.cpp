@@ -2,12 +2,16 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
 #include "tests/garment/sheets.h"
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -20,16 +24,16 @@ struct Reference {
 };
 constexpr Reference kElastica[] = {{1, 0.12456}, {5, 0.58572}, {10, 1.06680}, {50, 3.70556}, {100, 5.88811}};
 
-/// A mesh of the strip and how well its rest is computed.
+/// Mesh of the strip and accuracy of its equilibrium.
 struct Resolution {
     int columns = 40, rows = 4;
     double tolerance = 1e-7; ///< [m] of a step
     int max_iterations = 200;
-    double speed = 1e-4; ///< [m/s] that counts as rest
+    double speed = 1e-4; ///< [m/s] below which the strip is at rest
 };
 
 /// Drop over reach of the tip of a strip clamped at one end. The clamp line runs through the middle of the
-/// first cell, whose two columns are held: the angle is zero there to second order.
+/// first cell, whose two columns are fixed: the angle is zero there to second order.
 double height_over_width(Pattern pattern, double G, const Resolution& resolution)
 {
     const int columns = resolution.columns, rows = resolution.rows;
@@ -52,7 +56,7 @@ double height_over_width(Pattern pattern, double G, const Resolution& resolution
     std::vector<unsigned char> fixed(sheet.uv.size(), 0);
     for (int row = 0; row <= rows; ++row)
         fixed[sheet.at(0, row)] = fixed[sheet.at(1, row)] = 1;
-    EXPECT_TRUE(settle(body, 0.1, fixed, resolution.speed, 300));
+    EXPECT_TRUE(run_to_rest(body, 0.1, fixed, resolution.speed, 300));
 
     Vec3 tip = Vec3::Zero();
     for (int row = 0; row <= rows; ++row)
@@ -62,6 +66,12 @@ double height_over_width(Pattern pattern, double G, const Resolution& resolution
 
 class Cantilever : public testing::TestWithParam<Pattern> {};
 
+std::string name_of(const testing::TestParamInfo<Pattern>& test)
+{
+    constexpr const char* kNames[] = {"Regular", "FlippedDiagonal", "Irregular"};
+    return kNames[int(test.param)];
+}
+
 TEST_P(Cantilever, HangsLikeTheHeavyElastica)
 {
     for (const Reference& exact : kElastica)
@@ -69,9 +79,9 @@ TEST_P(Cantilever, HangsLikeTheHeavyElastica)
             << "G = " << exact.G;
 }
 
-TEST_P(Cantilever, HalvesItsErrorWithTheCells)
+TEST_P(Cantilever, HalvesItsErrorWithTheCellSize)
 {
-    // The same strip each time, so the width keeps its share of the length.
+    // Equal strips: the ratio of width to length is constant.
     const Reference exact = kElastica[0];
     double previous = 0.05;
     for (const int rows : {2, 4, 8}) {
@@ -83,7 +93,8 @@ TEST_P(Cantilever, HalvesItsErrorWithTheCells)
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, Cantilever,
-                         testing::Values(Pattern::Regular, Pattern::FlippedDiagonal, Pattern::Irregular));
+                         testing::Values(Pattern::Regular, Pattern::FlippedDiagonal, Pattern::Irregular),
+                         name_of);
 
 } // namespace
 } // namespace toile::test

@@ -7,25 +7,30 @@
 #include <optional>
 #include <string>
 
-#include "collision/contact.h"
+#include "collision/contact/contact.h"
 #include "garment/energy/membrane.h"
 #include "garment/energy/springs.h"
 #include "tests/garment/sheets.h"
 
-/// Euler's capstan: a strip over a fixed cylinder holds while the pull at one end is at most exp(mu phi)
-/// times the pull at the other, phi the angle between them. The cylinder is a collider, or a cloth held in
+/// Euler's capstan: a strip over a fixed cylinder sticks if the pull at one end is at most exp(mu phi) times
+/// the pull at the other. phi is the angle between the pulls. The cylinder is a collider, or a fixed cloth in
 /// its place.
 namespace toile::test {
+
+using namespace collision;
+using namespace garment;
+
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadius = 0.05; // [m] of the cylinder
 constexpr double kGap = 0.001;   // [m]
 constexpr double kWrapRadius = kRadius + kGap;
-constexpr double kFree = 0.03;     // [m] of the strip beyond the cylinder, at both ends
-constexpr double kTurn = kPi / 32; // [rad] of one cell; a polygon changes the exponent by kTurn^2 / 12
-constexpr double kPull = 0.02;     // [N] at the weaker end
-constexpr double kFar = 10.0;      // [m] length of the springs that pull: nearly constant forces
+constexpr double kFree = 0.03; // [m] of the strip beyond the cylinder, at both ends
+constexpr double kCellAngle =
+    kPi / 32;                  // [rad] of one cell; a polygon changes the exponent by kCellAngle^2 / 12
+constexpr double kPull = 0.02; // [N] at the weaker end
+constexpr double kFar = 10.0;  // [m] length of the springs that pull: nearly constant forces
 
 Eigen::Isometry3d along_z()
 {
@@ -36,7 +41,7 @@ Eigen::Isometry3d along_z()
 
 ShapeCollider smooth_cylinder() { return {CapsuleShape{1.0, kRadius}, along_z(), "cylinder"}; }
 
-/// The cylinder as a mesh of flat facets.
+/// Cylinder as a mesh of flat facets.
 MeshCollider faceted_cylinder()
 {
     constexpr int kFacets = 96, kRings = 4;
@@ -59,15 +64,15 @@ MeshCollider faceted_cylinder()
 /// Direction of a strip that has turned by `angle` from +x over the top of a cylinder along z.
 Vec3 tangent(double angle) { return Vec3(std::cos(angle), -std::sin(angle), 0.0); }
 
-/// Between cloths: the middle surface of a held one lies by its gap deeper than the strip's, as the surface
-/// of a collider does.
+/// Between cloths the fixed one's middle surface lies deeper than the strip's by its gap, like the surface of
+/// a collider.
 constexpr double kThickness = kGap;
 
-/// A strip without weight and bending stiffness over a cylinder, pulled along its tangents at both ends.
+/// Strip without weight and bending stiffness over a cylinder, pulled along its tangents at both ends.
 class Capstan {
 public:
-    /// @param cylinder  borrowed; its axis is z. None: a held cloth
-    Capstan(double wrap, const std::optional<ContactPartner>& cylinder, double friction)
+    /// @param cylinder  borrowed; its axis is z. None: a fixed cloth
+    Capstan(double wrap, const std::optional<ContactCollider>& cylinder, double friction)
         : wrap_(wrap), sheet_(strip(wrap))
     {
         std::vector<Vec3> x;
@@ -93,11 +98,11 @@ public:
         settings.max_iterations = 600;
         body_ =
             std::make_unique<Body>(x, std::make_unique<System>(masses_of(*rest, 0.2), energies), settings);
-        touch(x, triangles, cylinder, friction);
+        set_up_contact(x, triangles, cylinder, friction);
     }
 
-    /// Pulls more and more at the second end, up to `ratio` times as strongly as at the first, and returns
-    /// how far that end moves in the 0.2 s after [m].
+    /// Increases the pull at the second end up to `ratio` times that at the first. Returns the displacement
+    /// of that end in the 0.2 s after [m].
     double creep(double ratio)
     {
         for (int k = 1; k <= 36; ++k)
@@ -109,16 +114,16 @@ public:
     }
 
 private:
-    /// The held cloth, bent around the cylinder beyond the strip on all sides. Its vertices lie between the
-    /// strip's.
+    /// Adds the fixed cloth, bent around the cylinder beyond the strip on all sides. Its vertices lie between
+    /// the strip's.
     void add_sleeve(std::vector<Vec3>& x, std::vector<Vec2>& uv, std::vector<Triangle>& triangles) const
     {
-        const int first = int(x.size()), columns = int(std::lround(wrap_ / kTurn)) + 5, rows = 3;
-        const double cell = kTurn * kRadius;
+        const int first = int(x.size()), columns = int(std::lround(wrap_ / kCellAngle)) + 5, rows = 3;
+        const double cell = kCellAngle * kRadius;
         const Sheet sleeve = make_sheet(Vec2(columns * cell, rows * cell), columns, rows);
         uv.insert(uv.end(), sleeve.uv.begin(), sleeve.uv.end());
         for (const Vec2& p : sleeve.uv) {
-            const double angle = p.x() / kRadius - 2.5 * kTurn;
+            const double angle = p.x() / kRadius - 2.5 * kCellAngle;
             x.push_back(kRadius * Vec3(std::sin(angle), std::cos(angle), 0.0) +
                         Vec3(0.0, 0.0, p.y() - 0.9 * cell));
         }
@@ -126,9 +131,9 @@ private:
             triangles.push_back(t + Triangle::Constant(first));
     }
 
-    /// Sets contact_ up, between strip and cylinder or sleeve.
-    void touch(const std::vector<Vec3>& x, const std::vector<Triangle>& triangles,
-               const std::optional<ContactPartner>& cylinder, double friction)
+    /// Sets up contact_ between the strip and the cylinder or sleeve.
+    void set_up_contact(const std::vector<Vec3>& x, const std::vector<Triangle>& triangles,
+                        const std::optional<ContactCollider>& cylinder, double friction)
     {
         std::vector<ContactCloth> cloths(1);
         cloths[0].vertex_count = int(sheet_.uv.size());
@@ -137,25 +142,25 @@ private:
         for (ContactCloth& cloth : cloths) {
             cloth.gap = kGap;
             cloth.thickness = kThickness;
-            cloth.partner_friction = {friction};
+            cloth.collider_friction = {friction};
             cloth.cloth_friction.assign(cloths.size(), friction);
         }
-        std::vector<ContactPartner> partners;
+        std::vector<ContactCollider> colliders;
         if (cylinder)
-            partners.push_back(*cylinder);
+            colliders.push_back(*cylinder);
         Contact::Settings settings;
         settings.cloth_with_cloth = !cylinder;
-        contact_ = std::make_unique<Contact>(triangles, x, cloths, partners, settings);
+        contact_ = std::make_unique<Contact>(triangles, x, cloths, colliders, settings);
     }
 
     static Sheet strip(double wrap)
     {
-        const double cell = kTurn * kWrapRadius;
-        const int columns = int(std::lround(wrap / kTurn + 2.0 * kFree / cell));
+        const double cell = kCellAngle * kWrapRadius;
+        const int columns = int(std::lround(wrap / kCellAngle + 2.0 * kFree / cell));
         return make_sheet(Vec2(columns * cell, cell), columns, 1);
     }
 
-    /// Straight, around the cylinder from its top on, and straight again.
+    /// Position on a path that is straight, follows the cylinder from its top on, and is straight again.
     Vec3 wrapped(const Vec2& p) const
     {
         const double from_middle = p.x() - 0.5 * sheet_.uv.back().x();
@@ -186,8 +191,8 @@ private:
     std::unique_ptr<Contact> contact_;
 };
 
-/// Holds below Euler's ratio by that margin and slips above it.
-void expect_threshold(double wrap, const std::optional<ContactPartner>& cylinder, double friction,
+/// Expects sticking below Euler's ratio by that margin and slip above it.
+void expect_threshold(double wrap, const std::optional<ContactCollider>& cylinder, double friction,
                       double margin)
 {
     SCOPED_TRACE("mu = " + std::to_string(friction));
@@ -196,30 +201,30 @@ void expect_threshold(double wrap, const std::optional<ContactPartner>& cylinder
     EXPECT_GT(Capstan(wrap, cylinder, friction).creep((1.0 + margin) * exact), 1e-2);
 }
 
-TEST(Capstan, HoldsAQuarterTurnUpToEulersRatio)
+TEST(Capstan, SticksOverAQuarterTurnUpToEulersRatio)
 {
     const ShapeCollider cylinder = smooth_cylinder();
     for (const double friction : {0.1, 0.2, 0.3, 0.5})
-        expect_threshold(0.5 * kPi, ContactPartner{nullptr, &cylinder}, friction, 0.03);
+        expect_threshold(0.5 * kPi, ContactCollider{nullptr, &cylinder}, friction, 0.03);
 }
 
-TEST(Capstan, HoldsAHalfTurnUpToEulersRatio)
+TEST(Capstan, SticksOverAHalfTurnUpToEulersRatio)
 {
     const ShapeCollider cylinder = smooth_cylinder();
     for (const double friction : {0.1, 0.3})
-        expect_threshold(kPi, ContactPartner{nullptr, &cylinder}, friction, 0.03);
+        expect_threshold(kPi, ContactCollider{nullptr, &cylinder}, friction, 0.03);
 }
 
-/// A polygon interlocks with a strip of cells: normals lean by up to half a facet, 1.9 degrees here and 2.8
-/// on the sleeve, which holds up to tan(lean) / mu more than Euler's exponent where it does not average out.
-TEST(Capstan, HoldsOnAMeshUpToEulersRatio)
+/// Facets interlock with the cells of the strip. Normals deviate by up to half a facet, 1.9 degrees here and
+/// 2.8 on the sleeve. Without averaging, this adds up to tan(deviation) / mu to Euler's exponent.
+TEST(Capstan, SticksOnAMeshUpToEulersRatio)
 {
     const MeshCollider cylinder = faceted_cylinder();
     for (const double friction : {0.1, 0.3})
-        expect_threshold(0.5 * kPi, ContactPartner{&cylinder, nullptr}, friction, 0.08);
+        expect_threshold(0.5 * kPi, ContactCollider{&cylinder, nullptr}, friction, 0.08);
 }
 
-TEST(Capstan, HoldsOnHeldClothUpToEulersRatio)
+TEST(Capstan, SticksOnPinnedClothUpToEulersRatio)
 {
     for (const double friction : {0.1, 0.3})
         expect_threshold(0.5 * kPi, std::nullopt, friction, 0.08);
@@ -228,7 +233,7 @@ TEST(Capstan, HoldsOnHeldClothUpToEulersRatio)
 TEST(Capstan, SlipsWithoutFriction)
 {
     const ShapeCollider cylinder = smooth_cylinder();
-    EXPECT_GT(Capstan(0.5 * kPi, ContactPartner{nullptr, &cylinder}, 0.0).creep(1.03), 1e-2);
+    EXPECT_GT(Capstan(0.5 * kPi, ContactCollider{nullptr, &cylinder}, 0.0).creep(1.03), 1e-2);
 }
 
 } // namespace

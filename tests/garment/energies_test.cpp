@@ -11,6 +11,9 @@
 #include "tests/garment/sheets.h"
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 constexpr double kWarp = 300.0, kWeft = 200.0, kShear = 40.0; // [N/m]
@@ -20,7 +23,7 @@ std::shared_ptr<Membrane> membrane_of(const std::shared_ptr<const RestShape>& re
     return std::make_shared<Membrane>(rest, Membrane::Settings{kWarp, kWeft, kShear}, "sheet");
 }
 
-/// The sheet crumpled a little, smoothly, the same way every time.
+/// Smoothly and reproducibly crumpled sheet.
 std::vector<Vec3> crumpled(const Sheet& sheet)
 {
     std::vector<Vec3> x = sheet.flat();
@@ -43,7 +46,7 @@ TEST(Bending, HasTheGradientOfItsValue)
     expect_gradient_of_value(bending, crumpled(sheet));
 }
 
-TEST(Membrane, MeetsYoungsModulusAlongTheYarns)
+TEST(Membrane, HasYoungsModulusAlongTheYarns)
 {
     const Sheet sheet = make_sheet(Vec2(0.5, 0.4), 4, 4);
     const auto membrane = membrane_of(sheet.rest());
@@ -78,10 +81,10 @@ TEST(Bending, CostsACylinderHalfItsRigidityTimesCurvatureSquared)
 TEST(Energies, CostNothingUnderRigidMotion)
 {
     const Sheet sheet = make_sheet(Vec2(0.3, 0.2), 6, 4, Pattern::Irregular);
-    const Mat3 turn = Eigen::AngleAxisd(2.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    const Mat3 rotation = Eigen::AngleAxisd(2.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     std::vector<Vec3> x = sheet.flat();
     for (Vec3& p : x)
-        p = turn * p + Vec3(10, -5, 3);
+        p = rotation * p + Vec3(10, -5, 3);
     Bending bending(sheet.rest(), Bending::Settings{1e-5, 2e-5}, "sheet");
     EXPECT_LT(value_of(*membrane_of(sheet.rest()), x), 1e-24);
     EXPECT_LT(value_of(bending, x), 1e-18); // rounding: K |x|^2 eps; a visible fold costs 1e-7 J
@@ -115,7 +118,7 @@ TEST(Body, KeepsLinearMomentum)
     EXPECT_LT((momentum() - before).norm(), 1e-6 * before.norm());
 }
 
-TEST(Bending, LeavesHToAMembraneThatCoversIt)
+TEST(Bending, AddsNothingToHWhenTheMembraneDominates)
 {
     const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 10, 10);
     const auto rest = sheet.rest();

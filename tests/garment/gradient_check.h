@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/pd/energy.h"
+#include "core/pd/energy/energy.h"
 
 namespace toile::test {
 
@@ -15,7 +15,7 @@ inline double value_of(Energy& energy, const std::vector<Vec3>& x)
     return energy.add_gradient(x, ignored);
 }
 
-/// The gradient at x [vertices] against central differences of the value.
+/// Compares the gradient at x [vertices] with central differences of the value.
 inline void expect_gradient_of_value(Energy& energy, std::vector<Vec3> x)
 {
     std::vector<Vec3> gradient(x.size(), Vec3::Zero());

@@ -1,13 +1,16 @@
-#include "garment/energy/gusts.h"
+#include "garment/energy/air/gusts.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "garment/energy/aerodynamics.h"
+#include "garment/energy/air/aerodynamics.h"
 #include "tests/garment/sheets.h"
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 const Vec3 kMean(4.0, 0.5, -1.0);
@@ -38,7 +41,7 @@ Moments moments(int count, const Sample& sample)
     return m;
 }
 
-/// The i-th point of a grid of side^3 points that is incommensurate with the gusts' wavelengths [m].
+/// Point i of a grid of side^3 points that is incommensurate with the gusts' wavelengths [m].
 Vec3 grid_point(int i, int side)
 {
     const int column = i % side, row = i / side % side, layer = i / (side * side);
@@ -81,7 +84,7 @@ TEST(Gusts, AreFreeOfDivergence)
     }
 }
 
-/// Correlation coefficient of u' between pairs of places and times, over many of them.
+/// Correlation coefficient of u' between points with a given offset and delay, over many of them.
 double correlation(const Gusts& gusts, const Vec3& shift, double delay)
 {
     double product = 0.0, square = 0.0;

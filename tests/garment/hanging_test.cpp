@@ -8,8 +8,11 @@
 #include "garment/energy/membrane.h"
 #include "tests/garment/sheets.h"
 
-/// Cloth that hangs, against exact answers of statics.
+/// Hanging cloth compared with exact solutions of statics.
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -39,7 +42,7 @@ double extension(Pattern pattern, int columns, double Y)
     for (int row = 0; row <= 4; ++row)
         fixed[sheet.at(0, row)] = 1;
     const auto body = make_body(sheet, x, {Y, 0.8 * Y, 0.3 * Y}, 200);
-    EXPECT_TRUE(settle(*body, 0.1, fixed, 1e-7, 400));
+    EXPECT_TRUE(run_to_rest(*body, 0.1, fixed, 1e-7, 400));
     double sum = 0.0;
     for (int row = 0; row <= 4; ++row)
         sum += -body->positions()[sheet.at(columns, row)].y() - 1.0;
@@ -49,7 +52,7 @@ double extension(Pattern pattern, int columns, double Y)
 TEST(HangingStrip, StretchesByItsWeight)
 {
     // rho_A g L^2 / (2 Y): 0.5 % and 10 % of the length. Poisson's ratio is zero and stress is linear in
-    // stretch, so the answer holds at both. Twenty cells with lumped weights miss it by 4e-5 at most.
+    // stretch, so the solution holds at both. Twenty cells with lumped weights deviate by 4e-5 at most.
     for (const double strain : {0.005, 0.1}) {
         const double Y = kArealDensity * kGravity / (2.0 * strain);
         for (const Pattern pattern : {Pattern::Regular, Pattern::FlippedDiagonal, Pattern::Irregular}) {
@@ -59,8 +62,8 @@ TEST(HangingStrip, StretchesByItsWeight)
     }
 }
 
-/// An inextensible strip of length L between two bars at the same height, d apart: with L = 2 a sinh(d / 2a),
-/// sag = a (cosh(d / 2a) - 1) and an end is pulled with rho_A g a cosh(d / 2a) per width.
+/// Inextensible strip of length L between two bars at the same height, d apart. With L = 2 a sinh(d / 2a),
+/// sag = a (cosh(d / 2a) - 1), and the pull at an end is rho_A g a cosh(d / 2a) per width.
 struct Catenary {
     double distance; ///< d / L
     double sag;      ///< over L
@@ -95,19 +98,19 @@ Catenary hang(double distance, int columns)
         fixed[sheet.at(0, row)] = fixed[sheet.at(columns, row)] = 1;
     const double Y = kArealDensity * kGravity / kStretch;
     const auto body = make_body(sheet, x, {Y, Y, 0.5 * Y}, 2000);
-    EXPECT_TRUE(settle(*body, 0.05, fixed, 1e-3, 60));
+    EXPECT_TRUE(run_to_rest(*body, 0.05, fixed, 1e-3, 60));
 
-    // The pull of one end is what holds its vertices, their own weight included.
-    const View<const Vec3> settled = body->positions();
+    // The pull of one end is the force on its fixed vertices, their own weight included.
+    const View<const Vec3> at_rest = body->positions();
     const View<const double> masses = body->system().masses();
     std::vector<Vec3> gradient(x.size(), Vec3::Zero());
-    body->system().add_gradient(settled, gradient);
+    body->system().add_gradient(at_rest, gradient);
     Vec3 pull = Vec3::Zero();
     for (const int v : {sheet.at(0, 0), sheet.at(0, 1)})
         pull += gradient[v] + masses[v] * Vec3(0.0, kGravity, 0.0);
     double lowest = 0.0, weight = 0.0;
-    for (int v = 0; v < settled.size(); ++v) {
-        lowest = std::min(lowest, settled[v].y());
+    for (int v = 0; v < at_rest.size(); ++v) {
+        lowest = std::min(lowest, at_rest[v].y());
         weight += masses[v] * kGravity;
     }
     return {distance, -lowest, pull.norm() / weight};
@@ -115,8 +118,8 @@ Catenary hang(double distance, int columns)
 
 TEST(HangingStrip, IsACatenaryBetweenTwoBars)
 {
-    // What is left is stretch: the strip is kStretch longer per unit of its tension over its weight, which at
-    // 0.95 deepens the sag by about kStretch / 2 / (1 - 0.95) = 0.3 %, and the polygon of 40 cells.
+    // The rest is stretch: the strip is kStretch longer per unit of its tension over its weight. At 0.95 this
+    // deepens the sag by about kStretch / 2 / (1 - 0.95) = 0.3 %, plus the polygon of 40 cells.
     for (const Catenary& exact : kCatenaries) {
         const Catenary found = hang(exact.distance, 40);
         EXPECT_NEAR(found.sag / exact.sag, 1.0, 0.005) << "d / L = " << exact.distance;

@@ -5,15 +5,18 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "core/pd/curvature.h"
+#include "core/pd/energy/curvature.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
 #include "garment/energy/springs.h"
-#include "garment/energy/stretch_tension.h"
+#include "garment/energy/strain_limit/stretch_tension.h"
 #include "tests/garment/sheets.h"
 
-/// True Hessians of the energies against differences of their gradients.
+/// True Hessians of the energies compared with differences of their gradients.
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 /// Constant part and blocks as one dense matrix.
@@ -72,7 +75,7 @@ void expect_semidefinite(const std::shared_ptr<Energy>& energy, const std::vecto
     EXPECT_GT(smallest_eigenvalue(H), -1e-12 * H.cwiseAbs().maxCoeff());
 }
 
-/// The sheet stretched by the two factors, with waves.
+/// Sheet stretched by the two factors, with waves.
 std::vector<Vec3> stretched(const Sheet& sheet, double warp, double weft, double height)
 {
     std::vector<Vec3> x = sheet.flat();
@@ -94,7 +97,7 @@ TEST_F(MembraneHessian, IsTheDerivativeOfTheGradient)
     expect_exact(membrane_, stretched(sheet_, 0.7, 0.8, 0.01));
 }
 
-TEST_F(MembraneHessian, ProjectsWhatBendsDownwards)
+TEST_F(MembraneHessian, ProjectsNegativeEigenvalues)
 {
     const std::vector<Vec3> slack = stretched(sheet_, 0.7, 0.8, 0.01);
     EXPECT_LT(smallest_eigenvalue(dense_hessian(membrane_, slack, Definiteness::Exact)), -1.0);
@@ -102,7 +105,7 @@ TEST_F(MembraneHessian, ProjectsWhatBendsDownwards)
     expect_semidefinite(membrane_, stretched(sheet_, 0.8, 1.3, 0.01));
 }
 
-TEST_F(MembraneHessian, NeedsNoProjectionWhereTheClothIsTaut)
+TEST_F(MembraneHessian, NeedsNoProjectionOnTautCloth)
 {
     std::vector<Vec3> taut = sheet_.flat();
     for (Vec3& p : taut)
@@ -136,7 +139,7 @@ TEST_F(MembraneHessian, IsFiniteOnACollapsedTriangle)
     EXPECT_TRUE(dense_hessian(membrane_, line, Definiteness::Projected).allFinite());
 }
 
-TEST(BendingHessian, IsTheDerivativeOfTheGradientWhetherHHasItOrNot)
+TEST(BendingHessian, IsTheDerivativeOfTheGradientWithAndWithoutH)
 {
     const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 4, 4, Pattern::Irregular);
     const auto bending = std::make_shared<Bending>(sheet.rest(), Bending::Settings{0.02, 0.01}, "sheet");
@@ -173,7 +176,7 @@ TEST_F(TensionHessian, IsTheDerivativeOfTheGradient)
     }
 }
 
-TEST_F(TensionHessian, IncludesTheTensionRemembered)
+TEST_F(TensionHessian, IncludesTheRememberedTension)
 {
     const std::vector<Vec3> far = stretched(sheet_, 1.2, 1.0, 0.004),
                             near = stretched(sheet_, 1.03, 1.0, 0.004);

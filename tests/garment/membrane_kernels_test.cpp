@@ -5,6 +5,9 @@
 #include <random>
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 /// Deformation gradients: random ones, the identity, a collapsed one and one with a collapsed yarn.
@@ -22,7 +25,7 @@ std::vector<Mat32> deformation_gradients()
     return F;
 }
 
-TEST(MembraneKernels, GiveTheSameInLanesAsOneByOne)
+TEST(MembraneKernels, MatchInLanesAndOneByOne)
 {
     const std::vector<Mat32> F = deformation_gradients();
     Mat2 rest_inv;

@@ -9,20 +9,23 @@
 #include "garment/energy/membrane.h"
 #include "tests/garment/sheets.h"
 
-/// What implicit Euler keeps of the angular momentum of a free sheet. The elastic forces have no moment at
-/// the end of the step, where they are taken:
+/// Angular momentum of a free sheet under implicit Euler. The elastic forces have no moment at the end of the
+/// step, where they are evaluated:
 ///
 ///   sum_i m_i x_i(t1) x (v_i(t1) - v_i(t0)) = 0 exactly,
 ///
-/// but the momentum counts x_i(t0) at the start, so that sum m x x v falls by dt sum m v(t0) x v(t1). A rigid
-/// body that turns by theta in one step and theta' in the next keeps sin(theta + theta') = 2 sin(theta'),
-/// that is tan(theta') = sin(theta) / (2 - cos(theta)), and has the momentum I sin(theta) / dt.
+/// but the momentum at the start has x_i(t0), so that sum m x x v falls by dt sum m v(t0) x v(t1). A rigid
+/// body that rotates by theta in one step and by theta' in the next satisfies sin(theta + theta') = 2
+/// sin(theta'). Hence tan(theta') = sin(theta) / (2 - cos(theta)), and its momentum is I sin(theta) / dt.
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 constexpr double kSpin = 6.0; // [1/s]
 
-/// A free, crumpled sheet that spins about an axis through its centre of mass.
+/// Free, crumpled sheet that spins about an axis through its centre of mass.
 struct SpinningSheet {
     Sheet sheet = make_sheet(Vec2(0.3, 0.3), 8, 8, Pattern::Irregular);
     std::shared_ptr<const RestShape> rest = sheet.rest();
@@ -60,7 +63,7 @@ struct SpinningSheet {
     }
     std::vector<Vec3> velocities() const { return {body->velocities().begin(), body->velocities().end()}; }
 
-    /// sum_i m_i x_i x v_i with the positions of now [kg m^2/s].
+    /// sum_i m_i x_i x v_i at the current positions [kg m^2/s].
     Vec3 angular_momentum(const std::vector<Vec3>& v) const
     {
         Vec3 sum = Vec3::Zero();
@@ -82,7 +85,7 @@ TEST(Body, ExertsNoMomentAtTheEndOfAStep)
     }
 }
 
-/// Shares of the angular momentum lost in a quarter of a second in steps of dt [s].
+/// Fractions of the angular momentum lost in a quarter of a second in steps of dt [s].
 struct Loss {
     double sheet, rigid_body;
 };
@@ -92,14 +95,14 @@ Loss loss(double dt)
     SpinningSheet spinning(0.0);
     const double start = spinning.angular_momentum(spinning.velocities()).norm();
     const int steps = int(std::lround(0.25 / dt));
-    double turn = std::atan(kSpin * dt);
+    double angle = std::atan(kSpin * dt);
     for (int k = 0; k < steps; ++k) {
         spinning.step(dt);
         if (k > 0)
-            turn = std::atan(std::sin(turn) / (2.0 - std::cos(turn)));
+            angle = std::atan(std::sin(angle) / (2.0 - std::cos(angle)));
     }
     return {1.0 - spinning.angular_momentum(spinning.velocities()).norm() / start,
-            1.0 - std::sin(turn) / (dt * kSpin)};
+            1.0 - std::sin(angle) / (dt * kSpin)};
 }
 
 TEST(Body, LosesAngularMomentumLikeARigidBodyUnderImplicitEuler)

@@ -8,13 +8,13 @@ namespace toile::test {
 
 namespace {
 
-/// Half the difference between the points that a column of the Hessian is taken from [m].
+/// Half the step of the central differences for a column of the Hessian [m].
 constexpr double kDifference = 1e-6;
 
-/// Longest move of a Newton step that ends the search [m].
+/// Max displacement of a Newton step that ends the search [m].
 constexpr double kFinished = 1e-12;
 
-/// Coordinates that may move, as indices into the flattened positions.
+/// Free coordinates, as indices into the flattened positions.
 std::vector<int> free_coordinates(const std::vector<unsigned char>& fixed)
 {
     std::vector<int> coordinates;

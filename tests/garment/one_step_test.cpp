@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "core/pd/newton_direct.h"
+#include "core/pd/minimiser/newton_direct.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
 #include "garment/energy/springs.h"
@@ -14,14 +14,18 @@
 #include "tests/garment/sheets.h"
 #include "tests/garment/touching_plane.h"
 
-/// Body::step against a Newton method of the tests' own that minimises the same implicit Euler objective,
+/// Body::step compared with an independent Newton method that minimises the same implicit Euler objective
 /// from the same prediction.
 namespace toile::test {
+
+using namespace collision;
+using namespace garment;
+
 namespace {
 
 constexpr Membrane::Settings kOrthotropic{300.0, 120.0, 20.0};
 
-/// The membrane written once more from its definition: singular values instead of closed-form projections.
+/// Membrane implemented from its definition: singular values instead of closed-form projections.
 class MembraneBySvd : public Energy {
 public:
     MembraneBySvd(std::shared_ptr<const RestShape> rest, const Membrane::Settings& s)
@@ -98,7 +102,7 @@ struct OneStep {
     {
         add(std::make_shared<Bending>(rest, Bending::Settings{rigidity, 0.4 * rigidity}, "sheet"));
     }
-    /// Velocities that stretch, shear and fold the sheet.
+    /// Adds velocities that stretch, shear and fold the sheet.
     void stir(double speed)
     {
         for (size_t i = 0; i < x.size(); ++i)
@@ -122,7 +126,7 @@ struct OneStep {
         return {body.positions().begin(), body.positions().end()};
     }
 
-    /// q*
+    /// Prediction q* of implicit Euler.
     std::vector<Vec3> predicted() const
     {
         std::vector<Vec3> prediction = x;
@@ -132,7 +136,7 @@ struct OneStep {
         return prediction;
     }
 
-    /// By the library's Newton with a direct solver, which knows no contact.
+    /// Result of the library's Newton method with a direct solver, without contact.
     std::vector<Vec3> by_newton_direct() const
     {
         System system(masses, energies);
@@ -168,24 +172,24 @@ struct OneStep {
         return solution;
     }
 
-    /// Compares the ends of the step; the forces must have moved some vertex by `least_correction` [m].
-    /// @return Newton's
-    std::vector<Vec3> expect_agreement(double least_correction) const
+    /// Compares the ends of the step; the forces must have moved some vertex by `min_correction` [m].
+    /// @return result of Newton's method
+    std::vector<Vec3> expect_agreement(double min_correction) const
     {
         std::vector<Vec3> oracle_end = by_newton();
         for (const OuterMethod outer : {OuterMethod::Lbfgs, OuterMethod::Anderson, OuterMethod::NewtonPcg})
-            EXPECT_LT(farthest(by_body(outer), oracle_end), 1e-8) << "method " << int(outer);
+            EXPECT_LT(max_distance(by_body(outer), oracle_end), 1e-8) << "method " << int(outer);
         if (!active) {
-            EXPECT_LT(farthest(by_newton_direct(), oracle_end), 1e-8);
+            EXPECT_LT(max_distance(by_newton_direct(), oracle_end), 1e-8);
         }
         std::vector<Vec3> free = x;
         for (size_t i = 0; i < x.size(); ++i)
             free[i] += dt * (v[i] + dt * gravity[i]);
-        EXPECT_GT(farthest(free, oracle_end), least_correction);
+        EXPECT_GT(max_distance(free, oracle_end), min_correction);
         return oracle_end;
     }
 
-    static double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
+    static double max_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
     {
         double largest = 0.0;
         for (size_t i = 0; i < a.size(); ++i)
@@ -201,7 +205,7 @@ TEST(OneStep, AgreesWithNewtonOnAMembrane)
     step.expect_agreement(1e-3);
 }
 
-TEST(OneStep, AgreesWithNewtonWithBendingAndHeldVertices)
+TEST(OneStep, AgreesWithNewtonWithBendingAndFixedVertices)
 {
     OneStep step;
     step.add_bending(5e-4);
@@ -224,7 +228,7 @@ TEST(OneStep, AgreesWithNewtonWithSprings)
 
 TEST(OneStep, AgreesWithNewtonUnderLargeDeformation)
 {
-    // Pulled to more than twice its length along the warp, sheared and folded, at a long time step.
+    // Stretched to more than twice its length along the warp, sheared and folded, at a long time step.
     OneStep step;
     step.add_bending(1e-3);
     step.dt = 1.0 / 30.0;
@@ -261,9 +265,9 @@ TEST(OneStep, AgreesWithNewtonInContactWithFriction)
     EXPECT_GT(plane.pressing(solution) - plane.sliding(solution), 5);
 }
 
-TEST(OneStep, AgreesWithNewtonWhateverThePreconditionerOfContact)
+TEST(OneStep, AgreesWithNewtonForAnyPreconditionerOfContact)
 {
-    // The middles of all triangles press on the plane: terms of three vertices that share them.
+    // The centres of all triangles press on the plane: terms of three vertices that share them.
     OneStep step;
     step.add_bending(2e-4);
     std::vector<ContactTerm> terms;
@@ -281,7 +285,7 @@ TEST(OneStep, AgreesWithNewtonWhateverThePreconditionerOfContact)
     const std::vector<Vec3> oracle = step.by_newton();
     for (const auto which : {ContactPreconditioner::Block, ContactPreconditioner::Exact,
                              ContactPreconditioner::ShermanMorrison, ContactPreconditioner::Chebyshev})
-        EXPECT_LT(OneStep::farthest(step.by_body(OuterMethod::Lbfgs, which), oracle), 1e-8)
+        EXPECT_LT(OneStep::max_distance(step.by_body(OuterMethod::Lbfgs, which), oracle), 1e-8)
             << "preconditioner " << int(which);
 }
 

@@ -7,10 +7,13 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "core/mesh/topology.h"
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -86,7 +89,7 @@ TEST(CutRectangle, IsCentredAndPrefersNoDiagonal)
     EXPECT_EQ(falling, 8);
 }
 
-TEST(CutRectangle, IsOneCellWhereTheResolutionIsCoarse)
+TEST(CutRectangle, IsOneCellAtACoarseResolution)
 {
     EXPECT_EQ(cut_rectangle(Vec2(0.1, 0.2), 5.0).vertex_count(), 4);
 }

@@ -6,6 +6,8 @@
 
 namespace toile::test {
 
+using namespace garment;
+
 std::shared_ptr<const RestShape> Sheet::rest() const
 {
     return std::make_shared<const RestShape>(rest_shape_of_pattern(uv, triangles, "sheet"));
@@ -29,15 +31,15 @@ Sheet make_sheet(const Vec2& size, int columns, int rows, Pattern pattern)
     const Vec2 cell(size.x() / columns, size.y() / rows);
     for (int r = 0; r <= rows; ++r)
         for (int c = 0; c <= columns; ++c) {
-            Vec2 place(c, r);
+            Vec2 node(c, r);
             if (pattern == Pattern::Irregular) {
                 // The first two columns stay, so that a clamp is the same straight line in every pattern.
                 if (c > 1 && c < columns)
-                    place.x() += jitter(random);
+                    node.x() += jitter(random);
                 if (r > 0 && r < rows)
-                    place.y() += jitter(random);
+                    node.y() += jitter(random);
             }
-            sheet.uv.push_back(place.cwiseProduct(cell));
+            sheet.uv.push_back(node.cwiseProduct(cell));
         }
     for (int r = 0; r < rows; ++r)
         for (int c = 0; c < columns; ++c) {
@@ -61,7 +63,7 @@ std::vector<double> masses_of(const RestShape& rest, double areal_density)
     return masses;
 }
 
-bool settle(Body& body, double dt, const std::vector<unsigned char>& fixed, double speed, int max_steps)
+bool run_to_rest(Body& body, double dt, const std::vector<unsigned char>& fixed, double speed, int max_steps)
 {
     const std::vector<Vec3> gravity(body.positions().size(), Vec3(0.0, -9.81, 0.0));
     for (int step = 0; step < max_steps; ++step) {

@@ -2,16 +2,18 @@
 
 #include <memory>
 
-#include "core/pd/body.h"
+#include "core/pd/step/body.h"
 #include "garment/energy/rest_shape.h"
 
-/// Rectangular sheets and bodies that many tests share.
+/// Rectangular sheets and bodies shared by many tests.
 namespace toile::test {
+
+using namespace garment;
 
 enum class Pattern { Regular, FlippedDiagonal, Irregular };
 
-/// A rectangle [0, size.x] x [0, size.y] of (columns + 1) x (rows + 1) vertices, row by row (y outer, x
-/// inner). Irregular moves inner vertices by up to 30 % of a cell (fixed seed) and picks diagonals at random.
+/// Rectangle [0, size.x] x [0, size.y] of (columns + 1) x (rows + 1) vertices, row by row (y outer, x inner).
+/// Irregular moves inner vertices by up to 30 % of a cell (fixed seed) and picks diagonals at random.
 struct Sheet {
     int columns = 0, rows = 0;
     std::vector<Vec2> uv;
@@ -28,8 +30,8 @@ Sheet make_sheet(const Vec2& size, int columns, int rows, Pattern pattern = Patt
 /// Masses for an areal density [kg/m^2].
 std::vector<double> masses_of(const RestShape& rest, double areal_density);
 
-/// Steps under gravity until no vertex moves faster than `speed` [m/s] or `max_steps` are over; true when it
-/// rested.
-bool settle(Body& body, double dt, const std::vector<unsigned char>& fixed, double speed, int max_steps);
+/// Steps under gravity until no vertex moves faster than `speed` [m/s], for at most `max_steps`. True if it
+/// came to rest.
+bool run_to_rest(Body& body, double dt, const std::vector<unsigned char>& fixed, double speed, int max_steps);
 
 } // namespace toile::test

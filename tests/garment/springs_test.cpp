@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 /// Two springs on one vertex, one on another, none on the third.

@@ -1,4 +1,4 @@
-#include "garment/energy/strain_limit.h"
+#include "garment/energy/strain_limit/strain_limit.h"
 
 #include <cmath>
 #include <limits>
@@ -6,14 +6,17 @@
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
 
-#include "core/backend/error.h"
-#include "garment/energy/joint_strain_limit.h"
+#include "core/base/error.h"
 #include "garment/energy/membrane.h"
 #include "garment/energy/principal_stretch.h"
+#include "garment/energy/strain_limit/joint_strain_limit.h"
 #include "tests/garment/sheets.h"
 #include "tests/garment/touching_plane.h"
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 constexpr double kLimit = 0.05;
@@ -26,13 +29,14 @@ std::vector<double> inverse_of(std::vector<double> masses)
     return masses;
 }
 
-/// A sheet of uneven density, so that masses matter.
+/// Sheet of uneven density, so that masses matter.
 struct HeavySheet {
     Sheet sheet = make_sheet(Vec2(0.3, 0.2), 12, 8, Pattern::Irregular);
     std::shared_ptr<const RestShape> rest = sheet.rest();
     std::vector<double> masses = masses_of(*rest, 0.2);
     StrainLimit limit{rest, {kLimit}, "sheet"};
-    StrainLimit patient{rest, {kLimit, kTolerance, 1000}, "sheet"}; ///< with sweeps to carry corrections far
+    StrainLimit patient{
+        rest, {kLimit, kTolerance, 1000}, "sheet"}; ///< with enough sweeps to propagate corrections far
 
     HeavySheet()
     {
@@ -48,7 +52,7 @@ struct HeavySheet {
     }
 };
 
-/// Scaled along u and v, and rolled around an axis, which stretches nothing.
+/// Positions scaled along u and v and rolled around an axis, which adds no stretch.
 std::vector<Vec3> stretched(const Sheet& sheet, double along_u, double along_v)
 {
     std::vector<Vec3> x;
@@ -82,7 +86,7 @@ TEST(StrainLimit, MeasuresTheLargestPrincipalStretch)
     EXPECT_NEAR(heavy.limit.max_strain(x), 0.2, 1e-13);
 }
 
-TEST(StrainLimit, BringsAStretchedSheetBack)
+TEST(StrainLimit, LimitsAStretchedSheet)
 {
     HeavySheet heavy;
     std::vector<Vec3> x = stretched(heavy.sheet, 1.15, 1.1);
@@ -92,8 +96,8 @@ TEST(StrainLimit, BringsAStretchedSheetBack)
     EXPECT_GT(heavy.limit.max_strain(x), kLimit - kTolerance) << "no more than needed";
 }
 
-/// The second sheet is stretched, and what clears contact after its sweep stretches the first.
-TEST(JointStrainLimit, BringsBackClothThatContactStretchesMeanwhile)
+/// The second sheet is stretched, and the contact projection after its sweep stretches the first.
+TEST(JointStrainLimit, LimitsClothStretchedByContact)
 {
     HeavySheet heavy;
     StrainLimit other(heavy.rest, {kLimit, kTolerance, 1000}, "other");
@@ -124,7 +128,7 @@ TEST(StrainLimit, KeepsTheMassWeightedMomentum)
     EXPECT_LT((heavy.moment(x) - heavy.moment(start)).norm(), 1e-12 * heavy.moment(start).norm());
 }
 
-TEST(StrainLimit, LeavesASatisfiedSheetAloneBitForBit)
+TEST(StrainLimit, LeavesASatisfiedSheetUnchangedBitwise)
 {
     HeavySheet heavy;
     const std::vector<Vec3> start = stretched(heavy.sheet, 1.049, 0.5);
@@ -135,7 +139,7 @@ TEST(StrainLimit, LeavesASatisfiedSheetAloneBitForBit)
 
 TEST(StrainLimit, MovesNoTriangleFarFromTheViolation)
 {
-    // One stretched edge: the far side of the sheet is never touched.
+    // One stretched edge: the far side of the sheet is unchanged.
     HeavySheet heavy;
     std::vector<Vec3> x = heavy.sheet.flat();
     x[heavy.sheet.at(0, 0)] += Vec3(-0.01, 0.0, 0.0);
@@ -160,9 +164,9 @@ TEST(StrainLimit, DoesNotMoveFixedVertices)
     EXPECT_LE(heavy.limit.max_strain(x), kLimit + kTolerance);
 }
 
-TEST(StrainLimit, EndsWhereTheLimitCannotBeReached)
+TEST(StrainLimit, EndsWhenTheLimitCannotBeReached)
 {
-    // Both ends held 20 % too far apart: the free part shares the strain and nothing grows.
+    // Both ends fixed 20 % too far apart: the free part shares the strain and nothing grows.
     HeavySheet heavy;
     std::vector<Vec3> x = heavy.sheet.flat();
     std::vector<double> inverse = inverse_of(heavy.masses);
@@ -178,9 +182,9 @@ TEST(StrainLimit, EndsWhereTheLimitCannotBeReached)
         EXPECT_LT((x[v] - start[v]).norm(), 0.06) << "no further than the cloth is too long";
     }
 
-    const auto everything_held = std::vector<double>(x.size(), 0.0);
+    const auto everything_fixed = std::vector<double>(x.size(), 0.0);
     std::vector<Vec3> held = start;
-    heavy.limit.project(held, everything_held, nullptr);
+    heavy.limit.project(held, everything_fixed, nullptr);
     EXPECT_EQ(held, start);
 }
 
@@ -194,11 +198,10 @@ TEST(StrainLimit, SurvivesClothCollapsedToALine)
     EXPECT_LE(heavy.limit.max_strain(x), kLimit + kTolerance);
 }
 
-/// Brings the first columns of vertices back to where they were, once in a step, and counts how often it is
-/// asked.
-class BringsBackOnce : public TouchingPlane {
+/// Resets the first columns of vertices to their start, once in a step, and counts the calls.
+class LimitsOnce : public TouchingPlane {
 public:
-    BringsBackOnce(std::vector<Vec3> start, double up_to)
+    LimitsOnce(std::vector<Vec3> start, double up_to)
         : TouchingPlane({}, int(start.size())), start_(std::move(start)), up_to_(up_to)
     {
     }
@@ -220,7 +223,7 @@ private:
     int asked_ = 0;
 };
 
-TEST(StrainLimit, DrawsOnWhatWasBroughtBackFromTheRest)
+TEST(StrainLimit, PullsClampedTrianglesThroughTheTension)
 {
     HeavySheet heavy;
     const std::vector<Vec3> flat = heavy.sheet.flat();
@@ -228,7 +231,7 @@ TEST(StrainLimit, DrawsOnWhatWasBroughtBackFromTheRest)
         std::make_shared<Membrane>(heavy.rest, Membrane::Settings{300.0, 300.0, 100.0}, "sheet")};
     Body body(flat, std::make_unique<System>(heavy.masses, energies), {});
     body.set_velocities(std::vector<Vec3>(flat.size(), Vec3::UnitX()));
-    BringsBackOnce active(flat, 0.02);
+    LimitsOnce active(flat, 0.02);
     const double dt = 0.02;
     body.step(dt, std::vector<Vec3>(flat.size(), Vec3::Zero()), std::vector<unsigned char>(flat.size(), 0),
               flat, &active, &heavy.patient);

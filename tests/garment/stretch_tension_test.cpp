@@ -1,15 +1,18 @@
-#include "garment/energy/stretch_tension.h"
+#include "garment/energy/strain_limit/stretch_tension.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "garment/energy/membrane.h"
-#include "garment/energy/strain_limit.h"
+#include "garment/energy/strain_limit/strain_limit.h"
 #include "tests/garment/gradient_check.h"
 #include "tests/garment/sheets.h"
 
 namespace toile::test {
+
+using namespace garment;
+
 namespace {
 
 constexpr double kLimit = 0.06;
@@ -20,7 +23,7 @@ StretchTension tension_of(const Sheet& sheet)
     return StretchTension(sheet.rest(), {kLimit, kStiffness, 1.0});
 }
 
-/// Pulled apart along u by `stretch`, with waves across.
+/// Positions stretched along u by the factor `stretch`, with waves across.
 std::vector<Vec3> pulled(const Sheet& sheet, double stretch)
 {
     std::vector<Vec3> x = sheet.flat();
@@ -42,7 +45,7 @@ TEST(StretchTension, HasTheGradientOfItsValueWithRememberedTension)
     expect_gradient_of_value(tension, x);
 }
 
-TEST(StretchTension, IsNothingBelowTheLimit)
+TEST(StretchTension, IsZeroBelowTheLimit)
 {
     const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 5, 5);
     StretchTension tension = tension_of(sheet);
@@ -51,7 +54,7 @@ TEST(StretchTension, IsNothingBelowTheLimit)
     EXPECT_EQ(value_of(tension, x), 0.0);
 }
 
-TEST(StretchTension, PullsAsHardAsTheExcessIsStiff)
+TEST(StretchTension, PullsByStiffnessTimesExcess)
 {
     const Sheet sheet = make_sheet(Vec2(0.2, 0.1), 4, 2);
     StretchTension tension = tension_of(sheet);
@@ -90,7 +93,7 @@ TEST(StretchTension, IsBoundedAndForgottenWhenTheClothSlackens)
     EXPECT_EQ(value_of(tension, slack), 0.0);
 }
 
-/// Largest strain of a sheet that has hung from two corners for a second.
+/// Max strain of a sheet after hanging from two corners for a second.
 double strain_on_two_pins(bool with_tension)
 {
     const Sheet sheet = make_sheet(Vec2(0.8, 0.8), 40, 40);
@@ -105,7 +108,7 @@ double strain_on_two_pins(bool with_tension)
     StrainLimit::Settings settings;
     settings.limit = kLimit;
     StrainLimit limit(rest, settings, "sheet");
-    limit.tell(tension);
+    limit.set_tension(tension);
     const std::vector<Vec3> start = sheet.flat();
     Body::Settings solver;
     solver.tolerance = 1e-4;
@@ -125,7 +128,7 @@ double strain_on_two_pins(bool with_tension)
     return largest;
 }
 
-TEST(StretchTension, HoldsTheLimitOfASheetOnTwoPinsWhereClampingAloneDoesNot)
+TEST(StretchTension, KeepsTheLimitOfASheetOnTwoPinsUnlikeClampingAlone)
 {
     EXPECT_GT(strain_on_two_pins(false), 3.0 * kLimit);
     EXPECT_LT(strain_on_two_pins(true), 1.6 * kLimit);

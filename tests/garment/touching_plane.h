@@ -4,14 +4,16 @@
 #include <utility>
 #include <vector>
 
-#include "collision/contact_energy.h"
-#include "collision/device_contact_energy.h"
-#include "core/pd/active_set_energy.h"
+#include "collision/contact/cuda/energy.h"
+#include "collision/contact/energy.h"
+#include "core/pd/energy/active_set_energy.h"
 
 namespace toile::test {
 
-/// Contact of every vertex with a plane, with given normal forces: an objective that stays the same during
-/// the whole minimisation, so that another solver can minimise it too.
+using namespace collision;
+
+/// Contact of every vertex with a plane, with given normal forces. The objective is constant during the
+/// minimisation, so that another solver can minimise it too.
 class TouchingPlane : public ActiveSetEnergy {
 public:
     struct Settings {
@@ -38,7 +40,7 @@ public:
         energy_.set_terms(std::move(terms), int(start.size()));
     }
 
-    /// Any other terms.
+    /// Creates contact from arbitrary terms.
     TouchingPlane(std::vector<ContactTerm> terms, int vertex_count) : vertex_count_(vertex_count)
     {
         energy_.set_terms(std::move(terms), vertex_count);
@@ -60,16 +62,16 @@ public:
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     DeviceActiveSet* on_device(const CudaSpace& space) override
     {
-        there_ = std::make_unique<DeviceContactEnergy>(space);
-        there_->set_terms(energy_.terms(), vertex_count_);
-        return there_.get();
+        device_energy_ = std::make_unique<DeviceContactEnergy>(space);
+        device_energy_->set_terms(energy_.terms(), vertex_count_);
+        return device_energy_.get();
     }
     bool revise(StepField, bool) override { return false; }
     void clear(StepField, StepField) override {}
     bool keep_apart(StepField, StepField) override { return false; }
     void end_step(StepField) override {}
 
-    /// Vertices that press on the plane at x.
+    /// Number of vertices that press on the plane at x.
     int pressing(const std::vector<Vec3>& x) const
     {
         int count = 0;
@@ -78,7 +80,7 @@ public:
         return count;
     }
 
-    /// Those of them that slide.
+    /// Number of pressing vertices that slide.
     int sliding(const std::vector<Vec3>& x) const
     {
         int count = 0;
@@ -94,7 +96,7 @@ public:
 private:
     int vertex_count_;
     ContactEnergy energy_;
-    std::unique_ptr<DeviceContactEnergy> there_;
+    std::unique_ptr<DeviceContactEnergy> device_energy_;
 };
 
 } // namespace toile::test

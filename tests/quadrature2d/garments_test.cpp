@@ -8,12 +8,16 @@
 #include "core/quadrature/quadrature_solver.h"
 #include "garment/energy/membrane.h"
 #include "garment/energy/rest_shape.h"
-#include "quadrature2d/geodesic_places.h"
+#include "quadrature2d/geodesic_embedding.h"
 #include "tests/support/contraction.h"
 
-/// Contraction of the quadrature solver on garments as they are modelled: panels joined by seams, holes,
-/// several pieces, cells of very different sizes.
+/// Contraction of the quadrature solver on modelled garments: panels joined by seams, holes, several pieces,
+/// cells of very different sizes.
 namespace toile::test {
+
+using namespace garment;
+using namespace quadrature2d;
+
 namespace {
 
 struct Garment {
@@ -45,7 +49,7 @@ struct Garment {
     }
 };
 
-/// Rough from vertex to vertex, 0 at fixed ones.
+/// Random field, independent from vertex to vertex, 0 at fixed vertices.
 std::vector<Vec3> rough_field(const Garment& garment)
 {
     std::vector<Vec3> x(garment.H.rows());
@@ -65,11 +69,11 @@ TEST_P(Garments, AreSolvedByQuadratureThatContracts)
     for (const double stiffness : {10.0, 1e3, 1e5}) {
         const Garment garment(file, stiffness);
         const RestShape& rest = *garment.rest;
-        QuadratureSolver solver(
-            geodesic_places(rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
+        QuadratureSolver solver(geodesic_embedding(
+            rest.vertex_count(), surface_metric(rest.triangles, rest.edges, rest.topology)));
         solver.update(garment.H, garment.fixed);
         const double factor = contraction(solver, garment.H, rough_field(garment), 50);
-        // At 10 N/m the kernel of these coarse meshes reaches two cells only, and H weighs every error fully.
+        // At 10 N/m the kernel reaches only two cells of these coarse meshes, and H weighs every error fully.
         EXPECT_LT(factor, stiffness < 100.0 ? 0.75 : 0.5) << stiffness << " N/m";
         EXPECT_LT(solver.table().gathers_per_node(), 320.0);
         RecordProperty("contraction at " + std::to_string(int(stiffness)) + " N/m", std::to_string(factor));
@@ -81,7 +85,8 @@ TEST_P(Garments, AreSolvedByQuadratureThatContracts)
 INSTANTIATE_TEST_SUITE_P(Data, Garments,
                          testing::Values("diffcloth_skirt3448.obj", "diffcloth_tshirt1900.obj",
                                          "mh_man_male_casualsuit04.obj", "mh_woman_female_casualsuit01.obj",
-                                         "mh_woman_skirt.obj", "mh_woman_tights.obj"));
+                                         "mh_woman_skirt.obj", "mh_woman_tights.obj"),
+                         [](const auto& file) { return std::filesystem::path(file.param).stem().string(); });
 
 } // namespace
 } // namespace toile::test

@@ -1,14 +1,17 @@
 #include <gtest/gtest.h>
 
-#include "core/quadrature/table_store.h"
+#include "core/quadrature/tables/table_store.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-/// What "auto" costs scenes; what it decides is in tests/core/auto_solver_test.cpp.
-namespace toile {
+/// Cost of "auto" in scenes; for its decisions see tests/core/quadrature/auto_solver_test.cpp.
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
-/// A square sheet that swings from one edge, (side / resolution + 1)^2 vertices.
+/// Square sheet that swings from one edge, (side / resolution + 1)^2 vertices.
 World swinging(const std::string& method, double resolution, int threads = 0)
 {
     WorldOptions options;
@@ -33,11 +36,11 @@ TEST(AutoMethod, IsTheDirectOneOnSmallClothAndCostsNothing)
     EXPECT_EQ(automatic.cloths()[0].positions, direct.cloths()[0].positions);
     EXPECT_GE(automatic.stages().calls("linear/solve"), 200) << "as many as larger cloth rehearses after";
     EXPECT_EQ(automatic.stages().calls("auto/prepare"), 2) << "held, and let go";
-    for (const char* stage : {"auto/rehearse", "auto/look", "auto/begin", "auto/switch", "auto/fail"})
+    for (const char* stage : {"auto/rehearse", "auto/search", "auto/begin", "auto/switch", "auto/fail"})
         EXPECT_EQ(automatic.stages().calls(stage), 0) << stage;
 }
 
-/// 5 329 vertices, after enough solves.
+/// Number of rehearsals with 5 329 vertices, after enough solves.
 long rehearsals_on_threads(int threads)
 {
     World world = swinging("auto", 0.01, threads);
@@ -54,4 +57,4 @@ TEST(AutoMethod, RehearsesLargerClothUnlessItHasOneThread)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -1,12 +1,16 @@
-#include "scenes/backend.h"
+#include "scenes/world/backend.h"
 
 #include <gtest/gtest.h>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
+#include "core/compute/cuda/runtime/device.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
 Scene scene_with(const std::string& keys)
@@ -17,7 +21,7 @@ Scene scene_with(const std::string& keys)
         "test.json");
 }
 
-TEST(Backend, SaysWhatOfASceneNeedsTheCpu)
+TEST(Backend, NamesFeaturesThatNeedTheCpu)
 {
     EXPECT_EQ(why_not_on_gpu(scene_with("")), "");
     EXPECT_EQ(why_not_on_gpu(scene_with(R"("solver": {"method": "quadrature"}, )")), "");
@@ -37,28 +41,28 @@ TEST(Backend, RefusesASceneThatNeedsTheCpu)
     WorldOptions options;
     options.backend = Backend::Cuda;
     try {
-        const World world(scene_with(R"("solver": {"method": "xpbd"}, )"), options);
+        const World world(scene_with(R"("solver": {"outer": "anderson"}, )"), options);
         FAIL() << "took it";
     } catch (const InvalidInput& error) {
         EXPECT_STREQ(error.what(),
-                     "test.json: solver.method \"xpbd\" runs on the CPU only; choose the backend cpu "
+                     "test.json: solver.outer \"anderson\" runs on the CPU only; choose the backend cpu "
                      "or auto, or change the scene");
     }
 }
 
-TEST(Backend, TakesTheCpuWhereAutoFindsNoGpuThatWorks)
+TEST(Backend, FallsBackToTheCpuWithoutAWorkingGpu)
 {
     std::string warning;
     WorldOptions options;
     options.backend = Backend::Auto;
     options.warn = [&](const std::string& text) { warning += text; };
-    World world(scene_with(R"("solver": {"method": "xpbd"}, )"), options);
-    EXPECT_EQ(warning, R"(the backend is cpu: solver.method "xpbd" runs on the CPU only)");
+    World world(scene_with(R"("solver": {"outer": "anderson"}, )"), options);
+    EXPECT_EQ(warning, R"(the backend is cpu: solver.outer "anderson" runs on the CPU only)");
     EXPECT_EQ(world.device(), nullptr);
     EXPECT_NE(world.advance_frame().status, StepReport::Status::NonFinite);
 }
 
-TEST(Backend, SaysWhyThereIsNoGpu)
+TEST(Backend, ReportsWhyThereIsNoGpu)
 {
     const std::string why = why_no_cuda_device();
     if (why.empty())
@@ -74,4 +78,4 @@ TEST(Backend, SaysWhyThereIsNoGpu)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

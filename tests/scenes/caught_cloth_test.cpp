@@ -4,25 +4,30 @@
 #include <cmath>
 #include <numbers>
 
-#include "collision/crossings/find_crossings.h"
-#include "collision/penetration.h"
+#include "collision/check/find_crossings.h"
+#include "collision/check/penetration.h"
+#include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/scene_body.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 #include "tests/collision/shapes_for_tests.h"
 #include "tests/support/jointed_body.h"
 #include "tests/support/temporary_folder.h"
 
 /// Parts of one body that close on cloth, overlap by centimetres and open again.
-namespace toile {
+namespace toile::test {
+
+using namespace avatars;
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
-/// A capsule about the Y axis, 24 vertices around, a ring every 1.5 cm.
+/// Capsule about the Y axis, 24 vertices around, a ring every 1.5 cm.
 TriangleMesh capsule_mesh(double radius, double length)
 {
     constexpr int kAround = 24, kCap = 6;
     const int along = int(std::ceil(length / 0.015));
-    std::vector<Vec2> profile; // (distance from the axis, height), poles left out
+    std::vector<Vec2> profile; // (distance from the axis, height), without poles
     for (int i = 1; i <= kCap; ++i) {
         const double a = 0.5 * std::numbers::pi * i / kCap;
         profile.emplace_back(radius * std::sin(a), -0.5 * length - radius * std::cos(a));
@@ -60,17 +65,17 @@ TriangleMesh moved(TriangleMesh mesh, const Vec3& by)
     return mesh;
 }
 
-/// What a run showed.
+/// Measurements of a run.
 struct Outcome {
-    double fastest = 0.0;        ///< [m/s] of any vertex, mean over a frame
-    double strain_caught = 0.0;  ///< [-] largest of all frames
+    double fastest = 0.0;        ///< [m/s] max over vertices, mean over a frame
+    double strain_caught = 0.0;  ///< [-] max over all frames
     double strain = 0.0;         ///< [-] in the last frame
     double depth = 0.0;          ///< [m] inside the body in the last frame
     int crossings = 0;           ///< with the body in the last frame
     std::vector<Vec3> positions; ///< in the last frame [m]
 };
 
-/// Runs a sheet among the parts of a body.
+/// Simulates a sheet between the parts of a body.
 Outcome run(const std::vector<BodyPart>& parts, const std::string& sheet, int frames,
             const std::string& more = "")
 {
@@ -108,15 +113,15 @@ Outcome run(const std::vector<BodyPart>& parts, const std::string& sheet, int fr
     return outcome;
 }
 
-/// For the table in docs/collision/contact.md, in the report of --gtest_output=xml.
+/// Records numbers for the table in docs/journal/contact.md, in the report of --gtest_output=xml.
 void record(const Outcome& outcome)
 {
     ::testing::Test::RecordProperty("fastest", std::to_string(outcome.fastest));
     ::testing::Test::RecordProperty("strain", std::to_string(outcome.strain_caught));
 }
 
-/// Out of the body, hardly faster than recovery (1 m/s) alone makes it (it falls too), and never torn:
-/// cotton's limit is .06. Gripped cloth answers every change of the last bits: .4 to 1.5 m/s.
+/// Expects cloth outside of the body, hardly faster than recovery alone (1 m/s; it also falls), and never
+/// overstretched (limit of cotton: .06). Gripped cloth is sensitive to the last bits: .4 to 1.5 m/s.
 void expect_free(const Outcome& outcome)
 {
     record(outcome);
@@ -127,9 +132,9 @@ void expect_free(const Outcome& outcome)
     EXPECT_EQ(outcome.crossings, 0);
 }
 
-/// Number of vertices that are not where they belong in the last frame.
+/// Number of vertices outside of their expected region in the last frame.
 template <typename IsHome>
-int astray(const Outcome& outcome, const IsHome& is_home)
+int count_misplaced(const Outcome& outcome, const IsHome& is_home)
 {
     return int(std::count_if(outcome.positions.begin(), outcome.positions.end(),
                              [&](const Vec3& x) { return !is_home(x); }));
@@ -150,14 +155,14 @@ Outcome thighs(const std::string& more = "")
                "select": {"box": {"lower": [-1, 0.19, -1], "upper": [1, 1, 1]}}}])");
 }
 
-TEST(CaughtCloth, BetweenThighsHangsBetweenThemAgain)
+TEST(CaughtCloth, IsReleasedBetweenThighs)
 {
     const Outcome outcome = thighs();
     expect_free(outcome);
-    EXPECT_EQ(astray(outcome, [](const Vec3& x) { return std::abs(x.x()) < 0.1; }), 0);
+    EXPECT_EQ(count_misplaced(outcome, [](const Vec3& x) { return std::abs(x.x()) < 0.1; }), 0);
 }
 
-/// A flat hand of 3 cm on a belly, its palm at `depth` below the skin from 0.5 s to 1 s.
+/// Flat hand of 3 cm on a belly, its palm at `depth` below the skin from 0.5 s to 1 s.
 Outcome hand(double depth)
 {
     const Vec3 down(0.0, -0.06 - depth, 0.0);
@@ -168,27 +173,27 @@ Outcome hand(double depth)
                R"("rectangle": {"size": [0.3, 0.3], "resolution": 0.02}, "translate": [0, 0.002, 0])", 60);
 }
 
-TEST(CaughtCloth, UnderAHandLiesOnTheSkinAgain)
+TEST(CaughtCloth, IsReleasedUnderAHand)
 {
     const Outcome outcome = hand(0.02);
     expect_free(outcome);
-    EXPECT_EQ(astray(outcome, [](const Vec3& x) { return x.y() > 0.0 && x.y() < 0.06; }), 0);
+    EXPECT_EQ(count_misplaced(outcome, [](const Vec3& x) { return x.y() > 0.0 && x.y() < 0.06; }), 0);
 }
 
-/// An arm that hangs 2 cm beside the trunk closes from 30 to -12 degrees.
+/// Arm 2 cm beside the trunk, which closes from 30 to -12 degrees.
 Outcome armpit()
 {
     const TriangleMesh trunk = testing::box_mesh({-0.2, -0.5, -0.2}, {0.0, 0.0, 0.2});
     const TriangleMesh arm = testing::box_mesh({0.02, -0.4, -0.06}, {0.1, 0.0, 0.06});
     const double open = std::numbers::pi / 6.0, shut = -std::numbers::pi / 15.0;
-    const auto turned = [](double time, double angle) {
+    const auto rotated = [](double time, double angle) {
         return BodyPart::Key{time, Vec3::Zero(), Vec3::UnitZ(), angle};
     };
     return run({{"trunk", subdivide(trunk, 3)},
                 {"arm",
                  subdivide(arm, 3),
-                 {turned(0.0, open), turned(0.2, open), turned(0.7, shut), turned(1.2, shut),
-                  turned(1.7, open), turned(2.3, open)},
+                 {rotated(0.0, open), rotated(0.2, open), rotated(0.7, shut), rotated(1.2, shut),
+                  rotated(1.7, open), rotated(2.3, open)},
                  Vec3(0.02, 0.0, 0.0)}},
                R"("rectangle": {"size": [0.2, 0.3], "resolution": 0.02}, "rotate_deg": [90, 90, 0],
                   "translate": [0.01, -0.12, 0])",
@@ -197,20 +202,21 @@ Outcome armpit()
                "select": {"box": {"lower": [-1, 0.02, -1], "upper": [1, 1, 1]}}}])");
 }
 
-TEST(CaughtCloth, InAnArmpitHangsBetweenArmAndTrunkAgain)
+TEST(CaughtCloth, IsReleasedFromAnArmpit)
 {
     const Outcome outcome = armpit();
     expect_free(outcome);
-    // Below the shoulder: outside of the trunk and, where it is not in front of the arm or behind, on the
-    // inner side of that.
+    // Below the shoulder: outside of the trunk and, unless it is in front of the arm or behind, on the inner
+    // side of the arm.
     const double slope = std::tan(std::numbers::pi / 6.0);
-    EXPECT_EQ(astray(outcome,
-                     [&](const Vec3& x) {
-                         const bool is_beside = std::abs(x.z()) > 0.06 || x.x() < 0.02 - slope * x.y();
-                         return x.y() > -0.02 || (x.x() > 0.0 && is_beside);
-                     }),
+    EXPECT_EQ(count_misplaced(outcome,
+                              [&](const Vec3& x) {
+                                  const bool is_beside =
+                                      std::abs(x.z()) > 0.06 || x.x() < 0.02 - slope * x.y();
+                                  return x.y() > -0.02 || (x.x() > 0.0 && is_beside);
+                              }),
               0);
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -6,53 +6,59 @@
 #include <optional>
 
 #include "avatars/load_avatar.h"
-#include "collision/crossings/find_crossings.h"
-#include "collision/penetration.h"
+#include "collision/check/find_crossings.h"
+#include "collision/check/penetration.h"
+#include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/scene_body.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
 /// Sheets between parts of real bodies, which close on them until they cross each other, and open again.
-namespace toile {
+namespace toile::test {
+
+using namespace avatars;
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
-/// A body in motion and a sheet of cotton that springs hold to its skin.
+/// Body in motion and a sheet of cotton attached to its skin by springs.
 struct Case {
     std::string avatar; ///< in the data folder's avatars
     std::string clip;
     double start; ///< [s] of the clip
     int frames;   ///< at 30 frames/s
     std::string sheet;
-    double held_above; ///< [m] springs hold what starts higher
+    double attached_above; ///< [m] springs attach vertices that start higher
 };
 
-/// What a run showed.
+/// Measurements of a run.
 struct Outcome {
-    double fastest = 0.0;      ///< [m/s] of any vertex of the sheet, mean over a frame
-    double strain = 0.0;       ///< [-] largest of all frames
-    double depth = 0.0;        ///< [m] largest of all frames, where the body does not cross itself
-    int caught = 0;            ///< most vertices in a frame that have less than 4 mm of room (see room_at)
-    double least_room = 1.0;   ///< [m] of any vertex in any frame
-    int inside = 0;            ///< vertices, faces and edges in the body in the last frame, wherever
-    int crossings = 0;         ///< with the body in the last frame
-    std::vector<Vec3> x, skin; ///< positions in the last frame [m]
+    double fastest = 0.0; ///< [m/s] max over vertices of the sheet, mean over a frame
+    double strain = 0.0;  ///< [-] max over all frames
+    double depth = 0.0;   ///< [m] max over all frames, where the body does not cross itself
+    int caught =
+        0; ///< max over frames of the number of vertices with less than 4 mm of clearance (see clearance_at)
+    double min_clearance = 1.0; ///< [m] of any vertex in any frame
+    int inside = 0;             ///< vertices, faces and edges in the body in the last frame, everywhere
+    int crossings = 0;          ///< with the body in the last frame
+    std::vector<Vec3> x, skin;  ///< positions in the last frame [m]
 };
 
-/// Between two opposing sheets of the body within 2 cm, the sum of the signed distances to both [m]: negative
-/// where they overlap. 1 where there are none.
-double room_at(const Vec3& x, const SurfaceProximity& body)
+/// Sum of the signed distances to two opposing sheets of the body within 2 cm [m]: negative where they
+/// overlap, 1 without such sheets.
+double clearance_at(const Vec3& x, const SurfaceProximity& body)
 {
     std::vector<SurfacePoint> near;
     body.local_closest(x, 0.02, near);
-    double room = 1.0;
+    double clearance = 1.0;
     for (const SurfacePoint& a : near)
         for (const SurfacePoint& b : near)
             if (a.normal.dot(b.normal) < -0.7)
-                room = std::min(room, a.signed_distance + b.signed_distance);
-    return room;
+                clearance = std::min(clearance, a.signed_distance + b.signed_distance);
+    return clearance;
 }
 
-/// Where the avatar's file is; nothing without the data.
+/// Path of the avatar's file; empty without the data.
 std::optional<std::filesystem::path> file_of(const std::string& avatar)
 {
     const std::filesystem::path file = std::filesystem::path(TOILE_DATA_DIR) / "avatars" / avatar;
@@ -68,20 +74,20 @@ Scene scene_of(const Case& c)
                            R"(}], "cloths": [{"name": "sheet", )" + c.sheet +
                            R"(}], "attachments": [{"cloth": "sheet", "to": "body", "stiffness": 100,
                                "select": {"box": {"lower": [-9, )" +
-                           std::to_string(c.held_above) + R"(, -9], "upper": [9, 9, 9]}}}]})",
+                           std::to_string(c.attached_above) + R"(, -9], "upper": [9, 9, 9]}}}]})",
                        "caught_on_bodies.json");
 }
 
-/// Adds what the sheet does at the end of a frame.
+/// Adds the measurements of the sheet at the end of a frame.
 void measure(const ClothState& sheet, const TriangleMesh& body, const ClothSamples& samples,
              PenetrationMeter& meter, Outcome& outcome)
 {
     const SurfaceProximity surface(body.triangles, body.positions);
     int caught = 0;
     for (const Vec3& x : sheet.positions) {
-        const double room = room_at(x, surface);
-        caught += room < 0.004 ? 1 : 0;
-        outcome.least_room = std::min(outcome.least_room, room);
+        const double clearance = clearance_at(x, surface);
+        caught += clearance < 0.004 ? 1 : 0;
+        outcome.min_clearance = std::min(outcome.min_clearance, clearance);
     }
     outcome.caught = std::max(outcome.caught, caught);
 
@@ -122,17 +128,17 @@ Outcome run(const Case& c)
     return outcome;
 }
 
-/// For the table in docs/collision/contact.md, in the report of --gtest_output=xml.
+/// Records numbers for the table in docs/journal/contact.md, in the report of --gtest_output=xml.
 void record(const Outcome& outcome)
 {
     ::testing::Test::RecordProperty("fastest", std::to_string(outcome.fastest));
     ::testing::Test::RecordProperty("strain", std::to_string(outcome.strain));
     ::testing::Test::RecordProperty("depth", std::to_string(outcome.depth));
     ::testing::Test::RecordProperty("caught", outcome.caught);
-    ::testing::Test::RecordProperty("least_room", std::to_string(outcome.least_room));
+    ::testing::Test::RecordProperty("min_clearance", std::to_string(outcome.min_clearance));
 }
 
-/// Never in the body where that does not cross itself; nowhere once it is open again.
+/// Expects no penetration where the body does not cross itself, and none at all once it is open again.
 void expect_free(const Outcome& outcome)
 {
     EXPECT_LT(outcome.depth, 1e-3); // measured: 0
@@ -161,26 +167,26 @@ Vec3 middle_of(const std::string& bone, const Case& c, const Outcome& outcome)
     return sum / std::max(count, 1);
 }
 
-/// At least so much caught, at most so much room, speed [m/s] and strain.
+/// Min number of caught vertices, and max clearance, speed [m/s] and strain.
 struct Limits {
     int caught;
-    double least_room, fastest, strain;
+    double min_clearance, fastest, strain;
 };
 
 void expect_caught(const Outcome& outcome, const Limits& limits)
 {
     record(outcome);
     EXPECT_GE(outcome.caught, limits.caught);
-    EXPECT_LT(outcome.least_room, limits.least_room);
+    EXPECT_LT(outcome.min_clearance, limits.min_clearance);
     EXPECT_LT(outcome.fastest, limits.fastest);
     EXPECT_LT(outcome.strain, limits.strain);
     expect_free(outcome);
 }
 
-/// A man begins to walk; his right arm passes along his side twice. Measured: 2.86 to 3.14 m/s, when the skin
-/// around has up to 2.85; strain .09 to .18, by the last bits; 9 vertices caught, where the overlap is 4.5
+/// First steps of a man whose right arm passes along his side twice. Measured: 2.86 to 3.14 m/s, with up to
+/// 2.85 of the skin around; strain .09 to .18, by the last bits; 9 vertices caught, where the overlap is 4.5
 /// mm.
-TEST(CaughtOnBodies, UnderAnArmThatSwings)
+TEST(CaughtOnBodies, IsReleasedUnderASwingingArm)
 {
     const Case c{"mh_man.glb",
                  "walk",
@@ -192,12 +198,12 @@ TEST(CaughtOnBodies, UnderAnArmThatSwings)
     if (!file_of(c.avatar))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no avatars/" << c.avatar;
     const Outcome outcome = run(c);
-    expect_caught(outcome, {.caught = 5, .least_room = -0.002, .fastest = 3.4, .strain = 0.3});
+    expect_caught(outcome, {.caught = 5, .min_clearance = -0.002, .fastest = 3.4, .strain = 0.3});
 }
 
-/// A dancer turns; her thighs press on the sheet between them. Measured: 1.64 m/s, when the skin around has
-/// up to 1.74; strain .070; 23 vertices caught, where the overlap is 20 mm.
-TEST(CaughtOnBodies, BetweenTheThighsOfADancer)
+/// Thighs of a turning dancer press on the sheet between them. Measured: 1.64 m/s, with up to 1.74 of the
+/// skin around; strain .070; 23 vertices caught, where the overlap is 20 mm.
+TEST(CaughtOnBodies, IsReleasedBetweenTheThighsOfADancer)
 {
     const Case c{"gc_mean_all.glb",
                  "dance",
@@ -209,9 +215,9 @@ TEST(CaughtOnBodies, BetweenTheThighsOfADancer)
     if (!file_of(c.avatar))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no avatars/" << c.avatar;
     const Outcome outcome = run(c);
-    expect_caught(outcome, {.caught = 15, .least_room = -0.015, .fastest = 2.0, .strain = 0.12});
+    expect_caught(outcome, {.caught = 15, .min_clearance = -0.015, .fastest = 2.0, .strain = 0.12});
 
-    // Between the legs again: beside the middle of neither.
+    // The sheet is between the legs again, beside the axis of each.
     const Vec3 left = middle_of("LeftUpLeg", c, outcome), right = middle_of("RightUpLeg", c, outcome);
     const Vec3 across = (right - left) / (right - left).squaredNorm();
     for (const Vec3& x : outcome.x) {
@@ -221,4 +227,4 @@ TEST(CaughtOnBodies, BetweenTheThighsOfADancer)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -4,21 +4,24 @@
 #include <numbers>
 
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-/// Coulomb's answers where cloth slides on cloth: a small sheet on a held, tilted one.
-namespace toile {
+/// Coulomb friction between cloths: a small sheet on a fixed, tilted one.
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
 constexpr double kGravity = 9.81; // [m/s^2]
 constexpr int kFrames = 10;       // 1/30 s each
 
-/// As the scene file says it.
+/// Parameters of the scene file.
 struct Slide {
     double slope;    ///< [-] tangent of the angle
     double friction; ///< [-] of cloth on cloth
     int substeps = 16;
-    std::string tolerance = R"("tolerance": 1e-7)"; ///< steps that end near their solution
+    std::string tolerance = R"("tolerance": 1e-7)"; ///< converged steps
 };
 
 Vec3 mean(View<const Vec3> x)
@@ -29,17 +32,17 @@ Vec3 mean(View<const Vec3> x)
     return sum;
 }
 
-/// How far the sheet goes down the slope in a third of a second [m].
-double way_of(const Slide& slide)
+/// Distance of the sheet down the slope in a third of a second [m].
+double distance_of(const Slide& slide)
 {
     const double angle = std::atan(slide.slope);
     const Vec3 up(std::sin(angle), std::cos(angle), 0.0), down(std::cos(angle), -std::sin(angle), 0.0);
     const auto number = [](double value) { return std::to_string(value); };
-    const auto sheet = [&](const std::string& name, const std::string& size, const Vec3& place) {
+    const auto sheet = [&](const std::string& name, const std::string& size, const Vec3& position) {
         return R"({"name": ")" + name + R"(", "fabric": "bare", "rectangle": {"size": )" + size +
                R"(, "resolution": 0.02}, "rotate_deg": [0, 0, )" + number(-angle * 180.0 / std::numbers::pi) +
-               R"(], "translate": [)" + number(place.x()) + "," + number(place.y()) + "," +
-               number(place.z()) + "]}";
+               R"(], "translate": [)" + number(position.x()) + "," + number(position.y()) + "," +
+               number(position.z()) + "]}";
     };
     World world(parse_scene(
         R"({"toile": 1, "frames": 31, "air": {"density": 0},
@@ -57,25 +60,25 @@ double way_of(const Slide& slide)
     return (mean(world.cloths()[1].positions) - start).dot(down);
 }
 
-/// Coulomb's answer in steps of implicit Euler, which adds dt to the time: g (sin a - mu cos a) t (t + dt)
-/// / 2.
-double exact_way_of(const Slide& slide)
+/// Exact distance by Coulomb's law in steps of implicit Euler, which add dt to the time: g (sin a - mu cos a)
+/// t (t + dt) / 2.
+double exact_distance_of(const Slide& slide)
 {
     const double angle = std::atan(slide.slope), time = kFrames / 30.0, dt = 1.0 / (30.0 * slide.substeps);
     return 0.5 * kGravity * (std::sin(angle) - slide.friction * std::cos(angle)) * time * (time + dt);
 }
 
-void expect_exact(const Slide& slide, double share)
+void expect_exact(const Slide& slide, double tolerance)
 {
     SCOPED_TRACE("slope " + std::to_string(slide.slope) + ", friction " + std::to_string(slide.friction));
-    EXPECT_NEAR(way_of(slide), exact_way_of(slide), share * exact_way_of(slide));
+    EXPECT_NEAR(distance_of(slide), exact_distance_of(slide), tolerance * exact_distance_of(slide));
 }
 
 TEST(ClothFriction, SticksBelowTheFrictionAngle)
 {
     for (const double slope : {0.3, 0.6}) {
         SCOPED_TRACE(slope);
-        EXPECT_LT(way_of({slope, 1.01 * slope}), 2e-4);
+        EXPECT_LT(distance_of({slope, 1.01 * slope}), 2e-4);
     }
 }
 
@@ -86,15 +89,16 @@ TEST(ClothFriction, SlidesAtCoulombsAcceleration)
     expect_exact({0.6, 0.5}, 0.03);
 }
 
-TEST(ClothFriction, LandsWithoutAPushAlongTheSlope)
+TEST(ClothFriction, LandsWithoutTangentialImpulse)
 {
-    // At 8 ms a step the sheet is expected on the far side of the other one, beside its border.
+    // At 8 ms a step the expected position of the sheet is on the far side of the other one, beside its
+    // border.
     expect_exact({0.3, 0.1, 4, R"("tolerance": 1e-6, "max_iterations": 100)"}, 0.03);
 }
 
 TEST(ClothFriction, IsCoulombsAtTheDefaultTolerance)
 {
-    // The move of friction in a step, 1 to 200 micrometres, is below what such a step is solved to.
+    // The slip in a step, 1 to 200 micrometres, is below the accuracy of such a step.
     for (const int substeps : {4, 16, 64})
         for (const auto& [slope, friction] : {std::pair(0.3, 0.1), {0.3, 0.2}, {0.6, 0.4}}) {
             SCOPED_TRACE(substeps);
@@ -105,7 +109,7 @@ TEST(ClothFriction, IsCoulombsAtTheDefaultTolerance)
 TEST(ClothFriction, LetsClothSlideFivePerCentAboveTheFrictionAngle)
 {
     const Slide slide{0.3, 0.3 / 1.05};
-    EXPECT_GT(way_of(slide), 0.5 * exact_way_of(slide));
+    EXPECT_GT(distance_of(slide), 0.5 * exact_distance_of(slide));
 }
 
 TEST(ClothFriction, TakesNoEnergyWithoutFriction)
@@ -118,4 +122,4 @@ TEST(ClothFriction, TakesNoEnergyWithoutFriction)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -2,16 +2,20 @@
 
 #include <cmath>
 
-#include "collision/penetration.h"
+#include "collision/check/penetration.h"
+#include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/scene_body.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
-/// A sheet of 1 m whose triangles (25 cm) are larger than the solid, dropped on it from 5 cm above. The
-/// solid's highest point is the origin.
+/// Sheet of 1 m whose triangles (25 cm) are larger than the solid, dropped on it from 5 cm above. The solid's
+/// highest point is the origin.
 Scene coarse_sheet_on(const std::string& solid, int threads = 0)
 {
     return parse_scene(R"({"toile": 1, "frames": 45, "solver": {"substeps": 8, "threads": )" +
@@ -22,10 +26,10 @@ Scene coarse_sheet_on(const std::string& solid, int threads = 0)
                        "coarse.json");
 }
 
-/// What a run showed.
+/// Measurements of a run.
 struct Outcome {
-    double deepest = 0.0; ///< [m] of any point of the cloth in a solid, over all frames
-    double highest = 0.0; ///< [m] of the cloth in the last frame
+    double deepest = 0.0; ///< [m] max depth of any point of the cloth in a solid, over all frames
+    double highest = 0.0; ///< [m] max height of the cloth in the last frame
     std::vector<Vec3> positions;
 };
 
@@ -105,4 +109,4 @@ TEST(CoarseCloth, SearchesFacesAndEdgesOnlyWhereASolidCanPierceThem)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

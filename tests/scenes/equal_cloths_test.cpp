@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
-/// Five equal sheets in five places, each held at one corner.
+/// Five equal sheets at five positions, each fixed at one corner.
 World five_sheets(const std::string& method)
 {
     std::string cloths, attachments;
@@ -24,7 +27,7 @@ World five_sheets(const std::string& method)
                              "test.json"));
 }
 
-TEST(EqualCloths, ShareTheirFactor)
+TEST(EqualCloths, ShareOneFactor)
 {
     for (const char* method : {"direct", "auto"}) {
         World world = five_sheets(method);
@@ -33,7 +36,7 @@ TEST(EqualCloths, ShareTheirFactor)
     }
 }
 
-TEST(EqualCloths, ShareTheirTables)
+TEST(EqualCloths, ShareOneTable)
 {
     World world = five_sheets("quadrature");
     world.advance_frame();
@@ -41,4 +44,4 @@ TEST(EqualCloths, ShareTheirTables)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -3,18 +3,23 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "collision/surface_edges.h"
+#include "collision/geometry/surface_edges.h"
+#include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/scene_body.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 #include "tests/collision/shapes_for_tests.h"
 #include "tests/support/jointed_body.h"
 #include "tests/support/temporary_folder.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace avatars;
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
-/// The square column of tests/avatars: joint "base" below, "tip" from y = 0.5 up.
+/// Square column of tests/avatars: joint "base" below, "tip" from y = 0.5 up.
 scene::Avatar column(const std::vector<std::string>& bones)
 {
     scene::Avatar avatar;
@@ -33,7 +38,7 @@ TEST(ExcludeBones, LeavesAClosedSurfaceThatMovesWithTheBody)
         body.advance_to(time);
         const TriangleMesh& contact = body.contact_surface();
         EXPECT_TRUE(build_surface_edges(contact.triangles, contact.vertex_count()).is_closed);
-        Bounds box; // of what is touched: vertices of the tip are still there, but nobody's
+        Bounds box; // of the contact surface: vertices of the tip remain, but without triangles
         double volume = 0.0;
         for (const Triangle& t : contact.triangles) {
             const Vec3 &a = contact.positions[t[0]], &b = contact.positions[t[1]],
@@ -57,14 +62,14 @@ TEST(ExcludeBones, LeavesAClosedSurfaceThatMovesWithTheBody)
     EXPECT_EQ(lids, 4);
 }
 
-TEST(ExcludeBones, ChangesNothingWhereNoneIsNamed)
+TEST(ExcludeBones, ChangesNothingForNoBones)
 {
     const SceneBody body(column({}));
     EXPECT_EQ(&body.contact_surface(), &body.surface());
     EXPECT_EQ(body.face_of(7), 7);
 }
 
-TEST(ExcludeBones, RefusesWhatTheBodyDoesNotHave)
+TEST(ExcludeBones, RefusesUnknownBones)
 {
     const std::string file = std::get<std::filesystem::path>(column({}).shape).string();
     const auto complaint = [](const scene::Avatar& avatar) {
@@ -89,7 +94,7 @@ TEST(ExcludeBones, RefusesWhatTheBodyDoesNotHave)
               "bad.json: avatars[0].exclude_bones: a shape has no bones");
 }
 
-/// Lowest vertex of a sheet that has fallen for a second on a hand above a table [m].
+/// Lowest vertex of a sheet after falling for a second on a hand above a table [m].
 double fall(const std::string& excluded)
 {
     const TemporaryFolder folder;
@@ -111,7 +116,7 @@ double fall(const std::string& excluded)
     return lowest;
 }
 
-TEST(ExcludeBones, LetsClothThroughTheBoneAndWhatHangsOnIt)
+TEST(ExcludeBones, LetsClothThroughTheBoneAndItsChildren)
 {
     EXPECT_NEAR(fall("[]"), 0.151, 0.001);
     for (const char* bones : {"[\"hand\"]", "[\"arm\"]"})
@@ -127,7 +132,7 @@ TEST(ExcludeBones, CutTheHandsOffARealBody)
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no avatars/mh_woman.glb";
     woman.shape = file;
     woman.clip = "walk";
-    woman.exclude_bones = {"LeftHand", "RightHand"}; // fingers and thumbs hang below them
+    woman.exclude_bones = {"LeftHand", "RightHand"}; // with the child bones of fingers and thumbs
     SceneBody body(woman);
     body.advance_to(2.0);
     const TriangleMesh& contact = body.contact_surface();
@@ -145,4 +150,4 @@ TEST(ExcludeBones, CutTheHandsOffARealBody)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -4,16 +4,19 @@
 
 #include <gtest/gtest.h>
 
-#include "core/backend/error.h"
-#include "core/quadrature/table_store.h"
+#include "core/base/error.h"
+#include "core/quadrature/tables/table_store.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 #include "tests/support/temporary_folder.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
-/// A sheet held by one edge until 0.05 s, with the global solver `method`.
+/// Sheet attached by one edge until 0.05 s, with the global solver `method`.
 Scene sheet(const std::string& method, double settle = 0.0)
 {
     return parse_scene(R"({"toile": 1, "frames": 4, "settle": )" + std::to_string(settle) +
@@ -31,7 +34,7 @@ WorldOptions without_disk()
     return options;
 }
 
-TEST(Preparation, IsWhatTheFirstStepWouldDo)
+TEST(Preparation, DoesTheWorkOfTheFirstStep)
 {
     for (const double settle : {0.0, 0.1}) {
         World world(sheet("quadrature", settle), without_disk());
@@ -45,16 +48,16 @@ TEST(Preparation, IsWhatTheFirstStepWouldDo)
     }
 }
 
-TEST(Preparation, TellsWhichClothAndHowFar)
+TEST(Preparation, ReportsClothAndProgress)
 {
     WorldOptions options = without_disk();
     std::string cloth;
     double largest = 0.0;
     std::mutex mutex;
-    options.building = [&](const std::string& name, double share) {
+    options.building = [&](const std::string& name, double fraction) {
         const std::lock_guard lock(mutex);
         cloth = name;
-        largest = std::max(largest, share);
+        largest = std::max(largest, fraction);
         return true;
     };
     World world(sheet("quadrature"), options);
@@ -66,7 +69,7 @@ TEST(Preparation, TellsWhichClothAndHowFar)
     EXPECT_EQ(largest, 0.0) << "nothing left to do";
 }
 
-TEST(Preparation, CanBeCancelledAndTakenUpAgain)
+TEST(Preparation, CanBeCancelledAndResumed)
 {
     WorldOptions options = without_disk();
     std::atomic<bool> wants_more = false;
@@ -79,7 +82,7 @@ TEST(Preparation, CanBeCancelledAndTakenUpAgain)
     EXPECT_EQ(world.cloths()[0].positions, undisturbed.cloths()[0].positions);
 }
 
-TEST(Preparation, TakesTablesFromDiskAndSaysWhatIsWrongWithThem)
+TEST(Preparation, ReadsTablesFromDiskAndReportsTheirErrors)
 {
     const TemporaryFolder folder;
     const auto positions = [&](std::vector<std::string>& warnings) {
@@ -103,4 +106,4 @@ TEST(Preparation, TakesTablesFromDiskAndSaysWhatIsWrongWithThem)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -4,7 +4,11 @@
 
 #include "scenes/format/scene_fabric.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace garment;
+using namespace scenes;
+
 namespace {
 
 TEST(ReadScene, GivesTheDocumentedDefaultsToAMinimalScene)
@@ -70,14 +74,14 @@ TEST(ReadScene, ReadsEveryKindOfValue)
     EXPECT_FALSE(scene.render.ground.has_value());
 }
 
-TEST(ReadScene, PutsAFabricTogetherFromPresetSceneAndCloth)
+TEST(ReadScene, MergesAFabricFromPresetSceneAndCloth)
 {
     const Scene scene = parse_scene(R"({"toile": 1, "frames": 1,
         "cloths": [{"name": "a", "disc": {}, "fabric": "felt", "thickness": 0.002}],
         "fabrics": {"felt": {"base": "wool", "stretch": {"warp": 500}, "bend": {"weft": 0},
                              "strain_limit": 1.25}}})",
                                     "felt.json");
-    const Fabric fabric = fabric_of(scene, scene.cloths[0]);
+    const Fabric fabric = scenes::fabric_of(scene, scene.cloths[0]);
     const Fabric& wool = fabric_preset("wool", "test");
     EXPECT_EQ(fabric.stretch_warp, 500.0);
     EXPECT_EQ(fabric.stretch_weft, wool.stretch_weft);
@@ -88,7 +92,7 @@ TEST(ReadScene, PutsAFabricTogetherFromPresetSceneAndCloth)
     EXPECT_EQ(fabric.areal_density, wool.areal_density);
 }
 
-TEST(ReadScene, KnowsTheUnitsOfLength)
+TEST(ReadScene, ReadsTheUnitsOfLength)
 {
     EXPECT_EQ(scene::metres_per(scene::LengthUnit::Metre), 1.0);
     EXPECT_EQ(scene::metres_per(scene::LengthUnit::Centimetre), 0.01);
@@ -97,4 +101,4 @@ TEST(ReadScene, KnowsTheUnitsOfLength)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "scenes/format/read_scene.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
-/// What the reader says about a text; "accepted" when it says nothing.
+/// Error of the reader about a text; "accepted" if there is none.
 std::string complaint(const std::string& text)
 {
     try {
@@ -17,7 +20,7 @@ std::string complaint(const std::string& text)
     return "accepted";
 }
 
-/// A scene with one disc, the given keys on top and in the disc's entry.
+/// Scene with one disc, the given keys on top and in the disc's entry.
 std::string scene_with(const std::string& top, const std::string& cloth = "")
 {
     return R"({"toile": 1, "frames": 1, )" + (top.empty() ? "" : top + ", ") +
@@ -110,7 +113,7 @@ TEST(SceneErrors, GiveTheAllowedRangeOfANumber)
     });
 }
 
-TEST(SceneErrors, TellTheTypeThatAValueShouldHave)
+TEST(SceneErrors, NameTheExpectedType)
 {
     expect_complaints({
         {"[]",
@@ -137,7 +140,7 @@ TEST(SceneErrors, RefuseAvatarsThatContradictThemselves)
         {avatar_scene(R"("name": "a", "mannequin": {}, "speed": 2)"),
          "bad.json: avatars[0].speed: has no effect without a clip; name the clip to play"},
         {avatar_scene(R"("name": "a", "mannequin": {}, "clip": "walk", "keyframes": [{"time": 0}])"),
-         "bad.json: avatars[0].keyframes: an animated figure is not moved by keyframes; remove them or the "
+         "bad.json: avatars[0].keyframes: an animated avatar is not moved by keyframes; remove them or the "
          "clip"},
         {avatar_scene(R"("name": "a", "box": {}, "unit": "cm")"),
          "bad.json: avatars[0].unit: only a file has a unit; lengths here are in metres"},
@@ -152,7 +155,7 @@ TEST(SceneErrors, RefuseAvatarsThatContradictThemselves)
     });
 }
 
-TEST(SceneErrors, RefuseClothsThatNoMachineOrTailorCanMake)
+TEST(SceneErrors, RefuseImpossibleCloths)
 {
     expect_complaints({
         {R"({"toile": 1, "frames": 1, "cloths": [{"name": "../a", "disc": {}}]})",
@@ -173,7 +176,7 @@ TEST(SceneErrors, RefuseClothsThatNoMachineOrTailorCanMake)
               std::string::npos);
 }
 
-TEST(SceneErrors, RefuseAttachmentsToWhatDoesNotExist)
+TEST(SceneErrors, RefuseAttachmentsToUnknownObjects)
 {
     const auto attachment = [](const std::string& keys) {
         return scene_with(R"("avatars": [{"name": "ball", "sphere": {}}], "attachments": [{)" + keys + "}]");
@@ -187,7 +190,7 @@ TEST(SceneErrors, RefuseAttachmentsToWhatDoesNotExist)
         {attachment(R"("cloth": "sheet", "to": "qqqqqqqq", )" + first),
          R"(bad.json: attachments[0].to: no avatar is named "qqqqqqqq"; known are ball and fixed)"},
         {attachment(R"("cloth": "sheet", "to": "ball", "keyframes": [{"time": 0}], )" + first),
-         R"(bad.json: attachments[0].keyframes: an avatar carries these vertices already; remove the keyframes or write "to": "fixed")"},
+         R"(bad.json: attachments[0].keyframes: an avatar moves these vertices already; remove the keyframes or write "to": "fixed")"},
         {attachment(R"("cloth": "sheet", "select": {"vertices": []})"),
          "bad.json: attachments[0].select.vertices: the list is empty; name at least one or remove the "
          "attachment"},
@@ -220,4 +223,4 @@ TEST(SceneErrors, KeepExportsInsideTheOutputFolder)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -4,12 +4,15 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "scenes/format/read_scene.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
 const std::filesystem::path kSource = TOILE_SOURCE_DIR;
@@ -52,7 +55,7 @@ TEST(SceneFiles, FindsPathsRelativeToTheSceneAndInTheDataFolder)
     EXPECT_EQ(complaint_about("${TOILE_DATA_DIR}/round_table.obj"), "accepted");
 }
 
-TEST(SceneFiles, SaysWhichFileOrFolderIsMissing)
+TEST(SceneFiles, NamesTheMissingFileOrFolder)
 {
     const std::string scene = (kSource / "scenes/demo/test.json").string();
     EXPECT_EQ(complaint_about("../../assets/square_table.obj"),
@@ -76,7 +79,7 @@ TEST(SceneFiles, RefusesASceneThatIsMissingOrAFolder)
     EXPECT_THROW(static_cast<void>(read_scene(kSource)), InvalidInput);
 }
 
-/// Reads every scene of a folder; returns how many there are.
+/// Reads every scene of a folder; returns their number.
 int read_all(const std::filesystem::path& folder)
 {
     int count = 0;
@@ -109,11 +112,11 @@ TEST(SceneFiles, TheRoundTableIsClosedAndStandsOnTheFloor)
     require_usable(table, "round_table.obj");
     EXPECT_TRUE(build_topology(table.triangles, table.vertex_count(), "round_table.obj").is_closed());
     EXPECT_EQ(bounds(table.positions).lower.y(), 0.0);
-    double volume = 0.0; // by the divergence theorem; positive when triangles face outwards
+    double volume = 0.0; // by the divergence theorem; positive if triangles face outwards
     for (const Triangle& t : table.triangles)
         volume += table.positions[t[0]].dot(table.positions[t[1]].cross(table.positions[t[2]])) / 6.0;
     EXPECT_GT(volume, 0.02);
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

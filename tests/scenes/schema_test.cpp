@@ -10,7 +10,11 @@
 
 #include "garment/fabric/fabric.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace garment;
+using namespace scenes;
+
 namespace {
 
 std::string text_of(const std::string& file)
@@ -19,19 +23,19 @@ std::string text_of(const std::string& file)
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-TEST(SceneSchema, IsTheCommittedOne)
+TEST(SceneSchema, MatchesTheCommittedFile)
 {
-    EXPECT_EQ(scene_schema(), text_of("docs/scenes/toile.schema.json"))
-        << "write it anew with: toile schema > docs/scenes/toile.schema.json";
+    EXPECT_EQ(scene_schema(), text_of("docs/reference/toile.schema.json"))
+        << "write it anew with: toile schema > docs/reference/toile.schema.json";
 }
 
 TEST(SceneSchema, IsTheSourceOfTheCommittedKeyTables)
 {
-    EXPECT_EQ(scene_key_tables(), text_of("docs/scenes/keys.md"))
-        << "write them anew with: toile schema --tables > docs/scenes/keys.md";
+    EXPECT_EQ(scene_key_tables(), text_of("docs/reference/keys.md"))
+        << "write them anew with: toile schema --tables > docs/reference/keys.md";
 }
 
-TEST(SceneSchema, SaysRangesDefaultsAndExclusiveKeys)
+TEST(SceneSchema, ListsRangesDefaultsAndExclusiveKeys)
 {
     const auto schema = nlohmann::json::parse(scene_schema());
     const auto& frames = schema["properties"]["frames"];
@@ -52,24 +56,24 @@ TEST(SceneSchema, SaysRangesDefaultsAndExclusiveKeys)
 
 TEST(SceneDocs, NameEveryFabricPreset)
 {
-    const std::string page = text_of("docs/scenes/README.md");
+    const std::string page = text_of("docs/guide/scenes.md");
     for (const Fabric& fabric : fabric_presets())
         EXPECT_NE(page.find(fabric.name), std::string::npos) << fabric.name;
 }
 
-/// Every object and every key below `schema` has a sentence.
-void expect_described(const nlohmann::json& schema, const std::string& place)
+/// Expects a description of every object and every key below `schema`.
+void expect_described(const nlohmann::json& schema, const std::string& path)
 {
     if (schema.contains("properties"))
         for (const auto& [key, member] : schema["properties"].items()) {
-            EXPECT_FALSE(member.value("description", "").empty()) << place << key;
-            expect_described(member, place + key + ".");
+            EXPECT_FALSE(member.value("description", "").empty()) << path << key;
+            expect_described(member, path + key + ".");
         }
     if (schema.contains("items"))
-        expect_described(schema["items"], place);
+        expect_described(schema["items"], path);
 }
 
 TEST(SceneSchema, DescribesEveryKey) { expect_described(nlohmann::json::parse(scene_schema()), ""); }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

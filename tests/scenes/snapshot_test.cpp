@@ -1,15 +1,18 @@
-#include "scenes/snapshot.h"
+#include "scenes/world/snapshot.h"
 
 #include <gtest/gtest.h>
 
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
-/// Cloths that do not touch each other are groups of their own, those that do are one; solids come last.
-TEST(Snapshot, HasAllSurfacesAsTheyWere)
+/// Cloths without mutual contact are separate groups, cloths in contact are one; solids come last.
+TEST(Snapshot, HasAllSurfacesOfItsFrame)
 {
     const std::string cloths = R"("cloths": [
         {"name": "a", "rectangle": {"size": [0.2, 0.1], "resolution": 0.05}, "translate": [0, 1, 0]},
@@ -32,4 +35,4 @@ TEST(Snapshot, HasAllSurfacesAsTheyWere)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

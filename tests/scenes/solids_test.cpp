@@ -3,11 +3,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
 World world_of(const std::string& keys)
@@ -23,7 +26,7 @@ Vec3 mean(const std::vector<Vec3>& points)
     return sum / double(points.size());
 }
 
-/// Largest change of a distance between two vertices, of that distance [-].
+/// Max relative change of a distance between two vertices [-].
 double distortion(const std::vector<Vec3>& rest, const std::vector<Vec3>& x)
 {
     double largest = 0.0;
@@ -48,7 +51,7 @@ TEST(Solids, LandAndRestAtTheGapAndSleep)
     for (const Vec3& p : x)
         lowest = std::min(lowest, p.y());
     EXPECT_LE(lowest, 0.001);
-    EXPECT_GE(lowest, 0.00085); // its weight presses half of the spring's ramp in
+    EXPECT_GE(lowest, 0.00085); // its weight compresses half of the spring's ramp
     EXPECT_LT(distortion(world.surfaces()[0].rest.positions, x), 1e-12);
     const long minimised = world.stages().calls("pd/minimise");
     while (world.frame() < 70)
@@ -56,23 +59,23 @@ TEST(Solids, LandAndRestAtTheGapAndSleep)
     EXPECT_EQ(world.stages().calls("pd/minimise"), minimised);
 }
 
-/// Where a box of width 0.1 and this height ends up along an incline of this slope after a second, friction
-/// `friction` [m] down the slope, and how its axis then leans away from the plane's normal [rad].
+/// State of a box of width 0.1 and this height after a second on an incline with friction `friction`:
+/// distance down the slope [m], and angle of its axis to the plane's normal [rad].
 struct Slide {
-    double way, lean;
+    double distance, tilt;
 };
 Slide slide(double slope, double friction, double height)
 {
     const double angle = std::atan(slope);
     const Vec3 up(std::sin(angle), std::cos(angle), 0.0);
-    const std::string turn =
+    const std::string rotation =
         "\"rotate_deg\": [0, 0, " + std::to_string(-angle * 180.0 / std::numbers::pi) + "]";
     const Vec3 at = (0.001 + 0.5 * height) * up;
     World world = world_of(
         kNoCloth + R"("frames": 31, "avatars": [{"name": "incline", "plane": {}, "friction": )" +
-        std::to_string(friction) + ", " + turn + R"(}], "solids": [{"name": "box", "box": {"size": [0.1, )" +
-        std::to_string(height) + ", 0.1]}, " + turn + ", \"translate\": [" + std::to_string(at.x()) + ", " +
-        std::to_string(at.y()) + ", 0]}]");
+        std::to_string(friction) + ", " + rotation +
+        R"(}], "solids": [{"name": "box", "box": {"size": [0.1, )" + std::to_string(height) + ", 0.1]}, " +
+        rotation + ", \"translate\": [" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", 0]}]");
     const auto axis = [&] {
         const std::vector<Vec3>& x = world.surfaces()[0].positions;
         Vec3 sum = Vec3::Zero(); // the four top corners less the four others
@@ -88,7 +91,7 @@ Slide slide(double slope, double friction, double height)
             std::acos(std::min(1.0, axis().dot(up)))};
 }
 
-TEST(Solids, HoldOnAnInclineBelowTheFrictionAngle) { EXPECT_LT(slide(0.49, 0.5, 0.05).way, 2e-4); }
+TEST(Solids, StickOnAnInclineBelowTheFrictionAngle) { EXPECT_LT(slide(0.49, 0.5, 0.05).distance, 2e-4); }
 
 TEST(Solids, SlideAtCoulombsAcceleration)
 {
@@ -96,15 +99,15 @@ TEST(Solids, SlideAtCoulombsAcceleration)
     const double dt = 1.0 / 120.0,
                  exact = 0.5 * 9.81 * (std::sin(angle) - 0.5 * std::cos(angle)) * (1.0 + dt);
     const Slide found = slide(0.6, 0.5, 0.05);
-    EXPECT_NEAR(found.way, exact, 0.02 * exact);
-    EXPECT_LT(found.lean, 0.01);
+    EXPECT_NEAR(found.distance, exact, 0.02 * exact);
+    EXPECT_LT(found.tilt, 0.01);
 }
 
-TEST(Solids, ToppleWhenTheirCentreIsBeyondTheirFoot)
+TEST(Solids, ToppleWhenTheirCentreIsBeyondTheirBase)
 {
     // Width over height 0.5: the slope at which it topples.
-    EXPECT_LT(slide(0.45, 1.0, 0.2).lean, 0.01);
-    EXPECT_GT(slide(0.55, 1.0, 0.2).lean, 0.5);
+    EXPECT_LT(slide(0.45, 1.0, 0.2).tilt, 0.01);
+    EXPECT_GT(slide(0.55, 1.0, 0.2).tilt, 0.5);
 }
 
 TEST(Solids, StackAndExchangeMomentum)
@@ -116,14 +119,14 @@ TEST(Solids, StackAndExchangeMomentum)
     while (world.frame() < 12)
         world.advance_frame();
     const double t = world.frame() / 30.0;
-    // Total momentum, in units of the left one's mass: what has moved by then, and both have met.
+    // Displacements weighted by mass show the total momentum, in units of the left one's mass.
     const Vec3 moved =
         mean(world.surfaces()[0].positions) - left + 0.5 * (mean(world.surfaces()[1].positions) - right);
     EXPECT_LT((moved - t * Vec3(1, 0, 0)).norm(), 1e-3);
     EXPECT_GT(mean(world.surfaces()[1].positions).x() - right.x(), 0.05);
 }
 
-TEST(Solids, LieOnHeldClothAndSagIt)
+TEST(Solids, LieOnPinnedClothAndSagIt)
 {
     World world = world_of(R"("frames": 40, "solver": {"tolerance": 1e-4},
         "cloths": [{"name": "sheet", "rectangle": {"size": [0.4, 0.4], "resolution": 0.02}}],
@@ -132,14 +135,14 @@ TEST(Solids, LieOnHeldClothAndSagIt)
     while (world.frame() < 30)
         world.advance_frame();
     const Vec3 ball = mean(world.surfaces()[1].positions);
-    EXPECT_GT(ball.y(), -0.15); // not through
-    EXPECT_LT(ball.y(), 0.03);  // and the cloth carries it in its sag
-    // It rolls about in the sag, as the last digits will have it: 1 to 42 mm at other tolerances and steps.
+    EXPECT_GT(ball.y(), -0.15); // not through the cloth
+    EXPECT_LT(ball.y(), 0.03);  // supported in its sag
+    // It rolls in the sag, by 1 to 42 mm depending on the last digits, the tolerance and the step.
     EXPECT_LT(Vec2(ball.x(), ball.z()).norm(), 0.08);
     EXPECT_LT(distortion(world.surfaces()[1].rest.positions, world.surfaces()[1].positions), 1e-3);
 }
 
-TEST(Solids, AreRefusedWhereTheyCannotMove)
+TEST(Solids, AreRefusedInScenesThatDoNotSupportThem)
 {
     const std::string ball = R"("frames": 1, "cloths": [], "solids": [{"name": "ball", "sphere": {}}])";
     EXPECT_NO_THROW(parse_scene("{\"toile\": 1, " + ball + "}", "a.json"));
@@ -154,4 +157,4 @@ TEST(Solids, AreRefusedWhereTheyCannotMove)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

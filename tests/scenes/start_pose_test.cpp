@@ -3,22 +3,26 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "collision/crossings/find_crossings.h"
+#include "collision/check/find_crossings.h"
+#include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/scene_body.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
-using Kind = StartPlace::Kind;
+using Kind = StartDefect::Kind;
 
 Scene scene_of(const std::string& keys)
 {
     return parse_scene("{\"toile\": 1, \"frames\": 3, " + keys + "}", "test.json");
 }
 
-/// A ball of 10 cm and a sheet at a height.
+/// Ball of 10 cm and a sheet at a height.
 Scene ball_and_sheet(const std::string& height, const std::string& more = "")
 {
     return scene_of(R"("avatars": [{"name": "ball", "sphere": {"radius": 0.1}}],
@@ -27,12 +31,12 @@ Scene ball_and_sheet(const std::string& height, const std::string& more = "")
                     height + ", 0]}]" + more);
 }
 
-TEST(StartPose, OfACleanSceneIsOnlyLookedAt)
+TEST(StartPose, IsOnlyCheckedInACleanScene)
 {
     World world(ball_and_sheet("0.102"));
     EXPECT_EQ(world.stages().calls("scenes/start_check"), 1);
     EXPECT_EQ(world.stages().calls("scenes/start_repair"), 0);
-    EXPECT_TRUE(world.start().places.empty());
+    EXPECT_TRUE(world.start().defects.empty());
     EXPECT_EQ(world.cloths()[0].positions, world.cloths()[0].rest.positions);
 }
 
@@ -55,7 +59,7 @@ TEST(StartPose, IsRepairedBeforeTheFirstStepAndKeepsTheRestShape)
         EXPECT_LT((world.cloths()[0].positions[v] - start[v]).norm(), 0.02) << v;
 }
 
-TEST(StartPose, IsLeftAloneWhenTheSceneSaysSo)
+TEST(StartPose, IsUnchangedWhenRepairIsOff)
 {
     World world(ball_and_sheet("0.085", R"(, "contact": {"repair_start": false})"));
     EXPECT_EQ(world.stages().calls("scenes/start_repair"), 0);
@@ -66,7 +70,7 @@ TEST(StartPose, IsLeftAloneWhenTheSceneSaysSo)
 
 TEST(StartPose, PutsTheHigherLayerOnTop)
 {
-    // Tilted against each other, through each other along a line.
+    // Tilted against each other, crossing along a line.
     World world(scene_of(R"("cloths": [
         {"name": "over", "layer": 1, "rectangle": {"size": [0.2, 0.2], "resolution": 0.02}, "rotate_deg": [0, 0, 6]},
         {"name": "under", "rectangle": {"size": [0.2, 0.2], "resolution": 0.02}, "rotate_deg": [0, 3, -6],
@@ -80,13 +84,13 @@ TEST(StartPose, PutsTheHigherLayerOnTop)
             }
 }
 
-/// What the five modelled garments start with and have to end with.
+/// Expected errors of the start and limits of the repaired pose for the five modelled garments.
 struct Garment {
     const char* avatar;
     const char* name;
     int subdivide;
-    int vertices_inside; ///< at the start, at least
-    int crossings;       ///< at the start, at least
+    int vertices_inside; ///< min at the start
+    int crossings;       ///< min at the start
     double max_strain, rms_strain;
 };
 
@@ -115,7 +119,7 @@ TEST_P(ModelledGarment, StartsOnItsAvatarWithoutCrossings)
     const ClothState& cloth = world.cloths()[0];
     EXPECT_TRUE(find_crossings(cloth.triangles, cloth.positions).empty());
 
-    // Tips of the body between the samples: dozens before they are looked for.
+    // Tips of the body between the samples: dozens cross before the repair searches for them.
     const TriangleMesh body = SceneBody(scene.avatars[0]).surface();
     EXPECT_LT(find_crossings(cloth.triangles, cloth.positions, body.triangles, body.positions).size(), 20u);
 }
@@ -129,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(Data, ModelledGarment,
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -3,12 +3,16 @@
 #include <cmath>
 
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
-/// A flag held along one side, after ten frames of wind.
+/// Flag fixed along one side, after ten frames of wind.
 struct Flag {
     std::vector<Vec3> positions;
     long gust_calls;
@@ -27,7 +31,7 @@ Flag flag_in(const std::string& wind, int threads = 0)
     return {world.cloths()[0].positions, world.stages().calls("garment/gusts")};
 }
 
-double farthest(const Flag& a, const Flag& b)
+double max_distance(const Flag& a, const Flag& b)
 {
     double distance = 0.0;
     for (size_t i = 0; i < a.positions.size(); ++i)
@@ -39,17 +43,17 @@ TEST(Wind, WithoutTurbulenceNeverComputesGusts)
 {
     const Flag steady = flag_in("");
     EXPECT_EQ(steady.gust_calls, 0);
-    EXPECT_EQ(farthest(steady, flag_in(R"(, "turbulence": 0, "seed": 3)")), 0.0);
+    EXPECT_EQ(max_distance(steady, flag_in(R"(, "turbulence": 0, "seed": 3)")), 0.0);
 }
 
-TEST(Wind, GustsMoveClothTheSameWayForASeedAndAnyThreadCount)
+TEST(Wind, GustsAreReproducibleForASeedAndAnyThreadCount)
 {
     const std::string gusty = R"(, "turbulence": 0.4)";
     const Flag one = flag_in(gusty, 1);
     EXPECT_GT(one.gust_calls, 0);
-    EXPECT_EQ(farthest(one, flag_in(gusty, 4)), 0.0);
-    EXPECT_GT(farthest(one, flag_in("")), 0.01);
-    EXPECT_GT(farthest(one, flag_in(gusty + R"(, "seed": 1)")), 0.01);
+    EXPECT_EQ(max_distance(one, flag_in(gusty, 4)), 0.0);
+    EXPECT_GT(max_distance(one, flag_in("")), 0.01);
+    EXPECT_GT(max_distance(one, flag_in(gusty + R"(, "seed": 1)")), 0.01);
 }
 
 TEST(Wind, GustsKeepClothAwake)
@@ -85,8 +89,8 @@ TEST(Air, LetsAFlatSheetFallAtItsTerminalSpeed)
     }
 }
 
-/// Force of a wind of 5 m/s on a silk sheet of 20 cm x 20 cm that soft springs hold across it [N].
-double force_on_held_sheet(int substeps)
+/// Force of a wind of 5 m/s on a silk sheet of 20 cm x 20 cm that soft springs attach across it [N].
+double force_on_pinned_sheet(int substeps)
 {
     World world(
         parse_scene(R"({"toile": 1, "frames": 60, "gravity": [0, 0, 0], "wind": {"velocity": [0, 5, 0]},
@@ -105,12 +109,12 @@ double force_on_held_sheet(int substeps)
     return force;
 }
 
-TEST(Air, PushesHeldClothWithTheWholeDragForAnyStep)
+TEST(Air, PullsAttachedClothWithTheWholeDragForAnyStep)
 {
     const double drag = 0.5 * 1.2 * 0.2 * 0.2 * 5.0 * 5.0;
-    EXPECT_NEAR(force_on_held_sheet(4), drag, 0.01 * drag);
-    EXPECT_NEAR(force_on_held_sheet(16), drag, 0.01 * drag);
+    EXPECT_NEAR(force_on_pinned_sheet(4), drag, 0.01 * drag);
+    EXPECT_NEAR(force_on_pinned_sheet(16), drag, 0.01 * drag);
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -1,4 +1,4 @@
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
 #include <gtest/gtest.h>
 
@@ -7,16 +7,20 @@
 
 #include "scenes/format/read_scene.h"
 
-namespace toile {
+namespace toile::test {
+
+using namespace collision;
+using namespace scenes;
+
 namespace {
 
-/// A world from scene text without the version key and the outer braces.
+/// World from scene text without the version key and the outer braces.
 World world_of(const std::string& keys)
 {
     return World(parse_scene("{\"toile\": 1, " + keys + "}", "test.json"));
 }
 
-/// A fabric that nothing but elasticity acts on, and no air.
+/// Fabric without damping, in a scene without air.
 const std::string kUndamped =
     R"("air": {"density": 0}, "fabrics": {"bare": {"base": "cotton", "damping": 0}}, )";
 
@@ -28,12 +32,12 @@ Vec3 mean(const std::vector<Vec3>& points)
     return sum / double(points.size());
 }
 
-double farthest_move(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
+double max_move(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 {
-    double farthest = 0.0;
+    double max = 0.0;
     for (size_t i = 0; i < a.size(); ++i)
-        farthest = std::max(farthest, (a[i] - b[i]).norm());
-    return farthest;
+        max = std::max(max, (a[i] - b[i]).norm());
+    return max;
 }
 
 TEST(World, LetsClothFallExactly)
@@ -45,7 +49,7 @@ TEST(World, LetsClothFallExactly)
     while (world.frame() < 30)
         iterations += world.advance_frame().iterations;
 
-    // Implicit Euler's own answer: x_n = x_0 - g dt^2 n (n + 1) / 2.
+    // Exact solution of implicit Euler: x_n = x_0 - g dt^2 n (n + 1) / 2.
     const double dt = 1.0 / 120.0, n = 120.0;
     for (size_t i = 0; i < start.size(); ++i)
         EXPECT_LT(
@@ -54,19 +58,19 @@ TEST(World, LetsClothFallExactly)
     EXPECT_EQ(iterations, 0);
 }
 
-/// Mean slide along an incline of slope `slope` after one second at friction 0.5, down the slope [m].
+/// Mean displacement along an incline of slope `slope` after one second at friction 0.5, down the slope [m].
 double slide(double slope)
 {
     const double angle = std::atan(slope);
     const double degrees = angle * 180.0 / std::numbers::pi;
     const double gap = 0.001 + 0.5 * 0.318e-3;
-    const std::string turn = "\"rotate_deg\": [0, 0, " + std::to_string(-degrees) + "]";
+    const std::string rotation = "\"rotate_deg\": [0, 0, " + std::to_string(-degrees) + "]";
     World world =
         world_of(kUndamped + R"("frames": 31, "solver": {"tolerance": 1e-7, "sleep": {"enabled": false}},
         "avatars": [{"name": "incline", "plane": {}, "friction": 0.5, )" +
-                 turn + R"(}],
+                 rotation + R"(}],
         "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.2, 0.2], "resolution": 0.04}, )" +
-                 turn + ", \"translate\": [" + std::to_string(gap * std::sin(angle)) + ", " +
+                 rotation + ", \"translate\": [" + std::to_string(gap * std::sin(angle)) + ", " +
                  std::to_string(gap * std::cos(angle)) + ", 0]}]");
     const Vec3 start = mean(world.cloths()[0].positions);
     while (world.frame() < 30)
@@ -140,8 +144,8 @@ std::vector<Vec3> draped_on_sphere(int threads)
 TEST(World, GivesTheSameBitsForAnyThreadCount)
 {
     const std::vector<Vec3> one = draped_on_sphere(1);
-    EXPECT_EQ(farthest_move(one, draped_on_sphere(2)), 0.0);
-    EXPECT_EQ(farthest_move(one, draped_on_sphere(4)), 0.0);
+    EXPECT_EQ(max_move(one, draped_on_sphere(2)), 0.0);
+    EXPECT_EQ(max_move(one, draped_on_sphere(4)), 0.0);
 }
 
 TEST(World, SurvivesAnAvatarThatJumpsAMetre)
@@ -160,4 +164,4 @@ TEST(World, SurvivesAnAvatarThatJumpsAMetre)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -2,15 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include "core/quadrature/table_store.h"
+#include "core/quadrature/tables/table_store.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world.h"
+#include "scenes/world/world.h"
 
-/// Worlds share what belongs to the process: threads, factors and tables of equal cloths, Embree's device.
-namespace toile {
+/// Worlds share resources of the process: threads, factors and tables of equal cloths, Embree's device.
+namespace toile::test {
+
+using namespace scenes;
+
 namespace {
 
-/// Equal cloths in both scenes, so that factor and tables are shared; a moving mesh in one of them.
+/// Scene with two equal cloths, so that factor and tables are shared, and the avatar of `keys`.
 Scene scene_with(const std::string& method, const std::string& keys)
 {
     return parse_scene(R"({"toile": 1, "fps": 30, "frames": 6, "solver": {"method": ")" + method + R"("}, )" +
@@ -35,7 +38,7 @@ std::vector<Vec3> positions_after_run(const Scene& scene, const std::shared_ptr<
     return positions;
 }
 
-TEST(WorldsAtOnce, HaveTheBitsOfEachAlone)
+TEST(WorldsAtOnce, HaveTheBitsOfSeparateRuns)
 {
     const std::string walking =
         R"("avatars": [{"name": "mannequin", "mannequin": {}, "clip": "walk", "translate": [0, 0.1, 0]}], )";
@@ -58,4 +61,4 @@ TEST(WorldsAtOnce, HaveTheBitsOfEachAlone)
 }
 
 } // namespace
-} // namespace toile
+} // namespace toile::test

@@ -8,8 +8,8 @@
 
 namespace toile::test {
 
-/// Factor by which x -> x - A H x lengthens x per step in the long run: the spectral radius of I - A H by its
-/// power, as the geometric mean of the last ten steps.
+/// Asymptotic factor per step of x -> x - A H x: the spectral radius of I - A H by power iteration, as the
+/// geometric mean of the last ten steps.
 /// @param x      [n] start, 0 at fixed vertices
 /// @param steps  more than ten
 inline double contraction(const GlobalSolver& solver, const SparseMatrix& H, std::vector<Vec3> x, int steps)

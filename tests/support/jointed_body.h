@@ -11,9 +11,9 @@
 
 #include "core/mesh/triangle_mesh.h"
 
-namespace toile {
+namespace toile::test {
 
-/// A rigid part of a jointed body, wholly tied to a joint of its own, and how that moves.
+/// Rigid part of a jointed body, bound to a single joint, and its motion.
 struct BodyPart {
     struct Key {
         double time;                   ///< [s]
@@ -25,7 +25,7 @@ struct BodyPart {
     std::string joint;
     TriangleMesh mesh; ///< [m]
     std::vector<Key> keys{{0.0}};
-    Vec3 pivot = Vec3::Zero(); ///< where the joint is [m]
+    Vec3 pivot = Vec3::Zero(); ///< position of the joint [m]
     int parent = -1;           ///< index of an earlier part
 };
 
@@ -35,7 +35,7 @@ public:
     nlohmann::json views = nlohmann::json::array();
     nlohmann::json accessors = nlohmann::json::array();
 
-    /// Appends `count` items of `type`, each of equally many components, and returns the accessor.
+    /// Appends `count` items of `type` with equally many components, and returns the accessor.
     template <typename T>
     int add(const std::vector<T>& components, int count, const char* type)
     {
@@ -100,7 +100,7 @@ inline void write_gltf(const std::filesystem::path& file, const std::vector<Body
         {{"primitives",
           {{{"attributes", attributes}, {"indices", data.add(indices, int(indices.size()), "SCALAR")}}}}}};
 
-    // Node 0 carries the mesh, node 1 + p the joint of part p.
+    // Node 0 has the mesh, node 1 + p the joint of part p.
     Json nodes = {{{"name", "body"}, {"mesh", 0}, {"skin", 0}}};
     Json roots = {0}, joint_nodes = Json::array(), channels = Json::array(), samplers = Json::array();
     for (size_t p = 0; p < parts.size(); ++p) {
@@ -115,11 +115,11 @@ inline void write_gltf(const std::filesystem::path& file, const std::vector<Body
         std::vector<float> times, translations, rotations;
         for (const BodyPart::Key& key : part.keys) {
             times.push_back(float(key.time));
-            const Eigen::Quaterniond turn(Eigen::AngleAxisd(key.angle, key.axis));
+            const Eigen::Quaterniond rotation(Eigen::AngleAxisd(key.angle, key.axis));
             for (int k = 0; k < 3; ++k)
                 translations.push_back(float(at[k] + key.translate[k]));
             for (int k = 0; k < 4; ++k)
-                rotations.push_back(float(turn.coeffs()[k]));
+                rotations.push_back(float(rotation.coeffs()[k]));
         }
         const int count = int(times.size()), input = data.add(times, count, "SCALAR");
         for (const auto& [path, output] : {std::pair("translation", data.add(translations, count, "VEC3")),
@@ -139,4 +139,4 @@ inline void write_gltf(const std::filesystem::path& file, const std::vector<Body
     std::ofstream(file) << gltf.dump();
 }
 
-} // namespace toile
+} // namespace toile::test

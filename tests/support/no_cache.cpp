@@ -2,8 +2,8 @@
 
 namespace {
 
-/// Part of every test program: no test reads or fills the cache of who runs it, nor do the programs that it
-/// starts. Tests of the cache name folders of their own.
+/// Part of every test program: no test or program that it starts uses the user's cache. Tests of the cache
+/// name folders of their own.
 [[maybe_unused]] const int no_cache = ::setenv("TOILE_CACHE_DIR", "", 1);
 
 } // namespace

@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/backend/error.h"
+#include "core/base/error.h"
 
-namespace toile {
+namespace toile::test {
 
 inline std::string bytes_of(const std::filesystem::path& file)
 {
@@ -19,7 +19,7 @@ inline std::string bytes_of(const std::filesystem::path& file)
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// An empty folder that disappears with its test.
+/// Empty folder, removed at the end of its test.
 class TemporaryFolder {
 public:
     TemporaryFolder()
@@ -56,7 +56,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// A test with a folder of its own.
+/// Fixture with a private folder.
 class FileTest : public ::testing::Test {
 protected:
     std::filesystem::path file(const std::string& name) const { return folder_ / name; }
@@ -65,16 +65,16 @@ protected:
     const std::filesystem::path folder_ = temporary_.path();
 };
 
-/// The message of the InvalidInput that `act` throws; empty when it throws none.
-template <typename Act>
-std::string refusal(const Act& act)
+/// Message of the InvalidInput that `action` throws; empty if it throws none.
+template <typename Action>
+std::string refusal(const Action& action)
 {
     try {
-        act();
+        action();
     } catch (const InvalidInput& error) {
         return error.what();
     }
     return {};
 }
 
-} // namespace toile
+} // namespace toile::test

@@ -1,0 +1,120 @@
+#include "apps/preview/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "apps/preview/path.h"
+#include "core/base/error.h"
+#include "core/compute/parallel.h"
+
+namespace toile::preview {
+
+namespace {
+
+/// A pixel takes no more samples if its first kProbeSamples differ by less than kProbeAgreement
+/// [display-linear]. That is half a step of 8-bit sRGB in light tones. Fewer probes would miss edges that
+/// cover an eighth of a pixel.
+constexpr int kProbeSamples = 8;
+constexpr double kProbeAgreement = 0.004;
+
+void require_sane(const RenderScene& scene, const RenderSettings& settings)
+{
+    if (settings.width < 1 || settings.height < 1 || settings.samples < 1 || settings.width > 16384 ||
+        settings.height > 16384)
+        throw InvalidInput("render: " + std::to_string(settings.width) + " x " +
+                           std::to_string(settings.height) + " pixels with " +
+                           std::to_string(settings.samples) +
+                           " samples; pixels must be 1 to 16384 a side, samples 1 or more");
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        const RenderMesh& mesh = scene.meshes[m];
+        const std::string name = "render: mesh " + std::to_string(m);
+        for (const Triangle& t : mesh.triangles)
+            if (t.minCoeff() < 0 || t.maxCoeff() >= int(mesh.positions.size()))
+                throw InvalidInput(name + " has a triangle out of range of its " +
+                                   std::to_string(mesh.positions.size()) + " vertices; check its indices");
+        if (mesh.material.pattern != Pattern::Plain &&
+            mesh.corner_coordinates.size() != mesh.triangles.size())
+            throw InvalidInput(name + " has a pattern but no coordinates for it; give corner_coordinates "
+                                      "or make it plain");
+    }
+}
+
+std::uint8_t srgb(double linear)
+{
+    const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+    return std::uint8_t(std::lround(255.0 * std::clamp(encoded, 0.0, 1.0)));
+}
+
+/// Averages the samples of one pixel; the first ones suffice if they agree (background, open floor).
+struct ShadePixel {
+    const PathTracer& tracer;
+    Image& image;
+    int samples;
+
+    void operator()(int pixel) const
+    {
+        const int x = pixel % image.width, y = pixel / image.width;
+        const PixelSampler sampler(pixel);
+        Vec3 sum = Vec3::Zero(), lowest = Vec3::Ones(), highest = Vec3::Zero();
+        int taken = 0;
+        while (taken < samples) {
+            const Vec2 jitter = sampler.point(taken, 0);
+            const Vec3 color =
+                tracer.display_color(2.0 * (x + jitter.x()) / image.width - 1.0,
+                                     1.0 - 2.0 * (y + jitter.y()) / image.height, sampler, taken);
+            sum += color;
+            lowest = lowest.cwiseMin(color);
+            highest = highest.cwiseMax(color);
+            if (++taken == kProbeSamples && (highest - lowest).maxCoeff() < kProbeAgreement)
+                break;
+        }
+        for (int channel = 0; channel < 3; ++channel)
+            image.pixel(x, y)[channel] = srgb(sum[channel] / taken);
+    }
+};
+
+} // namespace
+
+Renderer::Renderer(RenderScene scene, RenderSettings settings) : scene_(std::move(scene)), settings_(settings)
+{
+    require_sane(scene_, settings_);
+    for (const RenderMesh& mesh : scene_.meshes) {
+        normals_.push_back(vertex_normals(mesh.positions, mesh.triangles));
+        rays_.add(mesh.positions, mesh.triangles);
+    }
+    rays_.commit();
+}
+
+void Renderer::update(int mesh, View<const Vec3> positions)
+{
+    RenderMesh& moved = scene_.meshes[size_t(mesh)];
+    if (positions.size() != int(moved.positions.size()))
+        throw InvalidInput("render: mesh " + std::to_string(mesh) + " has " +
+                           std::to_string(moved.positions.size()) + " vertices and the frame " +
+                           std::to_string(positions.size()) + "; a cache plays only on its own mesh");
+    moved.positions.assign(positions.begin(), positions.end());
+    normals_[size_t(mesh)] = vertex_normals(moved.positions, moved.triangles);
+    rays_.update(mesh, positions);
+    rays_.commit();
+}
+
+Image Renderer::render(const Camera& camera) const
+{
+    Image image(settings_.width, settings_.height);
+    const PathTracer tracer(scene_, normals_, rays_, camera);
+    parallel_for(kCpu, "render/pixels", image.width * image.height,
+                 ShadePixel{tracer, image, settings_.samples});
+    return image;
+}
+
+std::vector<Vec3> Renderer::points() const
+{
+    std::vector<Vec3> all;
+    for (const RenderMesh& mesh : scene_.meshes)
+        all.insert(all.end(), mesh.positions.begin(), mesh.positions.end());
+    return all;
+}
+
+} // namespace toile::preview

@@ -1,0 +1,50 @@
+#include "apps/toile/check/avatar_crossings.h"
+
+#include "core/mesh/weld.h"
+
+namespace toile::app {
+
+namespace {
+
+/// Marks triangles that cross another one of their own surface. [triangles]
+std::vector<char> crossing_themselves(const TriangleMesh& surface)
+{
+    // Texture seams duplicate vertices, whose triangles would touch each other: weld them.
+    const Welded welded = weld(surface, 0.0);
+    std::vector<Triangle> triangles = surface.triangles;
+    for (Triangle& t : triangles)
+        for (int& v : t)
+            v = welded.source_of[size_t(welded.welded_of[size_t(v)])];
+    std::vector<char> found(triangles.size(), 0);
+    for (const collision::Crossing& crossing : collision::find_crossings(triangles, surface.positions))
+        found[size_t(crossing.a)] = found[size_t(crossing.b)] = 1;
+    return found;
+}
+
+} // namespace
+
+AvatarCrossings find_avatar_crossings(const ScenePenetration& avatars, View<const Triangle> triangles,
+                                      View<const Vec3> x)
+{
+    AvatarCrossings result;
+    for (int b = 0; b < int(avatars.bodies().size()); ++b) {
+        const collision::PenetrationMeter* meter = avatars.meter(b);
+        if (meter == nullptr)
+            continue;
+        const TriangleMesh& surface = avatars.bodies()[size_t(b)].contact_surface();
+        const std::vector<collision::Crossing> crossings =
+            collision::find_crossings(triangles, x, surface.triangles, surface.positions);
+        if (crossings.empty())
+            continue; // the body's self-crossings are ignored and cost more than the cloth's
+        const std::vector<char> crosses_itself = crossing_themselves(surface);
+        for (const collision::Crossing& crossing : crossings) {
+            if (crosses_itself[size_t(crossing.b)] != 0 || meter->is_buried(crossing.b))
+                ++result.elsewhere;
+            else
+                result.clean.push_back({b, crossing});
+        }
+    }
+    return result;
+}
+
+} // namespace toile::app

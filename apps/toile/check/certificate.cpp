@@ -1,0 +1,144 @@
+#include "apps/toile/check/certificate.h"
+
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/toile/terminal/version.h"
+
+namespace toile::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Defects of a frame in words; empty for none.
+std::string reason_of(const FrameFindings& found, const CertificateLimits& limits)
+{
+    std::string reason;
+    const auto add = [&](const std::string& text) { reason += (reason.empty() ? "" : ", ") + text; };
+    char text[128];
+    if (found.non_finite > 0)
+        add(std::to_string(found.non_finite) + " vertices are not finite");
+    if (found.cloth_cloth_crossings > 0)
+        add(std::to_string(found.cloth_cloth_crossings) + " cloth-cloth crossings");
+    if (found.cloth_avatar_crossings > 0)
+        add(std::to_string(found.cloth_avatar_crossings) + " cloth-avatar crossings");
+    if (found.crossing) {
+        const Vec3& p = found.crossing->point;
+        std::snprintf(text, sizeof text, "the first near (%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
+        add(text);
+    }
+    if (found.penetration > limits.penetration) {
+        std::snprintf(text, sizeof text, "%.3g mm deep in an avatar", 1e3 * found.penetration);
+        add(text);
+    }
+    if (found.is_overstretched) {
+        std::snprintf(text, sizeof text, "strain %.3g %%", 1e2 * found.strain);
+        add(text);
+    }
+    return reason;
+}
+
+Json json_of(const FrameFindings::CrossingSite& site)
+{
+    const auto side = [](const FrameFindings::Side& of) {
+        return Json{{"name", of.name}, {"triangle", of.triangle}};
+    };
+    return {{"frame", site.frame},
+            {"a", side(site.a)},
+            {"b", side(site.b)},
+            {"point_m", {site.point.x(), site.point.y(), site.point.z()}}};
+}
+
+template <typename T>
+Json json_or_null(const std::optional<T>& value)
+{
+    return value ? Json(*value) : Json(nullptr);
+}
+
+} // namespace
+
+void Certificate::add(const FrameFindings& found)
+{
+    const int frame = frames++;
+    non_finite += found.non_finite;
+    cloth_cloth_crossings += found.cloth_cloth_crossings;
+    cloth_avatar_crossings += found.cloth_avatar_crossings;
+    crossings_in_self_intersections += found.crossings_in_self_intersections;
+    if (!first_crossing)
+        first_crossing = found.crossing;
+    if (found.gap && (!min_gap || *found.gap < *min_gap)) {
+        min_gap = found.gap;
+        min_gap_frame = frame;
+    }
+    if (found.penetration > worst.penetration) {
+        worst.penetration = found.penetration;
+        worst_penetration_frame = frame;
+    }
+    if (found.strain > worst.strain) {
+        worst.strain = found.strain;
+        worst_strain_frame = frame;
+    }
+    worst.excluded = std::max(worst.excluded, found.excluded);
+    if (const std::string reason = reason_of(found, limits); !reason.empty() && holds()) {
+        first_bad_frame = frame;
+        first_bad_reason = reason;
+    }
+}
+
+std::string to_json(const Certificate& certificate)
+{
+    Json cloths = Json::array(), strain_limits = Json::object();
+    for (const Certificate::Cloth& cloth : certificate.cloths) {
+        cloths.push_back({{"name", cloth.name}, {"cache", cloth.cache.string()}});
+        strain_limits[cloth.name] = cloth.strain_limit;
+    }
+    const bool has_crossing = certificate.first_crossing.has_value();
+    const Json json = {
+        {"scene", certificate.scene.string()},
+        {"solver", certificate.solver},
+        {"version", version()},
+        {"cloths", cloths},
+        {"cloths_left_out", certificate.left_out},
+        {"avatar_bones_left_out", certificate.excluded_bones},
+        {"holds", certificate.holds()},
+        {"frames", certificate.frames},
+        {"frames_left_out", certificate.frames_left_out},
+        {"first_bad_frame", certificate.holds() ? Json(nullptr) : Json(certificate.first_bad_frame)},
+        {"cloth_cloth_crossings", certificate.cloth_cloth_crossings},
+        {"cloth_avatar_crossings", certificate.cloth_avatar_crossings},
+        {"cloth_avatar_crossings_in_self_intersections", certificate.crossings_in_self_intersections},
+        {"first_crossing", has_crossing ? json_of(*certificate.first_crossing) : Json(nullptr)},
+        {"min_gap_m", json_or_null(certificate.min_gap)},
+        {"min_gap_frame", certificate.min_gap ? Json(certificate.min_gap_frame) : Json(nullptr)},
+        {"max_penetration_m", certificate.worst.penetration},
+        {"max_penetration_frame", certificate.worst_penetration_frame},
+        {"max_penetration_in_self_intersections_m", certificate.worst.excluded},
+        {"max_strain", certificate.worst.strain},
+        {"max_strain_frame", certificate.worst_strain_frame},
+        {"non_finite", certificate.non_finite},
+        {"limits",
+         {{"penetration_m", certificate.limits.penetration},
+          {"strain", strain_limits},
+          {"gap_reach_m", kGapReach}}}};
+    return json.dump(2) + "\n";
+}
+
+std::string summary_of(const Certificate& certificate)
+{
+    if (!certificate.holds())
+        return "the certificate does not hold; first bad frame " +
+               std::to_string(certificate.first_bad_frame) + ": " + certificate.first_bad_reason;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "certificate holds for %d frames: no crossings, %.3g mm deep at most, strain %.3g %%",
+                  certificate.frames, 1e3 * certificate.worst.penetration, 1e2 * certificate.worst.strain);
+    std::string left_out;
+    for (const auto& [avatar, bones] : certificate.excluded_bones)
+        left_out += "; " + std::to_string(bones.size()) + (bones.size() == 1 ? " bone of " : " bones of ") +
+                    avatar + " left out";
+    return text + left_out;
+}
+
+} // namespace toile::app

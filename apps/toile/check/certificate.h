@@ -1,0 +1,92 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/compute/types.h"
+
+namespace toile::app {
+
+/// Limits of accepted defects.
+struct CertificateLimits {
+    double penetration = 0.001;  ///< [m] depth inside an avatar
+    double strain_margin = 0.05; ///< [-] strain beyond the fabric's limit
+};
+
+/// Findings of one frame, all cloths together.
+struct FrameFindings {
+    /// One of two triangles that cross.
+    struct Side {
+        std::string name; ///< of the cloth or avatar
+        int triangle;     ///< -1: a lid over excluded faces of an avatar
+    };
+    struct CrossingSite {
+        int frame;
+        Side a, b;  ///< a is of a cloth
+        Vec3 point; ///< [m]
+    };
+
+    int non_finite = 0; ///< vertices
+    int cloth_cloth_crossings = 0;
+    int cloth_avatar_crossings = 0;          ///< with clean triangles (AvatarCrossings)
+    int crossings_in_self_intersections = 0; ///< with triangles that are not clean
+    std::optional<CrossingSite> crossing;    ///< first crossing that makes the frame bad
+    std::optional<double> gap;               ///< [m] none: larger than kGapReach
+    double penetration = 0.0;                ///< [m] maximum depth
+    double excluded = 0.0;                   ///< [m] maximum depth where an avatar intersects itself
+    double strain = 0.0;                     ///< [-] maximum of all cloths
+    bool is_overstretched = false;           ///< a cloth exceeded its limit
+};
+
+/// Maximum distance at which gaps of cloth to cloth are measured [m]: several thicknesses of thick cloth.
+inline constexpr double kGapReach = 0.005;
+
+/// Result for a whole run: the worst of all frames.
+struct Certificate {
+    /// An examined cloth.
+    struct Cloth {
+        std::string name;
+        std::filesystem::path cache;
+        double strain_limit; ///< [-] of the fabric, the margin included
+    };
+
+    std::filesystem::path scene;
+    std::string solver; ///< solver.method of the scene
+    CertificateLimits limits;
+    std::vector<Cloth> cloths;
+    std::vector<std::string> left_out; ///< cloths of the scene whose caches were not given
+
+    /// Bones with excluded faces, by avatar; only avatars that have such bones.
+    std::map<std::string, std::vector<std::string>> excluded_bones;
+
+    int frames = 0;
+    int frames_left_out = 0; ///< frames of the longest cache that a shorter one lacks
+    int non_finite = 0;
+    long cloth_cloth_crossings = 0; ///< pairs of triangles, summed over frames, as the other count
+    long cloth_avatar_crossings = 0;
+    long crossings_in_self_intersections = 0;
+    std::optional<FrameFindings::CrossingSite> first_crossing;
+    std::optional<double> min_gap; ///< [m] 0 where cloth crosses cloth
+    FrameFindings worst;           ///< maximum penetration, excluded and strain of any frame
+    int min_gap_frame = 0;
+    int worst_penetration_frame = 0;
+    int worst_strain_frame = 0;
+    int first_bad_frame = -1;
+    std::string first_bad_reason;
+
+    bool holds() const { return first_bad_frame < 0; }
+
+    /// Adds the findings of the next frame.
+    void add(const FrameFindings& found);
+};
+
+/// The certificate as JSON, ending with a newline. docs/reference/commands.md explains the keys.
+std::string to_json(const Certificate& certificate);
+
+/// Summary in one line: the maxima of a certificate that holds, else the first bad frame with its defects.
+std::string summary_of(const Certificate& certificate);
+
+} // namespace toile::app

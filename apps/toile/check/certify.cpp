@@ -1,0 +1,195 @@
+#include "apps/toile/check/certify.h"
+
+#include <algorithm>
+
+#include "apps/toile/check/avatar_crossings.h"
+#include "apps/toile/check/cache_cloth.h"
+#include "apps/toile/check/penetration.h"
+#include "apps/toile/check/strain.h"
+#include "apps/toile/terminal/command_line.h"
+#include "apps/toile/terminal/exports.h"
+#include "collision/check/find_crossings.h"
+#include "collision/check/gap_meter.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "scenes/format/field.h"
+
+namespace toile::app {
+
+namespace {
+
+/// A cloth with its strain meter and samples.
+struct MeasuredCloth {
+    const scenes::ClothState& state;
+    exports::PointCache cache;
+    StrainMeter strain;
+    collision::ClothSamples samples;
+    double strain_limit;              ///< [-] the margin included
+    int first_vertex, first_triangle; ///< in the arrays of all cloths
+};
+
+/// All cloths of a certificate as one list of triangles.
+class Examiner {
+public:
+    Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
+             const CertificateLimits& limits);
+
+    int frame_count() const { return frame_count_; } ///< of the shortest cache
+    int longest() const { return longest_; }
+    const std::vector<MeasuredCloth>& cloths() const { return cloths_; }
+
+    FrameFindings examine(int frame, double time);
+
+private:
+    void load(int frame);
+    void measure_each(FrameFindings& found) const;
+    void find_cloth_crossings(int frame, FrameFindings& found) const;
+    void find_all_avatar_crossings(int frame, FrameFindings& found) const;
+    FrameFindings::Side side(int triangle) const;
+
+    std::vector<MeasuredCloth> cloths_;
+    int frame_count_ = 0, longest_ = 0;
+    std::vector<Triangle> triangles_; ///< of all cloths
+    std::vector<Vec3> x_;             ///< [vertices of all cloths] [m]
+    std::optional<collision::GapMeter> gap_;
+    ScenePenetration avatars_;
+};
+
+Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
+                   const CertificateLimits& limits)
+    : avatars_(scene)
+{
+    std::vector<Vec3> rest;
+    for (const CachedCloth& cached : cloths) {
+        const scenes::ClothState& cloth = *cached.cloth;
+        const int vertex_count = int(cloth.rest.positions.size());
+        exports::PointCache cache = exports::read_cache(cached.file);
+        require_same_points(cache, cached.file, cloth.name, vertex_count);
+        frame_count_ = cloths_.empty() ? cache.frame_count() : std::min(frame_count_, cache.frame_count());
+        longest_ = std::max(longest_, cache.frame_count());
+        cloths_.push_back({cloth, std::move(cache), StrainMeter(cloth.rest.positions, cloth.triangles),
+                           collision::ClothSamples(cloth.triangles, vertex_count),
+                           cloth.fabric.strain_limit + limits.strain_margin, int(rest.size()),
+                           int(triangles_.size())});
+        for (const Triangle& t : cloth.triangles)
+            triangles_.push_back(t + Triangle::Constant(int(rest.size())));
+        rest.insert(rest.end(), cloth.rest.positions.begin(), cloth.rest.positions.end());
+    }
+    gap_.emplace(triangles_, rest);
+    x_.resize(rest.size());
+}
+
+void Examiner::load(int frame)
+{
+    for (const MeasuredCloth& cloth : cloths_) {
+        const std::vector<Vec3> positions = cloth.cache.frame(frame);
+        std::copy(positions.begin(), positions.end(), x_.begin() + cloth.first_vertex);
+    }
+}
+
+FrameFindings Examiner::examine(int frame, double time)
+{
+    load(frame);
+    avatars_.advance_to(time);
+    FrameFindings found;
+    measure_each(found);
+    find_cloth_crossings(frame, found);
+    find_all_avatar_crossings(frame, found);
+    return found;
+}
+
+void Examiner::measure_each(FrameFindings& found) const
+{
+    for (const MeasuredCloth& cloth : cloths_) {
+        const int vertex_count = int(cloth.state.rest.positions.size());
+        const View<const Vec3> x(x_.data() + cloth.first_vertex, vertex_count);
+        const auto bad = std::count_if(x.begin(), x.end(), [](const Vec3& p) { return !p.allFinite(); });
+        found.non_finite += int(bad);
+        const ScenePenetration::Depth depth = avatars_.measure(x, cloth.state.triangles, cloth.samples);
+        found.penetration = std::max(found.penetration, depth.deepest);
+        found.excluded = std::max(found.excluded, depth.excluded);
+        if (bad > 0)
+            continue;
+        const double strain = cloth.strain.largest(x);
+        found.strain = std::max(found.strain, strain);
+        found.is_overstretched = found.is_overstretched || strain > cloth.strain_limit;
+    }
+}
+
+void Examiner::find_cloth_crossings(int frame, FrameFindings& found) const
+{
+    const std::vector<collision::Crossing> crossings = collision::find_crossings(triangles_, x_);
+    found.cloth_cloth_crossings = int(crossings.size());
+    if (const auto gap = gap_->measure(x_, kGapReach))
+        found.gap = gap->distance;
+    if (crossings.empty())
+        return;
+    const collision::Crossing& first = crossings.front();
+    found.crossing = {frame, side(first.a), side(first.b), first.point};
+    found.gap = 0.0;
+}
+
+void Examiner::find_all_avatar_crossings(int frame, FrameFindings& found) const
+{
+    const AvatarCrossings crossings = find_avatar_crossings(avatars_, triangles_, x_);
+    found.cloth_avatar_crossings = int(crossings.clean.size());
+    found.crossings_in_self_intersections = crossings.elsewhere;
+    if (crossings.clean.empty() || found.crossing)
+        return;
+    const auto& [body, first] = crossings.clean.front();
+    const scenes::SceneBody& crossed = avatars_.bodies()[size_t(body)];
+    found.crossing = {frame, side(first.a), {crossed.settings().name, crossed.face_of(first.b)}, first.point};
+}
+
+/// Cloth that owns a triangle of triangles_.
+FrameFindings::Side Examiner::side(int triangle) const
+{
+    size_t k = cloths_.size() - 1;
+    while (cloths_[k].first_triangle > triangle)
+        --k;
+    return {cloths_[k].state.name, triangle - cloths_[k].first_triangle};
+}
+
+} // namespace
+
+std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
+                                   const CertificateLimits& limits,
+                                   const std::function<bool(int done, int all)>& goes_on)
+{
+    Certificate certificate;
+    certificate.scene = scene.source;
+    certificate.solver = scene_format::word_of(scene.solver.method);
+    certificate.limits = limits;
+    Examiner examiner(scene, cloths, limits);
+    certificate.frames_left_out = examiner.longest() - examiner.frame_count();
+    for (size_t i = 0; i < cloths.size(); ++i)
+        certificate.cloths.push_back(
+            {cloths[i].cloth->name, cloths[i].file, examiner.cloths()[i].strain_limit});
+    for (const std::string& name : surface_names(scene))
+        if (std::none_of(cloths.begin(), cloths.end(),
+                         [&](const CachedCloth& cached) { return cached.cloth->name == name; }))
+            certificate.left_out.push_back(name);
+
+    for (const scene::Avatar& avatar : scene.avatars)
+        if (!avatar.exclude_bones.empty())
+            certificate.excluded_bones[avatar.name] = avatar.exclude_bones;
+
+    for (int frame = 0; frame < examiner.frame_count(); ++frame) {
+        certificate.add(examiner.examine(frame, frame * scene.frame_duration()));
+        if (!goes_on(frame + 1, examiner.frame_count()))
+            return std::nullopt;
+    }
+    return certificate;
+}
+
+int conclude(const Certificate& certificate, const std::filesystem::path& file, const RunLog& log)
+{
+    write_atomically(file, to_json(certificate));
+    if (!certificate.holds())
+        log.error(summary_of(certificate) + "; see " + file.string());
+    else
+        log.result(summary_of(certificate));
+    return certificate.holds() ? kExitOk : kExitFailure;
+}
+
+} // namespace toile::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "apps/toile/check/certificate.h"
+#include "apps/toile/terminal/run_log.h"
+#include "export/point_cache.h"
+#include "scenes/world/world.h"
+
+namespace toile::app {
+
+/// A cloth of a scene and the cache to be certified.
+struct CachedCloth {
+    const scenes::ClothState* cloth; ///< mesh, rest shape and fabric; its positions are ignored
+    std::filesystem::path file;
+};
+
+/// Measures every frame that all caches have, cloths together, without any code of the solver.
+/// @param cloths   of the scene, each once
+/// @param goes_on  called with the numbers of finished and of all frames; false stops
+/// @return none if stopped
+/// @throws InvalidInput for unreadable caches, caches of another cloth, and unreadable avatars.
+std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
+                                   const CertificateLimits& limits,
+                                   const std::function<bool(int done, int all)>& goes_on);
+
+/// Writes the certificate and its summary to stderr; a quiet log omits the summary of one that holds.
+/// @return kExitOk or kExitFailure
+/// @throws InvalidInput or DeviceError as write_atomically().
+int conclude(const Certificate& certificate, const std::filesystem::path& file, const RunLog& log);
+
+/// File name of a certificate of several caches, in their folder.
+inline constexpr const char* kCertificateName = "certificate.json";
+
+} // namespace toile::app

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "apps/toile/check/cache_cloth.h"
+#include "apps/toile/check/certify.h"
+#include "apps/toile/terminal/command_line.h"
+#include "apps/toile/terminal/commands.h"
+#include "apps/toile/terminal/exports.h"
+#include "apps/toile/terminal/progress.h"
+#include "core/base/error.h"
+#include "scenes/format/read_scene.h"
+
+namespace toile::app {
+
+namespace {
+
+struct CheckOptions {
+    std::vector<std::filesystem::path> caches; ///< or one folder of them
+    std::filesystem::path scene;
+    std::filesystem::path output; ///< empty: next to the caches, and standard output
+    std::string cloth;
+    CertificateLimits limits;
+    bool quiet = false;
+};
+
+/// Whether a cache of this name exists, as a file or as numbered OBJ files.
+bool cache_exists(const std::filesystem::path& file)
+{
+    if (std::filesystem::exists(file))
+        return true;
+    const std::string first = file.stem().string() + "_0000.obj";
+    return file.extension() == ".obj" && std::filesystem::exists(file.parent_path() / first);
+}
+
+/// Caches written by simulate into a folder, one per cloth; missing ones are omitted.
+std::vector<std::filesystem::path> caches_in(const std::filesystem::path& folder, const scenes::Scene& scene)
+{
+    std::vector<std::filesystem::path> caches;
+    std::vector<int> cloths;
+    std::string searched;
+    for (const scene::Export& entry : exports_of(scene)) {
+        const int cloth = surface_index(scene, entry.cloth);
+        searched += (searched.empty() ? "" : ", ") + entry.file.string();
+        if (!cache_exists(folder / entry.file) || std::count(cloths.begin(), cloths.end(), cloth) > 0)
+            continue;
+        caches.push_back(folder / entry.file);
+        cloths.push_back(cloth);
+    }
+    if (caches.empty())
+        throw InvalidInput(folder.string() + ": has no cache of " + scene.source.string() + "; looked for " +
+                           searched);
+    return caches;
+}
+
+/// Pairs each cache with its cloth.
+std::vector<CachedCloth> cloths_of(const std::vector<std::filesystem::path>& caches,
+                                   const scenes::Scene& scene, const scenes::World& world,
+                                   const std::string& named)
+{
+    std::vector<CachedCloth> cloths;
+    for (const std::filesystem::path& file : caches) {
+        const scenes::ClothState* cloth = &world.surfaces()[cloth_of_cache(scene, file, named)];
+        for (const CachedCloth& other : cloths)
+            if (other.cloth == cloth)
+                throw InvalidInput(file.string() + ": is of the same cloth \"" + cloth->name + "\" as " +
+                                   other.file.string() + "; give one cache of each cloth");
+        cloths.push_back({cloth, file});
+    }
+    return cloths;
+}
+
+/// Path next to the caches: NAME.certificate.json for one, certificate.json for several or a folder.
+std::filesystem::path certificate_path_of(const CheckOptions& options)
+{
+    if (!options.output.empty())
+        return options.output;
+    const std::filesystem::path& first = options.caches.front();
+    if (std::filesystem::is_directory(first))
+        return first / kCertificateName;
+    if (options.caches.size() > 1)
+        return first.parent_path() / kCertificateName;
+    return first.parent_path() / (first.stem().string() + "." + kCertificateName);
+}
+
+int check(const CheckOptions& options)
+{
+    if (!(options.limits.penetration >= 0.0) || !(options.limits.strain_margin >= 0.0))
+        throw InvalidInput("--penetration and --strain-margin must be 0 or more");
+    const bool is_folder = options.caches.size() == 1 && std::filesystem::is_directory(options.caches[0]);
+    if (!options.cloth.empty() && (is_folder || options.caches.size() > 1))
+        throw InvalidInput("--cloth: names the cloth of a single cache; name the caches after their cloths");
+    const scenes::Scene scene = scenes::read_scene(options.scene);
+    const scenes::World world(scene);
+    const std::vector<std::filesystem::path> caches =
+        is_folder ? caches_in(options.caches[0], scene) : options.caches;
+    const std::vector<CachedCloth> cloths = cloths_of(caches, scene, world, options.cloth);
+
+    std::optional<Progress> progress;
+    const Certificate certificate = *certify(scene, cloths, options.limits, [&](int done, int all) {
+        if (!progress)
+            progress.emplace("check", all, options.quiet);
+        progress->update(done);
+        return true;
+    });
+    progress.reset();
+    if (options.output.empty())
+        std::cout << to_json(certificate);
+    return conclude(certificate, certificate_path_of(options), RunLog(options.quiet));
+}
+
+} // namespace
+
+Command add_check(CLI::App& parser)
+{
+    Command command;
+    command.options = parser.add_subcommand(
+        "check", "Certify caches: crossings, penetration, strain, finite numbers, every frame");
+    auto options = std::make_shared<CheckOptions>();
+    CLI::App& add = *command.options;
+    add.add_option("caches", options->caches, "Caches (.pc2, .mdd, .obj), one of each cloth, or their folder")
+        ->required();
+    add.add_option("--scene", options->scene, "Scene that they were made from")->required();
+    add.add_option("-o,--output", options->output, "Write the JSON here [beside the caches, and to stdout]");
+    add.add_option("--cloth", options->cloth, "Cloth of a single cache [from the cache's name]");
+    add.add_option("--penetration", options->limits.penetration, "Accepted depth inside an avatar [m]")
+        ->capture_default_str();
+    add.add_option("--strain-margin", options->limits.strain_margin,
+                   "Accepted strain beyond the fabric's limit")
+        ->capture_default_str();
+    add.add_flag("--quiet", options->quiet, "No progress on stderr");
+    command.run = [options] { return check(*options); };
+    return command;
+}
+
+} // namespace toile::app

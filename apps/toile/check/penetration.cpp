@@ -1,0 +1,58 @@
+#include "apps/toile/check/penetration.h"
+
+#include <algorithm>
+
+#include "core/compute/parallel.h"
+
+namespace toile::app {
+
+namespace {
+
+double deepest_in(const scenes::SceneBody& solid, View<const Vec3> x, View<const Triangle> triangles)
+{
+    std::vector<double> depths(triangles.size());
+    parallel_for(kCpu, "check/penetration", triangles.size(), [&](int t) {
+        const Triangle& corner = triangles[t];
+        const Vec3 &a = x[corner[0]], &b = x[corner[1]], &c = x[corner[2]];
+        if (a.allFinite() && b.allFinite() && c.allFinite())
+            depths[t] = penetration_of_triangle(*solid.shape(), solid.pose(), a, b, c);
+    });
+    return depths.empty() ? 0.0 : *std::max_element(depths.begin(), depths.end());
+}
+
+} // namespace
+
+ScenePenetration::ScenePenetration(const scenes::Scene& scene) : bodies_(make_bodies(scene))
+{
+    for (const scenes::SceneBody& body : bodies_)
+        meters_.push_back(body.shape() != nullptr
+                              ? nullptr
+                              : std::make_unique<collision::PenetrationMeter>(
+                                    body.contact_surface().triangles, body.contact_surface().positions));
+}
+
+void ScenePenetration::advance_to(double t)
+{
+    for (size_t b = 0; b < bodies_.size(); ++b)
+        if (bodies_[b].advance_to(t) && meters_[b])
+            meters_[b]->move(bodies_[b].contact_surface().positions);
+}
+
+ScenePenetration::Depth ScenePenetration::measure(View<const Vec3> x, View<const Triangle> triangles,
+                                                  const collision::ClothSamples& samples) const
+{
+    const std::vector<Vec3> points = samples.at(x);
+    Depth depth;
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+        if (!meters_[b]) {
+            depth.deepest = std::max(depth.deepest, deepest_in(bodies_[b], x, triangles));
+            continue;
+        }
+        const collision::Penetration found = meters_[b]->measure(points);
+        depth.deepest = std::max(depth.deepest, found.max_depth);
+        depth.excluded = std::max(depth.excluded, found.deepest_excluded);
+    }
+    return depth;
+}
+
+} // namespace toile::app

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "collision/check/penetration.h"
+#include "scenes/colliders/scene_body.h"
+
+namespace toile::app {
+
+/// Penetration depth of cloth in the avatars of a scene, frame by frame.
+class ScenePenetration {
+public:
+    explicit ScenePenetration(const scenes::Scene& scene);
+
+    /// Poses the avatars at time t [s].
+    void advance_to(double t);
+
+    /// Avatars at the current time.
+    const std::vector<scenes::SceneBody>& bodies() const { return bodies_; }
+
+    /// Meter of a mesh avatar; null for planes, spheres, capsules and boxes.
+    const collision::PenetrationMeter* meter(int body) const { return meters_[size_t(body)].get(); }
+
+    /// Maximum depths below the surface of any avatar [m].
+    struct Depth {
+        double deepest = 0.0;
+        double excluded = 0.0; ///< where a mesh intersects itself (PenetrationMeter)
+    };
+
+    /// Depth of the cloth's vertices in planes, spheres, capsules and boxes, of its samples in meshes.
+    /// Non-finite points are skipped.
+    /// @param x        [vertices] of the cloth [m]
+    /// @param samples  of the cloth with these triangles
+    Depth measure(View<const Vec3> x, View<const Triangle> triangles,
+                  const collision::ClothSamples& samples) const;
+
+private:
+    std::vector<scenes::SceneBody> bodies_;
+    std::vector<std::unique_ptr<collision::PenetrationMeter>> meters_; ///< [bodies] null for shapes
+};
+
+} // namespace toile::app

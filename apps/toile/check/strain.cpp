@@ -1,0 +1,49 @@
+#include "apps/toile/check/strain.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace toile::app {
+
+namespace {
+
+/// Larger singular value of a 3 x 2 matrix with columns a and b:
+///   sigma^2 = (|a|^2 + |b|^2)/2 + sqrt(((|a|^2 - |b|^2)/2)^2 + (a.b)^2)
+double largest_singular_value(const Vec3& a, const Vec3& b)
+{
+    const double aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b);
+    return std::sqrt(0.5 * (aa + bb) + std::hypot(0.5 * (aa - bb), ab));
+}
+
+} // namespace
+
+StrainMeter::StrainMeter(View<const Vec3> rest, std::vector<Triangle> triangles)
+    : triangles_(std::move(triangles))
+{
+    for (const Triangle& t : triangles_) {
+        // Express the triangle in its plane, first edge along u.
+        const Vec3 e1 = rest[t[1]] - rest[t[0]], e2 = rest[t[2]] - rest[t[0]];
+        const Vec3 u = e1.normalized();
+        const double along = e2.dot(u);
+        Mat2 edges;
+        edges << e1.norm(), along, 0.0, (e2 - along * u).norm();
+        inverse_rest_.push_back(edges.inverse());
+    }
+}
+
+double StrainMeter::largest(View<const Vec3> x) const
+{
+    double stretch = 0.0;
+    for (size_t k = 0; k < triangles_.size(); ++k) {
+        const Triangle& t = triangles_[k];
+        const Vec3 e1 = x[t[1]] - x[t[0]], e2 = x[t[2]] - x[t[0]];
+        const Mat2& inverse = inverse_rest_[k];
+        stretch = std::fmax(stretch, largest_singular_value(inverse(0, 0) * e1 + inverse(1, 0) * e2,
+                                                            inverse(0, 1) * e1 + inverse(1, 1) * e2));
+    }
+    return stretch - 1.0;
+}
+
+} // namespace toile::app

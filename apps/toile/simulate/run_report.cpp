@@ -1,0 +1,105 @@
+#include "apps/toile/simulate/run_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "apps/toile/simulate/start_text.h"
+#include "core/base/atomic_file.h"
+#include "core/base/process_usage.h"
+#include "core/compute/cuda/runtime/runtime.h"
+#include "scenes/format/field.h"
+
+namespace toile::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json settings_of(const scenes::Scene& scene)
+{
+    const scene::Solver& solver = scene.solver;
+    return {{"frames", scene.frames},
+            {"fps", scene.fps},
+            {"settle_s", scene.settle},
+            {"substeps", solver.substeps},
+            {"tolerance_m", solver.tolerance},
+            {"stop", scene_format::word_of(solver.stop)},
+            {"max_iterations", solver.max_iterations},
+            {"method", scene_format::word_of(solver.method)},
+            {"outer", scene_format::word_of(solver.outer)},
+            {"contact_preconditioner", scene_format::word_of(solver.contact_preconditioner)},
+            {"sleep", solver.sleep.enabled},
+            {"threads", solver.threads},
+            {"contact_gap_m", scene.contact.gap},
+            {"repair_start", scene.contact.repair_start}};
+}
+
+Json json_of(int frame, const StepReport& report, double seconds)
+{
+    Json json = {{"frame", frame},
+                 {"status", to_word(report.status)},
+                 {"seconds", seconds},
+                 {"steps", report.steps},
+                 {"iterations", report.iterations},
+                 {"linear_iterations", report.linear_iterations},
+                 {"displacement_m", report.displacement},
+                 {"gradient_norm_n", report.gradient_norm},
+                 {"energy_j", report.energy},
+                 {"contacts", report.contacts},
+                 {"min_gap_m", report.min_gap},
+                 {"max_strain", report.max_strain}};
+    if (!report.message.empty())
+        json["message"] = report.message;
+    return json;
+}
+
+} // namespace
+
+const char* to_word(StepReport::Status status)
+{
+    switch (status) {
+    case StepReport::Status::IterationLimit:
+        return "iteration_limit";
+    case StepReport::Status::NonFinite:
+        return "non_finite";
+    case StepReport::Status::Converged:
+        break;
+    }
+    return "converged";
+}
+
+RunReport::RunReport(const scenes::Scene& scene, int vertex_count, collision::StartReport start,
+                     const CudaDevice* device)
+    : scene_(scene), vertex_count_(vertex_count), start_(std::move(start)),
+      backend_(device != nullptr ? "cuda: " + device->name : "cpu"),
+      device_(device != nullptr ? std::optional(device->index) : std::nullopt)
+{
+}
+
+void RunReport::write(const std::filesystem::path& file, const std::string& outcome,
+                      const Stages& stages) const
+{
+    Json json = {{"scene", scene_.source.string()},
+                 {"name", scene_.name},
+                 {"outcome", outcome},
+                 {"vertices", vertex_count_},
+                 {"backend", backend_}};
+    if (device_)
+        json["device"] = *device_;
+    json["settings"] = settings_of(scene_);
+    json["start"] = start_json(start_, scene_);
+    json["peak_memory_bytes"] = peak_memory();
+    double seconds = 0.0;
+    Json& frames = json["frames"] = Json::array();
+    for (const Frame& frame : frames_) {
+        frames.push_back(json_of(frame.index, frame.report, frame.seconds));
+        seconds += frame.seconds;
+    }
+    json["seconds"] = seconds;
+    Json& stage_table = json["stages"] = Json::object();
+    for (const auto& [name, entry] : stages.entries())
+        stage_table[name] = {
+            {"calls", entry.calls}, {"seconds", entry.seconds}, {"own_seconds", entry.self_seconds}};
+    write_atomically(file, json.dump(2) + "\n");
+}
+
+} // namespace toile::app

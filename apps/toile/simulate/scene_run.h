@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+
+#include "apps/toile/simulate/table_progress.h"
+#include "apps/toile/terminal/interrupt.h"
+#include "apps/toile/terminal/run_log.h"
+#include "scenes/world/world.h"
+
+namespace toile::app {
+
+/// A scene and its output paths.
+struct SceneJob {
+    scenes::Scene scene;
+    std::filesystem::path folder; ///< of caches and certificate
+    std::filesystem::path report; ///< empty: none
+};
+
+/// Settings shared by all scenes of a run.
+struct RunSettings {
+    scenes::Backend backend = scenes::Backend::Cpu;
+    int device = 0; ///< number of the GPU, if one is used
+    bool no_cache = false;
+    bool no_check = false;
+    const scenes::BaselineMethods* baselines =
+        nullptr; ///< methods that scenes may select, borrowed; null: none
+};
+
+/// One scene of `toile simulate`, from its files to its caches, report and certificate. Used by one thread.
+class SceneRun {
+public:
+    /// Loads and places everything.
+    /// @param job  outlives the run
+    /// @throws as World's constructor
+    SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log);
+
+    /// Prepares, simulates, writes and checks.
+    /// @return kExitOk; kExitFailure after reporting a failure, an interrupt, or a certificate that does not
+    ///         hold
+    /// @throws InvalidInput or DeviceError if files can't be written or the GPU fails
+    int run(const InterruptGuard& interrupt);
+
+private:
+    scenes::WorldOptions world_options(const RunSettings& settings);
+    int run_into_caches(const InterruptGuard& interrupt);
+
+    const SceneJob& job_;
+    bool no_check_;
+    RunLog log_;
+    TableProgress tables_;
+    const InterruptGuard* interrupt_ = nullptr; ///< argument of run(); read only while tables are built
+    scenes::World world_;
+};
+
+} // namespace toile::app

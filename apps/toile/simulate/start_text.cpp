@@ -1,0 +1,104 @@
+#include "apps/toile/simulate/start_text.h"
+
+#include <cstdio>
+
+namespace toile::app {
+
+namespace {
+
+using Kind = collision::StartDefect::Kind;
+
+/// Maximum number of remaining defects that are listed.
+constexpr int kMaxListed = 5;
+
+std::string formatted(const char* format, double value)
+{
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+std::string millimetres(double metres) { return formatted("%.1f mm", 1e3 * metres); }
+
+std::string number_of(int count, const std::string& one, const std::string& many)
+{
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+/// Name of the avatar or cloth that a defect involves.
+const std::string& other_of(const collision::StartDefect& defect, const scenes::Scene& scene)
+{
+    return defect.kind == Kind::InsideBody ? scene.avatars[defect.other].name
+                                           : scene.cloths[defect.other].name;
+}
+
+std::string line_of(const collision::StartDefect& defect, const scenes::Scene& scene)
+{
+    const Vec3& p = defect.position;
+    const std::string at = " at (" + formatted("%.3f", p.x()) + ", " + formatted("%.3f", p.y()) + ", " +
+                           formatted("%.3f", p.z()) + ") m";
+    return "cloth \"" + scene.cloths[defect.cloth].name + "\"" +
+           (defect.kind == Kind::InsideBody ? " is inside avatar \"" : " crosses cloth \"") +
+           other_of(defect, scene) + "\"" + at + ", " + millimetres(defect.depth) + " deep" +
+           (defect.is_fixed ? ", attached there" : "");
+}
+
+} // namespace
+
+std::string start_text(const collision::StartReport& report, const scenes::Scene& scene)
+{
+    if (report.defects.empty())
+        return "";
+    std::string text = "start pose: " + number_of(report.vertices_inside(), "vertex", "vertices") + " (" +
+                       number_of(report.count(Kind::InsideBody), "penetration", "penetrations") +
+                       " with edges and faces) inside avatars, up to " +
+                       millimetres(report.deepest(Kind::InsideBody)) + " deep; " +
+                       number_of(report.count(Kind::Crossing), "crossing", "crossings") +
+                       " of cloth with cloth; ";
+    if (!report.was_repaired)
+        return text + "left as it is";
+    text += "repaired by moves of at most " + millimetres(report.max_move) + ", edges strained by " +
+            formatted("%.1f %% (RMS), ", 100.0 * report.rms_strain) +
+            formatted("%.1f %% at most", 100.0 * report.max_strain);
+    const int left = report.remaining(Kind::InsideBody) + report.remaining(Kind::Crossing);
+    if (left == 0)
+        return text + "; nothing remains";
+    text += "; " + number_of(report.remaining(Kind::InsideBody), "penetration", "penetrations") + " and " +
+            number_of(report.remaining(Kind::Crossing), "crossing", "crossings") + " remain:";
+    int listed = 0;
+    for (const collision::StartDefect& defect : report.defects)
+        if (!defect.is_repaired && listed++ < kMaxListed)
+            text += "\n  " + line_of(defect, scene);
+    return left > kMaxListed ? text + "\n  ... (all of them: --report)" : text;
+}
+
+nlohmann::ordered_json start_json(const collision::StartReport& report, const scenes::Scene& scene)
+{
+    nlohmann::ordered_json json = {{"repaired", report.was_repaired},
+                                   {"vertices_inside", report.vertices_inside()},
+                                   {"places_inside", report.count(Kind::InsideBody)},
+                                   {"crossings", report.count(Kind::Crossing)},
+                                   {"places_inside_remaining", report.remaining(Kind::InsideBody)},
+                                   {"crossings_remaining", report.remaining(Kind::Crossing)},
+                                   {"max_depth_m", report.deepest(Kind::InsideBody)},
+                                   {"max_strain", report.max_strain},
+                                   {"rms_strain", report.rms_strain},
+                                   {"max_move_m", report.max_move}};
+    nlohmann::ordered_json& defects = json["places"] = nlohmann::ordered_json::array();
+    for (const collision::StartDefect& defect : report.defects) {
+        nlohmann::ordered_json vertices = nlohmann::ordered_json::array();
+        for (int k = 0; k < 3 && defect.vertex[k] >= 0; ++k)
+            vertices.push_back(defect.vertex[k]);
+        defects.push_back({{"kind", defect.kind == Kind::InsideBody ? "inside_avatar" : "crossing"},
+                           {"position_m", {defect.position.x(), defect.position.y(), defect.position.z()}},
+                           {"depth_m", defect.depth},
+                           {"cloth", scene.cloths[defect.cloth].name},
+                           {"other", other_of(defect, scene)},
+                           {"vertices", vertices},
+                           {"held", defect.is_fixed},
+                           {"repaired", defect.is_repaired}});
+    }
+    return json;
+}
+
+} // namespace toile::app

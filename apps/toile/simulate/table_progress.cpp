@@ -1,0 +1,92 @@
+#include "apps/toile/simulate/table_progress.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <unistd.h>
+
+namespace toile::app {
+
+namespace {
+
+/// Construction times below this are not reported.
+constexpr std::chrono::milliseconds kSilence(500);
+
+/// Intervals between two lines of a log file, and between two updates of a terminal's line.
+constexpr std::chrono::seconds kLogInterval(10);
+constexpr std::chrono::milliseconds kTerminalInterval(100);
+
+} // namespace
+
+TableProgress::TableProgress(bool quiet, const std::string& scene, Stderr use)
+    : prefix_(scene.empty() ? "" : scene + ": "), quiet_(quiet),
+      rewrites_(use == Stderr::Exclusive && ::isatty(STDERR_FILENO) == 1)
+{
+}
+
+TableProgress::~TableProgress() { end_line(); }
+
+void TableProgress::update(const std::string& cloth, double fraction)
+{
+    const std::lock_guard lock(mutex_);
+    const Clock::time_point now = Clock::now();
+    if (!is_building_ || cloth != cloth_) {
+        is_building_ = true;
+        cloth_ = cloth;
+        first_fraction_ = fraction;
+        start_ = now;
+        last_line_ = now + kSilence - (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
+    }
+    const bool is_finished = fraction >= 1.0;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const bool is_due = now - last_line_ >= (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
+    if (!quiet_ && (is_finished ? now - start_ >= kSilence : is_due)) {
+        last_line_ = now;
+        std::string text =
+            prefix_ + "tables of cloth \"" + cloth + "\": " + std::to_string(int(100.0 * fraction)) + " %";
+        if (is_finished)
+            text += ", built in " + duration_text(seconds);
+        else if (fraction > first_fraction_)
+            text += ", " + duration_text(seconds * (1.0 - fraction) / (fraction - first_fraction_)) + " left";
+        print(text);
+    }
+    if (is_finished) {
+        is_building_ = false;
+        end_line();
+    }
+}
+
+void TableProgress::stop()
+{
+    const std::lock_guard lock(mutex_);
+    is_building_ = false;
+    end_line();
+}
+
+void TableProgress::warn(const std::string& text)
+{
+    const std::lock_guard lock(mutex_);
+    end_line();
+    std::fprintf(stderr, "toile: warning: %s%s\n", prefix_.c_str(), text.c_str());
+}
+
+void TableProgress::end_line()
+{
+    if (line_open_)
+        std::fputc('\n', stderr);
+    line_open_ = false;
+}
+
+void TableProgress::print(const std::string& text)
+{
+    std::fprintf(stderr, rewrites_ ? "\r%s\033[K" : "%s\n", text.c_str());
+    std::fflush(stderr);
+    line_open_ = rewrites_;
+}
+
+std::string duration_text(double seconds)
+{
+    return seconds < 59.5 ? std::to_string(std::lround(seconds)) + " s" : clock_text(seconds);
+}
+
+} // namespace toile::app

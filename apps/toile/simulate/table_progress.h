@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+
+#include "apps/toile/terminal/progress.h"
+
+namespace toile::app {
+
+/// Reports the construction of a cloth's quadrature tables on stderr, like Progress: one line rewritten on a
+/// terminal, occasional lines in a log file, nothing if quiet or below half a second. Calls may come from
+/// several threads.
+class TableProgress {
+public:
+    /// @param scene  prefix of every text; empty for a single scene
+    explicit TableProgress(bool quiet, const std::string& scene = "", Stderr use = Stderr::Exclusive);
+    ~TableProgress();
+    TableProgress(const TableProgress&) = delete;
+    TableProgress& operator=(const TableProgress&) = delete;
+
+    /// @param fraction  finished [0, 1]; after 1 the next call begins anew
+    void update(const std::string& cloth, double fraction);
+
+    /// Prints "toile: warning: ..." on a line of its own, quiet or not.
+    void warn(const std::string& text);
+
+    /// Ends the line after the construction was cancelled.
+    void stop();
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void end_line();
+    void print(const std::string& text);
+
+    std::mutex mutex_;
+    std::string prefix_;
+    bool quiet_, rewrites_;
+    bool line_open_ = false, is_building_ = false;
+    std::string cloth_;
+    double first_fraction_ = 0.0;
+    Clock::time_point start_, last_line_;
+};
+
+/// E.g. "3 s" or, from a minute on, "1:15".
+std::string duration_text(double seconds);
+
+} // namespace toile::app

@@ -1,0 +1,82 @@
+#include "apps/toile/terminal/command_line.h"
+
+#include <algorithm>
+
+#include "apps/toile/terminal/commands.h"
+#include "apps/toile/terminal/run_log.h"
+#include "apps/toile/terminal/version.h"
+#include "core/base/error.h"
+
+namespace toile::app {
+
+namespace {
+
+/// Rejects unknown options. CLI11 would report a misspelt one together with its value and without a remedy.
+void require_known_options(int argc, char** argv, const CLI::App& command, const std::string& program)
+{
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames())
+            names.push_back("--" + name);
+    for (int i = 2; i < argc; ++i) {
+        const std::string word(argv[i]);
+        const std::string name = word.substr(0, word.find('='));
+        if (name.rfind("--", 0) != 0 || name == "--" ||
+            std::find(names.begin(), names.end(), name) != names.end())
+            continue;
+        const std::string near = nearest_word(name, names);
+        throw InvalidInput("unknown option " + name + "; " +
+                           (near.empty() ? "run " + program + " " + command.get_name() + " --help"
+                                         : "did you mean " + near + "?"));
+    }
+}
+
+/// Rejects unknown subcommands, which CLI11 would report as an "unexpected argument".
+void require_known_words(int argc, char** argv, const std::vector<Command>& commands,
+                         const std::string& program)
+{
+    if (argc < 2 || argv[1][0] == '-')
+        return;
+    std::vector<std::string> names;
+    std::string list;
+    for (const Command& command : commands) {
+        names.push_back(command.options->get_name());
+        list += (list.empty() ? "" : ", ") + names.back();
+    }
+    if (const auto at = std::find(names.begin(), names.end(), argv[1]); at != names.end()) {
+        require_known_options(argc, argv, *commands[size_t(at - names.begin())].options, program);
+        return;
+    }
+    const std::string near = nearest_word(argv[1], names);
+    throw InvalidInput(std::string("unknown command \"") + argv[1] + "\"; " +
+                       (near.empty() ? "known are " + list : "did you mean \"" + near + "\"?"));
+}
+
+int parse_and_run(int argc, char** argv, const Program& program)
+{
+    CLI::App parser(program.summary, program.name);
+    parser.set_version_flag("--version", version_text(program.name));
+    parser.require_subcommand(1);
+    const std::vector<Command> commands = program.add_commands(parser);
+    require_known_words(argc, argv, commands, program.name);
+    try {
+        parser.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) // --help, --version
+            return parser.exit(error);
+        const std::string command = argc > 1 && argv[1][0] != '-' ? std::string(argv[1]) + " " : "";
+        throw InvalidInput(std::string(error.what()) + "; run " + program.name + " " + command + "--help");
+    }
+    const auto chosen = std::find_if(commands.begin(), commands.end(),
+                                     [](const Command& command) { return command.options->parsed(); });
+    return chosen->run();
+}
+
+} // namespace
+
+int run_command_line(int argc, char** argv, const Program& program)
+{
+    return run_and_report(RunLog(false), [&] { return parse_and_run(argc, argv, program); });
+}
+
+} // namespace toile::app

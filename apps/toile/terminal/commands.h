@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace toile::scenes {
+class BaselineMethods;
+} // namespace toile::scenes
+
+namespace toile::app {
+
+/// A subcommand: its options, added to the parser, and the function to run after parsing.
+struct Command {
+    CLI::App* options = nullptr;
+    std::function<int()> run; ///< returns an ExitCode; throws InvalidInput for bad input
+};
+
+// One source file each, named after the subcommand.
+
+/// @param baselines  methods that scenes may select, borrowed; null: none
+Command add_simulate(CLI::App& parser, const scenes::BaselineMethods* baselines);
+Command add_render(CLI::App& parser);
+Command add_check(CLI::App& parser);
+Command add_info(CLI::App& parser);
+Command add_schema(CLI::App& parser);
+
+} // namespace toile::app

@@ -1,0 +1,60 @@
+#include "apps/toile/terminal/run_log.h"
+
+#include <algorithm>
+#include <iostream>
+#include <utility>
+
+#include "apps/toile/terminal/command_line.h"
+#include "core/base/error.h"
+
+namespace toile::app {
+
+namespace {
+
+/// Writes a line by one locked call, so that lines of several threads do not mix.
+void write_line(std::ostream& stream, const std::string& text) { stream << text + "\n" << std::flush; }
+
+} // namespace
+
+RunLog::RunLog(bool quiet, std::string scene, Stderr use)
+    : quiet_(quiet), scene_(std::move(scene)), prefix_(scene_.empty() ? "" : scene_ + ": "), use_(use)
+{
+}
+
+void RunLog::file(const std::filesystem::path& file) const { write_line(std::cout, file.string()); }
+
+void RunLog::result(const std::string& text) const
+{
+    if (!quiet_)
+        write_line(std::cerr, prefix_ + text);
+}
+
+void RunLog::note(const std::string& text) const { write_line(std::cerr, "toile: " + prefix_ + text); }
+
+void RunLog::error(std::string text) const
+{
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    write_line(std::cerr, "toile: error: " + prefix_ + text);
+}
+
+Progress RunLog::progress(const std::string& what, int total) const
+{
+    return {prefix_ + what, total, quiet_, use_};
+}
+
+int run_and_report(const RunLog& log, const std::function<int()>& work)
+{
+    try {
+        return work();
+    } catch (const InvalidInput& error) {
+        log.error(error.what());
+        return kExitBadInput;
+    } catch (const std::bad_alloc&) {
+        log.error("out of memory; use a coarser resolution or fewer cloths");
+    } catch (const std::exception& error) {
+        log.error(error.what());
+    }
+    return kExitFailure;
+}
+
+} // namespace toile::app

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+
+#include "avatars/model/avatar.h"
+#include "avatars/model/motion.h"
+
+namespace toile::avatars {
+
+/// Similarity transform of an avatar: x_world = translate + R (scale x), R = Rz Ry Rx (rotation about the
+/// fixed X axis first, then Y, then Z).
+struct Placement {
+    Vec3 translate = Vec3::Zero();  ///< [m]
+    Vec3 rotate_deg = Vec3::Zero(); ///< angles about X, Y and Z
+    double scale = 1.0;             ///< [-] must be positive
+
+    Affine world_from_avatar() const;
+};
+
+/// Avatar that plays a motion at a placement: the moving collider of a simulation. It stores its bones at
+/// both ends of a step. Its users pose the vertices, on the host or on the device.
+class MovingAvatar {
+public:
+    /// Shows the pose at t = 0, without motion.
+    /// @param root_transform  see advance_to()
+    /// @throws InvalidInput for a clip the avatar does not have and for settings out of range.
+    MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const Placement& placement,
+                 const Affine& root_transform = identity_affine());
+
+    /// Makes the end of the last step the start of this one and poses the bones at its end, simulation time
+    /// t_t1 [s]. A pose equal to the last one (held, ended, static) is not computed again.
+    /// @param root_transform  moves the whole avatar: x_world = root_transform(placement(x))
+    void advance_to(double t_t1, const Affine& root_transform = identity_affine());
+
+    const Avatar& avatar() const { return *avatar_; }
+
+    /// world_from_mesh at the step's start and end, for avatar().skin(). [bones]
+    View<const Affine> bones_t0() const { return bones_t0_; }
+    View<const Affine> bones_t1() const { return bones_t1_; }
+
+    /// True if the avatar never moves by itself: no clip, or a frozen one.
+    bool is_static() const { return shows_one_pose(motion_); }
+
+    /// False if both ends of the current step are equal.
+    bool moved() const { return moved_; }
+
+private:
+    PoseAt at(double t) const;
+    void show(const PoseAt& at, const Affine& root_transform);
+
+    std::unique_ptr<Avatar> avatar_;
+    Motion motion_;
+    int clip_ = -1;
+    Affine world_from_avatar_;
+    PoseAt shown_;                ///< at t1
+    Affine shown_root_transform_; ///< root transform at t1
+    bool moved_ = false;
+    std::vector<Affine> bones_t0_, bones_t1_;
+};
+
+} // namespace toile::avatars

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "core/compute/types.h"
+
+namespace toile {
+class CudaSpace;
+} // namespace toile
+
+namespace toile::avatars {
+
+/// Weight of one bone at a vertex.
+struct Influence {
+    int bone = -1;
+    double weight = 0.0; ///< [-] the weights of a vertex sum to 1
+};
+
+/// A surface bound to bones, as plain data on CPU or GPU.
+struct SkinView {
+    View<const Vec3> rest;            ///< [vertices]     positions in mesh space
+    View<const int> first;            ///< [vertices + 1] start of a vertex's influences
+    View<const Influence> influences; ///< [first.back()]
+
+    /// Linear blend skinning: a vertex moves by the weighted mean of its bones' maps.
+    ///
+    ///   x_v = sum_k  w_vk (A_k r_v + b_k)        [Magnenat-Thalmann et al. 1988]
+    ///
+    /// Bones rotated far apart shrink the joint between them ("candy wrapper"). Dual quaternions are the
+    /// known remedy, and would be a second function of this form.
+    /// @param bones  [bones] world_from_mesh [A_k | b_k]: from the bone's mesh space to the posed bone in the
+    ///               world
+    /// @return [m]
+    TOILE_HD Vec3 posed(int v, View<const Eigen::Matrix<double, 3, 4>> bones) const
+    {
+        Vec3 sum(0.0, 0.0, 0.0);
+        for (int k = first[v]; k < first[v + 1]; ++k) {
+            const Eigen::Matrix<double, 3, 4>& bone = bones[influences[k].bone];
+            const Vec3 moved = bone.leftCols<3>() * rest[v] + bone.col(3);
+            sum += influences[k].weight * moved;
+        }
+        return sum;
+    }
+};
+
+/// All vertices of a skin.
+struct SkinVertices {
+    SkinView skin;
+    View<const Eigen::Matrix<double, 3, 4>> bones; // [bones] see SkinView::posed
+    View<Vec3> x;                                  // [vertices] out [m]
+
+    TOILE_HD void operator()(int v) const { x[v] = skin.posed(v, bones); }
+};
+
+/// Enqueues SkinVertices on a GPU (skinning.cu), with views of device memory. Stage "avatars/device_skin".
+/// @throws DeviceError if the launch is refused.
+void launch(const CudaSpace& space, const SkinVertices& kernel);
+
+} // namespace toile::avatars

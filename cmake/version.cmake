@@ -1,0 +1,62 @@
+# toile_version_source(<target> <template>)
+#
+# Adds a source that knows the version, the commit, the configuration and the backends. It is written when CMake runs,
+# which a commit or a checkout makes it do.
+function(toile_version_source target template)
+    toile_commit(commit)
+    toile_backends(backends)
+    set(source "${CMAKE_CURRENT_BINARY_DIR}/version.cpp")
+    configure_file("${template}" "${source}" @ONLY)
+    set_source_files_properties("${source}" PROPERTIES COMPILE_DEFINITIONS "TOILE_CONFIGURATION=\"$<CONFIG>\"")
+    target_sources(${target} PRIVATE "${source}")
+endfunction()
+
+# The commit, with a plus where files of it have changed since; "unknown" outside a repository of our own.
+function(toile_commit out)
+    set(${out} unknown PARENT_SCOPE)
+    find_package(Git QUIET)
+    if(NOT GIT_FOUND OR NOT EXISTS "${PROJECT_SOURCE_DIR}/.git")
+        return()
+    endif()
+    set(git "${GIT_EXECUTABLE}" -C "${PROJECT_SOURCE_DIR}")
+    execute_process(COMMAND ${git} describe --always --abbrev=7 --dirty=+ --exclude=*
+        OUTPUT_VARIABLE commit RESULT_VARIABLE failed ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+    if(failed)
+        return()
+    endif()
+    set(${out} "${commit}" PARENT_SCOPE)
+
+    # A commit on the same branch leaves HEAD as it is, but not its log.
+    foreach(name HEAD logs/HEAD)
+        execute_process(COMMAND ${git} rev-parse --git-path ${name}
+            OUTPUT_VARIABLE file OUTPUT_STRIP_TRAILING_WHITESPACE)
+        cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${PROJECT_SOURCE_DIR}")
+        if(EXISTS "${file}")
+            set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+        endif()
+    endforeach()
+endfunction()
+
+# "cpu", or "cpu, cuda 13.0 (sm 90, ptx 80)": machine code for these GPUs, PTX from which drivers make it for newer ones.
+function(toile_backends out)
+    set(${out} cpu PARENT_SCOPE)
+    if(NOT TOILE_WITH_CUDA)
+        return()
+    endif()
+    string(REGEX MATCH "^[0-9]+\\.[0-9]+" toolkit "${CMAKE_CUDA_COMPILER_VERSION}")
+    set(code "")
+    set(architectures ${CMAKE_CUDA_ARCHITECTURES})
+    if(architectures STREQUAL "native")
+        set(architectures ${CMAKE_CUDA_ARCHITECTURES_NATIVE})
+    endif()
+    foreach(architecture IN LISTS architectures)
+        if(architecture MATCHES "^(.+)-virtual$")
+            list(APPEND code "ptx ${CMAKE_MATCH_1}")
+        else()
+            string(REPLACE "-real" "" architecture "${architecture}")
+            list(PREPEND code "sm ${architecture}")
+        endif()
+    endforeach()
+    list(JOIN code ", " text)
+    set(${out} "cpu, cuda ${toolkit} (${text})" PARENT_SCOPE)
+endfunction()

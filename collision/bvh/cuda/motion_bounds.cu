@@ -1,0 +1,30 @@
+#include "collision/bvh/cuda/motion_bounds.h"
+
+#include "collision/bvh/motion_kernels.h"
+#include "core/compute/cuda/grown_array.h"
+#include "core/compute/cuda/parallel.cuh"
+
+namespace toile::collision {
+
+DeviceMotionBounds::DeviceMotionBounds(const CudaSpace& space)
+    : space_(space), cell_of_(space, "motion/cell_of"), cell_bounds_(space, "motion/cell_bounds"),
+      motion_(space, "motion/motion")
+{
+}
+
+void DeviceMotionBounds::build(View<const Triangle> triangles, View<const Vec3> before, View<const Vec3> now,
+                               const Bounds& box)
+{
+    grid_ = CellGrid(box, MotionView::kReach);
+    const int cells = grid_.cell_count();
+    const MovedMesh mesh{
+        grid_, triangles, before, now, first_items(cell_of_, now.size()), first_items(cell_bounds_, cells)};
+    first_items(motion_, cells);
+    parallel_for(space_, "collision/device_clear_motion", cells, ClearMotion{mesh.cell_bounds});
+    parallel_for(space_, "collision/device_vertex_motion", now.size(), AddVertexMotion{mesh});
+    parallel_for(space_, "collision/device_triangle_motion", triangles.size(), AddTriangleMotion{mesh});
+    parallel_for(space_, "collision/device_spread_motion", cells,
+                 SpreadMotion{grid_, mesh.cell_bounds, motion_.view()});
+}
+
+} // namespace toile::collision

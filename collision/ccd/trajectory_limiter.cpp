@@ -1,0 +1,279 @@
+#include "collision/ccd/trajectory_limiter.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "core/compute/parallel.h"
+
+namespace toile::collision {
+
+namespace {
+
+/// Part of an allowed fraction that is taken [-]. The shortened trajectory has another limit, which rounding
+/// must not reach again.
+constexpr double kTaken = 0.95;
+
+/// Deflection: number of passes, sweeps over the pairs in each, and restored gap relative to the minimum gap
+/// [-].
+constexpr int kDeflections = 4;
+constexpr int kSweeps = 3;
+constexpr double kMinGapFactor = 1.1;
+
+/// Displacement, relative to max_deflection [-], below which cloth is stopped. Deflected or moved by its
+/// zone, resting cloth would creep.
+constexpr double kSlow = 0.5;
+
+/// Excess length of an edge with a limited end, relative to max_deflection [-].
+constexpr double kEdgeStretch = 0.2;
+
+/// Passes that limit the vertices of a pair or sliver in proportion. Vertices still blocked afterwards move
+/// with their zone.
+constexpr int kPasses = 16;
+
+/// Edges of cloth.
+std::vector<EdgeStretchLimiter::Edge> flexible_edges(const SurfaceEdges& edges,
+                                                     const RigidTrajectories& bodies)
+{
+    std::vector<EdgeStretchLimiter::Edge> flexible;
+    std::copy_if(edges.vertex.begin(), edges.vertex.end(), std::back_inserter(flexible),
+                 [&](const EdgeStretchLimiter::Edge& edge) { return !bodies.is_rigid(edge[0]); });
+    return flexible;
+}
+
+} // namespace
+
+TrajectoryLimiter::TrajectoryLimiter(const SurfaceEdges& edges, const Settings& settings,
+                                     RigidTrajectories bodies)
+    : settings_(settings), bodies_(std::move(bodies)),
+      stretch_limiter_(flexible_edges(edges, bodies_), int(edges.corners_of_vertex.first.size()) - 1)
+{
+}
+
+void TrajectoryLimiter::begin(View<const Vec3> base, View<const unsigned char> fixed)
+{
+    base_ = base;
+    fixed_ = fixed;
+}
+
+double TrajectoryLimiter::limit(View<Vec3> x, View<const unsigned char> supported, CcdQuery& query,
+                                View<const BlockedPair> first)
+{
+    query_ = &query;
+    blocked_ = first;
+    start(x);
+    deflect();
+    find_fractions(supported);
+    return finish(x);
+}
+
+void TrajectoryLimiter::start(View<const Vec3> x)
+{
+    displacement_.resize(x.size());
+    motion_.resize(x.size());
+    parallel_for(kCpu, "collision/displacements", x.size(),
+                 [&](int v) { motion_[v] = displacement_[v] = x[v] - base_[v]; });
+    for (VertexSet* set : {&deflected_, &moved_, &stale_, &fresh_})
+        set->reset(x.size());
+}
+
+/// Writes the allowed positions of changed vertices. Returns the maximum correction [m].
+double TrajectoryLimiter::finish(View<Vec3> x) const
+{
+    double max_move = 0.0;
+    for (const int v : moved_.items()) {
+        if (zones_.fraction(bodies_.leader_of(v)) == 1.0 && !deflected_.has(v))
+            continue;
+        const Vec3 wanted = x[v];
+        x[v] = base_[v] + motion_[v];
+        max_move = std::max(max_move, (x[v] - wanted).norm());
+    }
+    return max_move;
+}
+
+/// Passes changed trajectories to the query. Deflected vertices are likely to be deflected again.
+void TrajectoryLimiter::update_query()
+{
+    changes_.clear();
+    for (const int v : stale_.items())
+        changes_.push_back({v, motion_[v],
+                            std::max((motion_[v] - displacement_[v]).norm(),
+                                     deflected_.has(v) ? settings_.max_deflection : 0.0)});
+    stale_.clear();
+    blocked_ = query_->update(changes_);
+}
+
+/// Deflects blocked pairs. blocked_ belongs to the current displacements before and after.
+void TrajectoryLimiter::deflect()
+{
+    for (int pass = 0; pass < kDeflections && separate_pairs(); ++pass) {
+        for (const int v : stale_.items())
+            motion_[v] = displacement_[v];
+        update_query();
+    }
+}
+
+/// Moves the ends of blocked pairs apart, never beyond a pair's start distance. False if none moves.
+bool TrajectoryLimiter::separate_pairs()
+{
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+        for (const BlockedPair& blocked : blocked_) {
+            const NearPair& pair = blocked.pair;
+            std::array<Vec3, 4> end;
+            double longest = 0.0;
+            for (int k = 0; k < 4; ++k) {
+                end[k] = base_[pair.vertex[k]] + displacement_[pair.vertex[k]];
+                longest = std::max(longest, displacement_[pair.vertex[k]].norm());
+            }
+            const double kept = std::min(kMinGapFactor * settings_.gap.of(pair), pair.distance);
+            const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
+            const bool is_small = lacking <= settings_.max_deflection;
+            const bool is_slow = longest < kSlow * settings_.max_deflection;
+            if (lacking > 0.0 && is_small && !is_slow)
+                separate_pair(pair, lacking);
+        }
+    return !stale_.is_empty();
+}
+
+void TrajectoryLimiter::separate_pair(const NearPair& pair, double lacking)
+{
+    const double ahead = mobility_of(pair, true), behind = mobility_of(pair, false);
+    for (int k = 0; k < 4; ++k) {
+        const int v = pair.vertex[k];
+        if (!may_deflect(v))
+            continue;
+        const double mobility = k < first_count(pair.is_edge_edge) ? ahead : -behind;
+        displacement_[v] += mobility / (ahead + behind) * lacking * pair.normal;
+        deflected_.add(v);
+        moved_.add(v);
+        stale_.add(v);
+    }
+}
+
+/// Mobility of a side: 1, or 0 if all of it is fixed or rigid.
+double TrajectoryLimiter::mobility_of(const NearPair& pair, bool is_first_side) const
+{
+    const int split = first_count(pair.is_edge_edge);
+    for (int k = is_first_side ? 0 : split; k < (is_first_side ? split : 4); ++k)
+        if (may_deflect(pair.vertex[k]))
+            return 1.0;
+    return 0.0;
+}
+
+/// Finds motion_ of all vertices from the blocked pairs.
+void TrajectoryLimiter::find_fractions(View<const unsigned char> supported)
+{
+    using Support = ImpactZones::Support;
+    support_.resize(displacement_.size());
+    parallel_for(kCpu, "collision/support", int(displacement_.size()), [&](int v) {
+        support_[v] = fixed_[v]                            ? Support::kFixed
+                      : !supported.empty() && supported[v] ? Support::kSupported
+                                                           : Support::kNone;
+    });
+    zones_.reset(displacement_, support_, kSlow * settings_.max_deflection);
+    bodies_.begin(base_, displacement_);
+    for (int body = 0; body < bodies_.count(); ++body)
+        zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));
+    stretch_limiter_.begin(base_, displacement_, kEdgeStretch * settings_.max_deflection);
+
+    // Let the other ends of their slivers follow deflected vertices before pairs are limited.
+    for (const int v : deflected_.items())
+        fresh_.add(v);
+    take_along();
+    for (int pass = 0; !blocked_.empty(); ++pass) {
+        shorten(pass >= kPasses);
+        follow_zones();
+        take_along();
+    }
+}
+
+/// Joins the ends of overstretched edges until there are none and all zones are up to date. Then updates the
+/// query.
+void TrajectoryLimiter::take_along()
+{
+    for (int sweep = 0; limit_stretch(sweep >= kPasses) || zones_.update(); ++sweep)
+        follow_zones();
+    if (!stale_.is_empty())
+        update_query();
+}
+
+/// Joins and limits the vertices of blocked pairs.
+void TrajectoryLimiter::shorten(bool for_good)
+{
+    for (const BlockedPair& blocked : blocked_) {
+        const std::array<int, 4>& vertices = blocked.pair.vertex;
+        const double fraction = for_good ? 0.0 : kTaken * blocked.fraction;
+        for (const int v : vertices) {
+            zones_.join(bodies_.leader_of(vertices[0]), bodies_.leader_of(v));
+            zones_.limit_by(bodies_.leader_of(v), fraction);
+        }
+    }
+}
+
+/// Updates motion_ of vertices whose zone's displacement or whose fraction has changed.
+void TrajectoryLimiter::follow_zones()
+{
+    const View<const int> changed = zones_.close_pass();
+    for (const int v : changed)
+        if (!bodies_.is_rigid(v))
+            go(v, zones_.motion(v));
+    for (int body = 0; body < bodies_.count(); ++body) {
+        const int leader = bodies_.leader(body);
+        const double fraction = zones_.fraction(leader);
+        if (fraction == 1.0 || !zones_.has_changed(leader))
+            continue;
+        const Vec3 common = zones_.common(leader);
+        const std::vector<int>& vertices = bodies_.vertices(body);
+        bodies_.go(body, common + fraction * (bodies_.move(body) - common), fraction, body_motion_);
+        for (size_t i = 0; i < vertices.size(); ++i)
+            go(vertices[i], body_motion_[i]);
+    }
+}
+
+void TrajectoryLimiter::go(int v, const Vec3& motion)
+{
+    if (motion_[v] == motion)
+        return;
+    motion_[v] = motion;
+    for (VertexSet* set : {&moved_, &stale_, &fresh_})
+        set->add(v);
+}
+
+/// Joins the ends of overstretched edges. False if there are none. Except in slivers, cloth on bodies neither
+/// follows nor is followed: a zone from one leg to the other would draw it through both.
+bool TrajectoryLimiter::limit_stretch(bool for_good)
+{
+    stretch_limiter_.find_overstretched(fresh_.items(), motion_, overstretched_);
+    fresh_.clear();
+    bool any = false;
+    for (const int e : overstretched_) {
+        const auto [a, b] = stretch_limiter_.edges()[e];
+        if (stretch_limiter_.is_sliver(e)) {
+            const double fraction = for_good ? 0.0 : kTaken * stretch_limiter_.fraction(e, motion_);
+            zones_.join(a, b);
+            zones_.limit_by(a, fraction);
+            zones_.limit_by(b, fraction);
+            any = true;
+        } else if (!zones_.is_supported(a) && !zones_.is_supported(b)) {
+            limit_trailing_end(e);
+            any = true;
+        }
+    }
+    return any;
+}
+
+/// Joins the zones of an overstretched edge's ends. The end with the larger fraction keeps only as much of
+/// its displacement as the edge allows. The remaining stretch is left to the next edge: several rings of
+/// edges follow a stopped vertex, and each stretches a little.
+void TrajectoryLimiter::limit_trailing_end(int edge)
+{
+    const auto [a, b] = stretch_limiter_.edges()[edge];
+    zones_.attach(a, b);
+    const auto [lead, last] = zones_.fraction(a) <= zones_.fraction(b) ? std::pair(a, b) : std::pair(b, a);
+    const double min_fraction = zones_.fraction(lead);
+    const double fraction = stretch_limiter_.trailing_fraction(edge, last, zones_.common(lead), min_fraction);
+    zones_.limit_to(last, min_fraction + kTaken * (fraction - min_fraction));
+}
+
+} // namespace toile::collision

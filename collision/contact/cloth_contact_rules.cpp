@@ -1,0 +1,94 @@
+#include "collision/contact/cloth_contact_rules.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace toile::collision {
+
+namespace {
+
+/// Bounds of the slack, relative to the mean edge and to the largest thickness [-]; the smaller applies.
+/// Cloth that deviates farther is searched for again, which costs less than ever more pairs for all. In a
+/// stack of layers, a slack of many thicknesses makes pairs of every layer with as many others.
+constexpr double kMaxSlack = 0.1, kMaxLayers = 1.0;
+constexpr double kMinSlack = 0.03, kMinLayers = 0.25;
+
+/// Missing distance, relative to the mean edge [-], up to which pinched cloth is deflected.
+constexpr double kMaxDeflection = 0.1;
+
+/// Correction of limited cloth, relative to the mean edge [-], up to which pairs are not searched for again.
+constexpr double kIgnoredCorrection = 0.02;
+
+/// Deviation of a pressing pair, relative to the mean edge [-], beyond which its normal is out of date.
+constexpr double kSlid = 0.2;
+
+/// Mean edge of cloth [m], or of rigid surfaces if there is no cloth.
+double mean_edge(View<const Triangle> triangles, View<const Vec3> x, const std::vector<int>& rigid)
+{
+    double sum[2] = {0.0, 0.0};
+    int count[2] = {0, 0};
+    for (const Triangle& t : triangles) {
+        const int kind = !rigid.empty() && rigid[t[0]] >= 0 ? 1 : 0;
+        for (int k = 0; k < 3; ++k)
+            sum[kind] += (x[t[(k + 1) % 3]] - x[t[k]]).norm();
+        count[kind] += 3;
+    }
+    const int kind = count[0] > 0 ? 0 : 1;
+    return count[kind] > 0 ? sum[kind] / count[kind] : 0.0;
+}
+
+CollisionFreeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double edge)
+{
+    CollisionFreeStep::Settings settings;
+    settings.max_deflection = kMaxDeflection * edge;
+    settings.thickness = std::numeric_limits<double>::max();
+    for (const ContactCloth& cloth : cloths)
+        settings.thickness = std::min(settings.thickness, cloth.thickness);
+    return settings;
+}
+
+/// Trajectories of rigid bodies, with weights relative to the mean vertex of cloth.
+RigidTrajectories rigid_trajectories_of(const std::vector<ContactCloth>& cloths)
+{
+    double mass = 0.0;
+    int count = 0;
+    for (const ContactCloth& cloth : cloths)
+        if (!cloth.is_rigid) {
+            mass += cloth.mass;
+            count += cloth.vertex_count;
+        }
+    const double unit = count > 0 ? mass / count : 1.0;
+    std::vector<double> weights;
+    for (const ContactCloth& cloth : cloths)
+        if (cloth.is_rigid)
+            weights.push_back(cloth.mass / unit);
+    return {rigid_bodies_of(cloths), weights};
+}
+
+} // namespace
+
+ClothContactRules::ClothContactRules(View<const Triangle> triangles, View<const Vec3> positions,
+                                     const std::vector<ContactCloth>& cloths, View<const double> altitude)
+    : edge_(mean_edge(triangles, positions, rigid_bodies_of(cloths))),
+      collision_free_step_(settings_for(cloths, edge_)), bodies_(rigid_trajectories_of(cloths))
+{
+    for (const ContactCloth& cloth : cloths) {
+        thickest_ = std::max(thickest_, cloth.thickness);
+        half_thickness_.insert(half_thickness_.end(), cloth.vertex_count, 0.5 * cloth.thickness);
+    }
+    for (int v = 0, c = 0, last = 0; c < int(cloths.size()); ++c)
+        for (last += cloths[c].vertex_count; v < last; ++v)
+            if (!cloths[c].is_rigid)
+                half_thickness_[v] = std::min(half_thickness_[v], 0.25 * altitude[v]);
+}
+
+SlackBounds ClothContactRules::slack() const
+{
+    return {std::min(kMinSlack * edge_, kMinLayers * thickest_),
+            std::min(kMaxSlack * edge_, kMaxLayers * thickest_)};
+}
+
+double ClothContactRules::ignored_correction() const { return kIgnoredCorrection * edge_; }
+double ClothContactRules::slid() const { return kSlid * edge_; }
+
+} // namespace toile::collision

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/ccd/collision_free_step.h"
+#include "collision/ccd/rigid_trajectories.h"
+#include "collision/contact/cloth_contact_kernels.h"
+#include "collision/contact/contact_cloth.h"
+
+namespace toile::collision {
+
+/// Lengths that ClothContact derives from the cloths, the same on CPU and GPU.
+class ClothContactRules {
+public:
+    /// See make_cloth_contact. Thickness is at most half of an altitude, or a fine mesh would push itself
+    /// apart; rigid bodies cannot.
+    ClothContactRules(View<const Triangle> triangles, View<const Vec3> positions,
+                      const std::vector<ContactCloth>& cloths, View<const double> altitude);
+
+    PairThickness thickness() const { return {half_thickness_}; }
+    double thickest() const { return thickest_; } ///< [m] maximum over the cloths
+
+    SlackBounds slack() const;
+
+    double ignored_correction() const; ///< [m] correction up to which pairs are not searched for again
+    double slid() const;               ///< [m] allowed deviation of a pressing pair
+
+    const CollisionFreeStep::Settings& collision_free_step() const { return collision_free_step_; }
+    const RigidTrajectories& bodies() const { return bodies_; }
+
+private:
+    double edge_; ///< [m] mean edge
+    double thickest_ = 0.0;
+    std::vector<double> half_thickness_; ///< [vertices] [m]
+    CollisionFreeStep::Settings collision_free_step_;
+    RigidTrajectories bodies_;
+};
+
+} // namespace toile::collision

@@ -1,0 +1,173 @@
+#include "collision/contact/contact.h"
+
+#include "collision/contact/cpu/terms.h"
+#include "collision/contact/cuda/terms.h"
+#include "core/base/stages.h"
+
+namespace toile::collision {
+
+namespace {
+
+/// Distance [m] that cloth may move from where its active pairs were found. Beyond that, a curved surface has
+/// left its tangent plane by more than about half a millimetre (radius of curvature 5 cm).
+constexpr double kTrust = 0.007;
+
+/// Distance as kTrust at the end of a step, and depth [m] that a step may end with, up to which pairs are not
+/// searched for again: resting cloth then costs nothing.
+constexpr double kEndTrust = 0.002;
+constexpr double kLeftOver = 1e-4;
+
+/// Relative change of the friction limits that requires another minimisation [-], as for cloth that lands. At
+/// 0.1 a walking skirt takes three minimisations per step, without measurable benefit.
+constexpr double kFrictionChange = 0.5;
+
+std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Triangle> triangles,
+                                         View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
+                                         const std::vector<ContactCollider>& colliders,
+                                         const Contact::Settings& asked, const CudaSpace* space)
+{
+    const ContactTerms::Settings settings{asked.stiffness, asked.recovery_speed, asked.face_vertex,
+                                          asked.edge_edge};
+    if (space != nullptr)
+        return std::make_unique<DeviceContactTerms>(*space, triangles, positions, cloths, colliders,
+                                                    settings);
+    return std::make_unique<HostContactTerms>(energy, triangles, positions, cloths, colliders, settings);
+}
+
+} // namespace
+
+Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
+                 const std::vector<ContactCloth>& cloths, const std::vector<ContactCollider>& colliders,
+                 const Settings& settings, const CudaSpace* space)
+    : terms_(make_terms(energy_, triangles, positions, cloths, colliders, settings, space))
+{
+    if (settings.cloth_with_cloth)
+        between_ =
+            make_cloth_contact(triangles, positions, cloths, shortest_altitudes(triangles, positions), space);
+}
+
+void Contact::begin_step(const StepStart& start)
+{
+    dt_ = start.dt;
+    has_cleared_ = false;
+    if (between_)
+        between_->begin_step(start);
+    terms_->begin_step(start);
+    if (between_)
+        between_->end_search();
+    terms_->make(between_.get());
+}
+
+void Contact::forget()
+{
+    terms_->forget();
+    if (between_)
+        between_->forget();
+}
+
+double Contact::add_gradient(View<const Vec3> x, View<Vec3> gradient) const
+{
+    return energy_.terms().empty() ? 0.0 : energy_.add_gradient(x, gradient);
+}
+
+bool Contact::activate(View<const Vec3> x) { return !energy_.terms().empty() && energy_.activate(x); }
+
+void Contact::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
+{
+    energy_.add_hessian_product(p, out);
+}
+
+bool Contact::make_feasible(StepField x) const
+{
+    terms_->see(x);
+    return terms_->project_compliant(kGuessSweeps);
+}
+
+bool Contact::sweep_once(StepField x) const
+{
+    terms_->see(x);
+    return terms_->project_compliant(1);
+}
+
+bool Contact::revise(StepField x, bool is_converged)
+{
+    if (terms_->empty() && !between_)
+        return false;
+    terms_->see(x);
+    const FrictionLimits friction = terms_->update_forces();
+    const bool has_landed = is_converged && friction.change > kFrictionChange * friction.total;
+    if (has_landed)
+        terms_->adopt_forces();
+    const bool has_new_pairs = between_ && between_->advance(x, [&] { return terms_->supported(); });
+    if (terms_->has_left(kTrust) || has_new_pairs) {
+        terms_->remember(RememberedSlip::kByStart);
+        find_again();
+        return true;
+    }
+    return has_landed;
+}
+
+/// Finds the pairs of vertices that have left theirs, and makes all terms.
+void Contact::find_again()
+{
+    terms_->find_again();
+    terms_->make(between_.get());
+}
+
+/// Stores forces and slip at the end of the minimisation.
+void Contact::remember_end()
+{
+    terms_->adopt_forces();
+    terms_->remember(RememberedSlip::kSoFar);
+}
+
+void Contact::end_step(StepField x)
+{
+    terms_->see(x);
+    if (!has_cleared_)
+        remember_end();
+    active_count_ = terms_->remembered();
+    min_gap_ = terms_->end_step();
+    if (between_)
+        between_->end_step(x);
+}
+
+/// Searches at the current positions, and moves cloth out of colliders that it is still inside. This
+/// correction does not become velocity, or it would throw the cloth. A second call in the same step forgets
+/// pairs that the first has parted: their friction would drag caught cloth.
+void Contact::clear(StepField x, StepField v)
+{
+    terms_->see(x);
+    if (!terms_->has_left(kEndTrust) && terms_->deepest() <= kLeftOver)
+        return;
+    remember_end();
+    has_cleared_ = true;
+    find_again();
+    const StageScope stage("collision/clear");
+    terms_->stop_at_surfaces(v);
+    terms_->project_normal(kLeftOver);
+}
+
+/// Stops cloth that would have crossed, and removes the velocity of the correction.
+bool Contact::keep_apart(StepField x, StepField v)
+{
+    terms_->see(x);
+    return between_ && between_->limit_motion(x, v, dt_, [&] { return terms_->supported(); });
+}
+
+/// Projects contact with friction. No elastic slip stays for the next step: friction has undone it.
+void Contact::resolve(StepField x, StepField v)
+{
+    terms_->see(x);
+    if (terms_->has_left(kEndTrust))
+        find_again();
+    const StageScope stage("collision/resolve");
+    terms_->update_forces();
+    terms_->adopt_forces();
+    terms_->remember(RememberedSlip::kNothing);
+    has_cleared_ = true;
+    terms_->project_friction(v);
+    terms_->project_normal(0.0);
+}
+
+} // namespace toile::collision

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <map>
+#include <tuple>
+
+#include "collision/contact/term.h"
+
+namespace toile::collision {
+
+/// Warm-start data of a pair that pressed, for its successors within the step and in the next: normal force
+/// and elastic slip. The same bodies on CPU and GPU.
+struct ContactRecord {
+    /// Cosine of the maximum angle between the normals of the same contact [-].
+    static constexpr double kSameContact = 0.7;
+
+    ContactKind kind = ContactKind::kVertexFace;
+    int collider = -1;
+    std::array<int, 4> vertex{-1, -1, -1, -1};
+    double normal_force = 0.0;  ///< [N]
+    double pressing = 0.0;      ///< [N] its successor
+    Vec3 normal = Vec3::Zero(); ///< unit
+    Vec3 stick = Vec3::Zero();  ///< [m] elastic part of the slip
+
+    /// Record of a pair, without warm-start data. A cloth vertex on cloth is the same contact on any
+    /// triangle.
+    TOILE_HD static ContactRecord of(const ContactPair& pair)
+    {
+        ContactRecord record;
+        record.kind = pair.kind;
+        record.collider = pair.collider;
+        record.vertex = pair.vertex;
+        if (pair.kind == ContactKind::kClothVertexFace)
+            for (int k = 1; k < 4; ++k)
+                record.vertex[k] = -1;
+        return record;
+    }
+
+    /// Record of a term that presses or has pressed. Its slip is limited to the elastic part that Coulomb's
+    /// law allows.
+    /// @param slip  slip since the anchor [m]
+    TOILE_HD static ContactRecord of(const ContactTerm& term, const Vec3& slip)
+    {
+        ContactRecord record = of(term.pair);
+        record.normal_force = term.normal_force;
+        record.pressing = term.pressing;
+        record.normal = term.pair.normal;
+        record.stick = slip;
+        if (const double pull = term.sticking_stiffness() * record.stick.norm();
+            pull > term.friction * record.normal_force)
+            record.stick *= term.friction * record.normal_force / pull;
+        return record;
+    }
+
+    /// True if kind, collider and vertices are the same.
+    TOILE_HD bool has_key_of(const ContactRecord& other) const
+    {
+        return kind == other.kind && collider == other.collider && vertex[0] == other.vertex[0] &&
+               vertex[1] == other.vertex[1] && vertex[2] == other.vertex[2] && vertex[3] == other.vertex[3];
+    }
+
+    /// Warm-starts a term of the same key, if their normals are nearly the same; else returns false.
+    TOILE_HD bool warm_start(ContactTerm& term) const
+    {
+        const Vec3& n = term.pair.normal;
+        if (normal.dot(n) < kSameContact)
+            return false;
+        term.normal_force = normal_force;
+        term.pressing = pressing;
+        term.anchor -= stick - n.dot(stick) * n;
+        return true;
+    }
+};
+
+/// Records of pressing pairs, by their keys.
+class ContactMemory {
+public:
+    void forget() { known_.clear(); }
+    int size() const { return int(known_.size()); }
+
+    /// Stores a term that presses.
+    /// @param slip  slip since the anchor [m]
+    void keep(const ContactTerm& term, const Vec3& slip);
+
+    /// Warm-starts a new term from the first record with its key and nearly its normal, if there is one.
+    void warm_start(ContactTerm& term) const;
+
+private:
+    using Key = std::tuple<ContactKind, int, std::array<int, 4>>;
+    static Key key_of(const ContactRecord& record) { return {record.kind, record.collider, record.vertex}; }
+
+    std::multimap<Key, ContactRecord> known_;
+};
+
+} // namespace toile::collision

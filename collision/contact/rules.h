@@ -1,0 +1,197 @@
+#pragma once
+
+/// Rules that turn pairs into terms of the contact energy, and queries of terms during a step. The same
+/// bodies on CPU and GPU.
+
+#include "collision/contact/cloth_contact_kernels.h"
+#include "collision/contact/term.h"
+
+namespace toile::collision {
+
+/// Cosine of the angle between the normals of two planes [-] from which on they squeeze the cloth between
+/// them: 90 degrees. Cloth slides out of wider wedges.
+inline constexpr double kOpposing = 0.0;
+
+/// Distance beyond the gap to keep, relative to it [-], up to which cloth counts as supported by a collider.
+inline constexpr double kSupportDistance = 0.25;
+
+/// Gap of a term, relative to the gap to keep [-], up to which it counts as pressing in
+/// ContactQuery::has_slid.
+inline constexpr double kPressing = 0.5;
+
+/// Depth over which a term's spring reaches its full stiffness, relative to the gap to keep [-].
+inline constexpr double kRampPerGap = 0.3;
+
+/// Half of the clearance between two planes of a vertex [m], negative if body parts overlap.
+/// @param x  [vertices] positions at which the planes were found [m]
+TOILE_HD inline double half_clearance(const ContactPair& a, const ContactPair& b, View<const Vec3> x)
+{
+    return 0.5 * (a.gap(x) + b.gap(x));
+}
+
+TOILE_HD inline bool are_opposing(const ContactPair& a, const ContactPair& b)
+{
+    return a.normal.dot(b.normal) <= kOpposing;
+}
+
+/// Part of a term's slip that is stored for friction.
+enum class RememberedSlip {
+    kSoFar,   ///< the slip at x
+    kByStart, ///< the slip at t0: for pairs found again within the step, which also begin at t0
+    kNothing
+};
+
+/// Rules and tables that turn the pairs of a step into terms.
+struct ContactRules {
+    View<const int> cloth_of;             ///< [vertices]
+    View<const double> gap;               ///< [cloths] see ContactCloth [m]
+    View<const double> collider_friction; ///< [cloths x colliders] [-]
+    View<const double> cloth_friction;    ///< [cloths x cloths] [-]
+    PairThickness thickness;              ///< empty without contact of cloth with cloth
+    View<const Vec3> x;                   ///< [vertices] at t0 [m]
+    View<const double> diagonal;          ///< [vertices] see StepStart [N/m]
+    View<const unsigned char> fixed;      ///< [vertices]
+    double stiffness = 0.0;               ///< see Contact::Settings [-]
+    double max_recovery = 0.0;            ///< [m] per step, of cloth that is moved out
+    double max_motion = 0.0;              ///< [m] per step, of a surface that advects cloth
+
+    /// Gap that the pair should keep [m].
+    TOILE_HD double gap_of(const ContactPair& pair) const
+    {
+        if (!pair.is_between_cloths())
+            return gap[cloth_of[pair.vertex[0]]];
+        return thickness.of(pair.vertex, pair.kind == ContactKind::kClothEdgeEdge);
+    }
+
+    /// Coulomb coefficient [-].
+    TOILE_HD double friction_of(const ContactPair& pair) const
+    {
+        const int cloth = cloth_of[pair.vertex[0]], cloths = gap.size();
+        return pair.is_between_cloths()
+                   ? cloth_friction[cloth * cloths + cloth_of[pair.vertex[3]]]
+                   : collider_friction[cloth * (collider_friction.size() / cloths) + pair.collider];
+    }
+
+    /// Stiffness of the pair, proportional to that of the cloth at its vertices [N/m]; between cloths, to
+    /// that of the softer side.
+    TOILE_HD double stiffness_of(const ContactPair& pair) const
+    {
+        double ahead = 0.0, behind = 0.0;
+        for (int k = 0; k < pair.count(); ++k) {
+            const double contribution = pair.weight[k] * diagonal[pair.vertex[k]];
+            (contribution > 0.0 ? ahead : behind) += std::abs(contribution);
+        }
+        return stiffness * (pair.is_between_cloths() && behind < ahead ? behind : ahead);
+    }
+
+    /// True if the surface has moved rather than jumped.
+    TOILE_HD bool is_advected(const Vec3& motion) const { return motion.norm() <= max_motion; }
+
+    /// Cloth point of the pair at t0, advected with the collider unless that jumped [m].
+    TOILE_HD Vec3 at_start(const ContactPair& pair) const
+    {
+        const Vec3 start = pair.cloth_point(x);
+        return is_advected(pair.motion) ? Vec3(start + pair.motion) : start;
+    }
+
+    /// True if none of the pair's vertices can move.
+    TOILE_HD bool is_fixed(const ContactPair& pair) const
+    {
+        bool is_fixed = true;
+        for (int k = 0; k < pair.count(); ++k)
+            is_fixed = is_fixed && fixed[pair.vertex[k]] != 0;
+        return is_fixed;
+    }
+
+    /// @param now  [vertices] [m]
+    TOILE_HD Vec3 slip_of(const ContactTerm& term, RememberedSlip slip, View<const Vec3> now) const
+    {
+        if (slip == RememberedSlip::kNothing || term.normal_force == 0.0)
+            return Vec3(0.0, 0.0, 0.0);
+        return slip == RememberedSlip::kSoFar ? term.slip(now) : Vec3(at_start(term.pair) - term.anchor);
+    }
+
+    /// Term of a pair, before a warm start.
+    /// @param clearance  half the clearance between this plane and an opposing one [m]
+    TOILE_HD ContactTerm term_of(const ContactPair& pair, double clearance) const
+    {
+        ContactTerm term;
+        term.pair = pair;
+        term.friction = friction_of(pair);
+
+        // Cloth that starts inside leaves at the recovery speed, not at once. Between two parts it moves to
+        // the middle, where neither can push it through the other, and each grips it with the force at one
+        // gap's depth.
+        const double keep = gap_of(pair);
+        term.spring = {stiffness_of(pair), kRampPerGap * keep};
+        const Vec3 start = at_start(pair);
+        const double recovered = pair.normal.dot(start - pair.point) + max_recovery;
+        term.offset = recovered < keep ? recovered : keep;
+        if (clearance < 0.0 && clearance + keep < term.offset) {
+            term.offset = clearance + keep;
+            term.give = keep;
+        }
+        term.anchor = start;
+        return term;
+    }
+};
+
+/// Sums over terms of the friction limits [N] and of their changes.
+struct FrictionLimits {
+    double total = 0.0, change = 0.0;
+    TOILE_HD FrictionLimits& operator+=(const FrictionLimits& other)
+    {
+        total += other.total;
+        change += other.change;
+        return *this;
+    }
+};
+
+/// Updates how hard a term presses at x. Returns the friction limit by that, for the sum over terms.
+struct UpdateForce {
+    View<ContactTerm> terms;
+    View<const Vec3> x; ///< [vertices] [m]
+    TOILE_HD FrictionLimits operator()(int i) const
+    {
+        ContactTerm& term = terms[i];
+        term.pressing = term.pressing_force(x);
+        return {term.friction * term.pressing, term.friction * std::abs(term.pressing - term.normal_force)};
+    }
+};
+
+/// Bounds friction by the updated force from now on.
+struct AdoptForce {
+    View<ContactTerm> terms;
+    TOILE_HD void operator()(int i) const { terms[i].normal_force = terms[i].pressing; }
+};
+
+/// Queries of terms at x during a step.
+struct ContactQuery {
+    View<const ContactTerm> terms;
+    View<const Vec3> x; ///< [vertices] [m]
+
+    TOILE_HD bool is_supported(int i, const ContactRules& rules) const
+    {
+        const ContactPair& pair = terms[i].pair;
+        return !pair.is_between_cloths() && terms[i].gap(x) <= kSupportDistance * rules.gap_of(pair);
+    }
+
+    /// True for a pressing pair with a collider if one of its vertices is farther than `trust` [m] from where
+    /// the pair was found.
+    /// @param found_at  [vertices] [m]
+    TOILE_HD bool has_slid(int i, const ContactRules& rules, View<const Vec3> found_at, double trust) const
+    {
+        const ContactPair& pair = terms[i].pair;
+        if (pair.is_between_cloths() || terms[i].gap(x) > kPressing * rules.gap_of(pair))
+            return false;
+        bool has_slid = false;
+        for (int k = 0; k < pair.count(); ++k)
+            has_slid = has_slid || (x[pair.vertex[k]] - found_at[pair.vertex[k]]).norm() > trust;
+        return has_slid;
+    }
+
+    /// Depth at which a step would leave the term [m]; negative if it is clear.
+    TOILE_HD double depth(int i) const { return -terms[i].gap(x) - terms[i].give; }
+};
+
+} // namespace toile::collision

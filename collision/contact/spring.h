@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/compute/types.h"
+
+namespace toile::collision {
+
+/// Normal spring of a contact term. Its stiffness grows with the depth from 0 to w over a ramp D and stays w
+/// beyond, so that the energy is twice differentiable:
+///
+///   force   w d^2 / (2 D)    d <= D
+///           w (d - D / 2)    beyond
+///
+/// A linear spring as stiff as cloth has its whole stiffness at once. Depth errors of an unfinished
+/// minimisation, micrometres, would then give forces above the cloth's weight and friction limits from these
+/// forces. Every iteration would switch springs on and off (docs/theory/contact.md).
+struct ContactSpring {
+    double stiffness = 0.0; ///< [N/m] w
+    double ramp = 0.0;      ///< [m] D; 0: linear
+
+    /// @param depth  [m] negative without contact
+    TOILE_HD double force(double depth) const // [N]
+    {
+        if (depth <= 0.0)
+            return 0.0;
+        return depth < ramp ? 0.5 * stiffness * depth * depth / ramp : stiffness * (depth - 0.5 * ramp);
+    }
+    TOILE_HD double energy(double depth) const // [J]
+    {
+        if (depth <= 0.0)
+            return 0.0;
+        return depth < ramp ? stiffness * depth * depth * depth / (6.0 * ramp)
+                            : 0.5 * stiffness * (depth * (depth - ramp) + ramp * ramp / 3.0);
+    }
+    TOILE_HD double stiffness_at(double depth) const // [N/m]
+    {
+        if (depth <= 0.0)
+            return 0.0;
+        return depth < ramp ? stiffness * depth / ramp : stiffness;
+    }
+
+    /// Depth at a given force [N], the inverse of force() [m].
+    TOILE_HD double depth_of(double force) const
+    {
+        if (force <= 0.0)
+            return 0.0;
+        const double beyond = force / stiffness + 0.5 * ramp;
+        return beyond >= ramp ? beyond : std::sqrt(2.0 * ramp * force / stiffness);
+    }
+
+    /// Equilibrium depth d [m] of a point that is `reach` [m] deep without the spring and moves out by
+    /// `mobility` [m/N] times the force: d + mobility force(d) = reach.
+    TOILE_HD double depth_at_rest(double reach, double mobility) const
+    {
+        if (reach <= 0.0)
+            return 0.0;
+        const double wm = stiffness * mobility;
+        const double beyond = (reach + 0.5 * wm * ramp) / (1.0 + wm);
+        if (beyond >= ramp)
+            return beyond;
+        return 2.0 * reach / (1.0 + std::sqrt(1.0 + 2.0 * wm * reach / ramp));
+    }
+};
+
+} // namespace toile::collision

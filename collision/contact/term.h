@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cmath>
+
+#include "collision/contact/spring.h"
+#include "collision/geometry/contact_pair.h"
+
+namespace toile::collision {
+
+/// Contact pair with the data of its energy.
+struct ContactTerm {
+    ContactPair pair;
+    double offset = 0.0;        ///< [m] gap to keep between cloth and surface
+    ContactSpring spring;       ///< along the normal
+    double friction = 0.0;      ///< [-] Coulomb coefficient
+    Vec3 anchor = Vec3::Zero(); ///< [m] sticking position of the cloth point, in space at t1
+    double give = 0.0; ///< [m] depth below the offset at which a step may end: cloth gripped from both sides
+    double normal_force = 0.0; ///< [N] lagged, bounds friction
+    double pressing = 0.0;     ///< [N] its successor, from the last update
+
+    /// Slip at which friction reaches its limit, relative to the spring's ramp [-].
+    static constexpr double kSlipPerRamp = 0.1;
+
+    /// Gap g at x [m]; negative if the term presses.
+    TOILE_HD double gap(View<const Vec3> x) const { return pair.gap(x) - offset; }
+
+    /// Force of the normal spring at x [N].
+    TOILE_HD double pressing_force(View<const Vec3> x) const { return spring.force(-gap(x)); }
+
+    /// Depth at which the spring has the lagged normal force [m].
+    TOILE_HD double rest_depth() const { return spring.depth_of(normal_force); }
+
+    /// Part of anchor-to-cloth in the tangent plane, u [m].
+    TOILE_HD Vec3 slip(View<const Vec3> x) const
+    {
+        const Vec3 moved = pair.cloth_point(x) - anchor;
+        return moved - pair.normal.dot(moved) * pair.normal;
+    }
+
+    /// True if it pressed at the last update or at the one that bounds friction.
+    TOILE_HD bool has_pressed() const { return normal_force != 0.0 || pressing != 0.0; }
+
+    TOILE_HD double friction_limit() const { return friction * normal_force; } ///< Coulomb's L [N]
+
+    /// Stiffness k of sticking friction [N/m]. It reaches the limit no earlier than at the slip u_s =
+    /// kSlipPerRamp ramp, or errors far below the tolerance of a step would turn sticking into sliding.
+    TOILE_HD double sticking_stiffness() const
+    {
+        const double limit = friction_limit(), slip = kSlipPerRamp * spring.ramp;
+        return limit < spring.stiffness * slip ? limit / slip : spring.stiffness;
+    }
+
+    /// Stiffness of friction at slip length |u| [m]: k while it sticks, L/|u| while it slides [N/m].
+    TOILE_HD double tangential_stiffness(double slip_length) const
+    {
+        const double limit = friction_limit(), sticking = sticking_stiffness();
+        return sticking * slip_length <= limit ? sticking : limit / slip_length;
+    }
+
+    /// Energy of friction at slip length |u| [J].
+    TOILE_HD double friction_energy(double slip_length) const
+    {
+        const double limit = friction_limit(), sticking = sticking_stiffness();
+        return sticking * slip_length <= limit ? 0.5 * sticking * slip_length * slip_length
+                                               : limit * (slip_length - 0.5 * limit / sticking);
+    }
+};
+
+/// Stiffness of a term in its frozen Hessian: normal n n^T + tangential (I - n n^T) [N/m].
+struct FrozenContact {
+    double normal = 0.0, tangential = 0.0;
+
+    TOILE_HD bool is_active() const { return normal > 0.0 || tangential > 0.0; }
+    TOILE_HD Vec3 times(const Vec3& n, const Vec3& u) const
+    {
+        return tangential * u + (normal - tangential) * n.dot(u) * n;
+    }
+    TOILE_HD Mat3 matrix(const Vec3& n) const
+    {
+        return tangential * Mat3::Identity() + (normal - tangential) * n * n.transpose();
+    }
+};
+
+} // namespace toile::collision

@@ -1,0 +1,108 @@
+#include "collision/repair/layers.h"
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+#include "collision/repair/body_clearing.h"
+#include "collision/repair/edge_triangle_intersections.h"
+
+namespace toile::collision {
+
+namespace {
+
+int layer_of(const JoinedCloths& cloths, int vertex)
+{
+    return cloths.piece[vertex] < 0 ? 0 : cloths.layer[cloths.piece[vertex]];
+}
+
+/// Layers that cross a lower one.
+std::set<int> crossing_layers(const JoinedCloths& cloths, View<const Vec3> x)
+{
+    std::set<int> layers;
+    if (std::set<int>(cloths.layer.begin(), cloths.layer.end()).size() < 2)
+        return layers;
+    for (const EdgeTriangleIntersection& intersection : find_edge_triangle_intersections(cloths, x)) {
+        const int a = layer_of(cloths, cloths.edges.vertex[intersection.edge][0]);
+        const int b = layer_of(cloths, cloths.triangles[intersection.triangle][0]);
+        if (a != b)
+            layers.insert(std::max(a, b));
+    }
+    return layers;
+}
+
+/// [pieces] Nonzero if the winding of the triangles faces the bodies.
+std::vector<char> pieces_inside_out(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies,
+                                    View<const Vec3> x)
+{
+    std::vector<double> agreement(cloths.piece_count(), 0.0);
+    for (const Triangle& corner : cloths.triangles) {
+        const Vec3 doubled_area = (x[corner[1]] - x[corner[0]]).cross(x[corner[2]] - x[corner[0]]);
+        const Vec3 centroid = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0;
+        if (const auto proximity = nearest_body(bodies, centroid, kMaxStartDepth))
+            agreement[cloths.piece[corner[0]]] += doubled_area.dot(proximity->normal);
+    }
+    std::vector<char> inside_out(agreement.size());
+    std::transform(agreement.begin(), agreement.end(), inside_out.begin(),
+                   [](double sum) { return char(sum < 0.0); });
+    return inside_out;
+}
+
+/// Cloth below a layer, as a mesh that acts as a body.
+MovingMesh below(const JoinedCloths& cloths, int layer, const std::vector<char>& inside_out,
+                 View<const Vec3> x)
+{
+    MovingMesh mesh;
+    for (const Triangle& corner : cloths.triangles)
+        if (layer_of(cloths, corner[0]) < layer)
+            mesh.triangles.push_back(inside_out[cloths.piece[corner[0]]] != 0
+                                         ? Triangle(corner[0], corner[2], corner[1])
+                                         : corner);
+    mesh.x_t0.assign(x.begin(), x.end());
+    mesh.x_t1 = mesh.x_t0;
+    return mesh;
+}
+
+} // namespace
+
+bool separate_layers(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies, View<Vec3> x)
+{
+    const std::set<int> layers = crossing_layers(cloths, x);
+    if (layers.empty())
+        return false;
+    const std::vector<char> inside_out = pieces_inside_out(cloths, bodies, x);
+    for (const int layer : layers) {
+        JoinedCloths upper = cloths;
+        for (int v = 0; v < cloths.vertex_count(); ++v) {
+            upper.fixed[v] = char(cloths.fixed[v] != 0 || layer_of(cloths, v) != layer);
+            upper.gap[v] = cloths.thickness[v];
+        }
+        const MeshCollider lower(below(cloths, layer, inside_out, x));
+        const BodyClearing clearing(upper, {{&lower, nullptr}});
+        clearing.grow(x, ShapeKeeper(upper));
+    }
+    return true;
+}
+
+std::vector<int> layers_without_ties(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies)
+{
+    std::vector<double> sum(cloths.piece_count(), 0.0);
+    std::vector<int> count(cloths.piece_count(), 0);
+    for (int v = 0; v < cloths.vertex_count(); ++v)
+        if (const auto proximity = nearest_body(bodies, cloths.start[v], kMaxStartDepth);
+            proximity && cloths.piece[v] >= 0) {
+            sum[cloths.piece[v]] += proximity->signed_distance;
+            ++count[cloths.piece[v]];
+        }
+    std::vector<std::tuple<int, double, int>> order;
+    order.reserve(cloths.layer.size());
+    for (int p = 0; p < cloths.piece_count(); ++p)
+        order.emplace_back(cloths.layer[p], count[p] > 0 ? sum[p] / count[p] : kMaxStartDepth, p);
+    std::sort(order.begin(), order.end());
+    std::vector<int> layers(order.size());
+    for (size_t rank = 0; rank < order.size(); ++rank)
+        layers[std::get<2>(order[rank])] = int(rank);
+    return layers;
+}
+
+} // namespace toile::collision

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/compute/types.h"
+
+namespace toile::collision {
+
+/// Defect of a start pose: cloth inside a body, or two crossing triangles of cloth.
+struct StartDefect {
+    enum class Kind { InsideBody, Crossing };
+
+    Kind kind = Kind::InsideBody;
+    Vec3 position = Vec3::Zero(); ///< [m] before the repair, or after it if it arose there
+    double depth = 0.0; ///< [m] to the body's surface, or the distance that one triangle has to move
+    int cloth = 0;      ///< number of the cloth
+    int other = 0;      ///< number of the body, or of the other cloth (may be the same)
+    /// Vertices of the cloth point that lies inside (one: a vertex; two: the midpoint of an edge; three: the
+    /// centroid of a triangle), or of the crossing triangle.
+    std::array<int, 3> vertex{-1, -1, -1};
+    bool is_fixed = false;    ///< every vertex of the defect is fixed by the user, so it stays
+    bool is_repaired = false; ///< gone after the repair
+};
+
+/// Defects of a start pose before and after a repair.
+struct StartReport {
+    std::vector<StartDefect> defects; ///< inside bodies by cloth, then crossings; then new ones that remain
+    bool was_repaired = false;        ///< a repair ran; otherwise nothing below is set
+    int passes = 0;                   ///< passes of growing bodies and untangling
+    double max_strain = 0.0;          ///< [-] largest |length / start length - 1| of an edge after it
+    double rms_strain = 0.0;          ///< [-] of all edges
+    double max_move = 0.0;            ///< [m] of a vertex
+
+    /// Number of defects of a kind: all, or those that remain. A pose that was not repaired keeps all.
+    int count(StartDefect::Kind kind) const;
+    int remaining(StartDefect::Kind kind) const;
+
+    /// Number of vertices that began inside a body; defects count edges and triangles too.
+    int vertices_inside() const;
+    double deepest(StartDefect::Kind kind) const; ///< [m] maximum over all defects of a kind; 0 if none
+
+    /// True if no defect could be repaired by moving cloth: all are fixed.
+    bool is_clean() const;
+};
+
+} // namespace toile::collision

@@ -1,0 +1,10 @@
+#include "core/compute/cuda/layout.h"
+
+namespace toile {
+
+template <>
+void OurEigenLayout::agreed()
+{
+}
+
+} // namespace toile

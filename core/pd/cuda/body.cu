@@ -1,0 +1,297 @@
+#include "core/pd/cuda/body.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/compute/cuda/parallel.cuh"
+#include "core/pd/step/step_end.h"
+#include "core/pd/step/step_passes.h"
+
+namespace toile {
+
+namespace {
+
+DeviceSolver* device_solver_of(System& system, const CudaSpace& space)
+{
+    DeviceSolver* solver = system.solver().on_device();
+    if (solver == nullptr)
+        throw InvalidInput("this global solver does not run on a GPU; quadrature does");
+    if (&solver->space() != &space)
+        throw InvalidInput("the global solver was made for another stream or device than the body");
+    return solver;
+}
+
+/// Value of the start guess without motion that comes from inertia alone [J]: often larger than the value
+/// found.
+double inertia_of_standing(const Descent& asked) { return 0.5 / asked.dt2 * asked.driving; }
+
+DeviceEnergies energies_of(const CudaSpace& space, const System& system)
+{
+    DeviceEnergies energies(space);
+    for (const auto& energy : system.energies())
+        if (!energy->add_to(energies, 0))
+            throw InvalidInput(std::string(energy->name()) + " does not run on a GPU");
+    return energies;
+}
+
+} // namespace
+
+DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& positions,
+                       std::unique_ptr<System> system, Settings settings)
+    : space_(space), system_(std::move(system)), solver_(device_solver_of(*system_, space)),
+      settings_(settings), energies_(energies_of(space, *system_)),
+      x_(space, "body/x", int(positions.size())), v_(space, "body/v", x_.size()),
+      x_t1_(space, "body/x_t1", x_.size()), acceleration_(space, "body/acceleration", x_.size()),
+      prediction_(space, "body/prediction", x_.size()), readbacks_(space, "body/readback"),
+      targets_(space, "body/targets", x_.size()), fixed_vertices_(space, "body/fixed_vertices"),
+      fixed_targets_(space, "body/fixed_targets"),
+      fixed_targets_on_host_(space, "body/fixed_targets_on_host"), drive_(space, "body/drive", x_.size()),
+      found_(space, "body/found", x_.size()), found_gradient_(space, "body/found_gradient", x_.size()),
+      masses_(space, "body/masses"), diagonal_(space, "body/diagonal"),
+      inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
+      begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
+      end_sums_(space, "body/end_sums", block_count(x_.size(), kSumItems)),
+      gradient_(space, "body/largest_gradient", 1), speed_(space, "body/largest_speed", 1),
+      descent_(space, x_.size(), energies_.partial_count())
+{
+    TOILE_ASSERT(x_.size() == system_->vertex_count());
+    masses_.upload(system_->masses());
+    set_positions(positions);
+    set_velocities(std::vector<Vec3>(positions.size(), Vec3::Zero()));
+}
+
+void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
+{
+    TOILE_ASSERT(int(fixed.size()) == x_.size());
+    const bool is_new = dt != dt_ || fixed != host_fixed_;
+    dt_ = 0.0; // not prepared, should the solver refuse H
+    system_->prepare(dt, fixed);
+    if (is_new) {
+        set_fixed(fixed);
+        const DeviceDescent::Problem problem = this->problem(dt);
+        descent_.record(problem);
+        is_contact_prepared_ = false;
+        host_fixed_ = fixed;
+    }
+    dt_ = dt;
+}
+
+DeviceDescent::Problem DeviceBody::problem(double dt)
+{
+    return {[this](const DeviceEvaluation& at) { energies_.add_gradient(at); },
+            [this](View<const Vec3> g, View<Vec3> z) { solver_->solve_on_device(g, z); },
+            masses_.view(),
+            fixed_.view(),
+            prediction_.device(),
+            drive_.view(),
+            dt};
+}
+
+StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
+                            View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
+{
+    const StageScope stage("pd/device_step");
+    DeviceStepProjection* limits = projection ? projection->on_device(space_) : nullptr;
+    if (projection && limits == nullptr)
+        throw InvalidInput("this constraint does not run on a GPU");
+    if (active && active->on_device(space_) == nullptr)
+        throw InvalidInput("this contact does not run on a GPU");
+    prepare(dt, fixed);
+    begin_forces(acceleration);
+    begin_targets(targets);
+    for (const auto& energy : energies_.all())
+        energy->begin_step(x_.device());
+    predict();
+    if (active)
+        begin_contact(*active);
+
+    StepReport report;
+    report.steps = 1;
+    minimise(active, report);
+    if (report.status == StepReport::Status::NonFinite)
+        return report;
+
+    finish();
+    satisfy(active, limits);
+    if (active)
+        active->end_step(x_t1_);
+    end(limits, report);
+    return report;
+}
+
+/// See StepEnd.
+void DeviceBody::satisfy(ActiveSetEnergy* active, DeviceStepProjection* limits)
+{
+    for (int pass = 0; pass < StepEnd::kPasses; ++pass) {
+        if (active)
+            active->clear(x_t1_, v_);
+        if (limits)
+            project(*limits, active);
+        if (!active || !active->keep_apart(x_t1_, v_))
+            return;
+    }
+}
+
+void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* active)
+{
+    const StageScope stage("pd/limits");
+    if (limits.is_satisfied(x_t1_.device()))
+        return;
+    std::function<bool()> clear_contacts;
+    if (active)
+        clear_contacts = [&] { return active->sweep_once(x_t1_); };
+    parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyPositions{x_t1_.device(), found_.view()});
+    limits.project(x_t1_.change_on_device(), inverse_masses_.view(), clear_contacts);
+    parallel_for(space_, "pd/projected", x_.size(),
+                 AddProjected{found_.view(), x_t1_.device(), dt_, v_.change_on_device()});
+}
+
+void DeviceBody::begin_contact(ActiveSetEnergy& active)
+{
+    active.begin_step({{},
+                       {},
+                       system_->diagonal(),
+                       system_->fixed(),
+                       system_->masses(),
+                       dt_,
+                       {x_.device(), prediction_.device(), diagonal_.view(), fixed_.view(), masses_.view()}});
+    active.make_feasible(x_t1_);
+}
+
+void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
+{
+    StepPasses passes(settings_.max_iterations, settings_.max_passes);
+    for (bool goes_on = true; goes_on;) {
+        const StageScope stage("pd/minimise");
+        DeviceActiveSet* contact = active ? active->on_device(space_) : nullptr;
+        const bool in_contact = contact != nullptr && contact->has_terms();
+        const int limit = passes.next(in_contact);
+        const OuterLoop::Outcome outcome = in_contact
+                                               ? minimise_with_contact(*contact, limit, passes.is_first())
+                                               : minimise_free(passes.is_first());
+        parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_on_device()});
+        report.iterations += outcome.iterations;
+        report.linear_iterations += outcome.linear_iterations;
+        report.displacement = outcome.displacement;
+        report.energy = outcome.value;
+        report.status =
+            outcome.converged ? StepReport::Status::Converged : StepReport::Status::IterationLimit;
+        if (!is_finite(outcome.value)) {
+            report.status = StepReport::Status::NonFinite;
+            report.message = "the energy at the start of the step is not finite";
+            return;
+        }
+        const bool has_changed = active && active->revise(x_t1_, passes.is_converged(outcome));
+        goes_on = passes.goes_on(outcome, has_changed);
+    }
+}
+
+/// Restarts without motion if that is better than the result, like Body.
+OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
+{
+    const StageScope stage("pd/descend");
+    const auto outcome_of = [](const Descent& found) {
+        OuterLoop::Outcome outcome;
+        outcome.iterations = found.iterations;
+        outcome.converged = found.converged;
+        outcome.displacement = found.displacement;
+        outcome.value = found.search.value;
+        return outcome;
+    };
+    const DescentFields fields = this->fields();
+    if (!is_first)
+        parallel_for(space_, "pd/begin_again", 1, BeginAgain{fields.descent, asked_.tolerance});
+    begin_at(x_t1_.device());
+    const Descent found = descent_.run();
+    if (is_first)
+        asked_ = found;
+    const OuterLoop::Outcome first = outcome_of(found);
+    if (!is_first || found.search.value <= inertia_of_standing(found))
+        return first;
+
+    keep_found();
+    stand_still();
+    parallel_for(space_, "pd/begin_again", 1,
+                 BeginAgain{fields.descent, StepTolerance::kStanding * found.tolerance});
+    Descent again = descent_.run_briefly();
+    if (found.search.value <= again.start_value || !is_finite(again.start_value)) {
+        take_found();
+        return first;
+    }
+    if (!again.is_over)
+        again = descent_.run();
+    OuterLoop::Outcome outcome = outcome_of(again);
+    outcome.iterations += found.iterations;
+    return outcome;
+}
+
+/// Minimises while contact may be active.
+OuterLoop::Outcome DeviceBody::minimise_with_contact(DeviceActiveSet& contact, int limit, bool is_first)
+{
+    const StageScope stage("pd/descend");
+    prepare_contact();
+    if (is_first)
+        asked_ = descent_.state();
+    OuterLoop::Settings settings{asked_.tolerance, limit};
+    begin_at(x_t1_.device());
+    const OuterLoop::Outcome found =
+        run_with_contact(contact, settings, contact_descent_->evaluate(fields(), contact));
+    if (!is_first || found.value <= inertia_of_standing(asked_))
+        return found;
+
+    stand_still();
+    const double value = contact_descent_->evaluate(fields(), contact);
+    if (found.value <= value || !is_finite(value))
+        return found;
+    settings.tolerance *= StepTolerance::kStanding;
+    OuterLoop::Outcome outcome = run_with_contact(contact, settings, value);
+    outcome.iterations += found.iterations;
+    outcome.linear_iterations += found.linear_iterations;
+    return outcome;
+}
+
+/// Prepares the descent with contact, in the first step with contact terms.
+void DeviceBody::prepare_contact()
+{
+    if (is_contact_prepared_)
+        return;
+    if (!contact_descent_)
+        contact_descent_ = std::make_unique<DeviceContactDescent>(space_, x_.size(), settings_.contact_solve);
+    contact_descent_->prepare(*system_, *solver_);
+    contact_descent_->set_problem(problem(dt_));
+    is_contact_prepared_ = true;
+}
+
+OuterLoop::Outcome DeviceBody::run_with_contact(DeviceActiveSet& contact, const OuterLoop::Settings& settings,
+                                                double value)
+{
+    return contact_descent_->minimise(fields(), contact,
+                                      {settings, settings_.stop, asked_.mass, asked_.driving, dt_}, value);
+}
+
+void DeviceBody::begin_at(View<const Vec3> x)
+{
+    parallel_for(space_, "pd/begin_at", x_.size(), BeginAt{x, fields()});
+}
+
+void DeviceBody::stand_still()
+{
+    const View<Vec3> standing = x_t1_.overwrite_on_device();
+    parallel_for(space_, "pd/stand_still", x_.size(),
+                 StandStill{x_.device(), prediction_.device(), fixed_.view(), standing});
+    begin_at(standing);
+}
+
+void DeviceBody::keep_found()
+{
+    parallel_for(space_, "pd/keep_found", x_.size(),
+                 CopyFound{descent_.x(), descent_.gradient(), found_.view(), found_gradient_.view()});
+}
+
+void DeviceBody::take_found()
+{
+    parallel_for(space_, "pd/take_found", x_.size(),
+                 CopyFound{found_.view(), found_gradient_.view(), descent_.x(), descent_.gradient()});
+}
+
+} // namespace toile

@@ -1,0 +1,109 @@
+#include <cmath>
+
+#include "core/compute/cuda/parallel.cuh"
+#include "core/pd/cuda/body.h"
+
+/// Start and end of a step: its inputs, and the report on its result.
+namespace toile {
+
+void DeviceBody::overwrite(MirroredArray<Vec3>& field, View<const Vec3> values)
+{
+    TOILE_ASSERT(values.size() == field.size());
+    std::copy(values.begin(), values.end(), field.overwrite_on_host().begin());
+}
+
+void DeviceBody::set_velocities(View<const Vec3> v)
+{
+    overwrite(v_, v);
+    is_speed_current_ = false;
+}
+
+double DeviceBody::max_speed() const
+{
+    return is_speed_current_ ? std::sqrt(speed_[0].value) : PointMasses::max_speed();
+}
+
+std::shared_ptr<const Readback<Vec3>> DeviceBody::read_back_positions()
+{
+    const std::shared_ptr<Readback<Vec3>> readback = readbacks_.take();
+    x_.read_back(*readback);
+    return readback;
+}
+
+/// Uploads the fixed vertices and the diagonal of H.
+void DeviceBody::set_fixed(const std::vector<unsigned char>& fixed)
+{
+    fixed_.upload(fixed);
+    std::vector<double> inverse_masses(fixed.size(), 0.0);
+    fixed_vertices_on_host_.clear();
+    for (int i = 0; i < int(fixed.size()); ++i)
+        if (fixed[i])
+            fixed_vertices_on_host_.push_back(i);
+        else
+            inverse_masses[i] = 1.0 / masses()[i];
+    inverse_masses_.upload(inverse_masses);
+    diagonal_.upload(system_->diagonal());
+    fixed_vertices_.upload(fixed_vertices_on_host_);
+    fixed_targets_on_host_.resize(fixed_vertices_.size());
+}
+
+void DeviceBody::begin_forces(View<const Vec3> acceleration)
+{
+    TOILE_ASSERT(acceleration.empty() == (loads_ != nullptr));
+    is_speed_current_ = false;
+    if (loads_)
+        loads_->accelerate(dt_, x_.device(), v_.device(), acceleration_.overwrite_on_device());
+    else
+        overwrite(acceleration_, acceleration);
+}
+
+void DeviceBody::begin_targets(View<const Vec3> targets)
+{
+    TOILE_ASSERT(targets.size() == x_.size());
+    if (fixed_vertices_on_host_.empty())
+        return;
+    const View<Vec3> staged = fixed_targets_on_host_.view();
+    for (int k = 0; k < staged.size(); ++k)
+        staged[k] = targets[fixed_vertices_on_host_[k]];
+    fixed_targets_.upload(staged);
+    parallel_for(space_, "pd/scatter_targets", staged.size(),
+                 ScatterTarget{fixed_vertices_.view(), fixed_targets_.view(), targets_.view()});
+}
+
+/// Predicts all vertices, which is the start point of the step, and writes the inputs to the descent.
+void DeviceBody::predict()
+{
+    const View<Vec3> prediction = prediction_.overwrite_on_device();
+    const PredictVertex predict{
+        x_.device(), v_.device(), acceleration_.device(), fixed_.view(), targets_.view(), dt_, prediction};
+    parallel_sum_then(
+        space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, masses_.view(), drive_.view()},
+        BeginDescent{fields().descent, {settings_.tolerance}, settings_.stop, settings_.max_iterations, dt_},
+        begin_sums_);
+    parallel_for(space_, "pd/begin", x_.size(), CopyPositions{prediction, x_t1_.overwrite_on_device()});
+}
+
+void DeviceBody::finish()
+{
+    for (const auto& energy : energies_.all())
+        energy->end_minimisation(x_t1_.device());
+    parallel_sum(
+        space_, "pd/finish", x_.size(), LargestSquare{},
+        FinishVertex{x_.device(), x_t1_.device(), descent_.gradient(), dt_, v_.overwrite_on_device()},
+        gradient_.view(), end_sums_);
+}
+
+/// Makes the end the next start, and waits once for all numbers of the report.
+void DeviceBody::end(DeviceStepProjection* limits, StepReport& report)
+{
+    parallel_sum(space_, "pd/end", x_.size(), LargestSquare{},
+                 EndVertex{{x_t1_.device(), x_.overwrite_on_device()}, v_.device()}, speed_.view(),
+                 end_sums_);
+    if (limits)
+        limits->end_step(x_.device());
+    space_.synchronise();
+    is_speed_current_ = true;
+    report.gradient_norm = std::sqrt(gradient_[0].value);
+}
+
+} // namespace toile

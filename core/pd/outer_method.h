@@ -1,8 +1,0 @@
-#pragma once
-
-namespace toile {
-
-/// The methods of the outer loop, compared in docs/core/pd.md.
-enum class OuterMethod { Lbfgs, LocalGlobal, Anderson, NewtonPcg };
-
-} // namespace toile

@@ -1,0 +1,76 @@
+#include "core/pd/step/step_hessian.h"
+
+#include "core/compute/parallel.h"
+
+namespace toile {
+
+StepHessian::StepHessian(Curvature& curvature, View<const double> masses, View<const unsigned char> fixed,
+                         double dt)
+    : curvature_(curvature), fixed_(fixed), diagonal_(masses.size()), free_(masses.size())
+{
+    for (const double mass : masses)
+        inertia_.push_back(mass / (dt * dt));
+}
+
+void StepHessian::linearise(View<const Vec3> x, Definiteness definiteness)
+{
+    curvature_.assemble(x, definiteness);
+    const SparseMatrix& constant = curvature_.constant();
+    parallel_for(kCpu, "pd/hessian_diagonal", int(diagonal_.size()), [&](int i) {
+        if (fixed_[i]) {
+            diagonal_[i].setIdentity();
+            return;
+        }
+        diagonal_[i] = curvature_.blocks().diagonal(i);
+        diagonal_[i].diagonal().array() += inertia_[i] + constant.coeff(i, i);
+        if (active_)
+            diagonal_[i] += active_->diagonal_blocks()[i];
+    });
+}
+
+void StepHessian::multiply(View<const Vec3> p, View<Vec3> out)
+{
+    const SparseMatrix& constant = curvature_.constant();
+    parallel_for(
+        kCpu, "pd/hessian_input", p.size(), [&](int i) { free_[i] = fixed_[i] ? Vec3(Vec3::Zero()) : p[i]; },
+        4096);
+    parallel_for(kCpu, "pd/hessian_multiply", p.size(), [&](int i) {
+        out[i] = inertia_[i] * p[i] + row_times(constant, i, free_) + curvature_.blocks().row_times(i, free_);
+    });
+    if (active_)
+        active_->add_hessian_product(free_, out);
+    for (int i = 0; i < p.size(); ++i)
+        if (fixed_[i])
+            out[i] = p[i];
+}
+
+SparseMatrix StepHessian::matrix() const
+{
+    const int n = int(diagonal_.size());
+    const BlockMatrix& blocks = curvature_.blocks();
+    Triplets entries;
+    for (int i = 0; i < n; ++i) {
+        const double diagonal = fixed_[i] ? 1.0 : inertia_[i];
+        for (int a = 0; a < 3; ++a)
+            entries.emplace_back(3 * i + a, 3 * i + a, diagonal);
+        // Entries of fixed vertices stay in the pattern as zeros.
+        for (SparseMatrix::InnerIterator entry(curvature_.constant(), i); entry; ++entry) {
+            const int j = int(entry.col());
+            const double value = fixed_[i] || fixed_[j] ? 0.0 : entry.value();
+            for (int a = 0; a < 3; ++a)
+                entries.emplace_back(3 * i + a, 3 * j + a, value);
+        }
+        for (int k = 0; k < blocks.columns(i).size(); ++k) {
+            const int j = blocks.columns(i)[k];
+            const double factor = fixed_[i] || fixed_[j] ? 0.0 : 1.0;
+            for (int a = 0; a < 3; ++a)
+                for (int b = 0; b < 3; ++b)
+                    entries.emplace_back(3 * i + a, 3 * j + b, factor * blocks.blocks(i)[k](a, b));
+        }
+    }
+    SparseMatrix K(3 * n, 3 * n);
+    K.setFromTriplets(entries.begin(), entries.end());
+    return K;
+}
+
+} // namespace toile

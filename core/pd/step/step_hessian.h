@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "core/pd/energy/active_set_energy.h"
+#include "core/pd/energy/curvature.h"
+#include "core/pd/energy/objective.h"
+
+namespace toile {
+
+/// Hessian of one implicit Euler step: M/dt^2, the curvature of the energies, and the frozen terms of an
+/// active set. Rows and columns of fixed vertices are the identity's.
+class StepHessian : public Hessian {
+public:
+    /// @param masses, fixed  [vertices] [kg]; borrowed
+    /// @param dt             [s]
+    StepHessian(Curvature& curvature, View<const double> masses, View<const unsigned char> fixed, double dt);
+
+    /// Sets the frozen terms to include; null: none are active.
+    void set_active(const ActiveSetEnergy* active) { active_ = active; }
+
+    void linearise(View<const Vec3> x, Definiteness definiteness) override;
+    void multiply(View<const Vec3> p, View<Vec3> out) override;
+    View<const Mat3> diagonal_blocks() const override { return diagonal_; }
+    SparseMatrix matrix() const override;
+
+private:
+    Curvature& curvature_;
+    View<const unsigned char> fixed_;
+    const ActiveSetEnergy* active_ = nullptr;
+    std::vector<double> inertia_; ///< [vertices] m/dt^2 [N/m]
+    std::vector<Mat3> diagonal_;
+    std::vector<Vec3> free_; ///< scratch: p, zero at fixed vertices
+};
+
+} // namespace toile

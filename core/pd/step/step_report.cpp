@@ -1,0 +1,23 @@
+#include "core/pd/step/step_report.h"
+
+#include <algorithm>
+
+namespace toile {
+
+void StepReport::merge(const StepReport& other)
+{
+    status = std::max(status, other.status);
+    steps += other.steps;
+    iterations += other.iterations;
+    linear_iterations += other.linear_iterations;
+    displacement = std::max(displacement, other.displacement);
+    gradient_norm = std::max(gradient_norm, other.gradient_norm);
+    energy += other.energy;
+    contacts += other.contacts;
+    min_gap = std::min(min_gap, other.min_gap);
+    max_strain = std::max(max_strain, other.max_strain);
+    if (message.empty())
+        message = other.message;
+}
+
+} // namespace toile

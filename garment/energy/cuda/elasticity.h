@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include "core/compute/cuda/array.h"
+#include "core/linear/sliced_rows.h"
+#include "core/pd/cuda/energy.h"
+#include "garment/energy/membrane_kernels.h"
+#include "garment/energy/rest_shape.h"
+
+namespace toile::garment {
+
+/// Membrane and bending of all cloths of a body on a GPU. One kernel runs over triangles. A second one
+/// gathers at vertices and multiplies positions by the bending matrix.
+class DeviceElasticity : public DeviceEnergy {
+public:
+    explicit DeviceElasticity(const CudaSpace& space);
+
+    /// Adds the membrane of a cloth after the previous ones.
+    /// @param first_vertex  first vertex of the cloth in the body
+    void add_membrane(const RestShape& rest, const MembraneWeights& weights, int first_vertex);
+
+    /// Adds the bending of a cloth after the previous ones. Its membrane is added before or later.
+    /// @param K  Bending::matrix()
+    void add_bending(const SparseMatrix& K, int first_vertex);
+
+    int partial_count() const override { return triangles_.size(); }
+    void add_gradient(const DeviceEvaluation& at) override;
+
+private:
+    /// Data of the device arrays, for all cloths so far.
+    struct OnHost {
+        std::vector<Triangle> triangles;
+        std::vector<Mat2> rest_inv;
+        std::vector<double> area;
+        std::vector<int> fabric;
+        std::vector<MembraneWeights> weights;
+        std::vector<int> first_corner{0}, corners;
+        std::vector<int> bending_first{0}, bending_column; ///< rows of K
+        std::vector<float> bending_value;
+    };
+    void upload(); ///< the membrane
+
+    const CudaSpace& space_;
+    OnHost host_;
+    DeviceArray<Triangle> triangles_;
+    DeviceArray<Mat2> rest_inv_;
+    DeviceArray<double> area_;
+    DeviceArray<int> fabric_;
+    DeviceArray<MembraneWeights> weights_;
+    DeviceArray<int> first_corner_, corners_;
+    DeviceArray<CornerPair> corner_gradient_; ///< [triangles] [N]
+    DeviceArray<int> bending_first_;          ///< SlicedRows of K
+    DeviceArray<RowEntry> bending_entries_;
+};
+
+} // namespace toile::garment

@@ -1,0 +1,102 @@
+#include <memory>
+
+#include "apps/toile/terminal/command_line.h"
+#include "core/compute/cuda/runtime/runtime.h"
+#include "research/bench/benchmark.h"
+#include "research/scenes/literature_methods.h"
+#include "scenes/format/field.h"
+
+namespace toile::research {
+
+namespace {
+
+/// Options that only some benchmarks support.
+enum Option : unsigned {
+    kOnly = 1,
+    kMesh = 2,
+    kScenes = 4,
+    kSolver = 8,
+    kRepeats = 16,
+    kThreads = 32,
+    kTimesOnly = 64
+};
+
+struct Benchmark {
+    const char* name;
+    const char* summary;
+    int (*run)(const BenchOptions& options);
+    unsigned options; ///< bits of Option, besides the common ones
+};
+
+constexpr Benchmark kBenchmarks[] = {
+    {"contact", "Cloth on cloth: crossings under stress, cost by part against size, with and without it",
+     bench_contact, kOnly | kThreads},
+    {"gpu", "One GPU: the global solve by pass, beside the CPU and the card's bandwidth", bench_gpu, kOnly},
+    {"sheet", "A hanging sheet of 10 000 vertices: milliseconds per step against the error", bench_sheet,
+     kOnly | kRepeats | kTimesOnly},
+    {"solvers", "The same steps by every global solver, XPBD and VBD: milliseconds against the error",
+     bench_solvers, kOnly | kMesh | kRepeats},
+    {"stages", "Scenes: milliseconds per frame by stage, iterations, contacts, peak memory", bench_stages,
+     kScenes | kRepeats},
+    {"stress", "Extreme steps, materials, meshes and starts: finite, no energy gained, back to rest",
+     bench_stress, kOnly | kSolver},
+};
+
+void add_options(CLI::App& add, BenchOptions& options, unsigned which)
+{
+    add.add_option("-o,--output", options.output, "Folder for the table as CSV and Markdown");
+    if (which & kOnly)
+        add.add_option("--only", options.only, "Only cases whose name contains this");
+    if (which & kMesh)
+        add.add_option("--mesh", options.mesh, "sheet, skirt or drape, or NAME:VERTICES");
+    if (which & kScenes) {
+        add.add_option("scenes", options.scenes, "Scene files (.json)");
+        add.add_option("--frames", options.frames, "Samples of each scene, instead of its own");
+    }
+    if (which & kSolver)
+        add.add_option("--solver", options.solver, "solver.method of all cases")
+            ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
+    if (which & kRepeats)
+        add.add_option("--repeats", options.repeats,
+                       "Runs of everything that is timed; the fastest counts [3]")
+            ->check(CLI::PositiveNumber);
+    if (which & kThreads)
+        add.add_option("--threads", options.threads, "Threads of every run [all]")
+            ->check(CLI::PositiveNumber);
+    if (which & kTimesOnly)
+        add.add_flag("--times-only", options.times_only, "Without references and errors");
+    add.add_flag("--quick", options.quick, "Smaller and shorter cases");
+    add.add_flag("--quiet", options.quiet, "No progress on stderr");
+}
+
+app::Command add_benchmark(CLI::App& parser, const Benchmark& benchmark)
+{
+    app::Command command;
+    command.options = parser.add_subcommand(benchmark.name, benchmark.summary);
+    auto options = std::make_shared<BenchOptions>();
+    add_options(*command.options, *options, benchmark.options);
+    command.run = [options, run = benchmark.run] { return run(*options); };
+    return command;
+}
+
+std::vector<app::Command> add_commands(CLI::App& parser)
+{
+    static const LiteratureMethods baselines;
+    std::vector<app::Command> commands{app::add_simulate(parser, &baselines)};
+    for (const Benchmark& benchmark : kBenchmarks)
+        commands.push_back(add_benchmark(parser, benchmark));
+    return commands;
+}
+
+} // namespace
+
+} // namespace toile::research
+
+int main(int argc, char** argv)
+{
+    toile::cuda::load_kernels_eagerly();
+    return toile::app::run_command_line(argc, argv,
+                                        {"toile-bench",
+                                         "Measures Toile, also beside methods of the literature.",
+                                         toile::research::add_commands});
+}

@@ -1,0 +1,51 @@
+#include "research/benchmarks/stress/table.h"
+
+#include "research/benchmarks/text_table.h"
+
+namespace toile::research::stress {
+
+namespace {
+
+const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+Row cells_of(const Result& r)
+{
+    return {r.name,
+            std::to_string(r.steps),
+            format("%.1f", r.iterations_per_step),
+            format("%.2f", r.ms_per_step),
+            format("%.1e", r.final_speed),
+            format("%.3f", r.max_strain),
+            format("%.3f", r.energy_ratio),
+            format("%.3f", r.end_energy),
+            r.drift > 0.0 ? format("%.1e", r.drift) : "",
+            yes_or_no(r.is_finite),
+            yes_or_no(r.is_at_rest),
+            yes_or_no(r.holds)};
+}
+
+const Row kMarkdownHeader{"case",        "steps",      "iterations", "ms/step", "end speed m/s", "max strain",
+                          "peak energy", "end energy", "drift m",    "finite",  "rests",         "holds"};
+const Row kCsvHeader{"case",       "steps",        "iterations_per_step", "ms_per_step", "end_speed_m_per_s",
+                     "max_strain", "energy_ratio", "end_energy",          "drift_m",     "finite",
+                     "rests",      "holds"};
+
+std::vector<Row> rows_of(const std::vector<Result>& results)
+{
+    std::vector<Row> rows;
+    rows.reserve(results.size());
+    for (const Result& result : results)
+        rows.push_back(cells_of(result));
+    return rows;
+}
+
+} // namespace
+
+std::string markdown_table(const std::vector<Result>& results)
+{
+    return markdown(kMarkdownHeader, rows_of(results));
+}
+
+std::string csv_table(const std::vector<Result>& results) { return csv(kCsvHeader, rows_of(results)); }
+
+} // namespace toile::research::stress

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+
+#include "collision/body/colliders.h"
+#include "collision/contact/contact.h"
+#include "scenes/colliders/body_motion.h"
+
+namespace toile::scenes {
+
+/// An avatar of a running scene: its motion from step to step and its contact collider.
+class Collider {
+public:
+    explicit Collider(const scene::Avatar& settings, double default_friction);
+
+    const std::string& name() const { return body_.settings().name; }
+
+    /// Advances to the step that starts at the end of the last one and ends at t_t1 [s].
+    void advance_to(double t_t1);
+
+    /// True if anything moved in the current step.
+    bool moved() const { return moved_; }
+
+    collision::ContactCollider contact_collider() const
+    {
+        return {mesh_collider_.get(), shape_collider_.get()};
+    }
+    double friction() const
+    {
+        return friction_;
+    } ///< [-] default, for cloths and solids without a coefficient for it
+    const BodyMotion& body() const { return body_; }
+
+private:
+    BodyMotion body_;
+    double friction_;
+    bool moved_ = false;
+    std::unique_ptr<collision::MeshCollider> mesh_collider_;
+    std::unique_ptr<collision::ShapeCollider> shape_collider_;
+};
+
+} // namespace toile::scenes

@@ -1,0 +1,137 @@
+#include "scenes/colliders/skinned_collider.h"
+
+#include "avatars/load_avatar.h"
+#include "core/compute/cuda/array.h"
+
+namespace toile::scenes {
+
+namespace {
+
+const char* word_of(scene::LengthUnit unit)
+{
+    switch (unit) {
+    case scene::LengthUnit::Centimetre:
+        return "cm";
+    case scene::LengthUnit::Millimetre:
+        return "mm";
+    case scene::LengthUnit::Inch:
+        return "in";
+    case scene::LengthUnit::Metre:
+        break;
+    }
+    return "m";
+}
+
+avatars::MovingAvatar make_avatar(const scene::Avatar& avatar, const avatars::Affine& root_transform)
+{
+    avatars::AvatarSettings settings;
+    if (const auto* file = std::get_if<std::filesystem::path>(&avatar.shape))
+        settings.file = *file;
+    else
+        settings.mannequin.height = std::get<scene::Mannequin>(avatar.shape).height;
+    if (avatar.unit)
+        settings.unit = word_of(*avatar.unit);
+
+    avatars::Motion motion;
+    motion.clip = avatar.clip;
+    motion.loop = avatar.loop;
+    motion.speed = avatar.speed;
+    motion.start = avatar.start;
+    motion.accumulate_root = avatar.accumulate_root;
+    motion.pre_roll = {avatar.preroll.hold, avatar.preroll.ease, avatar.preroll.from_bind};
+    const avatars::Placement placement{avatar.translate, avatar.rotate_deg, avatar.scale};
+    return {load_avatar(settings), motion, placement, root_transform};
+}
+
+std::optional<avatars::ContactSurface> make_contact_surface(const scene::Avatar& settings,
+                                                            const avatars::Avatar& avatar)
+{
+    if (settings.exclude_bones.empty())
+        return std::nullopt;
+    const std::string user = "avatar \"" + settings.name + "\": exclude_bones";
+    const std::vector<unsigned char> excluded = avatar.faces_on_bones(settings.exclude_bones, user);
+    return avatars::ContactSurface(avatar.triangles(), excluded, avatar.vertex_count(), user);
+}
+
+} // namespace
+
+SkinnedCollider::SkinnedCollider(const scene::Avatar& settings, const avatars::Affine& root_transform)
+    : avatar_(make_avatar(settings, root_transform)),
+      contact_(make_contact_surface(settings, avatar_.avatar()))
+{
+}
+
+bool SkinnedCollider::advance_to(double t_t1, const avatars::Affine& root_transform)
+{
+    avatar_.advance_to(t_t1, root_transform);
+    return avatar_.moved();
+}
+
+void SkinnedCollider::pose(View<const avatars::Affine> bones, View<Vec3> x) const
+{
+    TOILE_ASSERT(x.size() == vertex_count());
+    const int body = body_vertex_count();
+    avatar_.avatar().skin_vertices(bones, x.subview(0, body));
+    if (contact_)
+        contact_->place_lids(x);
+}
+
+Vec3 SkinnedCollider::vertex_t1(int v) const
+{
+    const avatars::SkinView skin = avatar_.avatar().skin();
+    const auto posed = [&](int i) { return skin.posed(i, avatar_.bones_t1()); };
+    const int body = body_vertex_count();
+    return v < body ? posed(v) : contact_->lids().middle(v - body, posed);
+}
+
+/// Poses on a GPU: bones are uploaded, vertices are computed on the device.
+class SkinnedCollider::OnDevice final : public collision::DeviceMeshPoses {
+public:
+    OnDevice(const CudaSpace& space, const SkinnedCollider& skinned)
+        : space_(space), skinned_(skinned), rest_(space, "skinned/rest"), first_(space, "skinned/first"),
+          influences_(space, "skinned/influences"), bones_(space, "skinned/bones"),
+          first_rim_(space, "skinned/first_rim"), rims_(space, "skinned/rims")
+    {
+        const avatars::SkinView skin = skinned.avatar_.avatar().skin();
+        rest_.upload(skin.rest);
+        first_.upload(skin.first);
+        influences_.upload(skin.influences);
+        if (!skinned.contact_)
+            return;
+        first_rim_.upload(skinned.contact_->lids().first);
+        rims_.upload(skinned.contact_->lids().rims);
+    }
+
+    void pose_t0(DeviceArray<Vec3>& x) override { pose(skinned_.avatar_.bones_t0(), x.view()); }
+    void pose_t1(DeviceArray<Vec3>& x) override { pose(skinned_.avatar_.bones_t1(), x.view()); }
+
+private:
+    void pose(View<const avatars::Affine> bones, View<Vec3> x)
+    {
+        TOILE_ASSERT(x.size() == skinned_.vertex_count());
+        bones_.upload(bones);
+        const int body = rest_.size();
+        launch(space_, avatars::SkinVertices{{rest_.view(), first_.view(), influences_.view()},
+                                             bones_.view(),
+                                             x.subview(0, body)});
+        if (skinned_.contact_)
+            launch(space_, avatars::PlaceLids{{first_rim_.view(), rims_.view()},
+                                              x.subview(0, body),
+                                              x.subview(body, x.size() - body)});
+    }
+
+    const CudaSpace& space_;
+    const SkinnedCollider& skinned_;
+    DeviceArray<Vec3> rest_;                     ///< see SkinView
+    DeviceArray<int> first_;                     ///< likewise
+    DeviceArray<avatars::Influence> influences_; ///< likewise
+    DeviceArray<avatars::Affine> bones_;         ///< of one end of a step
+    DeviceArray<int> first_rim_, rims_;          ///< see LidRims
+};
+
+std::unique_ptr<collision::DeviceMeshPoses> SkinnedCollider::on_device(const CudaSpace& space) const
+{
+    return std::make_unique<OnDevice>(space, *this);
+}
+
+} // namespace toile::scenes

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "avatars/model/contact_surface.h"
+#include "avatars/model/moving_avatar.h"
+#include "collision/body/mesh_poses.h"
+#include "scenes/format/scene.h"
+
+namespace toile::scenes {
+
+/// An avatar of a scene with bones, advanced from step to step. The poses are of its contact surface: all
+/// faces but those of excluded bones (ContactSurface).
+class SkinnedCollider final : public collision::MeshPoses {
+public:
+    /// Loads the avatar and poses it at t = 0.
+    /// @param root_transform  see advance_to()
+    /// @throws InvalidInput for files, clips and bones that do not work.
+    SkinnedCollider(const scene::Avatar& settings, const avatars::Affine& root_transform);
+
+    bool is_static() const { return avatar_.is_static(); } ///< without its root transform, which may move it
+
+    /// Advances to the step that starts at the end of the last one and ends at t_t1 [s].
+    /// @param root_transform  rigid motion of the whole avatar at t_t1
+    /// @return false if both poses are equal
+    bool advance_to(double t_t1, const avatars::Affine& root_transform);
+
+    // The whole body.
+    const std::vector<Triangle>& triangles() const { return avatar_.avatar().triangles(); }
+    int body_vertex_count() const { return avatar_.avatar().vertex_count(); }
+
+    const std::vector<Triangle>& contact_triangles() const
+    {
+        return contact_ ? contact_->triangles() : triangles();
+    }
+    bool is_all_collidable() const { return !contact_; }
+
+    /// Index in triangles() of a face of the contact surface, -1 for a lid over a cut.
+    int face_of(int contact_triangle) const
+    {
+        return contact_ ? contact_->face_of(contact_triangle) : contact_triangle;
+    }
+
+    /// A vertex of the contact surface at t1 [m].
+    Vec3 vertex_t1(int v) const;
+
+    /// Vertices of the contact surface: the body's, then the centres of the lids.
+    int vertex_count() const override { return contact_ ? contact_->vertex_count() : body_vertex_count(); }
+    void pose_t0(View<Vec3> x) const override { pose(avatar_.bones_t0(), x); }
+    void pose_t1(View<Vec3> x) const override { pose(avatar_.bones_t1(), x); }
+    std::unique_ptr<collision::DeviceMeshPoses> on_device(const CudaSpace& space) const override;
+
+private:
+    class OnDevice;
+    void pose(View<const avatars::Affine> bones, View<Vec3> x) const;
+
+    avatars::MovingAvatar avatar_;
+    std::optional<avatars::ContactSurface> contact_; ///< none: the whole body
+};
+
+} // namespace toile::scenes

@@ -1,0 +1,91 @@
+#include "scenes/world/backend.h"
+
+#include "core/base/error.h"
+#include "core/compute/cuda/runtime/device.h"
+#include "scenes/format/field.h"
+#include "scenes/world/solver_choice.h"
+
+namespace toile::scenes {
+
+using scene::SolverMethod;
+
+namespace {
+
+std::string only_on_cpu(const std::string& key, std::string_view word)
+{
+    return key + " \"" + std::string(word) + "\" runs on the CPU only";
+}
+
+/// Estimated memory of a scene on a GPU [bytes]. 12 kB per vertex have been measured; a scene has
+/// other data too.
+constexpr std::size_t kBytesOfScene = std::size_t(64) << 20, kBytesOfVertex = 14'000;
+
+std::shared_ptr<const CudaSpace> take_cpu(const std::string& why,
+                                          const std::function<void(const std::string&)>& warn)
+{
+    if (warn)
+        warn("the backend is cpu: " + why);
+    return nullptr;
+}
+
+std::string in_mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+
+} // namespace
+
+std::string why_not_on_gpu(const Scene& scene)
+{
+    const scene::Solver& solver = scene.solver;
+    if (solver.method != SolverMethod::Auto && solver.method != SolverMethod::Quadrature)
+        return only_on_cpu("solver.method", scene_format::word_of(solver.method));
+    if (solver.outer != OuterMethod::Lbfgs)
+        return only_on_cpu("solver.outer", scene_format::word_of(solver.outer));
+    if (solver.contact_preconditioner != ContactPreconditioner::Block)
+        return only_on_cpu("solver.contact_preconditioner",
+                           scene_format::word_of(solver.contact_preconditioner));
+    if (!scene.solids.empty())
+        return "solids run on the CPU only";
+    return {};
+}
+
+void require_runs_on_gpu(const Scene& scene)
+{
+    if (const std::string needs_cpu = why_not_on_gpu(scene); !needs_cpu.empty())
+        throw InvalidInput(scene.source.string() + ": " + needs_cpu +
+                           "; choose the backend cpu or auto, or change the scene");
+}
+
+std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const Scene& scene,
+                                              const std::function<void(const std::string&)>& warn)
+{
+    if (backend == Backend::Cpu)
+        return nullptr;
+    if (backend == Backend::Cuda) {
+        require_runs_on_gpu(scene);
+        return std::make_shared<CudaSpace>(device);
+    }
+    const std::string needs_cpu = why_not_on_gpu(scene);
+    std::string why_cpu = needs_cpu.empty() ? why_no_cuda_device() : needs_cpu;
+    if (why_cpu.empty())
+        try {
+            return std::make_shared<CudaSpace>(device);
+        } catch (const DeviceError& error) { // other processes may use all of its memory
+            why_cpu = error.what();
+        }
+    return take_cpu(why_cpu, warn);
+}
+
+std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space, long vertices,
+                                                     const std::function<void(const std::string&)>& warn)
+{
+    if (!space)
+        return nullptr;
+    const std::size_t needed = kBytesOfScene + kBytesOfVertex * std::size_t(vertices),
+                      free = space->free_memory();
+    if (needed <= free)
+        return space;
+    return take_cpu(space->described() + " has " + in_mebibytes(free) + " left, " + std::to_string(vertices) +
+                        " vertices may take " + in_mebibytes(needed),
+                    warn);
+}
+
+} // namespace toile::scenes

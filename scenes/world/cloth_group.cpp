@@ -1,0 +1,245 @@
+#include "scenes/world/cloth_group.h"
+
+#include <algorithm>
+
+#include "collision/check/find_crossings.h"
+#include "garment/energy/air/cuda/loads.h"
+#include "scenes/world/contact_setup.h"
+
+namespace toile::scenes {
+
+namespace {
+
+/// Time [s] below the sleep speed after which cloth falls asleep. Longer than the pause of a swinging hem at
+/// its turning point.
+constexpr double kSleepDelay = 0.5;
+
+} // namespace
+
+std::vector<Vec3> ClothGroup::start_positions() const
+{
+    std::vector<Vec3> all;
+    for (const SceneCloth& cloth : cloths_)
+        all.insert(all.end(), cloth.state().positions.begin(), cloth.state().positions.end());
+    return all;
+}
+
+/// Current positions of the cloths, then of the surfaces of solids.
+std::vector<Vec3> ClothGroup::surfaces() const
+{
+    const View<const Vec3> cloths = body_->positions().subview(0, first_.back());
+    std::vector<Vec3> all(cloths.begin(), cloths.end());
+    if (solids_)
+        all.insert(all.end(), solids_->bodies().surface().begin(), solids_->bodies().surface().end());
+    return all;
+}
+
+template <typename T>
+View<T> ClothGroup::part(View<T> all, int cloth) const
+{
+    return all.subview(first_[cloth], first_[cloth + 1] - first_[cloth]);
+}
+
+View<const Vec3> ClothGroup::positions_of(int cloth) const { return part(body_->positions(), cloth); }
+
+void ClothGroup::add_cloths_to(Snapshot& snapshot) const
+{
+    const std::shared_ptr<const Readback<Vec3>> coming = body_->read_back_positions();
+    for (int i = 0; i < int(cloths_.size()); ++i)
+        if (coming)
+            snapshot.add(coming, first_[i], first_[i + 1] - first_[i]);
+        else
+            snapshot.add(positions_of(i));
+}
+
+void ClothGroup::mark_fixed(double t_t1)
+{
+    for (int i = 0; i < int(cloths_.size()); ++i)
+        cloths_[i].mark_fixed(t_t1, part(View<unsigned char>(fixed_), i));
+}
+
+void ClothGroup::prepare(double dt, double t_t1)
+{
+    mark_fixed(t_t1);
+    body_->prepare(dt, fixed_);
+}
+
+StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>& colliders)
+{
+    if (is_asleep(t_t1, colliders)) {
+        StepReport report;
+        report.steps = 1;
+        return report;
+    }
+    if (may_cross_ && contact_ && contact_->keeps_cloth_apart())
+        mark_crossings();
+    mark_fixed(t_t1);
+    for (int i = 0; i < int(cloths_.size()); ++i)
+        cloths_[i].update_targets(t_t1, colliders, part(View<Vec3>(targets_), i));
+    if (loads_)
+        loads_->set_time(t_t1);
+    else
+        accelerate(dt, t_t1);
+    begin_solids(dt);
+    StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
+    if (report.status != StepReport::Status::NonFinite)
+        end_solids();
+    if (contact_) {
+        report.contacts = contact_->active_count();
+        report.min_gap = contact_->min_gap();
+    }
+    if (report.status == StepReport::Status::NonFinite)
+        report.message = names() + ": " + report.message;
+    report.max_strain = loads_ ? limits_->max_strain_on_device() : limits_->max_strain(body_->positions());
+
+    // A solver whose every direction was refused leaves the cloth where it is: that is not rest.
+    const bool is_stuck = report.status == StepReport::Status::IterationLimit && report.iterations == 0;
+    const bool is_slow = body_->max_speed() < sleep_.speed;
+    slow_time_ = is_slow && !is_stuck ? slow_time_ + dt : 0.0;
+    return report;
+}
+
+/// Accelerations and tension on the CPU.
+void ClothGroup::accelerate(double dt, double t_t1)
+{
+    const View<const Vec3> x = body_->positions(), v = body_->velocities();
+    for (int i = 0; i < int(cloths_.size()); ++i) {
+        cloths_[i].accelerate(dt, t_t1, part(x, i), part(v, i), part(View<Vec3>(acceleration_), i));
+        cloths_[i].begin_step(part(x, i));
+    }
+}
+
+/// Marks vertices of crossing triangles, by exact predicates. Runs at the first step unless the start is
+/// known to be free of crossings, after place(), and while crossings remain. Self-crossings of a solid are
+/// ignored.
+void ClothGroup::mark_crossings()
+{
+    const StageScope stage("scenes/find_crossings");
+    const std::vector<Vec3> x = surfaces();
+    std::vector<unsigned char> crosses(x.size(), 0);
+    may_cross_ = false;
+    for (const collision::Crossing& crossing : collision::find_crossings(triangles_, x)) {
+        if (solids_ && solid_of(crossing.a) >= 0 && solid_of(crossing.a) == solid_of(crossing.b))
+            continue;
+        may_cross_ = true;
+        for (const int t : {crossing.a, crossing.b})
+            for (const int v : triangles_[t])
+                crosses[v] = 1;
+    }
+    contact_->set_crossing(crosses);
+}
+
+/// Solid that owns a triangle of triangles_, -1 for cloth.
+int ClothGroup::solid_of(int triangle) const
+{
+    const int v = triangles_[triangle][0] - first_.back();
+    int solid = -1;
+    while (solid + 1 < solids_->count() && solids_->bodies().first_vertex(solid + 1) <= v)
+        ++solid;
+    return solid;
+}
+
+ActiveSetEnergy* ClothGroup::active() const
+{
+    return rigid_contact_ ? static_cast<ActiveSetEnergy*>(rigid_contact_.get()) : contact_.get();
+}
+
+/// Resets the solids' unknowns, which are relative to the pose at the start of each step.
+void ClothGroup::begin_solids(double dt)
+{
+    if (!solids_)
+        return;
+    std::vector<Vec3> q(body_->positions().begin(), body_->positions().end());
+    std::vector<Vec3> v(body_->velocities().begin(), body_->velocities().end());
+    const int first = first_.back(), count = solids_->bodies().unknown_count();
+    solids_->bodies().begin_step(dt, View<Vec3>(q).subview(first, count),
+                                 View<Vec3>(v).subview(first, count));
+    body_->set_positions(q);
+    body_->set_velocities(v);
+}
+
+void ClothGroup::end_solids()
+{
+    if (!solids_)
+        return;
+    const int first = first_.back(), count = solids_->bodies().unknown_count();
+    solids_->bodies().end_step(body_->positions().subview(first, count),
+                               body_->velocities().subview(first, count));
+}
+
+/// Names for messages: cloth "skirt", or cloths "skirt", "vest" and solids "bowl".
+std::string ClothGroup::names() const
+{
+    const auto list = [](std::string word, int count, const auto& name_of) {
+        word += count == 1 ? "" : "s";
+        for (int i = 0; i < count; ++i)
+            word += (i == 0 ? " \"" : ", \"") + name_of(i) + "\"";
+        return word;
+    };
+    std::string names;
+    if (!cloths_.empty())
+        names = list("cloth", int(cloths_.size()), [&](int i) { return cloths_[i].state().name; });
+    if (solids_)
+        names += (names.empty() ? "" : " and ") +
+                 list("solid", solids_->count(), [&](int i) { return solids_->state(i).name; });
+    return names;
+}
+
+void ClothGroup::place(int cloth, View<const Vec3> positions)
+{
+    cloths_[cloth].take(positions);
+    cloths_[cloth].forget();
+    if (contact_)
+        contact_->forget();
+    std::vector<Vec3> all(body_->positions().begin(), body_->positions().end());
+    std::copy(positions.begin(), positions.end(), all.begin() + first_[cloth]);
+    body_->set_positions(all);
+    may_cross_ = true;
+    slow_time_ = 0.0;
+}
+
+/// True if these cloths have been slow for kSleepDelay and nothing disturbs them.
+bool ClothGroup::is_asleep(double t_t1, const std::vector<Collider>& colliders)
+{
+    const bool disturbed = std::any_of(colliders.begin(), colliders.end(),
+                                       [](const Collider& collider) { return collider.moved(); }) ||
+                           std::any_of(cloths_.begin(), cloths_.end(),
+                                       [&](const SceneCloth& cloth) { return cloth.is_disturbed(t_t1); });
+    if (disturbed)
+        slow_time_ = 0.0;
+    return sleep_.enabled && slow_time_ > kSleepDelay;
+}
+
+std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collider>& colliders,
+                                    const WorldOptions& options)
+{
+    std::vector<SceneCloth> cloths;
+    for (const scene::Cloth& cloth : scene.cloths)
+        cloths.emplace_back(scene, cloth, colliders, options);
+    return cloths;
+}
+
+std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths,
+                                    const std::vector<Collider>& colliders, const WorldOptions& options,
+                                    const CudaSpace* space)
+{
+    const bool may_collide = contact_settings(scene).cloth_with_cloth;
+    std::vector<std::vector<SceneCloth>> members;
+    for (SceneCloth& cloth : cloths) {
+        if (members.empty() || !may_collide)
+            members.emplace_back();
+        members.back().push_back(std::move(cloth));
+    }
+    std::unique_ptr<SceneSolids> solids;
+    if (!scene.solids.empty()) {
+        solids = std::make_unique<SceneSolids>(scene);
+        members.resize(1); // one group of all cloths, if any
+    }
+    std::vector<ClothGroup> groups;
+    groups.reserve(members.size());
+    for (auto& group : members)
+        groups.emplace_back(scene, std::move(group), std::move(solids), colliders, options, space);
+    return groups;
+}
+
+} // namespace toile::scenes

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "collision/contact/contact.h"
+#include "core/pd/rigid/rigid_active_set.h"
+#include "core/pd/step/point_masses.h"
+#include "garment/energy/strain_limit/joint_strain_limit.h"
+#include "scenes/world/scene_cloth.h"
+#include "scenes/world/scene_solids.h"
+#include "scenes/world/snapshot.h"
+
+namespace toile::garment {
+class DeviceLoads;
+} // namespace toile::garment
+
+namespace toile::scenes {
+
+/// Cloths and solids that may collide, simulated together. One minimisation per step over all vertices of
+/// cloth, numbered cloth after cloth, followed by the unknowns of the solids (RigidBodies).
+class ClothGroup {
+public:
+    /// @throws InvalidInput if the scene's method does not support one of the cloths.
+    /// @param solids  null: none
+    /// @param space   GPU on which steps are minimised, borrowed; null: the CPU
+    ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, std::unique_ptr<SceneSolids> solids,
+               const std::vector<Collider>& colliders, const WorldOptions& options, const CudaSpace* space);
+
+    /// Cloths with their start positions, as changed by place().
+    const std::vector<SceneCloth>& cloths() const { return cloths_; }
+
+    /// Current positions of one cloth, valid until the next step [m]. Copied from the GPU if there is one.
+    View<const Vec3> positions_of(int cloth) const;
+
+    /// Adds all cloths in their current state, without waiting for the GPU.
+    void add_cloths_to(Snapshot& snapshot) const;
+
+    const SceneSolids* solids() const { return solids_.get(); } ///< null: none
+
+    /// Prepares the global solvers for a step of dt [s] that ends at time t_t1 [s].
+    void prepare(double dt, double t_t1);
+
+    /// Takes one time step of dt [s] that ends at time t_t1 [s]. Colliders are already advanced to it.
+    StepReport step(double dt, double t_t1, const std::vector<Collider>& colliders);
+
+    /// Declares that the start pose has no crossings: the first step skips their search, unless there are
+    /// solids, which cloth may cross.
+    void assume_no_crossings() { may_cross_ = solids_ != nullptr; }
+
+    /// Moves the vertices of one cloth to new positions; velocities and rest shape are kept.
+    void place(int cloth, View<const Vec3> positions);
+
+private:
+    std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
+    std::unique_ptr<PointMasses> make_device_body(const Scene& scene, const WorldOptions& options,
+                                                  const CudaSpace& space);
+    std::vector<double> masses() const;
+    std::vector<std::shared_ptr<Energy>> make_energies();
+    std::unique_ptr<garment::DeviceLoads> make_loads(const Scene& scene, const CudaSpace& space) const;
+    std::unique_ptr<collision::Contact>
+    make_contact(const Scene& scene, const std::vector<Collider>& colliders, const CudaSpace* space);
+    std::vector<Vec3> start_positions() const;
+    std::vector<Vec3> surfaces() const;
+    template <typename T>
+    View<T> part(View<T> all, int cloth) const;
+    void mark_fixed(double t_t1);
+    void accelerate(double dt, double t_t1);
+    ActiveSetEnergy* active() const;
+    void begin_solids(double dt);
+    void end_solids();
+    void mark_crossings();
+    int solid_of(int triangle) const;
+    std::string names() const;
+    bool is_asleep(double t_t1, const std::vector<Collider>& colliders);
+
+    scene::Sleep sleep_;
+    std::vector<SceneCloth> cloths_;
+    std::unique_ptr<SceneSolids> solids_; ///< null: none
+    std::vector<int> first_;              ///< [cloths + 1] first vertex of each cloth
+    std::unique_ptr<garment::JointStrainLimit> limits_;
+    std::unique_ptr<collision::Contact> contact_; ///< null if nothing can collide
+    std::unique_ptr<RigidActiveSet>
+        rigid_contact_; ///< contact_ in the minimiser's unknowns; null without solids
+    std::unique_ptr<PointMasses> body_;
+    garment::DeviceLoads* loads_ = nullptr; ///< owned by body_, on a GPU; null: accelerate()
+    std::vector<unsigned char> fixed_;
+    std::vector<Vec3> targets_, acceleration_;
+    std::vector<Triangle> triangles_; ///< of all cloths, then of all solids
+    bool may_cross_ = true;           ///< cloth is known to cross cloth, or has been placed
+    double slow_time_ = 0.0;          ///< [s] for which every vertex has been slow
+};
+
+/// The cloths of a scene, in its order.
+std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collider>& colliders,
+                                    const WorldOptions& options);
+
+/// Groups the cloths: one group of all if they may collide, else one each. Solids belong to the group of all.
+/// @param space  see ClothGroup
+std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths,
+                                    const std::vector<Collider>& colliders, const WorldOptions& options,
+                                    const CudaSpace* space);
+
+} // namespace toile::scenes

@@ -1,0 +1,169 @@
+#include "core/linear/block_diagonal_solver.h"
+#include "core/pd/cuda/body.h"
+#include "core/pd/energy/sliced_energy.h"
+#include "core/pd/step/body.h"
+#include "core/quadrature/cuda/quadrature_solver.h"
+#include "garment/energy/air/cuda/loads.h"
+#include "scenes/world/cloth_group.h"
+#include "scenes/world/contact_setup.h"
+#include "scenes/world/solver_choice.h"
+
+/// Setup of a group from a scene: its unknowns, energies, solvers and contact.
+namespace toile::scenes {
+
+namespace {
+
+/// Table options of one cloth's solver.
+TableSource source_of_tables(const WorldOptions& options, const std::string& cloth)
+{
+    TableSource source;
+    if (options.tables)
+        source.store = options.tables;
+    if (options.building)
+        source.listener.progress = [building = options.building, cloth](double fraction) {
+            return building(cloth, fraction);
+        };
+    source.listener.warn = options.warn;
+    return source;
+}
+
+} // namespace
+
+ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
+                       std::unique_ptr<SceneSolids> solids, const std::vector<Collider>& colliders,
+                       const WorldOptions& options, const CudaSpace* space)
+    : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), solids_(std::move(solids)), first_{0}
+{
+    for (const SceneCloth& cloth : cloths_)
+        first_.push_back(first_.back() + cloth.vertex_count());
+    for (size_t i = 0; i < cloths_.size(); ++i)
+        for (const Triangle& t : cloths_[i].state().triangles)
+            triangles_.push_back(t + Triangle::Constant(first_[i]));
+    if (solids_)
+        solids_->append_triangles(first_.back(), triangles_);
+    if (replaces_minimiser(scene.solver.method))
+        body_ = options.baselines->make_body(scene.solver, start_positions(), cloths_.front().model());
+    else
+        body_ = space != nullptr ? make_device_body(scene, options, *space) : make_body(scene, options);
+    contact_ = make_contact(scene, colliders, space);
+    if (solids_)
+        rigid_contact_ = std::make_unique<RigidActiveSet>(*contact_, solids_->bodies(), first_.back());
+    std::vector<garment::JointStrainLimit::Part> limits;
+    for (size_t i = 0; i < cloths_.size(); ++i)
+        limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
+    limits_ = std::make_unique<garment::JointStrainLimit>(std::move(limits));
+    if (space != nullptr)
+        limits_->on_device(*space); // otherwise the first step would upload it
+    const size_t unknowns = body_->positions().size();
+    fixed_.assign(unknowns, 0);
+    targets_.assign(unknowns, Vec3::Zero());
+    acceleration_.assign(loads_ ? 0 : unknowns, Vec3::Zero());
+    if (solids_)
+        for (int i = 0; i < solids_->count(); ++i)
+            acceleration_[first_.back() + 2 * i] = scene.gravity;
+}
+
+std::vector<double> ClothGroup::masses() const
+{
+    std::vector<double> masses;
+    for (const SceneCloth& cloth : cloths_)
+        masses.insert(masses.end(), cloth.masses().begin(), cloth.masses().end());
+    return masses;
+}
+
+/// All energies of every cloth.
+std::vector<std::shared_ptr<Energy>> ClothGroup::make_energies()
+{
+    std::vector<std::shared_ptr<Energy>> energies;
+    for (size_t i = 0; i < cloths_.size(); ++i)
+        for (auto& energy : cloths_[i].make_energies())
+            energies.push_back(
+                cloths_.size() == 1 && !solids_
+                    ? energy
+                    : std::make_shared<SlicedEnergy>(energy, first_[i], cloths_[i].vertex_count()));
+    return energies;
+}
+
+/// Projective dynamics on the CPU: every cloth keeps a separate global solver.
+std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const WorldOptions& options)
+{
+    std::vector<double> masses = this->masses();
+    std::vector<BlockDiagonalSolver::Block> blocks;
+    for (const SceneCloth& cloth : cloths_) {
+        const ClothState& state = cloth.state();
+        blocks.push_back(
+            {cloth.vertex_count(),
+             make_global_solver(scene.solver.method, cloth.rest_shape(), {state.positions, state.triangles},
+                                cloth.source(), source_of_tables(options, state.name), options.baselines)});
+    }
+    std::vector<Vec3> unknowns = start_positions();
+    if (solids_) {
+        const std::vector<double> solid_masses = solids_->bodies().masses();
+        masses.insert(masses.end(), solid_masses.begin(), solid_masses.end());
+        unknowns.resize(masses.size(), Vec3::Zero()); // begin_solids() fills them in
+        blocks.push_back({int(solid_masses.size()), std::make_unique<DirectSolver>()});
+    }
+    std::unique_ptr<GlobalSolver> solver;
+    if (blocks.size() == 1)
+        solver = std::move(blocks.front().solver);
+    else
+        solver = std::make_unique<BlockDiagonalSolver>(std::move(blocks));
+
+    Body::Settings settings;
+    settings.tolerance = scene.solver.tolerance;
+    settings.stop = scene.solver.stop;
+    settings.max_iterations = scene.solver.max_iterations;
+    settings.outer = scene.solver.outer;
+    settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
+    return std::make_unique<Body>(
+        std::move(unknowns), std::make_unique<System>(std::move(masses), make_energies(), std::move(solver)),
+        settings);
+}
+
+/// Projective dynamics with the fields on a GPU. Equal cloths use the same tables.
+std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, const WorldOptions& options,
+                                                          const CudaSpace& space)
+{
+    std::vector<DeviceQuadratureSolver::Part> parts;
+    for (const SceneCloth& cloth : cloths_)
+        parts.push_back(
+            {embedding_of(*cloth.rest_shape()), source_of_tables(options, cloth.state().name).listener});
+    DeviceBody::Settings settings;
+    settings.tolerance = scene.solver.tolerance;
+    settings.stop = scene.solver.stop;
+    settings.max_iterations = scene.solver.max_iterations;
+    auto body = std::make_unique<DeviceBody>(
+        space, start_positions(),
+        std::make_unique<System>(
+            masses(), make_energies(),
+            std::make_unique<DeviceQuadratureSolver>(space, std::move(parts), QuadratureTables::Settings{},
+                                                     source_of_tables(options, "").store)),
+        settings);
+    auto loads = make_loads(scene, space);
+    loads_ = loads.get();
+    body->accelerate_by(std::move(loads));
+    return body;
+}
+
+std::unique_ptr<garment::DeviceLoads> ClothGroup::make_loads(const Scene& scene, const CudaSpace& space) const
+{
+    auto loads = std::make_unique<garment::DeviceLoads>(
+        space, garment::DeviceLoads::Settings{scene.gravity, air_of(scene), scene.wind.velocity},
+        gusts_of(scene.wind));
+    for (size_t i = 0; i < cloths_.size(); ++i)
+        cloths_[i].add_loads(*loads, first_[i]);
+    return loads;
+}
+
+std::unique_ptr<collision::Contact>
+ClothGroup::make_contact(const Scene& scene, const std::vector<Collider>& colliders, const CudaSpace* space)
+{
+    const collision::Contact::Settings settings = contact_settings(scene);
+    if (colliders.empty() && !settings.cloth_with_cloth)
+        return nullptr;
+    return std::make_unique<collision::Contact>(triangles_, surfaces(),
+                                                contact_cloths(scene, cloths_, solids_.get(), colliders),
+                                                contact_colliders(colliders), settings, space);
+}
+
+} // namespace toile::scenes

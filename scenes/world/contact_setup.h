@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/contact/contact.h"
+#include "scenes/world/scene_cloth.h"
+#include "scenes/world/scene_solids.h"
+
+namespace toile::scenes {
+
+/// Settings of Contact for a scene.
+collision::Contact::Settings contact_settings(const Scene& scene);
+
+/// Gaps, thicknesses and friction of the cloths and then of the solids.
+/// @param solids  null: none
+std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const std::vector<SceneCloth>& cloths,
+                                                    const SceneSolids* solids,
+                                                    const std::vector<Collider>& colliders);
+
+std::vector<collision::ContactCollider> contact_colliders(const std::vector<Collider>& colliders);
+
+} // namespace toile::scenes

@@ -1,0 +1,205 @@
+#include "scenes/world/scene_cloth.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numbers>
+
+#include "core/compute/parallel.h"
+#include "garment/energy/air/cuda/loads.h"
+#include "garment/energy/air/loads_kernels.h"
+#include "garment/energy/bending.h"
+#include "garment/energy/membrane.h"
+#include "scenes/format/scene_fabric.h"
+#include "scenes/meshes/cloth_mesh.h"
+#include "scenes/world/solver_choice.h"
+
+namespace toile::scenes {
+
+namespace {
+
+/// @param unmoved  [vertices] positions before the cloth's translation [m]
+std::shared_ptr<const garment::RestShape> rest_shape_of(const std::vector<Vec3>& unmoved,
+                                                        const std::vector<Triangle>& triangles,
+                                                        double grain_deg, const std::string& source)
+{
+    const bool is_flat = bounds(unmoved).upper.y() - bounds(unmoved).lower.y() < 1e-9;
+    return std::make_shared<const garment::RestShape>(
+        garment::rest_shape_of_surface({unmoved, triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(),
+                                       grain_deg * std::numbers::pi / 180.0, source));
+}
+
+} // namespace
+
+garment::AirSettings air_of(const Scene& scene)
+{
+    return {scene.air.density, scene.air.normal, scene.air.tangential};
+}
+
+garment::Gusts gusts_of(const scene::Wind& wind)
+{
+    garment::Gusts::Settings settings;
+    settings.intensity = wind.turbulence;
+    settings.seed = std::uint64_t(wind.seed);
+    return {wind.velocity, settings};
+}
+
+SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
+                       const std::vector<Collider>& colliders, const WorldOptions& options)
+    : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind), gusts_(gusts_of(scene.wind))
+{
+    state_.name = settings.name;
+    state_.fabric = scenes::fabric_of(scene, settings);
+    state_.rest = oriented_mesh(settings, state_.flipped_faces);
+    if (state_.flipped_faces > 0 && options.warn)
+        options.warn(source_ + ": flipped " + std::to_string(state_.flipped_faces) +
+                     " faces that were wound against their neighbours");
+    state_.triangles = state_.rest.triangulated().triangles;
+    rest_ = rest_shape_of(state_.rest.positions, state_.triangles, settings.grain_deg, source_);
+    for (Vec3& p : state_.rest.positions)
+        p += settings.translate;
+    state_.positions = state_.rest.positions;
+    for (size_t i = 0; i < scene.attachments.size(); ++i)
+        if (scene.attachments[i].cloth == settings.name) {
+            const std::string location = scene.source.string() + ": attachments[" + std::to_string(i) + "]";
+            require_method_supports(scene.solver.method, scene.attachments[i], location);
+            attachments_.emplace_back(scene.attachments[i], state_.positions, colliders, location);
+        }
+
+    masses_ = rest_->vertex_areas();
+    for (double& mass : masses_)
+        mass *= state_.fabric.areal_density;
+    air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
+    garment::StrainLimit::Settings limit;
+    limit.limit = state_.fabric.strain_limit;
+    strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, limit, source_);
+}
+
+std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies()
+{
+    const garment::Fabric& fabric = state_.fabric;
+    const auto membrane = std::make_shared<garment::Membrane>(
+        rest_, garment::Membrane::Settings{fabric.stretch_warp, fabric.stretch_weft, fabric.shear}, source_);
+    std::vector<std::shared_ptr<Energy>> energies{membrane};
+    if (fabric.bend_warp > 0.0 || fabric.bend_weft > 0.0) {
+        const auto bending = std::make_shared<garment::Bending>(
+            rest_, garment::Bending::Settings{fabric.bend_warp, fabric.bend_weft}, source_);
+        bending->leave_to(hessian_diagonal(*membrane, vertex_count()));
+        energies.push_back(bending);
+    }
+    add_springs(energies);
+
+    garment::StretchTension::Settings tension;
+    tension.limit = fabric.strain_limit;
+    tension.stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+    tension_ = std::make_shared<garment::StretchTension>(rest_, tension);
+    strain_limit_->set_tension(tension_);
+    energies.push_back(tension_);
+    return energies;
+}
+
+void SceneCloth::add_springs(std::vector<std::shared_ptr<Energy>>& energies)
+{
+    std::vector<garment::Springs::Spring> springs;
+    for (const AttachmentConstraint& attachment : attachments_)
+        if (attachment.stiffness())
+            for (const int v : attachment.vertices())
+                springs.push_back({v, *attachment.stiffness()});
+    if (springs.empty())
+        return;
+    springs_ = std::make_shared<garment::Springs>(std::move(springs));
+    energies.push_back(springs_);
+}
+
+void SceneCloth::add_loads(garment::DeviceLoads& loads, int first_vertex) const
+{
+    loads.add(*rest_, masses_, state_.fabric.damping, first_vertex);
+}
+
+garment::ClothModel SceneCloth::model() const
+{
+    const garment::Fabric& fabric = state_.fabric;
+    garment::ClothModel cloth;
+    cloth.masses = masses_;
+    cloth.rest = rest_;
+    cloth.stretch = {fabric.stretch_warp, fabric.stretch_weft, fabric.shear};
+    cloth.bending = {fabric.bend_warp, fabric.bend_weft};
+    return cloth;
+}
+
+void SceneCloth::begin_step(View<const Vec3> x)
+{
+    if (tension_)
+        tension_->begin_step(x);
+}
+
+void SceneCloth::take(View<const Vec3> x) { state_.positions.assign(x.begin(), x.end()); }
+
+void SceneCloth::forget()
+{
+    if (tension_)
+        tension_->forget();
+}
+
+std::vector<char> SceneCloth::exactly_attached() const
+{
+    std::vector<char> attached(state_.positions.size(), 0);
+    for (const AttachmentConstraint& attachment : attachments_)
+        if (!attachment.stiffness())
+            for (const int v : attachment.vertices())
+                attached[v] = 1;
+    return attached;
+}
+
+void SceneCloth::mark_fixed(double t_t1, View<unsigned char> fixed) const
+{
+    std::fill(fixed.begin(), fixed.end(), 0);
+    for (const AttachmentConstraint& attachment : attachments_)
+        if (!attachment.stiffness() && attachment.is_active_at(t_t1))
+            for (const int v : attachment.vertices())
+                fixed[v] = 1;
+}
+
+void SceneCloth::update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets)
+{
+    int next_spring = 0;
+    for (AttachmentConstraint& attachment : attachments_) {
+        const int count = int(attachment.vertices().size()), spring = next_spring;
+        next_spring += attachment.stiffness() ? count : 0;
+        if (!attachment.is_active_at(t_t1)) {
+            for (int k = spring; k < next_spring; ++k)
+                springs_->release(k);
+            continue;
+        }
+        attachment.follow(t_t1, colliders);
+        parallel_for(kCpu, "scenes/attachment_targets", count, [&](int k) {
+            if (attachment.stiffness())
+                springs_->set_target(spring + k, attachment.target(k));
+            else
+                targets[attachment.vertices()[k]] = attachment.target(k);
+        });
+    }
+}
+
+void SceneCloth::accelerate(double dt, double t_t1, View<const Vec3> x, View<const Vec3> v,
+                            View<Vec3> acceleration)
+{
+    const garment::FallDamped fall{gravity_, v, acceleration};
+    const double decay = garment::FallDamped::decay(state_.fabric.damping, dt);
+    parallel_for(kCpu, "scenes/accelerate", v.size(), [&](int i) { fall.at(i, decay); });
+    if (!air_->is_active())
+        return;
+    if (gusts_.are_active()) {
+        gusts_at_.resize(v.size());
+        gusts_.sample(x, t_t1, gusts_at_);
+    }
+    air_->add_acceleration(x, v, masses_, wind_.velocity, dt, acceleration, gusts_at_);
+}
+
+bool SceneCloth::is_disturbed(double t) const
+{
+    return wind_.velocity.norm() > 0.0 ||
+           std::any_of(attachments_.begin(), attachments_.end(),
+                       [&](const AttachmentConstraint& attachment) { return attachment.changes_at(t); });
+}
+
+} // namespace toile::scenes

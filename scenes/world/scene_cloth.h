@@ -1,0 +1,97 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/pd/energy/energy.h"
+#include "garment/energy/air/aerodynamics.h"
+#include "garment/energy/air/gusts.h"
+#include "garment/energy/cloth_model.h"
+#include "garment/energy/springs.h"
+#include "garment/energy/strain_limit/strain_limit.h"
+#include "scenes/colliders/attachment_constraint.h"
+#include "scenes/world/cloth_state.h"
+#include "scenes/world/world_options.h"
+
+namespace toile::garment {
+class DeviceLoads;
+} // namespace toile::garment
+
+namespace toile::scenes {
+
+/// Aerodynamic settings of a scene's cloth, without gusts.
+garment::AirSettings air_of(const Scene& scene);
+/// Gusts of a wind; zero without turbulence.
+garment::Gusts gusts_of(const scene::Wind& wind);
+
+/// One cloth of a running scene: its fabric as energies, its attachments, the air around it, its strain
+/// limit. Its ClothGroup moves it; all arrays here are of the cloth's vertices.
+class SceneCloth {
+public:
+    /// @throws InvalidInput for a mesh, fabric or attachment that does not work.
+    SceneCloth(const Scene& scene, const scene::Cloth& settings, const std::vector<Collider>& colliders,
+               const WorldOptions& options);
+
+    const ClothState& state() const { return state_; }
+    int vertex_count() const { return int(state_.positions.size()); }
+    const std::string& source() const { return source_; } ///< name in errors
+    const std::shared_ptr<const garment::RestShape>& rest_shape() const { return rest_; }
+
+    const std::vector<double>& masses() const { return masses_; } ///< [vertices] [kg]
+
+    /// Makes the energies of projective dynamics. Call once: the strain limit is connected to the tension
+    /// among them.
+    std::vector<std::shared_ptr<Energy>> make_energies();
+
+    /// Adds the forces of accelerate() to the loads of a body on a GPU.
+    void add_loads(garment::DeviceLoads& loads, int first_vertex) const;
+
+    /// Model of the cloth for a method that replaces the minimiser.
+    garment::ClothModel model() const;
+
+    /// [vertices] nonzero for those with an exact attachment, now or later.
+    std::vector<char> exactly_attached() const;
+
+    /// Marks the vertices whose position is prescribed at time t_t1 [s]; clears the others.
+    void mark_fixed(double t_t1, View<unsigned char> fixed) const;
+
+    /// Sets the targets of attached vertices at time t_t1 [s] and moves the anchors of springs. Colliders are
+    /// already advanced.
+    void update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets);
+
+    /// Sets accelerations by gravity, damping and air [m/s^2], for a step of dt [s] that ends at t_t1 [s].
+    void accelerate(double dt, double t_t1, View<const Vec3> x, View<const Vec3> v, View<Vec3> acceleration);
+
+    /// Selects the taut triangles at the start of a step.
+    void begin_step(View<const Vec3> x);
+
+    /// Sets the positions of state().
+    void take(View<const Vec3> x);
+
+    /// Discards data of earlier steps, for cloth that was moved by place().
+    void forget();
+
+    /// True if something other than contact moves it at time t [s].
+    bool is_disturbed(double t) const;
+
+    garment::StrainLimit& strain_limit() { return *strain_limit_; }
+
+private:
+    void add_springs(std::vector<std::shared_ptr<Energy>>& energies);
+
+    ClothState state_;
+    std::string source_;
+    Vec3 gravity_;
+    scene::Wind wind_;
+    garment::Gusts gusts_;
+    std::vector<double> masses_;
+    std::vector<AttachmentConstraint> attachments_;
+    std::shared_ptr<const garment::RestShape> rest_;
+    std::shared_ptr<garment::Springs> springs_; ///< null without attachments by springs
+    std::unique_ptr<garment::Aerodynamics> air_;
+    std::shared_ptr<garment::StretchTension> tension_; ///< null for a baseline method
+    std::unique_ptr<garment::StrainLimit> strain_limit_;
+    std::vector<Vec3> gusts_at_; ///< [vertices] [m/s]; empty in steady wind
+};
+
+} // namespace toile::scenes

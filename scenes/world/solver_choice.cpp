@@ -1,0 +1,83 @@
+#include "scenes/world/solver_choice.h"
+
+#include "core/base/error.h"
+#include "core/linear/direct_solver.h"
+#include "core/quadrature/auto_solver.h"
+#include "core/quadrature/quadrature_solver.h"
+#include "quadrature2d/geodesic_embedding.h"
+#include "scenes/format/field.h"
+
+namespace toile::scenes {
+
+using scene::SolverMethod;
+
+namespace {
+
+/// Quoted names of the methods for which `holds`, for a message.
+template <typename Condition>
+std::string methods_that(const Condition& holds)
+{
+    std::string list;
+    for (const auto& [word, method] : scene_format::Words<SolverMethod>::kAll)
+        if (holds(method))
+            list += (list.empty() ? "\"" : ", \"") + std::string(word) + "\"";
+    return list;
+}
+
+} // namespace
+
+std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest)
+{
+    return quadrature2d::geodesic_embedding(
+        rest.vertex_count(), quadrature2d::surface_metric(rest.triangles, rest.edges, rest.topology));
+}
+
+std::unique_ptr<GlobalSolver> make_global_solver(SolverMethod method,
+                                                 std::shared_ptr<const garment::RestShape> rest,
+                                                 const TriangleMesh& start, const std::string& source,
+                                                 const TableSource& tables, const BaselineMethods* baselines)
+{
+    switch (method) {
+    case SolverMethod::Direct:
+        return std::make_unique<DirectSolver>();
+    case SolverMethod::Quadrature:
+        return std::make_unique<QuadratureSolver>(embedding_of(*rest), QuadratureSolver::Settings{},
+                                                  tables.store, tables.listener);
+    case SolverMethod::Auto:
+        return std::make_unique<AutoSolver>([rest = std::move(rest)] { return embedding_of(*rest); },
+                                            tables.store, tables.listener.warn);
+    default:
+        return baselines->make_global_solver(method, start, source);
+    }
+}
+
+bool is_baseline(SolverMethod method)
+{
+    return method != SolverMethod::Auto && method != SolverMethod::Direct &&
+           method != SolverMethod::Quadrature;
+}
+
+bool replaces_minimiser(SolverMethod method)
+{
+    return method == SolverMethod::Xpbd || method == SolverMethod::Vbd;
+}
+
+void require_methods(const Scene& scene, const BaselineMethods* baselines)
+{
+    const SolverMethod method = scene.solver.method;
+    if (baselines == nullptr && is_baseline(method))
+        throw InvalidInput(scene.source.string() + ": solver.method \"" + scene_format::word_of(method) +
+                           "\" is a baseline to compare with; run it with toile-bench simulate, or choose " +
+                           methods_that([](SolverMethod other) { return !is_baseline(other); }));
+}
+
+void require_method_supports(SolverMethod method, const scene::Attachment& attachment,
+                             const std::string& location)
+{
+    if (attachment.stiffness && replaces_minimiser(method))
+        throw InvalidInput(location + ".stiffness: solver.method \"" + scene_format::word_of(method) +
+                           "\" knows no springs; remove the key to hold the vertices exactly, or choose " +
+                           methods_that([](SolverMethod other) { return !replaces_minimiser(other); }));
+}
+
+} // namespace toile::scenes

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/linear/global_solver.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/quadrature/tables/table_store.h"
+#include "garment/energy/rest_shape.h"
+#include "scenes/format/scene.h"
+#include "scenes/world/baseline_methods.h"
+
+namespace toile::scenes {
+
+/// Source of a solver's quadrature tables, and listener to their construction.
+struct TableSource {
+    std::shared_ptr<TableStore> store = TableStore::of_process();
+    TableListener listener;
+};
+
+/// Makes the global solver of a scene's method.
+/// @param rest       kept by auto, which may need it later
+/// @param start      the cloth as placed, its rest shape in space
+/// @param tables     used by quadrature and auto; auto builds in the background and reports no progress
+/// @param baselines  null: none; see require_methods()
+/// @throws InvalidInput naming `source` if the method does not support this cloth
+std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method,
+                                                 std::shared_ptr<const garment::RestShape> rest,
+                                                 const TriangleMesh& start, const std::string& source,
+                                                 const TableSource& tables, const BaselineMethods* baselines);
+
+/// Embedded points of a cloth's vertices for quadrature.
+std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest);
+
+/// True for methods of the literature, included for comparison.
+bool is_baseline(scene::SolverMethod method);
+
+/// True for baselines that replace Body altogether.
+bool replaces_minimiser(scene::SolverMethod method);
+
+/// @throws InvalidInput if the scene's method is a baseline and there are none
+void require_methods(const Scene& scene, const BaselineMethods* baselines);
+
+/// @param location  of the attachment in its file, for the message
+/// @throws InvalidInput if the method does not support attachments of this kind
+void require_method_supports(scene::SolverMethod method, const scene::Attachment& attachment,
+                             const std::string& location);
+
+} // namespace toile::scenes

@@ -1,0 +1,175 @@
+#include "scenes/world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/compute/cuda/runtime/device.h"
+#include "core/compute/parallel.h"
+#include "scenes/world/cloth_group.h"
+#include "scenes/world/solver_choice.h"
+#include "scenes/world/start_pose.h"
+
+namespace toile::scenes {
+
+namespace {
+
+long vertex_count(const std::vector<SceneCloth>& cloths)
+{
+    long count = 0;
+    for (const SceneCloth& cloth : cloths)
+        count += cloth.vertex_count();
+    return count;
+}
+
+} // namespace
+
+struct World::Parts {
+    Scene scene;
+    std::shared_ptr<const CudaSpace> space; ///< null: the CPU
+    std::vector<Collider> colliders;
+    std::vector<ClothGroup> groups;
+    std::vector<ClothState> states;
+    collision::StartReport start;
+    Stages stages;
+    bool is_shown = true; ///< states are up to date
+    int frame = 0;
+
+    double dt() const { return scene.frame_duration() / scene.solver.substeps; }
+    int settle_steps() const { return int(std::ceil(scene.settle / dt() - 1e-9)); }
+
+    /// Takes steps of dt [s], the last of them ending at `end` [s]. Avatars do not move before time 0.
+    StepReport advance(int steps, double dt, double end)
+    {
+        const ThreadLimit threads(scene.solver.threads);
+        const Stages::Activate recording(stages);
+        StepReport total;
+        for (int step = 1; step <= steps; ++step) {
+            const double t = end - (steps - step) * dt;
+            const StageScope stage("scenes/step");
+            for (Collider& collider : colliders)
+                collider.advance_to(std::max(t, 0.0));
+            StepReport report;
+            for (ClothGroup& group : groups)
+                report.merge(group.step(dt, t, colliders));
+            report.steps = 1;
+            total.energy = 0.0;
+            total.contacts = 0;
+            total.merge(report);
+            if (total.status == StepReport::Status::NonFinite)
+                break;
+        }
+        is_shown = false;
+        if (!space)
+            show();
+        return total;
+    }
+
+    /// Updates states from the groups. Positions on a GPU are copied only on request.
+    void show()
+    {
+        if (is_shown)
+            return;
+        int cloth = 0;
+        for (const ClothGroup& group : groups)
+            for (int i = 0; i < int(group.cloths().size()); ++i) {
+                const View<const Vec3> x = group.positions_of(i);
+                states[cloth++].positions.assign(x.begin(), x.end());
+            }
+        for (const ClothGroup& group : groups)
+            if (const SceneSolids* solids = group.solids())
+                for (int i = 0; i < solids->count(); ++i)
+                    states[cloth++].positions = solids->positions(i);
+        is_shown = true;
+    }
+};
+
+World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make_unique<Parts>())
+{
+    require_methods(scene, options.baselines);
+    parts_->scene = scene;
+    for (const scene::Avatar& avatar : scene.avatars)
+        parts_->colliders.emplace_back(avatar, scene.contact.friction);
+    parts_->space = open_backend(options.backend, options.device, scene, options.warn);
+    std::vector<SceneCloth> cloths = make_cloths(scene, parts_->colliders, options);
+    if (options.backend == Backend::Auto)
+        parts_->space = space_with_capacity(parts_->space, vertex_count(cloths), options.warn);
+    parts_->groups = make_groups(scene, std::move(cloths), parts_->colliders, options, parts_->space.get());
+
+    const ThreadLimit threads(scene.solver.threads);
+    const Stages::Activate recording(parts_->stages);
+    parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders);
+    for (const ClothGroup& group : parts_->groups)
+        for (const SceneCloth& cloth : group.cloths())
+            parts_->states.push_back(cloth.state());
+    for (const ClothGroup& group : parts_->groups)
+        if (const SceneSolids* solids = group.solids())
+            for (int i = 0; i < solids->count(); ++i)
+                parts_->states.push_back(solids->state(i));
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+void World::place(int cloth, View<const Vec3> positions)
+{
+    int member = cloth;
+    for (ClothGroup& group : parts_->groups) {
+        if (member < int(group.cloths().size())) {
+            group.place(member, positions);
+            break;
+        }
+        member -= int(group.cloths().size());
+    }
+    parts_->is_shown = false;
+    parts_->show();
+}
+
+void World::prepare()
+{
+    const ThreadLimit threads(parts_->scene.solver.threads);
+    const Stages::Activate recording(parts_->stages);
+    const double dt = parts_->dt();
+    const int steps = parts_->settle_steps();
+    const double first_end = steps > 0 ? -(steps - 1) * dt : dt;
+    for (ClothGroup& group : parts_->groups)
+        group.prepare(dt, first_end);
+}
+
+StepReport World::settle() { return parts_->advance(parts_->settle_steps(), parts_->dt(), 0.0); }
+
+StepReport World::advance_frame()
+{
+    const Scene& scene = parts_->scene;
+    ++parts_->frame;
+    return parts_->advance(scene.solver.substeps, parts_->dt(), parts_->frame * scene.frame_duration());
+}
+
+int World::frame() const { return parts_->frame; }
+int World::frame_count() const { return parts_->scene.frames; }
+View<const ClothState> World::surfaces() const
+{
+    const Stages::Activate recording(parts_->stages);
+    parts_->show();
+    return parts_->states;
+}
+View<const ClothState> World::cloths() const
+{
+    return surfaces().subview(0, int(parts_->scene.cloths.size()));
+}
+std::shared_ptr<const Snapshot> World::snapshot() const
+{
+    auto snapshot = std::make_shared<Snapshot>();
+    for (const ClothGroup& group : parts_->groups)
+        group.add_cloths_to(*snapshot);
+    for (const ClothGroup& group : parts_->groups)
+        if (const SceneSolids* solids = group.solids())
+            for (int i = 0; i < solids->count(); ++i)
+                snapshot->add(solids->positions(i));
+    return snapshot;
+}
+const collision::StartReport& World::start() const { return parts_->start; }
+const CudaDevice* World::device() const { return parts_->space ? &parts_->space->device() : nullptr; }
+const Stages& World::stages() const { return parts_->stages; }
+
+} // namespace toile::scenes

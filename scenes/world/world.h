@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+
+#include "collision/repair/start_report.h"
+#include "core/base/stages.h"
+#include "core/pd/step/step_report.h"
+#include "scenes/format/scene.h"
+#include "scenes/world/cloth_state.h"
+#include "scenes/world/snapshot.h"
+#include "scenes/world/world_options.h"
+
+namespace toile {
+struct CudaDevice;
+} // namespace toile
+
+namespace toile::scenes {
+
+/// A running scene: avatars, cloths, solids, contact and the time-step loop. The only class that combines
+/// them all.
+///
+/// Sample k belongs to time k / fps. Each sample takes Solver::substeps implicit Euler steps; stages that the
+/// scene does not need are never entered (stages() shows it).
+class World {
+public:
+    /// Loads and places everything, and repairs a start pose with cloth inside avatars or through cloth
+    /// (docs/theory/start_repair.md). Nothing is simulated or factored yet.
+    /// @throws InvalidInput for unusable files, materials and selections; also as open_backend().
+    explicit World(const Scene& scene, const WorldOptions& options = {});
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    /// Moves the vertices of a cloth to new positions, however far from its rest shape; velocities are kept.
+    /// @param positions  [vertices] of that cloth [m]
+    void place(int cloth, View<const Vec3> positions);
+
+    /// Prepares the global solvers, which the first step would otherwise do: factors, and the tables of
+    /// quadrature, seconds for 10 000 vertices. A step prepares again if attachments are released during the
+    /// run.
+    /// @throws Cancelled if WorldOptions::building returns false. settle() and advance_frame() throw it too;
+    ///         the sample in progress is then lost.
+    void prepare();
+
+    /// Simulates Scene::settle seconds with every avatar in its first pose. Call before sample 0 is taken.
+    StepReport settle();
+
+    /// Simulates up to the next sample.
+    StepReport advance_frame();
+
+    int frame() const;       ///< current sample; starts at 0
+    int frame_count() const; ///< samples of the scene
+
+    /// States of the cloths at the current sample. On a GPU the call copies the positions and waits for them:
+    /// views taken earlier keep old positions until then, and only one thread may call at a time.
+    /// @throws DeviceError if the GPU no longer responds
+    View<const ClothState> cloths() const;
+
+    /// States of all cloths and then all solids, each in the order of the scene. See cloths().
+    View<const ClothState> surfaces() const;
+
+    /// Current positions of surfaces(), without waiting for a GPU. Must not outlive the World.
+    std::shared_ptr<const Snapshot> snapshot() const;
+
+    /// Defects of the start pose, and those that its repair left. Cloths and bodies are numbered as in
+    /// Scene::cloths and Scene::avatars.
+    const collision::StartReport& start() const;
+
+    /// GPU on which it runs; null: the CPU.
+    const CudaDevice* device() const;
+
+    /// Calls and seconds of every stage so far.
+    const Stages& stages() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+} // namespace toile::scenes

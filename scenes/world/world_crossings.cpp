@@ -1,0 +1,19 @@
+#include "scenes/world/world_crossings.h"
+
+#include "collision/check/find_crossings.h"
+
+namespace toile::scenes {
+
+int crossing_count(const World& world)
+{
+    std::vector<Triangle> triangles;
+    std::vector<Vec3> x;
+    for (const ClothState& cloth : world.cloths()) {
+        for (const Triangle& t : cloth.triangles)
+            triangles.push_back(t + Triangle::Constant(int(x.size())));
+        x.insert(x.end(), cloth.positions.begin(), cloth.positions.end());
+    }
+    return int(collision::find_crossings(triangles, x).size());
+}
+
+} // namespace toile::scenes

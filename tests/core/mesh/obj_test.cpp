@@ -1,0 +1,182 @@
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/mesh/obj.h"
+#include "core/mesh/triangle_mesh.h"
+#include "tests/core/mesh/meshes.h"
+
+namespace toile::test {
+
+namespace {
+
+using test::message_of;
+
+/// OBJ file of the given text, removed at the end of the test.
+class ObjFile {
+public:
+    explicit ObjFile(const std::string& text = {})
+        : path_(std::filesystem::path(testing::TempDir()) / ("toile-" + std::to_string(::getpid()) + ".obj"))
+    {
+        std::ofstream(path_, std::ios::binary) << text;
+    }
+    ~ObjFile() { std::filesystem::remove(path_); }
+    ObjFile(const ObjFile&) = delete;
+    ObjFile& operator=(const ObjFile&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+using Polygons = std::vector<std::vector<int>>;
+
+ObjMesh read_text(const std::string& text) { return read_obj(ObjFile(text).path()); }
+
+/// Refusal of a file of this text, after its "path:".
+std::string refusal(const std::string& text)
+{
+    const ObjFile file(text);
+    const std::string message = message_of([&] { read_obj(file.path()); });
+    const std::string prefix = file.path().string() + ":";
+    return message.compare(0, prefix.size(), prefix) == 0 ? message.substr(prefix.size())
+                                                          : "no place: " + message;
+}
+
+const std::string kThreeVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+} // namespace
+
+TEST(ReadObj, KeepsOrderQuadsAndTexture)
+{
+    const ObjMesh mesh = read_text("# a quad and a triangle\n"
+                                   "o thing\n"
+                                   "v 3 0 0\nv 2 0.5 0 1.0\nv -1e-3 0 0\r\nv 0 4 0\nv 0 0 5\n"
+                                   "vt 0 0.25\nvt 1 0 0\nvt 1 1\n"
+                                   "vn 0 1 0\n"
+                                   "\n"
+                                   "f 1/1/1 2/2/1 3/3/1 4/1/1\n"
+                                   "  f\t5/3 1/1 3/2 \r\n");
+    ASSERT_EQ(mesh.positions.size(), 5u);
+    EXPECT_EQ(mesh.positions[0], Vec3(3, 0, 0));
+    EXPECT_EQ(mesh.positions[1], Vec3(2, 0.5, 0));
+    EXPECT_EQ(mesh.positions[2], Vec3(-1e-3, 0, 0));
+    ASSERT_EQ(mesh.texture_coordinates.size(), 3u);
+    EXPECT_EQ(mesh.texture_coordinates[0], Vec2(0, 0.25));
+    EXPECT_EQ(mesh.polygons, (Polygons{{0, 1, 2, 3}, {4, 0, 2}}));
+    EXPECT_EQ(mesh.polygon_uvs, (Polygons{{0, 1, 2, 0}, {2, 0, 1}}));
+    EXPECT_EQ(mesh.triangulated().triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {4, 0, 2}}));
+}
+
+TEST(ReadObj, CountsNegativeIndicesFromTheLineTheyStandOn)
+{
+    const ObjMesh mesh =
+        read_text(kThreeVertices + "vt 0 0\nf -3/-1 -2/-1 -1/-1\nv 9 9 9\nf -4/1 -2/1 -1/1\n");
+    EXPECT_EQ(mesh.polygons, (Polygons{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(mesh.polygon_uvs, (Polygons{{0, 0, 0}, {0, 0, 0}}));
+}
+
+TEST(ReadObj, DropsTextureThatSomeFacesLack)
+{
+    const ObjMesh mesh = read_text(kThreeVertices + "vt 0 0\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\n");
+    EXPECT_EQ(mesh.polygons.size(), 2u);
+    EXPECT_TRUE(mesh.polygon_uvs.empty());
+}
+
+TEST(ReadObj, NamesTheLineOfEachMistake)
+{
+    EXPECT_EQ(refusal("v 0 0 0\nv 0 x 0\n"), "2: 'x' is not a finite number; write a decimal number");
+    EXPECT_EQ(refusal("v 0 0\n"), "1: '' is not a finite number; write a decimal number");
+    EXPECT_EQ(refusal("v 0 0 1,5\n"), "1: '1,5' is not a finite number; write a decimal number");
+    EXPECT_EQ(refusal("\nv nan 0 0\n"), "2: 'nan' is not a finite number; write a decimal number");
+    EXPECT_EQ(refusal("v 1e999 0 0\n"), "1: '1e999' is not a finite number; write a decimal number");
+    EXPECT_EQ(refusal("vt 0\n"), "1: '' is not a finite number; write a decimal number");
+
+    const std::string& v = kThreeVertices;
+    EXPECT_EQ(refusal(v + "f 1 2 4\n"), "4: vertex index '4' is out of range; 3 are defined above this line");
+    EXPECT_EQ(refusal(v + "f 0 1 2\n"), "4: vertex index '0' is out of range; 3 are defined above this line");
+    EXPECT_EQ(refusal(v + "f 1 2 -4\n"),
+              "4: vertex index '-4' is out of range; 3 are defined above this line");
+    EXPECT_EQ(refusal(v + "f 1 2 2.5\n"),
+              "4: vertex index '2.5' is out of range; 3 are defined above this line");
+    EXPECT_EQ(refusal(v + "f 1/1 2/1 3/1\n"),
+              "4: texture index '1' is out of range; 0 are defined above this line");
+    EXPECT_EQ(refusal(v + "f 1 2\n"), "4: the face has 2 corners; it needs at least 3");
+    EXPECT_EQ(refusal(v + "f\n"), "4: the face has 0 corners; it needs at least 3");
+    EXPECT_EQ(refusal(v + "vt 0 0\nf 1/1 2 3/1\n"),
+              "5: some corners of the face have a texture index and some have none; give all or none");
+}
+
+TEST(ReadObj, NamesAFileThatIsMissingOrAFolder)
+{
+    EXPECT_EQ(message_of([] { read_obj("no/such.obj"); }),
+              "no/such.obj: can't be opened; check the path and its permissions");
+    EXPECT_EQ(message_of([] { read_obj("/"); }), "/: can't be read; give a file, not a folder");
+}
+
+TEST(WriteObj, RoundTripKeepsOrderQuadsAndTexture)
+{
+    ObjMesh mesh;
+    mesh.positions = {{1.0 / 3.0, -2e-7, 123456.789}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {2, 2, 2}};
+    mesh.texture_coordinates = {{0.125, 0.5}, {1, 0}};
+    mesh.polygons = {{3, 2, 1, 0}, {4, 0, 2}};
+    mesh.polygon_uvs = {{0, 1, 0, 1}, {1, 1, 0}};
+    const ObjFile file;
+    write_obj(file.path(), mesh);
+    const ObjMesh again = read_obj(file.path());
+
+    ASSERT_EQ(again.positions.size(), mesh.positions.size());
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+        EXPECT_LE((again.positions[i] - mesh.positions[i]).norm(), 5e-9 * mesh.positions[i].norm());
+    EXPECT_EQ(again.texture_coordinates, mesh.texture_coordinates);
+    EXPECT_EQ(again.polygons, mesh.polygons);
+    EXPECT_EQ(again.polygon_uvs, mesh.polygon_uvs);
+}
+
+TEST(WriteObj, OfTrianglesReadsBackAsTheSameTriangles)
+{
+    const TriangleMesh mesh = subdivide(test::tetrahedron(), 2);
+    const ObjFile file;
+    write_obj(file.path(), mesh);
+    const TriangleMesh again = read_obj(file.path()).triangulated();
+    EXPECT_EQ(again.positions, mesh.positions); // multiples of 1/4 are exact in nine digits
+    EXPECT_EQ(again.triangles, mesh.triangles);
+}
+
+TEST(ReadObj, ReadsTheRealGarmentsAndBodies)
+{
+    struct Known {
+        const char* name;
+        int vertices, triangles;
+    };
+    for (const Known& known :
+         {Known{"cloth/cipc_tablecloth.obj", 14161, 27848}, Known{"cloth/cipc_skirt32x128.obj", 4096, 7936},
+          Known{"colliders/cipc_bowl.obj", 1196, 2330}, Known{"bodies/smpl_f_template.obj", 6890, 13776}}) {
+        const auto mesh = test::real_mesh(known.name);
+        if (!mesh)
+            GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no " << known.name;
+        EXPECT_EQ(mesh->vertex_count(), known.vertices) << known.name;
+        EXPECT_EQ(mesh->triangle_count(), known.triangles) << known.name;
+        EXPECT_NO_THROW(require_usable(*mesh, known.name));
+    }
+}
+
+TEST(ReadObj, KeepsTextureOfTheRealCow)
+{
+    const std::filesystem::path file =
+        std::filesystem::path(TOILE_DATA_DIR) / "colliders/spot_triangulated.obj";
+    if (!std::filesystem::exists(file))
+        GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no colliders/spot_triangulated.obj";
+    const ObjMesh mesh = read_obj(file);
+    EXPECT_EQ(mesh.texture_coordinates.size(), 3225u);
+    EXPECT_EQ(mesh.polygon_uvs.size(), 5856u);
+    EXPECT_EQ(mesh.positions[0], Vec3(0.348799, -0.334989, -0.0832331)) << "first line stays first";
+}
+
+} // namespace toile::test

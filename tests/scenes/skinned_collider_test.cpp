@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/base/stages.h"
+#include "scenes/colliders/collider.h"
+
+namespace toile::test {
+
+using namespace avatars;
+using namespace collision;
+using namespace scenes;
+
+namespace {
+
+/// Square column of tests/avatars, 1 m high, whose tip bends for a second.
+scene::Avatar bending_column()
+{
+    scene::Avatar avatar;
+    avatar.name = "column";
+    avatar.shape = std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf";
+    avatar.clip = "bend";
+    return avatar;
+}
+
+std::vector<Vec3> copy_of(View<const Vec3> x) { return {x.begin(), x.end()}; }
+
+TEST(SkinnedCollider, GivesSingleVerticesAndLidsLikeTheWholePose)
+{
+    scene::Avatar settings = bending_column();
+    settings.exclude_bones = {"tip"};
+    SkinnedCollider skinned(settings, identity_affine());
+    EXPECT_GT(skinned.vertex_count(), skinned.body_vertex_count());
+    EXPECT_TRUE(skinned.advance_to(0.4, identity_affine()));
+    std::vector<Vec3> x(size_t(skinned.vertex_count()));
+    skinned.pose_t1(x);
+    for (int v = 0; v < skinned.vertex_count(); ++v)
+        EXPECT_LT((skinned.vertex_t1(v) - x[size_t(v)]).norm(), 1e-15) << v;
+}
+
+TEST(SkinnedCollider, IsSkinnedOnDemand)
+{
+    Collider avatar(bending_column(), 0.3);
+    const MeshCollider& collider = *avatar.contact_collider().mesh;
+    Stages stages;
+    const Stages::Activate recording(stages);
+    for (const double t : {0.1, 0.2, 0.3})
+        avatar.advance_to(t);
+    EXPECT_TRUE(collider.is_moving());
+    EXPECT_EQ(collider.move_count(), 3);
+    EXPECT_EQ(stages.calls("avatars/skin"), 0);
+
+    const std::vector<Vec3> end = copy_of(collider.x_t1());
+    EXPECT_EQ(stages.calls("avatars/skin"), 2) << "both ends of the step";
+    EXPECT_NE(copy_of(collider.x_t0()), end);
+    EXPECT_EQ(copy_of(collider.surface().positions()), end);
+    EXPECT_EQ(stages.calls("avatars/skin"), 2);
+    EXPECT_EQ(stages.calls("collision/refit"), 1);
+
+    avatar.advance_to(0.4);
+    EXPECT_EQ(copy_of(collider.x_t0()), end);
+    EXPECT_NE(copy_of(collider.x_t1()), end);
+}
+
+TEST(SkinnedCollider, BoundsTheMotionSinceTheLastQuery)
+{
+    Collider avatar(bending_column(), 0.3);
+    const MeshCollider& collider = *avatar.contact_collider().mesh;
+    avatar.advance_to(0.1);
+    const std::vector<Vec3> before = copy_of(collider.x_t1());
+    for (const double t : {0.2, 0.3})
+        avatar.advance_to(t);
+    for (int v = 0; v < collider.x_t1().size(); ++v) {
+        const Vec3 moved = collider.x_t1()[v] - before[size_t(v)];
+        const Bounds* const motion = collider.last_motion().view().around(collider.x_t1()[v]);
+        ASSERT_NE(motion, nullptr);
+        EXPECT_TRUE((moved.array() >= motion->lower.array()).all() &&
+                    (moved.array() <= motion->upper.array()).all())
+            << v;
+    }
+}
+
+TEST(SkinnedCollider, StopsWhereItsClipEnds)
+{
+    Collider avatar(bending_column(), 0.3);
+    const MeshCollider& collider = *avatar.contact_collider().mesh;
+    for (const double t : {0.9, 1.0, 1.1})
+        avatar.advance_to(t);
+    EXPECT_FALSE(avatar.moved());
+    EXPECT_FALSE(collider.is_moving());
+    EXPECT_EQ(collider.move_count(), 2);
+    EXPECT_EQ(copy_of(collider.x_t0()), copy_of(collider.x_t1()));
+    const std::vector<Vec3> end = copy_of(collider.x_t1());
+    Collider bent(bending_column(), 0.3);
+    bent.advance_to(1.0);
+    EXPECT_EQ(copy_of(bent.contact_collider().mesh->x_t1()), end);
+}
+
+TEST(SkinnedCollider, FollowsItsKeyframes)
+{
+    scene::Avatar settings = bending_column();
+    settings.clip = "";
+    scene::Keyframe raised;
+    raised.time = 1.0;
+    raised.translate = {0.0, 0.5, 0.0};
+    settings.keyframes = {scene::Keyframe{}, raised};
+    Collider avatar(settings, 0.3);
+    const MeshCollider& collider = *avatar.contact_collider().mesh;
+    const std::vector<Vec3> start = copy_of(collider.x_t1());
+    avatar.advance_to(0.5);
+    EXPECT_TRUE(avatar.moved());
+    for (size_t v = 0; v < start.size(); ++v)
+        EXPECT_LT((collider.x_t1()[int(v)] - start[v] - Vec3(0, 0.25, 0)).norm(), 1e-15);
+    avatar.advance_to(1.0);
+    avatar.advance_to(1.5);
+    EXPECT_FALSE(avatar.moved()) << "cloth on it may sleep";
+}
+
+} // namespace
+} // namespace toile::test
