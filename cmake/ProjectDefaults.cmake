@@ -54,10 +54,12 @@ target_compile_options(toile_options INTERFACE
     "$<$<COMPILE_LANGUAGE:CUDA>:SHELL:-Werror cross-execution-space-call -Werror all-warnings>"
     "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-Wno-unknown-pragmas>")
 
-# Address and undefined-behaviour sanitizers: the preset "sanitize".
+# Address and undefined-behaviour sanitizers: the preset "sanitize". Checks of every single access (null, alignment,
+# object-size) are left out: they take half of the compiler's time, and the address sanitizer stops at the same.
 option(TOILE_SANITIZE "Stop at memory errors and undefined behaviour" OFF)
 if(TOILE_SANITIZE)
-    set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
+    set(sanitizers -fno-sanitize-recover=all
+        -fsanitize=address,bounds,shift,integer-divide-by-zero,signed-integer-overflow,return,unreachable,bool,enum)
     add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:${sanitizers};-fno-omit-frame-pointer>")
     add_link_options(${sanitizers})
     target_link_options(toile_abi INTERFACE ${sanitizers})

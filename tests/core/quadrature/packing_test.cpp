@@ -38,7 +38,8 @@ struct SplitList {
         scales.resize(packed * scale_count);
         rest_source.resize(rest);
         rest_memory.resize(rest * list.rows * list.row_size / 8);
-        rest_weights = View<float>(rest_memory.data()->value, 8 * int(rest_memory.size()));
+        if (!rest_memory.empty())
+            rest_weights = View<float>(rest_memory.front().value, 8 * int(rest_memory.size()));
         packed_first.resize(list.first.size());
         rest_first.resize(list.first.size());
         parallel_for(kCpu, "test/firsts", list.first.size(),
