@@ -9,8 +9,8 @@ TOILE := build/bin/toile
 # Kernels are compiled for the card that is here; without one only what must work on any machine is.
 CARD := $(shell nvidia-smi -L 2>/dev/null | head -n 1)
 ARCHITECTURES := $(if $(CARD),native,90-real)
-# The demo runs on the CPU unless a GPU is here. GPU=1: compile kernels all the same.
-DEMO_CUDA := $(if $(CARD)$(filter-out 0,$(GPU)),AUTO,OFF)
+# The demo runs on the CPU unless a GPU is here. GPU=1: kernels are compiled all the same.
+DEMO_CUDA := $(if $(filter-out 0,$(GPU)),ON,$(if $(CARD),AUTO,OFF))
 
 # What ships; research and the tests of GPUs would double the time.
 SANITIZED_TESTS := $(addprefix test_,core quadrature2d garment collision avatars export scenes preview)
