@@ -35,7 +35,7 @@ bench: packages ## Build toile-bench, which measures
 
 sanitize: packages ## Debug build with sanitizers: both demos, and the tests that are fast
 	@$(call configure,sanitize,)
-	@cmake --build --preset sanitize --target toile $(SANITIZED_TESTS) -j $(JOBS)
+	@cmake --build --preset sanitize --target odr toile $(SANITIZED_TESTS) -j $(JOBS)
 	@cmake/setup/sanitize.sh build build-sanitize $(JOBS)
 
 build: packages ## Build everything into build/

@@ -30,13 +30,6 @@ function(toile_precompile target owner)
     target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
-# toile_check_odr(<program>)   links it so that two types of one name are an error (TOILE_CHECK_ODR)
-function(toile_check_odr program)
-    if(TOILE_CHECK_ODR)
-        target_link_options(${program} PRIVATE -flto=auto -O0 -Wodr -Werror=odr)
-    endif()
-endfunction()
-
 # add_module(<name> SOURCES ... DEPENDS <our modules> [CUDA <files.cu>] [PUBLIC <targets>] [PRIVATE <targets>])
 #
 # One static library per folder: target toile_<name>, alias toile::<name>. DEPENDS are the only folders whose

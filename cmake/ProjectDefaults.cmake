@@ -65,9 +65,22 @@ if(TOILE_SANITIZE)
     target_link_options(toile_abi INTERFACE ${sanitizers})
 endif()
 
-# Two classes of one name in one program: found by the linker of a build with link-time optimisation.
-option(TOILE_CHECK_ODR "Link the programs with -flto -Wodr" OFF)
+# Two classes of one name in one program: found where their modules are merged by link-time optimisation. Programs are
+# linked from the machine code that the objects hold too.
+option(TOILE_CHECK_ODR "Compile for the target odr" OFF)
 if(TOILE_CHECK_ODR)
     add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-flto;-ffat-lto-objects>")
     add_link_options(-fno-lto)
 endif()
+
+# toile_check_odr(<module>...)   target odr: fails where two types of one name differ in the modules together
+function(toile_check_odr)
+    list(TRANSFORM ARGN PREPEND toile_ OUTPUT_VARIABLE modules)
+    list(TRANSFORM modules REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE archives)
+    set(merged "${PROJECT_BINARY_DIR}/odr.o")
+    add_custom_target(odr
+        COMMAND "${CMAKE_CXX_COMPILER}" -r -nostdlib -flinker-output=rel -flto=auto -O0 -Wodr -Werror=odr
+            -Wl,--whole-archive ${archives} -Wl,--no-whole-archive -o "${merged}"
+        COMMAND "${CMAKE_COMMAND}" -E rm "${merged}"
+        DEPENDS ${modules} VERBATIM COMMENT "One definition of every type")
+endfunction()
