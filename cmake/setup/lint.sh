@@ -47,7 +47,7 @@ tidy_one() {
         return
     fi
     # GCC's warning names are unknown to clang; the count of suppressed warnings is of no interest.
-    clang-tidy -p "$build_folder" --quiet --extra-arg=-Wno-unknown-warning-option "$1" 2> >(
+    clang-tidy -p "$database" --quiet --extra-arg=-Wno-unknown-warning-option "$1" 2> >(
         grep -vE '^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter' >&2 || true
     )
 }
@@ -67,11 +67,17 @@ mapfile -t compiled < <(printf '%s\n' "${sources[@]}" | grep '\.cpp$' |
     while read -r file; do grep -qF "/$file\"" "$build_folder/compile_commands.json" && echo "$file"; done)
 ((${#compiled[@]})) || exit 0
 
-skipped=$(mktemp)
-trap 'rm -f "$skipped"' EXIT
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+skipped=$scratch/skipped
+touch "$skipped"
+
+# GCC's precompiled headers are nothing to clang.
+sed -E 's# -Winvalid-pch -include [^ ]+/cmake_pch\.hxx##' "$build_folder/compile_commands.json" >"$scratch/compile_commands.json"
+database=$scratch
 start=$EPOCHSECONDS
 deadline=$((start + seconds))
-export build_folder deadline skipped
+export database deadline skipped
 good=true
 printf '%s\0' "${compiled[@]}" | xargs -0 -n 1 -P "$jobs" bash -c 'tidy_one "$1"' _ || good=false
 
