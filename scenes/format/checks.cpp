@@ -12,6 +12,7 @@
 #include "scenes/format/field.h"
 #include "scenes/format/names.h"
 #include "scenes/format/scene_fabric.h"
+#include "scenes/format/solver_methods.h"
 
 namespace toile::scene_format {
 
@@ -165,7 +166,7 @@ void check_solids(const Document& document, const scenes::Scene& scene)
         document.refuse(below("contact", "self"),
                         "false leaves solids without contact; remove it or the solids");
     const SolverMethod method = scene.solver.method;
-    if (method == SolverMethod::Xpbd || method == SolverMethod::Vbd)
+    if (replaces_minimiser(method))
         document.refuse(below("solver", "method"),
                         as_written(word_of(method)) +
                             " moves cloth only; choose another method, or remove the " + "solids");

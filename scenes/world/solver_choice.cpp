@@ -51,17 +51,6 @@ std::unique_ptr<GlobalSolver> make_global_solver(SolverMethod method,
     }
 }
 
-bool is_baseline(SolverMethod method)
-{
-    return method != SolverMethod::Auto && method != SolverMethod::Direct &&
-           method != SolverMethod::Quadrature;
-}
-
-bool replaces_minimiser(SolverMethod method)
-{
-    return method == SolverMethod::Xpbd || method == SolverMethod::Vbd;
-}
-
 void require_methods(const Scene& scene, const BaselineMethods* baselines)
 {
     const SolverMethod method = scene.solver.method;

@@ -8,7 +8,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/quadrature/tables/table_store.h"
 #include "garment/energy/rest_shape.h"
-#include "scenes/format/scene.h"
+#include "scenes/format/solver_methods.h"
 #include "scenes/world/baseline_methods.h"
 
 namespace toile::scenes {
@@ -32,12 +32,6 @@ std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method,
 
 /// Embedded points of a cloth's vertices for quadrature.
 std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest);
-
-/// True for methods of the literature, included for comparison.
-bool is_baseline(scene::SolverMethod method);
-
-/// True for baselines that replace Body altogether.
-bool replaces_minimiser(scene::SolverMethod method);
 
 /// @throws InvalidInput if the scene's method is a baseline and there are none
 void require_methods(const Scene& scene, const BaselineMethods* baselines);
