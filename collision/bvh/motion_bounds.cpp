@@ -10,13 +10,9 @@ void MotionBounds::build(View<const Triangle> triangles, View<const Vec3> before
 {
     grid_ = CellGrid(box, MotionView::kReach);
     cell_of_.resize(now.size());
-    cell_bounds_.assign(grid_.cell_count(), Bounds{});
-    motion_.resize(cell_bounds_.size());
-    const MovedMesh mesh{grid_, triangles, before, now, cell_of_, cell_bounds_};
-    parallel_for(kCpu, "collision/vertex_motion", now.size(), AddVertexMotion{mesh});
-    parallel_for(kCpu, "collision/triangle_motion", triangles.size(), AddTriangleMotion{mesh});
-    parallel_for(kCpu, "collision/spread_motion", int(cell_bounds_.size()),
-                 SpreadMotion{grid_, cell_bounds_, motion_});
+    cell_bounds_.resize(grid_.cell_count());
+    motion_.resize(grid_.cell_count());
+    find_motion(kCpu, {grid_, triangles, before, now, cell_of_, cell_bounds_}, motion_);
 }
 
 } // namespace toile::collision

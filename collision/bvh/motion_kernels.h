@@ -91,4 +91,16 @@ struct SpreadMotion {
     }
 };
 
+/// Computes the bounds of a moved mesh; parallel_for of the space is included before.
+/// @param motion  [cells] out, see MotionView [m]
+template <class Space>
+void find_motion(const Space& space, const MovedMesh& mesh, View<Bounds> motion)
+{
+    parallel_for(space, "collision/clear_motion", mesh.cell_bounds.size(), ClearMotion{mesh.cell_bounds});
+    parallel_for(space, "collision/vertex_motion", mesh.now.size(), AddVertexMotion{mesh});
+    parallel_for(space, "collision/triangle_motion", mesh.triangles.size(), AddTriangleMotion{mesh});
+    parallel_for(space, "collision/spread_motion", motion.size(),
+                 SpreadMotion{mesh.grid, mesh.cell_bounds, motion});
+}
+
 } // namespace toile::collision

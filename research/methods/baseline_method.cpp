@@ -1,6 +1,6 @@
 #include "research/methods/baseline_method.h"
 
-#include "core/pd/step/step_end.h"
+#include "core/base/stages.h"
 
 namespace toile::research {
 
@@ -19,7 +19,7 @@ StepReport BaselineMethod::step(double dt, View<const Vec3> acceleration,
     if (active)
         active->resolve(x_t1_, v_);
     if (projection)
-        StepEnd(x_t1_, v_, cloth_.masses, fixed, dt).project(*projection, active);
+        project(dt, fixed, active, *projection);
     if (active) {
         // Let contact take precedence where limit and contact contradict each other.
         if (projection)
@@ -29,6 +29,17 @@ StepReport BaselineMethod::step(double dt, View<const Vec3> acceleration,
     }
     x_.swap(x_t1_);
     return report;
+}
+
+/// Applies the limit, and contact between its sweeps.
+void BaselineMethod::project(double dt, View<const unsigned char> fixed, const ActiveSetEnergy* active,
+                             StepProjection& projection)
+{
+    const StageScope stage("pd/limits");
+    std::function<bool()> clear_contacts;
+    if (active)
+        clear_contacts = [&] { return active->sweep_once(x_t1_); };
+    PointMassesOnHost::project(projection, dt, cloth_.masses, fixed, clear_contacts);
 }
 
 /// Begins contact with inertia as the diagonal that scales it, since these methods have no H.

@@ -41,6 +41,8 @@ protected:
 private:
     void begin_contact(double dt, View<const Vec3> acceleration, View<const unsigned char> fixed,
                        View<const Vec3> targets, ActiveSetEnergy& active);
+    void project(double dt, View<const unsigned char> fixed, const ActiveSetEnergy* active,
+                 StepProjection& projection);
 
     std::vector<Vec3> reach_;      ///< [vertices] q*, end of the contact query [m]
     std::vector<double> diagonal_; ///< [vertices] M / dt^2 [N/m]

@@ -17,14 +17,10 @@ void DeviceMotionBounds::build(View<const Triangle> triangles, View<const Vec3> 
 {
     grid_ = CellGrid(box, MotionView::kReach);
     const int cells = grid_.cell_count();
-    const MovedMesh mesh{
-        grid_, triangles, before, now, first_items(cell_of_, now.size()), first_items(cell_bounds_, cells)};
-    first_items(motion_, cells);
-    parallel_for(space_, "collision/device_clear_motion", cells, ClearMotion{mesh.cell_bounds});
-    parallel_for(space_, "collision/device_vertex_motion", now.size(), AddVertexMotion{mesh});
-    parallel_for(space_, "collision/device_triangle_motion", triangles.size(), AddTriangleMotion{mesh});
-    parallel_for(space_, "collision/device_spread_motion", cells,
-                 SpreadMotion{grid_, mesh.cell_bounds, motion_.view()});
+    find_motion(
+        space_,
+        {grid_, triangles, before, now, first_items(cell_of_, now.size()), first_items(cell_bounds_, cells)},
+        first_items(motion_, cells));
 }
 
 } // namespace toile::collision

@@ -4,8 +4,6 @@
 
 #include "core/base/error.h"
 #include "core/compute/cuda/parallel.cuh"
-#include "core/pd/step/step_end.h"
-#include "core/pd/step/step_passes.h"
 
 namespace toile {
 
@@ -91,99 +89,54 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
                             View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     const StageScope stage("pd/device_step");
-    DeviceStepProjection* limits = projection ? projection->on_device(space_) : nullptr;
-    if (projection && limits == nullptr)
+    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
+                     {settings_.max_iterations, settings_.max_passes});
+}
+
+void DeviceBody::begin(const StepInput& input)
+{
+    if (input.projection && input.projection->on_device(space_) == nullptr)
         throw InvalidInput("this constraint does not run on a GPU");
-    if (active && active->on_device(space_) == nullptr)
+    if (input.active && input.active->on_device(space_) == nullptr)
         throw InvalidInput("this contact does not run on a GPU");
-    prepare(dt, fixed);
-    begin_forces(acceleration);
-    begin_targets(targets);
+    prepare(input.dt, input.fixed);
+    begin_forces(input.acceleration);
+    begin_targets(input.targets);
     for (const auto& energy : energies_.all())
         energy->begin_step(x_.device());
     predict();
-    if (active)
-        begin_contact(*active);
-
-    StepReport report;
-    report.steps = 1;
-    minimise(active, report);
-    if (report.status == StepReport::Status::NonFinite)
-        return report;
-
-    finish();
-    satisfy(active, limits);
-    if (active)
-        active->end_step(x_t1_);
-    end(limits, report);
-    return report;
 }
 
-/// See StepEnd.
-void DeviceBody::satisfy(ActiveSetEnergy* active, DeviceStepProjection* limits)
+StepStart DeviceBody::start() const
 {
-    for (int pass = 0; pass < StepEnd::kPasses; ++pass) {
-        if (active)
-            active->clear(x_t1_, v_);
-        if (limits)
-            project(*limits, active);
-        if (!active || !active->keep_apart(x_t1_, v_))
-            return;
-    }
+    return {{},
+            {},
+            system_->diagonal(),
+            system_->fixed(),
+            system_->masses(),
+            dt_,
+            {x_.device(), prediction_.device(), diagonal_.view(), fixed_.view(), masses_.view()}};
 }
 
-void DeviceBody::project(DeviceStepProjection& limits, const ActiveSetEnergy* active)
+void DeviceBody::project(StepProjection& projection, const std::function<bool()>& clear_contacts)
 {
-    const StageScope stage("pd/limits");
+    DeviceStepProjection& limits = *projection.on_device(space_);
     if (limits.is_satisfied(x_t1_.device()))
         return;
-    std::function<bool()> clear_contacts;
-    if (active)
-        clear_contacts = [&] { return active->sweep_once(x_t1_); };
     parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyPositions{x_t1_.device(), found_.view()});
     limits.project(x_t1_.change_on_device(), inverse_masses_.view(), clear_contacts);
     parallel_for(space_, "pd/projected", x_.size(),
                  AddProjected{found_.view(), x_t1_.device(), dt_, v_.change_on_device()});
 }
 
-void DeviceBody::begin_contact(ActiveSetEnergy& active)
+OuterLoop::Outcome DeviceBody::minimise(ActiveSetEnergy* active, int max_iterations, bool is_first)
 {
-    active.begin_step({{},
-                       {},
-                       system_->diagonal(),
-                       system_->fixed(),
-                       system_->masses(),
-                       dt_,
-                       {x_.device(), prediction_.device(), diagonal_.view(), fixed_.view(), masses_.view()}});
-    active.make_feasible(x_t1_);
-}
-
-void DeviceBody::minimise(ActiveSetEnergy* active, StepReport& report)
-{
-    StepPasses passes(settings_.max_iterations, settings_.max_passes);
-    for (bool goes_on = true; goes_on;) {
-        const StageScope stage("pd/minimise");
-        DeviceActiveSet* contact = active ? active->on_device(space_) : nullptr;
-        const bool in_contact = contact != nullptr && contact->has_terms();
-        const int limit = passes.next(in_contact);
-        const OuterLoop::Outcome outcome = in_contact
-                                               ? minimise_with_contact(*contact, limit, passes.is_first())
-                                               : minimise_free(passes.is_first());
-        parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_on_device()});
-        report.iterations += outcome.iterations;
-        report.linear_iterations += outcome.linear_iterations;
-        report.displacement = outcome.displacement;
-        report.energy = outcome.value;
-        report.status =
-            outcome.converged ? StepReport::Status::Converged : StepReport::Status::IterationLimit;
-        if (!is_finite(outcome.value)) {
-            report.status = StepReport::Status::NonFinite;
-            report.message = "the energy at the start of the step is not finite";
-            return;
-        }
-        const bool has_changed = active && active->revise(x_t1_, passes.is_converged(outcome));
-        goes_on = passes.goes_on(outcome, has_changed);
-    }
+    const bool in_contact = active && active->may_be_active();
+    const OuterLoop::Outcome outcome =
+        in_contact ? minimise_with_contact(*active->on_device(space_), max_iterations, is_first)
+                   : minimise_free(is_first);
+    parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_on_device()});
+    return outcome;
 }
 
 /// Restarts without motion if that is better than the result, like Body.

@@ -13,12 +13,13 @@
 #include "core/pd/energy/system.h"
 #include "core/pd/preconditioner/nested_pcg.h"
 #include "core/pd/step/point_masses.h"
+#include "core/pd/step/take_step.h"
 
 namespace toile {
 
 /// Body on a GPU: implicit Euler steps minimised on the device by L-BFGS. Fields are copied to the host only
 /// when contact or a caller reads them there.
-class DeviceBody : public PointMasses {
+class DeviceBody : public PointMasses, private StepSpace {
 public:
     struct Settings {
         double tolerance = 1e-5;                                 ///< [m] as Body's
@@ -62,6 +63,15 @@ public:
     const System& system() const { return *system_; }
 
 private:
+    void begin(const StepInput& input) override;
+    StepStart start() const override;
+    StepField end_positions() override { return x_t1_; }
+    StepField end_velocities() override { return v_; }
+    OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) override;
+    void finish(StepProjection* projection) override;
+    void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
+    void end(StepProjection* projection, StepReport& report) override;
+
     static void overwrite(MirroredArray<Vec3>& field, View<const Vec3> values);
     void set_fixed(const std::vector<unsigned char>& fixed);
     void begin_forces(View<const Vec3> acceleration);
@@ -69,8 +79,6 @@ private:
     DeviceDescent::Problem problem(double dt);
     DescentFields fields() { return descent_.fields(problem(dt_)); }
     void predict();
-    void begin_contact(ActiveSetEnergy& active);
-    void minimise(ActiveSetEnergy* active, StepReport& report);
     OuterLoop::Outcome minimise_free(bool is_first);
     OuterLoop::Outcome minimise_with_contact(DeviceActiveSet& contact, int limit, bool is_first);
     void prepare_contact();
@@ -80,10 +88,6 @@ private:
     void stand_still();
     void keep_found();
     void take_found();
-    void finish();
-    void end(DeviceStepProjection* limits, StepReport& report);
-    void satisfy(ActiveSetEnergy* active, DeviceStepProjection* limits);
-    void project(DeviceStepProjection& limits, const ActiveSetEnergy* active);
 
     const CudaSpace& space_;
     std::unique_ptr<System> system_;

@@ -83,7 +83,7 @@ void DeviceBody::predict()
     parallel_for(space_, "pd/begin", x_.size(), CopyPositions{prediction, x_t1_.overwrite_on_device()});
 }
 
-void DeviceBody::finish()
+void DeviceBody::finish(StepProjection*)
 {
     for (const auto& energy : energies_.all())
         energy->end_minimisation(x_t1_.device());
@@ -93,14 +93,14 @@ void DeviceBody::finish()
         gradient_.view(), end_sums_);
 }
 
-/// Makes the end the next start, and waits once for all numbers of the report.
-void DeviceBody::end(DeviceStepProjection* limits, StepReport& report)
+/// Waits once for all numbers of the report.
+void DeviceBody::end(StepProjection* projection, StepReport& report)
 {
     parallel_sum(space_, "pd/end", x_.size(), LargestSquare{},
                  EndVertex{{x_t1_.device(), x_.overwrite_on_device()}, v_.device()}, speed_.view(),
                  end_sums_);
-    if (limits)
-        limits->end_step(x_.device());
+    if (projection)
+        projection->on_device(space_)->end_step(x_.device());
     space_.synchronise();
     is_speed_current_ = true;
     report.gradient_norm = std::sqrt(gradient_[0].value);

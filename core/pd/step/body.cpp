@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "core/linear/field.h"
-#include "core/pd/step/step_end.h"
-#include "core/pd/step/step_passes.h"
 #include "core/pd/step/step_tolerance.h"
 
 namespace toile {
@@ -20,33 +18,22 @@ Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings
 StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                       View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
-    StepReport report;
-    report.steps = 1;
-    system_->prepare(dt, fixed);
-    predict(dt, acceleration, system_->fixed(), targets, prediction_);
-
-    x_t1_ = prediction_;
-    if (active) {
-        active->begin_step(start_of(dt));
-        active->make_feasible(x_t1_);
-    }
-    minimise(dt, active, report);
-    if (report.status == StepReport::Status::NonFinite)
-        return report;
-
-    parallel_for(kCpu, "pd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - x_[i]) / dt; });
-    if (projection)
-        projection->observe(x_t1_);
-    StepEnd(x_t1_, v_, system_->masses(), system_->fixed(), dt).satisfy(active, projection);
-    if (active)
-        active->end_step(x_t1_);
-    x_.swap(x_t1_);
-    return report;
+    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
+                     {settings_.max_iterations, settings_.max_passes});
 }
 
-StepStart Body::start_of(double dt) const
+void Body::begin(const StepInput& input)
 {
-    return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(), dt};
+    dt_ = input.dt;
+    system_->prepare(dt_, input.fixed);
+    predict(dt_, input.acceleration, system_->fixed(), input.targets, prediction_);
+    x_t1_ = prediction_;
+    objective_.emplace(*system_, start(), input.active, settings_.contact_solve, settings_.stop);
+}
+
+StepStart Body::start() const
+{
+    return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(), dt_};
 }
 
 double Body::tolerance() const
@@ -57,11 +44,19 @@ double Body::tolerance() const
     return StepTolerance{settings_.tolerance}.of_step(max_move);
 }
 
-/// Restarts at the positions of t0 if that start has a lower value than the result from the prediction. The
-/// result is then no worse than no motion, W(x_t1) <= W(x_t0) + 1/2 |v + dt a|^2_M, however early the
-/// minimisation stopped. Stiff cloth gains no energy from a bad start guess, and cloth at rest stays at rest.
-OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& objective,
-                                                OuterLoop::Settings settings, const OuterLoop::Outcome& found)
+OuterLoop::Outcome Body::minimise(ActiveSetEnergy*, int max_iterations, bool is_first)
+{
+    const OuterLoop::Settings settings{tolerance(), max_iterations};
+    const int linear_iterations = objective_->linear_iterations();
+    OuterLoop::Outcome outcome = outer_->minimise(*objective_, x_t1_, settings);
+    if (is_first)
+        outcome = no_worse_than_standing(settings, outcome);
+    outcome.linear_iterations += objective_->linear_iterations() - linear_iterations;
+    return outcome;
+}
+
+/// Restarts at the positions of t0 if that start has a lower value than the result from the prediction.
+OuterLoop::Outcome Body::no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found)
 {
     const View<const unsigned char> fixed = system_->fixed();
     standing_ = x_;
@@ -71,50 +66,35 @@ OuterLoop::Outcome Body::no_worse_than_standing(double dt, StepObjective& object
 
     // The inertia without motion alone often exceeds the value found.
     const View<const double> masses = system_->masses();
-    const double inertia = 0.5 / (dt * dt) * parallel_sum(kCpu, int(x_.size()), 0.0, [&](int i) {
+    const double inertia = 0.5 / (dt_ * dt_) * parallel_sum(kCpu, int(x_.size()), 0.0, [&](int i) {
                                return masses[i] * (standing_[i] - prediction_[i]).squaredNorm();
                            });
     if (found.value <= inertia)
         return found;
-    const double value = objective.evaluate(standing_, gradient_);
+    const double value = objective_->evaluate(standing_, gradient_);
     if (found.value <= value || !std::isfinite(value))
         return found;
 
     x_t1_ = standing_;
     settings.tolerance *= StepTolerance::kStanding;
-    OuterLoop::Outcome outcome = outer_->minimise(objective, x_t1_, settings);
+    OuterLoop::Outcome outcome = outer_->minimise(*objective_, x_t1_, settings);
     outcome.iterations += found.iterations;
     outcome.linear_iterations += found.linear_iterations;
     return outcome;
 }
 
-void Body::minimise(double dt, ActiveSetEnergy* active, StepReport& report)
+void Body::finish(StepProjection* projection)
 {
-    StepObjective objective(*system_, start_of(dt), active, settings_.contact_solve, settings_.stop);
-    OuterLoop::Settings settings{tolerance(), settings_.max_iterations};
-    StepPasses passes(settings_.max_iterations, settings_.max_passes);
-    for (bool goes_on = true; goes_on;) {
-        const StageScope stage("pd/minimise");
-        settings.max_iterations = passes.next(active && active->may_be_active());
-        OuterLoop::Outcome outcome = outer_->minimise(objective, x_t1_, settings);
-        if (passes.is_first())
-            outcome = no_worse_than_standing(dt, objective, settings, outcome);
-        report.iterations += outcome.iterations;
-        report.linear_iterations += outcome.linear_iterations;
-        report.displacement = outcome.displacement;
-        report.gradient_norm = outcome.gradient_norm;
-        report.energy = outcome.value;
-        report.status =
-            outcome.converged ? StepReport::Status::Converged : StepReport::Status::IterationLimit;
-        if (!std::isfinite(outcome.value)) {
-            report.status = StepReport::Status::NonFinite;
-            report.message = "the energy at the start of the step is not finite";
-            break;
-        }
-        const bool has_changed = active && active->revise(x_t1_, passes.is_converged(outcome));
-        goes_on = passes.goes_on(outcome, has_changed);
-    }
-    report.linear_iterations += objective.linear_iterations();
+    parallel_for(kCpu, "pd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - x_[i]) / dt_; });
+    if (projection)
+        projection->observe(x_t1_);
 }
+
+void Body::project(StepProjection& projection, const std::function<bool()>& clear_contacts)
+{
+    PointMassesOnHost::project(projection, dt_, system_->masses(), system_->fixed(), clear_contacts);
+}
+
+void Body::end(StepProjection*, StepReport&) { x_.swap(x_t1_); }
 
 } // namespace toile

@@ -1,16 +1,18 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/pd/minimiser/make_outer_loop.h"
 #include "core/pd/step/point_masses.h"
 #include "core/pd/step/step_objective.h"
+#include "core/pd/step/take_step.h"
 
 namespace toile {
 
 /// Deformable body advanced by implicit Euler: each step minimises StepObjective.
-class Body : public PointMassesOnHost {
+class Body : public PointMassesOnHost, private StepSpace {
 public:
     struct Settings {
         /// [m] Error allowed at the end of a step: StepError's estimate, and the next displacement of any
@@ -35,15 +37,23 @@ public:
     const System& system() const { return *system_; }
 
 private:
-    StepStart start_of(double dt) const;
+    void begin(const StepInput& input) override;
+    StepStart start() const override;
+    StepField end_positions() override { return x_t1_; }
+    StepField end_velocities() override { return v_; }
+    OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) override;
+    void finish(StepProjection* projection) override;
+    void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
+    void end(StepProjection* projection, StepReport& report) override;
+
     double tolerance() const;
-    OuterLoop::Outcome no_worse_than_standing(double dt, StepObjective& objective,
-                                              OuterLoop::Settings settings, const OuterLoop::Outcome& found);
-    void minimise(double dt, ActiveSetEnergy* active, StepReport& report);
+    OuterLoop::Outcome no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found);
 
     std::unique_ptr<System> system_;
     Settings settings_;
     std::unique_ptr<OuterLoop> outer_;
+    double dt_ = 0.0;                        ///< of the current step [s]
+    std::optional<StepObjective> objective_; ///< of the current step
     std::vector<Vec3> prediction_, standing_, gradient_;
 };
 

@@ -72,8 +72,18 @@ protected:
     void predict(double dt, View<const Vec3> acceleration, View<const unsigned char> fixed,
                  View<const Vec3> targets, View<Vec3> prediction) const;
 
+    /// Moves x_t1_ onto the constraint. The displacement becomes velocity, like that of any force.
+    /// @param masses, fixed   [vertices] [kg], 1 if the position is prescribed
+    /// @param clear_contacts  see StepProjection::project
+    void project(StepProjection& projection, double dt, View<const double> masses,
+                 View<const unsigned char> fixed, const std::function<bool()>& clear_contacts);
+
     std::vector<Vec3> x_, v_; ///< [vertices] [m], [m/s]
     std::vector<Vec3> x_t1_;  ///< [vertices] tentative positions at the end of the step [m]
+
+private:
+    std::vector<double> inverse_masses_; ///< [vertices] [1/kg] 0 where fixed
+    std::vector<Vec3> unprojected_;      ///< [vertices] [m]
 };
 
 } // namespace toile

@@ -1,0 +1,85 @@
+#include "core/pd/step/take_step.h"
+
+#include <cmath>
+
+#include "core/base/stages.h"
+#include "core/pd/step/step_passes.h"
+
+namespace toile {
+
+namespace {
+
+void add(StepReport& report, const OuterLoop::Outcome& outcome)
+{
+    report.iterations += outcome.iterations;
+    report.linear_iterations += outcome.linear_iterations;
+    report.displacement = outcome.displacement;
+    report.gradient_norm = outcome.gradient_norm;
+    report.energy = outcome.value;
+    report.status = outcome.converged ? StepReport::Status::Converged : StepReport::Status::IterationLimit;
+    if (!std::isfinite(outcome.value)) {
+        report.status = StepReport::Status::NonFinite;
+        report.message = "the energy at the start of the step is not finite";
+    }
+}
+
+void minimise(StepSpace& space, ActiveSetEnergy* active, const StepLimits& limits, StepReport& report)
+{
+    StepPasses passes(limits.max_iterations, limits.max_passes);
+    for (bool goes_on = true; goes_on;) {
+        const StageScope stage("pd/minimise");
+        const int max_iterations = passes.next(active && active->may_be_active());
+        const OuterLoop::Outcome outcome = space.minimise(active, max_iterations, passes.is_first());
+        add(report, outcome);
+        if (report.status == StepReport::Status::NonFinite)
+            return;
+        const bool has_changed =
+            active && active->revise(space.end_positions(), passes.is_converged(outcome));
+        goes_on = passes.goes_on(outcome, has_changed);
+    }
+}
+
+/// Satisfies contact, limits and separation of cloth. Cloth that contact moves back stretches against cloth
+/// that it does not move, so the limits are then applied again.
+void correct(StepSpace& space, const StepInput& input)
+{
+    ActiveSetEnergy* const active = input.active;
+    std::function<bool()> clear_contacts;
+    if (active)
+        clear_contacts = [&] { return active->sweep_once(space.end_positions()); };
+    bool goes_on = true;
+    for (int correction = 0; goes_on && correction < kMaxCorrections; ++correction) {
+        if (active)
+            active->clear(space.end_positions(), space.end_velocities());
+        if (input.projection) {
+            const StageScope stage("pd/limits");
+            space.project(*input.projection, clear_contacts);
+        }
+        goes_on = active && active->keep_apart(space.end_positions(), space.end_velocities());
+    }
+}
+
+} // namespace
+
+StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits& limits)
+{
+    StepReport report;
+    report.steps = 1;
+    space.begin(input);
+    if (input.active) {
+        input.active->begin_step(space.start());
+        input.active->make_feasible(space.end_positions());
+    }
+    minimise(space, input.active, limits, report);
+    if (report.status == StepReport::Status::NonFinite)
+        return report;
+
+    space.finish(input.projection);
+    correct(space, input);
+    if (input.active)
+        input.active->end_step(space.end_positions());
+    space.end(input.projection, report);
+    return report;
+}
+
+} // namespace toile

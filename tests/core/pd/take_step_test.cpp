@@ -1,0 +1,117 @@
+#include "core/pd/step/take_step.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace toile::test {
+
+namespace {
+
+using testing::ElementsAre;
+
+/// Parts that note their calls; contact and limits note theirs in the same list.
+class NotedStep : public StepSpace, public ActiveSetEnergy, public StepProjection {
+public:
+    std::vector<std::string> calls;
+    double value = 1.0;    ///< [J] of every minimisation
+    int searches_left = 0; ///< calls of revise() that find something
+    int moves_left = 0;    ///< calls of keep_apart() that move cloth
+
+    void begin(const StepInput&) override { calls.push_back("begin"); }
+    StepStart start() const override { return {}; }
+    StepField end_positions() override { return x_; }
+    StepField end_velocities() override { return v_; }
+    OuterLoop::Outcome minimise(ActiveSetEnergy*, int, bool is_first) override
+    {
+        calls.push_back(is_first ? "minimise first" : "minimise");
+        OuterLoop::Outcome outcome;
+        outcome.converged = true;
+        outcome.iterations = 2;
+        outcome.value = value;
+        return outcome;
+    }
+    void finish(StepProjection*) override { calls.push_back("finish"); }
+    void project(StepProjection&, const std::function<bool()>&) override { calls.push_back("project"); }
+    void end(StepProjection*, StepReport&) override { calls.push_back("end"); }
+
+    void begin_step(const StepStart&) override { calls.push_back("find contact"); }
+    bool make_feasible(StepField) const override { return true; }
+    bool sweep_once(StepField) const override { return false; }
+    double add_gradient(View<const Vec3>, View<Vec3>) const override { return 0.0; }
+    bool activate(View<const Vec3>) override { return true; }
+    void add_hessian_product(View<const Vec3>, View<Vec3>) const override {}
+    View<const Mat3> diagonal_blocks() const override { return {}; }
+    void append_terms(std::vector<FrozenTerm>&) const override {}
+    bool revise(StepField, bool) override
+    {
+        calls.push_back("revise");
+        return searches_left-- > 0;
+    }
+    void clear(StepField, StepField) override { calls.push_back("clear"); }
+    bool keep_apart(StepField, StepField) override
+    {
+        calls.push_back("keep apart");
+        return moves_left-- > 0;
+    }
+    void end_step(StepField) override { calls.push_back("end contact"); }
+
+    void observe(View<const Vec3>) override {}
+    void project(View<Vec3>, View<const double>, const std::function<bool()>&) override {}
+
+    StepReport step(bool in_contact, bool is_limited)
+    {
+        const std::vector<unsigned char> fixed;
+        return take_step(
+            *this, {0.1, {}, fixed, {}, in_contact ? this : nullptr, is_limited ? this : nullptr}, {50, 3});
+    }
+
+private:
+    std::vector<Vec3> x_, v_;
+};
+
+} // namespace
+
+TEST(TakeStep, AsksForNothingThatTheSceneDoesNotHave)
+{
+    NotedStep step;
+    const StepReport report = step.step(false, false);
+    EXPECT_THAT(step.calls, ElementsAre("begin", "minimise first", "finish", "end"));
+    EXPECT_EQ(report.status, StepReport::Status::Converged);
+    EXPECT_EQ(report.iterations, 2);
+}
+
+TEST(TakeStep, MinimisesAgainAfterNewContactAndCorrectsUntilNothingMoves)
+{
+    NotedStep step;
+    step.searches_left = 1;
+    step.moves_left = 1;
+    const StepReport report = step.step(true, true);
+    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "minimise first", "revise", "minimise",
+                                        "revise", "finish", "clear", "project", "keep apart", "clear",
+                                        "project", "keep apart", "end contact", "end"));
+    EXPECT_EQ(report.iterations, 4);
+}
+
+TEST(TakeStep, BoundsTheNumberOfCorrections)
+{
+    NotedStep step;
+    step.moves_left = 1000;
+    step.step(true, false);
+    EXPECT_EQ(std::count(step.calls.begin(), step.calls.end(), "keep apart"), kMaxCorrections);
+}
+
+TEST(TakeStep, LeavesTheBodyUnchangedIfTheEnergyIsNotFinite)
+{
+    NotedStep step;
+    step.value = std::numeric_limits<double>::quiet_NaN();
+    const StepReport report = step.step(true, true);
+    EXPECT_EQ(report.status, StepReport::Status::NonFinite);
+    EXPECT_FALSE(report.message.empty());
+    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "minimise first"));
+}
+
+} // namespace toile::test
