@@ -34,9 +34,11 @@ public:
     /// @param multiply      multiply(p, out): out = A p, A symmetric positive definite
     /// @param precondition  precondition(r, z): z = P r, P symmetric positive definite unless
     ///                      the form is flexible
-    template <typename Multiply, typename Precondition>
+    /// @param is_enough     is_enough(step, p): true after an increment step * p of x with which the solve may
+    ///                      end
+    template <typename Multiply, typename Precondition, typename IsEnough>
     Outcome solve(const Multiply& multiply, const Precondition& precondition, View<const Vec3> b,
-                  View<Vec3> x, const Settings& settings)
+                  View<Vec3> x, const Settings& settings, const IsEnough& is_enough)
     {
         const int n = b.size();
         r_.assign(b.begin(), b.end());
@@ -72,10 +74,17 @@ public:
             ++outcome.iterations;
             const double gain = step * step * curvature;
             total_gain += gain;
-            if (!settings.is_worth_more(outcome.iterations, gain, total_gain))
+            if (!settings.is_worth_more(outcome.iterations, gain, total_gain) ||
+                is_enough(step, View<const Vec3>(p_)))
                 break;
         }
         return outcome;
+    }
+    template <typename Multiply, typename Precondition>
+    Outcome solve(const Multiply& multiply, const Precondition& precondition, View<const Vec3> b,
+                  View<Vec3> x, const Settings& settings)
+    {
+        return solve(multiply, precondition, b, x, settings, [](double, View<const Vec3>) { return false; });
     }
 
 private:

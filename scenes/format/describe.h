@@ -275,6 +275,8 @@ void describe(V& v, Solver& s)
     v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
             "Maximum error at the end of a step: the estimated RMS distance to its solution (see stop), and "
             "the next move of any vertex. Ignored by xpbd and vbd.");
+    v.field("speed_tolerance", s.speed_tolerance, above_zero(10.0, "m/s"),
+            "Cloth that would move slower than this stands still.");
     v.field("stop", s.stop,
             "Quantity that the tolerance bounds: error and move, or the move alone, as in papers. The latter "
             "is only for comparison: cloth that has landed on others then hangs in the air. Ignored by xpbd "

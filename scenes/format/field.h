@@ -88,8 +88,9 @@ struct Words<SolverMethod> {
 
 template <>
 struct Words<OuterMethod> {
-    static constexpr std::array<std::pair<const char*, OuterMethod>, 4> kAll{
-        {{"lbfgs", OuterMethod::Lbfgs},
+    static constexpr std::array<std::pair<const char*, OuterMethod>, 5> kAll{
+        {{"newton", OuterMethod::Newton},
+         {"lbfgs", OuterMethod::Lbfgs},
          {"local-global", OuterMethod::LocalGlobal},
          {"anderson", OuterMethod::Anderson},
          {"newton-pcg", OuterMethod::NewtonPcg}}};

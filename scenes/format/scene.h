@@ -251,6 +251,7 @@ struct Sleep {
 struct Solver {
     int substeps = 4;        ///< time steps per sample
     double tolerance = 1e-3; ///< [m] maximum error of a step
+    double speed_tolerance = 0.01; ///< [m/s] of Newton's method where cloth touches
     StepStop stop = StepStop::Error;
     int max_iterations = 30; ///< outer iterations per minimisation; see StepPasses
     SolverMethod method = SolverMethod::Auto;

@@ -111,6 +111,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
 
     Body::Settings settings;
     settings.tolerance = scene.solver.tolerance;
+    settings.speed_tolerance = scene.solver.speed_tolerance;
     settings.stop = scene.solver.stop;
     settings.max_iterations = scene.solver.max_iterations;
     settings.outer = scene.solver.outer;

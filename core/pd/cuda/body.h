@@ -68,6 +68,10 @@ private:
     StepField end_positions() override { return x_t1_; }
     StepField end_velocities() override { return v_; }
     OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) override;
+    OuterLoop::Outcome minimise_by_newton(const Newton::Settings&, const Newton::Revise&, bool) override
+    {
+        return {}; // TODO
+    }
     void finish(StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;

@@ -2,8 +2,19 @@
 
 #include "core/linear/sparse_matrix.h"
 #include "core/pd/energy/energy.h"
+#include "core/pd/energy/frozen_hessian.h"
 
 namespace toile {
+
+/// Entries of a Hessian, for preconditioners that are built from them. Rows and columns of fixed vertices are
+/// the identity's, whatever stands here.
+struct HessianParts {
+    View<const unsigned char> fixed; ///< [vertices]
+    View<const double> inertia;      ///< [vertices] on the diagonal of x, y and z [N/m]
+    const SparseMatrix& constant;    ///< [vertices x vertices] the same for x, y and z [N/m]
+    const BlockMatrix& blocks;       ///< [N/m]
+    std::vector<FrozenTerm> terms;   ///< of an active set
+};
 
 /// Hessian K of an objective, for Newton's method.
 class Hessian {
@@ -22,6 +33,9 @@ public:
     /// K as a matrix of numbers [3 vertices x 3 vertices], coordinates of a vertex adjacent, without the part
     /// of an active set.
     virtual SparseMatrix matrix() const = 0;
+
+    /// Entries after linearise(); borrowed until the next.
+    virtual HessianParts parts() const = 0;
 };
 
 /// Smooth function of a 3-vector field together with an approximate inverse of its Hessian.
@@ -45,6 +59,9 @@ public:
 
     /// Null if the objective has no second derivatives.
     virtual Hessian* hessian() { return nullptr; }
+
+    /// RMS by mass of a displacement of the free vertices, per time of the step [m/s].
+    virtual double speed_of([[maybe_unused]] View<const Vec3> displacement) const { return 0.0; }
 
     /// True if the point with this gradient counts as the minimiser.
     /// @param move       next displacement of the method, nowhere longer than the tolerance [m]

@@ -16,6 +16,7 @@ std::unique_ptr<OuterLoop> make_outer_loop(OuterMethod method, int history)
         return std::make_unique<Anderson>(history);
     case OuterMethod::NewtonPcg:
         return std::make_unique<NewtonPcg>();
+    case OuterMethod::Newton:
     case OuterMethod::Lbfgs:
         break;
     }

@@ -28,6 +28,7 @@ public:
         int linear_iterations = 0; ///< PCG iterations of Newton's method; 0 for the others
         bool converged = false;
         double displacement = 0.0;  ///< [m] largest displacement of the last iteration
+        double speed = 0.0;         ///< [m/s] RMS of the last Newton step per time; 0 for the others
         double gradient_norm = 0.0; ///< [N] largest entry of the gradient at the end
         double value = 0.0;         ///< [J]; not finite if it was not finite at the start
     };

@@ -3,6 +3,6 @@
 namespace toile {
 
 /// Methods of the outer loop, compared in docs/journal/projective_dynamics.md.
-enum class OuterMethod { Lbfgs, LocalGlobal, Anderson, NewtonPcg };
+enum class OuterMethod { Newton, Lbfgs, LocalGlobal, Anderson, NewtonPcg };
 
 } // namespace toile

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/linear/field.h"
@@ -9,17 +10,34 @@
 
 namespace toile {
 
+namespace {
+
+std::vector<EmbeddedPoint> embedded(View<const Vec3> x)
+{
+    std::vector<EmbeddedPoint> points(x.size(), EmbeddedPoint::Zero());
+    for (int i = 0; i < x.size(); ++i)
+        points[i].head<3>() = x[i];
+    return points;
+}
+
+} // namespace
+
 Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings)
     : PointMassesOnHost(std::move(positions)), system_(std::move(system)), settings_(settings),
-      outer_(make_outer_loop(settings.outer, settings.history)), prediction_(x_.size()), gradient_(x_.size())
+      prediction_(x_.size()), gradient_(x_.size())
 {
+    if (settings.outer == OuterMethod::Newton)
+        newton_.emplace(embedded(x_));
+    else
+        outer_ = make_outer_loop(settings.outer, settings.history);
 }
 
 StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                       View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
-                     {settings_.max_iterations, settings_.max_passes});
+                     {settings_.max_iterations, settings_.max_passes,
+                      newton_ ? settings_.speed_tolerance : 0.0});
 }
 
 void Body::begin(const StepInput& input)
@@ -55,32 +73,67 @@ OuterLoop::Outcome Body::minimise(ActiveSetEnergy*, int max_iterations, bool is_
     return outcome;
 }
 
-/// Restarts at the positions of t0 if that start has a lower value than the result from the prediction.
-OuterLoop::Outcome Body::no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found)
+/// Value of the objective without motion [J], at standing_; infinite if its inertia alone exceeds `found`.
+double Body::value_at_rest(double found)
 {
     const View<const unsigned char> fixed = system_->fixed();
     standing_ = x_;
     for (size_t i = 0; i < x_.size(); ++i)
         if (fixed[int(i)])
             standing_[i] = prediction_[i];
-
-    // The inertia without motion alone often exceeds the value found.
     const View<const double> masses = system_->masses();
     const double inertia = 0.5 / (dt_ * dt_) * parallel_sum(kCpu, int(x_.size()), 0.0, [&](int i) {
                                return masses[i] * (standing_[i] - prediction_[i]).squaredNorm();
                            });
-    if (found.value <= inertia)
-        return found;
+    if (found <= inertia)
+        return std::numeric_limits<double>::infinity();
     const double value = objective_->evaluate(standing_, gradient_);
-    if (found.value <= value || !std::isfinite(value))
-        return found;
+    return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+}
 
+/// Restarts at the positions of t0 if that start has a lower value than the result from the prediction.
+OuterLoop::Outcome Body::no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found)
+{
+    if (found.value <= value_at_rest(found.value))
+        return found;
     x_t1_ = standing_;
     settings.tolerance *= StepTolerance::kStanding;
     OuterLoop::Outcome outcome = outer_->minimise(*objective_, x_t1_, settings);
     outcome.iterations += found.iterations;
     outcome.linear_iterations += found.linear_iterations;
     return outcome;
+}
+
+OuterLoop::Outcome Body::minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
+                                            bool is_calm)
+{
+    newton_->begin_step();
+    const double value = objective_->evaluate(x_t1_, gradient_);
+    if (value_at_rest(value) < value)
+        x_t1_ = standing_;
+    else if (is_calm && !are_fixed_moving())
+        step_local_global();
+    return newton_->minimise(*objective_, x_t1_, settings, revise);
+}
+
+/// True if a fixed vertex has another target than its position.
+bool Body::are_fixed_moving() const
+{
+    const View<const unsigned char> fixed = system_->fixed();
+    for (size_t i = 0; i < x_.size(); ++i)
+        if (fixed[int(i)] && prediction_[i] != x_[i])
+            return true;
+    return false;
+}
+
+/// A local and a global step, x -= H^-1 g(x): the best first step while nothing touches.
+void Body::step_local_global()
+{
+    (void)objective_->evaluate(x_t1_, gradient_);
+    standing_.resize(x_.size());
+    objective_->precondition_linearly(gradient_, standing_);
+    for (size_t i = 0; i < x_.size(); ++i)
+        x_t1_[i] -= standing_[i];
 }
 
 void Body::finish(StepProjection* projection)

@@ -19,7 +19,8 @@ public:
         /// vertex. Lowered to a tenth of the largest predicted displacement, but never below a five-hundredth
         /// of this.
         double tolerance = 1e-5;
-        int max_iterations = 50; ///< outer iterations per minimisation
+        double speed_tolerance = 0.01; ///< [m/s] of Newton's method, in place of `tolerance`
+        int max_iterations = 50;       ///< outer iterations per minimisation
         int max_passes = 3;      ///< see StepPasses
         int history = 5;         ///< pairs of L-BFGS, steps of Anderson acceleration
         OuterMethod outer = OuterMethod::Lbfgs;
@@ -42,16 +43,22 @@ private:
     StepField end_positions() override { return x_t1_; }
     StepField end_velocities() override { return v_; }
     OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) override;
+    OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
+                                          bool is_calm) override;
     void finish(StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
 
     double tolerance() const;
+    bool are_fixed_moving() const;
+    double value_at_rest(double found);
+    void step_local_global();
     OuterLoop::Outcome no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found);
 
     std::unique_ptr<System> system_;
     Settings settings_;
-    std::unique_ptr<OuterLoop> outer_;
+    std::unique_ptr<OuterLoop> outer_; ///< null: Newton's method
+    std::optional<Newton> newton_;
     double dt_ = 0.0;                        ///< of the current step [s]
     std::optional<StepObjective> objective_; ///< of the current step
     std::vector<Vec3> prediction_, standing_, gradient_;

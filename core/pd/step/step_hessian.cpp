@@ -44,6 +44,14 @@ void StepHessian::multiply(View<const Vec3> p, View<Vec3> out)
             out[i] = p[i];
 }
 
+HessianParts StepHessian::parts() const
+{
+    HessianParts parts{fixed_, inertia_, curvature_.constant(), curvature_.blocks(), {}};
+    if (active_)
+        active_->append_terms(parts.terms);
+    return parts;
+}
+
 SparseMatrix StepHessian::matrix() const
 {
     const int n = int(diagonal_.size());

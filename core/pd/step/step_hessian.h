@@ -23,6 +23,7 @@ public:
     void multiply(View<const Vec3> p, View<Vec3> out) override;
     View<const Mat3> diagonal_blocks() const override { return diagonal_; }
     SparseMatrix matrix() const override;
+    HessianParts parts() const override;
 
 private:
     Curvature& curvature_;

@@ -1,5 +1,7 @@
 #include "core/pd/step/step_objective.h"
 
+#include <cmath>
+
 #include "core/linear/field.h"
 #include "core/pd/step/step_error.h"
 #include "core/pd/step/step_kernels.h"
@@ -10,7 +12,7 @@ StepObjective::StepObjective(const System& system, const StepStart& start, Activ
                              const NestedPcg::Settings& contact_solve, StepStop stop)
     : system_(system), start_(start), active_(active), contact_solve_(contact_solve), stop_(stop)
 {
-    for (int i = 0; active_ && i < start.masses.size(); ++i)
+    for (int i = 0; i < start.masses.size(); ++i)
         free_mass_ += start.fixed[i] ? 0.0 : start.masses[i];
 }
 
@@ -41,6 +43,14 @@ Hessian* StepObjective::hessian()
         hessian_.emplace(system_.curvature(), system_.masses(), system_.fixed(), start_.dt);
     hessian_->set_active(has_active_set_ ? active_ : nullptr);
     return &*hessian_;
+}
+
+double StepObjective::speed_of(View<const Vec3> displacement) const
+{
+    const double sum = parallel_sum(kCpu, displacement.size(), 0.0, [&](int i) {
+        return start_.fixed[i] ? 0.0 : start_.masses[i] * displacement[i].squaredNorm();
+    });
+    return free_mass_ > 0.0 ? std::sqrt(sum / free_mass_) / start_.dt : 0.0;
 }
 
 bool StepObjective::is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const

@@ -23,6 +23,7 @@ public:
     void precondition_linearly(View<const Vec3> g, View<Vec3> z) override { system_.solver().solve(g, z); }
     void accept(View<const Vec3> x) override;
     Hessian* hessian() override;
+    double speed_of(View<const Vec3> displacement) const override;
     bool is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const override;
     double negligible_gain(double tolerance) const override;
 
@@ -37,7 +38,7 @@ private:
     NestedPcg::Settings contact_solve_;
     StepStop stop_;
     std::optional<NestedPcg> pcg_; ///< none before the active set is first active
-    double free_mass_ = 0.0;       ///< [kg]; set if there may be an active set
+    double free_mass_ = 0.0;       ///< [kg] of the free vertices
     bool has_active_set_ = false;
     bool is_pcg_current_ = false; ///< pcg_ has the active set as last frozen
     int linear_iterations_ = 0;

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "core/pd/energy/active_set_energy.h"
-#include "core/pd/minimiser/outer_loop.h"
+#include "core/pd/minimiser/newton.h"
 #include "core/pd/step/step_projection.h"
 #include "core/pd/step/step_report.h"
 
@@ -36,6 +36,12 @@ public:
     /// the minimisation stopped. Stiff cloth then gains no energy from a bad start guess, and cloth at rest
     /// stays at rest.
     virtual OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) = 0;
+
+    /// Minimises by Newton's method, with contact looked for between its steps. Starts from the end
+    /// positions or, if the objective is lower there, from no motion.
+    /// @param is_calm  nothing touches
+    virtual OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings,
+                                                  const Newton::Revise& revise, bool is_calm) = 0;
 
     /// Computes the velocities of the minimiser, and shows it to all that observe it.
     virtual void finish(StepProjection* projection) = 0;

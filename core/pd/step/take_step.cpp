@@ -14,6 +14,7 @@ void add(StepReport& report, const OuterLoop::Outcome& outcome)
     report.iterations += outcome.iterations;
     report.linear_iterations += outcome.linear_iterations;
     report.displacement = outcome.displacement;
+    report.speed = outcome.speed;
     report.gradient_norm = outcome.gradient_norm;
     report.energy = outcome.value;
     report.status = outcome.converged ? StepReport::Status::Converged : StepReport::Status::IterationLimit;
@@ -37,6 +38,18 @@ void minimise(StepSpace& space, ActiveSetEnergy* active, const StepLimits& limit
             active && active->revise(space.end_positions(), passes.is_converged(outcome));
         goes_on = passes.goes_on(outcome, has_changed);
     }
+}
+
+void minimise_by_newton(StepSpace& space, ActiveSetEnergy* active, const StepLimits& limits,
+                        StepReport& report)
+{
+    const StageScope stage("pd/minimise");
+    const bool is_calm = !active || !active->may_be_active();
+    Newton::Revise revise;
+    if (active)
+        revise = [&](bool is_converged) { return active->revise(space.end_positions(), is_converged); };
+    const double tolerance = (is_calm ? StepLimits::kCalm : 1.0) * limits.speed_tolerance;
+    add(report, space.minimise_by_newton({tolerance, limits.max_iterations}, revise, is_calm));
 }
 
 /// Satisfies contact, limits and separation of cloth. Cloth that contact moves back stretches against cloth
@@ -70,7 +83,10 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
         input.active->begin_step(space.start());
         input.active->make_feasible(space.end_positions());
     }
-    minimise(space, input.active, limits, report);
+    if (limits.speed_tolerance > 0.0)
+        minimise_by_newton(space, input.active, limits, report);
+    else
+        minimise(space, input.active, limits, report);
     if (report.status == StepReport::Status::NonFinite)
         return report;
 

@@ -8,6 +8,11 @@ namespace toile {
 struct StepLimits {
     int max_iterations = 50; ///< outer iterations per minimisation
     int max_passes = 3;      ///< see StepPasses
+
+    /// [m/s] Newton::Settings::tolerance where cloth touches; 0: other methods. Calm cloth needs less:
+    /// nothing hangs in the air that should have slid.
+    double speed_tolerance = 0.0;
+    static constexpr double kCalm = 3.0; ///< factor for calm cloth [-]
 };
 
 /// Maximum number of corrections at the end of a step, if keep_apart() moves cloth far in each. A walking
