@@ -52,6 +52,11 @@ public:
     View<const Mat3> diagonal_blocks() const override { return energy_.diagonal_blocks(); }
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     DeviceActiveSet* on_device(const CudaSpace& space) override { return terms_->on_device(space); }
+    void mark_touching(StepField x, View<unsigned char> touches) override
+    {
+        terms_->see(x);
+        terms_->mark_touching(touches);
+    }
     bool revise(StepField x, bool is_converged) override;
     void clear(StepField x, StepField v) override;
     void resolve(StepField x, StepField v) override;

@@ -52,6 +52,9 @@ public:
     /// Bounds friction by the updated forces.
     virtual void adopt_forces() = 0;
 
+    /// See ActiveSetEnergy.
+    virtual void mark_touching(View<unsigned char> touches) = 0;
+
     /// Flags [vertices]: 1 for cloth on or inside a collider.
     virtual std::vector<unsigned char> supported() = 0;
 

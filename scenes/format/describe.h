@@ -275,6 +275,7 @@ void describe(V& v, Solver& s)
     v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
             "Maximum error at the end of a step: the estimated RMS distance to its solution (see stop), and "
             "the next move of any vertex. Ignored by xpbd and vbd.");
+    v.field("integrator", s.integrator, "Time integration: second order (bdf2), or implicit-euler, which damps.");
     v.field("speed_tolerance", s.speed_tolerance, above_zero(10.0, "m/s"),
             "Cloth that would move slower than this stands still.");
     v.field("stop", s.stop,

@@ -97,6 +97,12 @@ struct Words<OuterMethod> {
 };
 
 template <>
+struct Words<Integrator> {
+    static constexpr std::array<std::pair<const char*, Integrator>, 2> kAll{
+        {{"bdf2", Integrator::Bdf2}, {"implicit-euler", Integrator::ImplicitEuler}}};
+};
+
+template <>
 struct Words<StepStop> {
     static constexpr std::array<std::pair<const char*, StepStop>, 2> kAll{
         {{"error", StepStop::Error}, {"move", StepStop::Move}}};

@@ -10,6 +10,7 @@
 #include "core/compute/types.h"
 #include "core/pd/minimiser/outer_method.h"
 #include "core/pd/preconditioner/contact_preconditioner.h"
+#include "core/pd/step/bdf2.h"
 #include "core/pd/step/step_stop.h"
 
 /// Contents of a scene file: plain values, checked on reading, nothing loaded yet.
@@ -253,6 +254,7 @@ struct Solver {
     double tolerance = 1e-3; ///< [m] maximum error of a step
     double speed_tolerance = 0.01; ///< [m/s] of Newton's method where cloth touches
     StepStop stop = StepStop::Error;
+    Integrator integrator = Integrator::ImplicitEuler;
     int max_iterations = 30; ///< outer iterations per minimisation; see StepPasses
     SolverMethod method = SolverMethod::Auto;
     OuterMethod outer = OuterMethod::Lbfgs;

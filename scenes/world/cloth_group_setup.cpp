@@ -113,6 +113,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.tolerance = scene.solver.tolerance;
     settings.speed_tolerance = scene.solver.speed_tolerance;
     settings.stop = scene.solver.stop;
+    settings.integrator = scene.solver.integrator;
     settings.max_iterations = scene.solver.max_iterations;
     settings.outer = scene.solver.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;

@@ -107,6 +107,14 @@ void HostContactTerms::adopt_forces()
         adopt(i);
 }
 
+void HostContactTerms::mark_touching(View<unsigned char> touches)
+{
+    for (const ContactTerm& term : energy_.terms())
+        if (term.gap(x_) < 0.0)
+            for (int k = 0; k < term.pair.count(); ++k)
+                touches[term.pair.vertex[k]] = 1;
+}
+
 std::vector<unsigned char> HostContactTerms::supported()
 {
     std::vector<unsigned char> supported(x_.size(), 0);

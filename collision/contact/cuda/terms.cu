@@ -94,6 +94,12 @@ void DeviceContactTerms::mark_flagged(View<unsigned char> marks)
                  MarkFlagged{energy_.incidence(), energy_.vertices(), flags(), marks});
 }
 
+void DeviceContactTerms::mark_touching(View<unsigned char> touches)
+{
+    parallel_for(space_, "contact/flag_touching", energy_.terms().size(), FlagTouching{query(), flags()});
+    mark_flagged(touches);
+}
+
 std::vector<unsigned char> DeviceContactTerms::supported()
 {
     supported_.fill_zero();

@@ -17,6 +17,13 @@ struct FlagSupported {
     TOILE_HD void operator()(int i) const { flags[i] = query.is_supported(i, rules) ? 1 : 0; }
 };
 
+/// Flags terms that press.
+struct FlagTouching {
+    ContactQuery query;
+    View<unsigned char> flags; ///< [terms] out
+    TOILE_HD void operator()(int i) const { flags[i] = query.terms[i].gap(query.x) < 0.0 ? 1 : 0; }
+};
+
 struct FlagSlid {
     ContactQuery query;
     ContactRules rules;

@@ -115,6 +115,7 @@ StepStart DeviceBody::start() const
             system_->fixed(),
             system_->masses(),
             dt_,
+            {},
             {x_.device(), prediction_.device(), diagonal_.view(), fixed_.view(), masses_.view()}};
 }
 

@@ -72,7 +72,8 @@ private:
     {
         return {}; // TODO
     }
-    void finish(StepProjection* projection) override;
+    void restart_touching(const StepInput&) override {}
+    void finish(ActiveSetEnergy* active, StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
 

@@ -83,7 +83,7 @@ void DeviceBody::predict()
     parallel_for(space_, "pd/begin", x_.size(), CopyPositions{prediction, x_t1_.overwrite_on_device()});
 }
 
-void DeviceBody::finish(StepProjection*)
+void DeviceBody::finish(ActiveSetEnergy*, StepProjection*)
 {
     for (const auto& energy : energies_.all())
         energy->end_minimisation(x_t1_.device());

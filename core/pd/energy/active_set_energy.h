@@ -16,6 +16,7 @@ struct StepStart {
     View<const unsigned char> fixed; ///< [vertices] 1 if the position is prescribed
     View<const double> masses;       ///< [vertices] [kg]; unspecified for unknowns that are no vertices
     double dt = 0.0;                 ///< [s]
+    View<const double> inertia = {}; ///< [vertices] of the objective [N/m]; empty: masses / dt^2
 
     /// Device views of the first five, valid until the end of the step; empty if no GPU makes it.
     struct Device {
@@ -54,6 +55,13 @@ public:
     /// revise(), clear(). Null if there is none. In a minimisation with it, the device does the work of
     /// activate() and add_gradient().
     virtual DeviceActiveSet* on_device([[maybe_unused]] const CudaSpace& space) { return nullptr; }
+
+    /// Marks the vertices of terms that press at x: touches[i] becomes 1.
+    /// @param touches  [vertices] on the machine that makes the step
+    virtual void mark_touching([[maybe_unused]] StepField x,
+                               [[maybe_unused]] View<unsigned char> touches)
+    {
+    }
 
     /// Called after every minimisation. Refreshes lagged quantities (friction limits) if x is converged, and
     /// searches again if x left the neighbourhood of the candidates. Moves x [vertices] back if it violates

@@ -139,6 +139,16 @@ void RigidActiveSet::append_terms(std::vector<FrozenTerm>& terms) const
     }
 }
 
+/// Marks free points only: bodies take implicit Euler steps.
+void RigidActiveSet::mark_touching(StepField positions, View<unsigned char> touches)
+{
+    to_surface(positions.host(), x_);
+    std::vector<unsigned char> of_surface(x_.size(), 0);
+    surface_.mark_touching(StepField(x_), of_surface);
+    for (int i = 0; i < free_count_; ++i)
+        touches[i] |= of_surface[i];
+}
+
 bool RigidActiveSet::revise(StepField positions, bool is_converged)
 {
     const View<Vec3> q = positions.change_on_host();

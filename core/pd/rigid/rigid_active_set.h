@@ -34,6 +34,7 @@ public:
     void append_terms(std::vector<FrozenTerm>& terms) const override;
 
     bool may_be_active() const override { return surface_.may_be_active(); }
+    void mark_touching(StepField q, View<unsigned char> touches) override;
     bool revise(StepField q, bool is_converged) override;
     void clear(StepField q, StepField v) override;
     bool keep_apart(StepField q, StepField v) override;

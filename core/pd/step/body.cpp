@@ -24,7 +24,8 @@ std::vector<EmbeddedPoint> embedded(View<const Vec3> x)
 
 Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings)
     : PointMassesOnHost(std::move(positions)), system_(std::move(system)), settings_(settings),
-      prediction_(x_.size()), gradient_(x_.size())
+      prediction_(x_.size()), gradient_(x_.size()), x_previous_(x_), v_previous_(v_),
+      restart_(x_.size(), 1), touched_(x_.size(), 0), touches_(x_.size(), 0), inertia_(x_.size())
 {
     if (settings.outer == OuterMethod::Newton)
         newton_.emplace(embedded(x_));
@@ -43,15 +44,69 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
 void Body::begin(const StepInput& input)
 {
     dt_ = input.dt;
-    system_->prepare(dt_, input.fixed);
-    predict(dt_, input.acceleration, system_->fixed(), input.targets, prediction_);
+    const bool is_first = previous_dt_ == 0.0 || dt_ > Bdf2::kMaxRatio * previous_dt_;
+    if (settings_.integrator == Integrator::ImplicitEuler || is_first)
+        std::fill(restart_.begin(), restart_.end(), 1);
+    scheme_ = settings_.integrator == Integrator::ImplicitEuler
+                  ? Bdf2::implicit_euler(dt_)
+                  : Bdf2::of_ratio(dt_, is_first ? 1.0 : dt_ / previous_dt_);
+    system_->prepare(scheme_.implicit_step(), input.fixed);
+    for (size_t i = 0; i < x_.size(); ++i)
+        if (input.fixed[i])
+            restart_[i] = 1;
+    predict(input);
     x_t1_ = prediction_;
+    if (newton_)
+        for (size_t i = 0; i < x_.size(); ++i)
+            if (!input.fixed[i])
+                x_t1_[i] = x_[i] + dt_ * v_[i];
     objective_.emplace(*system_, start(), input.active, settings_.contact_solve, settings_.stop);
+}
+
+void Body::predict(const StepInput& input)
+{
+    parallel_for(kCpu, "pd/predict", int(x_.size()),
+                 PredictMotion{scheme_, {x_, v_, x_previous_, v_previous_}, input.acceleration,
+                               system_->fixed(), input.targets, restart_, system_->masses(), prediction_,
+                               inertia_});
+}
+
+void Body::restart_touching(const StepInput& input)
+{
+    if (settings_.integrator == Integrator::ImplicitEuler)
+        return;
+    std::fill(touches_.begin(), touches_.end(), 0);
+    input.active->mark_touching(x_t1_, touches_);
+    bool any = false;
+    for (size_t i = 0; i < x_.size(); ++i)
+        if (touches_[i] && !touched_[i] && !restart_[i]) {
+            restart_[i] = 1;
+            any = true;
+        }
+    if (any)
+        predict(input);
 }
 
 StepStart Body::start() const
 {
-    return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(), dt_};
+    return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(), dt_, inertia_};
+}
+
+/// Positions from outside begin a new motion.
+void Body::set_positions(View<const Vec3> x)
+{
+    for (int i = 0; i < x.size(); ++i)
+        if (x[i] != x_[i])
+            restart_[i] = 1;
+    PointMassesOnHost::set_positions(x);
+}
+
+void Body::set_velocities(View<const Vec3> v)
+{
+    for (int i = 0; i < v.size(); ++i)
+        if (v[i] != v_[i])
+            restart_[i] = 1;
+    PointMassesOnHost::set_velocities(v);
 }
 
 double Body::tolerance() const
@@ -81,9 +136,8 @@ double Body::value_at_rest(double found)
     for (size_t i = 0; i < x_.size(); ++i)
         if (fixed[int(i)])
             standing_[i] = prediction_[i];
-    const View<const double> masses = system_->masses();
-    const double inertia = 0.5 / (dt_ * dt_) * parallel_sum(kCpu, int(x_.size()), 0.0, [&](int i) {
-                               return masses[i] * (standing_[i] - prediction_[i]).squaredNorm();
+    const double inertia = 0.5 * parallel_sum(kCpu, int(x_.size()), 0.0, [&](int i) {
+                               return inertia_[i] * (standing_[i] - prediction_[i]).squaredNorm();
                            });
     if (found <= inertia)
         return std::numeric_limits<double>::infinity();
@@ -136,9 +190,19 @@ void Body::step_local_global()
         x_t1_[i] -= standing_[i];
 }
 
-void Body::finish(StepProjection* projection)
+/// Vertices that touch something at the end but did not at the start have taken part of an impact: theirs is
+/// an implicit Euler step, and so is the next one.
+void Body::finish(ActiveSetEnergy* active, StepProjection* projection)
 {
-    parallel_for(kCpu, "pd/finish", int(x_.size()), [&](int i) { v_[i] = (x_t1_[i] - x_[i]) / dt_; });
+    std::fill(touches_.begin(), touches_.end(), 0);
+    if (active)
+        active->mark_touching(x_t1_, touches_);
+    for (size_t i = 0; i < x_.size(); ++i)
+        restart_[i] |= touches_[i] & ~touched_[i];
+    v_.swap(v_previous_);
+    parallel_for(kCpu, "pd/finish", int(x_.size()),
+                 VelocityOfStep{scheme_, x_, x_previous_, x_t1_, restart_, v_});
+    minimised_ = x_t1_;
     if (projection)
         projection->observe(x_t1_);
 }
@@ -148,6 +212,14 @@ void Body::project(StepProjection& projection, const std::function<bool()>& clea
     PointMassesOnHost::project(projection, dt_, system_->masses(), system_->fixed(), clear_contacts);
 }
 
-void Body::end(StepProjection*, StepReport&) { x_.swap(x_t1_); }
+void Body::end(StepProjection*, StepReport&)
+{
+    for (size_t i = 0; i < x_.size(); ++i)
+        restart_[i] = (touches_[i] && !touched_[i]) || x_t1_[i] != minimised_[i] ? 1 : 0;
+    touched_.swap(touches_);
+    x_previous_.swap(x_);
+    x_.swap(x_t1_);
+    previous_dt_ = dt_;
+}
 
 } // namespace toile

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/pd/minimiser/make_outer_loop.h"
+#include "core/pd/step/bdf2.h"
 #include "core/pd/step/point_masses.h"
 #include "core/pd/step/step_objective.h"
 #include "core/pd/step/take_step.h"
@@ -26,6 +27,7 @@ public:
         OuterMethod outer = OuterMethod::Lbfgs;
         NestedPcg::Settings contact_solve; ///< while contacts are active
         StepStop stop = StepStop::Error;   ///< what the tolerance bounds
+        Integrator integrator = Integrator::ImplicitEuler;
     };
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);
@@ -34,21 +36,26 @@ public:
     StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                     View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection) override;
 
+    void set_positions(View<const Vec3> x) override;
+    void set_velocities(View<const Vec3> v) override;
+
     View<const double> masses() const override { return system_->masses(); }
     const System& system() const { return *system_; }
 
 private:
     void begin(const StepInput& input) override;
+    void restart_touching(const StepInput& input) override;
     StepStart start() const override;
     StepField end_positions() override { return x_t1_; }
     StepField end_velocities() override { return v_; }
     OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) override;
     OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                           bool is_calm) override;
-    void finish(StepProjection* projection) override;
+    void finish(ActiveSetEnergy* active, StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
 
+    void predict(const StepInput& input);
     double tolerance() const;
     bool are_fixed_moving() const;
     double value_at_rest(double found);
@@ -62,6 +69,15 @@ private:
     double dt_ = 0.0;                        ///< of the current step [s]
     std::optional<StepObjective> objective_; ///< of the current step
     std::vector<Vec3> prediction_, standing_, gradient_;
+
+    // State of the integrator.
+    Bdf2 scheme_;
+    double previous_dt_ = 0.0;                 ///< [s] 0: there was no step before
+    std::vector<Vec3> x_previous_, v_previous_; ///< [vertices] before the last step [m], [m/s]
+    std::vector<unsigned char> restart_;        ///< [vertices] 1: an implicit Euler step
+    std::vector<unsigned char> touched_, touches_; ///< [vertices] at the end of the last step, and now
+    std::vector<Vec3> minimised_;                  ///< [vertices] before projections [m]
+    std::vector<double> inertia_;                  ///< [vertices] [N/m]
 };
 
 } // namespace toile

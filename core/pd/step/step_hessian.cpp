@@ -4,12 +4,11 @@
 
 namespace toile {
 
-StepHessian::StepHessian(Curvature& curvature, View<const double> masses, View<const unsigned char> fixed,
-                         double dt)
-    : curvature_(curvature), fixed_(fixed), diagonal_(masses.size()), free_(masses.size())
+StepHessian::StepHessian(Curvature& curvature, View<const double> inertia,
+                         View<const unsigned char> fixed)
+    : curvature_(curvature), fixed_(fixed), inertia_(inertia), diagonal_(inertia.size()),
+      free_(inertia.size())
 {
-    for (const double mass : masses)
-        inertia_.push_back(mass / (dt * dt));
 }
 
 void StepHessian::linearise(View<const Vec3> x, Definiteness definiteness)

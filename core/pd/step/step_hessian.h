@@ -8,13 +8,12 @@
 
 namespace toile {
 
-/// Hessian of one implicit Euler step: M/dt^2, the curvature of the energies, and the frozen terms of an
+/// Hessian of one step: inertia, the curvature of the energies, and the frozen terms of an
 /// active set. Rows and columns of fixed vertices are the identity's.
 class StepHessian : public Hessian {
 public:
-    /// @param masses, fixed  [vertices] [kg]; borrowed
-    /// @param dt             [s]
-    StepHessian(Curvature& curvature, View<const double> masses, View<const unsigned char> fixed, double dt);
+    /// @param inertia  [vertices] m/dt^2 [N/m]; borrowed, like the others
+    StepHessian(Curvature& curvature, View<const double> inertia, View<const unsigned char> fixed);
 
     /// Sets the frozen terms to include; null: none are active.
     void set_active(const ActiveSetEnergy* active) { active_ = active; }
@@ -29,7 +28,7 @@ private:
     Curvature& curvature_;
     View<const unsigned char> fixed_;
     const ActiveSetEnergy* active_ = nullptr;
-    std::vector<double> inertia_; ///< [vertices] m/dt^2 [N/m]
+    View<const double> inertia_; ///< [vertices] m/dt^2 [N/m]
     std::vector<Mat3> diagonal_;
     std::vector<Vec3> free_; ///< scratch: p, zero at fixed vertices
 };

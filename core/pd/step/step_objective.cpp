@@ -12,6 +12,10 @@ StepObjective::StepObjective(const System& system, const StepStart& start, Activ
                              const NestedPcg::Settings& contact_solve, StepStop stop)
     : system_(system), start_(start), active_(active), contact_solve_(contact_solve), stop_(stop)
 {
+    if (start.inertia.empty())
+        for (const double mass : system.masses())
+            own_inertia_.push_back(mass * (1.0 / (start.dt * start.dt)));
+    inertia_ = start.inertia.empty() ? View<const double>(own_inertia_) : start.inertia;
     for (int i = 0; i < start.masses.size(); ++i)
         free_mass_ += start.fixed[i] ? 0.0 : start.masses[i];
 }
@@ -20,7 +24,7 @@ double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
 {
     double value = parallel_sum(
         kCpu, x.size(), 0.0,
-        InertiaOfVertex{system_.masses(), start_.prediction, 1.0 / (start_.dt * start_.dt), x, gradient});
+        InertiaOfVertex{inertia_, start_.prediction, 1.0, x, gradient});
     value += system_.add_gradient(x, gradient);
     if (active_)
         value += active_->add_gradient(x, gradient);
@@ -40,7 +44,7 @@ void StepObjective::accept(View<const Vec3> x)
 Hessian* StepObjective::hessian()
 {
     if (!hessian_)
-        hessian_.emplace(system_.curvature(), system_.masses(), system_.fixed(), start_.dt);
+        hessian_.emplace(system_.curvature(), inertia_, system_.fixed());
     hessian_->set_active(has_active_set_ ? active_ : nullptr);
     return &*hessian_;
 }

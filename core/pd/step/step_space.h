@@ -27,6 +27,9 @@ public:
     /// @throws InvalidInput if the contact or the projection cannot be computed here
     virtual void begin(const StepInput& input) = 0;
 
+    /// Begins the motion of vertices anew that will touch something: called when contact is known.
+    virtual void restart_touching(const StepInput& input) = 0;
+
     virtual StepStart start() const = 0;   ///< after begin()
     virtual StepField end_positions() = 0; ///< guess, then minimiser, then final positions [m]
     virtual StepField end_velocities() = 0;   ///< at the end of the step, from finish() on [m/s]
@@ -44,7 +47,7 @@ public:
                                                   const Newton::Revise& revise, bool is_calm) = 0;
 
     /// Computes the velocities of the minimiser, and shows it to all that observe it.
-    virtual void finish(StepProjection* projection) = 0;
+    virtual void finish(ActiveSetEnergy* active, StepProjection* projection) = 0;
 
     /// Moves the end positions onto the constraint. The displacement becomes velocity, like that of any
     /// force.

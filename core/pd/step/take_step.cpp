@@ -81,6 +81,7 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
     space.begin(input);
     if (input.active) {
         input.active->begin_step(space.start());
+        space.restart_touching(input);
         input.active->make_feasible(space.end_positions());
     }
     if (limits.speed_tolerance > 0.0)
@@ -90,7 +91,7 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
     if (report.status == StepReport::Status::NonFinite)
         return report;
 
-    space.finish(input.projection);
+    space.finish(input.active, input.projection);
     correct(space, input);
     if (input.active)
         input.active->end_step(space.end_positions());
