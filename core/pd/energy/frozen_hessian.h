@@ -29,6 +29,9 @@ public:
 
     /// Appends the terms, in the same order for every thread count.
     virtual void append_terms(std::vector<FrozenTerm>& terms) const = 0;
+
+    /// True if those terms are all of dH; false if they only approximate it.
+    virtual bool has_all_terms() const { return true; }
 };
 
 } // namespace toile

@@ -13,7 +13,9 @@ struct HessianParts {
     View<const double> inertia;      ///< [vertices] on the diagonal of x, y and z [N/m]
     const SparseMatrix& constant;    ///< [vertices x vertices] the same for x, y and z [N/m]
     const BlockMatrix& blocks;       ///< [N/m]
+    View<const Mat3> diagonal;       ///< [vertices] all of these on the diagonal, or a bound [N/m]
     std::vector<FrozenTerm> terms;   ///< of an active set
+    const FrozenHessian* whole_set;  ///< the active set, if its terms are not all of it; null: they are
 };
 
 /// Hessian K of an objective, for Newton's method.

@@ -32,6 +32,7 @@ public:
     /// Appends only the free points' part of terms at a rigid surface: a FrozenTerm cannot represent levers.
     /// Preconditioners from terms are therefore less accurate for bodies than those from diagonal_blocks().
     void append_terms(std::vector<FrozenTerm>& terms) const override;
+    bool has_all_terms() const override { return false; }
 
     bool may_be_active() const override { return surface_.may_be_active(); }
     void mark_touching(StepField q, View<unsigned char> touches) override;

@@ -161,13 +161,12 @@ OuterLoop::Outcome Body::no_worse_than_standing(OuterLoop::Settings settings, co
 OuterLoop::Outcome Body::minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                             bool is_calm)
 {
-    newton_->begin_step();
     const double value = objective_->evaluate(x_t1_, gradient_);
     if (value_at_rest(value) < value)
         x_t1_ = standing_;
     else if (is_calm && !are_fixed_moving())
         step_local_global();
-    return newton_->minimise(*objective_, x_t1_, settings, revise);
+    return newton_->minimise(*objective_, x_t1_, system_->masses(), settings, revise);
 }
 
 /// True if a fixed vertex has another target than its position.

@@ -45,9 +45,11 @@ void StepHessian::multiply(View<const Vec3> p, View<Vec3> out)
 
 HessianParts StepHessian::parts() const
 {
-    HessianParts parts{fixed_, inertia_, curvature_.constant(), curvature_.blocks(), {}};
-    if (active_)
+    HessianParts parts{fixed_, inertia_, curvature_.constant(), curvature_.blocks(), diagonal_, {}, nullptr};
+    if (active_) {
         active_->append_terms(parts.terms);
+        parts.whole_set = active_->has_all_terms() ? nullptr : active_;
+    }
     return parts;
 }
 

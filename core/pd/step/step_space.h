@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "core/pd/energy/active_set_energy.h"
-#include "core/pd/minimiser/newton.h"
+#include "core/pd/newton/newton.h"
 #include "core/pd/step/step_projection.h"
 #include "core/pd/step/step_report.h"
 

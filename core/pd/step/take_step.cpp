@@ -40,16 +40,17 @@ void minimise(StepSpace& space, ActiveSetEnergy* active, const StepLimits& limit
     }
 }
 
-void minimise_by_newton(StepSpace& space, ActiveSetEnergy* active, const StepLimits& limits,
+void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimits& limits,
                         StepReport& report)
 {
     const StageScope stage("pd/minimise");
+    ActiveSetEnergy* const active = input.active;
     const bool is_calm = !active || !active->may_be_active();
     Newton::Revise revise;
     if (active)
         revise = [&](bool is_converged) { return active->revise(space.end_positions(), is_converged); };
     const double tolerance = (is_calm ? StepLimits::kCalm : 1.0) * limits.speed_tolerance;
-    add(report, space.minimise_by_newton({tolerance, limits.max_iterations}, revise, is_calm));
+    add(report, space.minimise_by_newton({tolerance, limits.max_iterations, input.dt}, revise, is_calm));
 }
 
 /// Satisfies contact, limits and separation of cloth. Cloth that contact moves back stretches against cloth
@@ -85,7 +86,7 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
         input.active->make_feasible(space.end_positions());
     }
     if (limits.speed_tolerance > 0.0)
-        minimise_by_newton(space, input.active, limits, report);
+        minimise_by_newton(space, input, limits, report);
     else
         minimise(space, input.active, limits, report);
     if (report.status == StepReport::Status::NonFinite)

@@ -1,9 +1,8 @@
-#include "core/pd/preconditioner/affine_space.h"
+#include "core/pd/newton/affine_space.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/compute/parallel.h"
 #include "core/quadrature/clusters/cluster_basis.h"
 
@@ -64,46 +63,40 @@ void insert_sorted(std::vector<int>& list, int value)
 
 } // namespace
 
-bool AffineSpace::update(const HessianParts& K)
-{
-    const StageScope stage("newton/coarse");
-    const bool is_new = !std::equal(K.fixed.begin(), K.fixed.end(), fixed_.begin(), fixed_.end());
-    if (is_new) {
-        find_clusters(K);
-        find_couplings(K);
-    }
-    is_factored_ = false;
-    if (cluster_count() == 0)
-        return true;
-    find_terms(K.terms);
-    if (add_couplings_of_terms() || is_new)
-        build_pattern();
-    parallel_for(
-        kCpu, "newton/coarse_matrix", cluster_count(), [&](int c) { assemble(K, c); }, 1);
-    try {
-        if (factor_)
-            factor_->refactor(matrix_);
-        else
-            factor_.emplace(matrix_);
-    } catch (const InvalidInput&) { // by rounding
-        factor_.reset();
-        return false;
-    }
-    is_factored_ = true;
-    return true;
-}
-
 void AffineSpace::find_clusters(const HessianParts& K)
 {
-    fixed_.assign(K.fixed.begin(), K.fixed.end());
-    TOILE_ASSERT(points_.size() == fixed_.size());
     cluster_of_.assign(points_.size(), -1);
     functions_.assign(points_.size(), Functions::Zero());
-    vertices_.clear();
+    order_.clear();
     first_of_cluster_.assign(1, 0);
+    std::vector<int> others;
     for (std::vector<int>& component : components_of(K))
         if (int(component.size()) >= ClusterTree::kLeaf)
             add_component(std::move(component));
+        else
+            others.insert(others.end(), component.begin(), component.end());
+    order_.insert(order_.end(), others.begin(), others.end());
+    functions_of_row_.clear();
+    for (const int v : order_)
+        functions_of_row_.push_back(padded(functions_[v]));
+    find_couplings(K);
+    coarse_.resize(cluster_count());
+    correction_.resize(cluster_count());
+    for (auto& u : correction_)
+        u.fill(PaddedVec3(0.0F));
+    has_new_couplings_ = true;
+}
+
+bool AffineSpace::update(const HessianParts& K)
+{
+    const StageScope stage("newton/coarse");
+    find_terms(K.terms);
+    if (add_couplings_of_terms() || has_new_couplings_)
+        factor_ = BlockCholesky(couplings_);
+    has_new_couplings_ = false;
+    parallel_for(
+        kCpu, "newton/coarse_matrix", cluster_count(), [&](int c) { assemble(K, c); }, 1);
+    return factor_.factor();
 }
 
 void AffineSpace::add_component(std::vector<int> vertices)
@@ -119,9 +112,9 @@ void AffineSpace::add_component(std::vector<int> vertices)
                 continue;
             cluster_of_[v] = cluster_count();
             functions_[v] = functions_at(basis, slot, level);
-            vertices_.push_back(v);
+            order_.push_back(v);
         }
-        first_of_cluster_.push_back(int(vertices_.size()));
+        first_of_cluster_.push_back(int(order_.size()));
     }
 }
 
@@ -131,7 +124,7 @@ void AffineSpace::find_couplings(const HessianParts& K)
     for (int c = 0; c < cluster_count(); ++c) {
         insert_sorted(couplings_[c], c);
         for (int k = first_of_cluster_[c]; k < first_of_cluster_[c + 1]; ++k) {
-            const int i = vertices_[k];
+            const int i = order_[k];
             for (const int j : K.blocks.columns(i))
                 if (cluster_of_[j] >= 0)
                     insert_sorted(couplings_[c], cluster_of_[j]);
@@ -186,23 +179,6 @@ bool AffineSpace::add_couplings_of_terms()
     return is_new;
 }
 
-void AffineSpace::build_pattern()
-{
-    const int n = kUnknowns * cluster_count();
-    factor_.reset();
-    coarse_.assign(n, Vec3::Zero());
-    matrix_.resize(n, n);
-    std::vector<int> entries_of_row(n);
-    for (int row = 0; row < n; ++row)
-        entries_of_row[row] = kUnknowns * int(couplings_[row / kUnknowns].size());
-    matrix_.reserve(entries_of_row);
-    for (int row = 0; row < n; ++row)
-        for (const int c : couplings_[row / kUnknowns])
-            for (int k = 0; k < kUnknowns; ++k)
-                matrix_.insert(row, kUnknowns * c + k) = 0.0;
-    matrix_.makeCompressed();
-}
-
 /// Writes the rows of a cluster: sum_ij (p_i p_j^T) (x) K_ij over its vertices i. Row sums
 /// S = sum_j p_j K_ij over the vertices j of another cluster come first, so that each K_ij is multiplied by
 /// three numbers and not by nine.
@@ -223,7 +199,7 @@ void AffineSpace::assemble(const HessianParts& K, int cluster)
         return sums[slot];
     };
     for (int k = first_of_cluster_[cluster]; k < first_of_cluster_[cluster + 1]; ++k) {
-        const int i = vertices_[k];
+        const int i = order_[k];
         const View<const int> neighbours = K.blocks.columns(i);
         for (int e = 0; e < neighbours.size(); ++e) {
             const int j = neighbours[e];
@@ -263,43 +239,42 @@ void AffineSpace::assemble(const HessianParts& K, int cluster)
     }
     // A cluster on a line has fewer functions: the others are zero.
     Block& diagonal = row[slot_of(cluster)];
-    for (int a = 0; a < kUnknowns; ++a)
+    for (int a = 0; a < BlockCholesky::kSize; ++a)
         if (diagonal(a, a) == 0.0)
             diagonal(a, a) = 1.0;
 
-    double* value = matrix_.valuePtr() + matrix_.outerIndexPtr()[kUnknowns * cluster];
-    for (int a = 0; a < kUnknowns; ++a)
-        for (const Block& block : row)
-            for (int b = 0; b < kUnknowns; ++b)
-                *value++ = block(a, b);
+    for (size_t slot = 0; slot < columns.size(); ++slot)
+        factor_.entry(cluster, int(slot)) = row[slot];
 }
 
-void AffineSpace::correct(View<const Vec3> r, View<Vec3> z)
+void AffineSpace::restrict_to(int cluster, View<const PaddedVec3> r)
 {
-    if (!is_factored_)
-        return;
-    const StageScope stage("newton/coarse_solve");
-    parallel_for(
-        kCpu, "newton/restrict", cluster_count(),
-        [&](int c) {
-            Mat3 sum = Mat3::Zero(); // column a: function a
-            for (int k = first_of_cluster_[c]; k < first_of_cluster_[c + 1]; ++k)
-                sum += r[vertices_[k]] * functions_[vertices_[k]].transpose();
-            for (int a = 0; a < kUnknowns; ++a)
-                coarse_[kUnknowns * c + a] = Vec3(sum.data()[a], 0.0, 0.0);
-        },
-        16);
-    factor_->solve(coarse_, coarse_);
-    parallel_for(
-        kCpu, "newton/prolong", cluster_count(),
-        [&](int c) {
-            Mat3 sum;
-            for (int a = 0; a < kUnknowns; ++a)
-                sum.data()[a] = coarse_[kUnknowns * c + a].x();
-            for (int k = first_of_cluster_[c]; k < first_of_cluster_[c + 1]; ++k)
-                z[vertices_[k]] += sum * functions_[vertices_[k]];
-        },
-        16);
+    PaddedVec3 sum[kFunctions] = {PaddedVec3(0.0F), PaddedVec3(0.0F), PaddedVec3(0.0F)};
+    for (int row = first_row(cluster); row < first_row(cluster + 1); ++row)
+        for (int a = 0; a < kFunctions; ++a)
+            sum[a] += functions_of_row_[row][a] * r[row];
+    for (int a = 0; a < kFunctions; ++a)
+        for (int k = 0; k < 3; ++k)
+            coarse_[cluster][3 * a + k] = sum[a][k];
+}
+
+void AffineSpace::solve()
+{
+    factor_.solve(coarse_);
+    for (int c = 0; c < cluster_count(); ++c)
+        for (int a = 0; a < kFunctions; ++a)
+            for (int k = 0; k < 3; ++k)
+                correction_[c][a].value[k] = coarse_[c][3 * a + k];
+}
+
+PaddedVec3 AffineSpace::prolonged(int cluster, int row) const
+{
+    const std::array<PaddedVec3, kFunctions>& u = correction_[cluster];
+    const PaddedVec3& p = functions_of_row_[row];
+    PaddedVec3 result;
+    for (int k = 0; k < 4; ++k)
+        result.value[k] = p.value[0] * u[0].value[k] + p.value[1] * u[1].value[k] + p.value[2] * u[2].value[k];
+    return result;
 }
 
 } // namespace toile

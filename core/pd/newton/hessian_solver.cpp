@@ -1,0 +1,196 @@
+#include "core/pd/newton/hessian_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/compute/parallel.h"
+
+namespace toile {
+
+namespace {
+
+/// Rows of a task: whole clusters.
+constexpr int kRowsOfChunk = 256;
+
+/// y += factor x
+void add(PaddedVec3& y, float factor, const PaddedVec3& x)
+{
+    for (int k = 0; k < 4; ++k)
+        y.value[k] += factor * x.value[k];
+}
+
+} // namespace
+
+void HessianSolver::update(const HessianParts& K, bool with_coarse)
+{
+    if (!std::equal(K.fixed.begin(), K.fixed.end(), fixed_.begin(), fixed_.end())) {
+        fixed_.assign(K.fixed.begin(), K.fixed.end());
+        coarse_.find_clusters(K);
+        rows_.find_pattern(K, coarse_.order());
+        first_of_chunk_.assign(1, 0);
+        cluster_of_row_.assign(rows_.size(), -1);
+        for (int c = 0; c < coarse_.cluster_count(); ++c) {
+            std::fill(cluster_of_row_.begin() + coarse_.first_row(c),
+                      cluster_of_row_.begin() + coarse_.first_row(c + 1), c);
+            if (coarse_.first_row(c + 1) - first_of_chunk_.back() >= kRowsOfChunk)
+                first_of_chunk_.push_back(coarse_.first_row(c + 1));
+        }
+        if (first_of_chunk_.back() < rows_.size())
+            first_of_chunk_.push_back(rows_.size());
+        for (std::vector<PaddedVec3>* field : {&x_, &r_, &z_, &p_, &product_})
+            field->assign(rows_.size(), PaddedVec3(0.0F));
+        sums_.resize(first_of_chunk_.size() - 1);
+        with_coarse = true;
+    }
+    whole_set_ = K.whole_set;
+    rows_.update(K);
+    term_force_.resize(rows_.view().terms.size());
+    if (with_coarse)
+        has_coarse_ = coarse_.update(K);
+}
+
+/// Runs kernel(row, sums) for all rows, and adds the sums chunk by chunk: the same bits for every thread
+/// count.
+template <typename Kernel>
+HessianSolver::Sums HessianSolver::for_chunks(const char* name, const Kernel& kernel)
+{
+    parallel_for(
+        kCpu, name, int(sums_.size()),
+        [&](int chunk) {
+            Sums sums;
+            kernel(first_of_chunk_[chunk], first_of_chunk_[chunk + 1], sums);
+            sums_[chunk] = sums;
+        },
+        1);
+    Sums total;
+    for (const Sums& sums : sums_)
+        total += sums;
+    return total;
+}
+
+HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const double> masses, double increment,
+                                            View<Vec3> d)
+{
+    const StageScope stage("newton/pcg");
+    const View<const int> order = rows_.order();
+    double mass = 0.0;
+    for (const int v : order)
+        mass += masses[v];
+    mass_.resize(order.size());
+    for (int i = 0; i < order.size(); ++i) {
+        mass_[i] = float(masses[order[i]] / mass);
+        r_[i] = padded(Vec3(-g[order[i]]));
+        x_[i] = p_[i] = PaddedVec3(0.0F);
+    }
+    Outcome outcome;
+    double rz = 0.0;
+    int small = 0;
+    while (outcome.iterations < kMaxIterations) {
+        const double previous = rz;
+        rz = precondition();
+        if (!(rz > 0.0)) {
+            outcome.is_solved = true;
+            break;
+        }
+        const float beta = previous > 0.0 ? float(rz / previous) : 0.0F;
+        for_chunks("newton/direction", [&](int first, int last, Sums&) {
+            for (int i = first; i < last; ++i)
+                for (int k = 0; k < 4; ++k)
+                    p_[i].value[k] = z_[i].value[k] + beta * p_[i].value[k];
+        });
+        const Sums curvature = multiply();
+        if (!(curvature.first > 0.0)) {
+            outcome.is_solved = true;
+            break;
+        }
+        const double step = rz / curvature.first;
+        for_chunks("newton/advance", [&](int first, int last, Sums&) {
+            for (int i = first; i < last; ++i) {
+                add(x_[i], float(step), p_[i]);
+                add(r_[i], -float(step), product_[i]);
+            }
+        });
+        ++outcome.iterations;
+        small = step * std::sqrt(curvature.second) < increment ? small + 1 : 0;
+        if (small >= 2) {
+            outcome.is_solved = true;
+            break;
+        }
+    }
+    std::fill(d.begin(), d.end(), Vec3::Zero());
+    for (int i = 0; i < order.size(); ++i)
+        d[order[i]] = unpadded(x_[i]);
+    return outcome;
+}
+
+/// product = K p; returns p . product and the mean square of p by mass.
+HessianSolver::Sums HessianSolver::multiply()
+{
+    const HessianRowsView K = rows_.view();
+    if (!K.terms.empty())
+        parallel_for(kCpu, "newton/term_forces", K.terms.size(),
+                     [&](int t) { term_force_[t] = K.force(t, p_); });
+    const auto add_sums = [&](int i, Sums& sums) {
+        sums.first += dot(p_[i], product_[i]);
+        sums.second += double(mass_[i]) * dot(p_[i], p_[i]);
+    };
+    if (whole_set_ == nullptr)
+        return for_chunks("newton/multiply", [&](int first, int last, Sums& sums) {
+            for (int i = first; i < last; ++i) {
+                product_[i] = K.product(i, p_, term_force_);
+                add_sums(i, sums);
+            }
+        });
+    for_chunks("newton/multiply", [&](int first, int last, Sums&) {
+        for (int i = first; i < last; ++i)
+            product_[i] = K.product(i, p_, term_force_);
+    });
+    add_whole_set();
+    return for_chunks("newton/sums", [&](int first, int last, Sums& sums) {
+        for (int i = first; i < last; ++i)
+            add_sums(i, sums);
+    });
+}
+
+/// product += dH p for an active set that is no sum of terms.
+void HessianSolver::add_whole_set()
+{
+    whole_p_.assign(fixed_.size(), Vec3::Zero());
+    whole_product_.assign(fixed_.size(), Vec3::Zero());
+    const View<const int> order = rows_.order();
+    for (int i = 0; i < order.size(); ++i)
+        whole_p_[order[i]] = unpadded(p_[i]);
+    whole_set_->add_hessian_product(whole_p_, whole_product_);
+    for (int i = 0; i < order.size(); ++i)
+        product_[i] += padded(whole_product_[order[i]]);
+}
+
+/// z = P r; returns r . z.
+double HessianSolver::precondition()
+{
+    const View<const PaddedMat3> inverse = rows_.inverse_diagonal();
+    if (!has_coarse_)
+        return for_chunks("newton/smooth",
+                          [&](int first, int last, Sums& sums) {
+                              for (int i = first; i < last; ++i) {
+                                  z_[i] = inverse[i] * r_[i];
+                                  sums.first += dot(r_[i], z_[i]);
+                              }
+                          })
+            .first;
+    parallel_for(
+        kCpu, "newton/restrict", coarse_.cluster_count(), [&](int c) { coarse_.restrict_to(c, r_); }, 4);
+    coarse_.solve();
+    return for_chunks("newton/smooth",
+                      [&](int first, int last, Sums& sums) {
+                          for (int i = first; i < last; ++i) {
+                              z_[i] = inverse[i] * r_[i];
+                              if (cluster_of_row_[i] >= 0)
+                                  z_[i] += coarse_.prolonged(cluster_of_row_[i], i);
+                              sums.first += dot(r_[i], z_[i]);
+                          }
+                      })
+        .first;
+}
+
+} // namespace toile
