@@ -22,6 +22,9 @@ namespace {
 constexpr double kRho = 0.95;
 constexpr int kLongSolve = 20;
 
+/// Sweeps or substeps of a step, unless the scene says otherwise.
+constexpr int kPasses = 30;
+
 std::unique_ptr<GlobalSolver> make_paper_rule(const TriangleMesh& start, const std::string& source)
 {
     const auto chart = flat_chart(start);
@@ -36,7 +39,7 @@ std::unique_ptr<PointMasses> make_xpbd(const scene::Solver& solver, std::vector<
                                        garment::ClothModel cloth)
 {
     Xpbd::Settings settings;
-    settings.substeps = solver.max_iterations;
+    settings.substeps = solver.max_iterations.value_or(kPasses);
     return std::make_unique<Xpbd>(std::move(positions), std::move(cloth), settings);
 }
 
@@ -44,7 +47,7 @@ std::unique_ptr<PointMasses> make_vbd(const scene::Solver& solver, std::vector<V
                                       garment::ClothModel cloth)
 {
     VertexBlockDescent::Settings settings;
-    settings.max_sweeps = solver.max_iterations;
+    settings.max_sweeps = solver.max_iterations.value_or(kPasses);
 
     // The adaptive start never releases cloth that contact supports. A vertex that has not moved starts from
     // its current position, and a few sweeps over stiff cloth don't move it.

@@ -97,6 +97,14 @@ struct Words<OuterMethod> {
 };
 
 template <>
+struct Words<scene::Quality> {
+    static constexpr std::array<std::pair<const char*, scene::Quality>, 3> kAll{
+        {{"preview", scene::Quality::Preview},
+         {"standard", scene::Quality::Standard},
+         {"final", scene::Quality::Final}}};
+};
+
+template <>
 struct Words<Integrator> {
     static constexpr std::array<std::pair<const char*, Integrator>, 2> kAll{
         {{"bdf2", Integrator::Bdf2}, {"implicit-euler", Integrator::ImplicitEuler}}};

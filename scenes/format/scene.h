@@ -244,6 +244,9 @@ enum class SolverMethod {
     Vbd
 };
 
+/// Named accuracy of a run.
+enum class Quality { Preview, Standard, Final };
+
 struct Sleep {
     bool enabled = true;
     double speed = 0.001; ///< [m/s] cloth whose fastest vertex stays slower falls asleep
@@ -251,13 +254,14 @@ struct Sleep {
 
 struct Solver {
     int substeps = 4;        ///< time steps per sample
-    double tolerance = 1e-3; ///< [m] maximum error of a step
-    double speed_tolerance = 0.01; ///< [m/s] of Newton's method where cloth touches
+    Quality quality = Quality::Standard;
+    std::optional<double> velocity_tolerance; ///< [m/s] absent: that of the quality
+    std::optional<double> tolerance;          ///< [m] of a step; former key for velocity_tolerance
     StepStop stop = StepStop::Error;
-    Integrator integrator = Integrator::ImplicitEuler;
-    int max_iterations = 30; ///< outer iterations per minimisation; see StepPasses
+    Integrator integrator = Integrator::Bdf2;
+    std::optional<int> max_iterations; ///< outer iterations per minimisation; absent: enough for the method
     SolverMethod method = SolverMethod::Auto;
-    OuterMethod outer = OuterMethod::Lbfgs;
+    std::optional<OuterMethod> outer; ///< absent: Newton's method, or L-BFGS where that does not run
     ContactPreconditioner contact_preconditioner = ContactPreconditioner::Block;
     Sleep sleep;
     int threads = 0; ///< 0: all threads of the machine
@@ -305,6 +309,8 @@ struct Scene {
 
     /// Time between samples [s].
     double frame_duration() const { return 1.0 / fps; }
+    /// Length of a time step [s].
+    double step_duration() const { return frame_duration() / solver.substeps; }
 };
 
 } // namespace toile::scenes

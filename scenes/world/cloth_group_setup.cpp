@@ -110,12 +110,13 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
         solver = std::make_unique<BlockDiagonalSolver>(std::move(blocks));
 
     Body::Settings settings;
-    settings.tolerance = scene.solver.tolerance;
-    settings.speed_tolerance = scene.solver.speed_tolerance;
+    const StepMethod method = step_method_of(scene, false);
+    settings.tolerance = method.velocity_tolerance * scene.step_duration();
+    settings.speed_tolerance = method.velocity_tolerance;
     settings.stop = scene.solver.stop;
     settings.integrator = scene.solver.integrator;
-    settings.max_iterations = scene.solver.max_iterations;
-    settings.outer = scene.solver.outer;
+    settings.max_iterations = method.max_iterations;
+    settings.outer = method.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
     return std::make_unique<Body>(
         std::move(unknowns), std::make_unique<System>(std::move(masses), make_energies(), std::move(solver)),
@@ -131,9 +132,11 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
         parts.push_back(
             {embedding_of(*cloth.rest_shape()), source_of_tables(options, cloth.state().name).listener});
     DeviceBody::Settings settings;
-    settings.tolerance = scene.solver.tolerance;
+    const StepMethod method = step_method_of(scene, true);
+    settings.tolerance = method.velocity_tolerance * scene.step_duration();
     settings.stop = scene.solver.stop;
-    settings.max_iterations = scene.solver.max_iterations;
+    settings.integrator = scene.solver.integrator;
+    settings.max_iterations = method.max_iterations;
     auto body = std::make_unique<DeviceBody>(
         space, start_positions(),
         std::make_unique<System>(

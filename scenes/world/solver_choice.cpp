@@ -1,5 +1,7 @@
 #include "scenes/world/solver_choice.h"
 
+#include <cstdio>
+
 #include "core/base/error.h"
 #include "core/linear/direct_solver.h"
 #include "core/quadrature/auto_solver.h"
@@ -25,6 +27,36 @@ std::string methods_that(const Condition& holds)
 }
 
 } // namespace
+
+StepMethod step_method_of(const Scene& scene, bool on_gpu)
+{
+    const scene::Solver& solver = scene.solver;
+    const bool is_preview = solver.quality == scene::Quality::Preview;
+    StepMethod method;
+    const bool is_newton = !on_gpu && !is_preview && !is_baseline(solver.method);
+    method.outer = solver.outer.value_or(is_newton ? OuterMethod::Newton : OuterMethod::Lbfgs);
+    method.velocity_tolerance = is_preview                                ? 0.12
+                                : solver.quality == scene::Quality::Final ? 0.002
+                                                                          : 0.01;
+    if (solver.tolerance)
+        method.velocity_tolerance = *solver.tolerance / scene.step_duration();
+    method.velocity_tolerance = solver.velocity_tolerance.value_or(method.velocity_tolerance);
+    method.max_iterations = is_preview ? 30 : method.outer == OuterMethod::Newton ? 100 : 300;
+    method.max_iterations = solver.max_iterations.value_or(method.max_iterations);
+    return method;
+}
+
+std::string former_keys_of(const Scene& scene)
+{
+    if (!scene.solver.tolerance)
+        return {};
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "solver.tolerance [m] is solver.velocity_tolerance [m/s] now: %g m per step of %.4g s is %.3g m/s",
+                  *scene.solver.tolerance, scene.step_duration(),
+                  *scene.solver.tolerance / scene.step_duration());
+    return scene.source.string() + ": " + text;
+}
 
 std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest)
 {

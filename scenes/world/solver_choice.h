@@ -6,6 +6,7 @@
 
 #include "core/linear/global_solver.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/pd/minimiser/outer_method.h"
 #include "core/quadrature/tables/table_store.h"
 #include "garment/energy/rest_shape.h"
 #include "scenes/format/solver_methods.h"
@@ -32,6 +33,17 @@ std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method,
 
 /// Embedded points of a cloth's vertices for quadrature.
 std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest);
+
+/// Minimiser of a scene's steps and its limits, where the scene leaves them open.
+struct StepMethod {
+    OuterMethod outer = OuterMethod::Newton;
+    double velocity_tolerance = 0.01; ///< [m/s]
+    int max_iterations = 100;
+};
+StepMethod step_method_of(const Scene& scene, bool on_gpu);
+
+/// Message about keys of the scene that have another name now; empty: none.
+std::string former_keys_of(const Scene& scene);
 
 /// @throws InvalidInput if the scene's method is a baseline and there are none
 void require_methods(const Scene& scene, const BaselineMethods* baselines);

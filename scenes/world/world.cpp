@@ -34,7 +34,7 @@ struct World::Parts {
     bool is_shown = true; ///< states are up to date
     int frame = 0;
 
-    double dt() const { return scene.frame_duration() / scene.solver.substeps; }
+    double dt() const { return scene.step_duration(); }
     int settle_steps() const { return int(std::ceil(scene.settle / dt() - 1e-9)); }
 
     /// Takes steps of dt [s], the last of them ending at `end` [s]. Avatars do not move before time 0.
@@ -86,6 +86,8 @@ struct World::Parts {
 World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make_unique<Parts>())
 {
     require_methods(scene, options.baselines);
+    if (const std::string former = former_keys_of(scene); !former.empty() && options.warn)
+        options.warn(former);
     parts_->scene = scene;
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->colliders.emplace_back(avatar, scene.contact.friction);

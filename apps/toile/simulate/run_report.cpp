@@ -7,6 +7,7 @@
 #include "core/base/process_usage.h"
 #include "core/compute/cuda/runtime/runtime.h"
 #include "scenes/format/field.h"
+#include "scenes/world/solver_choice.h"
 
 namespace toile::app {
 
@@ -14,18 +15,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json settings_of(const scenes::Scene& scene)
+Json settings_of(const scenes::Scene& scene, bool on_gpu)
 {
     const scene::Solver& solver = scene.solver;
+    const scenes::StepMethod method = scenes::step_method_of(scene, on_gpu);
     return {{"frames", scene.frames},
             {"fps", scene.fps},
             {"settle_s", scene.settle},
             {"substeps", solver.substeps},
-            {"tolerance_m", solver.tolerance},
+            {"integrator", scene_format::word_of(solver.integrator)},
+            {"velocity_tolerance_m_s", method.velocity_tolerance},
             {"stop", scene_format::word_of(solver.stop)},
-            {"max_iterations", solver.max_iterations},
+            {"max_iterations", method.max_iterations},
             {"method", scene_format::word_of(solver.method)},
-            {"outer", scene_format::word_of(solver.outer)},
+            {"outer", scene_format::word_of(method.outer)},
             {"contact_preconditioner", scene_format::word_of(solver.contact_preconditioner)},
             {"sleep", solver.sleep.enabled},
             {"threads", solver.threads},
@@ -42,6 +45,7 @@ Json json_of(int frame, const StepReport& report, double seconds)
                  {"iterations", report.iterations},
                  {"linear_iterations", report.linear_iterations},
                  {"displacement_m", report.displacement},
+                 {"newton_speed_m_s", report.speed},
                  {"gradient_norm_n", report.gradient_norm},
                  {"energy_j", report.energy},
                  {"contacts", report.contacts},
@@ -85,7 +89,7 @@ void RunReport::write(const std::filesystem::path& file, const std::string& outc
                  {"backend", backend_}};
     if (device_)
         json["device"] = *device_;
-    json["settings"] = settings_of(scene_);
+    json["settings"] = settings_of(scene_, device_.has_value());
     json["start"] = start_json(start_, scene_);
     json["peak_memory_bytes"] = peak_memory();
     double seconds = 0.0;

@@ -19,10 +19,6 @@ DeviceSolver* device_solver_of(System& system, const CudaSpace& space)
     return solver;
 }
 
-/// Value of the start guess without motion that comes from inertia alone [J]: often larger than the value
-/// found.
-double inertia_of_standing(const Descent& asked) { return 0.5 / asked.dt2 * asked.driving; }
-
 DeviceEnergies energies_of(const CudaSpace& space, const System& system)
 {
     DeviceEnergies energies(space);
@@ -44,7 +40,10 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       targets_(space, "body/targets", x_.size()), fixed_vertices_(space, "body/fixed_vertices"),
       fixed_targets_(space, "body/fixed_targets"),
       fixed_targets_on_host_(space, "body/fixed_targets_on_host"), drive_(space, "body/drive", x_.size()),
-      found_(space, "body/found", x_.size()), found_gradient_(space, "body/found_gradient", x_.size()),
+      x_previous_(space, "body/x_previous", x_.size()), v_previous_(space, "body/v_previous", x_.size()),
+      restart_(space, "body/restart", x_.size()), touched_(space, "body/touched", x_.size()),
+      touches_(space, "body/touches", x_.size()), minimiser_(space, "body/minimiser", x_.size()),
+      inertia_(space, "body/inertia", x_.size()), found_(space, "body/found", x_.size()), found_gradient_(space, "body/found_gradient", x_.size()),
       masses_(space, "body/masses"), diagonal_(space, "body/diagonal"),
       inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
       begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
@@ -54,6 +53,10 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
 {
     TOILE_ASSERT(x_.size() == system_->vertex_count());
     masses_.upload(system_->masses());
+    for (DeviceArray<unsigned char>* flags : {&touched_, &touches_})
+        flags->fill_zero();
+    for (DeviceArray<Vec3>* field : {&x_previous_, &v_previous_})
+        field->fill_zero();
     set_positions(positions);
     set_velocities(std::vector<Vec3>(positions.size(), Vec3::Zero()));
 }
@@ -61,20 +64,22 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
 void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
 {
     TOILE_ASSERT(int(fixed.size()) == x_.size());
-    const bool is_new = dt != dt_ || fixed != host_fixed_;
-    dt_ = 0.0; // not prepared, should the solver refuse H
-    system_->prepare(dt, fixed);
+    const double step = Bdf2::make(settings_.integrator, dt, previous_dt_).implicit_step();
+    const bool is_new = step != prepared_step_ || fixed != host_fixed_;
+    prepared_step_ = 0.0; // not prepared, should the solver refuse H
+    system_->prepare(step, fixed);
     if (is_new) {
         set_fixed(fixed);
-        const DeviceDescent::Problem problem = this->problem(dt);
+        const DeviceDescent::Problem problem = this->problem();
         descent_.record(problem);
         is_contact_prepared_ = false;
         host_fixed_ = fixed;
     }
+    prepared_step_ = step;
     dt_ = dt;
 }
 
-DeviceDescent::Problem DeviceBody::problem(double dt)
+DeviceDescent::Problem DeviceBody::problem()
 {
     return {[this](const DeviceEvaluation& at) { energies_.add_gradient(at); },
             [this](View<const Vec3> g, View<Vec3> z) { solver_->solve_on_device(g, z); },
@@ -82,7 +87,7 @@ DeviceDescent::Problem DeviceBody::problem(double dt)
             fixed_.view(),
             prediction_.device(),
             drive_.view(),
-            dt};
+            inertia_.view()};
 }
 
 StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
@@ -99,6 +104,9 @@ void DeviceBody::begin(const StepInput& input)
         throw InvalidInput("this constraint does not run on a GPU");
     if (input.active && input.active->on_device(space_) == nullptr)
         throw InvalidInput("this contact does not run on a GPU");
+    scheme_ = Bdf2::make(settings_.integrator, input.dt, previous_dt_);
+    if (previous_dt_ == 0.0 || input.dt > Bdf2::kMaxRatio * previous_dt_)
+        restart_all();
     prepare(input.dt, input.fixed);
     begin_forces(input.acceleration);
     begin_targets(input.targets);
@@ -128,6 +136,16 @@ void DeviceBody::project(StepProjection& projection, const std::function<bool()>
     limits.project(x_t1_.change_on_device(), inverse_masses_.view(), clear_contacts);
     parallel_for(space_, "pd/projected", x_.size(),
                  AddProjected{found_.view(), x_t1_.device(), dt_, v_.change_on_device()});
+}
+
+void DeviceBody::restart_touching(const StepInput& input)
+{
+    if (settings_.integrator == Integrator::ImplicitEuler)
+        return;
+    input.active->mark_touching(x_t1_, touches_.view());
+    parallel_for(space_, "pd/restart", x_.size(), RestartTouching{motion()});
+    predict_motion();
+    touches_.fill_zero();
 }
 
 OuterLoop::Outcome DeviceBody::minimise(ActiveSetEnergy* active, int max_iterations, bool is_first)
@@ -160,7 +178,7 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
     if (is_first)
         asked_ = found;
     const OuterLoop::Outcome first = outcome_of(found);
-    if (!is_first || found.search.value <= inertia_of_standing(found))
+    if (!is_first || found.search.value <= found.standing_inertia)
         return first;
 
     keep_found();
@@ -190,7 +208,7 @@ OuterLoop::Outcome DeviceBody::minimise_with_contact(DeviceActiveSet& contact, i
     begin_at(x_t1_.device());
     const OuterLoop::Outcome found =
         run_with_contact(contact, settings, contact_descent_->evaluate(fields(), contact));
-    if (!is_first || found.value <= inertia_of_standing(asked_))
+    if (!is_first || found.value <= asked_.standing_inertia)
         return found;
 
     stand_still();
@@ -212,7 +230,7 @@ void DeviceBody::prepare_contact()
     if (!contact_descent_)
         contact_descent_ = std::make_unique<DeviceContactDescent>(space_, x_.size(), settings_.contact_solve);
     contact_descent_->prepare(*system_, *solver_);
-    contact_descent_->set_problem(problem(dt_));
+    contact_descent_->set_problem(problem());
     is_contact_prepared_ = true;
 }
 

@@ -12,6 +12,7 @@
 #include "core/pd/cuda/projection.h"
 #include "core/pd/energy/system.h"
 #include "core/pd/preconditioner/nested_pcg.h"
+#include "core/pd/step/bdf2.h"
 #include "core/pd/step/point_masses.h"
 #include "core/pd/step/take_step.h"
 
@@ -27,6 +28,7 @@ public:
         int max_passes = 3;                                      ///< see StepPasses
         Pcg::Settings contact_solve = NestedPcg::Settings{}.pcg; ///< while contacts are active
         StepStop stop = StepStop::Error;                         ///< what the tolerance bounds
+        Integrator integrator = Integrator::ImplicitEuler;
     };
 
     /// @param space      borrowed; the solver's too
@@ -55,7 +57,7 @@ public:
     View<const Vec3> positions() const override { return x_.host(); }
     View<const Vec3> velocities() const override { return v_.host(); }
     std::shared_ptr<const Readback<Vec3>> read_back_positions() override;
-    void set_positions(View<const Vec3> x) override { overwrite(x_, x); }
+    void set_positions(View<const Vec3> x) override;
     void set_velocities(View<const Vec3> v) override;
     double max_speed() const override;
     View<const double> masses() const override { return system_->masses(); }
@@ -72,7 +74,7 @@ private:
     {
         return {}; // TODO
     }
-    void restart_touching(const StepInput&) override {}
+    void restart_touching(const StepInput& input) override;
     void finish(ActiveSetEnergy* active, StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
@@ -81,9 +83,12 @@ private:
     void set_fixed(const std::vector<unsigned char>& fixed);
     void begin_forces(View<const Vec3> acceleration);
     void begin_targets(View<const Vec3> targets);
-    DeviceDescent::Problem problem(double dt);
-    DescentFields fields() { return descent_.fields(problem(dt_)); }
+    DeviceDescent::Problem problem();
+    DescentFields fields() { return descent_.fields(problem()); }
+    MotionView motion();
+    void restart_all();
     void predict();
+    void predict_motion();
     OuterLoop::Outcome minimise_free(bool is_first);
     OuterLoop::Outcome minimise_with_contact(DeviceActiveSet& contact, int limit, bool is_first);
     void prepare_contact();
@@ -99,7 +104,8 @@ private:
     DeviceSolver* solver_; ///< system_'s
     Settings settings_;
     DeviceEnergies energies_;
-    double dt_ = 0.0;
+    double dt_ = 0.0;            ///< of the current step [s]
+    double prepared_step_ = 0.0; ///< [s] Bdf2::implicit_step() of H; 0: none
     Descent asked_; ///< inputs at the start of the step: tolerance, mass, driving
     std::vector<unsigned char> host_fixed_;
 
@@ -111,7 +117,17 @@ private:
     std::vector<int> fixed_vertices_on_host_;
     DeviceArray<Vec3> fixed_targets_; ///< [fixed vertices]
     PinnedArray<Vec3> fixed_targets_on_host_;
-    DeviceArray<Vec3> drive_, found_, found_gradient_;
+    DeviceArray<Vec3> drive_;
+
+    // State of the integrator: see MotionView.
+    Bdf2 scheme_;
+    double previous_dt_ = 0.0; ///< [s] 0: there was no step before
+    DeviceArray<Vec3> x_previous_, v_previous_;
+    DeviceArray<unsigned char> restart_, touched_, touches_;
+    DeviceArray<Vec3> minimiser_;  ///< [vertices] [m]
+    DeviceArray<double> inertia_;  ///< [vertices] [N/m]
+
+    DeviceArray<Vec3> found_, found_gradient_;
     DeviceArray<double> masses_, diagonal_; ///< [kg]; of H [N/m]
     DeviceArray<double> inverse_masses_;    ///< [1/kg] 0 where fixed
     DeviceArray<unsigned char> fixed_;

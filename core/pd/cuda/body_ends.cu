@@ -12,9 +12,16 @@ void DeviceBody::overwrite(MirroredArray<Vec3>& field, View<const Vec3> values)
     std::copy(values.begin(), values.end(), field.overwrite_on_host().begin());
 }
 
+void DeviceBody::set_positions(View<const Vec3> x)
+{
+    overwrite(x_, x);
+    restart_all();
+}
+
 void DeviceBody::set_velocities(View<const Vec3> v)
 {
     overwrite(v_, v);
+    restart_all();
     is_speed_current_ = false;
 }
 
@@ -70,26 +77,46 @@ void DeviceBody::begin_targets(View<const Vec3> targets)
                  ScatterTarget{fixed_vertices_.view(), fixed_targets_.view(), targets_.view()});
 }
 
+MotionView DeviceBody::motion()
+{
+    return {x_.change_on_device(), v_.change_on_device(), x_previous_.view(), v_previous_.view(),
+            restart_.view(),       touched_.view(),       touches_.view(),    fixed_.view()};
+}
+
+/// Begins the motion anew everywhere.
+void DeviceBody::restart_all() { restart_.upload(std::vector<unsigned char>(x_.size(), 1)); }
+
 /// Predicts all vertices, which is the start point of the step, and writes the inputs to the descent.
 void DeviceBody::predict()
 {
-    const View<Vec3> prediction = prediction_.overwrite_on_device();
-    const PredictVertex predict{
-        x_.device(), v_.device(), acceleration_.device(), fixed_.view(), targets_.view(), dt_, prediction};
-    parallel_sum_then(
-        space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, masses_.view(), drive_.view()},
-        BeginDescent{fields().descent, {settings_.tolerance}, settings_.stop, settings_.max_iterations, dt_},
-        begin_sums_);
-    parallel_for(space_, "pd/begin", x_.size(), CopyPositions{prediction, x_t1_.overwrite_on_device()});
+    predict_motion();
+    parallel_for(space_, "pd/begin", x_.size(),
+                 CopyPositions{prediction_.device(), x_t1_.overwrite_on_device()});
 }
 
-void DeviceBody::finish(ActiveSetEnergy*, StepProjection*)
+void DeviceBody::predict_motion()
 {
+    parallel_sum_then(space_, "pd/predict", x_.size(), StepSums{},
+                      BeginVertex{{scheme_, motion(), acceleration_.device(), targets_.view(), masses_.view(),
+                                   prediction_.overwrite_on_device(), inertia_.view()},
+                                  drive_.view()},
+                      BeginDescent{fields().descent,
+                                   {settings_.tolerance},
+                                   settings_.stop,
+                                   settings_.max_iterations,
+                                   scheme_.implicit_step()},
+                      begin_sums_);
+}
+
+void DeviceBody::finish(ActiveSetEnergy* active, StepProjection*)
+{
+    if (active && settings_.integrator != Integrator::ImplicitEuler)
+        active->mark_touching(x_t1_, touches_.view());
     for (const auto& energy : energies_.all())
         energy->end_minimisation(x_t1_.device());
     parallel_sum(
         space_, "pd/finish", x_.size(), LargestSquare{},
-        FinishVertex{x_.device(), x_t1_.device(), descent_.gradient(), dt_, v_.overwrite_on_device()},
+        FinishVertex{{scheme_, motion(), x_t1_.device()}, descent_.gradient(), minimiser_.view()},
         gradient_.view(), end_sums_);
 }
 
@@ -97,8 +124,8 @@ void DeviceBody::finish(ActiveSetEnergy*, StepProjection*)
 void DeviceBody::end(StepProjection* projection, StepReport& report)
 {
     parallel_sum(space_, "pd/end", x_.size(), LargestSquare{},
-                 EndVertex{{x_t1_.device(), x_.overwrite_on_device()}, v_.device()}, speed_.view(),
-                 end_sums_);
+                 EndVertex{{motion(), minimiser_.view(), x_t1_.device()}}, speed_.view(), end_sums_);
+    previous_dt_ = dt_;
     if (projection)
         projection->on_device(space_)->end_step(x_.device());
     space_.synchronise();

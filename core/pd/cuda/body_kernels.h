@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/pd/cuda/descent_kernels.h"
+#include "core/pd/step/bdf2.h"
 #include "core/pd/step/step_kernels.h"
 #include "core/pd/step/step_tolerance.h"
 
@@ -13,12 +14,14 @@ struct StepSums {
     double max_square = 0.0; ///< [m^2] of the predicted displacements: a maximum, not a sum
     double mass = 0.0;       ///< [kg] of the free vertices
     double driving = 0.0;    ///< StepError::Sums::driving
+    double inertia = 0.0;    ///< [J] of no motion
 
     TOILE_HD StepSums& operator+=(const StepSums& other)
     {
         max_square = std::fmax(max_square, other.max_square);
         mass += other.mass;
         driving += other.driving;
+        inertia += other.inertia;
         return *this;
     }
 };
@@ -34,21 +37,21 @@ struct ScatterTarget {
 
 /// Predicts vertex i.
 struct BeginVertex {
-    PredictVertex predict;
-    View<const double> masses; ///< [vertices] [kg]
-    View<Vec3> drive;          ///< [vertices] out: q* - x0 [m]
+    PredictMotion predict;
+    View<Vec3> drive; ///< [vertices] out: y - x0 [m]
 
     TOILE_HD StepSums operator()(int i) const
     {
         predict(i);
-        const Vec3 move = predict.prediction[i] - predict.x[i];
+        const Vec3 move = predict.prediction[i] - predict.motion.x[i];
         drive[i] = move;
         StepSums sums;
         sums.max_square = move.squaredNorm();
-        if (predict.fixed[i])
+        if (predict.motion.fixed[i] != 0)
             return sums;
-        sums.mass = masses[i];
+        sums.mass = predict.masses[i];
         sums.driving = sums.mass * sums.max_square;
+        sums.inertia = 0.5 * predict.inertia[i] * sums.max_square;
         return sums;
     }
 };
@@ -59,7 +62,7 @@ struct BeginDescent {
     StepTolerance tolerance;
     StepStop stop;
     int max_iterations; ///< of a minimisation
-    double dt;          ///< [s]
+    double dt;          ///< [s] Bdf2::implicit_step()
 
     TOILE_HD void operator()(const StepSums& sums) const
     {
@@ -70,6 +73,7 @@ struct BeginDescent {
         task.dt2 = dt * dt;
         task.mass = sums.mass;
         task.driving = sums.driving;
+        task.standing_inertia = sums.inertia;
         task.begin();
     }
 };
@@ -138,30 +142,30 @@ struct LargestSquare {
     }
 };
 
-/// Computes the velocity of vertex i from the minimiser.
+/// Finishes the motion of vertex i at the minimiser, which is kept.
 struct FinishVertex {
-    View<const Vec3> x, x_t1, gradient; ///< [vertices] at t0 and t1 [m], [N]
-    double dt;                          ///< [s]
-    View<Vec3> v;                       ///< [vertices] out [m/s]
+    FinishMotion finish;
+    View<const Vec3> gradient; ///< [vertices] [N]
+    View<Vec3> minimiser;      ///< [vertices] out [m]
 
     /// @return squared length of the gradient [N^2]
     TOILE_HD LargestSquare operator()(int i) const
     {
-        v[i] = (x_t1[i] - x[i]) / dt;
+        finish(i);
+        minimiser[i] = finish.x_t1[i];
         return {gradient[i].squaredNorm()};
     }
 };
 
-/// Copies the final position of vertex i and measures its speed.
+/// Ends the motion of vertex i and measures its speed.
 struct EndVertex {
-    CopyPositions take;
-    View<const Vec3> v; ///< [vertices] [m/s]
+    EndMotion end;
 
     /// @return squared speed [m^2/s^2]
     TOILE_HD LargestSquare operator()(int i) const
     {
-        take(i);
-        return {v[i].squaredNorm()};
+        end(i);
+        return {end.motion.v[i].squaredNorm()};
     }
 };
 

@@ -44,8 +44,7 @@ DescentFields DeviceDescent::fields(const Problem& problem)
             problem.masses,
             problem.fixed,
             problem.drive,
-            {problem.masses, problem.prediction, 1.0 / (problem.dt * problem.dt), trial_x_.view(),
-             trial_gradient_.view()},
+            {problem.inertia, problem.prediction, trial_x_.view(), trial_gradient_.view()},
             descent_.view()};
 }
 

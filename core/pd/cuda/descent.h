@@ -24,7 +24,7 @@ public:
         View<const unsigned char> fixed; ///< [vertices]
         View<const Vec3> prediction;     ///< [vertices] q* [m]
         View<const Vec3> drive;          ///< [vertices] q* - x0 [m]
-        double dt = 0.0;                 ///< [s]
+        View<const double> inertia;      ///< [vertices] [N/m]
     };
 
     /// @param partial_count  parts of the value that belong to no vertex

@@ -56,6 +56,7 @@ struct Descent {
     StepStop stop = StepStop::Error;
     int max_iterations = 0;
     double dt2 = 0.0;     ///< [s^2]
+    double standing_inertia = 0.0; ///< [J] value of the start guess without motion, from inertia alone
     double mass = 0.0;    ///< [kg] of the free vertices
     double driving = 0.0; ///< StepError::Sums::driving of the step
 

@@ -28,54 +28,98 @@ struct Bdf2 {
         return {h, (1.0 + ratio) * scale, (1.0 + ratio) * (1.0 + ratio) * scale, ratio * ratio * scale};
     }
 
+    /// @param previous  length of the last step [s], 0 for none: the matrix is that of equal steps
+    TOILE_HD static Bdf2 make(Integrator integrator, double h, double previous)
+    {
+        if (integrator == Integrator::ImplicitEuler)
+            return implicit_euler(h);
+        const double ratio = previous > 0.0 ? h / previous : 1.0;
+        return of_ratio(h, ratio <= kMaxRatio ? ratio : 1.0);
+    }
+
     /// Step length of the implicit Euler step with the same matrix [s].
     TOILE_HD double implicit_step() const { return beta * h; }
 };
 
-/// Positions and velocities of the last two steps. [vertices] [m], [m/s]
-struct MotionHistory {
-    View<const Vec3> x, v, x_previous, v_previous;
+/// State of the integrator for kernels: the last two steps, and what touched. [vertices]
+struct MotionView {
+    View<Vec3> x, v, x_previous, v_previous; ///< [m], [m/s]
+    View<unsigned char> restart;             ///< 1: this step is one of implicit Euler
+    View<unsigned char> touched, touches;    ///< at the start of the step; now
+    View<const unsigned char> fixed;
+
+    TOILE_HD Bdf2 scheme_of(int i, const Bdf2& scheme) const
+    {
+        return restart[i] != 0 || fixed[i] != 0 ? Bdf2::implicit_euler(scheme.h) : scheme;
+    }
+    TOILE_HD bool has_begun_to_touch(int i) const { return touches[i] != 0 && touched[i] == 0; }
 };
 
-/// Objective's inertia 1/2 c_i |x_i - y_i|^2 of a step, from motion and external acceleration. Fixed vertices
+/// Inertia 1/2 c_i |x_i - y_i|^2 of a step, from the motion so far and external acceleration. Fixed vertices
 /// move to their targets.
 struct PredictMotion {
-    Bdf2 scheme;                       ///< of vertices that do not restart
-    MotionHistory history;
-    View<const Vec3> acceleration;     ///< [vertices] [m/s^2]
-    View<const unsigned char> fixed;   ///< [vertices]
-    View<const Vec3> targets;          ///< [vertices] read where fixed [m]
-    View<const unsigned char> restart; ///< [vertices] 1: an implicit Euler step
-    View<const double> masses;         ///< [vertices] [kg]
-    View<Vec3> prediction;             ///< [vertices] out: y [m]
-    View<double> inertia;              ///< [vertices] out: c [N/m]
+    Bdf2 scheme;
+    MotionView motion;
+    View<const Vec3> acceleration; ///< [vertices] [m/s^2]
+    View<const Vec3> targets;      ///< [vertices] read where fixed [m]
+    View<const double> masses;     ///< [vertices] [kg]
+    View<Vec3> prediction;         ///< [vertices] out: y [m]
+    View<double> inertia;          ///< [vertices] out: c [N/m]
 
     TOILE_HD void operator()(int i) const
     {
-        const Bdf2 s = restart[i] ? Bdf2::implicit_euler(scheme.h) : scheme;
+        const Bdf2 s = motion.scheme_of(i, scheme);
         const double step = s.implicit_step();
-        inertia[i] = masses[i] / (step * step);
-        if (fixed[i]) {
+        inertia[i] = masses[i] * (1.0 / (step * step));
+        if (motion.fixed[i] != 0) {
             prediction[i] = targets[i];
             return;
         }
-        const Vec3 velocity = s.a0 * history.v[i] - s.a1 * history.v_previous[i];
-        prediction[i] = s.a0 * history.x[i] - s.a1 * history.x_previous[i] +
+        const Vec3 velocity = s.a0 * motion.v[i] - s.a1 * motion.v_previous[i];
+        prediction[i] = s.a0 * motion.x[i] - s.a1 * motion.x_previous[i] +
                         step * (velocity + step * acceleration[i]);
     }
 };
 
-/// Velocity at the end of a step.
-struct VelocityOfStep {
+/// Restarts vertices that have begun to touch something.
+struct RestartTouching {
+    MotionView motion;
+    TOILE_HD void operator()(int i) const
+    {
+        if (motion.has_begun_to_touch(i))
+            motion.restart[i] = 1;
+    }
+};
+
+/// Velocity at the end of a step. Vertices that have begun to touch took part in an impact.
+struct FinishMotion {
     Bdf2 scheme;
-    View<const Vec3> x_t0, x_previous, x; ///< [vertices] [m]
-    View<const unsigned char> restart;    ///< [vertices] 1: an implicit Euler step
-    View<Vec3> v;                         ///< [vertices] out [m/s]
+    MotionView motion;
+    View<const Vec3> x_t1; ///< [vertices] [m]
 
     TOILE_HD void operator()(int i) const
     {
-        const Bdf2 s = restart[i] ? Bdf2::implicit_euler(scheme.h) : scheme;
-        v[i] = (x[i] - s.a0 * x_t0[i] + s.a1 * x_previous[i]) / s.implicit_step();
+        RestartTouching{motion}(i);
+        const Bdf2 s = motion.scheme_of(i, scheme);
+        motion.v_previous[i] = motion.v[i];
+        motion.v[i] = (x_t1[i] - s.a0 * motion.x[i] + s.a1 * motion.x_previous[i]) / s.implicit_step();
+    }
+};
+
+/// Makes the end of a step the next start. The next step restarts vertices that have begun to touch, that a
+/// constraint has moved from where the minimiser left them, or that may be released.
+struct EndMotion {
+    MotionView motion;
+    View<const Vec3> minimiser, x_t1; ///< [vertices] [m]
+
+    TOILE_HD void operator()(int i) const
+    {
+        const bool was_moved = x_t1[i] != minimiser[i];
+        motion.restart[i] = (unsigned char)(motion.has_begun_to_touch(i) || was_moved || motion.fixed[i] != 0);
+        motion.touched[i] = motion.touches[i];
+        motion.touches[i] = 0;
+        motion.x_previous[i] = motion.x[i];
+        motion.x[i] = x_t1[i];
     }
 };
 

@@ -41,19 +41,18 @@ StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vecto
                       newton_ ? settings_.speed_tolerance : 0.0});
 }
 
+MotionView Body::motion()
+{
+    return {x_, v_, x_previous_, v_previous_, restart_, touched_, touches_, system_->fixed()};
+}
+
 void Body::begin(const StepInput& input)
 {
     dt_ = input.dt;
-    const bool is_first = previous_dt_ == 0.0 || dt_ > Bdf2::kMaxRatio * previous_dt_;
-    if (settings_.integrator == Integrator::ImplicitEuler || is_first)
+    if (previous_dt_ == 0.0 || dt_ > Bdf2::kMaxRatio * previous_dt_)
         std::fill(restart_.begin(), restart_.end(), 1);
-    scheme_ = settings_.integrator == Integrator::ImplicitEuler
-                  ? Bdf2::implicit_euler(dt_)
-                  : Bdf2::of_ratio(dt_, is_first ? 1.0 : dt_ / previous_dt_);
-    system_->prepare(scheme_.implicit_step(), input.fixed);
-    for (size_t i = 0; i < x_.size(); ++i)
-        if (input.fixed[i])
-            restart_[i] = 1;
+    scheme_ = Bdf2::make(settings_.integrator, dt_, previous_dt_);
+    prepare(dt_, input.fixed);
     predict(input);
     x_t1_ = prediction_;
     if (newton_)
@@ -66,25 +65,18 @@ void Body::begin(const StepInput& input)
 void Body::predict(const StepInput& input)
 {
     parallel_for(kCpu, "pd/predict", int(x_.size()),
-                 PredictMotion{scheme_, {x_, v_, x_previous_, v_previous_}, input.acceleration,
-                               system_->fixed(), input.targets, restart_, system_->masses(), prediction_,
-                               inertia_});
+                 PredictMotion{scheme_, motion(), input.acceleration, input.targets, system_->masses(),
+                               prediction_, inertia_});
 }
 
 void Body::restart_touching(const StepInput& input)
 {
     if (settings_.integrator == Integrator::ImplicitEuler)
         return;
-    std::fill(touches_.begin(), touches_.end(), 0);
     input.active->mark_touching(x_t1_, touches_);
-    bool any = false;
-    for (size_t i = 0; i < x_.size(); ++i)
-        if (touches_[i] && !touched_[i] && !restart_[i]) {
-            restart_[i] = 1;
-            any = true;
-        }
-    if (any)
-        predict(input);
+    parallel_for(kCpu, "pd/restart", int(x_.size()), RestartTouching{motion()});
+    predict(input);
+    std::fill(touches_.begin(), touches_.end(), 0);
 }
 
 StepStart Body::start() const
@@ -189,19 +181,12 @@ void Body::step_local_global()
         x_t1_[i] -= standing_[i];
 }
 
-/// Vertices that touch something at the end but did not at the start have taken part of an impact: theirs is
-/// an implicit Euler step, and so is the next one.
 void Body::finish(ActiveSetEnergy* active, StepProjection* projection)
 {
-    std::fill(touches_.begin(), touches_.end(), 0);
-    if (active)
+    if (active && settings_.integrator != Integrator::ImplicitEuler)
         active->mark_touching(x_t1_, touches_);
-    for (size_t i = 0; i < x_.size(); ++i)
-        restart_[i] |= touches_[i] & ~touched_[i];
-    v_.swap(v_previous_);
-    parallel_for(kCpu, "pd/finish", int(x_.size()),
-                 VelocityOfStep{scheme_, x_, x_previous_, x_t1_, restart_, v_});
-    minimised_ = x_t1_;
+    parallel_for(kCpu, "pd/finish", int(x_.size()), FinishMotion{scheme_, motion(), x_t1_});
+    minimiser_ = x_t1_;
     if (projection)
         projection->observe(x_t1_);
 }
@@ -213,11 +198,7 @@ void Body::project(StepProjection& projection, const std::function<bool()>& clea
 
 void Body::end(StepProjection*, StepReport&)
 {
-    for (size_t i = 0; i < x_.size(); ++i)
-        restart_[i] = (touches_[i] && !touched_[i]) || x_t1_[i] != minimised_[i] ? 1 : 0;
-    touched_.swap(touches_);
-    x_previous_.swap(x_);
-    x_.swap(x_t1_);
+    parallel_for(kCpu, "pd/end", int(x_.size()), EndMotion{motion(), minimiser_, x_t1_});
     previous_dt_ = dt_;
 }
 

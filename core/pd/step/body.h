@@ -32,7 +32,10 @@ public:
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);
 
-    void prepare(double dt, const std::vector<unsigned char>& fixed) override { system_->prepare(dt, fixed); }
+    void prepare(double dt, const std::vector<unsigned char>& fixed) override
+    {
+        system_->prepare(Bdf2::make(settings_.integrator, dt, previous_dt_).implicit_step(), fixed);
+    }
     StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                     View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection) override;
 
@@ -55,6 +58,7 @@ private:
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
 
+    MotionView motion();
     void predict(const StepInput& input);
     double tolerance() const;
     bool are_fixed_moving() const;
@@ -70,14 +74,13 @@ private:
     std::optional<StepObjective> objective_; ///< of the current step
     std::vector<Vec3> prediction_, standing_, gradient_;
 
-    // State of the integrator.
+    // State of the integrator: see MotionView.
     Bdf2 scheme_;
-    double previous_dt_ = 0.0;                 ///< [s] 0: there was no step before
-    std::vector<Vec3> x_previous_, v_previous_; ///< [vertices] before the last step [m], [m/s]
-    std::vector<unsigned char> restart_;        ///< [vertices] 1: an implicit Euler step
-    std::vector<unsigned char> touched_, touches_; ///< [vertices] at the end of the last step, and now
-    std::vector<Vec3> minimised_;                  ///< [vertices] before projections [m]
-    std::vector<double> inertia_;                  ///< [vertices] [N/m]
+    double previous_dt_ = 0.0; ///< [s] 0: there was no step before
+    std::vector<Vec3> x_previous_, v_previous_;
+    std::vector<unsigned char> restart_, touched_, touches_;
+    std::vector<Vec3> minimiser_; ///< [vertices] [m]
+    std::vector<double> inertia_; ///< [vertices] [N/m]
 };
 
 } // namespace toile

@@ -19,21 +19,20 @@ struct PredictVertex {
     }
 };
 
-/// Inertia 1/(2 dt^2) |x - q*|^2_M of a vertex.
+/// Inertia 1/2 c |x - y|^2 of a vertex.
 struct InertiaOfVertex {
-    View<const double> masses;   ///< [vertices] [kg]
-    View<const Vec3> prediction; ///< [vertices] [m]
-    double inverse_dt2;          ///< [1/s^2]
+    View<const double> inertia;  ///< [vertices] c [N/m]
+    View<const Vec3> prediction; ///< [vertices] y [m]
     View<const Vec3> x;          ///< [vertices] [m]
     View<Vec3> gradient;         ///< [vertices] overwritten [N]
 
     /// @return its energy [J]
-    TOILE_HD double operator()(int i) const { return at(i, x[i], prediction[i], masses[i]); }
+    TOILE_HD double operator()(int i) const { return at(i, x[i], prediction[i], inertia[i]); }
 
     /// Evaluates at values that the caller has loaded.
-    TOILE_HD double at(int i, const Vec3& x_i, const Vec3& prediction_i, double mass) const
+    TOILE_HD double at(int i, const Vec3& x_i, const Vec3& prediction_i, double inertia_i) const
     {
-        const Vec3 away = x_i - prediction_i, force = mass * inverse_dt2 * away;
+        const Vec3 away = x_i - prediction_i, force = inertia_i * away;
         gradient[i] = force;
         return 0.5 * force.dot(away);
     }

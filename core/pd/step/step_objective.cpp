@@ -24,7 +24,7 @@ double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
 {
     double value = parallel_sum(
         kCpu, x.size(), 0.0,
-        InertiaOfVertex{inertia_, start_.prediction, 1.0, x, gradient});
+        InertiaOfVertex{inertia_, start_.prediction, x, gradient});
     value += system_.add_gradient(x, gradient);
     if (active_)
         value += active_->add_gradient(x, gradient);

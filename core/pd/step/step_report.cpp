@@ -11,6 +11,7 @@ void StepReport::merge(const StepReport& other)
     iterations += other.iterations;
     linear_iterations += other.linear_iterations;
     displacement = std::max(displacement, other.displacement);
+    speed = std::max(speed, other.speed);
     gradient_norm = std::max(gradient_norm, other.gradient_norm);
     energy += other.energy;
     contacts += other.contacts;

@@ -46,6 +46,8 @@ scenes::Scene make_scene(const Sheet& sheet, const Setting& setting)
     scene.solver.substeps = 1;
     scene.solver.tolerance = setting.tolerance;
     scene.solver.max_iterations = setting.max_iterations;
+    scene.solver.outer = OuterMethod::Lbfgs;
+    scene.solver.integrator = Integrator::ImplicitEuler;
     scene.solver.sleep.enabled = false;
 
     scene::Cloth cloth;

@@ -32,7 +32,7 @@ struct DescentArrays {
                 masses,
                 fixed,
                 drive,
-                {masses, drive, 0.0, trial.x, trial.gradient},
+                {{}, drive, trial.x, trial.gradient},
                 descent};
     }
 

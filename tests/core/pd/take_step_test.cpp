@@ -34,7 +34,20 @@ public:
         outcome.value = value;
         return outcome;
     }
-    void finish(StepProjection*) override { calls.push_back("finish"); }
+    OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
+                                          bool is_calm) override
+    {
+        calls.push_back(is_calm ? "calm newton" : "newton");
+        OuterLoop::Outcome outcome;
+        outcome.value = value;
+        outcome.speed = settings.tolerance;
+        outcome.converged = true;
+        if (revise)
+            revise(true);
+        return outcome;
+    }
+    void restart_touching(const StepInput&) override { calls.push_back("restart touching"); }
+    void finish(ActiveSetEnergy*, StepProjection*) override { calls.push_back("finish"); }
     void project(StepProjection&, const std::function<bool()>&) override { calls.push_back("project"); }
     void end(StepProjection*, StepReport&) override { calls.push_back("end"); }
 
@@ -90,10 +103,27 @@ TEST(TakeStep, MinimisesAgainAfterNewContactAndCorrectsUntilNothingMoves)
     step.searches_left = 1;
     step.moves_left = 1;
     const StepReport report = step.step(true, true);
-    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "minimise first", "revise", "minimise",
+    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "minimise first", "revise", "minimise",
                                         "revise", "finish", "clear", "project", "keep apart", "clear",
                                         "project", "keep apart", "end contact", "end"));
     EXPECT_EQ(report.iterations, 4);
+}
+
+TEST(TakeStep, LooksForContactInsideOneMinimisationByNewton)
+{
+    NotedStep step;
+    const std::vector<unsigned char> fixed;
+    StepLimits limits;
+    limits.speed_tolerance = 0.01;
+    StepReport report = take_step(step, {0.1, {}, fixed, {}, &step, nullptr}, limits);
+    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "newton", "revise", "finish",
+                                        "clear", "keep apart", "end contact", "end"));
+    EXPECT_EQ(report.speed, 0.01);
+
+    step.calls.clear();
+    report = take_step(step, {0.1, {}, fixed, {}, nullptr, nullptr}, limits);
+    EXPECT_THAT(step.calls, ElementsAre("begin", "calm newton", "finish", "end"));
+    EXPECT_EQ(report.speed, StepLimits::kCalm * 0.01);
 }
 
 TEST(TakeStep, BoundsTheNumberOfCorrections)
@@ -111,7 +141,7 @@ TEST(TakeStep, LeavesTheBodyUnchangedIfTheEnergyIsNotFinite)
     const StepReport report = step.step(true, true);
     EXPECT_EQ(report.status, StepReport::Status::NonFinite);
     EXPECT_FALSE(report.message.empty());
-    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "minimise first"));
+    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "minimise first"));
 }
 
 } // namespace toile::test
