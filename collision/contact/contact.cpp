@@ -50,6 +50,7 @@ void Contact::begin_step(const StepStart& start)
 {
     dt_ = start.dt;
     has_cleared_ = false;
+    energy_.use_true_hessian(start.wants_true_hessian);
     if (between_)
         between_->begin_step(start);
     terms_->begin_step(start);

@@ -17,7 +17,8 @@ namespace toile::collision {
 ///   W_t = k/2 |u|^2            while k |u| <= L
 ///         L |u| - L^2 / (2 k)  beyond (Huber), so that the force k u is projected onto the disc of radius L
 ///
-/// Both are convex. The frozen Hessian replaces the sliding part by its reweighted majoriser L/|u|.
+/// Both are convex. The frozen Hessian replaces the sliding part by its reweighted majoriser L/|u|, unless it is
+/// to be the true one: friction that slides does not resist further sliding.
 class ContactEnergy {
 public:
     /// @param vertex_count  of the cloth
@@ -28,6 +29,9 @@ public:
 
     /// Adds the gradient [N] and returns the energy [J].
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const;
+
+    /// See StepStart::wants_true_hessian.
+    void use_true_hessian(bool use) { has_true_hessian_ = use; }
 
     /// Freezes the Hessian blocks at x. False if no term is active.
     bool activate(View<const Vec3> x);
@@ -56,6 +60,7 @@ public:
 
 private:
     void find_active_incidence();
+    void find_sliding(View<const Vec3> x);
     void gather(const TermIncidence& incidence, View<Vec3> out) const;
 
     std::vector<ContactTerm> terms_;
@@ -63,6 +68,8 @@ private:
     TermIncidence active_incidence_;       ///< of active terms: usually far fewer
     std::vector<int> active_;              ///< active terms
     std::vector<FrozenContact> frozen_;    ///< [terms] A_p
+    bool has_true_hessian_ = false;
+    std::vector<Vec3> sliding_;            ///< [terms] unit direction, zero if none or if it is to be resisted
     std::vector<Mat3> blocks_;             ///< [vertices]
     mutable std::vector<Vec3> term_force_; ///< [terms] scratch
     mutable std::vector<double> term_energy_;

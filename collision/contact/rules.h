@@ -20,7 +20,7 @@ inline constexpr double kSupportDistance = 0.25;
 inline constexpr double kPressing = 0.5;
 
 /// Depth over which a term's spring reaches its full stiffness, relative to the gap to keep [-].
-inline constexpr double kRampPerGap = 1.0;
+inline constexpr double kRampPerGap = 0.6;
 
 /// Half of the clearance between two planes of a vertex [m], negative if body parts overlap.
 /// @param x  [vertices] positions at which the planes were found [m]

@@ -19,7 +19,7 @@ struct ContactTerm {
     double pressing = 0.0;     ///< [N] its successor, from the last update
 
     /// Slip at which friction reaches its limit, relative to the spring's ramp [-].
-    static constexpr double kSlipPerRamp = 0.1;
+    static constexpr double kSlipPerRamp = 0.05;
 
     /// Gap g at x [m]; negative if the term presses.
     TOILE_HD double gap(View<const Vec3> x) const { return pair.gap(x) - offset; }
@@ -55,6 +55,15 @@ struct ContactTerm {
     {
         const double limit = friction_limit(), sticking = sticking_stiffness();
         return sticking * slip_length <= limit ? sticking : limit / slip_length;
+    }
+
+    /// Fraction of its limit from which on friction counts as sliding [-]. Where it has slid in the step
+    /// before, it begins the next one at the limit, up to rounding.
+    static constexpr double kSliding = 0.9;
+
+    TOILE_HD bool is_sliding(double slip_length) const
+    {
+        return friction_limit() > 0.0 && sticking_stiffness() * slip_length > kSliding * friction_limit();
     }
 
     /// Energy of friction at slip length |u| [J].

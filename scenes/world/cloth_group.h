@@ -56,7 +56,7 @@ private:
     std::unique_ptr<PointMasses> make_device_body(const Scene& scene, const WorldOptions& options,
                                                   const CudaSpace& space);
     std::vector<double> masses() const;
-    std::vector<std::shared_ptr<Energy>> make_energies();
+    std::vector<std::shared_ptr<Energy>> make_energies(OuterMethod outer);
     std::unique_ptr<garment::DeviceLoads> make_loads(const Scene& scene, const CudaSpace& space) const;
     std::unique_ptr<collision::Contact>
     make_contact(const Scene& scene, const std::vector<Collider>& colliders, const CudaSpace* space);
@@ -79,6 +79,7 @@ private:
     std::unique_ptr<SceneSolids> solids_; ///< null: none
     std::vector<int> first_;              ///< [cloths + 1] first vertex of each cloth
     std::unique_ptr<garment::JointStrainLimit> limits_;
+    bool clamps_ = true; ///< limits_ are applied after each step; false: the energies hold them
     std::unique_ptr<collision::Contact> contact_; ///< null if nothing can collide
     std::unique_ptr<RigidActiveSet>
         rigid_contact_; ///< contact_ in the minimiser's unknowns; null without solids

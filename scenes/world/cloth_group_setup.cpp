@@ -52,6 +52,7 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
     for (size_t i = 0; i < cloths_.size(); ++i)
         limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
     limits_ = std::make_unique<garment::JointStrainLimit>(std::move(limits));
+    clamps_ = step_method_of(scene, space != nullptr).outer != OuterMethod::Newton;
     if (space != nullptr)
         limits_->on_device(*space); // otherwise the first step would upload it
     const size_t unknowns = body_->positions().size();
@@ -72,11 +73,11 @@ std::vector<double> ClothGroup::masses() const
 }
 
 /// All energies of every cloth.
-std::vector<std::shared_ptr<Energy>> ClothGroup::make_energies()
+std::vector<std::shared_ptr<Energy>> ClothGroup::make_energies(OuterMethod outer)
 {
     std::vector<std::shared_ptr<Energy>> energies;
     for (size_t i = 0; i < cloths_.size(); ++i)
-        for (auto& energy : cloths_[i].make_energies())
+        for (auto& energy : cloths_[i].make_energies(outer))
             energies.push_back(
                 cloths_.size() == 1 && !solids_
                     ? energy
@@ -119,7 +120,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.outer = method.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
     return std::make_unique<Body>(
-        std::move(unknowns), std::make_unique<System>(std::move(masses), make_energies(), std::move(solver)),
+        std::move(unknowns), std::make_unique<System>(std::move(masses), make_energies(method.outer), std::move(solver)),
         settings);
 }
 
@@ -140,7 +141,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
     auto body = std::make_unique<DeviceBody>(
         space, start_positions(),
         std::make_unique<System>(
-            masses(), make_energies(),
+            masses(), make_energies(method.outer),
             std::make_unique<DeviceQuadratureSolver>(space, std::move(parts), QuadratureTables::Settings{},
                                                      source_of_tables(options, "").store)),
         settings);

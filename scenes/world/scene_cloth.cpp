@@ -74,7 +74,7 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, limit, source_);
 }
 
-std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies()
+std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer)
 {
     const garment::Fabric& fabric = state_.fabric;
     const auto membrane = std::make_shared<garment::Membrane>(
@@ -88,9 +88,10 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies()
     }
     add_springs(energies);
 
-    garment::StretchTension::Settings tension;
-    tension.limit = fabric.strain_limit;
-    tension.stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+    const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+    garment::StretchTension::Settings tension{fabric.strain_limit, stiffness};
+    if (outer == OuterMethod::Newton)
+        tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness);
     tension_ = std::make_shared<garment::StretchTension>(rest_, tension);
     strain_limit_->set_tension(tension_);
     energies.push_back(tension_);

@@ -124,6 +124,7 @@ StepStart DeviceBody::start() const
             system_->masses(),
             dt_,
             {},
+            false,
             {x_.device(), prediction_.device(), diagonal_.view(), fixed_.view(), masses_.view()}};
 }
 

@@ -18,6 +18,10 @@ struct StepStart {
     double dt = 0.0;                 ///< [s]
     View<const double> inertia = {}; ///< [vertices] of the objective [N/m]; empty: masses / dt^2
 
+    /// True if frozen Hessians are to be true ones, for Newton's method. False: convex majorisers, for methods
+    /// that take them into a fixed H.
+    bool wants_true_hessian = false;
+
     /// Device views of the first five, valid until the end of the step; empty if no GPU makes it.
     struct Device {
         View<const Vec3> x, prediction;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/compute/lanes.h"
-#include "core/linear/block_cholesky.h"
+#include "core/pd/newton/block_cholesky.h"
 #include "core/pd/energy/objective.h"
 #include "core/quadrature/clusters/cluster_tree.h"
 

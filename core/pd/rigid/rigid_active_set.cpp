@@ -61,7 +61,8 @@ void RigidActiveSet::begin_step(const StepStart& start)
     std::copy_n(start.fixed.begin(), free_count_, fixed_.begin());
     for (int v = 0; v < bodies_.vertex_count(); ++v)
         diagonal_[free_count_ + v] = kStiffening * bodies_.inertia(v, start.dt);
-    surface_.begin_step({start_, prediction_, diagonal_, fixed_, start.masses, start.dt});
+    surface_.begin_step(
+        {start_, prediction_, diagonal_, fixed_, start.masses, start.dt, {}, start.wants_true_hessian});
 }
 
 bool RigidActiveSet::make_feasible(StepField positions) const

@@ -12,6 +12,9 @@ namespace toile {
 
 namespace {
 
+/// Tolerance of touching cloth relative to the speed that external forces add in the step [-].
+constexpr double kOfDriving = 0.2;
+
 std::vector<EmbeddedPoint> embedded(View<const Vec3> x)
 {
     std::vector<EmbeddedPoint> points(x.size(), EmbeddedPoint::Zero());
@@ -81,7 +84,8 @@ void Body::restart_touching(const StepInput& input)
 
 StepStart Body::start() const
 {
-    return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(), dt_, inertia_};
+    return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(),
+            dt_, inertia_,    newton_.has_value()};
 }
 
 /// Positions from outside begin a new motion.
@@ -158,7 +162,19 @@ OuterLoop::Outcome Body::minimise_by_newton(const Newton::Settings& settings, co
         x_t1_ = standing_;
     else if (is_calm && !are_fixed_moving())
         step_local_global();
-    return newton_->minimise(*objective_, x_t1_, system_->masses(), settings, revise);
+    Newton::Settings of_step = settings;
+    if (!is_calm)
+        of_step.tolerance = std::min(settings.tolerance, kOfDriving * driving_speed());
+    return newton_->minimise(*objective_, x_t1_, system_->masses(), of_step, revise);
+}
+
+/// RMS speed that external forces alone would add in the step [m/s]. In small steps it is below the tolerance:
+/// cloth that should begin to slide would stay where it is, step after step.
+double Body::driving_speed()
+{
+    parallel_for(kCpu, "pd/driving", int(x_.size()),
+                 [&](int i) { standing_[i] = prediction_[i] - x_[i] - dt_ * v_[i]; });
+    return objective_->speed_of(standing_);
 }
 
 /// True if a fixed vertex has another target than its position.

@@ -64,6 +64,7 @@ private:
     bool are_fixed_moving() const;
     double value_at_rest(double found);
     void step_local_global();
+    double driving_speed();
     OuterLoop::Outcome no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found);
 
     std::unique_ptr<System> system_;

@@ -9,16 +9,8 @@
 
 namespace toile::garment {
 
-namespace {
-
-/// Fraction of the limit from which a triangle is evaluated during a step [-]. A triangle that exceeds the
-/// limit from below this fraction within one step is clamped, and evaluated in the next.
-constexpr double kWatched = 0.7;
-
-} // namespace
-
 StretchTension::StretchTension(std::shared_ptr<const RestShape> rest, const Settings& settings)
-    : rest_(std::move(rest)), limits_(2, {1.0 + settings.limit, 1.0 + kWatched * settings.limit,
+    : rest_(std::move(rest)), limits_(2, {1.0 + settings.limit, 1.0 + settings.watched * settings.limit,
                                           settings.stiffness, settings.max_tension}),
       tension_(rest_->triangles.size(), Mat2::Zero()), near_(rest_->triangles.size()),
       rotated_tension_(rest_->triangles.size(), Mat32::Zero())

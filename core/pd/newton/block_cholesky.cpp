@@ -1,4 +1,4 @@
-#include "core/linear/block_cholesky.h"
+#include "core/pd/newton/block_cholesky.h"
 
 #include <algorithm>
 #include <set>
