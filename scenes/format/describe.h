@@ -281,7 +281,8 @@ void describe(V& v, Solver& s)
     v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
             "Former key: velocity_tolerance times the time step.");
     v.field("integrator", s.integrator,
-            "Time integration: second order (bdf2), or implicit-euler, which damps all motion.");
+            "Time integration: second order (bdf2), or implicit-euler, which damps all motion. Absent: bdf2 with "
+            "newton. The other minimisers clamp strain after each step, which adds energy that bdf2 would keep.");
     v.field("stop", s.stop,
             "Quantity that the tolerance of lbfgs bounds: error and move, or the move alone, as in papers. The "
             "latter is only for comparison: cloth that has landed on others then hangs in the air.");

@@ -258,7 +258,7 @@ struct Solver {
     std::optional<double> velocity_tolerance; ///< [m/s] absent: that of the quality
     std::optional<double> tolerance;          ///< [m] of a step; former key for velocity_tolerance
     StepStop stop = StepStop::Error;
-    Integrator integrator = Integrator::Bdf2;
+    std::optional<Integrator> integrator; ///< absent: second order where Newton's method runs
     std::optional<int> max_iterations; ///< outer iterations per minimisation; absent: enough for the method
     SolverMethod method = SolverMethod::Auto;
     std::optional<OuterMethod> outer; ///< absent: Newton's method, or L-BFGS where that does not run

@@ -115,7 +115,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.tolerance = method.velocity_tolerance * scene.step_duration();
     settings.speed_tolerance = method.velocity_tolerance;
     settings.stop = scene.solver.stop;
-    settings.integrator = scene.solver.integrator;
+    settings.integrator = method.integrator;
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
@@ -136,7 +136,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
     const StepMethod method = step_method_of(scene, true);
     settings.tolerance = method.velocity_tolerance * scene.step_duration();
     settings.stop = scene.solver.stop;
-    settings.integrator = scene.solver.integrator;
+    settings.integrator = method.integrator;
     settings.max_iterations = method.max_iterations;
     auto body = std::make_unique<DeviceBody>(
         space, start_positions(),

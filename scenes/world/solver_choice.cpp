@@ -35,6 +35,8 @@ StepMethod step_method_of(const Scene& scene, bool on_gpu)
     StepMethod method;
     const bool is_newton = !on_gpu && !is_preview && !is_baseline(solver.method);
     method.outer = solver.outer.value_or(is_newton ? OuterMethod::Newton : OuterMethod::Lbfgs);
+    method.integrator = solver.integrator.value_or(
+        method.outer == OuterMethod::Newton ? Integrator::Bdf2 : Integrator::ImplicitEuler);
     method.velocity_tolerance = is_preview                                ? 0.12
                                 : solver.quality == scene::Quality::Final ? 0.002
                                                                           : 0.01;

@@ -7,6 +7,7 @@
 #include "core/linear/global_solver.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/pd/minimiser/outer_method.h"
+#include "core/pd/step/bdf2.h"
 #include "core/quadrature/tables/table_store.h"
 #include "garment/energy/rest_shape.h"
 #include "scenes/format/solver_methods.h"
@@ -37,6 +38,7 @@ std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest);
 /// Minimiser of a scene's steps and its limits, where the scene leaves them open.
 struct StepMethod {
     OuterMethod outer = OuterMethod::Newton;
+    Integrator integrator = Integrator::Bdf2;
     double velocity_tolerance = 0.01; ///< [m/s]
     int max_iterations = 100;
 };

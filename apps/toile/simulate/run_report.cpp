@@ -23,7 +23,7 @@ Json settings_of(const scenes::Scene& scene, bool on_gpu)
             {"fps", scene.fps},
             {"settle_s", scene.settle},
             {"substeps", solver.substeps},
-            {"integrator", scene_format::word_of(solver.integrator)},
+            {"integrator", scene_format::word_of(method.integrator)},
             {"velocity_tolerance_m_s", method.velocity_tolerance},
             {"stop", scene_format::word_of(solver.stop)},
             {"max_iterations", method.max_iterations},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/linear/field.h"
@@ -15,6 +16,10 @@ namespace {
 /// twice in succession. With a fixed number of iterations several times the last step would remain.
 constexpr double kIncrement = 0.1;
 
+/// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
+/// would cross, where contact does not hold it, is pushed there again by the next step.
+constexpr int kStall = 8;
+
 } // namespace
 
 OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<const double> masses,
@@ -25,7 +30,13 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
         field->resize(x.size());
     OuterLoop::Outcome outcome;
     outcome.value = objective.evaluate(x, gradient_);
+    double lowest = std::numeric_limits<double>::infinity();
+    int since_lowest = 0;
     while (std::isfinite(outcome.value) && outcome.iterations < settings.max_iterations) {
+        since_lowest = outcome.value < lowest ? 0 : since_lowest + 1;
+        lowest = std::min(lowest, outcome.value);
+        if (since_lowest > kStall)
+            break;
         objective.accept(x);
         Hessian* const K = objective.hessian();
         if (K == nullptr)
@@ -46,7 +57,11 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
         if (!has_changed && (outcome.converged || step == 0.0))
             break;
         outcome.converged = false;
-        if (has_changed || step == 0.0)
+        if (has_changed)
+            lowest = std::numeric_limits<double>::infinity();
+        // Cloth may have been moved back by less than counts as a change: stiff terms feel that too.
+        const bool has_moved = step > 0.0 && !std::equal(x.begin(), x.end(), trial_.begin());
+        if (has_changed || has_moved || step == 0.0)
             outcome.value = objective.evaluate(x, gradient_);
     }
     outcome.gradient_norm = max_norm(gradient_);

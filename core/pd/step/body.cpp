@@ -13,7 +13,7 @@ namespace toile {
 namespace {
 
 /// Tolerance of touching cloth relative to the speed that external forces add in the step [-].
-constexpr double kOfDriving = 0.2;
+constexpr double kOfDriving = 0.15;
 
 std::vector<EmbeddedPoint> embedded(View<const Vec3> x)
 {

@@ -71,12 +71,16 @@ void StretchTension::add_couplings(std::vector<std::pair<int, int>>& couplings) 
 /// Adds the second derivatives. The excess is convex in x, so exact and projected curvature are equal.
 void StretchTension::add_curvature(View<const Vec3> x, Definiteness, BlockWindow K)
 {
-    const TensionTriangles triangles = this->triangles();
-    for (const int t : taut_) {
-        const Mat32 G = triangles.deformation_gradient(t, x) + rotated_tension_[t];
-        const TensionLimits& limits = limits_[kind_[t]];
-        if (largest_stretch(G) <= limits.allowed)
+    const TensionPull pull{triangles(), x, rotated_tension_};
+    exceeds_.resize(taut_.size());
+    parallel_for(kCpu, "stretch_tension/find", int(taut_.size()),
+                 [&](int i) { exceeds_[i] = pull.exceeds(taut_[i]); });
+    for (int i = 0; i < int(taut_.size()); ++i) {
+        if (!exceeds_[i])
             continue;
+        const int t = taut_[i];
+        const Mat32 G = pull.triangles.deformation_gradient(t, x) + rotated_tension_[t];
+        const TensionLimits& limits = limits_[kind_[t]];
         const StretchCurvature H = excess_curvature(G, limits.allowed);
         for (int row = 0; row < 3; ++row)
             add_corner_row(H, rest_->edges_inv[t], limits.stiffness * rest_->areas[t], rest_->triangles[t],

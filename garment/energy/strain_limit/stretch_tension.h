@@ -82,6 +82,7 @@ private:
     std::vector<Mat32> rotated_tension_;             ///< [triangles] T_t / k at this step, if near
     std::vector<int> taut_;                          ///< triangles near their limit, ascending
     std::vector<MembraneResponse<double>> response_; ///< [taut] scratch
+    std::vector<unsigned char> exceeds_;             ///< [taut] scratch
 };
 
 } // namespace toile::garment

@@ -66,6 +66,15 @@ struct TensionPull {
     View<const Vec3> x;                ///< [vertices] [m]
     View<const Mat32> rotated_tension; ///< [triangles] from WatchTriangle
 
+    /// True if the larger principal stretch is beyond the limit: det(C - a^2) < 0 or trace(C - a^2) > 0.
+    TOILE_HD bool exceeds(int t) const
+    {
+        const Mat32 G = triangles.deformation_gradient(t, x) + rotated_tension[t];
+        const double allowed = triangles.limits[triangles.kind[t]].allowed, square = allowed * allowed;
+        const double u = G.col(0).squaredNorm() - square, v = G.col(1).squaredNorm() - square;
+        const double shear = G.col(0).dot(G.col(1));
+        return u * v < shear * shear || u > 0.0 || v > 0.0;
+    }
     TOILE_HD Mat32 excess(int t) const
     {
         return stretch_excess(triangles.deformation_gradient(t, x) + rotated_tension[t],
@@ -89,7 +98,13 @@ struct PullTautTriangle {
     View<const int> taut;                    ///< triangles
     View<MembraneResponse<double>> response; ///< [taut] out
 
-    TOILE_HD void operator()(int i) const { response[i] = pull.of(taut[i]); }
+    TOILE_HD void operator()(int i) const
+    {
+        if (pull.exceeds(taut[i]))
+            response[i] = pull.of(taut[i]);
+        else
+            response[i].energy = 0.0;
+    }
 };
 
 /// Tension at the vertices of triangles near their limit, as a GPU evaluates it. A fixed number of thread

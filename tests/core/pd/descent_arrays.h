@@ -32,7 +32,7 @@ struct DescentArrays {
                 masses,
                 fixed,
                 drive,
-                {{}, drive, trial.x, trial.gradient},
+                {masses, drive, trial.x, trial.gradient},
                 descent};
     }
 
