@@ -16,8 +16,10 @@ constexpr double kMinSlack = 0.03, kMinLayers = 0.25;
 /// Missing distance, relative to the mean edge [-], up to which pinched cloth is deflected.
 constexpr double kMaxDeflection = 0.1;
 
-/// Correction of limited cloth, relative to the mean edge [-], up to which pairs are not searched for again.
-constexpr double kIgnoredCorrection = 0.02;
+/// Correction of limited cloth, relative to the mean edge and to the thickness [-], up to which pairs are not
+/// searched for again. Cloth that is moved back further has met a pair that no term of contact holds: without
+/// one the minimiser would go there again.
+constexpr double kIgnoredCorrection = 0.02, kIgnoredLayers = 0.3;
 
 /// Deviation of a pressing pair, relative to the mean edge [-], beyond which its normal is out of date.
 constexpr double kSlid = 0.2;
@@ -88,7 +90,10 @@ SlackBounds ClothContactRules::slack() const
             std::min(kMaxSlack * edge_, kMaxLayers * thickest_)};
 }
 
-double ClothContactRules::ignored_correction() const { return kIgnoredCorrection * edge_; }
+double ClothContactRules::ignored_correction() const
+{
+    return std::min(kIgnoredCorrection * edge_, kIgnoredLayers * thickest_);
+}
 double ClothContactRules::slid() const { return kSlid * edge_; }
 
 } // namespace toile::collision

@@ -26,7 +26,9 @@ World world_of(const std::string& json, const std::string& solver)
     WorldOptions options;
     options.baselines = &baselines;
     return World(
-        parse_scene(R"({"toile": 1, "frames": 100, "solver": {)" + solver + "}, " + json + "}", "scene.json"),
+        parse_scene(R"({"toile": 1, "frames": 100, "solver": {"integrator": "implicit-euler", )" + solver +
+                        "}, " + json + "}",
+                    "scene.json"),
         options);
 }
 
@@ -112,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Scene, OuterMethods, testing::ValuesIn(scene_format::wo
 TEST(StopByMove, TakesFewerIterations)
 {
     const auto iterations = [](const std::string& stop) {
-        World world = world_of(kSwing, R"("tolerance": 1e-4, "stop": ")" + stop + '"');
+        World world = world_of(kSwing, R"("outer": "lbfgs", "tolerance": 1e-4, "stop": ")" + stop + '"');
         int sum = 0;
         for (int frame = 0; frame < 3; ++frame)
             sum += world.advance_frame().iterations;
@@ -219,7 +221,7 @@ TEST_P(BaselineMethods, ObeyCoulombsLaw)
 /// reported.
 TEST(PaperMethod, StopsWhenEveryDirectionIsRefused)
 {
-    World world = world_of(kSwing, R"("method": "paper")");
+    World world = world_of(kSwing, R"("method": "paper", "quality": "preview")");
     const std::vector<Vec3> x = positions_after(world, 20);
     const StepReport report = world.advance_frame();
     EXPECT_EQ(report.status, StepReport::Status::IterationLimit);

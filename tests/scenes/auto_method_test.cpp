@@ -17,7 +17,7 @@ World swinging(const std::string& method, double resolution, int threads = 0)
     WorldOptions options;
     options.tables = std::make_shared<TableStore>();
     return World(parse_scene(R"({"toile": 1, "frames": 100, "solver": {"method": ")" + method +
-                                 R"(", "threads": )" + std::to_string(threads) +
+                                 R"(", "quality": "preview", "threads": )" + std::to_string(threads) +
                                  R"(}, "cloths": [{"name": "sheet", "rectangle": {"size": [0.72, 0.72],
             "resolution": )" + std::to_string(resolution) +
                                  R"(}}], "attachments": [{"cloth": "sheet", "release": 0.05,

@@ -139,7 +139,7 @@ World two_layers(const std::string& more = "")
 
 World preconditioned_by(const std::string& word)
 {
-    return two_layers(R"(, "solver": {"contact_preconditioner": ")" + word + R"("})");
+    return two_layers(R"(, "solver": {"outer": "lbfgs", "contact_preconditioner": ")" + word + R"("})");
 }
 
 TEST(ClothContact, UsesThePreconditionerOfTheScene)
@@ -150,7 +150,7 @@ TEST(ClothContact, UsesThePreconditionerOfTheScene)
         World world = preconditioned_by(word);
         (void)world.advance_frame();
         EXPECT_GT(world.stages().calls(stage), 0) << word;
-        World usual = two_layers();
+        World usual = preconditioned_by("block");
         (void)usual.advance_frame();
         EXPECT_GT(usual.stages().calls("pd/nested_blocks"), 0);
         EXPECT_EQ(usual.stages().calls(stage), 0) << word;

@@ -38,12 +38,18 @@ double height_after(const std::string& solver)
 
 TEST(FallingPile, FallsAsFarWithLooseTolerances)
 {
-    const double solved = height_after(R"("tolerance": 1e-4, "max_iterations": 300)");
+    const double solved = height_after(R"("velocity_tolerance": 0.001, "max_iterations": 500)");
     EXPECT_LT(solved, 0.02);
-    EXPECT_NEAR(height_after(R"("tolerance": 3e-4, "max_iterations": 100)"), solved, 0.025);
-    const double by_default = height_after(R"("tolerance": 1e-3)");
-    EXPECT_LT(by_default, 0.08) << "of 0.18 where it was let go";
-    EXPECT_LT(by_default, height_after(R"("tolerance": 1e-3, "stop": "move")"));
+    EXPECT_NEAR(height_after(R"("quality": "standard")"), solved, 0.02);
+}
+
+/// L-BFGS around a fixed matrix folds stiff cloth late.
+TEST(FallingPile, FallsLateInPreviews)
+{
+    const double preview = height_after(R"("quality": "preview")");
+    EXPECT_GT(preview, 0.03);
+    EXPECT_LT(preview, 0.08) << "of 0.18 where it was let go";
+    EXPECT_LT(preview, height_after(R"("quality": "preview", "stop": "move")"));
 }
 
 } // namespace

@@ -21,7 +21,8 @@ TEST(ReadScene, GivesTheDocumentedDefaultsToAMinimalScene)
     EXPECT_DOUBLE_EQ(scene.frame_duration(), 1.0 / 30.0);
     EXPECT_EQ(scene.gravity, Vec3(0.0, -9.81, 0.0));
     EXPECT_EQ(scene.solver.substeps, 4);
-    EXPECT_EQ(scene.solver.tolerance, 1e-3);
+    EXPECT_EQ(scene.solver.quality, scene::Quality::Standard);
+    EXPECT_FALSE(scene.solver.tolerance.has_value());
     EXPECT_EQ(scene.solver.stop, StepStop::Error);
     EXPECT_TRUE(scene.avatars.empty());
     EXPECT_EQ(scene.render.ground, 0.0);

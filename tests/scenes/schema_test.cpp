@@ -45,7 +45,6 @@ TEST(SceneSchema, ListsRangesDefaultsAndExclusiveKeys)
     const auto& solver = schema["properties"]["solver"];
     EXPECT_EQ(solver["additionalProperties"], false);
     EXPECT_EQ(solver["properties"]["tolerance"]["exclusiveMinimum"], 0.0);
-    EXPECT_EQ(solver["properties"]["tolerance"]["default"], 1e-3);
     EXPECT_EQ(solver["properties"]["method"]["enum"],
               (nlohmann::json(scene_format::words_of<scene::SolverMethod>())));
     EXPECT_EQ(solver["properties"]["outer"]["enum"], (nlohmann::json(scene_format::words_of<OuterMethod>())));

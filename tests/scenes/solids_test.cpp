@@ -37,7 +37,7 @@ double distortion(const std::vector<Vec3>& rest, const std::vector<Vec3>& x)
     return largest;
 }
 
-const std::string kNoCloth = R"("cloths": [], "solver": {"tolerance": 1e-6}, )";
+const std::string kNoCloth = R"("cloths": [], "solver": {"velocity_tolerance": 1e-4}, )";
 const std::string kFloor = R"("avatars": [{"name": "floor", "plane": {}}], )";
 
 TEST(Solids, LandAndRestAtTheGapAndSleep)
@@ -91,7 +91,7 @@ Slide slide(double slope, double friction, double height)
             std::acos(std::min(1.0, axis().dot(up)))};
 }
 
-TEST(Solids, StickOnAnInclineBelowTheFrictionAngle) { EXPECT_LT(slide(0.49, 0.5, 0.05).distance, 2e-4); }
+TEST(Solids, StickOnAnInclineBelowTheFrictionAngle) { EXPECT_LT(slide(0.49, 0.5, 0.05).distance, 5e-4); }
 
 TEST(Solids, SlideAtCoulombsAcceleration)
 {
@@ -128,7 +128,7 @@ TEST(Solids, StackAndExchangeMomentum)
 
 TEST(Solids, LieOnPinnedClothAndSagIt)
 {
-    World world = world_of(R"("frames": 40, "solver": {"tolerance": 1e-4},
+    World world = world_of(R"("frames": 40, "solver": {"velocity_tolerance": 0.003},
         "cloths": [{"name": "sheet", "rectangle": {"size": [0.4, 0.4], "resolution": 0.02}}],
         "attachments": [{"cloth": "sheet", "select": {"nearest": [[0.2,0,0.2], [-0.2,0,0.2], [0.2,0,-0.2], [-0.2,0,-0.2]]}}],
         "solids": [{"name": "ball", "sphere": {"radius": 0.04}, "density": 200, "translate": [0, 0.06, 0]}])");

@@ -74,7 +74,7 @@ TEST(Wind, GustsKeepClothAwake)
 TEST(Air, LetsAFlatSheetFallAtItsTerminalSpeed)
 {
     World world(parse_scene(
-        R"({"toile": 1, "frames": 91, "solver": {"tolerance": 1e-5}, "fabrics": {"bare": {"base": "cotton", "areal_density": 0.1, "damping": 0}},
+        R"({"toile": 1, "frames": 91, "solver": {"velocity_tolerance": 1e-3}, "fabrics": {"bare": {"base": "cotton", "areal_density": 0.1, "damping": 0}},
         "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.4, 0.4], "resolution": 0.05}}]})",
         "fall.json"));
     std::vector<Vec3> before;
@@ -95,7 +95,7 @@ double force_on_pinned_sheet(int substeps)
     World world(
         parse_scene(R"({"toile": 1, "frames": 60, "gravity": [0, 0, 0], "wind": {"velocity": [0, 5, 0]},
         "solver": {"substeps": )" +
-                        std::to_string(substeps) + R"(, "tolerance": 1e-7},
+                        std::to_string(substeps) + R"(, "velocity_tolerance": 1e-4},
         "fabrics": {"heavily_damped": {"base": "silk", "damping": 20, "bend": {"warp": 0.01, "weft": 0.01}}},
         "cloths": [{"name": "sheet", "fabric": "heavily_damped", "rectangle": {"size": [0.2, 0.2], "resolution": 0.05}}],
         "attachments": [{"cloth": "sheet", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}},

@@ -42,7 +42,7 @@ double max_move(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 
 TEST(World, LetsClothFallExactly)
 {
-    World world = world_of(kUndamped + R"("frames": 31, "solver": {"substeps": 4},
+    World world = world_of(kUndamped + R"("frames": 31, "solver": {"substeps": 4, "integrator": "implicit-euler"},
         "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.5, 0.3], "resolution": 0.05}, "rotate_deg": [20, 30, 40]}])");
     const std::vector<Vec3> start = world.cloths()[0].positions;
     int iterations = 0;
@@ -58,6 +58,18 @@ TEST(World, LetsClothFallExactly)
     EXPECT_EQ(iterations, 0);
 }
 
+TEST(World, LetsClothFallToSecondOrder)
+{
+    World world = world_of(kUndamped + R"("frames": 31,
+        "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.5, 0.3], "resolution": 0.05}}])");
+    const Vec3 start = mean(world.cloths()[0].positions);
+    while (world.frame() < 30)
+        world.advance_frame();
+    // The first step is one of implicit Euler: g dt^2 / 2 too far, and g dt / 2 too fast for a fraction.
+    const double dt = 1.0 / 120.0;
+    EXPECT_NEAR(start.y() - mean(world.cloths()[0].positions).y(), 0.5 * 9.81, 9.81 * dt * dt);
+}
+
 /// Mean displacement along an incline of slope `slope` after one second at friction 0.5, down the slope [m].
 double slide(double slope)
 {
@@ -66,7 +78,7 @@ double slide(double slope)
     const double gap = 0.001 + 0.5 * 0.318e-3;
     const std::string rotation = "\"rotate_deg\": [0, 0, " + std::to_string(-degrees) + "]";
     World world =
-        world_of(kUndamped + R"("frames": 31, "solver": {"tolerance": 1e-7, "sleep": {"enabled": false}},
+        world_of(kUndamped + R"("frames": 31, "solver": {"velocity_tolerance": 1e-5, "sleep": {"enabled": false}},
         "avatars": [{"name": "incline", "plane": {}, "friction": 0.5, )" +
                  rotation + R"(}],
         "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.2, 0.2], "resolution": 0.04}, )" +
@@ -78,7 +90,7 @@ double slide(double slope)
     return (mean(world.cloths()[0].positions) - start).dot(Vec3(std::cos(angle), -std::sin(angle), 0.0));
 }
 
-TEST(World, HoldsClothOnAnInclineUpToTheFrictionAngle) { EXPECT_LT(slide(0.5 * 0.99), 3e-4); }
+TEST(World, HoldsClothOnAnInclineUpToTheFrictionAngle) { EXPECT_LT(slide(0.5 * 0.99), 6e-4); }
 
 TEST(World, LetsClothSlideOnePerCentAboveTheFrictionAngle) { EXPECT_GT(slide(0.5 * 1.01), 0.02); }
 
