@@ -48,7 +48,8 @@ TEST(SceneSchema, ListsRangesDefaultsAndExclusiveKeys)
     EXPECT_EQ(solver["properties"]["method"]["enum"],
               (nlohmann::json(scene_format::words_of<scene::SolverMethod>())));
     EXPECT_EQ(solver["properties"]["outer"]["enum"], (nlohmann::json(scene_format::words_of<OuterMethod>())));
-    EXPECT_EQ(solver["properties"]["outer"]["default"], "lbfgs");
+    EXPECT_FALSE(solver["properties"]["outer"].contains("default"));
+    EXPECT_EQ(solver["properties"]["quality"]["default"], "standard");
     EXPECT_EQ(schema["properties"]["cloths"]["items"]["oneOf"].size(), 4u);
     EXPECT_EQ(schema["required"], (nlohmann::json{"toile", "frames", "cloths"}));
 }

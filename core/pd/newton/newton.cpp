@@ -32,27 +32,17 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
     outcome.value = objective.evaluate(x, gradient_);
     double lowest = std::numeric_limits<double>::infinity();
     int since_lowest = 0;
-    while (std::isfinite(outcome.value) && outcome.iterations < settings.max_iterations) {
+    for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
         since_lowest = outcome.value < lowest ? 0 : since_lowest + 1;
         lowest = std::min(lowest, outcome.value);
         if (since_lowest > kStall)
             break;
-        objective.accept(x);
-        Hessian* const K = objective.hessian();
-        if (K == nullptr)
-            throw InvalidInput("newton: the objective has no second derivatives; choose another method");
-        K->linearise(x, Definiteness::Projected);
-        solver_.update(K->parts(), outcome.iterations == 0);
-        const HessianSolver::Outcome solve =
-            solver_.solve(gradient_, masses, kIncrement * settings.tolerance * settings.dt, direction_);
-        const double step = line_search(objective, x, outcome.value);
-        ++outcome.iterations;
-        outcome.linear_iterations += solve.iterations;
-        outcome.speed = objective.speed_of(direction_);
-        outcome.displacement = step * max_norm(direction_);
-        if (step > 0.0)
-            gradient_.swap(trial_gradient_);
-        outcome.converged = solve.is_solved && outcome.speed <= settings.tolerance;
+
+        double step = 0.0;
+        outcome.speed = objective.max_speed_of(gradient_);
+        outcome.converged = outcome.speed <= settings.tolerance;
+        if (!outcome.converged)
+            step = iterate(objective, x, masses, settings, outcome);
         const bool has_changed = revise && revise(outcome.converged);
         if (!has_changed && (outcome.converged || step == 0.0))
             break;
@@ -66,6 +56,30 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
     }
     outcome.gradient_norm = max_norm(gradient_);
     return outcome;
+}
+
+/// Makes a Newton step.
+/// @return the accepted part of it, 0 if there is none
+double Newton::iterate(Objective& objective, View<Vec3> x, View<const double> masses,
+                       const Settings& settings, OuterLoop::Outcome& outcome)
+{
+    objective.accept(x);
+    Hessian* const K = objective.hessian();
+    if (K == nullptr)
+        throw InvalidInput("newton: the objective has no second derivatives; choose another method");
+    K->linearise(x, Definiteness::Projected);
+    solver_.update(K->parts(), outcome.iterations == 0);
+    const HessianSolver::Outcome solve =
+        solver_.solve(gradient_, masses, kIncrement * settings.tolerance * settings.dt, direction_);
+    const double step = line_search(objective, x, outcome.value);
+    if (step > 0.0)
+        gradient_.swap(trial_gradient_);
+    ++outcome.iterations;
+    outcome.linear_iterations += solve.iterations;
+    outcome.speed = objective.speed_of(direction_);
+    outcome.displacement = step * max_norm(direction_);
+    outcome.converged = solve.is_solved && outcome.speed <= settings.tolerance;
+    return step;
 }
 
 /// Backtracks along the direction from x until the value decreases sufficiently; x and value move on success.

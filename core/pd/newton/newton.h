@@ -39,6 +39,8 @@ public:
                                 const Settings& settings, const Revise& revise);
 
 private:
+    double iterate(Objective& objective, View<Vec3> x, View<const double> masses, const Settings& settings,
+                   OuterLoop::Outcome& outcome);
     double line_search(Objective& objective, View<Vec3> x, double& value);
 
     HessianSolver solver_;

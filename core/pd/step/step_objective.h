@@ -24,6 +24,7 @@ public:
     void accept(View<const Vec3> x) override;
     Hessian* hessian() override;
     double speed_of(View<const Vec3> displacement) const override;
+    double max_speed_of(View<const Vec3> gradient) const override;
     bool is_minimiser(View<const Vec3> gradient, View<const Vec3> move, double tolerance) const override;
     double negligible_gain(double tolerance) const override;
 
