@@ -81,7 +81,7 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     else
         accelerate(dt, t_t1);
     begin_solids(dt);
-    StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), clamps_ ? limits_.get() : nullptr);
+    StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
     if (report.status != StepReport::Status::NonFinite)
         end_solids();
     if (contact_) {

@@ -79,7 +79,6 @@ private:
     std::unique_ptr<SceneSolids> solids_; ///< null: none
     std::vector<int> first_;              ///< [cloths + 1] first vertex of each cloth
     std::unique_ptr<garment::JointStrainLimit> limits_;
-    bool clamps_ = true; ///< limits_ are applied after each step; false: the energies hold them
     std::unique_ptr<collision::Contact> contact_; ///< null if nothing can collide
     std::unique_ptr<RigidActiveSet>
         rigid_contact_; ///< contact_ in the minimiser's unknowns; null without solids

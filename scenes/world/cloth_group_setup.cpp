@@ -52,7 +52,6 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
     for (size_t i = 0; i < cloths_.size(); ++i)
         limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
     limits_ = std::make_unique<garment::JointStrainLimit>(std::move(limits));
-    clamps_ = step_method_of(scene, space != nullptr).outer != OuterMethod::Newton;
     if (space != nullptr)
         limits_->on_device(*space); // otherwise the first step would upload it
     const size_t unknowns = body_->positions().size();

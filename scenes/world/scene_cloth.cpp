@@ -17,6 +17,10 @@ namespace toile::scenes {
 
 namespace {
 
+/// Excess over the strain limit that is clamped after a step of Newton's method [-]. Below it the limit is an
+/// elastic energy; above it something has moved the cloth that is stronger, such as bodies that close on it.
+constexpr double kYielding = 0.03;
+
 /// @param unmoved  [vertices] positions before the cloth's translation [m]
 std::shared_ptr<const garment::RestShape> rest_shape_of(const std::vector<Vec3>& unmoved,
                                                         const std::vector<Triangle>& triangles,
@@ -71,6 +75,8 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
     garment::StrainLimit::Settings limit;
     limit.limit = state_.fabric.strain_limit;
+    if (step_method_of(scene, false).outer == OuterMethod::Newton)
+        limit.tolerance = kYielding;
     strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, limit, source_);
 }
 

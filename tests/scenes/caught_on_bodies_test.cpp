@@ -141,7 +141,7 @@ void record(const Outcome& outcome)
 /// Expects no penetration where the body does not cross itself, and none at all once it is open again.
 void expect_free(const Outcome& outcome)
 {
-    EXPECT_LT(outcome.depth, 3e-3); // measured: 0 under the arm, 2 mm between thighs that press
+    EXPECT_LT(outcome.depth, 1e-3); // measured: 0
     EXPECT_EQ(outcome.inside, 0);
     EXPECT_EQ(outcome.crossings, 0);
 }
@@ -215,7 +215,7 @@ TEST(CaughtOnBodies, IsReleasedBetweenTheThighsOfADancer)
     if (!file_of(c.avatar))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no avatars/" << c.avatar;
     const Outcome outcome = run(c);
-    expect_caught(outcome, {.caught = 15, .min_clearance = -0.015, .fastest = 2.4, .strain = 0.3});
+    expect_caught(outcome, {.caught = 15, .min_clearance = -0.015, .fastest = 2.0, .strain = 0.12});
 
     // The sheet is between the legs again, beside the axis of each.
     const Vec3 left = middle_of("LeftUpLeg", c, outcome), right = middle_of("RightUpLeg", c, outcome);

@@ -55,7 +55,7 @@ void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimi
 
 /// Satisfies contact, limits and separation of cloth. Cloth that contact moves back stretches against cloth
 /// that it does not move, so the limits are then applied again.
-void correct(StepSpace& space, const StepInput& input, bool by_newton)
+void correct(StepSpace& space, const StepInput& input)
 {
     ActiveSetEnergy* const active = input.active;
     std::function<bool()> clear_contacts;
@@ -63,7 +63,7 @@ void correct(StepSpace& space, const StepInput& input, bool by_newton)
         clear_contacts = [&] { return active->sweep_once(space.end_positions()); };
     bool goes_on = true;
     for (int correction = 0; goes_on && correction < kMaxCorrections; ++correction) {
-        if (active && !by_newton)
+        if (active)
             active->clear(space.end_positions(), space.end_velocities());
         if (input.projection) {
             const StageScope stage("pd/limits");
@@ -93,7 +93,7 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
         return report;
 
     space.finish(input.active, input.projection);
-    correct(space, input, limits.speed_tolerance > 0.0);
+    correct(space, input);
     if (input.active)
         input.active->end_step(space.end_positions());
     space.end(input.projection, report);
