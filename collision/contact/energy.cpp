@@ -105,7 +105,8 @@ void ContactEnergy::add_hessian_product(View<const Vec3> p, View<Vec3> out) cons
         const int i = active_[k];
         multiply(i);
         if (has_true_hessian_)
-            term_force_[i] -= frozen_[i].tangential * sliding_[i].dot(terms_[i].pair.cloth_point(p)) * sliding_[i];
+            term_force_[i] -=
+                frozen_[i].tangential * sliding_[i].dot(terms_[i].pair.cloth_point(p)) * sliding_[i];
     });
     gather(active_incidence_, out);
 }

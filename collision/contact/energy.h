@@ -17,8 +17,8 @@ namespace toile::collision {
 ///   W_t = k/2 |u|^2            while k |u| <= L
 ///         L |u| - L^2 / (2 k)  beyond (Huber), so that the force k u is projected onto the disc of radius L
 ///
-/// Both are convex. The frozen Hessian replaces the sliding part by its reweighted majoriser L/|u|, unless it is
-/// to be the true one: friction that slides does not resist further sliding.
+/// Both are convex. The frozen Hessian replaces the sliding part by its reweighted majoriser L/|u|, unless it
+/// is to be the true one: friction that slides does not resist further sliding.
 class ContactEnergy {
 public:
     /// @param vertex_count  of the cloth
@@ -64,13 +64,13 @@ private:
     void gather(const TermIncidence& incidence, View<Vec3> out) const;
 
     std::vector<ContactTerm> terms_;
-    TermIncidence incidence_;              ///< of all terms
-    TermIncidence active_incidence_;       ///< of active terms: usually far fewer
-    std::vector<int> active_;              ///< active terms
-    std::vector<FrozenContact> frozen_;    ///< [terms] A_p
+    TermIncidence incidence_;           ///< of all terms
+    TermIncidence active_incidence_;    ///< of active terms: usually far fewer
+    std::vector<int> active_;           ///< active terms
+    std::vector<FrozenContact> frozen_; ///< [terms] A_p
     bool has_true_hessian_ = false;
-    std::vector<Vec3> sliding_;            ///< [terms] unit direction, zero if none or if it is to be resisted
-    std::vector<Mat3> blocks_;             ///< [vertices]
+    std::vector<Vec3> sliding_; ///< [terms] unit direction, zero if none or if it is to be resisted
+    std::vector<Mat3> blocks_;  ///< [vertices]
     mutable std::vector<Vec3> term_force_; ///< [terms] scratch
     mutable std::vector<double> term_energy_;
 };

@@ -34,7 +34,8 @@ public:
     /// @param multiply      multiply(p, out): out = A p, A symmetric positive definite
     /// @param precondition  precondition(r, z): z = P r, P symmetric positive definite unless
     ///                      the form is flexible
-    /// @param is_enough     is_enough(step, p): true after an increment step * p of x with which the solve may
+    /// @param is_enough     is_enough(step, p): true after an increment step * p of x with which the solve
+    /// may
     ///                      end
     template <typename Multiply, typename Precondition, typename IsEnough>
     Outcome solve(const Multiply& multiply, const Precondition& precondition, View<const Vec3> b,

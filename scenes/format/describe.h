@@ -273,23 +273,27 @@ void describe(V& v, Solver& s)
 {
     v.field("substeps", s.substeps, between(1, 1000), "Time steps from one sample to the next.");
     v.field("quality", s.quality,
-            "Named accuracy: preview (few iterations around a fixed matrix, folds come late), standard, or final.");
+            "Named accuracy: preview (few iterations around a fixed matrix, folds come late), standard, or "
+            "final.");
     v.field("velocity_tolerance", s.velocity_tolerance, above_zero(10.0, "m/s"),
             "Cloth that would move slower than this stands still; calm cloth is allowed three times as much. "
             "After a time T the cloth is within about 2 T times this of the exact solution. Absent: 0.12 for "
             "preview, 0.01 for standard, 0.002 for final.");
     v.field("tolerance", s.tolerance, above_zero(0.01, "m"),
             "Former key: velocity_tolerance times the time step.");
-    v.field("integrator", s.integrator,
-            "Time integration: second order (bdf2), or implicit-euler, which damps all motion. Absent: bdf2 with "
-            "newton. The other minimisers clamp strain after each step, which adds energy that bdf2 would keep.");
-    v.field("stop", s.stop,
-            "Quantity that the tolerance of lbfgs bounds: error and move, or the move alone, as in papers. The "
-            "latter is only for comparison: cloth that has landed on others then hangs in the air.");
-    v.field("max_iterations", s.max_iterations, between(1, 10000),
-            "Iteration limit of a minimisation; a step that reaches it is reported. Absent: 100 for newton, 300 "
-            "for the others, 30 for previews. For vbd the number of sweeps of a step, for xpbd of substeps with "
-            "one pass each; all of them are done.");
+    v.field(
+        "integrator", s.integrator,
+        "Time integration: second order (bdf2), or implicit-euler, which damps all motion. Absent: bdf2 with "
+        "newton. The other minimisers clamp strain after each step, which adds energy that bdf2 would keep.");
+    v.field(
+        "stop", s.stop,
+        "Quantity that the tolerance of lbfgs bounds: error and move, or the move alone, as in papers. The "
+        "latter is only for comparison: cloth that has landed on others then hangs in the air.");
+    v.field(
+        "max_iterations", s.max_iterations, between(1, 10000),
+        "Iteration limit of a minimisation; a step that reaches it is reported. Absent: 100 for newton, 300 "
+        "for the others, 30 for previews. For vbd the number of sweeps of a step, for xpbd of substeps with "
+        "one pass each; all of them are done.");
     v.field("method", s.method,
             "Solver of the global linear system: exact (direct), quadrature of its kernel, the faster of the "
             "two (auto), or a baseline for comparison. xpbd and vbd replace the whole time step.");

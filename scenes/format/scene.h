@@ -253,7 +253,7 @@ struct Sleep {
 };
 
 struct Solver {
-    int substeps = 4;        ///< time steps per sample
+    int substeps = 4; ///< time steps per sample
     Quality quality = Quality::Standard;
     std::optional<double> velocity_tolerance; ///< [m/s] absent: that of the quality
     std::optional<double> tolerance;          ///< [m] of a step; former key for velocity_tolerance

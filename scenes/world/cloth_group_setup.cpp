@@ -119,7 +119,8 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.outer = method.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
     return std::make_unique<Body>(
-        std::move(unknowns), std::make_unique<System>(std::move(masses), make_energies(method.outer), std::move(solver)),
+        std::move(unknowns),
+        std::make_unique<System>(std::move(masses), make_energies(method.outer), std::move(solver)),
         settings);
 }
 

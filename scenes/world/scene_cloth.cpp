@@ -75,8 +75,6 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
     garment::StrainLimit::Settings limit;
     limit.limit = state_.fabric.strain_limit;
-    if (step_method_of(scene, false).outer == OuterMethod::Newton)
-        limit.tolerance = kYielding;
     strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, limit, source_);
 }
 
@@ -96,8 +94,11 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
 
     const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
     garment::StretchTension::Settings tension{fabric.strain_limit, stiffness};
-    if (outer == OuterMethod::Newton)
+    if (outer == OuterMethod::Newton) {
+        strain_limit_ = std::make_unique<garment::StrainLimit>(
+            rest_, garment::StrainLimit::Settings{fabric.strain_limit, kYielding}, source_);
         tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness);
+    }
     tension_ = std::make_shared<garment::StretchTension>(rest_, tension);
     strain_limit_->set_tension(tension_);
     energies.push_back(tension_);

@@ -37,9 +37,7 @@ StepMethod step_method_of(const Scene& scene, bool on_gpu)
     method.outer = solver.outer.value_or(is_newton ? OuterMethod::Newton : OuterMethod::Lbfgs);
     method.integrator = solver.integrator.value_or(
         method.outer == OuterMethod::Newton ? Integrator::Bdf2 : Integrator::ImplicitEuler);
-    method.velocity_tolerance = is_preview                                ? 0.12
-                                : solver.quality == scene::Quality::Final ? 0.002
-                                                                          : 0.01;
+    method.velocity_tolerance = is_preview ? 0.12 : solver.quality == scene::Quality::Final ? 0.002 : 0.01;
     if (solver.tolerance)
         method.velocity_tolerance = *solver.tolerance / scene.step_duration();
     method.velocity_tolerance = solver.velocity_tolerance.value_or(method.velocity_tolerance);
@@ -53,10 +51,10 @@ std::string former_keys_of(const Scene& scene)
     if (!scene.solver.tolerance)
         return {};
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "solver.tolerance [m] is solver.velocity_tolerance [m/s] now: %g m per step of %.4g s is %.3g m/s",
-                  *scene.solver.tolerance, scene.step_duration(),
-                  *scene.solver.tolerance / scene.step_duration());
+    std::snprintf(
+        text, sizeof text,
+        "solver.tolerance [m] is solver.velocity_tolerance [m/s] now: %g m per step of %.4g s is %.3g m/s",
+        *scene.solver.tolerance, scene.step_duration(), *scene.solver.tolerance / scene.step_duration());
     return scene.source.string() + ": " + text;
 }
 

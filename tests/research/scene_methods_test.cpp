@@ -25,11 +25,10 @@ World world_of(const std::string& json, const std::string& solver)
     static const LiteratureMethods baselines;
     WorldOptions options;
     options.baselines = &baselines;
-    return World(
-        parse_scene(R"({"toile": 1, "frames": 100, "solver": {"integrator": "implicit-euler", )" + solver +
-                        "}, " + json + "}",
-                    "scene.json"),
-        options);
+    return World(parse_scene(R"({"toile": 1, "frames": 100, "solver": {"integrator": "implicit-euler", )" +
+                                 solver + "}, " + json + "}",
+                             "scene.json"),
+                 options);
 }
 
 std::vector<Vec3> positions_after(World& world, int samples)

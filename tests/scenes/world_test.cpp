@@ -42,7 +42,8 @@ double max_move(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 
 TEST(World, LetsClothFallExactly)
 {
-    World world = world_of(kUndamped + R"("frames": 31, "solver": {"substeps": 4, "integrator": "implicit-euler"},
+    World world =
+        world_of(kUndamped + R"("frames": 31, "solver": {"substeps": 4, "integrator": "implicit-euler"},
         "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.5, 0.3], "resolution": 0.05}, "rotate_deg": [20, 30, 40]}])");
     const std::vector<Vec3> start = world.cloths()[0].positions;
     int iterations = 0;
@@ -77,13 +78,13 @@ double slide(double slope)
     const double degrees = angle * 180.0 / std::numbers::pi;
     const double gap = 0.001 + 0.5 * 0.318e-3;
     const std::string rotation = "\"rotate_deg\": [0, 0, " + std::to_string(-degrees) + "]";
-    World world =
-        world_of(kUndamped + R"("frames": 31, "solver": {"velocity_tolerance": 1e-5, "sleep": {"enabled": false}},
+    World world = world_of(
+        kUndamped + R"("frames": 31, "solver": {"velocity_tolerance": 1e-5, "sleep": {"enabled": false}},
         "avatars": [{"name": "incline", "plane": {}, "friction": 0.5, )" +
-                 rotation + R"(}],
+        rotation + R"(}],
         "cloths": [{"name": "sheet", "fabric": "bare", "rectangle": {"size": [0.2, 0.2], "resolution": 0.04}, )" +
-                 rotation + ", \"translate\": [" + std::to_string(gap * std::sin(angle)) + ", " +
-                 std::to_string(gap * std::cos(angle)) + ", 0]}]");
+        rotation + ", \"translate\": [" + std::to_string(gap * std::sin(angle)) + ", " +
+        std::to_string(gap * std::cos(angle)) + ", 0]}]");
     const Vec3 start = mean(world.cloths()[0].positions);
     while (world.frame() < 30)
         world.advance_frame();

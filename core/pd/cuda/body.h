@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/compute/cuda/mirrored_array.h"
 #include "core/linear/cuda/solver.h"
 #include "core/pd/cuda/acceleration.h"
@@ -18,7 +19,7 @@
 
 namespace toile {
 
-/// Body on a GPU: implicit Euler steps minimised on the device by L-BFGS. Fields are copied to the host only
+/// Body on a GPU: steps minimised on the device by L-BFGS. Fields are copied to the host only
 /// when contact or a caller reads them there.
 class DeviceBody : public PointMasses, private StepSpace {
 public:
@@ -72,7 +73,7 @@ private:
     OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) override;
     OuterLoop::Outcome minimise_by_newton(const Newton::Settings&, const Newton::Revise&, bool) override
     {
-        return {}; // TODO
+        throw InvalidInput("Newton's method does not run on a GPU yet; choose lbfgs");
     }
     void restart_touching(const StepInput& input) override;
     void finish(ActiveSetEnergy* active, StepProjection* projection) override;
@@ -106,7 +107,7 @@ private:
     DeviceEnergies energies_;
     double dt_ = 0.0;            ///< of the current step [s]
     double prepared_step_ = 0.0; ///< [s] Bdf2::implicit_step() of H; 0: none
-    Descent asked_; ///< inputs at the start of the step: tolerance, mass, driving
+    Descent asked_;              ///< inputs at the start of the step: tolerance, mass, driving
     std::vector<unsigned char> host_fixed_;
 
     std::unique_ptr<DeviceAcceleration> loads_; ///< null: step()'s acceleration is used
@@ -124,8 +125,8 @@ private:
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     DeviceArray<Vec3> x_previous_, v_previous_;
     DeviceArray<unsigned char> restart_, touched_, touches_;
-    DeviceArray<Vec3> minimiser_;  ///< [vertices] [m]
-    DeviceArray<double> inertia_;  ///< [vertices] [N/m]
+    DeviceArray<Vec3> minimiser_; ///< [vertices] [m]
+    DeviceArray<double> inertia_; ///< [vertices] [N/m]
 
     DeviceArray<Vec3> found_, found_gradient_;
     DeviceArray<double> masses_, diagonal_; ///< [kg]; of H [N/m]

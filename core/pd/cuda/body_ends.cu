@@ -114,10 +114,9 @@ void DeviceBody::finish(ActiveSetEnergy* active, StepProjection*)
         active->mark_touching(x_t1_, touches_.view());
     for (const auto& energy : energies_.all())
         energy->end_minimisation(x_t1_.device());
-    parallel_sum(
-        space_, "pd/finish", x_.size(), LargestSquare{},
-        FinishVertex{{scheme_, motion(), x_t1_.device()}, descent_.gradient(), minimiser_.view()},
-        gradient_.view(), end_sums_);
+    parallel_sum(space_, "pd/finish", x_.size(), LargestSquare{},
+                 FinishVertex{{scheme_, motion(), x_t1_.device()}, descent_.gradient(), minimiser_.view()},
+                 gradient_.view(), end_sums_);
 }
 
 /// Waits once for all numbers of the report.

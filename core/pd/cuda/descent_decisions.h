@@ -55,10 +55,10 @@ struct Descent {
     double tolerance = 0.0; ///< [m]
     StepStop stop = StepStop::Error;
     int max_iterations = 0;
-    double dt2 = 0.0;     ///< [s^2]
+    double dt2 = 0.0;              ///< [s^2]
     double standing_inertia = 0.0; ///< [J] value of the start guess without motion, from inertia alone
-    double mass = 0.0;    ///< [kg] of the free vertices
-    double driving = 0.0; ///< StepError::Sums::driving of the step
+    double mass = 0.0;             ///< [kg] of the free vertices
+    double driving = 0.0;          ///< StepError::Sums::driving of the step
 
     // Results; as OuterLoop::Outcome.
     int iterations = 0;

@@ -143,7 +143,7 @@ struct TakeTrial {
     /// need. Pairs are loaded slot by slot, so that no address depends on the decision.
     struct Prologue {
         Vec3 x, gradient, z, trial_x, trial_gradient, trial_z, prediction;
-        double mass;
+        double inertia;
         PaddedVec3 s[kHistory], w[kHistory];
     };
     TOILE_HD Prologue prologue(int i) const
@@ -155,7 +155,7 @@ struct TakeTrial {
                        fields.free_part(fields.trial.gradient, i),
                        fields.free_part(fields.trial.z, i),
                        fields.inertia.prediction[i],
-                       fields.masses[i],
+                       fields.inertia.inertia[i],
                        {},
                        {}};
         for (int slot = 0; slot < kHistory; ++slot) {
@@ -183,7 +183,7 @@ struct TakeTrial {
         }
         const Vec3 next = x + descent.search.step * d;
         fields.trial.x[i] = next;
-        fields.energy[i] = fields.inertia.at(i, next, local.prediction, local.mass);
+        fields.energy[i] = fields.inertia.at(i, next, local.prediction, local.inertia);
     }
 
 private:

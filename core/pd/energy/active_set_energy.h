@@ -18,8 +18,8 @@ struct StepStart {
     double dt = 0.0;                 ///< [s]
     View<const double> inertia = {}; ///< [vertices] of the objective [N/m]; empty: masses / dt^2
 
-    /// True if frozen Hessians are to be true ones, for Newton's method. False: convex majorisers, for methods
-    /// that take them into a fixed H.
+    /// True if frozen Hessians are to be true ones, for Newton's method. False: convex majorisers, for
+    /// methods that take them into a fixed H.
     bool wants_true_hessian = false;
 
     /// Device views of the first five, valid until the end of the step; empty if no GPU makes it.
@@ -62,10 +62,7 @@ public:
 
     /// Marks the vertices of terms that press at x: touches[i] becomes 1.
     /// @param touches  [vertices] on the machine that makes the step
-    virtual void mark_touching([[maybe_unused]] StepField x,
-                               [[maybe_unused]] View<unsigned char> touches)
-    {
-    }
+    virtual void mark_touching([[maybe_unused]] StepField x, [[maybe_unused]] View<unsigned char> touches) {}
 
     /// Called after every minimisation. Refreshes lagged quantities (friction limits) if x is converged, and
     /// searches again if x left the neighbourhood of the candidates. Moves x [vertices] back if it violates

@@ -273,7 +273,8 @@ PaddedVec3 AffineSpace::prolonged(int cluster, int row) const
     const PaddedVec3& p = functions_of_row_[row];
     PaddedVec3 result;
     for (int k = 0; k < 4; ++k)
-        result.value[k] = p.value[0] * u[0].value[k] + p.value[1] * u[1].value[k] + p.value[2] * u[2].value[k];
+        result.value[k] =
+            p.value[0] * u[0].value[k] + p.value[1] * u[1].value[k] + p.value[2] * u[2].value[k];
     return result;
 }
 

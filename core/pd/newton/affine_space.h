@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "core/compute/lanes.h"
-#include "core/pd/newton/block_cholesky.h"
 #include "core/pd/energy/objective.h"
+#include "core/pd/newton/block_cholesky.h"
 #include "core/quadrature/clusters/cluster_tree.h"
 
 namespace toile {
 
-/// Coarse space of fields that are affine on clusters of 64 vertices: u = a + b X + c Y with nine unknowns per
-/// cluster, the Galerkin matrix K_c = p^T K p, and its sparse factor. It represents what a smoother of K
+/// Coarse space of fields that are affine on clusters of 64 vertices: u = a + b X + c Y with nine unknowns
+/// per cluster, the Galerkin matrix K_c = p^T K p, and its sparse factor. It represents what a smoother of K
 /// cannot reach: motion and stretch of whole regions.
 ///
 /// Clusters and functions are those of the quadrature (ClusterTree, ClusterBasis), on the vertices that are
@@ -75,7 +75,7 @@ private:
     std::vector<std::vector<int>> couplings_; ///< [clusters] coupled clusters, ascending, itself included
     bool has_new_couplings_ = true;
     BlockCholesky factor_;
-    std::vector<BlockCholesky::Vector> coarse_;                  ///< [clusters] right-hand side, then solution
+    std::vector<BlockCholesky::Vector> coarse_; ///< [clusters] right-hand side, then solution
     std::vector<std::array<PaddedVec3, kFunctions>> correction_; ///< [clusters] solution by function
 };
 

@@ -75,7 +75,8 @@ bool BlockCholesky::factor()
             if (i == j)
                 diagonal_[i] = A_[e];
             else if (i > j)
-                L_[std::lower_bound(below_.begin() + first_below_[j], below_.begin() + first_below_[j + 1], i) -
+                L_[std::lower_bound(below_.begin() + first_below_[j], below_.begin() + first_below_[j + 1],
+                                    i) -
                    below_.begin()] = A_[e];
         }
     for (int column = 0; column < rows(); ++column) {

@@ -46,10 +46,10 @@ private:
     std::vector<int> place_;   ///< [rows] inverse of order_
 
     // Columns of L by place: the diagonal block first, then those below it, ascending.
-    std::vector<int> first_below_; ///< [rows + 1] into below_
-    std::vector<int> below_;       ///< places of rows
-    std::vector<Block> L_;         ///< [below_]
-    std::vector<Block> diagonal_;  ///< [rows] lower triangles
+    std::vector<int> first_below_;             ///< [rows + 1] into below_
+    std::vector<int> below_;                   ///< places of rows
+    std::vector<Block> L_;                     ///< [below_]
+    std::vector<Block> diagonal_;              ///< [rows] lower triangles
     std::vector<FloatBlock> applied_;          ///< [below_] L_ in single precision
     std::vector<FloatBlock> inverse_diagonal_; ///< [rows] inverse of the lower triangle
     mutable std::vector<Vector> y_;            ///< [rows] scratch

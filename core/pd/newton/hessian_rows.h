@@ -41,18 +41,21 @@ struct CouplingTerm {
 /// S_i is a row's sum, in double precision before it is rounded: a rigid motion of cloth costs its inertia,
 /// not the rounding error of the membrane.
 struct HessianRowsView {
-    View<const PaddedMat3> sum;      ///< [rows] S_i
-    View<const int> first, columns;  ///< [rows + 1], [blocks] neighbours with a block
-    View<const PaddedMat3> blocks;   ///< [blocks]
-    View<const int> first_scalar, scalar_columns; ///< [rows + 1], [scalars] those with a multiple of the identity
-    View<const float> scalars;                    ///< [scalars]
+    View<const PaddedMat3> sum;     ///< [rows] S_i
+    View<const int> first, columns; ///< [rows + 1], [blocks] neighbours with a block
+    View<const PaddedMat3> blocks;  ///< [blocks]
+    View<const int> first_scalar,
+        scalar_columns;        ///< [rows + 1], [scalars] those with a multiple of the identity
+    View<const float> scalars; ///< [scalars]
     View<const CouplingTerm> terms;
     View<const int> first_entry, entries; ///< [rows + 1], 4 * term + slot; empty without terms
 
     TOILE_HD PaddedVec3 product(int i, View<const PaddedVec3> p, View<const PaddedVec3> term_force) const
     {
         using Four = Eigen::Array4f;
-        const auto load = [](const PaddedVec3& v) { return Eigen::Map<const Four, Eigen::Aligned16>(v.value); };
+        const auto load = [](const PaddedVec3& v) {
+            return Eigen::Map<const Four, Eigen::Aligned16>(v.value);
+        };
         const auto times = [&](const PaddedMat3& m, const Four& v) {
             return Four(load(m.column[0]) * v[0] + load(m.column[1]) * v[1] + load(m.column[2]) * v[2]);
         };
@@ -97,7 +100,7 @@ public:
     View<const PaddedMat3> inverse_diagonal() const { return inverse_diagonal_; } ///< [rows]
     HessianRowsView view() const
     {
-        return {sum_,    first_, columns_,     blocks_, first_scalar_, scalar_columns_,
+        return {sum_,     first_, columns_,     blocks_, first_scalar_, scalar_columns_,
                 scalars_, terms_, first_entry_, entries_};
     }
 
@@ -105,12 +108,13 @@ private:
     void find_terms(const std::vector<FrozenTerm>& terms);
     void update_row(const HessianParts& K, int row);
 
-    std::vector<int> order_;                 ///< [rows] vertices
-    std::vector<int> row_of_;                ///< [vertices] -1: fixed
+    std::vector<int> order_;  ///< [rows] vertices
+    std::vector<int> row_of_; ///< [vertices] -1: fixed
     std::vector<PaddedMat3> sum_, inverse_diagonal_;
-    std::vector<Mat3> term_sum_;             ///< [rows] of terms with a single vertex
+    std::vector<Mat3> term_sum_; ///< [rows] of terms with a single vertex
     std::vector<int> first_, columns_;
-    std::vector<std::array<int, 2>> source_; ///< [blocks] entry of the row in K.blocks; in K.constant, -1: none
+    std::vector<std::array<int, 2>>
+        source_; ///< [blocks] entry of the row in K.blocks; in K.constant, -1: none
     std::vector<PaddedMat3> blocks_;
     std::vector<int> first_scalar_, scalar_columns_, scalar_source_; ///< source in K.constant
     std::vector<float> scalars_;

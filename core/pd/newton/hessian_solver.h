@@ -58,11 +58,11 @@ private:
     bool has_coarse_ = false;
     std::vector<unsigned char> fixed_; ///< [vertices] for which rows and clusters were found
     const FrozenHessian* whole_set_ = nullptr;
-    std::vector<int> first_of_chunk_;  ///< [chunks + 1] rows of a task
-    std::vector<int> cluster_of_row_;  ///< [rows] -1: none
+    std::vector<int> first_of_chunk_; ///< [chunks + 1] rows of a task
+    std::vector<int> cluster_of_row_; ///< [rows] -1: none
     std::vector<PaddedVec3> x_, r_, z_, p_, product_, term_force_;
-    std::vector<float> mass_; ///< [rows] divided by their sum
-    std::vector<Sums> sums_;  ///< [chunks]
+    std::vector<float> mass_;                   ///< [rows] divided by their sum
+    std::vector<Sums> sums_;                    ///< [chunks]
     std::vector<Vec3> whole_p_, whole_product_; ///< [vertices] scratch
 };
 

@@ -76,8 +76,8 @@ struct PredictMotion {
             return;
         }
         const Vec3 velocity = s.a0 * motion.v[i] - s.a1 * motion.v_previous[i];
-        prediction[i] = s.a0 * motion.x[i] - s.a1 * motion.x_previous[i] +
-                        step * (velocity + step * acceleration[i]);
+        prediction[i] =
+            s.a0 * motion.x[i] - s.a1 * motion.x_previous[i] + step * (velocity + step * acceleration[i]);
     }
 };
 
@@ -115,7 +115,8 @@ struct EndMotion {
     TOILE_HD void operator()(int i) const
     {
         const bool was_moved = x_t1[i] != minimiser[i];
-        motion.restart[i] = (unsigned char)(motion.has_begun_to_touch(i) || was_moved || motion.fixed[i] != 0);
+        motion.restart[i] =
+            (unsigned char)(motion.has_begun_to_touch(i) || was_moved || motion.fixed[i] != 0);
         motion.touched[i] = motion.touches[i];
         motion.touches[i] = 0;
         motion.x_previous[i] = motion.x[i];

@@ -35,8 +35,8 @@ std::vector<EmbeddedPoint> embedded(View<const Vec3> x)
 
 Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings)
     : PointMassesOnHost(std::move(positions)), system_(std::move(system)), settings_(settings),
-      prediction_(x_.size()), gradient_(x_.size()), x_previous_(x_), v_previous_(v_),
-      restart_(x_.size(), 1), touched_(x_.size(), 0), touches_(x_.size(), 0), inertia_(x_.size())
+      prediction_(x_.size()), gradient_(x_.size()), x_previous_(x_), v_previous_(v_), restart_(x_.size(), 1),
+      touched_(x_.size(), 0), touches_(x_.size(), 0), inertia_(x_.size())
 {
     if (settings.outer == OuterMethod::Newton)
         newton_.emplace(embedded(x_));
@@ -47,9 +47,9 @@ Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings
 StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                       View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
-    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
-                     {settings_.max_iterations, settings_.max_passes,
-                      newton_ ? settings_.speed_tolerance : 0.0});
+    return take_step(
+        *this, {dt, acceleration, fixed, targets, active, projection},
+        {settings_.max_iterations, settings_.max_passes, newton_ ? settings_.speed_tolerance : 0.0});
 }
 
 MotionView Body::motion()
@@ -92,7 +92,7 @@ void Body::restart_touching(const StepInput& input)
 
 StepStart Body::start() const
 {
-    return {x_, prediction_, system_->diagonal(), system_->fixed(), system_->masses(),
+    return {x_,  prediction_, system_->diagonal(), system_->fixed(), system_->masses(),
             dt_, inertia_,    newton_.has_value()};
 }
 

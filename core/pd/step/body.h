@@ -12,7 +12,7 @@
 
 namespace toile {
 
-/// Deformable body advanced by implicit Euler: each step minimises StepObjective.
+/// Deformable body advanced by BDF2 or implicit Euler: each step minimises StepObjective.
 class Body : public PointMassesOnHost, private StepSpace {
 public:
     struct Settings {
@@ -22,8 +22,8 @@ public:
         double tolerance = 1e-5;
         double speed_tolerance = 0.01; ///< [m/s] of Newton's method, in place of `tolerance`
         int max_iterations = 50;       ///< outer iterations per minimisation
-        int max_passes = 3;      ///< see StepPasses
-        int history = 5;         ///< pairs of L-BFGS, steps of Anderson acceleration
+        int max_passes = 3;            ///< see StepPasses
+        int history = 5;               ///< pairs of L-BFGS, steps of Anderson acceleration
         OuterMethod outer = OuterMethod::Lbfgs;
         NestedPcg::Settings contact_solve; ///< while contacts are active
         StepStop stop = StepStop::Error;   ///< what the tolerance bounds

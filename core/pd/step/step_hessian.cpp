@@ -4,8 +4,7 @@
 
 namespace toile {
 
-StepHessian::StepHessian(Curvature& curvature, View<const double> inertia,
-                         View<const unsigned char> fixed)
+StepHessian::StepHessian(Curvature& curvature, View<const double> inertia, View<const unsigned char> fixed)
     : curvature_(curvature), fixed_(fixed), inertia_(inertia), diagonal_(inertia.size()),
       free_(inertia.size())
 {

@@ -22,9 +22,8 @@ StepObjective::StepObjective(const System& system, const StepStart& start, Activ
 
 double StepObjective::evaluate(View<const Vec3> x, View<Vec3> gradient)
 {
-    double value = parallel_sum(
-        kCpu, x.size(), 0.0,
-        InertiaOfVertex{inertia_, start_.prediction, x, gradient});
+    double value =
+        parallel_sum(kCpu, x.size(), 0.0, InertiaOfVertex{inertia_, start_.prediction, x, gradient});
     value += system_.add_gradient(x, gradient);
     if (active_)
         value += active_->add_gradient(x, gradient);

@@ -38,10 +38,10 @@ private:
     ActiveSetEnergy* active_;
     NestedPcg::Settings contact_solve_;
     StepStop stop_;
-    std::optional<NestedPcg> pcg_; ///< none before the active set is first active
+    std::optional<NestedPcg> pcg_;    ///< none before the active set is first active
     std::vector<double> own_inertia_; ///< [vertices] [N/m] if the start has none
     View<const double> inertia_;      ///< [vertices] [N/m]
-    double free_mass_ = 0.0;       ///< [kg] of the free vertices
+    double free_mass_ = 0.0;          ///< [kg] of the free vertices
     bool has_active_set_ = false;
     bool is_pcg_current_ = false; ///< pcg_ has the active set as last frozen
     int linear_iterations_ = 0;

@@ -30,9 +30,9 @@ public:
     /// Begins the motion of vertices anew that will touch something: called when contact is known.
     virtual void restart_touching(const StepInput& input) = 0;
 
-    virtual StepStart start() const = 0;   ///< after begin()
-    virtual StepField end_positions() = 0; ///< guess, then minimiser, then final positions [m]
-    virtual StepField end_velocities() = 0;   ///< at the end of the step, from finish() on [m/s]
+    virtual StepStart start() const = 0;    ///< after begin()
+    virtual StepField end_positions() = 0;  ///< guess, then minimiser, then final positions [m]
+    virtual StepField end_velocities() = 0; ///< at the end of the step, from finish() on [m/s]
 
     /// Minimises the objective of the step from the end positions, which move to the result. The first
     /// result of a step is no worse than no motion: W(x_t1) <= W(x_t0) + 1/2 |v + dt a|^2_M, however early

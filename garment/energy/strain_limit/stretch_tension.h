@@ -34,16 +34,16 @@ public:
         double max_tension = 1.0; ///< [-] of k: bounds the force if a limit cannot be met; 0: none is stored
         double watched = 0.7;     ///< [-] of the limit, from which on a triangle is evaluated during a step
 
-        /// A stiff elastic limit, for Newton's method: every triangle is evaluated, nothing is stored, and
-        /// nothing is clamped afterwards. Stored tension lags behind the motion by a step, which adds energy
-        /// to cloth that swings back from its limit.
+        /// A stiff elastic limit, for Newton's method: every triangle is evaluated, and nothing is stored.
+        /// Stored tension lags behind the motion by a step, which adds energy to cloth that swings back from
+        /// its limit.
         /// @param stiffness  [N/m] the larger of the membrane's two
         static Settings elastic(double limit, double stiffness)
         {
             return {limit, kElastic * stiffness, 0.0, -std::numeric_limits<double>::infinity()};
         }
-        /// Stiffness beyond the limit relative to the membrane's [-]: cloth under a load that would stretch it
-        /// to twice its limit exceeds the limit by a twentieth.
+        /// Stiffness beyond the limit relative to the membrane's [-]: cloth under a load that would stretch
+        /// it to twice its limit exceeds the limit by a twentieth.
         static constexpr double kElastic = 20.0;
     };
 

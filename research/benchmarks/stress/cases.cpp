@@ -214,6 +214,7 @@ private:
                 scene.avatars.pop_back();
             if (where == std::string("hanging")) {
                 scene.cloths[0].translate.y() = 0.6;
+                scene.solver.integrator = Integrator::ImplicitEuler; // a swing of second order does not rest
                 scene::Attachment pins;
                 pins.cloth = scene.cloths[0].name;
                 pins.select.by = std::vector<int>{0, 4};

@@ -103,9 +103,10 @@ TEST(TakeStep, MinimisesAgainAfterNewContactAndCorrectsUntilNothingMoves)
     step.searches_left = 1;
     step.moves_left = 1;
     const StepReport report = step.step(true, true);
-    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "minimise first", "revise", "minimise",
-                                        "revise", "finish", "clear", "project", "keep apart", "clear",
-                                        "project", "keep apart", "end contact", "end"));
+    EXPECT_THAT(step.calls,
+                ElementsAre("begin", "find contact", "restart touching", "minimise first", "revise",
+                            "minimise", "revise", "finish", "clear", "project", "keep apart", "clear",
+                            "project", "keep apart", "end contact", "end"));
     EXPECT_EQ(report.iterations, 4);
 }
 
@@ -116,8 +117,8 @@ TEST(TakeStep, LooksForContactInsideOneMinimisationByNewton)
     StepLimits limits;
     limits.speed_tolerance = 0.01;
     StepReport report = take_step(step, {0.1, {}, fixed, {}, &step, nullptr}, limits);
-    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "newton", "revise", "finish",
-                                        "clear", "keep apart", "end contact", "end"));
+    EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "newton", "revise",
+                                        "finish", "clear", "keep apart", "end contact", "end"));
     EXPECT_EQ(report.speed, 0.01);
 
     step.calls.clear();

@@ -36,7 +36,8 @@ double max_distance(const World& a, const World& b)
 }
 
 /// Tolerance small enough that both backends end at the same solution.
-const std::string kExact = R"("fps": 60, "solver": {"method": "quadrature", "tolerance": 1e-6,
+const std::string kExact =
+    R"("fps": 60, "solver": {"method": "quadrature", "outer": "lbfgs", "velocity_tolerance": 1.2e-4,
     "max_iterations": 400, "substeps": 2, "sleep": {"enabled": false}}, )";
 
 const std::string kTwoSheetsOnABall = R"("avatars": [{"name": "ball", "sphere": {"radius": 0.1}}],
@@ -68,7 +69,7 @@ TEST_F(DeviceSceneTest, SwingsInTheWindAsOnTheCpu)
 TEST_F(DeviceSceneTest, CopiesPositionsOnlyOnRequest)
 {
     const Scene scene = scene_of(R"("fps": 30, "frames": 20, "contact": {"self": false},
-        "solver": {"method": "quadrature", "substeps": 2},
+        "solver": {"method": "quadrature", "quality": "preview", "substeps": 2},
         "wind": {"velocity": [3, 0, 0.5], "turbulence": 0.4},
         "cloths": [{"name": "flag", "rectangle": {"size": [0.4, 0.3], "resolution": 0.02}},
                    {"name": "other", "rectangle": {"size": [0.2, 0.2], "resolution": 0.02}, "translate": [0, 1, 0]}],
@@ -179,7 +180,8 @@ TEST_F(DeviceSceneTest, KeepsStrainLimits)
 /// A moving mesh with remembered sides, and cloth vertices out of bounds on it.
 TEST_F(DeviceSceneTest, DressesAWalkingMannequinAsOnTheCpu)
 {
-    const Scene scene = scene_of(R"("fps": 30, "frames": 20, "solver": {"method": "quadrature"},
+    const Scene scene =
+        scene_of(R"("fps": 30, "frames": 20, "solver": {"method": "quadrature", "quality": "preview"},
         "avatars": [{"name": "mannequin", "mannequin": {}, "clip": "walk", "preroll": {"ease": 0.2, "from_bind": true}}],
         "cloths": [{"name": "skirt", "fabric": "denim", "translate": [0, 1.08, 0],
           "skirt": {"waist_radius": 0.14, "hem_radius": 0.24, "length": 0.55, "resolution": 0.03}}],

@@ -99,7 +99,8 @@ struct Sides {
         x = std::make_unique<Field>(space, made.x);
         prediction = std::make_unique<Field>(space, made.expected);
         host.begin_step({x->host(), prediction->host(), ones, fixed, ones, kDt, {}});
-        device.begin_step({{}, {}, ones, fixed, ones, kDt, {}, false, {x->device(), prediction->device(), {}, {}, {}}});
+        device.begin_step(
+            {{}, {}, ones, fixed, ones, kDt, {}, false, {x->device(), prediction->device(), {}, {}, {}}});
         device.end_search();
     }
 
