@@ -1,13 +1,98 @@
 #include "core/pd/newton/block_cholesky.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
-
-#include <Eigen/Cholesky>
 
 #include "core/base/stages.h"
 
 namespace toile {
+
+namespace {
+
+constexpr int kSize = BlockCholesky::kSize;
+using Block = BlockCholesky::Block;
+
+// Plain loops: the order of Eigen's sums depends on the alignment of the operands, and so on what was
+// allocated before. Results would then differ from run to run.
+
+/// C -= A B^T
+void subtract_product(Block& C, const Block& A, const Block& B)
+{
+    for (int j = 0; j < kSize; ++j)
+        for (int k = 0; k < kSize; ++k)
+            for (int i = 0; i < kSize; ++i)
+                C(i, j) -= A(i, k) * B(j, k);
+}
+
+/// A B^T
+Block product_with_transposed(const Block& A, const Block& B)
+{
+    Block C = Block::Zero();
+    for (int j = 0; j < kSize; ++j)
+        for (int k = 0; k < kSize; ++k)
+            for (int i = 0; i < kSize; ++i)
+                C(i, j) += A(i, k) * B(j, k);
+    return C;
+}
+
+/// Replaces the lower triangle of A by its Cholesky factor; zero above.
+/// @return false if A is not positive definite
+bool factor_in_place(Block& A)
+{
+    for (int j = 0; j < kSize; ++j) {
+        if (!(A(j, j) > 0.0))
+            return false;
+        const double diagonal = std::sqrt(A(j, j));
+        for (int i = j; i < kSize; ++i)
+            A(i, j) /= diagonal;
+        for (int k = j + 1; k < kSize; ++k)
+            for (int i = k; i < kSize; ++i)
+                A(i, k) -= A(i, j) * A(k, j);
+        for (int i = 0; i < j; ++i)
+            A(i, j) = 0.0;
+    }
+    return true;
+}
+
+/// Inverse of a lower triangle.
+Block inverse_of_lower(const Block& L)
+{
+    Block inverse = Block::Zero();
+    for (int j = 0; j < kSize; ++j) {
+        inverse(j, j) = 1.0 / L(j, j);
+        for (int i = j + 1; i < kSize; ++i) {
+            double sum = 0.0;
+            for (int k = j; k < i; ++k)
+                sum += L(i, k) * inverse(k, j);
+            inverse(i, j) = -sum / L(i, i);
+        }
+    }
+    return inverse;
+}
+
+/// y -= A x
+template <typename FloatBlock>
+void subtract_times(BlockCholesky::Vector& y, const FloatBlock& A, const BlockCholesky::Vector& x)
+{
+    for (int k = 0; k < kSize; ++k)
+        for (int i = 0; i < kSize; ++i)
+            y[i] -= A(i, k) * x[k];
+}
+
+/// y -= A^T x
+template <typename FloatBlock>
+void subtract_transposed_times(BlockCholesky::Vector& y, const FloatBlock& A, const BlockCholesky::Vector& x)
+{
+    for (int k = 0; k < kSize; ++k) {
+        float sum = 0.0F;
+        for (int i = 0; i < kSize; ++i)
+            sum += A(i, k) * x[i];
+        y[k] -= sum;
+    }
+}
+
+} // namespace
 
 BlockCholesky::BlockCholesky(const std::vector<std::vector<int>>& columns)
 {
@@ -80,12 +165,8 @@ bool BlockCholesky::factor()
                    below_.begin()] = A_[e];
         }
     for (int column = 0; column < rows(); ++column) {
-        const Eigen::LLT<Block> llt(diagonal_[column]);
-        if (llt.info() != Eigen::Success)
+        if (!factor_in_place(diagonal_[column]))
             return false;
-        diagonal_[column] = llt.matrixL();
-        inverse_diagonal_[column] =
-            diagonal_[column].triangularView<Eigen::Lower>().solve(Block::Identity()).cast<float>();
         eliminate(column);
     }
     return true;
@@ -95,20 +176,20 @@ bool BlockCholesky::factor()
 void BlockCholesky::eliminate(int column)
 {
     const int first = first_below_[column], last = first_below_[column + 1];
-    const Block inverse = diagonal_[column].triangularView<Eigen::Lower>().solve(Block::Identity());
+    const Block inverse = inverse_of_lower(diagonal_[column]);
+    inverse_diagonal_[column] = inverse.cast<float>();
     for (int e = first; e < last; ++e) {
-        const Block scaled = L_[e] * inverse.transpose();
-        L_[e] = scaled;
-        applied_[e] = scaled.cast<float>();
+        L_[e] = product_with_transposed(L_[e], inverse);
+        applied_[e] = L_[e].cast<float>();
     }
     for (int e = first; e < last; ++e) {
         const int to = below_[e];
-        diagonal_[to].noalias() -= L_[e] * L_[e].transpose();
+        subtract_product(diagonal_[to], L_[e], L_[e]);
         int target = first_below_[to];
         for (int f = e + 1; f < last; ++f) {
             while (below_[target] != below_[f])
                 ++target;
-            L_[target].noalias() -= L_[f] * L_[e].transpose();
+            subtract_product(L_[target], L_[f], L_[e]);
         }
     }
 }
@@ -118,16 +199,19 @@ void BlockCholesky::solve(View<Vector> x) const
     for (int place = 0; place < rows(); ++place)
         y_[place] = x[order_[place]];
     for (int column = 0; column < rows(); ++column) {
-        const Vector solved = inverse_diagonal_[column] * y_[column];
-        y_[column] = solved;
+        Vector solved = Vector::Zero();
+        subtract_times(solved, inverse_diagonal_[column], y_[column]);
+        y_[column] = -solved;
         for (int e = first_below_[column]; e < first_below_[column + 1]; ++e)
-            y_[below_[e]].noalias() -= applied_[e] * solved;
+            subtract_times(y_[below_[e]], applied_[e], y_[column]);
     }
     for (int column = rows() - 1; column >= 0; --column) {
-        Vector sum = y_[column];
+        Vector& sum = y_[column];
         for (int e = first_below_[column]; e < first_below_[column + 1]; ++e)
-            sum.noalias() -= applied_[e].transpose() * y_[below_[e]];
-        y_[column] = inverse_diagonal_[column].transpose() * sum;
+            subtract_transposed_times(sum, applied_[e], y_[below_[e]]);
+        Vector solved = Vector::Zero();
+        subtract_transposed_times(solved, inverse_diagonal_[column], sum);
+        sum = -solved;
     }
     for (int place = 0; place < rows(); ++place)
         x[order_[place]] = y_[place];
