@@ -28,9 +28,9 @@ const std::set<std::string> kUnfold{"stiffness 1", "ball jumps away dt 1/10", "b
                                     "friction 0", "dt 1/1000 stiffness 1 density 1"};
 constexpr double kUnfolding = 3.0;
 
-/// Bound [m] of 25 vertices that fall asleep on the ball before their last fold has come down. Once woken
-/// they move for 500 steps, then creep by 12 um/s.
-const std::string kCreepingCase = "at rest on the ball";
+/// Cases with a separate bound [m]: 25 vertices that fall asleep on the ball before their last fold has come
+/// down, and hanging cloth, which nothing but the fabric's damping brings to rest.
+const std::set<std::string> kCreepingCases{"at rest on the ball", "at rest hanging"};
 constexpr double kMaxCreep = 2e-2;
 
 std::vector<Result> run_quick_cases(scene::SolverMethod method)
@@ -54,7 +54,7 @@ TEST_P(StressCases, LeavesClothFiniteWithoutNewEnergyAndAtRest)
     for (const Result& result : run_quick_cases(GetParam())) {
         SCOPED_TRACE(result.name);
         EXPECT_TRUE(result.is_finite);
-        EXPECT_LT(result.drift, result.name == kCreepingCase ? kMaxCreep : limits.drift);
+        EXPECT_LT(result.drift, kCreepingCases.contains(result.name) ? kMaxCreep : limits.drift);
         if (!kGainEnergy.contains(result.name)) {
             EXPECT_LT(result.energy_ratio,
                       1.0 + (is_by_factor && result.name == kLeaves ? kLeavingGain : limits.energy_gain));
