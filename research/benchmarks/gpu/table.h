@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "research/benchmarks/gpu/apply.h"
+#include "research/benchmarks/gpu/baselines.h"
 #include "research/benchmarks/gpu/build_tables.h"
 #include "research/benchmarks/gpu/colliders.h"
 #include "research/benchmarks/gpu/near_pairs.h"
-#include "research/benchmarks/gpu/baselines.h"
 #include "research/benchmarks/gpu/rules.h"
 #include "research/benchmarks/gpu/scene.h"
 #include "research/benchmarks/gpu/step.h"
