@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/linear/field.h"
-#include "core/pd/minimiser/line_search.h"
+#include "core/pd/minimiser/backtrack.h"
 #include "core/pd/minimiser/recent_values.h"
 
 namespace toile {
@@ -33,7 +33,8 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
 
         // Make the last displacement too. Below the tolerance it is the momentum of small lasting forces,
         // such as friction's. Dropped in every step, these would never act.
-        const double step = line_search(objective, x, outcome.value);
+        const double step = backtrack(objective, x, outcome.value, gradient_, direction_, trial_,
+                                      trial_gradient_, max_trials());
         if (step == 0.0) {
             if (outcome.converged || !fall_back())
                 break;
@@ -54,29 +55,6 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
     outcome.linear_iterations = linear_iterations();
     outcome.gradient_norm = max_norm(gradient_);
     return outcome;
-}
-
-/// Backtracks along the direction from x until the value decreases sufficiently; x and value move on success.
-/// @return the accepted step length, 0 if there is none
-double OuterLoop::line_search(Objective& objective, View<Vec3> x, double& value)
-{
-    LineSearch search{value, dot(gradient_, direction_)};
-    if (!(search.slope < 0.0))
-        return 0.0;
-
-    for (int attempt = 0; attempt < max_trials(); ++attempt) {
-        parallel_for(
-            kCpu, "outer/trial", x.size(), [&](int i) { trial_[i] = x[i] + search.step * direction_[i]; },
-            kFieldGrain);
-        const double trial_value = objective.evaluate(trial_, trial_gradient_);
-        if (search.accepts(trial_value)) {
-            std::copy(trial_.begin(), trial_.end(), x.begin());
-            value = trial_value;
-            return search.step;
-        }
-        search.shorten(trial_value);
-    }
-    return 0.0;
 }
 
 } // namespace toile

@@ -78,8 +78,6 @@ protected:
     virtual int linear_iterations() const { return 0; } ///< since begin()
 
 private:
-    double line_search(Objective& objective, View<Vec3> x, double& value);
-
     std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_;
 };
 

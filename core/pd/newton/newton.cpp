@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/linear/field.h"
-#include "core/pd/minimiser/line_search.h"
+#include "core/pd/minimiser/backtrack.h"
 
 namespace toile {
 
@@ -71,7 +71,8 @@ double Newton::iterate(Objective& objective, View<Vec3> x, View<const double> ma
     solver_.update(K->parts(), outcome.iterations == 0);
     const HessianSolver::Outcome solve =
         solver_.solve(gradient_, masses, kIncrement * settings.tolerance * settings.dt, direction_);
-    const double step = line_search(objective, x, outcome.value);
+    const double step = backtrack(objective, x, outcome.value, gradient_, direction_, trial_, trial_gradient_,
+                                  LineSearch::kMaxTrials);
     if (step > 0.0)
         gradient_.swap(trial_gradient_);
     ++outcome.iterations;
@@ -80,28 +81,6 @@ double Newton::iterate(Objective& objective, View<Vec3> x, View<const double> ma
     outcome.displacement = step * max_norm(direction_);
     outcome.converged = solve.is_solved && outcome.speed <= settings.tolerance;
     return step;
-}
-
-/// Backtracks along the direction from x until the value decreases sufficiently; x and value move on success.
-/// @return the accepted step length, 0 if there is none
-double Newton::line_search(Objective& objective, View<Vec3> x, double& value)
-{
-    LineSearch search{value, dot(gradient_, direction_)};
-    if (!(search.slope < 0.0))
-        return 0.0;
-    for (int attempt = 0; attempt < LineSearch::kMaxTrials; ++attempt) {
-        parallel_for(
-            kCpu, "newton/trial", x.size(), [&](int i) { trial_[i] = x[i] + search.step * direction_[i]; },
-            kFieldGrain);
-        const double trial_value = objective.evaluate(trial_, trial_gradient_);
-        if (search.accepts(trial_value)) {
-            std::copy(trial_.begin(), trial_.end(), x.begin());
-            value = trial_value;
-            return search.step;
-        }
-        search.shorten(trial_value);
-    }
-    return 0.0;
 }
 
 } // namespace toile

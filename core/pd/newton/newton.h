@@ -41,7 +41,6 @@ public:
 private:
     double iterate(Objective& objective, View<Vec3> x, View<const double> masses, const Settings& settings,
                    OuterLoop::Outcome& outcome);
-    double line_search(Objective& objective, View<Vec3> x, double& value);
 
     HessianSolver solver_;
     std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_;
