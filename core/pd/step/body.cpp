@@ -100,16 +100,20 @@ StepStart Body::start() const
 void Body::set_positions(View<const Vec3> x)
 {
     for (int i = 0; i < x.size(); ++i)
-        if (x[i] != x_[i])
+        if (x[i] != x_[i]) {
             restart_[i] = 1;
+            x_previous_[i] = x[i];
+        }
     PointMassesOnHost::set_positions(x);
 }
 
 void Body::set_velocities(View<const Vec3> v)
 {
     for (int i = 0; i < v.size(); ++i)
-        if (v[i] != v_[i])
+        if (v[i] != v_[i]) {
             restart_[i] = 1;
+            v_previous_[i] = v[i];
+        }
     PointMassesOnHost::set_velocities(v);
 }
 

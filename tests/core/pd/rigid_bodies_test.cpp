@@ -76,7 +76,7 @@ struct Flight {
 
     explicit Flight(std::vector<RigidShape> shapes)
         : bodies(std::move(shapes)),
-          body(std::vector<Vec3>(bodies.unknown_count()),
+          body(std::vector<Vec3>(bodies.unknown_count(), Vec3::Zero()),
                std::make_unique<System>(bodies.masses(), std::vector<std::shared_ptr<Energy>>()), {})
     {
     }
