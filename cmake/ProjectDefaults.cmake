@@ -24,8 +24,11 @@ option(TOILE_NATIVE "Compile for this machine's instruction set (vector width de
 # toile_abi: flags that layouts and inline functions of our headers depend on. Programs that link a module get them too.
 add_library(toile_abi INTERFACE)
 target_compile_features(toile_abi INTERFACE cxx_std_20)
-# The instruction set decides Eigen's alignment, so the host's part of .cu files must be told the same. Contraction into
-# fused multiply-adds stays on: results are the same for every thread count, not for every processor.
+# No contraction into fused multiply-adds: copies of one kernel, inlined where it runs serially and where a scheduler
+# calls it, would be contracted differently, and results would depend on how work was shared between threads.
+target_compile_options(toile_abi INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off> $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off>)
+# The instruction set decides Eigen's alignment, so the host's part of .cu files must be told the same.
 if(TOILE_NATIVE)
     target_compile_options(toile_abi INTERFACE
         $<$<COMPILE_LANGUAGE:CXX>:-march=native> $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-march=native>)
