@@ -1,13 +1,13 @@
 #include "garment/energy/membrane.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/LU>
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/cuda/elasticity.h"
-#include "garment/energy/membrane_lanes.h"
 
 namespace toile::garment {
 
@@ -25,12 +25,16 @@ void require_valid(const Membrane::Settings& s, const std::string& source)
         refuse("weft", s.weft, "positive");
     if (!(s.shear > 0.0) || s.shear > 0.5 * std::min(s.warp, s.weft) * (1.0 + 1e-9))
         refuse("shear", s.shear, "positive and at most half of the smaller of warp and weft");
+    for (const double time : {s.stretch_damping, s.shear_damping})
+        if (!(time >= 0.0) || !std::isfinite(time))
+            throw InvalidInput(source + ": damping of stretch or shear = " + std::to_string(time) +
+                               " s; it must be 0 or more");
 }
 
 } // namespace
 
 Membrane::Membrane(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source)
-    : rest_(std::move(rest))
+    : rest_(std::move(rest)), settings_(settings)
 {
     require_valid(settings, source);
     weights_.shear = 2.0 * settings.shear;
@@ -67,13 +71,27 @@ void Membrane::add_hessian(Triplets& H) const
 double Membrane::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
     const int triangles = int(rest_->triangles.size());
-    parallel_for(
-        kCpu, "membrane/project", lane_blocks(triangles),
-        ProjectMembrane{x, rest_->triangles, rest_inv_, area_, weights_, corner_gradient_, triangle_energy_});
+    parallel_for(kCpu, "membrane/project", lane_blocks(triangles),
+                 ProjectMembrane{x, rest_->triangles, rest_inv_, area_, weights_, viscosity(),
+                                 corner_gradient_, triangle_energy_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "membrane/gather", gradient.size(),
                  GatherCorners{corners.first, corners.items, corner_gradient_, gradient});
     return parallel_sum(kCpu, triangles, 0.0, [&](int t) { return triangle_energy_[t]; });
+}
+
+void Membrane::begin_step(View<const Vec3> x, double dt)
+{
+    viscous_ = {settings_.stretch_damping * settings_.warp / dt,
+                settings_.stretch_damping * settings_.weft / dt,
+                settings_.shear_damping * settings_.shear / dt};
+    if (viscous_.are_zero())
+        return;
+    start_.resize(rest_inv_.size());
+    parallel_for(kCpu, "membrane/strain", int(start_.size()), [&](int block) {
+        start_[block] =
+            green_strain<Lanes>(deformation_gradients(x, rest_->triangles, rest_inv_[block], block));
+    });
 }
 
 void Membrane::add_couplings(std::vector<std::pair<int, int>>& couplings) const
@@ -85,8 +103,9 @@ void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, Bloc
 {
     const int triangles = int(rest_->triangles.size());
     curvature_.resize(triangles);
-    parallel_for(kCpu, "membrane/curvature", lane_blocks(triangles),
-                 CurveMembrane{x, rest_->triangles, rest_inv_, weights_, definiteness, curvature_});
+    parallel_for(
+        kCpu, "membrane/curvature", lane_blocks(triangles),
+        CurveMembrane{x, rest_->triangles, rest_inv_, weights_, viscosity(), definiteness, curvature_});
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "membrane/gather_curvature", x.size(), [&](int v) {
         for (int k = corners.first[v]; k < corners.first[v + 1]; ++k) {

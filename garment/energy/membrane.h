@@ -4,9 +4,8 @@
 #include <vector>
 
 #include "core/pd/energy/energy.h"
-#include "garment/energy/membrane_kernels.h"
+#include "garment/energy/membrane_lanes.h"
 #include "garment/energy/rest_shape.h"
-#include "garment/energy/stretch_curvature.h"
 
 namespace toile::garment {
 
@@ -18,12 +17,17 @@ namespace toile::garment {
 /// F [Bouaziz et al. 2014, eq. 7]. Pulling along the warp meets Young's modulus k_u, along the weft k_v, and
 /// a simple shear gamma costs G/2 gamma^2 per area. Poisson's ratio is zero: woven yarns slide past each
 /// other. Rigid motion costs nothing; bending is a separate energy (bending.h).
+///
+/// Woven cloth also resists a change of strain: see viscous_response(). Between begin_step() and the next one
+/// the potential over that step is part of W.
 class Membrane : public Energy {
 public:
     struct Settings {
         double warp = 250.0; ///< [N/m] k_u, Young's modulus x thickness along the warp. Must be positive.
         double weft = 250.0; ///< [N/m] k_v along the weft. Must be positive.
         double shear = 50.0; ///< [N/m] G. Positive and at most half of the smaller of warp and weft.
+        double stretch_damping = 0.0; ///< [s] of warp and weft: viscosity over stiffness. Not negative.
+        double shear_damping = 0.0;   ///< [s]
     };
 
     /// @throws InvalidInput naming `source` and the setting outside its range.
@@ -37,14 +41,22 @@ public:
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
     bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
+    /// Begins a step of dt seconds at x [vertices] for the viscosity.
+    void begin_step(View<const Vec3> x, double dt);
+
     /// Weights of the three terms above [N/m].
     const MembraneWeights& weights() const { return weights_; }
 
 private:
+    ViscousStep viscosity() const { return {viscous_, start_}; }
+
     std::shared_ptr<const RestShape> rest_;
+    Settings settings_;
     MembraneWeights weights_;
     std::vector<Mat2Of<Lanes>> rest_inv_; ///< [blocks of triangles]
     std::vector<Lanes> area_;             ///< [blocks of triangles]
+    ViscousWeights viscous_;
+    std::vector<GreenStrain<Lanes>> start_; ///< [blocks of triangles] strain at the start of the step
     std::vector<Mat32> corner_gradient_;
     std::vector<double> triangle_energy_;
     std::vector<StretchCurvature> curvature_; ///< [triangles] scratch

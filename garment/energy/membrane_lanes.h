@@ -5,6 +5,7 @@
 #include "core/pd/energy/energy.h"
 #include "garment/energy/membrane_curvature.h"
 #include "garment/energy/stretch_curvature.h"
+#include "garment/energy/viscosity_kernels.h"
 
 namespace toile::garment {
 
@@ -22,13 +23,22 @@ inline Mat32Of<Lanes> deformation_gradients(View<const Vec3> x, View<const Trian
     return edges.lazyProduct(rest_inv);
 }
 
-/// project_membrane() for eight triangles at a time.
+/// Viscosity of a step, eight triangles at a time; see viscous_response().
+struct ViscousStep {
+    ViscousWeights weights;
+    View<const GreenStrain<Lanes>> start; ///< [blocks] at the start of the step
+
+    bool is_active() const { return !weights.are_zero() && !start.empty(); }
+};
+
+/// project_membrane() and viscosity for eight triangles at a time.
 struct ProjectMembrane {
     View<const Vec3> x;                 ///< [vertices] positions [m]
     View<const Triangle> tri;           ///< [triangles] vertex indices
     View<const Mat2Of<Lanes>> rest_inv; ///< [blocks] inverse rest edge matrices [1/m]
     View<const Lanes> area;             ///< [blocks] rest areas [m^2]
     MembraneWeights weights;
+    ViscousStep viscosity;
     View<Mat32> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
     View<double> energy;         ///< [triangles] out: [J]
 
@@ -36,8 +46,13 @@ struct ProjectMembrane {
     {
         const int first = block * kLanes, count = tri.size();
         const Mat32Of<Lanes> F = deformation_gradients(x, tri, rest_inv[block], block);
-        const MembraneResponse<Lanes> response =
-            project_membrane<Lanes>(F, rest_inv[block], area[block], weights);
+        MembraneResponse<Lanes> response = project_membrane<Lanes>(F, rest_inv[block], area[block], weights);
+        if (viscosity.is_active()) {
+            const MembraneResponse<Lanes> viscous = viscous_response<Lanes>(
+                F, viscosity.start[block], rest_inv[block], area[block], viscosity.weights);
+            response.energy += viscous.energy;
+            response.corner_gradient += viscous.corner_gradient;
+        }
         const int lanes = std::min(kLanes, count - first);
         for (int k = 0; k < lanes; ++k) {
             energy[first + k] = response.energy[k];
@@ -53,15 +68,18 @@ struct CurveMembrane {
     View<const Triangle> tri;           ///< [triangles] vertex indices
     View<const Mat2Of<Lanes>> rest_inv; ///< [blocks] inverse rest edge matrices [1/m]
     MembraneWeights weights;
+    ViscousStep viscosity;
     Definiteness definiteness;
     View<StretchCurvature> curvature; ///< [triangles] out
 
     void operator()(int block) const
     {
         const int first = block * kLanes, lanes = std::min(kLanes, tri.size() - first);
-        const MembraneCurvature<Lanes> H =
-            membrane_curvature<Lanes>(deformation_gradients(x, tri, rest_inv[block], block), weights,
-                                      definiteness == Definiteness::Projected);
+        const bool is_projected = definiteness == Definiteness::Projected;
+        const Mat32Of<Lanes> F = deformation_gradients(x, tri, rest_inv[block], block);
+        MembraneCurvature<Lanes> H = membrane_curvature<Lanes>(F, weights, is_projected);
+        if (viscosity.is_active())
+            add_viscous_curvature<Lanes>(F, viscosity.start[block], viscosity.weights, is_projected, H);
         for (int k = 0; k < lanes; ++k)
             for (int i = 0; i < 9; ++i) {
                 curvature[first + k].uu(i) = H.uu(i)[k];

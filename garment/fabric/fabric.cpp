@@ -24,20 +24,24 @@ void Fabric::validate(const std::string& source) const
     require(bend_weft >= 0.0, "bend weft", bend_weft, "0 or more [N m]");
     require(strain_limit > 0.0, "strain_limit", strain_limit, "positive [-]");
     require(damping >= 0.0, "damping", damping, "0 or more [1/s]");
+    require(stretch_damping >= 0.0, "stretch_damping", stretch_damping, "0 or more [s]");
+    require(shear_damping >= 0.0, "shear_damping", shear_damping, "0 or more [s]");
+    require(bend_damping >= 0.0, "bend_damping", bend_damping, "0 or more [s]");
+    require(bend_friction >= 0.0, "bend_friction", bend_friction, "0 or more [1/m]");
 }
 
 const std::vector<Fabric>& fabric_presets()
 {
-    // name, kg/m^2, thickness m, warp, weft, shear N/m, bend warp, weft N m, strain limit, damping 1/s
+    // name, kg/m^2, thickness m, warp, weft, shear N/m, bend warp, weft N m, strain limit
     static const std::vector<Fabric> presets{
-        {"canvas", 0.400, 0.66e-3, 2000.0, 1600.0, 200.0, 70e-6, 50e-6, 0.03, 0.1},
-        {"cotton", 0.1503, 0.318e-3, 261.1, 261.1, 105.0, 2.338e-6, 2.338e-6, 0.0608, 0.1},
-        {"denim", 0.400, 0.66e-3, 1500.0, 1200.0, 150.0, 60e-6, 35e-6, 0.04, 0.1},
-        {"jersey", 0.180, 0.60e-3, 60.0, 40.0, 18.0, 2.0e-6, 1.5e-6, 0.25, 0.2},
-        {"polyester", 0.1646, 0.252e-3, 120.5, 120.5, 43.6, 0.7457e-6, 0.7457e-6, 0.0646, 0.1},
-        {"silk", 0.060, 0.18e-3, 300.0, 250.0, 30.0, 1.2e-6, 1.0e-6, 0.05, 0.1},
-        {"wool", 0.2348, 0.568e-3, 96.6, 96.6, 37.8, 2.812e-6, 2.812e-6, 0.085, 0.1},
-        {"wool_lycra", 0.1782, 0.328e-3, 24.9, 24.9, 11.6, 0.2246e-6, 0.2246e-6, 0.134, 0.1},
+        {"canvas", 0.400, 0.66e-3, 2000.0, 1600.0, 200.0, 70e-6, 50e-6, 0.03},
+        {"cotton", 0.1503, 0.318e-3, 261.1, 261.1, 105.0, 2.338e-6, 2.338e-6, 0.0608},
+        {"denim", 0.400, 0.66e-3, 1500.0, 1200.0, 150.0, 60e-6, 35e-6, 0.04},
+        {"jersey", 0.180, 0.60e-3, 60.0, 40.0, 18.0, 2.0e-6, 1.5e-6, 0.25},
+        {"polyester", 0.1646, 0.252e-3, 120.5, 120.5, 43.6, 0.7457e-6, 0.7457e-6, 0.0646},
+        {"silk", 0.060, 0.18e-3, 300.0, 250.0, 30.0, 1.2e-6, 1.0e-6, 0.05},
+        {"wool", 0.2348, 0.568e-3, 96.6, 96.6, 37.8, 2.812e-6, 2.812e-6, 0.085},
+        {"wool_lycra", 0.1782, 0.328e-3, 24.9, 24.9, 11.6, 0.2246e-6, 0.2246e-6, 0.134},
     };
     return presets;
 }

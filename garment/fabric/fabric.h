@@ -16,7 +16,13 @@ struct Fabric {
     double bend_warp = 5e-6;     ///< [N m] rigidity when the warp bends
     double bend_weft = 5e-6;     ///< [N m]
     double strain_limit = 0.06;  ///< [-] maximum principal stretch minus one
-    double damping = 0.1;        ///< [1/s] decay rate of velocities, on top of the air's
+    double damping = 0.0;        ///< [1/s] decay rate of velocities, on top of the air's
+
+    // Internal friction (docs/theory/damping.md).
+    double stretch_damping = 0.001; ///< [s] viscosity over stiffness along the yarns
+    double shear_damping = 0.003;   ///< [s] of shear
+    double bend_damping = 0.03;     ///< [s] of bending
+    double bend_friction = 12.0;    ///< [1/m] curvature that friction between yarns holds
 
     /// @throws InvalidInput naming `source`, the property, its value and its range.
     void validate(const std::string& source) const;

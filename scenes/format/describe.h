@@ -197,6 +197,12 @@ void describe(V& v, Fabric& f)
             "Maximum length over rest length, e.g. 1.06.");
     v.field("thickness", f.thickness, above_zero(0.05, "m"), "Thickness of the cloth.");
     v.field("damping", f.damping, between(0.0, 1000.0, "1/s"), "Decay rate of velocities, besides air drag.");
+    const Range time = between(0.0, 10.0, "s");
+    v.field("stretch_damping", f.stretch_damping, time, "Viscosity over stiffness along the threads.");
+    v.field("shear_damping", f.shear_damping, time, "Viscosity over stiffness of shear.");
+    v.field("bend_damping", f.bend_damping, time, "Viscosity over rigidity of bending.");
+    v.field("bend_friction", f.bend_friction, between(0.0, 1000.0, "1/m"),
+            "Curvature that friction between threads holds: half of Kawabata's 2HB over B.");
 }
 
 template <typename V>

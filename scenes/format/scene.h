@@ -159,6 +159,8 @@ struct Fabric {
     std::optional<double> strain_limit;  ///< [-] maximum length over rest length; Fabric's plus 1
     std::optional<double> thickness;     ///< [m]
     std::optional<double> damping;       ///< [1/s]
+    std::optional<double> stretch_damping, shear_damping, bend_damping; ///< [s]
+    std::optional<double> bend_friction;                                ///< [1/m]
 };
 
 // --- solids ---------------------------------------------------------------------------------------------

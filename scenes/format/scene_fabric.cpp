@@ -26,6 +26,10 @@ garment::Fabric custom_fabric(const std::string& name, const scene::Fabric& sett
         fabric.strain_limit = *settings.strain_limit - 1.0;
     replace(fabric.thickness, settings.thickness);
     replace(fabric.damping, settings.damping);
+    replace(fabric.stretch_damping, settings.stretch_damping);
+    replace(fabric.shear_damping, settings.shear_damping);
+    replace(fabric.bend_damping, settings.bend_damping);
+    replace(fabric.bend_friction, settings.bend_friction);
     return fabric;
 }
 

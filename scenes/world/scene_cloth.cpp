@@ -78,18 +78,37 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, limit, source_);
 }
 
+/// Membrane, bending, and the internal friction of both. Implicit Euler's own losses hide that friction, and
+/// the fixed matrix of the other minimisers does not know it.
+void SceneCloth::add_elasticity(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies)
+{
+    const garment::Fabric& fabric = state_.fabric;
+    garment::Membrane::Settings stretch{fabric.stretch_warp, fabric.stretch_weft, fabric.shear};
+    if (has_internal_friction) {
+        stretch.stretch_damping = fabric.stretch_damping;
+        stretch.shear_damping = fabric.shear_damping;
+    }
+    membrane_ = std::make_shared<garment::Membrane>(rest_, stretch, source_);
+    energies.push_back(membrane_);
+
+    const garment::Bending::Settings rigidity{fabric.bend_warp, fabric.bend_weft};
+    if (!(rigidity.warp > 0.0 || rigidity.weft > 0.0))
+        return;
+    const auto bending = std::make_shared<garment::Bending>(rest_, rigidity, source_);
+    bending->leave_to(hessian_diagonal(*membrane_, vertex_count()));
+    energies.push_back(bending);
+    const garment::BendDamping::Settings damping{rigidity, fabric.bend_damping, fabric.bend_friction};
+    if (!has_internal_friction || !damping.is_active())
+        return;
+    bend_damping_ = std::make_shared<garment::BendDamping>(*rest_, damping, source_);
+    energies.push_back(bend_damping_);
+}
+
 std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer)
 {
     const garment::Fabric& fabric = state_.fabric;
-    const auto membrane = std::make_shared<garment::Membrane>(
-        rest_, garment::Membrane::Settings{fabric.stretch_warp, fabric.stretch_weft, fabric.shear}, source_);
-    std::vector<std::shared_ptr<Energy>> energies{membrane};
-    if (fabric.bend_warp > 0.0 || fabric.bend_weft > 0.0) {
-        const auto bending = std::make_shared<garment::Bending>(
-            rest_, garment::Bending::Settings{fabric.bend_warp, fabric.bend_weft}, source_);
-        bending->leave_to(hessian_diagonal(*membrane, vertex_count()));
-        energies.push_back(bending);
-    }
+    std::vector<std::shared_ptr<Energy>> energies;
+    add_elasticity(outer == OuterMethod::Newton, energies);
     add_springs(energies);
 
     const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
@@ -134,8 +153,12 @@ garment::ClothModel SceneCloth::model() const
     return cloth;
 }
 
-void SceneCloth::begin_step(View<const Vec3> x)
+void SceneCloth::begin_step(View<const Vec3> x, double dt)
 {
+    if (membrane_)
+        membrane_->begin_step(x, dt);
+    if (bend_damping_)
+        bend_damping_->begin_step(x, dt);
     if (tension_)
         tension_->begin_step(x);
 }

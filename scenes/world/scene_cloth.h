@@ -6,6 +6,7 @@
 #include "core/pd/energy/energy.h"
 #include "garment/energy/air/aerodynamics.h"
 #include "garment/energy/air/gusts.h"
+#include "garment/energy/bend_damping.h"
 #include "garment/energy/cloth_model.h"
 #include "garment/energy/springs.h"
 #include "garment/energy/strain_limit/strain_limit.h"
@@ -62,8 +63,8 @@ public:
     /// Sets accelerations by gravity, damping and air [m/s^2], for a step of dt [s] that ends at t_t1 [s].
     void accelerate(double dt, double t_t1, View<const Vec3> x, View<const Vec3> v, View<Vec3> acceleration);
 
-    /// Selects the taut triangles at the start of a step.
-    void begin_step(View<const Vec3> x);
+    /// Begins a step of dt [s] at x for energies that depend on its start.
+    void begin_step(View<const Vec3> x, double dt);
 
     /// Sets the positions of state().
     void take(View<const Vec3> x);
@@ -77,6 +78,7 @@ public:
     garment::StrainLimit& strain_limit() { return *strain_limit_; }
 
 private:
+    void add_elasticity(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
     void add_springs(std::vector<std::shared_ptr<Energy>>& energies);
 
     ClothState state_;
@@ -87,7 +89,9 @@ private:
     std::vector<double> masses_;
     std::vector<AttachmentConstraint> attachments_;
     std::shared_ptr<const garment::RestShape> rest_;
-    std::shared_ptr<garment::Springs> springs_; ///< null without attachments by springs
+    std::shared_ptr<garment::Membrane> membrane_;        ///< null for a baseline method
+    std::shared_ptr<garment::BendDamping> bend_damping_; ///< null without
+    std::shared_ptr<garment::Springs> springs_;          ///< null without attachments by springs
     std::unique_ptr<garment::Aerodynamics> air_;
     std::shared_ptr<garment::StretchTension> tension_; ///< null for a baseline method
     std::unique_ptr<garment::StrainLimit> strain_limit_;

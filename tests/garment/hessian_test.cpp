@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "core/pd/energy/curvature.h"
+#include "garment/energy/bend_damping.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
 #include "garment/energy/springs.h"
@@ -19,7 +20,7 @@ using namespace garment;
 
 namespace {
 
-/// Constant part and blocks as one dense matrix.
+/// Isotropic part and blocks as one dense matrix.
 Eigen::MatrixXd dense_hessian(const std::shared_ptr<Energy>& energy, const std::vector<Vec3>& x,
                               Definiteness definiteness)
 {
@@ -28,7 +29,7 @@ Eigen::MatrixXd dense_hessian(const std::shared_ptr<Energy>& energy, const std::
     curvature.assemble(x, definiteness);
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(3 * n, 3 * n);
     for (int i = 0; i < n; ++i) {
-        for (SparseMatrix::InnerIterator entry(curvature.constant(), i); entry; ++entry)
+        for (SparseMatrix::InnerIterator entry(curvature.isotropic(), i); entry; ++entry)
             H.block<3, 3>(3 * i, 3 * entry.col()).diagonal().array() += entry.value();
         for (int k = 0; k < curvature.blocks().columns(i).size(); ++k)
             H.block<3, 3>(3 * i, 3 * curvature.blocks().columns(i)[k]) += curvature.blocks().blocks(i)[k];
@@ -137,6 +138,34 @@ TEST_F(MembraneHessian, IsFiniteOnACollapsedTriangle)
     expect_semidefinite(membrane_, point);
     const std::vector<Vec3> line = stretched(sheet_, 1.0, 0.0, 0.0);
     EXPECT_TRUE(dense_hessian(membrane_, line, Definiteness::Projected).allFinite());
+}
+
+TEST_F(MembraneHessian, IncludesViscosity)
+{
+    const auto viscous = std::make_shared<Membrane>(
+        sheet_.rest(), Membrane::Settings{300.0, 200.0, 40.0, 0.01, 0.03}, "sheet");
+    viscous->begin_step(stretched(sheet_, 1.0, 1.0, 0.004), 0.01);
+    for (const double warp : {0.8, 1.2}) {
+        const std::vector<Vec3> x = stretched(sheet_, warp, 1.1, 0.006);
+        expect_exact(viscous, x);
+        expect_semidefinite(viscous, x);
+    }
+}
+
+TEST(BendDampingHessian, IsExactAcrossFlatClothAndABoundElsewhere)
+{
+    const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 4, 4, Pattern::Irregular);
+    const auto damping = std::make_shared<BendDamping>(
+        *sheet.rest(), BendDamping::Settings{{3e-6, 2e-6}, 0.03, 12.0}, "sheet");
+    damping->begin_step(sheet.flat(), 0.01);
+    const Eigen::MatrixXd flat = dense_hessian(damping, sheet.flat(), Definiteness::Projected);
+    const Eigen::MatrixXd exact = differences_of_gradient(*damping, sheet.flat());
+    const int n = int(sheet.uv.size());
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) // y is the normal
+            EXPECT_NEAR(flat(3 * i + 1, 3 * j + 1), exact(3 * i + 1, 3 * j + 1), 1e-2 * flat.maxCoeff());
+    expect_semidefinite(damping, stretched(sheet, 1.0, 1.0, 0.01));
+    EXPECT_GT(smallest_eigenvalue(flat - exact), -1e-2 * flat.maxCoeff());
 }
 
 TEST(BendingHessian, IsTheDerivativeOfTheGradientWithAndWithoutH)

@@ -1,5 +1,7 @@
 #include "core/pd/energy/curvature.h"
 
+#include <algorithm>
+
 #include "core/compute/parallel.h"
 
 namespace toile {
@@ -15,17 +17,25 @@ Curvature::Curvature(int vertex_count, std::vector<std::shared_ptr<Energy>> ener
         energy->add_constant_curvature(entries);
         energy->add_couplings(couplings);
     }
-    constant_.resize(vertex_count, vertex_count);
-    constant_.setFromTriplets(entries.begin(), entries.end());
+    isotropic_.resize(vertex_count, vertex_count);
+    isotropic_.setFromTriplets(entries.begin(), entries.end());
+    bool changes = false;
+    for (const auto& energy : energies_)
+        changes = energy->find_isotropic(isotropic_) || changes;
+    if (changes)
+        constant_.assign(isotropic_.valuePtr(), isotropic_.valuePtr() + isotropic_.nonZeros());
     blocks_ = BlockMatrix(vertex_count, couplings);
 }
 
 void Curvature::assemble(View<const Vec3> x, Definiteness definiteness)
 {
     const StageScope stage("pd/curvature");
+    std::copy(constant_.begin(), constant_.end(), isotropic_.valuePtr());
     blocks_.set_zero();
-    for (const auto& energy : energies_)
+    for (const auto& energy : energies_) {
+        energy->add_isotropic_curvature(x, isotropic_);
         energy->add_curvature(x, definiteness, blocks_);
+    }
 }
 
 } // namespace toile

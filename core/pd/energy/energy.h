@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/linear/block_matrix.h"
-#include "core/linear/sparse_matrix.h"
+#include "core/linear/sparse_window.h"
 
 namespace toile {
 
@@ -44,6 +44,14 @@ public:
     /// z. The rest has 3 x 3 blocks (add_curvature()). By default all of it is constant and equals the part
     /// in H. That is exact for quadratic energies and a bound for others.
     virtual void add_constant_curvature(Triplets& S) const { add_hessian(S); }
+
+    /// Learns the pattern of the part that is equal for x, y and z: entries of add_constant_curvature(),
+    /// zeros among them. True if add_isotropic_curvature() writes there.
+    virtual bool find_isotropic([[maybe_unused]] SparseWindow S) { return false; }
+
+    /// Adds the part that depends on x [vertices] and is equal for x, y and z. Same bits for every thread
+    /// count.
+    virtual void add_isotropic_curvature(View<const Vec3>, [[maybe_unused]] SparseWindow S) {}
 
     /// Adds the pairs of vertices whose blocks add_curvature() writes.
     virtual void add_couplings(std::vector<std::pair<int, int>>&) const {}

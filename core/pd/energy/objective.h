@@ -13,7 +13,7 @@ namespace toile {
 struct HessianParts {
     View<const unsigned char> fixed; ///< [vertices]
     View<const double> inertia;      ///< [vertices] on the diagonal of x, y and z [N/m]
-    const SparseMatrix& constant;    ///< [vertices x vertices] the same for x, y and z [N/m]
+    const SparseMatrix& isotropic;   ///< [vertices x vertices] the same for x, y and z [N/m]
     const BlockMatrix& blocks;       ///< [N/m]
     View<const Mat3> diagonal;       ///< [vertices] all of these on the diagonal, or a bound [N/m]
     std::vector<FrozenTerm> terms;   ///< of an active set

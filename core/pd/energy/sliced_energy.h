@@ -17,6 +17,11 @@ public:
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets& S) const override;
+    bool find_isotropic(SparseWindow S) override { return energy_->find_isotropic(S.from(first_)); }
+    void add_isotropic_curvature(View<const Vec3> x, SparseWindow S) override
+    {
+        energy_->add_isotropic_curvature(x.subview(first_, count_), S.from(first_));
+    }
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
     bool add_to(DeviceEnergies& energies, int first_vertex) override

@@ -45,7 +45,7 @@ std::vector<std::vector<int>> components_of(const HessianParts& K)
         for (size_t k = 0; k < found.size(); ++k) {
             for (const int j : K.blocks.columns(found[k]))
                 add(j);
-            for (SparseMatrix::InnerIterator entry(K.constant, found[k]); entry; ++entry)
+            for (SparseMatrix::InnerIterator entry(K.isotropic, found[k]); entry; ++entry)
                 add(int(entry.col()));
         }
         std::sort(found.begin(), found.end());
@@ -128,7 +128,7 @@ void AffineSpace::find_couplings(const HessianParts& K)
             for (const int j : K.blocks.columns(i))
                 if (cluster_of_[j] >= 0)
                     insert_sorted(couplings_[c], cluster_of_[j]);
-            for (SparseMatrix::InnerIterator entry(K.constant, i); entry; ++entry)
+            for (SparseMatrix::InnerIterator entry(K.isotropic, i); entry; ++entry)
                 if (cluster_of_[entry.col()] >= 0)
                     insert_sorted(couplings_[c], cluster_of_[entry.col()]);
         }
@@ -209,7 +209,7 @@ void AffineSpace::assemble(const HessianParts& K, int cluster)
             for (int b = 0; b < kFunctions; ++b)
                 sum[b] += functions_[j][b] * K.blocks.blocks(i)[e];
         }
-        for (SparseMatrix::InnerIterator entry(K.constant, i); entry; ++entry) {
+        for (SparseMatrix::InnerIterator entry(K.isotropic, i); entry; ++entry) {
             const int j = int(entry.col());
             if (cluster_of_[j] < 0)
                 continue;

@@ -22,8 +22,8 @@ void HessianRows::find_pattern(const HessianParts& K, std::vector<int> order)
     source_.clear();
     for (const int i : order_) {
         const View<const int> neighbours = K.blocks.columns(i);
-        const int* const begin = K.constant.innerIndexPtr() + K.constant.outerIndexPtr()[i];
-        const int* const end = K.constant.innerIndexPtr() + K.constant.outerIndexPtr()[i + 1];
+        const int* const begin = K.isotropic.innerIndexPtr() + K.isotropic.outerIndexPtr()[i];
+        const int* const end = K.isotropic.innerIndexPtr() + K.isotropic.outerIndexPtr()[i + 1];
         for (int e = 0; e < neighbours.size(); ++e) {
             const int j = neighbours[e];
             if (j == i || row_of_[j] < 0)
@@ -31,14 +31,14 @@ void HessianRows::find_pattern(const HessianParts& K, std::vector<int> order)
             const int* const found = std::lower_bound(begin, end, j);
             columns_.push_back(row_of_[j]);
             source_.push_back(
-                {e, found != end && *found == j ? int(found - K.constant.innerIndexPtr()) : -1});
+                {e, found != end && *found == j ? int(found - K.isotropic.innerIndexPtr()) : -1});
         }
         for (const int* entry = begin; entry != end; ++entry) {
             if (*entry == i || row_of_[*entry] < 0 ||
                 std::binary_search(neighbours.begin(), neighbours.end(), *entry))
                 continue;
             scalar_columns_.push_back(row_of_[*entry]);
-            scalar_source_.push_back(int(entry - K.constant.innerIndexPtr()));
+            scalar_source_.push_back(int(entry - K.isotropic.innerIndexPtr()));
         }
         first_.push_back(int(columns_.size()));
         first_scalar_.push_back(int(scalar_columns_.size()));
@@ -60,16 +60,16 @@ void HessianRows::update_row(const HessianParts& K, int row)
 {
     const int i = order_[row];
     Mat3 sum = K.blocks.diagonal(i);
-    double on_diagonal = K.inertia[i] + K.constant.coeff(i, i);
+    double on_diagonal = K.inertia[i] + K.isotropic.coeff(i, i);
     for (int e = first_[row]; e < first_[row + 1]; ++e) {
         Mat3 block = K.blocks.blocks(i)[source_[e][0]];
         if (source_[e][1] >= 0)
-            block.diagonal().array() += K.constant.valuePtr()[source_[e][1]];
+            block.diagonal().array() += K.isotropic.valuePtr()[source_[e][1]];
         sum += block;
         blocks_[e] = padded_matrix(block);
     }
     for (int e = first_scalar_[row]; e < first_scalar_[row + 1]; ++e) {
-        const double value = K.constant.valuePtr()[scalar_source_[e]];
+        const double value = K.isotropic.valuePtr()[scalar_source_[e]];
         on_diagonal += value;
         scalars_[e] = float(value);
     }

@@ -114,9 +114,9 @@ private:
     std::vector<Mat3> term_sum_; ///< [rows] of terms with a single vertex
     std::vector<int> first_, columns_;
     std::vector<std::array<int, 2>>
-        source_; ///< [blocks] entry of the row in K.blocks; in K.constant, -1: none
+        source_; ///< [blocks] entry of the row in K.blocks; in K.isotropic, -1: none
     std::vector<PaddedMat3> blocks_;
-    std::vector<int> first_scalar_, scalar_columns_, scalar_source_; ///< source in K.constant
+    std::vector<int> first_scalar_, scalar_columns_, scalar_source_; ///< source in K.isotropic
     std::vector<float> scalars_;
     std::vector<CouplingTerm> terms_;
     std::vector<int> first_entry_, entries_;

@@ -13,14 +13,14 @@ StepHessian::StepHessian(Curvature& curvature, View<const double> inertia, View<
 void StepHessian::linearise(View<const Vec3> x, Definiteness definiteness)
 {
     curvature_.assemble(x, definiteness);
-    const SparseMatrix& constant = curvature_.constant();
+    const SparseMatrix& isotropic = curvature_.isotropic();
     parallel_for(kCpu, "pd/hessian_diagonal", int(diagonal_.size()), [&](int i) {
         if (fixed_[i]) {
             diagonal_[i].setIdentity();
             return;
         }
         diagonal_[i] = curvature_.blocks().diagonal(i);
-        diagonal_[i].diagonal().array() += inertia_[i] + constant.coeff(i, i);
+        diagonal_[i].diagonal().array() += inertia_[i] + isotropic.coeff(i, i);
         if (active_)
             diagonal_[i] += active_->diagonal_blocks()[i];
     });
@@ -28,12 +28,12 @@ void StepHessian::linearise(View<const Vec3> x, Definiteness definiteness)
 
 void StepHessian::multiply(View<const Vec3> p, View<Vec3> out)
 {
-    const SparseMatrix& constant = curvature_.constant();
+    const SparseMatrix& isotropic = curvature_.isotropic();
     parallel_for(
         kCpu, "pd/hessian_input", p.size(), [&](int i) { free_[i] = fixed_[i] ? Vec3(Vec3::Zero()) : p[i]; },
         4096);
     parallel_for(kCpu, "pd/hessian_multiply", p.size(), [&](int i) {
-        out[i] = inertia_[i] * p[i] + row_times(constant, i, free_) + curvature_.blocks().row_times(i, free_);
+        out[i] = inertia_[i] * p[i] + row_times(isotropic, i, free_) + curvature_.blocks().row_times(i, free_);
     });
     if (active_)
         active_->add_hessian_product(free_, out);
@@ -44,7 +44,7 @@ void StepHessian::multiply(View<const Vec3> p, View<Vec3> out)
 
 HessianParts StepHessian::parts() const
 {
-    HessianParts parts{fixed_, inertia_, curvature_.constant(), curvature_.blocks(), diagonal_, {}, nullptr};
+    HessianParts parts{fixed_, inertia_, curvature_.isotropic(), curvature_.blocks(), diagonal_, {}, nullptr};
     if (active_) {
         active_->append_terms(parts.terms);
         parts.whole_set = active_->has_all_terms() ? nullptr : active_;
@@ -62,7 +62,7 @@ SparseMatrix StepHessian::matrix() const
         for (int a = 0; a < 3; ++a)
             entries.emplace_back(3 * i + a, 3 * i + a, diagonal);
         // Entries of fixed vertices stay in the pattern as zeros.
-        for (SparseMatrix::InnerIterator entry(curvature_.constant(), i); entry; ++entry) {
+        for (SparseMatrix::InnerIterator entry(curvature_.isotropic(), i); entry; ++entry) {
             const int j = int(entry.col());
             const double value = fixed_[i] || fixed_[j] ? 0.0 : entry.value();
             for (int a = 0; a < 3; ++a)

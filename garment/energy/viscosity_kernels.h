@@ -1,0 +1,89 @@
+#pragma once
+
+#include "garment/energy/membrane_curvature.h"
+
+namespace toile::garment {
+
+/// Green strain (F^T F - I) / 2 of a triangle in material axes.
+template <typename T>
+struct GreenStrain {
+    T uu, uv, vv;
+};
+
+template <typename T>
+TOILE_HD GreenStrain<T> green_strain(const Mat32Of<T>& F)
+{
+    const T half(0.5), one(1.0);
+    return {half * (F.col(0).squaredNorm() - one), half * F.col(0).dot(F.col(1)),
+            half * (F.col(1).squaredNorm() - one)};
+}
+
+/// Viscous resistance to a change of strain during a step [N/m]: a time times a modulus over the step.
+struct ViscousWeights {
+    double warp = 0.0, weft = 0.0, shear = 0.0;
+
+    TOILE_HD bool are_zero() const { return warp == 0.0 && weft == 0.0 && shear == 0.0; }
+};
+
+/// Stress conjugate to the Green strain by a change of strain [N/m]; W's derivative by F is F stress.
+template <typename T>
+TOILE_HD GreenStrain<T> viscous_stress(const GreenStrain<T>& now, const GreenStrain<T>& start,
+                                       const ViscousWeights& weights)
+{
+    return {T(weights.warp) * (now.uu - start.uu), T(2.0 * weights.shear) * (now.uv - start.uv),
+            T(weights.weft) * (now.vv - start.vv)};
+}
+
+/// Dissipation potential of a triangle over a step, a function of strains alone: rigid motion costs nothing.
+///
+///   D = A/2 [ w_u dE_uu^2 + w_v dE_vv^2 + w_s (2 dE_uv)^2 ]
+template <typename T>
+TOILE_HD MembraneResponse<T> viscous_response(const Mat32Of<T>& F, const GreenStrain<T>& start,
+                                              const Mat2Of<T>& rest_inv, const T& area,
+                                              const ViscousWeights& weights)
+{
+    const GreenStrain<T> now = green_strain<T>(F);
+    const GreenStrain<T> s = viscous_stress<T>(now, start, weights);
+    MembraneResponse<T> response;
+    response.energy =
+        T(0.5) * area *
+        (s.uu * (now.uu - start.uu) + T(2.0) * s.uv * (now.uv - start.uv) + s.vv * (now.vv - start.vv));
+    Mat32Of<T> derivative;
+    derivative.col(0) = s.uu * F.col(0) + s.uv * F.col(1);
+    derivative.col(1) = s.uv * F.col(0) + s.vv * F.col(1);
+    response.corner_gradient.noalias() = derivative.lazyProduct(rest_inv.transpose());
+    response.corner_gradient *= area;
+    return response;
+}
+
+/// Adds the second derivative of D per area.
+/// @param is_projected  omits the stress's compression: positive semi-definite
+template <typename T>
+TOILE_HD void add_viscous_curvature(const Mat32Of<T>& F, const GreenStrain<T>& start,
+                                    const ViscousWeights& weights, bool is_projected, MembraneCurvature<T>& H)
+{
+    const T zero(0.0), one(1.0);
+    GreenStrain<T> s = viscous_stress<T>(green_strain<T>(F), start, weights);
+    if (is_projected) {
+        // max(S, 0) = alpha S + beta I, through the eigenvalues mean +- radius.
+        const T mean = T(0.5) * (s.uu + s.vv), half = T(0.5) * (s.uu - s.vv);
+        const T radius = square_root(half * half + s.uv * s.uv);
+        const T high = mean + radius, low = mean - radius;
+        const T high_cut = select(high > zero, high, zero), low_cut = select(low > zero, low, zero);
+        const auto is_split = radius > zero;
+        const T alpha = select(is_split, (high_cut - low_cut) / select(is_split, T(2.0) * radius, one), zero);
+        const T beta = low_cut - alpha * low;
+        s = {alpha * s.uu + beta, alpha * s.uv, alpha * s.vv + beta};
+    }
+    const Vec3Of<T> u = F.col(0), v = F.col(1);
+    H.uu += T(weights.warp) * (u * u.transpose()) + T(weights.shear) * (v * v.transpose());
+    H.uv += T(weights.shear) * (v * u.transpose());
+    H.vv += T(weights.weft) * (v * v.transpose()) + T(weights.shear) * (u * u.transpose());
+    for (int i = 0; i < 3; ++i) {
+        H.uu(i, i) += s.uu;
+        H.uv(i, i) += s.uv;
+        H.vv(i, i) += s.vv;
+    }
+}
+
+} // namespace toile::garment
