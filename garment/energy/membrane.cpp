@@ -46,6 +46,8 @@ Membrane::Membrane(std::shared_ptr<const RestShape> rest, const Settings& settin
         for (int k = 0; k < 4; ++k)
             inverse(k) = gather(first, triangles, [&](int t) { return rest_->edges_inv[t](k); });
         rest_inv_.push_back(inverse);
+        viscous_share_.push_back(
+            gather(first, triangles, [&](int t) { return rest_->is_sliver(t) ? 0.0 : 1.0; }));
         area_.push_back(gather(first, triangles, [&](int t) { return rest_->areas[t]; }));
     }
     corner_gradient_.resize(triangles);

@@ -48,7 +48,7 @@ public:
     const MembraneWeights& weights() const { return weights_; }
 
 private:
-    ViscousStep viscosity() const { return {viscous_, start_}; }
+    ViscousStep viscosity() const { return {viscous_, viscous_share_, start_}; }
 
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
@@ -56,6 +56,7 @@ private:
     std::vector<Mat2Of<Lanes>> rest_inv_; ///< [blocks of triangles]
     std::vector<Lanes> area_;             ///< [blocks of triangles]
     ViscousWeights viscous_;
+    std::vector<Lanes> viscous_share_;      ///< [blocks of triangles] 0 for slivers
     std::vector<GreenStrain<Lanes>> start_; ///< [blocks of triangles] strain at the start of the step
     std::vector<Mat32> corner_gradient_;
     std::vector<double> triangle_energy_;

@@ -26,6 +26,7 @@ inline Mat32Of<Lanes> deformation_gradients(View<const Vec3> x, View<const Trian
 /// Viscosity of a step, eight triangles at a time; see viscous_response().
 struct ViscousStep {
     ViscousWeights weights;
+    View<const Lanes> share;              ///< [blocks] 1, but 0 for slivers: their strain is noise
     View<const GreenStrain<Lanes>> start; ///< [blocks] at the start of the step
 
     bool is_active() const { return !weights.are_zero() && !start.empty(); }
@@ -48,8 +49,9 @@ struct ProjectMembrane {
         const Mat32Of<Lanes> F = deformation_gradients(x, tri, rest_inv[block], block);
         MembraneResponse<Lanes> response = project_membrane<Lanes>(F, rest_inv[block], area[block], weights);
         if (viscosity.is_active()) {
-            const MembraneResponse<Lanes> viscous = viscous_response<Lanes>(
-                F, viscosity.start[block], rest_inv[block], area[block], viscosity.weights);
+            const MembraneResponse<Lanes> viscous =
+                viscous_response<Lanes>(F, viscosity.start[block], rest_inv[block],
+                                        viscosity.share[block] * area[block], viscosity.weights);
             response.energy += viscous.energy;
             response.corner_gradient += viscous.corner_gradient;
         }
@@ -79,7 +81,8 @@ struct CurveMembrane {
         const Mat32Of<Lanes> F = deformation_gradients(x, tri, rest_inv[block], block);
         MembraneCurvature<Lanes> H = membrane_curvature<Lanes>(F, weights, is_projected);
         if (viscosity.is_active())
-            add_viscous_curvature<Lanes>(F, viscosity.start[block], viscosity.weights, is_projected, H);
+            add_viscous_curvature<Lanes>(F, viscosity.start[block], viscosity.share[block], viscosity.weights,
+                                         is_projected, H);
         for (int k = 0; k < lanes; ++k)
             for (int i = 0; i < 9; ++i) {
                 curvature[first + k].uu(i) = H.uu(i)[k];

@@ -57,9 +57,10 @@ TOILE_HD MembraneResponse<T> viscous_response(const Mat32Of<T>& F, const GreenSt
 }
 
 /// Adds the second derivative of D per area.
+/// @param share         [-] of the triangle's area that resists
 /// @param is_projected  omits the stress's compression: positive semi-definite
 template <typename T>
-TOILE_HD void add_viscous_curvature(const Mat32Of<T>& F, const GreenStrain<T>& start,
+TOILE_HD void add_viscous_curvature(const Mat32Of<T>& F, const GreenStrain<T>& start, const T& share,
                                     const ViscousWeights& weights, bool is_projected, MembraneCurvature<T>& H)
 {
     const T zero(0.0), one(1.0);
@@ -76,13 +77,14 @@ TOILE_HD void add_viscous_curvature(const Mat32Of<T>& F, const GreenStrain<T>& s
         s = {alpha * s.uu + beta, alpha * s.uv, alpha * s.vv + beta};
     }
     const Vec3Of<T> u = F.col(0), v = F.col(1);
-    H.uu += T(weights.warp) * (u * u.transpose()) + T(weights.shear) * (v * v.transpose());
-    H.uv += T(weights.shear) * (v * u.transpose());
-    H.vv += T(weights.weft) * (v * v.transpose()) + T(weights.shear) * (u * u.transpose());
+    const T warp = share * T(weights.warp), weft = share * T(weights.weft), shear = share * T(weights.shear);
+    H.uu += warp * (u * u.transpose()) + shear * (v * v.transpose());
+    H.uv += shear * (v * u.transpose());
+    H.vv += weft * (v * v.transpose()) + shear * (u * u.transpose());
     for (int i = 0; i < 3; ++i) {
-        H.uu(i, i) += s.uu;
-        H.uv(i, i) += s.uv;
-        H.vv(i, i) += s.vv;
+        H.uu(i, i) += share * s.uu;
+        H.uv(i, i) += share * s.uv;
+        H.vv(i, i) += share * s.vv;
     }
 }
 

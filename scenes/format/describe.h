@@ -270,8 +270,10 @@ template <typename V>
 void describe(V& v, Sleep& s)
 {
     v.field("enabled", s.enabled, "Skip the steps of cloth that has come to rest.");
-    v.field("speed", s.speed, above_zero(1.0, "m/s"),
-            "Cloth falls asleep if its fastest vertex stays slower than this.");
+    v.field(
+        "speed", s.speed, above_zero(1.0, "m/s"),
+        "Cloth falls asleep if its vertices' displacement over half a second (root mean square) stays below "
+        "that of this speed.");
 }
 
 template <typename V>

@@ -251,7 +251,7 @@ enum class Quality { Preview, Standard, Final };
 
 struct Sleep {
     bool enabled = true;
-    double speed = 0.001; ///< [m/s] cloth whose fastest vertex stays slower falls asleep
+    double speed = 0.003; ///< [m/s] cloth falls asleep whose vertices move less, RMS over half a second
 };
 
 struct Solver {

@@ -1,6 +1,7 @@
 #include "scenes/world/cloth_group.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "collision/check/find_crossings.h"
 #include "garment/energy/air/cuda/loads.h"
@@ -10,9 +11,13 @@ namespace toile::scenes {
 
 namespace {
 
-/// Time [s] below the sleep speed after which cloth falls asleep. Longer than the pause of a swinging hem at
-/// its turning point.
-constexpr double kSleepDelay = 0.5;
+/// Time [s] for which cloth must have stayed where it is to fall asleep, and between two looks. A swing moves
+/// farther than the sleep speed allows within that time, at its turning point too.
+constexpr double kSleepDelay = 0.5, kSleepLook = 0.05;
+
+/// Largest speed of a vertex of cloth that may fall asleep, relative to the sleep speed [-]: corners tremble
+/// longer than cloth moves.
+constexpr double kCorner = 100.0;
 
 } // namespace
 
@@ -94,8 +99,7 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
 
     // A solver whose every direction was refused leaves the cloth where it is: that is not rest.
     const bool is_stuck = report.status == StepReport::Status::IterationLimit && report.iterations == 0;
-    const bool is_slow = body_->max_speed() < sleep_.speed;
-    slow_time_ = is_slow && !is_stuck ? slow_time_ + dt : 0.0;
+    watch_rest(is_stuck, dt);
     return report;
 }
 
@@ -195,19 +199,58 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
     std::copy(positions.begin(), positions.end(), all.begin() + first_[cloth]);
     body_->set_positions(all);
     may_cross_ = true;
-    slow_time_ = 0.0;
+    still_time_ = 0.0;
+    still_.clear();
 }
 
-/// True if these cloths have been slow for kSleepDelay and nothing disturbs them.
+/// Measures for how long everything has stayed where it is. Positions are compared, not speeds: cloth in
+/// contact trembles without going anywhere. A body on a GPU copies them only where nothing moves much.
+void ClothGroup::watch_rest(bool is_stuck, double dt)
+{
+    if (is_stuck || !(body_->max_speed() < kCorner * sleep_.speed)) {
+        still_time_ = 0.0;
+        still_.clear();
+        return;
+    }
+    const double before = still_time_;
+    still_time_ += dt;
+    if (!still_.empty() && std::floor(before / kSleepLook) == std::floor(still_time_ / kSleepLook))
+        return;
+    std::vector<Vec3> now = surfaces();
+    if (still_.empty() || rms_move(still_, now) > kSleepDelay * sleep_.speed) {
+        still_ = std::move(now);
+        still_time_ = 0.0;
+    }
+}
+
+/// Largest root mean square of the vertices' displacements of a cloth, or of all solids [m].
+double ClothGroup::rms_move(View<const Vec3> from, View<const Vec3> to) const
+{
+    std::vector<int> first = first_;
+    if (to.size() > first.back())
+        first.push_back(to.size());
+    double largest = 0.0;
+    for (size_t part = 0; part + 1 < first.size(); ++part) {
+        double sum = 0.0;
+        for (int i = first[part]; i < first[part + 1]; ++i)
+            sum += (to[i] - from[i]).squaredNorm();
+        largest = std::max(largest, sum / std::max(1, first[part + 1] - first[part]));
+    }
+    return std::sqrt(largest);
+}
+
+/// True if everything has stayed where it is for kSleepDelay and nothing disturbs it.
 bool ClothGroup::is_asleep(double t_t1, const std::vector<Collider>& colliders)
 {
     const bool disturbed = std::any_of(colliders.begin(), colliders.end(),
                                        [](const Collider& collider) { return collider.moved(); }) ||
                            std::any_of(cloths_.begin(), cloths_.end(),
                                        [&](const SceneCloth& cloth) { return cloth.is_disturbed(t_t1); });
-    if (disturbed)
-        slow_time_ = 0.0;
-    return sleep_.enabled && slow_time_ > kSleepDelay;
+    if (disturbed) {
+        still_time_ = 0.0;
+        still_.clear();
+    }
+    return sleep_.enabled && still_time_ > kSleepDelay;
 }
 
 std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collider>& colliders,

@@ -72,6 +72,8 @@ private:
     void mark_crossings();
     int solid_of(int triangle) const;
     std::string names() const;
+    void watch_rest(bool is_stuck, double dt);
+    double rms_move(View<const Vec3> from, View<const Vec3> to) const;
     bool is_asleep(double t_t1, const std::vector<Collider>& colliders);
 
     scene::Sleep sleep_;
@@ -88,7 +90,8 @@ private:
     std::vector<Vec3> targets_, acceleration_;
     std::vector<Triangle> triangles_; ///< of all cloths, then of all solids
     bool may_cross_ = true;           ///< cloth is known to cross cloth, or has been placed
-    double slow_time_ = 0.0;          ///< [s] for which every vertex has been slow
+    double still_time_ = 0.0;         ///< [s] since still_
+    std::vector<Vec3> still_;         ///< [surfaces] where everything has stayed since [m]; empty: it moves
 };
 
 /// The cloths of a scene, in its order.

@@ -58,6 +58,22 @@ std::string former_keys_of(const Scene& scene)
     return scene.source.string() + ": " + text;
 }
 
+std::string ignored_friction_of(const Scene& scene, bool on_gpu)
+{
+    if (step_method_of(scene, on_gpu).outer == OuterMethod::Newton)
+        return {};
+    for (const auto& [name, fabric] : scene.fabrics)
+        for (const auto& [key, value] : {std::pair{"stretch_damping", fabric.stretch_damping},
+                                         {"shear_damping", fabric.shear_damping},
+                                         {"bend_damping", fabric.bend_damping},
+                                         {"bend_friction", fabric.bend_friction}})
+            if (value.value_or(0.0) > 0.0)
+                return scene.source.string() + ": fabrics." + name + "." + key +
+                       " has no effect: internal friction acts with Newton's method (solver.outer) on the "
+                       "CPU";
+    return {};
+}
+
 std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest)
 {
     return quadrature2d::geodesic_embedding(

@@ -47,6 +47,9 @@ StepMethod step_method_of(const Scene& scene, bool on_gpu);
 /// Message about keys of the scene that have another name now; empty: none.
 std::string former_keys_of(const Scene& scene);
 
+/// Message about internal friction of the scene's fabrics that its minimiser ignores; empty: none.
+std::string ignored_friction_of(const Scene& scene, bool on_gpu);
+
 /// @throws InvalidInput if the scene's method is a baseline and there are none
 void require_methods(const Scene& scene, const BaselineMethods* baselines);
 

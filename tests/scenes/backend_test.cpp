@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/compute/cuda/runtime/device.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/world/solver_choice.h"
 #include "scenes/world/world.h"
 
 namespace toile::test {
@@ -60,6 +61,20 @@ TEST(Backend, FallsBackToTheCpuWithoutAWorkingGpu)
     EXPECT_EQ(warning, R"(the backend is cpu: solver.outer "anderson" runs on the CPU only)");
     EXPECT_EQ(world.device(), nullptr);
     EXPECT_NE(world.advance_frame().status, StepReport::Status::NonFinite);
+}
+
+TEST(Backend, SaysWhichInternalFrictionHasNoEffect)
+{
+    const auto scene = [](const std::string& solver) {
+        return scene_with(solver + R"("fabrics": {"rubber": {"bend_friction": 5, "shear_damping": 0}}, )");
+    };
+    EXPECT_EQ(ignored_friction_of(scene(""), false), "");
+    EXPECT_EQ(
+        ignored_friction_of(scene(""), true),
+        "test.json: fabrics.rubber.bend_friction has no effect: internal friction acts with Newton's method "
+        "(solver.outer) on the CPU");
+    EXPECT_NE(ignored_friction_of(scene(R"("solver": {"quality": "preview"}, )"), false), "");
+    EXPECT_EQ(ignored_friction_of(scene_with(R"("solver": {"outer": "lbfgs"}, )"), false), "");
 }
 
 TEST(Backend, ReportsWhyThereIsNoGpu)

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/linear/block_matrix.h"
-#include "core/linear/sparse_window.h"
+#include "core/linear/sparse_matrix.h"
 
 namespace toile {
 

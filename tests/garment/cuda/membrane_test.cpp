@@ -79,7 +79,7 @@ Response in_lanes(const TriangleSoup& soup)
     }
     Response response;
     const ProjectMembrane kernel{
-        soup.x, soup.tri, rest_inv, area, soup.weights, response.corner_gradient, response.energy};
+        soup.x, soup.tri, rest_inv, area, soup.weights, {}, response.corner_gradient, response.energy};
     for (int block = 0; block < lane_blocks(kTriangles); ++block)
         kernel(block);
     return response;

@@ -9,9 +9,7 @@ namespace toile::research::stress {
 namespace {
 
 /// Cases that gain energy, as docs/journal/stress.md and docs/theory/time_integration.md explain.
-const std::set<std::string> kGainEnergy{
-    "dt 1/1000 stiffness 1 density 1", "dt 1/1000 stiffness 1e+07 density 1",
-    "dt 1/10 stiffness 1e+07 density 1", "random start stiffness 1", "ball jumps in (mesh) dt 1/10"};
+const std::set<std::string> kGainEnergy{"dt 1/1000 stiffness 1 density 1", "random start stiffness 1"};
 
 /// Bound [-] of the energy gain of cloth that a ball leaves in a step of 1/10 s. Whether it gains energy
 /// depends on the last bits, and so on compiler and processor (docs/journal/stress.md).
@@ -20,18 +18,17 @@ constexpr double kLeavingGain = 1.5;
 
 /// Max vertex speed [m/s] after the five seconds of a quick case. The full table judges slow creep. Which
 /// case still creeps depends on the last bits, and so on the processor.
-constexpr double kCreep = 0.6;
+constexpr double kCreep = 0.15;
 
-/// Cases with a separate bound [m/s]. After those five seconds their cloth still unfolds from the crumpling
-/// of a leap at dt 1/10, still slides off the ball, or still swings: nothing damps soft cloth.
-const std::set<std::string> kUnfold{"stiffness 1", "ball jumps away dt 1/10", "ball jumps in (mesh) dt 1/10",
-                                    "friction 0", "dt 1/1000 stiffness 1 density 1"};
-constexpr double kUnfolding = 3.0;
+/// Cases with a separate bound [m/s]. Cloth of 1 N/m still swings like a rubber band after those five seconds.
+const std::set<std::string> kUnfold{"stiffness 1", "dt 1/1000 stiffness 1 density 0.01",
+                                    "dt 1/1000 stiffness 1 density 1"};
+constexpr double kUnfolding = 1.0;
 
-/// Cases with a separate bound [m]: 25 vertices that fall asleep on the ball before their last fold has come
-/// down, and hanging cloth, which nothing but the fabric's damping brings to rest.
+/// Cases with a separate bound [m]: cloth that hangs and cloth on the ball creep for as long as dry friction is
+/// viscous.
 const std::set<std::string> kCreepingCases{"at rest on the ball", "at rest hanging"};
-constexpr double kMaxCreep = 2e-2;
+constexpr double kMaxCreep = 1e-2;
 
 std::vector<Result> run_quick_cases(scene::SolverMethod method)
 {
