@@ -14,6 +14,7 @@ struct BenchOptions {
     std::string mesh;                          ///< "NAME" or "NAME:VERTICES"; empty: all
     std::vector<std::filesystem::path> scenes; ///< empty: the benchmark's own
     std::string solver;                        ///< solver.method; empty: the default
+    std::string backend = "cpu";               ///< "cpu" or "cuda"
     std::optional<int> frames;                 ///< of each scene, instead of the scene's number
     int repeats = 3;                           ///< runs of everything that is timed; the minimum counts
     int threads = 0;                           ///< 0: all threads of the machine
@@ -24,6 +25,7 @@ struct BenchOptions {
 
 // One source file each, named after the benchmark. They return an ExitCode and throw InvalidInput for bad
 // options.
+int bench_accuracy(const BenchOptions& options);
 int bench_contact(const BenchOptions& options);
 int bench_gpu(const BenchOptions& options);
 int bench_sheet(const BenchOptions& options);

@@ -18,7 +18,8 @@ enum Option : unsigned {
     kSolver = 8,
     kRepeats = 16,
     kThreads = 32,
-    kTimesOnly = 64
+    kTimesOnly = 64,
+    kBackend = 128
 };
 
 struct Benchmark {
@@ -29,6 +30,8 @@ struct Benchmark {
 };
 
 constexpr Benchmark kBenchmarks[] = {
+    {"accuracy", "Default settings against exact and converged values: error, aim, milliseconds per frame",
+     bench_accuracy, kOnly | kBackend},
     {"contact", "Cloth on cloth: crossings under stress, cost by part against size, with and without it",
      bench_contact, kOnly | kThreads},
     {"gpu", "One GPU: the global solve by pass, beside the CPU and the card's bandwidth", bench_gpu, kOnly},
@@ -56,6 +59,9 @@ void add_options(CLI::App& add, BenchOptions& options, unsigned which)
     if (which & kSolver)
         add.add_option("--solver", options.solver, "solver.method of all cases")
             ->check(CLI::IsMember(scene_format::words_of<scene::SolverMethod>()));
+    if (which & kBackend)
+        add.add_option("--backend", options.backend, "cpu or cuda; converged runs are the CPU's [cpu]")
+            ->check(CLI::IsMember({"cpu", "cuda"}));
     if (which & kRepeats)
         add.add_option("--repeats", options.repeats,
                        "Runs of everything that is timed; the fastest counts [3]")

@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <iostream>
 
-#include <unistd.h>
-
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/progress.h"
 #include "core/base/error.h"
 #include "research/bench/benchmark.h"
+#include "research/bench/scratch_folder.h"
 #include "research/bench/tables.h"
 #include "research/benchmarks/stress/table.h"
 #include "scenes/format/field.h"
@@ -25,27 +24,6 @@ std::vector<std::string> table_names(const std::string& solver)
     const std::string name = solver.empty() ? "stress" : "stress_" + solver;
     return {name + ".csv", name + ".md"};
 }
-
-/// A folder for meshes, deleted at the end of the run.
-class ScratchFolder {
-public:
-    ScratchFolder()
-        : path_(std::filesystem::temp_directory_path() / ("toile-stress-" + std::to_string(::getpid())))
-    {
-    }
-    ~ScratchFolder()
-    {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 std::vector<stress::Case> chosen_cases(const BenchOptions& options, const std::filesystem::path& scratch)
 {
@@ -95,7 +73,7 @@ int bench_stress(const BenchOptions& options)
     const std::vector<std::string> names = table_names(options.solver);
     if (!options.output.empty())
         require_writable(options.output, names);
-    const ScratchFolder scratch;
+    const ScratchFolder scratch("toile-stress");
     const std::vector<stress::Case> cases = chosen_cases(options, scratch.path());
     const app::InterruptGuard interrupt;
     const std::vector<stress::Result> results = run_all(cases, interrupt, options.quiet);

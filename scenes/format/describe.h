@@ -152,7 +152,9 @@ void describe(V& v, Cloth& c)
     v.field("translate", c.translate, kPosition, "Moves the cloth, after scale and rotate_deg.");
     v.field("rotate_deg", c.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
     v.field("fabric", c.fabric, "A key of fabrics or the name of a preset.");
-    v.field("grain_deg", c.grain_deg, kAngle, "Rotation of the warp direction in the cloth's plane.");
+    v.field("grain_deg", c.grain_deg, kAngle,
+            "Rotation of the warp in the cloth's plane, from the X axis of flat cloth and the vertical of "
+            "garments.");
     v.field("thickness", c.thickness, above_zero(0.05, "m"), "Replaces the fabric's thickness.");
     v.field("layer", c.layer, between(-100, 100),
             "If cloths cross at the start, the repair moves the one with the higher layer outside.");

@@ -11,6 +11,7 @@
 #include "garment/energy/membrane.h"
 #include "scenes/format/scene_fabric.h"
 #include "scenes/meshes/cloth_mesh.h"
+#include "scenes/meshes/rigid_motion.h"
 #include "scenes/world/solver_choice.h"
 
 namespace toile::scenes {
@@ -21,15 +22,23 @@ namespace {
 /// elastic energy; above it something has moved the cloth that is stronger, such as bodies that close on it.
 constexpr double kYielding = 0.03;
 
+/// The warp of flat cloth is the X axis of its own frame, however it is placed. That of a garment is the
+/// vertical in which it stands.
 /// @param unmoved  [vertices] positions before the cloth's translation [m]
-std::shared_ptr<const garment::RestShape> rest_shape_of(const std::vector<Vec3>& unmoved,
+std::shared_ptr<const garment::RestShape> rest_shape_of(std::vector<Vec3> unmoved,
                                                         const std::vector<Triangle>& triangles,
-                                                        double grain_deg, const std::string& source)
+                                                        const scene::Cloth& settings,
+                                                        const std::string& source)
 {
-    const bool is_flat = bounds(unmoved).upper.y() - bounds(unmoved).lower.y() < 1e-9;
-    return std::make_shared<const garment::RestShape>(
-        garment::rest_shape_of_surface({unmoved, triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(),
-                                       grain_deg * std::numbers::pi / 180.0, source));
+    const Mat3 back = rotation_of(settings.rotate_deg).transpose();
+    std::vector<Vec3> own = unmoved;
+    for (Vec3& p : own)
+        p = back * p;
+    const Bounds box = bounds(own);
+    const bool is_flat = box.upper.y() - box.lower.y() < 1e-9 * (1.0 + (box.upper - box.lower).norm());
+    return std::make_shared<const garment::RestShape>(garment::rest_shape_of_surface(
+        {is_flat ? std::move(own) : std::move(unmoved), triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(),
+        settings.grain_deg * std::numbers::pi / 180.0, source));
 }
 
 } // namespace
@@ -58,7 +67,7 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
         options.warn(source_ + ": flipped " + std::to_string(state_.flipped_faces) +
                      " faces that were wound against their neighbours");
     state_.triangles = state_.rest.triangulated().triangles;
-    rest_ = rest_shape_of(state_.rest.positions, state_.triangles, settings.grain_deg, source_);
+    rest_ = rest_shape_of(state_.rest.positions, state_.triangles, settings, source_);
     for (Vec3& p : state_.rest.positions)
         p += settings.translate;
     state_.positions = state_.rest.positions;

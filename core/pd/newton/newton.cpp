@@ -16,6 +16,10 @@ namespace {
 /// twice in succession. With a fixed number of iterations several times the last step would remain.
 constexpr double kIncrement = 0.1;
 
+/// Size of a Newton step [-] of the tolerance below which even its bound makes it unnecessary. A larger step
+/// is made although it is small: unbalanced forces that no step follows would never come to balance.
+constexpr double kNegligible = 0.03;
+
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
 /// would cross, where contact does not hold it, is pushed there again by the next step.
 constexpr int kStall = 8;
@@ -31,7 +35,7 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
     OuterLoop::Outcome outcome;
     outcome.value = objective.evaluate(x, gradient_);
     double lowest = std::numeric_limits<double>::infinity();
-    int since_lowest = 0;
+    int since_lowest = 0, small = 0;
     for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
         since_lowest = outcome.value < lowest ? 0 : since_lowest + 1;
         lowest = std::min(lowest, outcome.value);
@@ -40,9 +44,12 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
 
         double step = 0.0;
         outcome.speed = objective.max_speed_of(gradient_);
-        outcome.converged = outcome.speed <= settings.tolerance;
-        if (!outcome.converged)
+        outcome.converged = outcome.speed <= kNegligible * settings.tolerance;
+        if (!outcome.converged) {
             step = iterate(objective, x, masses, settings, outcome);
+            small = outcome.converged ? small + 1 : 0;
+            outcome.converged = outcome.converged && (small >= settings.small_steps || step == 0.0);
+        }
         const bool has_changed = revise && revise(outcome.converged);
         if (!has_changed && (outcome.converged || step == 0.0))
             break;

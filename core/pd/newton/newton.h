@@ -21,7 +21,8 @@ public:
         /// accepts, is slower: RMS |d| / h < tolerance.
         double tolerance = 0.01;
         int max_iterations = 100;
-        double dt = 0.0; ///< h [s]
+        double dt = 0.0;     ///< h [s]
+        int small_steps = 1; ///< that slow, in succession, after which it has converged
     };
 
     /// Looks for contact at x between Newton steps. May move x and change the objective.

@@ -1,0 +1,445 @@
+#include "research/benchmarks/accuracy/cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "core/mesh/obj.h"
+#include "research/benchmarks/accuracy/exact.h"
+#include "scenes/format/read_scene.h"
+
+namespace toile::research::accuracy {
+
+namespace {
+
+constexpr double kGravity = 9.81; // [m/s^2]
+
+/// Keys of a fabric without internal friction, strain limit or decay of velocities.
+const std::string kLossless =
+    R"("strain_limit": 9, "stretch_damping": 0, "shear_damping": 0, "bend_damping": 0,
+    "bend_friction": 0)";
+
+std::string number(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", value);
+    return text;
+}
+
+scenes::Scene scene_of(const std::string& name, const std::string& keys)
+{
+    return scenes::parse_scene(R"({"toile": 1, )" + keys + "}", name);
+}
+
+/// A fabric of equal threads without internal friction.
+std::string lossless_fabric(double areal_density, double stretch, double bend, double damping = 0.0)
+{
+    return R"("fabrics": {"f": {"areal_density": )" + number(areal_density) + R"(, "stretch": {"warp": )" +
+           number(stretch) + R"(, "weft": )" + number(stretch) + R"(}, "shear": )" + number(0.5 * stretch) +
+           R"(, "bend": {"warp": )" + number(bend) + R"(, "weft": )" + number(bend) + R"(}, "damping": )" +
+           number(damping) + ", " + kLossless + "}}";
+}
+
+/// The same scene in finer steps, each minimised much further.
+scenes::Scene converged(scenes::Scene scene, int finer)
+{
+    scene.solver.quality = scene::Quality::Final;
+    scene.solver.velocity_tolerance = 1e-4;
+    scene.solver.max_iterations = 2000;
+    scene.solver.substeps *= finer;
+    return scene;
+}
+
+double rms(View<const Vec3> a, View<const Vec3> b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < a.size(); ++i)
+        sum += (a[i] - b[i]).squaredNorm();
+    return std::sqrt(sum / a.size());
+}
+
+double rms(View<const Vec3> v)
+{
+    const std::vector<Vec3> zero(v.size(), Vec3::Zero());
+    return rms(v, zero);
+}
+
+Vec3 mean(View<const Vec3> x)
+{
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& p : x)
+        sum += p;
+    return sum / x.size();
+}
+
+double quantile(std::vector<double> values, double share)
+{
+    const auto at = values.begin() + long(share * double(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+// --- bending and hanging ------------------------------------------------------------------------------
+
+Case elastica(double load)
+{
+    const double length = 0.1, density = 0.1, resolution = 0.005;
+    const double rigidity = density * kGravity * length * length * length / load;
+    const double clamp = -0.5 * (length + resolution) + 1.01 * resolution;
+    Case result;
+    result.name = "heavy elastica, G = " + number(load);
+    result.quantity = "drop over reach [-]";
+    result.scene =
+        scene_of(result.name,
+                 R"("frames": 91, "air": {"density": 0}, "contact": {"self": false},
+        "cloths": [{"name": "strip", "rectangle": {"size": [)" +
+                     number(length + resolution) + R"(, 0.02], "resolution": 0.005}, "fabric": "f"}],
+        "attachments": [{"cloth": "strip", "select": {"box": {"lower": [-1, -1, -1], "upper": [)" +
+                     number(clamp) + ", 1, 1]}}}], " + lossless_fabric(density, 2000.0, rigidity, 6.0));
+    result.measure = [clamp, resolution](const Trajectory& run, const Trajectory*) {
+        const std::vector<Vec3>&start = run.positions.front(), &end = run.last();
+        Vec3 tip = Vec3::Zero(), edge = Vec3::Zero();
+        int tips = 0, edges = 0;
+        double far = 0.0;
+        for (const Vec3& p : start)
+            far = std::max(far, p.x());
+        for (size_t i = 0; i < start.size(); ++i)
+            if (start[i].x() > far - 1e-6) {
+                tip += end[i];
+                ++tips;
+            } else if (start[i].x() < clamp && start[i].x() > clamp - 0.5 * resolution) {
+                edge += end[i];
+                ++edges;
+            }
+        const Vec3 way = tip / tips - edge / edges;
+        return -way.y() / way.x();
+    };
+    result.right = heavy_elastica(load);
+    result.is_relative = true;
+    result.aim = 0.02;
+    return result;
+}
+
+Case catenary()
+{
+    Case result;
+    result.name = "catenary, d/L = 0.9";
+    result.quantity = "sag over length [-]";
+    result.scene = scene_of(result.name, R"("frames": 241, "contact": {"self": false},
+        "cloths": [{"name": "sheet", "rectangle": {"size": [1, 0.2], "resolution": 0.02}, "fabric": "f"}],
+        "fabrics": {"f": {"areal_density": 0.2, "stretch": {"warp": 5000, "weft": 5000}, "shear": 1000,
+            "bend": {"warp": 1e-8, "weft": 1e-8}, "strain_limit": 9, "damping": 3}},
+        "attachments": [
+            {"cloth": "sheet", "select": {"box": {"lower": [-0.501, -1, -1], "upper": [-0.499, 1, 1]}},
+             "keyframes": [{"time": 0}, {"time": 1, "translate": [0.05, 0, 0]}]},
+            {"cloth": "sheet", "select": {"box": {"lower": [0.499, -1, -1], "upper": [0.501, 1, 1]}},
+             "keyframes": [{"time": 0}, {"time": 1, "translate": [-0.05, 0, 0]}]}])");
+    result.measure = [](const Trajectory& run, const Trajectory*) {
+        double lowest = 0.0;
+        for (const Vec3& p : run.last())
+            lowest = std::min(lowest, p.y());
+        return -lowest;
+    };
+    result.right = catenary_sag(0.9);
+    result.is_relative = true;
+    result.aim = 0.005;
+    return result;
+}
+
+/// Drape of a disc of 15 cm on a support of 9 cm: the share of the overhanging ring that its shadow covers.
+Case drape(double resolution, const std::filesystem::path& support)
+{
+    Case result;
+    result.name = "drape, cotton, " + number(1e3 * resolution) + " mm";
+    result.quantity = "drape coefficient [-]";
+    result.scene = scene_of(result.name, R"("frames": 121,
+        "avatars": [{"name": "support", "file": ")" +
+                                             support.string() + R"(", "friction": 0.5}],
+        "cloths": [{"name": "disc", "disc": {"radius": 0.15, "resolution": )" +
+                                             number(resolution) + R"(}, "translate": [0, 0.002, 0]}])");
+    result.reference = converged(result.scene, 2);
+    result.measure = [](const Trajectory& run, const Trajectory*) {
+        // Shadow by the farthest vertex in each direction.
+        constexpr int kDirections = 90;
+        std::vector<double> reach(kDirections, 0.0);
+        for (const Vec3& p : run.last()) {
+            const double turn = std::atan2(p.z(), p.x()) / (2.0 * std::numbers::pi) + 0.5;
+            double& of_direction = reach[std::min(kDirections - 1, int(kDirections * turn))];
+            of_direction = std::max(of_direction, std::hypot(p.x(), p.z()));
+        }
+        double square = 0.0;
+        for (const double r : reach)
+            square += r * r / kDirections;
+        return (square - 0.09 * 0.09) / (0.15 * 0.15 - 0.09 * 0.09);
+    };
+    result.is_measured = true;
+    result.aim = 0.03;
+    return result;
+}
+
+/// Cylinder of radius 9 cm whose upper side is at height 0.
+TriangleMesh support_mesh()
+{
+    constexpr int kSides = 96;
+    TriangleMesh mesh;
+    for (const double height : {-0.2, 0.0}) {
+        for (int i = 0; i < kSides; ++i) {
+            const double angle = 2.0 * std::numbers::pi * i / kSides;
+            mesh.positions.emplace_back(0.09 * std::cos(angle), height, 0.09 * std::sin(angle));
+        }
+        mesh.positions.emplace_back(0.0, height, 0.0);
+    }
+    const int upper = kSides + 1;
+    for (int i = 0; i < kSides; ++i) {
+        const int next = (i + 1) % kSides;
+        mesh.triangles.emplace_back(kSides, i, next);
+        mesh.triangles.emplace_back(upper + kSides, upper + next, upper + i);
+        mesh.triangles.emplace_back(i, upper + i, upper + next);
+        mesh.triangles.emplace_back(i, upper + next, next);
+    }
+    return mesh;
+}
+
+// --- friction -------------------------------------------------------------------------------------------
+
+/// A sheet on a plane in tilted gravity, with the tangent of the tilt over the coefficient of friction.
+Case incline(double slope)
+{
+    const double friction = 0.3, tilt = std::atan(slope * friction);
+    Case result;
+    result.name = "incline, tan a = " + number(slope) + " mu";
+    result.scene = scene_of(
+        result.name, R"("frames": 46, "air": {"density": 0}, "gravity": [)" +
+                         number(kGravity * std::sin(tilt)) + ", " + number(-kGravity * std::cos(tilt)) +
+                         R"(, 0], "avatars": [{"name": "floor", "plane": {}, "friction": 0.3}],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02},
+            "translate": [0, 0.0012, 0]}])");
+    if (slope < 1.0) {
+        result.quantity = "slip within 1.5 s [mm]";
+        result.measure = [](const Trajectory& run, const Trajectory*) {
+            return 1e3 * (mean(run.last()) - mean(run.positions.front())).x();
+        };
+        result.aim = 1.0;
+        return result;
+    }
+    result.quantity = "acceleration [m/s^2]";
+    result.measure = [](const Trajectory& run, const Trajectory*) {
+        const int from = 15, to = int(run.positions.size()) - 1;
+        return (mean(run.velocities(to)) - mean(run.velocities(from))).x() /
+               ((to - from) * run.frame_duration);
+    };
+    result.right = kGravity * (std::sin(tilt) - friction * std::cos(tilt));
+    result.is_relative = true;
+    result.aim = 0.03;
+    return result;
+}
+
+/// A strip over a horizontal cylinder with unequal ends, held by friction below the capstan's threshold.
+Case capstan()
+{
+    const double radius = 0.03, gap = 0.00115, friction = 0.3, light = 0.08;
+    const double arc = std::numbers::pi * (radius + gap);
+    const double heavy = light * 0.85 * std::exp(friction * std::numbers::pi);
+    const double length = light + arc + heavy;
+    Case result;
+    result.name = "capstan, half a turn at 0.85 of the threshold";
+    result.quantity = "slip within 2 s [mm]";
+    result.scene =
+        scene_of(result.name,
+                 R"("frames": 61, "air": {"density": 0},
+        "avatars": [{"name": "post", "capsule": {"radius": 0.03, "length": 0.4}, "rotate_deg": [90, 0, 0],
+            "friction": 0.3}],
+        "cloths": [{"name": "strip", "rectangle": {"size": [)" +
+                     number(length) +
+                     R"(, 0.03], "resolution": 0.005}, "translate": [0, 0.2, 0], "fabric": "silk"}])");
+    result.place = [=](View<const Vec3> flat) {
+        std::vector<Vec3> x;
+        double first = flat[0].x();
+        for (const Vec3& p : flat)
+            first = std::min(first, p.x());
+        const double r = radius + gap;
+        for (const Vec3& p : flat) {
+            const double s = p.x() - first - light, angle = s / r;
+            if (s < 0.0)
+                x.emplace_back(-r, s, p.z());
+            else if (s > arc)
+                x.emplace_back(r, arc - s, p.z());
+            else
+                x.emplace_back(-r * std::cos(angle), r * std::sin(angle), p.z());
+        }
+        return x;
+    };
+    result.measure = [](const Trajectory& run, const Trajectory*) {
+        // The light end rises as the heavy one falls.
+        const std::vector<Vec3>&start = run.positions.front(), &end = run.last();
+        double before = 0.0, after = 0.0;
+        for (size_t i = 0; i < start.size(); ++i)
+            if (start[i].x() < 0.0) {
+                before = std::min(before, start[i].y());
+                after = std::min(after, end[i].x() < 0.0 ? end[i].y() : 0.0);
+            }
+        return 1e3 * (after - before);
+    };
+    result.aim = 2.0;
+    return result;
+}
+
+// --- motion -----------------------------------------------------------------------------------------------
+
+Case fall(double time, double aim)
+{
+    Case result;
+    result.name = "sheet held at one edge, " + number(time) + " s";
+    result.quantity = "RMS distance to the converged fall [mm]";
+    result.scene = scene_of(result.name, R"("frames": )" + std::to_string(1 + int(std::lround(30.0 * time))) +
+                                             R"(, "air": {"density": 0}, "contact": {"self": false},
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.4, 0.2], "resolution": 0.01},
+            "translate": [0.2, 0, 0], "fabric": "f"}],
+        "attachments": [{"cloth": "sheet", "select": {"box": {"lower": [-0.001, -1, -1],
+            "upper": [0.001, 1, 1]}}}], )" + lossless_fabric(0.2, 1000.0, 5e-6));
+    result.reference = converged(result.scene, 16);
+    result.measure = [](const Trajectory& run, const Trajectory* reference) {
+        return 1e3 * rms(run.last(), reference->last());
+    };
+    result.aim = aim;
+    return result;
+}
+
+/// A stiff strip that swings from horizontal. Its energy is that of the highest swing back.
+Case swing()
+{
+    Case result;
+    result.name = "lossless strip that swings for 5 s";
+    result.quantity = "energy left [%]";
+    result.scene = scene_of(result.name, R"("frames": 151, "air": {"density": 0}, "contact": {"self": false},
+        "cloths": [{"name": "strip", "rectangle": {"size": [0.4, 0.2], "resolution": 0.04},
+            "translate": [0.2, 0, 0], "fabric": "f"}],
+        "attachments": [{"cloth": "strip", "select": {"box": {"lower": [-0.001, -1, -1],
+            "upper": [0.001, 1, 1]}}}], )" + lossless_fabric(0.2, 1000.0, 0.02));
+    result.scene.fps = 60.0;
+    result.scene.frames = 301;
+    result.scene.solver.substeps = 2;
+    result.measure = [](const Trajectory& run, const Trajectory*) {
+        double lowest = 0.0, highest = -1.0;
+        for (size_t frame = 0; frame < run.positions.size(); ++frame) {
+            const double height = mean(run.positions[frame]).y();
+            lowest = std::min(lowest, height);
+            if (double(frame) * run.frame_duration > 4.0)
+                highest = std::max(highest, height);
+        }
+        return 100.0 * (highest - lowest) / -lowest;
+    };
+    result.right = 100.0;
+    result.aim = 10.0;
+    return result;
+}
+
+Case spin()
+{
+    Case result;
+    result.name = "free sheet that spins for 1.9 s";
+    result.quantity = "angular momentum left [%]";
+    result.scene = scene_of(result.name, R"("frames": 76, "gravity": [0, 0, 0], "air": {"density": 0},
+        "contact": {"self": false},
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.4, 0.4], "resolution": 0.02}, "fabric": "f"}],
+        "attachments": [{"cloth": "sheet", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]}},
+            "release": 0.5, "keyframes": [{"time": 0}, {"time": 1, "rotate_deg": [0, 360, 0]}]}], )" +
+                                             lossless_fabric(0.15, 1000.0, 1e-5));
+    result.measure = [](const Trajectory& run, const Trajectory*) {
+        const auto momentum = [&](int frame) {
+            const std::vector<Vec3>& x = run.positions[frame];
+            const std::vector<Vec3> v = run.velocities(frame);
+            const Vec3 centre = mean(x);
+            Vec3 sum = Vec3::Zero();
+            for (size_t i = 0; i < x.size(); ++i)
+                sum += (x[i] - centre).cross(v[i]);
+            return sum.norm();
+        };
+        return 100.0 * momentum(int(run.positions.size()) - 1) / momentum(18);
+    };
+    result.right = 100.0;
+    result.aim = 1.0;
+    return result;
+}
+
+Case rest(const std::string& name, const std::string& body)
+{
+    Case result;
+    result.name = "cotton square dropped on a " + name;
+    result.quantity = "RMS speed 2 s after landing [mm/s]";
+    result.scene = scene_of(result.name, R"("frames": 70, "avatars": [{"name": "body", )" + body +
+                                             R"(, "translate": [0, -0.1, 0]}, {"name": "floor", "plane": {},
+            "translate": [0, -0.4, 0]}],
+        "cloths": [{"name": "square", "rectangle": {"size": [0.5, 0.5], "resolution": 0.02},
+            "translate": [0, 0.06, 0]}])");
+    result.measure = [](const Trajectory& run, const Trajectory*) {
+        return 1e3 * rms(run.velocities(int(run.positions.size()) - 1));
+    };
+    result.aim = 5.0;
+    return result;
+}
+
+// --- a garment --------------------------------------------------------------------------------------------
+
+/// Quantile of strain over the frames of a hanging cone of cloth on its way down.
+Case hanging_skirt(const std::string& word, double share)
+{
+    Case result;
+    result.name = "skirt held at its waist, " + word + " of strain";
+    result.quantity = "largest strain of a frame [%]";
+    result.scene = scene_of(result.name, R"("frames": 46,
+        "cloths": [{"name": "skirt", "skirt": {"waist_radius": 0.12, "hem_radius": 0.35, "length": 0.5,
+            "resolution": 0.02}, "translate": [0, 1, 0]}],
+        "attachments": [{"cloth": "skirt", "select": {"box": {"lower": [-1, 0.999, -1], "upper": [1, 2, 1]}}}])");
+    result.reference = converged(result.scene, 2);
+    result.measure = [share](const Trajectory& run, const Trajectory*) {
+        return 100.0 * quantile({run.max_strain.begin() + 1, run.max_strain.end()}, share);
+    };
+    result.is_measured = result.is_relative = true;
+    result.aim = 0.1;
+    return result;
+}
+
+} // namespace
+
+const std::vector<Vec3>& Trajectory::at(double time) const
+{
+    return positions[size_t(std::lround(time / frame_duration))];
+}
+
+std::vector<Vec3> Trajectory::velocities(int frame) const
+{
+    std::vector<Vec3> v;
+    for (size_t i = 0; i < positions[frame].size(); ++i)
+        v.push_back((positions[frame][i] - positions[frame - 1][i]) / frame_duration);
+    return v;
+}
+
+std::vector<Case> make_cases(const std::filesystem::path& folder, bool quick)
+{
+    std::vector<Case> cases{elastica(10.0),
+                            elastica(50.0),
+                            catenary(),
+                            incline(0.95),
+                            incline(1.3),
+                            capstan(),
+                            fall(0.2, 2.0),
+                            fall(0.3, 8.0),
+                            swing(),
+                            spin(),
+                            rest("box", R"("box": {"size": [0.2, 0.2, 0.2]})"),
+                            rest("ball", R"("sphere": {"radius": 0.1})")};
+    if (quick)
+        return cases;
+    const std::filesystem::path support = folder / "support.obj";
+    write_obj(support, support_mesh());
+    for (const double resolution : {0.006, 0.01, 0.015})
+        cases.push_back(drape(resolution, support));
+    cases.push_back(hanging_skirt("median", 0.5));
+    cases.push_back(hanging_skirt("99th percentile", 0.99));
+    return cases;
+}
+
+} // namespace toile::research::accuracy

@@ -1,0 +1,115 @@
+#include "research/benchmarks/accuracy/run.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "research/benchmarks/text_table.h"
+#include "scenes/world/world.h"
+
+namespace toile::research::accuracy {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Run {
+    Trajectory trajectory;
+    double seconds = 0.0;
+    int unfinished = 0;
+    bool is_complete = true;
+};
+
+void append(const scenes::World& world, Trajectory& trajectory)
+{
+    std::vector<Vec3> x;
+    for (const scenes::ClothState& cloth : world.cloths())
+        x.insert(x.end(), cloth.positions.begin(), cloth.positions.end());
+    trajectory.positions.push_back(std::move(x));
+}
+
+Run run_scene(const Case& trial, const scenes::Scene& scene, const scenes::WorldOptions& options,
+              const std::function<bool()>& after_frame)
+{
+    scenes::World world(scene, options);
+    if (trial.place)
+        world.place(0, trial.place(world.cloths()[0].positions));
+    Run run;
+    run.trajectory.frame_duration = scene.frame_duration();
+    append(world, run.trajectory);
+    run.trajectory.max_strain.push_back(0.0);
+    world.prepare();
+    while (run.is_complete && world.frame() + 1 < world.frame_count()) {
+        const Clock::time_point start = Clock::now();
+        const StepReport report = world.advance_frame();
+        run.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+        run.unfinished += report.status != StepReport::Status::Converged ? 1 : 0;
+        append(world, run.trajectory);
+        run.trajectory.max_strain.push_back(report.max_strain);
+        run.is_complete = after_frame();
+    }
+    return run;
+}
+
+const Row kHeader{"case",  "quantity", "right", "from",     "value",
+                  "error", "aim",      "holds", "ms/frame", "unfinished"};
+
+Row cells_of(const Result& r)
+{
+    return {r.name,
+            r.quantity,
+            format("%.4g", r.right),
+            r.from,
+            format("%.4g", r.value),
+            format("%.2g", r.error),
+            format("%.2g", r.aim),
+            r.holds ? "yes" : "no",
+            format("%.1f", r.ms_per_frame),
+            std::to_string(r.unfinished) + " of " + std::to_string(r.frames)};
+}
+
+std::vector<Row> rows_of(const std::vector<Result>& results)
+{
+    std::vector<Row> rows;
+    rows.reserve(results.size());
+    for (const Result& result : results)
+        rows.push_back(cells_of(result));
+    return rows;
+}
+
+} // namespace
+
+int frames_of(const Case& trial)
+{
+    return trial.scene.frames - 1 + (trial.reference ? trial.reference->frames - 1 : 0);
+}
+
+Result run(const Case& trial, const scenes::WorldOptions& options, const std::function<bool()>& after_frame)
+{
+    const Run own = run_scene(trial, trial.scene, options, after_frame);
+    std::optional<Run> converged;
+    if (trial.reference && own.is_complete)
+        converged = run_scene(trial, *trial.reference, {}, after_frame);
+
+    Result result;
+    result.name = trial.name;
+    result.quantity = trial.quantity;
+    result.from = trial.reference ? "converged" : "exact";
+    result.aim = trial.aim;
+    result.frames = int(own.trajectory.positions.size()) - 1;
+    result.unfinished = own.unfinished;
+    result.ms_per_frame = 1e3 * own.seconds / std::max(1, result.frames);
+    if (!own.is_complete || (converged && !converged->is_complete))
+        return result;
+    const Trajectory* const reference = converged ? &converged->trajectory : nullptr;
+    result.right = trial.is_measured ? trial.measure(*reference, reference) : trial.right;
+    result.value = trial.measure(own.trajectory, reference);
+    result.error = std::abs(result.value - result.right) / (trial.is_relative ? std::abs(result.right) : 1.0);
+    result.holds = result.error <= result.aim;
+    return result;
+}
+
+std::string markdown_table(const std::vector<Result>& results) { return markdown(kHeader, rows_of(results)); }
+
+std::string csv_table(const std::vector<Result>& results) { return csv(kHeader, rows_of(results)); }
+
+} // namespace toile::research::accuracy
