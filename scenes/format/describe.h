@@ -275,7 +275,7 @@ void describe(V& v, Sleep& s)
     v.field(
         "speed", s.speed, above_zero(1.0, "m/s"),
         "Cloth falls asleep if its vertices' displacement over half a second (root mean square) stays below "
-        "that of this speed.");
+        "that of this speed, and below 0.2 % of its size.");
 }
 
 template <typename V>

@@ -15,6 +15,10 @@ namespace {
 /// farther than the sleep speed allows within that time, at its turning point too.
 constexpr double kSleepDelay = 0.5, kSleepLook = 0.05;
 
+/// Displacement within kSleepDelay relative to the size of a cloth that keeps it awake [-], where that is
+/// less than the sleep speed allows.
+constexpr double kSleepOfSize = 0.002;
+
 /// Largest speed of a vertex of cloth that may fall asleep, relative to the sleep speed [-]: corners tremble
 /// longer than cloth moves.
 constexpr double kCorner = 100.0;
@@ -217,26 +221,31 @@ void ClothGroup::watch_rest(bool is_stuck, double dt)
     if (!still_.empty() && std::floor(before / kSleepLook) == std::floor(still_time_ / kSleepLook))
         return;
     std::vector<Vec3> now = surfaces();
-    if (still_.empty() || rms_move(still_, now) > kSleepDelay * sleep_.speed) {
+    if (still_.empty() || has_moved(still_, now)) {
         still_ = std::move(now);
         still_time_ = 0.0;
     }
 }
 
-/// Largest root mean square of the vertices' displacements of a cloth, or of all solids [m].
-double ClothGroup::rms_move(View<const Vec3> from, View<const Vec3> to) const
+/// True if the root mean square of the vertices' displacements of a cloth, or of all solids, says so.
+bool ClothGroup::has_moved(View<const Vec3> from, View<const Vec3> to) const
 {
     std::vector<int> first = first_;
     if (to.size() > first.back())
         first.push_back(to.size());
-    double largest = 0.0;
-    for (size_t part = 0; part + 1 < first.size(); ++part) {
+    for (int k = 0; k + 1 < int(first.size()); ++k) {
         double sum = 0.0;
-        for (int i = first[part]; i < first[part + 1]; ++i)
+        for (int i = first[k]; i < first[k + 1]; ++i)
             sum += (to[i] - from[i]).squaredNorm();
-        largest = std::max(largest, sum / std::max(1, first[part + 1] - first[part]));
+        double allowed = kSleepDelay * sleep_.speed;
+        if (k < int(cloths_.size())) {
+            const Bounds box = bounds(cloths_[k].state().rest.positions);
+            allowed = std::min(allowed, kSleepOfSize * (box.upper - box.lower).norm());
+        }
+        if (sum > (first[k + 1] - first[k]) * allowed * allowed)
+            return true;
     }
-    return std::sqrt(largest);
+    return false;
 }
 
 /// True if everything has stayed where it is for kSleepDelay and nothing disturbs it.

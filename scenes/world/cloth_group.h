@@ -73,7 +73,7 @@ private:
     int solid_of(int triangle) const;
     std::string names() const;
     void watch_rest(bool is_stuck, double dt);
-    double rms_move(View<const Vec3> from, View<const Vec3> to) const;
+    bool has_moved(View<const Vec3> from, View<const Vec3> to) const;
     bool is_asleep(double t_t1, const std::vector<Collider>& colliders);
 
     scene::Sleep sleep_;

@@ -9,6 +9,10 @@ namespace toile {
 
 namespace {
 
+/// Reduction of the residual's square in the preconditioner's norm before small increments count [-]. Small
+/// residuals of stiff cloth begin with small increments, although far from the solution.
+constexpr double kReduction = 0.1;
+
 /// Rows of a task: whole clusters.
 constexpr int kRowsOfChunk = 256;
 
@@ -83,11 +87,13 @@ HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const doubl
         x_[i] = p_[i] = PaddedVec3(0.0F);
     }
     Outcome outcome;
-    double rz = 0.0;
+    double rz = 0.0, first_rz = 0.0;
     int small = 0;
     while (outcome.iterations < kMaxIterations) {
         const double previous = rz;
         rz = precondition();
+        if (outcome.iterations == 0)
+            first_rz = rz;
         if (!(rz > 0.0)) {
             outcome.is_solved = true;
             break;
@@ -112,7 +118,7 @@ HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const doubl
         });
         ++outcome.iterations;
         small = step * std::sqrt(curvature.second) < increment ? small + 1 : 0;
-        if (small >= 2) {
+        if (small >= 2 && rz <= kReduction * first_rz) {
             outcome.is_solved = true;
             break;
         }

@@ -14,9 +14,8 @@ namespace toile::research::accuracy {
 struct Trajectory {
     double frame_duration = 0.0;              ///< [s]
     std::vector<std::vector<Vec3>> positions; ///< [frames][vertices] of all cloths [m]
-    std::vector<double> max_strain;           ///< [frames] [-]
+    std::vector<std::vector<double>> strain;  ///< [frames][triangles] largest principal stretch - 1 [-]
 
-    const std::vector<Vec3>& at(double time) const;
     const std::vector<Vec3>& last() const { return positions.back(); }
     /// Mean velocities from the sample before to this one [vertices] [m/s].
     std::vector<Vec3> velocities(int frame) const;

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "garment/energy/principal_stretch.h"
+#include "garment/energy/rest_shape.h"
 #include "research/benchmarks/text_table.h"
 #include "scenes/world/world.h"
 
@@ -19,12 +21,20 @@ struct Run {
     bool is_complete = true;
 };
 
-void append(const scenes::World& world, Trajectory& trajectory)
+/// Appends the current state.
+void append(const scenes::World& world, const std::vector<garment::RestShape>& rest, Trajectory& trajectory)
 {
     std::vector<Vec3> x;
-    for (const scenes::ClothState& cloth : world.cloths())
-        x.insert(x.end(), cloth.positions.begin(), cloth.positions.end());
+    std::vector<double> strain;
+    const View<const scenes::ClothState> cloths = world.cloths();
+    for (int i = 0; i < cloths.size(); ++i) {
+        const std::vector<Vec3>& of_cloth = cloths[i].positions;
+        x.insert(x.end(), of_cloth.begin(), of_cloth.end());
+        for (int t = 0; t < int(rest[i].triangles.size()); ++t)
+            strain.push_back(garment::largest_stretch(rest[i].deformation_gradient(t, of_cloth)) - 1.0);
+    }
     trajectory.positions.push_back(std::move(x));
+    trajectory.strain.push_back(std::move(strain));
 }
 
 Run run_scene(const Case& trial, const scenes::Scene& scene, const scenes::WorldOptions& options,
@@ -33,18 +43,20 @@ Run run_scene(const Case& trial, const scenes::Scene& scene, const scenes::World
     scenes::World world(scene, options);
     if (trial.place)
         world.place(0, trial.place(world.cloths()[0].positions));
+    std::vector<garment::RestShape> rest;
+    for (const scenes::ClothState& cloth : world.cloths())
+        rest.push_back(garment::rest_shape_of_surface({cloth.rest.positions, cloth.triangles}, Vec3::UnitY(),
+                                                      0.0, cloth.name));
     Run run;
     run.trajectory.frame_duration = scene.frame_duration();
-    append(world, run.trajectory);
-    run.trajectory.max_strain.push_back(0.0);
+    append(world, rest, run.trajectory);
     world.prepare();
     while (run.is_complete && world.frame() + 1 < world.frame_count()) {
         const Clock::time_point start = Clock::now();
         const StepReport report = world.advance_frame();
         run.seconds += std::chrono::duration<double>(Clock::now() - start).count();
         run.unfinished += report.status != StepReport::Status::Converged ? 1 : 0;
-        append(world, run.trajectory);
-        run.trajectory.max_strain.push_back(report.max_strain);
+        append(world, rest, run.trajectory);
         run.is_complete = after_frame();
     }
     return run;
