@@ -36,12 +36,12 @@ void BlockMatrix::set_zero()
         kCpu, "linear/zero_blocks", int(blocks_.size()), [&](int k) { blocks_[k].setZero(); }, 4096);
 }
 
-Mat3& BlockMatrix::block(int row, int column)
+int BlockMatrix::position(int row, int column) const
 {
     const auto begin = columns_.begin() + first_[row], end = columns_.begin() + first_[row + 1];
     const auto found = std::lower_bound(begin, end, column);
     TOILE_ASSERT(found != end && *found == column);
-    return blocks_[found - columns_.begin()];
+    return int(found - begin);
 }
 
 } // namespace toile

@@ -22,7 +22,11 @@ public:
 
     /// Block (row, column), which must be in the pattern. O(log of the row's length). Tasks that write
     /// different rows may run in parallel.
-    Mat3& block(int row, int column);
+    Mat3& block(int row, int column) { return values(row)[position(row, column)]; }
+
+    /// Position of block (row, column) in its row. O(log of the row's length).
+    int position(int row, int column) const;
+    Mat3* values(int row) { return blocks_.data() + first_[row]; } ///< blocks of a row
 
     const Mat3& diagonal(int row) const { return blocks_[diagonal_[row]]; }
 
@@ -60,6 +64,10 @@ public:
 
     /// Block of the matrix, see BlockMatrix::block.
     Mat3& block(int row, int column) const { return matrix_->block(first_ + row, first_ + column); }
+
+    /// See BlockMatrix; for repeated writes.
+    int position(int row, int column) const { return matrix_->position(first_ + row, first_ + column); }
+    Mat3* values(int row) const { return matrix_->values(first_ + row); }
 
     BlockWindow from(int row) const { return {*matrix_, first_ + row}; }
 

@@ -158,7 +158,7 @@ void BendDamping::add_constant_curvature(Triplets& S) const
                 S.emplace_back(i, j, 0.0);
 }
 
-bool BendDamping::find_isotropic(SparseWindow S)
+bool BendDamping::find_entries(SparseWindow S, BlockWindow)
 {
     position_.resize(slots_of_vertex_.items.size());
     for (int v = 0; v + 1 < int(slots_of_vertex_.first.size()); ++v)

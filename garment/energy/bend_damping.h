@@ -43,7 +43,7 @@ public:
     void add_hessian(Triplets&) const override {}
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets& S) const override; ///< zeros: the pattern
-    bool find_isotropic(SparseWindow S) override;
+    bool find_entries(SparseWindow S, BlockWindow K) override;
     void add_isotropic_curvature(View<const Vec3> x, SparseWindow S) override;
 
 private:

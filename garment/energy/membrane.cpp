@@ -101,6 +101,12 @@ void Membrane::add_couplings(std::vector<std::pair<int, int>>& couplings) const
     add_triangle_couplings(rest_->triangles, couplings);
 }
 
+bool Membrane::find_entries(SparseWindow, BlockWindow K)
+{
+    position_ = corner_positions(rest_->triangles, K);
+    return false;
+}
+
 void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K)
 {
     const int triangles = int(rest_->triangles.size());
@@ -111,9 +117,9 @@ void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, Bloc
     const Incidence& corners = rest_->topology.corners_of_vertex;
     parallel_for(kCpu, "membrane/gather_curvature", x.size(), [&](int v) {
         for (int k = corners.first[v]; k < corners.first[v + 1]; ++k) {
-            const int t = corners.items[k] / 3;
-            add_corner_row(curvature_[t], rest_->edges_inv[t], rest_->areas[t], rest_->triangles[t],
-                           corners.items[k] % 3, K);
+            const int corner = corners.items[k], t = corner / 3;
+            add_corner_row(curvature_[t], rest_->edges_inv[t], rest_->areas[t], corner % 3, position_[corner],
+                           K.values(v));
         }
     });
 }

@@ -38,6 +38,7 @@ public:
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets&) const override {}
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
+    bool find_entries(SparseWindow S, BlockWindow K) override;
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
     bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
@@ -61,6 +62,7 @@ private:
     std::vector<Mat32> corner_gradient_;
     std::vector<double> triangle_energy_;
     std::vector<StretchCurvature> curvature_; ///< [triangles] scratch
+    std::vector<CornerPositions> position_;   ///< [3 * triangles]
 };
 
 } // namespace toile::garment

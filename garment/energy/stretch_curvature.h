@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -23,21 +25,35 @@ struct StretchCurvature {
     }
 };
 
-/// Blocks between corner `row` of a triangle and its three corners, for one row of the matrix.
+/// Positions of the blocks between one corner of a triangle and its three corners in that corner's row.
+using CornerPositions = std::array<int, 3>;
+
+/// @return [3 * triangles] by 3 * triangle + corner
+inline std::vector<CornerPositions> corner_positions(View<const Triangle> triangles, BlockWindow K)
+{
+    std::vector<CornerPositions> positions;
+    for (const Triangle& t : triangles)
+        for (int k = 0; k < 3; ++k)
+            positions.push_back({K.position(t[k], t[0]), K.position(t[k], t[1]), K.position(t[k], t[2])});
+    return positions;
+}
+
+/// Adds the blocks between a corner of a triangle and its three corners.
 /// @param rest_inv  inverse rest edge matrix [1/m]
 /// @param area      rest area [m^2]
-inline void add_corner_row(const StretchCurvature& H, const Mat2& rest_inv, double area,
-                           const Triangle& triangle, int row, BlockWindow K)
+/// @param row       blocks of the corner's row
+inline void add_corner_row(const StretchCurvature& H, const Mat2& rest_inv, double area, int corner,
+                           const CornerPositions& position, Mat3* row)
 {
     // Gradients of the corners' hat functions.
     Vec2 g[3];
     g[1] = rest_inv.row(0);
     g[2] = rest_inv.row(1);
     g[0] = -g[1] - g[2];
-    const Mat3 u = area * (g[row][0] * H.uu + g[row][1] * H.uv.transpose());
-    const Mat3 v = area * (g[row][0] * H.uv + g[row][1] * H.vv);
+    const Mat3 u = area * (g[corner][0] * H.uu + g[corner][1] * H.uv.transpose());
+    const Mat3 v = area * (g[corner][0] * H.uv + g[corner][1] * H.vv);
     for (int k = 0; k < 3; ++k)
-        K.block(triangle[row], triangle[k]) += g[k][0] * u + g[k][1] * v;
+        row[position[k]] += g[k][0] * u + g[k][1] * v;
 }
 
 /// Adds the pairs of corners of every triangle.

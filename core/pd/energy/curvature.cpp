@@ -19,12 +19,12 @@ Curvature::Curvature(int vertex_count, std::vector<std::shared_ptr<Energy>> ener
     }
     isotropic_.resize(vertex_count, vertex_count);
     isotropic_.setFromTriplets(entries.begin(), entries.end());
+    blocks_ = BlockMatrix(vertex_count, couplings);
     bool changes = false;
     for (const auto& energy : energies_)
-        changes = energy->find_isotropic(isotropic_) || changes;
+        changes = energy->find_entries(isotropic_, blocks_) || changes;
     if (changes)
         constant_.assign(isotropic_.valuePtr(), isotropic_.valuePtr() + isotropic_.nonZeros());
-    blocks_ = BlockMatrix(vertex_count, couplings);
 }
 
 void Curvature::assemble(View<const Vec3> x, Definiteness definiteness)

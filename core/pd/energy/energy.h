@@ -45,9 +45,10 @@ public:
     /// in H. That is exact for quadratic energies and a bound for others.
     virtual void add_constant_curvature(Triplets& S) const { add_hessian(S); }
 
-    /// Learns the pattern of the part that is equal for x, y and z: entries of add_constant_curvature(),
-    /// zeros among them. True if add_isotropic_curvature() writes there.
-    virtual bool find_isotropic([[maybe_unused]] SparseWindow S) { return false; }
+    /// Learns where its entries are: of the part that is equal for x, y and z, those of
+    /// add_constant_curvature(), zeros among them; of the rest, those of add_couplings(). Precedes the two
+    /// functions below. True if add_isotropic_curvature() writes something.
+    virtual bool find_entries(SparseWindow, BlockWindow) { return false; }
 
     /// Adds the part that depends on x [vertices] and is equal for x, y and z. Same bits for every thread
     /// count.

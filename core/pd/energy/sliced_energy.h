@@ -17,7 +17,10 @@ public:
     void add_hessian(Triplets& H) const override;
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets& S) const override;
-    bool find_isotropic(SparseWindow S) override { return energy_->find_isotropic(S.from(first_)); }
+    bool find_entries(SparseWindow S, BlockWindow K) override
+    {
+        return energy_->find_entries(S.from(first_), K.from(first_));
+    }
     void add_isotropic_curvature(View<const Vec3> x, SparseWindow S) override
     {
         energy_->add_isotropic_curvature(x.subview(first_, count_), S.from(first_));

@@ -5,7 +5,6 @@
 
 #include "core/compute/parallel.h"
 #include "garment/energy/strain_limit/cuda/stretch_tension.h"
-#include "garment/energy/stretch_curvature.h"
 
 namespace toile::garment {
 
@@ -68,6 +67,12 @@ void StretchTension::add_couplings(std::vector<std::pair<int, int>>& couplings) 
     add_triangle_couplings(rest_->triangles, couplings);
 }
 
+bool StretchTension::find_entries(SparseWindow, BlockWindow K)
+{
+    position_ = corner_positions(rest_->triangles, K);
+    return false;
+}
+
 /// Adds the second derivatives. The excess is convex in x, so exact and projected curvature are equal.
 void StretchTension::add_curvature(View<const Vec3> x, Definiteness, BlockWindow K)
 {
@@ -83,8 +88,8 @@ void StretchTension::add_curvature(View<const Vec3> x, Definiteness, BlockWindow
         const TensionLimits& limits = limits_[kind_[t]];
         const StretchCurvature H = excess_curvature(G, limits.allowed);
         for (int row = 0; row < 3; ++row)
-            add_corner_row(H, rest_->edges_inv[t], limits.stiffness * rest_->areas[t], rest_->triangles[t],
-                           row, K);
+            add_corner_row(H, rest_->edges_inv[t], limits.stiffness * rest_->areas[t], row,
+                           position_[3 * t + row], K.values(rest_->triangles[t][row]));
     }
 }
 

@@ -7,6 +7,7 @@
 #include "core/pd/energy/energy.h"
 #include "garment/energy/rest_shape.h"
 #include "garment/energy/strain_limit/stretch_tension_kernels.h"
+#include "garment/energy/stretch_curvature.h"
 
 namespace toile::garment {
 
@@ -54,6 +55,7 @@ public:
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets&) const override {}
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
+    bool find_entries(SparseWindow S, BlockWindow K) override;
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
     bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
@@ -82,6 +84,7 @@ private:
     std::vector<Mat32> rotated_tension_;             ///< [triangles] T_t / k at this step, if near
     std::vector<int> taut_;                          ///< triangles near their limit, ascending
     std::vector<MembraneResponse<double>> response_; ///< [taut] scratch
+    std::vector<CornerPositions> position_;          ///< [3 * triangles]
     std::vector<unsigned char> exceeds_;             ///< [taut] scratch
 };
 
