@@ -14,7 +14,12 @@ namespace toile::research {
 
 namespace {
 
-const std::vector<std::string> kNames{"accuracy.csv", "accuracy.md"};
+/// Names of the tables; a backend other than the default is part of them.
+std::vector<std::string> table_names(const std::string& backend)
+{
+    const std::string name = backend == "cpu" ? "accuracy" : "accuracy_" + backend;
+    return {name + ".csv", name + ".md"};
+}
 
 std::vector<accuracy::Case> chosen_cases(const BenchOptions& options, const std::filesystem::path& scratch)
 {
@@ -31,8 +36,9 @@ std::vector<accuracy::Case> chosen_cases(const BenchOptions& options, const std:
 
 int bench_accuracy(const BenchOptions& options)
 {
+    const std::vector<std::string> names = table_names(options.backend);
     if (!options.output.empty())
-        require_writable(options.output, kNames);
+        require_writable(options.output, names);
     const ScratchFolder scratch("toile-accuracy");
     const std::vector<accuracy::Case> cases = chosen_cases(options, scratch.path());
     int total = 0;
@@ -61,7 +67,7 @@ int bench_accuracy(const BenchOptions& options)
         std::cerr << "toile: error: interrupted; nothing was written" << std::endl;
         return app::kExitFailure;
     }
-    write_tables(options.output, {{kNames[0], csv_table(results)}, {kNames[1], markdown_table(results)}});
+    write_tables(options.output, {{names[0], csv_table(results)}, {names[1], markdown_table(results)}});
     return std::all_of(results.begin(), results.end(), [](const accuracy::Result& r) { return r.holds; })
                ? app::kExitOk
                : app::kExitFailure;

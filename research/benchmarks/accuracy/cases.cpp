@@ -157,18 +157,21 @@ Case drape(double resolution, const std::filesystem::path& support)
                                              number(resolution) + R"(}, "translate": [0, 0.002, 0]}])");
     result.reference = converged(result.scene, 2);
     result.measure = [](const Trajectory& run, const Trajectory*) {
-        // Shadow by the farthest vertex in each direction.
-        constexpr int kDirections = 90;
-        std::vector<double> reach(kDirections, 0.0);
-        for (const Vec3& p : run.last()) {
-            const double turn = std::atan2(p.z(), p.x()) / (2.0 * std::numbers::pi) + 0.5;
-            double& of_direction = reach[std::min(kDirections - 1, int(kDirections * turn))];
-            of_direction = std::max(of_direction, std::hypot(p.x(), p.z()));
+        // The shadow is bounded by the disc's border.
+        const std::vector<Vec3>& start = run.positions.front();
+        std::vector<std::pair<double, int>> border;
+        for (int i = 0; i < int(start.size()); ++i)
+            if (std::hypot(start[i].x(), start[i].z()) > 0.15 - 1e-6)
+                border.emplace_back(std::atan2(start[i].z(), start[i].x()), i);
+        std::sort(border.begin(), border.end());
+        double twice_area = 0.0;
+        for (size_t k = 0; k < border.size(); ++k) {
+            const Vec3 &p = run.last()[border[k].second],
+                       &q = run.last()[border[(k + 1) % border.size()].second];
+            twice_area += p.x() * q.z() - q.x() * p.z();
         }
-        double square = 0.0;
-        for (const double r : reach)
-            square += r * r / kDirections;
-        return (square - 0.09 * 0.09) / (0.15 * 0.15 - 0.09 * 0.09);
+        const double support = std::numbers::pi * 0.09 * 0.09, disc = std::numbers::pi * 0.15 * 0.15;
+        return (0.5 * twice_area - support) / (disc - support);
     };
     result.is_measured = true;
     result.aim = 0.03;
