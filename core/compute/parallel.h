@@ -10,6 +10,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include "core/base/stages.h"
 #include "core/compute/types.h"
@@ -39,6 +40,14 @@ inline int thread_count(CpuSpace)
     return int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
+/// Context of tasks that compute with the floating-point settings of the calling thread. Without it workers
+/// keep those of whatever used them last: Embree flushes denormal numbers, so results would depend on the
+/// thread.
+class CallersContext : public tbb::task_group_context {
+public:
+    CallersContext() : task_group_context(bound, default_traits | fp_settings) {}
+};
+
 /// Items per task. Small enough to balance, large enough to hide the scheduler (about 1 us a task).
 inline constexpr int kGrain = 256;
 
@@ -57,10 +66,14 @@ void parallel_for(CpuSpace, std::string_view name, int count, const Kernel& kern
             kernel(i);
         return;
     }
-    tbb::parallel_for(tbb::blocked_range<int>(0, count, grain), [&](const tbb::blocked_range<int>& range) {
-        for (int i = range.begin(); i < range.end(); ++i)
-            kernel(i);
-    });
+    CallersContext context;
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, count, grain),
+        [&](const tbb::blocked_range<int>& range) {
+            for (int i = range.begin(); i < range.end(); ++i)
+                kernel(i);
+        },
+        context);
 }
 
 /// Runs work(task) for task in [0, count): few and long tasks, balanced one by one. The calling thread takes
@@ -68,7 +81,8 @@ void parallel_for(CpuSpace, std::string_view name, int count, const Kernel& kern
 template <typename Work>
 void parallel_tasks(CpuSpace, int count, const Work& work)
 {
-    tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, count, work); });
+    CallersContext context;
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, count, work, context); });
 }
 
 /// Runs work(), which may itself run in parallel. The calling thread takes no outside work while it
@@ -86,8 +100,7 @@ void parallel_tasks_with(CpuSpace, std::string_view name, int count, const Make&
 {
     const StageScope stage(name);
     tbb::enumerable_thread_specific<decltype(make())> scratch(make);
-    tbb::this_task_arena::isolate(
-        [&] { tbb::parallel_for(0, count, [&](int task) { work(task, scratch.local()); }); });
+    parallel_tasks(kCpu, count, [&](int task) { work(task, scratch.local()); });
 }
 
 /// Sum of term(i) over [0, count): fixed blocks of kReductionBlock items, each summed in order, then the
@@ -109,7 +122,9 @@ T parallel_sum(CpuSpace, int count, const T& zero, const Term& term)
         return count > 0 ? block_sum(0) : zero;
 
     std::vector<T> sums(blocks, zero);
-    tbb::parallel_for(0, blocks, [&](int block) { sums[block] = block_sum(block); });
+    CallersContext context;
+    tbb::parallel_for(
+        0, blocks, [&](int block) { sums[block] = block_sum(block); }, context);
     T total = zero;
     for (const T& sum : sums)
         total += sum;
@@ -125,9 +140,11 @@ void parallel_append(CpuSpace, std::string_view name, int count, const Find& fin
     const StageScope stage(name);
     const int chunks = (count + kChunk - 1) / kChunk;
     std::vector<std::vector<T>> found(chunks);
-    tbb::parallel_for(0, chunks, [&](int chunk) {
-        find(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), found[chunk]);
-    });
+    CallersContext context;
+    tbb::parallel_for(
+        0, chunks,
+        [&](int chunk) { find(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), found[chunk]); },
+        context);
     for (const std::vector<T>& items : found)
         out.insert(out.end(), items.begin(), items.end());
 }

@@ -19,7 +19,7 @@ namespace toile::scenes {
 /// A running scene: avatars, cloths, solids, contact and the time-step loop. The only class that combines
 /// them all.
 ///
-/// Sample k belongs to time k / fps. Each sample takes Solver::substeps implicit Euler steps; stages that the
+/// Sample k belongs to time k / fps. Each sample takes Solver::substeps time steps; stages that the
 /// scene does not need are never entered (stages() shows it).
 class World {
 public:

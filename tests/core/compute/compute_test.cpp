@@ -1,3 +1,4 @@
+#include <cfenv>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -5,6 +6,7 @@
 #include <fstream>
 #include <future>
 #include <iterator>
+#include <numeric>
 #include <random>
 #include <string>
 #include <thread>
@@ -152,6 +154,27 @@ TEST(ParallelFor, VisitsEachItemOnce)
                        [&] { parallel_for(kCpu, "test/visit", count, [&](int i) { ++visits[i]; }); });
             EXPECT_EQ(visits, std::vector<int>(count, 1)) << thread_count << " threads";
         }
+}
+
+TEST(ParallelFor, ComputesWithTheFloatingPointSettingsOfItsCaller)
+{
+    // 1 - 1e-20 is below one only if rounded towards zero.
+    const auto below_one = [](int) {
+        const volatile double one = 1.0, little = 1e-20;
+        return one - little < 1.0 ? 1 : 0;
+    };
+    on_threads(4, [&] {
+        for (const int mode : {FE_TONEAREST, FE_TOWARDZERO, FE_TONEAREST}) {
+            std::fesetround(mode);
+            std::vector<int> found(100000);
+            parallel_for(kCpu, "test", int(found.size()), [&](int i) { found[i] = below_one(i); });
+            const int sum = parallel_sum(kCpu, int(found.size()), 0, below_one);
+            std::fesetround(FE_TONEAREST);
+            const int expected = mode == FE_TOWARDZERO ? int(found.size()) : 0;
+            EXPECT_EQ(std::accumulate(found.begin(), found.end(), 0), expected);
+            EXPECT_EQ(sum, expected);
+        }
+    });
 }
 
 TEST(ParallelSum, HasTheSameBitsForEveryThreadCount)
