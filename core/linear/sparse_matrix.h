@@ -31,7 +31,9 @@ public:
     {
         const int* const begin = matrix_->innerIndexPtr() + matrix_->outerIndexPtr()[first_ + row];
         const int* const end = matrix_->innerIndexPtr() + matrix_->outerIndexPtr()[first_ + row + 1];
-        return int(std::lower_bound(begin, end, first_ + column) - begin);
+        const int* const found = std::lower_bound(begin, end, first_ + column);
+        TOILE_ASSERT(found != end && *found == first_ + column);
+        return int(found - begin);
     }
 
     /// Values of a row in the order of its columns.

@@ -21,7 +21,7 @@ struct Altitude {
     Vec2 across;   ///< unit vector in material axes
 };
 
-/// @param first, apex  corners of the triangle; the edge goes from `first` to the third corner
+/// @param first, second, apex  corners of triangle t; the edge goes from `first` to `second`
 Altitude altitude_of(const RestShape& rest, int t, int first, int second, int apex)
 {
     const auto place = [&](int v) {
@@ -61,8 +61,10 @@ BendDamping::BendDamping(const RestShape& rest, const Settings& settings, const 
         const Altitude over_b = altitude_of(rest, edge.triangle[1], v0, v1, b);
         const double area = rest.areas[edge.triangle[0]] + rest.areas[edge.triangle[1]];
         const double length = 2.0 * rest.areas[edge.triangle[0]] / over_a.height;
-        const Vec2 share = 0.5 * (over_a.across.cwiseAbs2() + over_b.across.cwiseAbs2());
-        const double rigidity = share.dot(Vec2(settings.rigidity.warp, settings.rigidity.weft));
+        const Vec2 across = 0.5 * (over_a.across.cwiseAbs2() + over_b.across.cwiseAbs2());
+        const double root =
+            across.dot(Vec2(std::sqrt(settings.rigidity.warp), std::sqrt(settings.rigidity.weft)));
+        const double rigidity = root * root;
 
         Hinge hinge;
         hinge.vertex = {v0, v1, a, b};

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <vector>
 
 #include "core/mesh/topology.h"
@@ -21,8 +20,8 @@ namespace toile::garment {
 /// width m that yarns hold by friction; it brings cloth to rest, which viscosity alone does not
 /// (docs/theory/damping.md). f is smooth below a rate of the curvature.
 ///
-/// Its part of Newton's matrix takes the curvature along the normal as equal in all directions, an upper
-/// bound: the membrane is far stiffer in the others.
+/// Its part of Newton's matrix is positive semi-definite: exact along the normal of flat cloth, and equal in
+/// all directions, where the membrane is far stiffer.
 class BendDamping : public Energy {
 public:
     struct Settings {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include <Eigen/Geometry>
 
 #include "core/compute/lanes.h"
@@ -49,20 +47,18 @@ TOILE_HD Fold<T> fold_of(const Vec3Of<T>& v0, const Vec3Of<T>& v1, const Vec3Of<
     return fold;
 }
 
-/// Resistance of a hinge to a change of its fold s during a step; see BendDamping.
-struct HingeResistance {
-    double viscous = 0.0; ///< [N m] B tau / h
-    double dry = 0.0;     ///< [N m] moment per width times the edge
-    double slip = 1.0;    ///< [-] change of s up to which the dry part is smoothed
-};
-
 /// Value of a hinge's potential and derivatives by the change of s.
 template <typename T>
 struct HingeResponse {
-    T energy, moment, stiffness;
+    T energy, moment, stiffness; ///< [J], [N m], [N m]
 };
 
-/// Dry part: f(u) = u from the slip on, -u^3 / (3 slip^2) + u^2 / slip + slip / 3 below.
+/// Potential of a hinge; see BendDamping. Its dry part is f(u) = u from the slip on, and
+/// -u^3 / (3 slip^2) + u^2 / slip + slip / 3 below.
+/// @param change   of s during the step [-]
+/// @param viscous  B tau / h [N m]
+/// @param dry      moment per width times the edge [N m]
+/// @param slip     [-]
 template <typename T>
 TOILE_HD HingeResponse<T> hinge_response(const T& change, const T& viscous, const T& dry, const T& slip)
 {

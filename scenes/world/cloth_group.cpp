@@ -17,11 +17,11 @@ constexpr double kSleepDelay = 0.5, kSleepLook = 0.05;
 
 /// Displacement within kSleepDelay relative to the size of a cloth that keeps it awake [-], where that is
 /// less than the sleep speed allows.
-constexpr double kSleepOfSize = 0.002;
+constexpr double kSleepSizeFraction = 0.002;
 
 /// Largest speed of a vertex of cloth that may fall asleep, relative to the sleep speed [-]: corners tremble
 /// longer than cloth moves.
-constexpr double kCorner = 100.0;
+constexpr double kMaxSpeedRatio = 100.0;
 
 } // namespace
 
@@ -211,7 +211,7 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
 /// contact trembles without going anywhere. A body on a GPU copies them only where nothing moves much.
 void ClothGroup::watch_rest(bool is_stuck, double dt)
 {
-    if (is_stuck || !(body_->max_speed() < kCorner * sleep_.speed)) {
+    if (is_stuck || !(body_->max_speed() < kMaxSpeedRatio * sleep_.speed)) {
         still_time_ = 0.0;
         still_.clear();
         return;
@@ -227,12 +227,14 @@ void ClothGroup::watch_rest(bool is_stuck, double dt)
     }
 }
 
-/// True if the root mean square of the vertices' displacements of a cloth, or of all solids, says so.
+/// True if the RMS displacement of the vertices of a cloth or of a solid exceeds what sleep allows.
 bool ClothGroup::has_moved(View<const Vec3> from, View<const Vec3> to) const
 {
     std::vector<int> first = first_;
-    if (to.size() > first.back())
-        first.push_back(to.size());
+    if (solids_)
+        for (int k = 1; k <= solids_->count(); ++k)
+            first.push_back(k < solids_->count() ? first_.back() + solids_->bodies().first_vertex(k)
+                                                 : int(to.size()));
     for (int k = 0; k + 1 < int(first.size()); ++k) {
         double sum = 0.0;
         for (int i = first[k]; i < first[k + 1]; ++i)
@@ -240,7 +242,7 @@ bool ClothGroup::has_moved(View<const Vec3> from, View<const Vec3> to) const
         double allowed = kSleepDelay * sleep_.speed;
         if (k < int(cloths_.size())) {
             const Bounds box = bounds(cloths_[k].state().rest.positions);
-            allowed = std::min(allowed, kSleepOfSize * (box.upper - box.lower).norm());
+            allowed = std::min(allowed, kSleepSizeFraction * (box.upper - box.lower).norm());
         }
         if (sum > (first[k + 1] - first[k]) * allowed * allowed)
             return true;

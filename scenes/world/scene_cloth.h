@@ -90,7 +90,7 @@ private:
     std::vector<AttachmentConstraint> attachments_;
     std::shared_ptr<const garment::RestShape> rest_;
     std::shared_ptr<garment::Membrane> membrane_;        ///< null for a baseline method
-    std::shared_ptr<garment::BendDamping> bend_damping_; ///< null without
+    std::shared_ptr<garment::BendDamping> bend_damping_; ///< null without internal friction
     std::shared_ptr<garment::Springs> springs_;          ///< null without attachments by springs
     std::unique_ptr<garment::Aerodynamics> air_;
     std::shared_ptr<garment::StretchTension> tension_; ///< null for a baseline method

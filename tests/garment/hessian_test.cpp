@@ -152,7 +152,7 @@ TEST_F(MembraneHessian, IncludesViscosity)
     }
 }
 
-TEST(BendDampingHessian, IsExactAcrossFlatClothAndABoundElsewhere)
+TEST(BendDampingHessian, IsExactAcrossFlatClothAndSemidefiniteElsewhere)
 {
     const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 4, 4, Pattern::Irregular);
     const auto damping = std::make_shared<BendDamping>(

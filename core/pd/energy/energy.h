@@ -46,8 +46,9 @@ public:
     virtual void add_constant_curvature(Triplets& S) const { add_hessian(S); }
 
     /// Learns where its entries are: of the part that is equal for x, y and z, those of
-    /// add_constant_curvature(), zeros among them; of the rest, those of add_couplings(). Precedes the two
-    /// functions below. True if add_isotropic_curvature() writes something.
+    /// add_constant_curvature(), zeros among them; of the rest, those of add_couplings(). Called once, after
+    /// these two and before add_isotropic_curvature() and add_curvature(). True if the former writes
+    /// something.
     virtual bool find_entries(SparseWindow, BlockWindow) { return false; }
 
     /// Adds the part that depends on x [vertices] and is equal for x, y and z. Same bits for every thread

@@ -16,7 +16,7 @@ namespace {
 /// twice in succession. With a fixed number of iterations several times the last step would remain.
 constexpr double kIncrement = 0.1;
 
-/// Size of a Newton step [-] of the tolerance below which even its bound makes it unnecessary. A larger step
+/// Bound on the Newton step, relative to the tolerance [-], below which no step is made. A larger step
 /// is made although it is small: unbalanced forces that no step follows would never come to balance.
 constexpr double kNegligible = 0.03;
 
@@ -54,8 +54,10 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
         if (!has_changed && (outcome.converged || step == 0.0))
             break;
         outcome.converged = false;
-        if (has_changed)
+        if (has_changed) {
             lowest = std::numeric_limits<double>::infinity();
+            small = 0;
+        }
         // Cloth may have been moved back by less than counts as a change: stiff terms feel that too.
         const bool has_moved = step > 0.0 && !std::equal(x.begin(), x.end(), trial_.begin());
         if (has_changed || has_moved || step == 0.0)

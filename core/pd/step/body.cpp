@@ -106,7 +106,7 @@ void Body::set_positions(View<const Vec3> x)
     for (int i = 0; i < x.size(); ++i)
         if (x[i] != x_[i]) {
             restart_[i] = 1;
-            x_previous_[i] = x[i];
+            x_previous_[i] = x[i]; // the former one may be unset
         }
     PointMassesOnHost::set_positions(x);
 }
@@ -207,11 +207,14 @@ bool Body::are_fixed_moving() const
 /// A local and a global step, x -= H^-1 g(x): the best first step while nothing touches.
 void Body::step_local_global()
 {
-    (void)objective_->evaluate(x_t1_, gradient_);
+    const double before = objective_->evaluate(x_t1_, gradient_);
     standing_.resize(x_.size());
     objective_->precondition_linearly(gradient_, standing_);
     for (size_t i = 0; i < x_.size(); ++i)
-        x_t1_[i] -= standing_[i];
+        standing_[i] = x_t1_[i] - standing_[i];
+    // H does not contain internal friction and may leave bending out.
+    if (objective_->evaluate(standing_, gradient_) < before)
+        x_t1_ = standing_;
 }
 
 void Body::finish(ActiveSetEnergy* active, StepProjection* projection)

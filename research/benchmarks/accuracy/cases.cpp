@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -312,14 +313,12 @@ Case swing()
     Case result;
     result.name = "lossless strip that swings for 5 s";
     result.quantity = "energy left [%]";
-    result.scene = scene_of(result.name, R"("frames": 151, "air": {"density": 0}, "contact": {"self": false},
+    result.scene = scene_of(result.name, R"("fps": 60, "frames": 301, "solver": {"substeps": 2},
+        "air": {"density": 0}, "contact": {"self": false},
         "cloths": [{"name": "strip", "rectangle": {"size": [0.4, 0.2], "resolution": 0.04},
             "translate": [0.2, 0, 0], "fabric": "f"}],
         "attachments": [{"cloth": "strip", "select": {"box": {"lower": [-0.001, -1, -1],
             "upper": [0.001, 1, 1]}}}], )" + lossless_fabric(0.2, 1000.0, 0.02));
-    result.scene.fps = 60.0;
-    result.scene.frames = 301;
-    result.scene.solver.substeps = 2;
     result.measure = [](const Trajectory& run, const Trajectory*) {
         double lowest = 0.0, highest = -1.0;
         for (size_t frame = 0; frame < run.positions.size(); ++frame) {

@@ -1,7 +1,7 @@
 #include "research/benchmarks/accuracy/exact.h"
 
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 namespace toile::research::accuracy {
 
@@ -56,7 +56,8 @@ double zero_of(const Function& function, double low, double high)
 
 double heavy_elastica(double load)
 {
-    // The clamp bends at most as if the whole weight acted at the tip; the free end must not bend.
+    // theta'(0)^2 <= 2 G, from the equation times theta'. The free end must not bend; strips that curl back
+    // satisfy that too, but are not met from this bracket for G up to 100.
     const double curvature = zero_of([&](double k) { return end_of_strip(k, load).curvature; }, 0.0,
                                      std::fmin(load, 2.5 * std::sqrt(load)));
     const Strip end = end_of_strip(curvature, load);

@@ -1,5 +1,6 @@
 #include "research/benchmarks/accuracy/run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
