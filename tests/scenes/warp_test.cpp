@@ -12,7 +12,8 @@ namespace {
 
 garment::RestShape rest_of(const std::string& keys)
 {
-    const Scene scene = parse_scene(R"({"toile": 1, "frames": 1, "cloths": [{"name": "c", )" + keys + "}]}", "warp.json");
+    const Scene scene =
+        parse_scene(R"({"toile": 1, "frames": 1, "cloths": [{"name": "c", )" + keys + "}]}", "warp.json");
     return *SceneCloth(scene, scene.cloths[0], {}, {}).rest_shape();
 }
 

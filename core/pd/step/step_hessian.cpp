@@ -33,7 +33,8 @@ void StepHessian::multiply(View<const Vec3> p, View<Vec3> out)
         kCpu, "pd/hessian_input", p.size(), [&](int i) { free_[i] = fixed_[i] ? Vec3(Vec3::Zero()) : p[i]; },
         4096);
     parallel_for(kCpu, "pd/hessian_multiply", p.size(), [&](int i) {
-        out[i] = inertia_[i] * p[i] + row_times(isotropic, i, free_) + curvature_.blocks().row_times(i, free_);
+        out[i] =
+            inertia_[i] * p[i] + row_times(isotropic, i, free_) + curvature_.blocks().row_times(i, free_);
     });
     if (active_)
         active_->add_hessian_product(free_, out);
