@@ -80,15 +80,6 @@ Row cells_of(const Result& r)
             std::to_string(r.unfinished) + " of " + std::to_string(r.frames)};
 }
 
-std::vector<Row> rows_of(const std::vector<Result>& results)
-{
-    std::vector<Row> rows;
-    rows.reserve(results.size());
-    for (const Result& result : results)
-        rows.push_back(cells_of(result));
-    return rows;
-}
-
 } // namespace
 
 int frames_of(const Case& trial)
@@ -121,8 +112,11 @@ Result run(const Case& trial, const scenes::WorldOptions& options, const std::fu
     return result;
 }
 
-std::string markdown_table(const std::vector<Result>& results) { return markdown(kHeader, rows_of(results)); }
+std::string markdown_table(const std::vector<Result>& results)
+{
+    return markdown(kHeader, rows_of(results, cells_of));
+}
 
-std::string csv_table(const std::vector<Result>& results) { return csv(kHeader, rows_of(results)); }
+std::string csv_table(const std::vector<Result>& results) { return csv(kHeader, rows_of(results, cells_of)); }
 
 } // namespace toile::research::accuracy

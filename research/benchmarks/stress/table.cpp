@@ -30,22 +30,16 @@ const Row kCsvHeader{"case",       "steps",        "iterations_per_step", "ms_pe
                      "max_strain", "energy_ratio", "end_energy",          "drift_m",     "finite",
                      "rests",      "holds"};
 
-std::vector<Row> rows_of(const std::vector<Result>& results)
-{
-    std::vector<Row> rows;
-    rows.reserve(results.size());
-    for (const Result& result : results)
-        rows.push_back(cells_of(result));
-    return rows;
-}
-
 } // namespace
 
 std::string markdown_table(const std::vector<Result>& results)
 {
-    return markdown(kMarkdownHeader, rows_of(results));
+    return markdown(kMarkdownHeader, rows_of(results, cells_of));
 }
 
-std::string csv_table(const std::vector<Result>& results) { return csv(kCsvHeader, rows_of(results)); }
+std::string csv_table(const std::vector<Result>& results)
+{
+    return csv(kCsvHeader, rows_of(results, cells_of));
+}
 
 } // namespace toile::research::stress
