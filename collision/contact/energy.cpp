@@ -62,24 +62,14 @@ double ContactEnergy::add_gradient(View<const Vec3> x, View<Vec3> gradient) cons
 
 bool ContactEnergy::activate(View<const Vec3> x)
 {
-    parallel_for(kCpu, "contact/freeze", int(terms_.size()), FreezeContact{terms_, x, frozen_});
-    if (has_true_hessian_)
-        find_sliding(x);
+    parallel_for(kCpu, "contact/freeze", int(terms_.size()),
+                 FreezeContact{terms_, x, has_true_hessian_, frozen_});
     active_.clear();
     for (int i = 0; i < int(terms_.size()); ++i)
         if (frozen_[i].is_active())
             active_.push_back(i);
     find_active_incidence();
     return !active_.empty();
-}
-
-void ContactEnergy::find_sliding(View<const Vec3> x)
-{
-    sliding_.resize(terms_.size());
-    parallel_for(kCpu, "contact/sliding", int(terms_.size()), [&](int i) {
-        const Vec3 slip = terms_[i].slip(x);
-        sliding_[i] = terms_[i].is_sliding(slip.norm()) ? Vec3(slip.normalized()) : Vec3(Vec3::Zero());
-    });
 }
 
 /// Finds the incidence of the active terms, and the blocks of their vertices.
@@ -101,23 +91,15 @@ void ContactEnergy::find_active_incidence()
 void ContactEnergy::add_hessian_product(View<const Vec3> p, View<Vec3> out) const
 {
     const MultiplyContact multiply{terms_, frozen_, p, term_force_};
-    parallel_for(kCpu, "contact/multiply", int(active_.size()), [&](int k) {
-        const int i = active_[k];
-        multiply(i);
-        if (has_true_hessian_)
-            term_force_[i] -=
-                frozen_[i].tangential * sliding_[i].dot(terms_[i].pair.cloth_point(p)) * sliding_[i];
-    });
+    parallel_for(kCpu, "contact/multiply", int(active_.size()), [&](int k) { multiply(active_[k]); });
     gather(active_incidence_, out);
 }
 
 void ContactEnergy::append_frozen_terms(std::vector<FrozenTerm>& terms) const
 {
     for (const int i : active_) {
-        Mat3 stiffness = frozen_[i].matrix(terms_[i].pair.normal);
-        if (has_true_hessian_)
-            stiffness -= frozen_[i].tangential * sliding_[i] * sliding_[i].transpose();
-        terms.push_back({terms_[i].pair.vertex, terms_[i].pair.weight, stiffness});
+        const ContactPair& pair = terms_[i].pair;
+        terms.push_back({pair.vertex, pair.weight, frozen_[i].matrix(pair.normal)});
     }
 }
 

@@ -60,7 +60,6 @@ public:
 
 private:
     void find_active_incidence();
-    void find_sliding(View<const Vec3> x);
     void gather(const TermIncidence& incidence, View<Vec3> out) const;
 
     std::vector<ContactTerm> terms_;
@@ -69,8 +68,7 @@ private:
     std::vector<int> active_;           ///< active terms
     std::vector<FrozenContact> frozen_; ///< [terms] A_p
     bool has_true_hessian_ = false;
-    std::vector<Vec3> sliding_; ///< [terms] unit direction, zero if none or if it is to be resisted
-    std::vector<Mat3> blocks_;  ///< [vertices]
+    std::vector<Mat3> blocks_;             ///< [vertices]
     mutable std::vector<Vec3> term_force_; ///< [terms] scratch
     mutable std::vector<double> term_energy_;
 };

@@ -33,6 +33,7 @@ struct EvaluateContact {
 struct FreezeContact {
     View<const ContactTerm> terms;
     View<const Vec3> x;         ///< [vertices] [m]
+    bool is_true;               ///< see StepStart::wants_true_hessian
     View<FrozenContact> frozen; ///< [terms] out
 
     TOILE_HD void operator()(int i) const { (*this)(i, terms[i]); }
@@ -40,8 +41,13 @@ struct FreezeContact {
     {
         FrozenContact at;
         at.normal = term.spring.stiffness_at(-term.gap(x));
-        if (term.friction_limit() > 0.0)
-            at.tangential = term.tangential_stiffness(term.slip(x).norm());
+        if (term.friction_limit() > 0.0) {
+            const Vec3 slip = term.slip(x);
+            const double length = slip.norm();
+            at.tangential = term.tangential_stiffness(length);
+            if (is_true && term.is_sliding(length))
+                at.sliding = slip / length;
+        }
         frozen[i] = at;
     }
 };
@@ -95,7 +101,7 @@ struct ContactIncidence {
     {
         const double total = pair.is_between_cloths() ? 2.0 : 1.0; // sum of a pair's |weights|
         const double weight = pair.weight[k];
-        return (weight < 0.0 ? -weight : weight) * total * frozen.matrix(pair.normal);
+        return (weight < 0.0 ? -weight : weight) * total * frozen.bound(pair.normal);
     }
 };
 

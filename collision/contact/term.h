@@ -75,16 +75,24 @@ struct ContactTerm {
     }
 };
 
-/// Stiffness of a term in its frozen Hessian: normal n n^T + tangential (I - n n^T) [N/m].
+/// Stiffness of a term in its frozen Hessian: normal n n^T + tangential (I - n n^T - s s^T) [N/m].
 struct FrozenContact {
     double normal = 0.0, tangential = 0.0;
+    Vec3 sliding{0.0, 0.0,
+                 0.0}; ///< s [-] unit direction in which friction slides and resists no more; or zero
 
     TOILE_HD bool is_active() const { return normal > 0.0 || tangential > 0.0; }
     TOILE_HD Vec3 times(const Vec3& n, const Vec3& u) const
     {
-        return tangential * u + (normal - tangential) * n.dot(u) * n;
+        const Vec3 resisted = tangential * u + (normal - tangential) * n.dot(u) * n;
+        return resisted - tangential * sliding.dot(u) * sliding;
     }
     TOILE_HD Mat3 matrix(const Vec3& n) const
+    {
+        return bound(n) - tangential * sliding * sliding.transpose();
+    }
+    /// Matrix that also resists sliding.
+    TOILE_HD Mat3 bound(const Vec3& n) const
     {
         return tangential * Mat3::Identity() + (normal - tangential) * n * n.transpose();
     }

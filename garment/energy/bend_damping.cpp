@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
+#include "garment/energy/cuda/bend_damping.h"
 
 namespace toile::garment {
 
@@ -191,6 +192,12 @@ void BendDamping::add_isotropic_curvature(View<const Vec3> x, SparseWindow S)
                 row[position_[at][k]] += factor * hinge.weight[k];
         }
     });
+}
+
+bool BendDamping::add_to(DeviceEnergies& energies, int first_vertex)
+{
+    energies.of_kind<DeviceBendDamping>().add(hinges_, slots_of_vertex_, first_vertex);
+    return true;
 }
 
 } // namespace toile::garment

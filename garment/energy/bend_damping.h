@@ -44,15 +44,9 @@ public:
     void add_constant_curvature(Triplets& S) const override; ///< zeros: the pattern
     bool find_entries(SparseWindow S, BlockWindow K) override;
     void add_isotropic_curvature(View<const Vec3> x, SparseWindow S) override;
+    bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
 private:
-    struct Hinge {
-        std::array<int, 4> vertex;    ///< v0, v1, a, b of Fold
-        std::array<double, 4> weight; ///< ds / dx of each along the normal, in the flat rest state [1/m]
-        double viscous;               ///< [N m s] B tau
-        double dry;                   ///< [N m]
-        double slip_rate;             ///< [1/s]
-    };
     using Forces = std::array<Vec3, 4>;
 
     Fold<Lanes> folds(View<const Vec3> x, int block) const;

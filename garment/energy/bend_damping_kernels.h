@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
+
 #include <Eigen/Geometry>
 
 #include "core/compute/lanes.h"
+#include "core/linear/sliced_rows.h"
 
 namespace toile::garment {
 
@@ -72,5 +75,112 @@ TOILE_HD HingeResponse<T> hinge_response(const T& change, const T& viscous, cons
     return {T(0.5) * viscous * change * change + dry * (value - third * slip),
             viscous * change + dry * select(change < zero, -slope, slope), viscous + dry * curvature};
 }
+
+/// Inner edge of BendDamping with its two triangles.
+struct Hinge {
+    std::array<int, 4> vertex;    ///< v0, v1, a, b of Fold
+    std::array<double, 4> weight; ///< ds / dx of each along the normal, in the flat rest state [1/m]
+    double viscous;               ///< [N m s] B tau
+    double dry;                   ///< [N m]
+    double slip_rate;             ///< [1/s]
+};
+
+/// Hinges during a step, one at a time as a GPU runs them; the CPU runs eight (BendDamping).
+struct HingesInStep {
+    View<const Hinge> hinges;
+    View<const double> dt;    ///< [1] [s] 0 before the first step: no response
+    View<const double> start; ///< [hinges] s at the start of the step
+    View<const Vec3> x;       ///< [vertices] [m]
+
+    TOILE_HD Fold<double> fold(int h) const
+    {
+        const std::array<int, 4> v = hinges[h].vertex;
+        return fold_of<double>(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
+    }
+    TOILE_HD HingeResponse<double> response(int h, const Fold<double>& fold) const
+    {
+        if (dt[0] == 0.0)
+            return {0.0, 0.0, 0.0};
+        const Hinge& hinge = hinges[h];
+        return hinge_response<double>(fold.s - start[h], hinge.viscous / dt[0], hinge.dry,
+                                      hinge.slip_rate * dt[0]);
+    }
+};
+
+/// Fold of a hinge at the start of a step.
+struct StartHinge {
+    HingesInStep step;
+    View<double> start; ///< [hinges] out
+
+    TOILE_HD void operator()(int h) const { start[h] = step.fold(h).s; }
+};
+
+/// Energy of a hinge and its forces, in single precision.
+struct PullHinge {
+    HingesInStep step;
+    View<PaddedVec3> force; ///< [4 * hinges] out: by 4 * hinge + slot [N]
+    View<double> energy;    ///< [hinges] out [J]
+
+    TOILE_HD void operator()(int h) const
+    {
+        const Fold<double> fold = step.fold(h);
+        const HingeResponse<double> change = step.response(h, fold);
+        energy[h] = change.energy;
+        force[4 * h] = padded(change.moment * fold.v0);
+        force[4 * h + 1] = padded(change.moment * fold.v1);
+        force[4 * h + 2] = padded(change.moment * fold.a);
+        force[4 * h + 3] = padded(change.moment * fold.b);
+    }
+};
+
+/// Sums the forces of hinges at vertex v, by a team of threads.
+struct GatherHinges {
+    View<const int> first;        ///< [vertices + 1]
+    View<const int> slots;        ///< 4 * hinge + slot, ascending per vertex
+    View<const PaddedVec3> force; ///< [4 * hinges] [N]
+    View<Vec3> gradient;          ///< [vertices] added to [N]
+
+    template <typename Team>
+    TOILE_HD void operator()(int v, const Team& team, bool is_in_range) const
+    {
+        PaddedVec3 sum(0.0F);
+        for (int k = first[v] + team.thread; k < first[v + 1]; k += Team::width())
+            sum += force[slots[k]];
+        for (int a = 0; a < 3; ++a)
+            sum.value[a] = team.sum(1, sum[a]);
+        if (team.thread == 0 && is_in_range)
+            gradient[v] += unpadded(sum);
+    }
+};
+
+/// Second derivative of a hinge's potential by s, with s as a function of the angle.
+struct StiffenHinge {
+    HingesInStep step;
+    View<float> stiffness; ///< [hinges] out [N m]
+
+    TOILE_HD void operator()(int h) const
+    {
+        const Fold<double> fold = step.fold(h);
+        stiffness[h] = float(step.response(h, fold).stiffness * fold.cosine * fold.cosine);
+    }
+};
+
+/// Adds the stiffness of hinges to the two entries of a pair of their vertices.
+struct AddHingeStiffness {
+    View<const int> first;                    ///< [pairs + 1] into items
+    View<const RowEntry> items;               ///< hinge and product of the two vertices' weights [1/m^2]
+    View<const std::array<int, 2>> positions; ///< [pairs] of the entries
+    View<const float> stiffness;              ///< [hinges] [N m]
+    View<float> scalars;                      ///< added to [N/m]
+
+    TOILE_HD void operator()(int pair) const
+    {
+        float sum = 0.0F;
+        for (int k = first[pair]; k < first[pair + 1]; ++k)
+            sum += stiffness[items[k].column] * items[k].value;
+        scalars[positions[pair][0]] += sum;
+        scalars[positions[pair][1]] += sum;
+    }
+};
 
 } // namespace toile::garment

@@ -82,11 +82,16 @@ double Membrane::add_gradient(View<const Vec3> x, View<Vec3> gradient)
     return parallel_sum(kCpu, triangles, 0.0, [&](int t) { return triangle_energy_[t]; });
 }
 
+ViscousWeights Membrane::viscous_weights(double dt) const
+{
+    const double stretch = settings_.stretch_damping, shear = settings_.shear_damping;
+    return ViscousWeights{stretch * settings_.warp, stretch * settings_.weft, shear * settings_.shear}.over(
+        dt);
+}
+
 void Membrane::begin_step(View<const Vec3> x, double dt)
 {
-    viscous_ = {settings_.stretch_damping * settings_.warp / dt,
-                settings_.stretch_damping * settings_.weft / dt,
-                settings_.shear_damping * settings_.shear / dt};
+    viscous_ = viscous_weights(dt);
     if (viscous_.are_zero())
         return;
     start_.resize(rest_inv_.size());
@@ -126,7 +131,7 @@ void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, Bloc
 
 bool Membrane::add_to(DeviceEnergies& energies, int first_vertex)
 {
-    energies.of_kind<DeviceElasticity>().add_membrane(*rest_, weights_, first_vertex);
+    energies.of_kind<DeviceElasticity>().add_membrane(*rest_, weights_, viscous_weights(1.0), first_vertex);
     return true;
 }
 

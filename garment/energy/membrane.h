@@ -49,6 +49,7 @@ public:
     const MembraneWeights& weights() const { return weights_; }
 
 private:
+    ViscousWeights viscous_weights(double dt) const; ///< of a step of dt seconds
     ViscousStep viscosity() const { return {viscous_, viscous_share_, start_}; }
 
     std::shared_ptr<const RestShape> rest_;

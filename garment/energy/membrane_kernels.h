@@ -79,6 +79,25 @@ TOILE_HD MembraneResponse<T> project_membrane(const Mat32Of<T>& F, const Mat2Of<
     return response;
 }
 
+/// F [-]: maps rest edges of a triangle to its edges at x [vertices] [m].
+/// @param rest_inv  inverse rest edge matrix [1/m]
+TOILE_HD inline Mat32 deformation_gradient(View<const Vec3> x, const Triangle& tri, const Mat2& rest_inv)
+{
+    Mat32 edges;
+    edges.col(0) = x[tri[1]] - x[tri[0]];
+    edges.col(1) = x[tri[2]] - x[tri[0]];
+    return edges.lazyProduct(rest_inv);
+}
+
+/// Viscosity of fabrics that have none; see ViscousTriangles.
+struct NoViscosity {
+    TOILE_HD void add(int, const Mat32&, const Mat2&, double, MembraneResponse<double>&) const {}
+    template <typename Curvature>
+    TOILE_HD void add_curvature(int, const Mat32&, Curvature&) const
+    {
+    }
+};
+
 /// Gradients at two corners of a triangle in single precision, two loads of 16 bytes. Where the forces of
 /// neighbours cancel, a vertex of cloth at 1e4 N/m keeps four digits of its weight.
 struct CornerPair {
@@ -92,9 +111,11 @@ struct CornerPair {
     }
 };
 
-/// project_membrane() for one triangle, as a GPU runs it; the CPU runs eight at a time (membrane_lanes.h).
-/// @tparam Corners  type of corner_gradient: Mat32 or CornerPair
-template <typename Corners>
+/// project_membrane() and viscosity for one triangle, as a GPU runs it; the CPU runs eight at a time
+/// (membrane_lanes.h).
+/// @tparam Corners    type of corner_gradient: Mat32 or CornerPair
+/// @tparam Viscosity  NoViscosity or ViscousTriangles
+template <typename Corners, typename Viscosity = NoViscosity>
 struct ProjectMembraneTriangle {
     View<const Vec3> x;        ///< [vertices] positions [m]
     View<const Triangle> tri;  ///< [triangles] vertex indices
@@ -104,6 +125,7 @@ struct ProjectMembraneTriangle {
     View<const MembraneWeights> weights;
     View<Corners> corner_gradient; ///< [triangles] out: dW/dx1, dW/dx2 [N]
     View<double> energy;           ///< [triangles] out: [J]
+    Viscosity viscosity{};
 
     /// Inputs that no launch changes.
     struct Prologue {
@@ -117,12 +139,10 @@ struct ProjectMembraneTriangle {
     TOILE_HD void operator()(int t) const { (*this)(t, prologue(t)); }
     TOILE_HD void operator()(int t, const Prologue& local) const
     {
-        Mat32 edges;
-        edges.col(0) = x[local.tri[1]] - x[local.tri[0]];
-        edges.col(1) = x[local.tri[2]] - x[local.tri[0]];
-        const Mat32 F = edges.lazyProduct(local.rest_inv);
-        const MembraneResponse<double> response =
+        const Mat32 F = deformation_gradient(x, local.tri, local.rest_inv);
+        MembraneResponse<double> response =
             project_membrane<double>(F, local.rest_inv, local.area, local.weights);
+        viscosity.add(t, F, local.rest_inv, local.area, response);
         energy[t] = response.energy;
         corner_gradient[t] = response.corner_gradient;
     }

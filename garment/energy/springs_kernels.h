@@ -34,4 +34,17 @@ struct PullAnchoredVertex {
     }
 };
 
+/// Stiffness of the springs of the k-th attached vertex against its translation.
+struct StiffenAnchoredVertex {
+    View<const AnchorSpring> springs; ///< ascending by vertex
+    View<const int> first;            ///< [attached vertices + 1]
+    View<double> sum;                 ///< [vertices] added to [N/m]
+
+    TOILE_HD void operator()(int k) const
+    {
+        for (int j = first[k]; j < first[k + 1]; ++j)
+            sum[springs[j].vertex] += springs[j].stiffness;
+    }
+};
+
 } // namespace toile::garment

@@ -17,12 +17,33 @@ struct StretchCurvature {
     Mat3 uu = Mat3::Zero(), uv = Mat3::Zero(), vv = Mat3::Zero();
 
     /// += weight vec(E) vec(E)^T
-    void add_mode(double weight, const Mat32& E)
+    TOILE_HD void add_mode(double weight, const Mat32& E)
     {
-        uu += weight * E.col(0) * E.col(0).transpose();
-        uv += weight * E.col(0) * E.col(1).transpose();
-        vv += weight * E.col(1) * E.col(1).transpose();
+        const Vec3 u = weight * E.col(0), v = weight * E.col(1);
+        uu += u.lazyProduct(E.col(0).transpose());
+        uv += u.lazyProduct(E.col(1).transpose());
+        vv += v.lazyProduct(E.col(1).transpose());
     }
+};
+
+/// Blocks between one corner of a triangle and its corners.
+struct CornerBlocks {
+    Vec2 g[3]; ///< gradients of the corners' hat functions [1/m]
+    Mat3 u, v; ///< derivatives of the corner's gradient by the columns of F [N]
+
+    /// @tparam Curvature  StretchCurvature or MembraneCurvature<double>
+    /// @param rest_inv    inverse rest edge matrix [1/m]
+    /// @param area        rest area [m^2]
+    template <typename Curvature>
+    TOILE_HD CornerBlocks(const Curvature& H, const Mat2& rest_inv, double area, int corner)
+    {
+        g[1] = rest_inv.row(0);
+        g[2] = rest_inv.row(1);
+        g[0] = -g[1] - g[2];
+        u = area * (g[corner][0] * H.uu + g[corner][1] * H.uv.transpose());
+        v = area * (g[corner][0] * H.uv + g[corner][1] * H.vv);
+    }
+    TOILE_HD Mat3 with(int other) const { return g[other][0] * u + g[other][1] * v; }
 };
 
 /// Positions of the blocks between one corner of a triangle and its three corners in that corner's row.
@@ -45,15 +66,9 @@ inline std::vector<CornerPositions> corner_positions(View<const Triangle> triang
 inline void add_corner_row(const StretchCurvature& H, const Mat2& rest_inv, double area, int corner,
                            const CornerPositions& position, Mat3* row)
 {
-    // Gradients of the corners' hat functions.
-    Vec2 g[3];
-    g[1] = rest_inv.row(0);
-    g[2] = rest_inv.row(1);
-    g[0] = -g[1] - g[2];
-    const Mat3 u = area * (g[corner][0] * H.uu + g[corner][1] * H.uv.transpose());
-    const Mat3 v = area * (g[corner][0] * H.uv + g[corner][1] * H.vv);
+    const CornerBlocks blocks(H, rest_inv, area, corner);
     for (int k = 0; k < 3; ++k)
-        row[position[k]] += g[k][0] * u + g[k][1] * v;
+        row[position[k]] += blocks.with(k);
 }
 
 /// Adds the pairs of corners of every triangle.
@@ -74,7 +89,7 @@ inline void add_triangle_couplings(View<const Triangle> triangles,
 ///   out of the plane   f_1 / s_1, f_2 / s_2
 ///
 /// after [Smith et al. 2019], whose 3 x 3 case has three of each. Zero if s_1 <= allowed.
-inline StretchCurvature excess_curvature(const Mat32& G, double allowed)
+TOILE_HD inline StretchCurvature excess_curvature(const Mat32& G, double allowed)
 {
     StretchCurvature H;
     const PrincipalStretch stretch = principal_stretch(G);
@@ -86,18 +101,19 @@ inline StretchCurvature excess_curvature(const Mat32& G, double allowed)
     // Left singular vectors; the second is free where G has collapsed to a line.
     const Vec2 v1 = stretch.V.col(0), v2 = stretch.V.col(1);
     const Vec3 u1 = (G * v1).normalized();
-    Vec3 u2 = G * v2 - u1 * u1.dot(G * v2);
+    const Vec3 along = G * v2;
+    Vec3 u2 = along - u1 * u1.dot(along);
     u2 = u2.norm() > 1e-12 * s1 ? u2.normalized() : u1.unitOrthogonal();
     const Vec3 n = u1.cross(u2);
 
-    const Mat32 across = u1 * v2.transpose(), back = u2 * v1.transpose();
+    const Mat32 across = u1.lazyProduct(v2.transpose()), back = u2.lazyProduct(v1.transpose());
     const double flip = s1 - s2 > 1e-9 * s1 ? (f1 - f2) / (s1 - s2) : 1.0;
-    H.add_mode(1.0, u1 * v1.transpose());
-    H.add_mode(s2 > allowed ? 1.0 : 0.0, u2 * v2.transpose());
+    H.add_mode(1.0, u1.lazyProduct(v1.transpose()));
+    H.add_mode(s2 > allowed ? 1.0 : 0.0, u2.lazyProduct(v2.transpose()));
     H.add_mode(0.5 * (f1 + f2) / (s1 + s2), across - back);
     H.add_mode(0.5 * flip, across + back);
-    H.add_mode(f1 / s1, n * v1.transpose());
-    H.add_mode(f2 / std::fmax(s2, allowed), n * v2.transpose());
+    H.add_mode(f1 / s1, n.lazyProduct(v1.transpose()));
+    H.add_mode(f2 / std::fmax(s2, allowed), n.lazyProduct(v2.transpose()));
     return H;
 }
 

@@ -23,6 +23,9 @@ struct ViscousWeights {
     double warp = 0.0, weft = 0.0, shear = 0.0;
 
     TOILE_HD bool are_zero() const { return warp == 0.0 && weft == 0.0 && shear == 0.0; }
+
+    /// Weights of a step of dt seconds, if these are of one second.
+    ViscousWeights over(double dt) const { return {warp / dt, weft / dt, shear / dt}; }
 };
 
 /// Stress conjugate to the Green strain by a change of strain [N/m]; W's derivative by F is F stress.
@@ -87,5 +90,38 @@ TOILE_HD void add_viscous_curvature(const Mat32Of<T>& F, const GreenStrain<T>& s
         H.vv(i, i) += share * s.vv;
     }
 }
+
+/// Viscosity of a step, one triangle at a time as a GPU runs it; the CPU's is ViscousStep.
+struct ViscousTriangles {
+    View<const int> fabric; ///< [triangles] into weights; those of slivers are 0: their strain is noise
+    View<const ViscousWeights> weights;
+    View<const GreenStrain<double>> start; ///< [triangles] at the start of the step
+
+    TOILE_HD void add(int t, const Mat32& F, const Mat2& rest_inv, double area,
+                      MembraneResponse<double>& response) const
+    {
+        const MembraneResponse<double> viscous =
+            viscous_response<double>(F, start[t], rest_inv, area, weights[fabric[t]]);
+        response.energy += viscous.energy;
+        response.corner_gradient += viscous.corner_gradient;
+    }
+    TOILE_HD void add_curvature(int t, const Mat32& F, MembraneCurvature<double>& H) const
+    {
+        add_viscous_curvature<double>(F, start[t], 1.0, weights[fabric[t]], true, H);
+    }
+};
+
+/// Strain at the start of a step, for ViscousTriangles.
+struct StrainOfTriangle {
+    View<const Vec3> x;              ///< [vertices] [m]
+    View<const Triangle> tri;        ///< [triangles] vertex indices
+    View<const Mat2> rest_inv;       ///< [triangles] inverse rest edge matrices [1/m]
+    View<GreenStrain<double>> start; ///< [triangles] out
+
+    TOILE_HD void operator()(int t) const
+    {
+        start[t] = green_strain<double>(deformation_gradient(x, tri[t], rest_inv[t]));
+    }
+};
 
 } // namespace toile::garment

@@ -37,10 +37,9 @@ std::string why_not_on_gpu(const Scene& scene)
     const scene::Solver& solver = scene.solver;
     if (solver.method != SolverMethod::Auto && solver.method != SolverMethod::Quadrature)
         return only_on_cpu("solver.method", scene_format::word_of(solver.method));
-    if (solver.outer.value_or(OuterMethod::Lbfgs) != OuterMethod::Lbfgs)
-        return only_on_cpu("solver.outer", scene_format::word_of(*solver.outer));
-    if (solver.integrator.value_or(Integrator::ImplicitEuler) != Integrator::ImplicitEuler)
-        return only_on_cpu("solver.integrator", scene_format::word_of(*solver.integrator));
+    if (const OuterMethod outer = step_method_of(scene).outer;
+        outer != OuterMethod::Newton && outer != OuterMethod::Lbfgs)
+        return only_on_cpu("solver.outer", scene_format::word_of(outer));
     if (solver.contact_preconditioner != ContactPreconditioner::Block)
         return only_on_cpu("solver.contact_preconditioner",
                            scene_format::word_of(solver.contact_preconditioner));

@@ -110,7 +110,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
         solver = std::make_unique<BlockDiagonalSolver>(std::move(blocks));
 
     Body::Settings settings;
-    const StepMethod method = step_method_of(scene, false);
+    const StepMethod method = step_method_of(scene);
     settings.tolerance = method.velocity_tolerance * scene.step_duration();
     settings.speed_tolerance = method.velocity_tolerance;
     settings.stop = scene.solver.stop;
@@ -133,11 +133,13 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
         parts.push_back(
             {embedding_of(*cloth.rest_shape()), source_of_tables(options, cloth.state().name).listener});
     DeviceBody::Settings settings;
-    const StepMethod method = step_method_of(scene, true);
+    const StepMethod method = step_method_of(scene);
     settings.tolerance = method.velocity_tolerance * scene.step_duration();
     settings.stop = scene.solver.stop;
     settings.integrator = method.integrator;
     settings.max_iterations = method.max_iterations;
+    settings.outer = method.outer;
+    settings.speed_tolerance = method.velocity_tolerance;
     auto body = std::make_unique<DeviceBody>(
         space, start_positions(),
         std::make_unique<System>(

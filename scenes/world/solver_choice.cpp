@@ -28,12 +28,12 @@ std::string methods_that(const Condition& holds)
 
 } // namespace
 
-StepMethod step_method_of(const Scene& scene, bool on_gpu)
+StepMethod step_method_of(const Scene& scene)
 {
     const scene::Solver& solver = scene.solver;
     const bool is_preview = solver.quality == scene::Quality::Preview;
     StepMethod method;
-    const bool is_newton = !on_gpu && !is_preview && !is_baseline(solver.method);
+    const bool is_newton = !is_preview && !is_baseline(solver.method);
     method.outer = solver.outer.value_or(is_newton ? OuterMethod::Newton : OuterMethod::Lbfgs);
     method.integrator = solver.integrator.value_or(
         method.outer == OuterMethod::Newton ? Integrator::Bdf2 : Integrator::ImplicitEuler);
@@ -58,9 +58,9 @@ std::string former_keys_of(const Scene& scene)
     return scene.source.string() + ": " + text;
 }
 
-std::string ignored_friction_of(const Scene& scene, bool on_gpu)
+std::string ignored_friction_of(const Scene& scene)
 {
-    if (step_method_of(scene, on_gpu).outer == OuterMethod::Newton)
+    if (step_method_of(scene).outer == OuterMethod::Newton)
         return {};
     for (const auto& [name, fabric] : scene.fabrics)
         for (const auto& [key, value] : {std::pair{"stretch_damping", fabric.stretch_damping},
@@ -69,8 +69,7 @@ std::string ignored_friction_of(const Scene& scene, bool on_gpu)
                                          {"bend_friction", fabric.bend_friction}})
             if (value.value_or(0.0) > 0.0)
                 return scene.source.string() + ": fabrics." + name + "." + key +
-                       " has no effect: internal friction acts with Newton's method (solver.outer) on the "
-                       "CPU";
+                       " has no effect: internal friction acts with Newton's method (solver.outer)";
     return {};
 }
 

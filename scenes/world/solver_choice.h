@@ -42,13 +42,13 @@ struct StepMethod {
     double velocity_tolerance = 0.01; ///< [m/s]
     int max_iterations = 100;
 };
-StepMethod step_method_of(const Scene& scene, bool on_gpu);
+StepMethod step_method_of(const Scene& scene);
 
 /// Message about keys of the scene that have another name now; empty: none.
 std::string former_keys_of(const Scene& scene);
 
 /// Message about internal friction of the scene's fabrics that its minimiser ignores; empty: none.
-std::string ignored_friction_of(const Scene& scene, bool on_gpu);
+std::string ignored_friction_of(const Scene& scene);
 
 /// @throws InvalidInput if the scene's method is a baseline and there are none
 void require_methods(const Scene& scene, const BaselineMethods* baselines);

@@ -95,8 +95,7 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     std::vector<SceneCloth> cloths = make_cloths(scene, parts_->colliders, options);
     if (options.backend == Backend::Auto)
         parts_->space = space_with_capacity(parts_->space, vertex_count(cloths), options.warn);
-    if (const std::string ignored = ignored_friction_of(scene, parts_->space != nullptr);
-        !ignored.empty() && options.warn)
+    if (const std::string ignored = ignored_friction_of(scene); !ignored.empty() && options.warn)
         options.warn(ignored);
     parts_->groups = make_groups(scene, std::move(cloths), parts_->colliders, options, parts_->space.get());
 

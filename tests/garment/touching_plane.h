@@ -46,7 +46,12 @@ public:
         energy_.set_terms(std::move(terms), vertex_count);
     }
 
-    void begin_step(const StepStart&) override {}
+    void begin_step(const StepStart& start) override
+    {
+        has_true_hessian_ = start.wants_true_hessian;
+        energy_.use_true_hessian(has_true_hessian_);
+        device_energy_.reset();
+    }
     bool make_feasible(StepField) const override { return false; }
     bool sweep_once(StepField) const override { return false; }
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) const override
@@ -62,8 +67,11 @@ public:
     void append_terms(std::vector<FrozenTerm>& terms) const override { energy_.append_frozen_terms(terms); }
     DeviceActiveSet* on_device(const CudaSpace& space) override
     {
-        device_energy_ = std::make_unique<DeviceContactEnergy>(space);
-        device_energy_->set_terms(energy_.terms(), vertex_count_);
+        if (!device_energy_) {
+            device_energy_ = std::make_unique<DeviceContactEnergy>(space);
+            device_energy_->use_true_hessian(has_true_hessian_);
+            device_energy_->set_terms(energy_.terms(), vertex_count_);
+        }
         return device_energy_.get();
     }
     bool revise(StepField, bool) override { return false; }
@@ -95,6 +103,7 @@ public:
 
 private:
     int vertex_count_;
+    bool has_true_hessian_ = false;
     ContactEnergy energy_;
     std::unique_ptr<DeviceContactEnergy> device_energy_;
 };

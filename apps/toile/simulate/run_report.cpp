@@ -15,10 +15,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json settings_of(const scenes::Scene& scene, bool on_gpu)
+Json settings_of(const scenes::Scene& scene)
 {
     const scene::Solver& solver = scene.solver;
-    const scenes::StepMethod method = scenes::step_method_of(scene, on_gpu);
+    const scenes::StepMethod method = scenes::step_method_of(scene);
     return {{"frames", scene.frames},
             {"fps", scene.fps},
             {"settle_s", scene.settle},
@@ -89,7 +89,7 @@ void RunReport::write(const std::filesystem::path& file, const std::string& outc
                  {"backend", backend_}};
     if (device_)
         json["device"] = *device_;
-    json["settings"] = settings_of(scene_, device_.has_value());
+    json["settings"] = settings_of(scene_);
     json["start"] = start_json(start_, scene_);
     json["peak_memory_bytes"] = peak_memory();
     double seconds = 0.0;

@@ -5,11 +5,11 @@
 #include <cstdint>
 
 #include "collision/body/cuda/pair_kernels.h"
-#include "collision/contact/active_rows.h"
 #include "collision/contact/kernels.h"
 #include "collision/contact/memory.h"
 #include "collision/contact/rules.h"
 #include "core/compute/lanes.h"
+#include "core/pd/cuda/active_set.h"
 
 namespace toile::collision {
 
@@ -227,7 +227,7 @@ struct GatherContact {
     View<Vec3> gradient;              ///< [vertices] added to [N]
     View<double> vertex_energy;       ///< [vertices] added to [J]
     View<Mat3> blocks;                ///< [lists] out [N/m]
-    ActiveRows rows;                  ///< out
+    FrozenRows rows;                  ///< out
 
     /// Entries of the list, and the first one of the thread.
     struct Prologue {
@@ -257,7 +257,7 @@ struct GatherContact {
             const bool is_active = e < local.end && add(entry, sums);
             const auto flagged = team.flagged(is_active);
             if (is_active && is_in_range)
-                rows.entries[local.begin + listed + flagged.before] = active_row(entry);
+                rows.rows[local.begin + listed + flagged.before] = row_of(entry);
             listed += flagged.count;
             if (e + Team::kThreads < local.end)
                 entry = incidence.entries[e + Team::kThreads];
@@ -270,7 +270,7 @@ struct GatherContact {
         gradient[vertices[k]] += all;
         vertex_energy[vertices[k]] += energy_sum;
         blocks[k] = block;
-        rows.count[k] = listed;
+        rows.active_count[k] = listed;
     }
 
 private:
@@ -296,30 +296,31 @@ private:
         return at.is_active();
     }
 
-    TOILE_HD ActiveRow active_row(int entry) const
+    TOILE_HD FrozenRow row_of(int entry) const
     {
-        return ActiveRow::of(incidence.terms[entry / 4].pair, entry % 4, frozen[entry / 4]);
+        const ContactPair& pair = incidence.terms[entry / 4].pair;
+        return FrozenRow::of(pair.vertex, pair.weight, entry % 4, frozen[entry / 4].matrix(pair.normal));
     }
 };
 
 /// Product of the frozen terms at the vertex of list k with a move p of all vertices. Every term is
 /// multiplied once for each of its vertices, which takes less time than another kernel before this one.
 struct MultiplyList {
-    ActiveRows rows;
+    FrozenRows rows;
     View<const PaddedVec3> p; ///< [vertices] [m]
     View<Vec3> product;       ///< [lists] out [N]
 
     /// Entries of the thread, and the first of them.
     struct Prologue {
         int next, end;
-        ActiveRow entry;
+        FrozenRow entry;
     };
     template <typename Team>
     TOILE_HD Prologue prologue(int k, const Team& team, bool /*is_in_range*/) const
     {
-        Prologue local{rows.first[k] + team.thread, rows.first[k] + rows.count[k], {}};
+        Prologue local{rows.first[k] + team.thread, rows.first[k] + rows.active_count[k], {}};
         if (local.next < local.end)
-            local.entry = rows.entries[local.next];
+            local.entry = rows.rows[local.next];
         return local;
     }
 
@@ -335,7 +336,7 @@ struct MultiplyList {
         if (local.next < local.end)
             sum = local.entry.times(p);
         for (int e = local.next + Team::kThreads; e < local.end; e += Team::kThreads)
-            sum += rows.entries[e].times(p);
+            sum += rows.rows[e].times(p);
         sum = team_sum(team, sum);
         if (team.thread == 0 && is_in_range)
             product[k] = sum;

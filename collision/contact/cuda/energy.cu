@@ -23,7 +23,7 @@ DeviceContactEnergy::DeviceContactEnergy(const CudaSpace& space)
       first_(space, "contact/first"), entries_(space, "contact/entries"), list_of_(space, "contact/list_of"),
       force_(space, "contact/force"), term_energy_(space, "contact/energy"), frozen_(space, "contact/frozen"),
       blocks_(space, "contact/blocks"), product_(space, "contact/product"),
-      active_count_(space, "contact/active_count"), active_rows_(space, "contact/active_rows"), sort_(space),
+      active_count_(space, "contact/active_count"), rows_(space, "contact/rows"), sort_(space),
       flags_(space, "contact/flags"), count_(space, "contact/count", 1), scratch_(space, "contact/scratch")
 {
 }
@@ -39,7 +39,7 @@ View<ContactTerm> DeviceContactEnergy::reserve(int count)
         frozen_.resize(size);
         sort_.resize(4 * size);
         entries_.resize(4 * size);
-        active_rows_.resize(4 * size);
+        rows_.resize(4 * size);
         flags_.resize(4 * size + 1);
         first_.resize(4 * size + 1);
     }
@@ -80,27 +80,24 @@ void DeviceContactEnergy::evaluate(View<const Vec3> x, View<Vec3> gradient, View
 {
     parallel_for(space_, "contact/evaluate", terms_.size(),
                  EvaluateAndFreeze{{terms_.view(), x, force_.view(), term_energy_.view()},
-                                   {terms_.view(), x, frozen_.view()}});
+                                   {terms_.view(), x, has_true_hessian_, frozen_.view()}});
     parallel_for_teams<kListThreads>(space_, "contact/gather", vertices_.size(),
                                      GatherContact{incidence(), vertices_.view(), force_.view(),
                                                    term_energy_.view(), frozen_.view(), gradient, energy,
-                                                   blocks_.view(), device_active_rows()});
+                                                   blocks_.view(), rows()});
 }
 
-ActiveRows DeviceContactEnergy::device_active_rows()
-{
-    return {first_.view(), active_count_.view(), active_rows_.view()};
-}
+FrozenRows DeviceContactEnergy::rows() const { return {first_.view(), active_count_.view(), rows_.view()}; }
 
 void DeviceContactEnergy::multiply(View<const PaddedVec3> p)
 {
     parallel_for_teams<kListThreads>(space_, "contact/multiply", vertices_.size(),
-                                     MultiplyList{device_active_rows(), p, product_.view()});
+                                     MultiplyList{rows(), p, product_.view()});
 }
 
 DeviceActiveSet::Frozen DeviceContactEnergy::frozen() const
 {
-    return {list_of_.view(), vertices_.view(), active_count_.view(), blocks_.view(), product_.view()};
+    return {list_of_.view(), vertices_.view(), rows(), blocks_.view(), product_.view()};
 }
 
 } // namespace toile::collision

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "collision/contact/active_rows.h"
 #include "collision/contact/kernels.h"
 #include "core/compute/cuda/report.h"
 #include "core/compute/cuda/sort.h"
@@ -23,6 +22,9 @@ public:
     /// Copies terms from the host.
     void set_terms(View<const ContactTerm> terms, int vertex_count);
 
+    /// See StepStart::wants_true_hessian.
+    void use_true_hessian(bool use) { has_true_hessian_ = use; }
+
     View<const ContactTerm> terms() const { return terms_.view(); }
     View<ContactTerm> change_terms() { return terms_.view(); } ///< vertices must not change
     View<const int> vertices() const
@@ -39,7 +41,7 @@ public:
     Frozen frozen() const override;
 
 private:
-    ActiveRows device_active_rows();
+    FrozenRows rows() const;
 
     const CudaSpace& space_;
     int capacity_ = 0; ///< terms
@@ -51,10 +53,11 @@ private:
     DeviceArray<FrozenContact> frozen_;           ///< [terms]
     DeviceArray<Mat3> blocks_;                    ///< [lists]
     DeviceArray<Vec3> product_;                   ///< [lists] [N]
-    DeviceArray<int> active_count_;               ///< [lists] see ActiveRows
-    DeviceArray<ActiveRow> active_rows_;          ///< [4 x terms] likewise
-    SortArrays sort_;                             ///< [4 x terms] by vertex
-    DeviceArray<unsigned char> flags_;            ///< [4 x terms + 1]
+    mutable DeviceArray<int> active_count_;       ///< [lists] see FrozenRows
+    mutable DeviceArray<FrozenRow> rows_;         ///< [4 x terms] likewise
+    bool has_true_hessian_ = false;
+    SortArrays sort_;                  ///< [4 x terms] by vertex
+    DeviceArray<unsigned char> flags_; ///< [4 x terms + 1]
     PinnedArray<int> count_;
     DeviceScratch scratch_;
 };

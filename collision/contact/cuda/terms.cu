@@ -36,6 +36,7 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
 void DeviceContactTerms::begin_step(const StepStart& start)
 {
     TOILE_ASSERT(start.device.x.size() == overlap_.size());
+    energy_.use_true_hessian(start.wants_true_hessian);
     rules_ = rules_of(start, settings_);
     rules_.cloth_of = cloth_of_.view();
     rules_.gap = gap_.view();

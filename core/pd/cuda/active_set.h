@@ -1,8 +1,63 @@
 #pragma once
 
+#include <array>
+
 #include "core/compute/lanes.h"
 
 namespace toile {
+
+/// Row of a frozen term's Hessian at one of its vertices, in single precision and stored contiguously:
+/// self_weight A u with u = sum_k weight_k p_k.
+struct alignas(16) FrozenRow {
+    std::array<int, 4> vertex; ///< -1: unused, at the end
+    std::array<float, 4> weight;
+    float self_weight;
+    float xx, xy, xz, yy, yz, zz; ///< A [N/m]
+
+    static TOILE_HD FrozenRow of(const std::array<int, 4>& vertex, const std::array<double, 4>& weight,
+                                 int slot, const Mat3& A)
+    {
+        return {vertex,
+                {float(weight[0]), float(weight[1]), float(weight[2]), float(weight[3])},
+                float(weight[slot]),
+                float(A(0, 0)),
+                float(A(0, 1)),
+                float(A(0, 2)),
+                float(A(1, 1)),
+                float(A(1, 2)),
+                float(A(2, 2))};
+    }
+
+    TOILE_HD Mat3 stiffness() const
+    {
+        Mat3 A;
+        A(0, 0) = double(xx);
+        A(1, 1) = double(yy);
+        A(2, 2) = double(zz);
+        A(0, 1) = A(1, 0) = double(xy);
+        A(0, 2) = A(2, 0) = double(xz);
+        A(1, 2) = A(2, 1) = double(yz);
+        return A;
+    }
+
+    /// @param p  [vertices] [m]
+    TOILE_HD Vec3 times(View<const PaddedVec3> p) const
+    {
+        PaddedVec3 u(0.0F);
+        for (int k = 0; k < 4 && vertex[k] >= 0; ++k)
+            u += weight[k] * p[vertex[k]];
+        return double(self_weight) * Vec3(double(xx * u[0] + xy * u[1] + xz * u[2]),
+                                          double(xy * u[0] + yy * u[1] + yz * u[2]),
+                                          double(xz * u[0] + yz * u[1] + zz * u[2]));
+    }
+};
+
+/// Rows of active frozen terms by vertex: list k begins at first[k] and has active_count[k] rows.
+struct FrozenRows {
+    View<const int> first;  ///< [lists + 1]
+    View<int> active_count; ///< [lists]
+    View<FrozenRow> rows;
+};
 
 /// Terms of an ActiveSetEnergy on a GPU between begin_step() and revise(), as the host found them. Functions
 /// enqueue unless they say otherwise; all fields are on the device.
@@ -10,11 +65,11 @@ class DeviceActiveSet {
 public:
     /// Frozen Hessian by vertex: one "list" of terms per vertex with frozen terms.
     struct Frozen {
-        View<const int> list_of;      ///< [vertices] number of the vertex's list plus 1; 0: none
-        View<const int> vertices;     ///< [lists]
-        View<const int> active_count; ///< [lists] active terms of each
-        View<const Mat3> blocks;      ///< [lists] bounds, as FrozenHessian::diagonal_blocks() [N/m]
-        View<const Vec3> product;     ///< [lists] result of the last multiply() [N]
+        View<const int> list_of;  ///< [vertices] number of the vertex's list plus 1; 0: none
+        View<const int> vertices; ///< [lists]
+        FrozenRows rows;
+        View<const Mat3> blocks;  ///< [lists] bounds, as FrozenHessian::diagonal_blocks() [N/m]
+        View<const Vec3> product; ///< [lists] result of the last multiply() [N]
     };
 
     virtual ~DeviceActiveSet() = default;

@@ -19,6 +19,14 @@ DeviceSolver* device_solver_of(System& system, const CudaSpace& space)
     return solver;
 }
 
+std::vector<EmbeddedPoint> embedded(const std::vector<Vec3>& x)
+{
+    std::vector<EmbeddedPoint> points(x.size(), EmbeddedPoint::Zero());
+    for (size_t i = 0; i < x.size(); ++i)
+        points[i].head<3>() = x[i];
+    return points;
+}
+
 DeviceEnergies energies_of(const CudaSpace& space, const System& system)
 {
     DeviceEnergies energies(space);
@@ -39,20 +47,29 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       prediction_(space, "body/prediction", x_.size()), readbacks_(space, "body/readback"),
       targets_(space, "body/targets", x_.size()), fixed_vertices_(space, "body/fixed_vertices"),
       fixed_targets_(space, "body/fixed_targets"),
-      fixed_targets_on_host_(space, "body/fixed_targets_on_host"), drive_(space, "body/drive", x_.size()),
+      fixed_targets_on_host_(space, "body/fixed_targets_on_host"),
       x_previous_(space, "body/x_previous", x_.size()), v_previous_(space, "body/v_previous", x_.size()),
       restart_(space, "body/restart", x_.size()), touched_(space, "body/touched", x_.size()),
       touches_(space, "body/touches", x_.size()), minimiser_(space, "body/minimiser", x_.size()),
       inertia_(space, "body/inertia", x_.size()), found_(space, "body/found", x_.size()),
-      found_gradient_(space, "body/found_gradient", x_.size()), masses_(space, "body/masses"),
-      diagonal_(space, "body/diagonal"), inverse_masses_(space, "body/inverse_masses"),
-      fixed_(space, "body/fixed"), begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
+      masses_(space, "body/masses"), diagonal_(space, "body/diagonal"),
+      inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
+      begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
       end_sums_(space, "body/end_sums", block_count(x_.size(), kSumItems)),
       gradient_(space, "body/largest_gradient", 1), speed_(space, "body/largest_speed", 1),
-      descent_(space, x_.size(), energies_.partial_count())
+      drive_(space, "body/drive"), found_gradient_(space, "body/found_gradient")
 {
     TOILE_ASSERT(x_.size() == system_->vertex_count());
     masses_.upload(system_->masses());
+    if (settings_.outer == OuterMethod::Newton) {
+        const Curvature curvature(x_.size(), system_->energies());
+        newton_.emplace(space_, embedded(positions), curvature.blocks(), curvature.isotropic(), energies_,
+                        *solver_);
+    } else {
+        descent_.emplace(space_, x_.size(), energies_.partial_count());
+        drive_.resize(x_.size());
+        found_gradient_.resize(x_.size());
+    }
     for (DeviceArray<unsigned char>* flags : {&touched_, &touches_})
         flags->fill_zero();
     for (DeviceArray<Vec3>* field : {&x_previous_, &v_previous_})
@@ -70,8 +87,10 @@ void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
     system_->prepare(step, fixed);
     if (is_new) {
         set_fixed(fixed);
-        const DeviceDescent::Problem problem = this->problem();
-        descent_.record(problem);
+        if (newton_)
+            newton_->set_fixed(fixed, masses());
+        else
+            descent_->record(problem());
         is_contact_prepared_ = false;
         host_fixed_ = fixed;
     }
@@ -94,8 +113,9 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
                             View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     const StageScope stage("pd/device_step");
-    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
-                     {settings_.max_iterations, settings_.max_passes});
+    return take_step(
+        *this, {dt, acceleration, fixed, targets, active, projection},
+        {settings_.max_iterations, settings_.max_passes, newton_ ? settings_.speed_tolerance : 0.0});
 }
 
 void DeviceBody::begin(const StepInput& input)
@@ -111,7 +131,8 @@ void DeviceBody::begin(const StepInput& input)
     begin_forces(input.acceleration);
     begin_targets(input.targets);
     for (const auto& energy : energies_.all())
-        energy->begin_step(x_.device());
+        energy->begin_step(x_.device(), input.dt);
+    active_ = input.active;
     predict();
 }
 
@@ -124,7 +145,7 @@ StepStart DeviceBody::start() const
             system_->masses(),
             dt_,
             {},
-            false,
+            newton_.has_value(),
             {x_.device(), prediction_.device(), diagonal_.view(), fixed_.view(), masses_.view()}};
 }
 
@@ -149,13 +170,21 @@ void DeviceBody::restart_touching(const StepInput& input)
     touches_.fill_zero();
 }
 
+OuterLoop::Outcome DeviceBody::minimise_by_newton(const Newton::Settings& settings,
+                                                  const Newton::Revise& revise, bool is_calm)
+{
+    newton_->set_problem({x_t1_, x_.device(), v_.device(), prediction_.device(), inertia_.view(),
+                          masses_.view(), fixed_.view(), dt_, active_});
+    return Newton::minimise(*newton_, settings, revise, is_calm);
+}
+
 OuterLoop::Outcome DeviceBody::minimise(ActiveSetEnergy* active, int max_iterations, bool is_first)
 {
     const bool in_contact = active && active->may_be_active();
     const OuterLoop::Outcome outcome =
         in_contact ? minimise_with_contact(*active->on_device(space_), max_iterations, is_first)
                    : minimise_free(is_first);
-    parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_.x(), x_t1_.overwrite_on_device()});
+    parallel_for(space_, "pd/take", x_.size(), CopyPositions{descent_->x(), x_t1_.overwrite_on_device()});
     return outcome;
 }
 
@@ -175,7 +204,7 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
     if (!is_first)
         parallel_for(space_, "pd/begin_again", 1, BeginAgain{fields.descent, asked_.tolerance});
     begin_at(x_t1_.device());
-    const Descent found = descent_.run();
+    const Descent found = descent_->run();
     if (is_first)
         asked_ = found;
     const OuterLoop::Outcome first = outcome_of(found);
@@ -186,13 +215,13 @@ OuterLoop::Outcome DeviceBody::minimise_free(bool is_first)
     stand_still();
     parallel_for(space_, "pd/begin_again", 1,
                  BeginAgain{fields.descent, StepTolerance::kStanding * found.tolerance});
-    Descent again = descent_.run_briefly();
+    Descent again = descent_->run_briefly();
     if (found.search.value <= again.start_value || !is_finite(again.start_value)) {
         take_found();
         return first;
     }
     if (!again.is_over)
-        again = descent_.run();
+        again = descent_->run();
     OuterLoop::Outcome outcome = outcome_of(again);
     outcome.iterations += found.iterations;
     return outcome;
@@ -204,7 +233,7 @@ OuterLoop::Outcome DeviceBody::minimise_with_contact(DeviceActiveSet& contact, i
     const StageScope stage("pd/descend");
     prepare_contact();
     if (is_first)
-        asked_ = descent_.state();
+        asked_ = descent_->state();
     OuterLoop::Settings settings{asked_.tolerance, limit};
     begin_at(x_t1_.device());
     const OuterLoop::Outcome found =
@@ -258,13 +287,13 @@ void DeviceBody::stand_still()
 void DeviceBody::keep_found()
 {
     parallel_for(space_, "pd/keep_found", x_.size(),
-                 CopyFound{descent_.x(), descent_.gradient(), found_.view(), found_gradient_.view()});
+                 CopyFound{descent_->x(), descent_->gradient(), found_.view(), found_gradient_.view()});
 }
 
 void DeviceBody::take_found()
 {
     parallel_for(space_, "pd/take_found", x_.size(),
-                 CopyFound{found_.view(), found_gradient_.view(), descent_.x(), descent_.gradient()});
+                 CopyFound{found_.view(), found_gradient_.view(), descent_->x(), descent_->gradient()});
 }
 
 } // namespace toile

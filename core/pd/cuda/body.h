@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/base/error.h"
@@ -10,8 +11,10 @@
 #include "core/pd/cuda/body_kernels.h"
 #include "core/pd/cuda/contact_descent.h"
 #include "core/pd/cuda/descent.h"
+#include "core/pd/cuda/newton/device_newton.h"
 #include "core/pd/cuda/projection.h"
 #include "core/pd/energy/system.h"
+#include "core/pd/minimiser/outer_method.h"
 #include "core/pd/preconditioner/nested_pcg.h"
 #include "core/pd/step/bdf2.h"
 #include "core/pd/step/point_masses.h"
@@ -19,8 +22,8 @@
 
 namespace toile {
 
-/// Body on a GPU: steps minimised on the device by L-BFGS. Fields are copied to the host only
-/// when contact or a caller reads them there.
+/// Body on a GPU: steps minimised on the device by Newton's method or L-BFGS. Fields are copied to the host
+/// only when contact or a caller reads them there.
 class DeviceBody : public PointMasses, private StepSpace {
 public:
     struct Settings {
@@ -30,6 +33,8 @@ public:
         Pcg::Settings contact_solve = NestedPcg::Settings{}.pcg; ///< while contacts are active
         StepStop stop = StepStop::Error;                         ///< what the tolerance bounds
         Integrator integrator = Integrator::ImplicitEuler;
+        OuterMethod outer = OuterMethod::Lbfgs; ///< or Newton
+        double speed_tolerance = 0.01;          ///< [m/s] of Newton's method, in place of `tolerance`
     };
 
     /// @param space      borrowed; the solver's too
@@ -71,10 +76,8 @@ private:
     StepField end_positions() override { return x_t1_; }
     StepField end_velocities() override { return v_; }
     OuterLoop::Outcome minimise(ActiveSetEnergy* active, int max_iterations, bool is_first) override;
-    OuterLoop::Outcome minimise_by_newton(const Newton::Settings&, const Newton::Revise&, bool) override
-    {
-        throw InvalidInput("Newton's method does not run on a GPU yet; choose lbfgs");
-    }
+    OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
+                                          bool is_calm) override;
     void restart_touching(const StepInput& input) override;
     void finish(ActiveSetEnergy* active, StepProjection* projection) override;
     void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
@@ -85,7 +88,7 @@ private:
     void begin_forces(View<const Vec3> acceleration);
     void begin_targets(View<const Vec3> targets);
     DeviceDescent::Problem problem();
-    DescentFields fields() { return descent_.fields(problem()); }
+    DescentFields fields() { return descent_->fields(problem()); }
     MotionView motion();
     void restart_all();
     void predict();
@@ -118,8 +121,6 @@ private:
     std::vector<int> fixed_vertices_on_host_;
     DeviceArray<Vec3> fixed_targets_; ///< [fixed vertices]
     PinnedArray<Vec3> fixed_targets_on_host_;
-    DeviceArray<Vec3> drive_;
-
     // State of the integrator: see MotionView.
     Bdf2 scheme_;
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
@@ -128,7 +129,7 @@ private:
     DeviceArray<Vec3> minimiser_; ///< [vertices] [m]
     DeviceArray<double> inertia_; ///< [vertices] [N/m]
 
-    DeviceArray<Vec3> found_, found_gradient_;
+    DeviceArray<Vec3> found_;
     DeviceArray<double> masses_, diagonal_; ///< [kg]; of H [N/m]
     DeviceArray<double> inverse_masses_;    ///< [1/kg] 0 where fixed
     DeviceArray<unsigned char> fixed_;
@@ -136,7 +137,12 @@ private:
     DeviceArray<LargestSquare> end_sums_;
     PinnedArray<LargestSquare> gradient_, speed_; ///< [1]
     bool is_speed_current_ = false;               ///< speed_ belongs to the current velocities
-    DeviceDescent descent_;
+    ActiveSetEnergy* active_ = nullptr;           ///< of the current step; may be null
+    std::optional<DeviceNewton> newton_;
+
+    // L-BFGS.
+    std::optional<DeviceDescent> descent_; ///< none: Newton's method
+    DeviceArray<Vec3> drive_, found_gradient_;
     std::unique_ptr<DeviceContactDescent> contact_descent_; ///< null before contact is first active
     bool is_contact_prepared_ = false;                      ///< contact_descent_ has the current H
 };

@@ -86,20 +86,28 @@ MotionView DeviceBody::motion()
 /// Begins the motion anew everywhere.
 void DeviceBody::restart_all() { restart_.upload(std::vector<unsigned char>(x_.size(), 1)); }
 
-/// Predicts all vertices, which is the start point of the step, and writes the inputs to the descent.
+/// Predicts all vertices, and guesses the end of the step.
 void DeviceBody::predict()
 {
     predict_motion();
-    parallel_for(space_, "pd/begin", x_.size(),
-                 CopyPositions{prediction_.device(), x_t1_.overwrite_on_device()});
+    if (newton_)
+        parallel_for(space_, "pd/guess", x_.size(),
+                     GuessByVelocity{x_.device(), v_.device(), prediction_.device(), fixed_.view(), dt_,
+                                     x_t1_.overwrite_on_device()});
+    else
+        parallel_for(space_, "pd/begin", x_.size(),
+                     CopyPositions{prediction_.device(), x_t1_.overwrite_on_device()});
 }
 
+/// Predicts all vertices, and writes the inputs to the descent.
 void DeviceBody::predict_motion()
 {
-    parallel_sum_then(space_, "pd/predict", x_.size(), StepSums{},
-                      BeginVertex{{scheme_, motion(), acceleration_.device(), targets_.view(), masses_.view(),
-                                   prediction_.overwrite_on_device(), inertia_.view()},
-                                  drive_.view()},
+    const PredictMotion predict{scheme_,         motion(),       acceleration_.device(),
+                                targets_.view(), masses_.view(), prediction_.overwrite_on_device(),
+                                inertia_.view()};
+    if (newton_)
+        return parallel_for(space_, "pd/predict", x_.size(), predict);
+    parallel_sum_then(space_, "pd/predict", x_.size(), StepSums{}, BeginVertex{predict, drive_.view()},
                       BeginDescent{fields().descent,
                                    {settings_.tolerance},
                                    settings_.stop,
@@ -115,7 +123,9 @@ void DeviceBody::finish(ActiveSetEnergy* active, StepProjection*)
     for (const auto& energy : energies_.all())
         energy->end_minimisation(x_t1_.device());
     parallel_sum(space_, "pd/finish", x_.size(), LargestSquare{},
-                 FinishVertex{{scheme_, motion(), x_t1_.device()}, descent_.gradient(), minimiser_.view()},
+                 FinishVertex{{scheme_, motion(), x_t1_.device()},
+                              newton_ ? newton_->gradient() : descent_->gradient(),
+                              minimiser_.view()},
                  gradient_.view(), end_sums_);
 }
 

@@ -148,12 +148,12 @@ struct FinishVertex {
     View<const Vec3> gradient; ///< [vertices] [N]
     View<Vec3> minimiser;      ///< [vertices] out [m]
 
-    /// @return squared length of the gradient [N^2]
+    /// @return squared length of the gradient [N^2], zero where fixed
     TOILE_HD LargestSquare operator()(int i) const
     {
         finish(i);
         minimiser[i] = finish.x_t1[i];
-        return {gradient[i].squaredNorm()};
+        return {finish.motion.fixed[i] != 0 ? 0.0 : gradient[i].squaredNorm()};
     }
 };
 

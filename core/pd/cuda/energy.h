@@ -6,6 +6,7 @@
 
 #include "core/compute/cuda/runtime/device.h"
 #include "core/compute/types.h"
+#include "core/pd/cuda/newton/hessian_entries.h"
 
 namespace toile {
 
@@ -17,14 +18,17 @@ struct DeviceEvaluation {
     View<double> partials; ///< [partial_count()] overwritten: more parts, of this energy alone [J]
 };
 
+class HessianPattern;
+
 /// Terms of one kind for all cloths of a body, on a GPU: counterpart of Energy.
 class DeviceEnergy {
 public:
     virtual ~DeviceEnergy() = default;
 
     /// Called before every step: takes over changes made on the host. Enqueued.
-    /// @param x  [vertices] start of the step [m], on the device
-    virtual void begin_step([[maybe_unused]] View<const Vec3> x) {}
+    /// @param x   [vertices] start of the step [m], on the device
+    /// @param dt  [s]
+    virtual void begin_step([[maybe_unused]] View<const Vec3> x, [[maybe_unused]] double dt) {}
 
     /// Number of parts of the value that belong to no vertex.
     virtual int partial_count() const { return 0; }
@@ -32,6 +36,14 @@ public:
     /// Enqueues adding value and gradient. The launches are recorded once and repeated, so they may depend
     /// only on arrays of the device.
     virtual void add_gradient(const DeviceEvaluation& at) = 0;
+
+    /// Learns where its entries of the Hessian are, for Newton's method. Called once, when all cloths are
+    /// added.
+    virtual void find_entries([[maybe_unused]] const HessianPattern& pattern) {}
+
+    /// Enqueues adding the second derivative, projected to be positive semi-definite. Its constant part is
+    /// there already.
+    virtual void add_curvature([[maybe_unused]] const DeviceCurvature& at) {}
 
     /// Called once per step, for energies with a state that depends on the minimiser. Enqueued.
     /// @param x  [vertices] the last minimiser [m], on the device, before contact and limits change it

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/compute/parallel.h"
+#include "core/pd/newton/components.h"
 #include "core/quadrature/clusters/cluster_basis.h"
 
 namespace toile {
@@ -26,34 +27,6 @@ Eigen::Vector3d functions_at(const ClusterBasis& basis, int slot, int level)
     return values;
 }
 
-/// Components of the free vertices that entries of K connect, each ascending.
-std::vector<std::vector<int>> components_of(const HessianParts& K)
-{
-    const int n = K.fixed.size();
-    std::vector<unsigned char> seen(K.fixed.begin(), K.fixed.end());
-    std::vector<std::vector<int>> components;
-    for (int start = 0; start < n; ++start) {
-        if (seen[start])
-            continue;
-        std::vector<int> found{start};
-        seen[start] = 1;
-        const auto add = [&](int j) {
-            if (!seen[j])
-                found.push_back(j);
-            seen[j] = 1;
-        };
-        for (size_t k = 0; k < found.size(); ++k) {
-            for (const int j : K.blocks.columns(found[k]))
-                add(j);
-            for (SparseMatrix::InnerIterator entry(K.isotropic, found[k]); entry; ++entry)
-                add(int(entry.col()));
-        }
-        std::sort(found.begin(), found.end());
-        components.push_back(std::move(found));
-    }
-    return components;
-}
-
 void insert_sorted(std::vector<int>& list, int value)
 {
     const auto at = std::lower_bound(list.begin(), list.end(), value);
@@ -70,7 +43,7 @@ void AffineSpace::find_clusters(const HessianParts& K)
     order_.clear();
     first_of_cluster_.assign(1, 0);
     std::vector<int> others;
-    for (std::vector<int>& component : components_of(K))
+    for (std::vector<int>& component : connected_components(K.blocks, K.isotropic, K.fixed))
         if (int(component.size()) >= ClusterTree::kLeaf)
             add_component(std::move(component));
         else

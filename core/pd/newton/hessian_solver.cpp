@@ -9,10 +9,6 @@ namespace toile {
 
 namespace {
 
-/// Reduction of the residual's square in the preconditioner's norm before small increments count [-]. Small
-/// residuals of stiff cloth begin with small increments, although far from the solution.
-constexpr double kReduction = 0.1;
-
 /// Rows of a task: whole clusters.
 constexpr int kRowsOfChunk = 256;
 

@@ -23,6 +23,10 @@ public:
     /// Limit of iterations.
     static constexpr int kMaxIterations = 200;
 
+    /// Reduction of the residual's square in the preconditioner's norm before small increments count [-].
+    /// Small residuals of stiff cloth begin with small increments, although far from the solution.
+    static constexpr double kReduction = 0.1;
+
     /// @param points  [vertices] undeformed positions
     explicit HessianSolver(std::vector<EmbeddedPoint> points) : coarse_(std::move(points)) {}
 

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/error.h"
-#include "core/linear/field.h"
-#include "core/pd/minimiser/backtrack.h"
+#include "core/base/stages.h"
+#include "core/pd/minimiser/line_search.h"
 
 namespace toile {
 
@@ -24,16 +23,80 @@ constexpr double kNegligible = 0.03;
 /// would cross, where contact does not hold it, is pushed there again by the next step.
 constexpr int kStall = 8;
 
+/// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
+/// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
+/// error of its acceleration is at most about kOfDriving, and vanishes with the step below kDrivingOfStep,
+/// gravity's speed in 1/120 s.
+constexpr double kOfDriving = 0.15, kDrivingOfStep = 0.04;
+
+/// Small Newton steps in succession after which touching cloth has converged. The first leaves contact forces
+/// unbalanced by 14 % of the weight, which moves cloth by next to nothing, but friction by as much.
+constexpr int kSmallSteps = 2;
+
+double tolerance_by_driving(double driving)
+{
+    return kOfDriving * driving * std::min(1.0, driving / kDrivingOfStep);
+}
+
+/// Chooses the start. @return its value
+double begin(NewtonSpace& space, bool is_calm)
+{
+    const double value = space.evaluate();
+    if (const double at_rest = space.try_rest(value); at_rest < value) {
+        space.take();
+        return at_rest;
+    }
+    if (!is_calm || space.are_fixed_moving())
+        return value;
+    // H does not contain internal friction and may leave bending out.
+    const double moved = space.try_local_global();
+    if (!(moved < value))
+        return value;
+    space.take();
+    return moved;
+}
+
+/// Makes a Newton step.
+/// @return the accepted part of it, 0 if there is none
+double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::Outcome& outcome)
+{
+    const NewtonSpace::Direction direction =
+        space.find_direction(outcome.iterations == 0, kIncrement * settings.tolerance * settings.dt);
+    NewtonSpace::Trial trial = space.try_step(1.0);
+    LineSearch search{outcome.value, trial.slope};
+    double step = 0.0;
+    for (int attempt = 1; search.slope < 0.0; ++attempt) {
+        if (search.accepts(trial.value)) {
+            space.take();
+            outcome.value = trial.value;
+            step = search.step;
+            break;
+        }
+        if (attempt == LineSearch::kMaxTrials)
+            break;
+        search.shorten(trial.value);
+        trial.value = space.try_step(search.step).value;
+    }
+    ++outcome.iterations;
+    outcome.linear_iterations += direction.iterations;
+    outcome.speed = trial.speed;
+    outcome.displacement = step * trial.displacement;
+    outcome.converged = direction.is_solved && outcome.speed <= settings.tolerance;
+    return step;
+}
+
 } // namespace
 
-OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<const double> masses,
-                                    const Settings& settings, const Revise& revise)
+OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene, const Revise& revise,
+                                    bool is_calm)
 {
     const StageScope stage("pd/newton");
-    for (std::vector<Vec3>* field : {&gradient_, &direction_, &trial_, &trial_gradient_})
-        field->resize(x.size());
     OuterLoop::Outcome outcome;
-    outcome.value = objective.evaluate(x, gradient_);
+    outcome.value = begin(space, is_calm);
+    Settings settings = of_scene;
+    if (!is_calm)
+        settings.tolerance = std::min(settings.tolerance, tolerance_by_driving(space.driving_speed()));
+    const int small_steps = is_calm ? 1 : kSmallSteps;
     double lowest = std::numeric_limits<double>::infinity();
     int since_lowest = 0, small = 0;
     for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
@@ -43,12 +106,12 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
             break;
 
         double step = 0.0;
-        outcome.speed = objective.max_speed_of(gradient_);
+        outcome.speed = space.max_speed();
         outcome.converged = outcome.speed <= kNegligible * settings.tolerance;
         if (!outcome.converged) {
-            step = iterate(objective, x, masses, settings, outcome);
+            step = iterate(space, settings, outcome);
             small = outcome.converged ? small + 1 : 0;
-            outcome.converged = outcome.converged && (small >= settings.small_steps || step == 0.0);
+            outcome.converged = outcome.converged && (small >= small_steps || step == 0.0);
         }
         const bool has_changed = revise && revise(outcome.converged);
         if (!has_changed && (outcome.converged || step == 0.0))
@@ -59,37 +122,11 @@ OuterLoop::Outcome Newton::minimise(Objective& objective, View<Vec3> x, View<con
             small = 0;
         }
         // Cloth may have been moved back by less than counts as a change: stiff terms feel that too.
-        const bool has_moved = step > 0.0 && !std::equal(x.begin(), x.end(), trial_.begin());
-        if (has_changed || has_moved || step == 0.0)
-            outcome.value = objective.evaluate(x, gradient_);
+        if (has_changed || step == 0.0 || space.has_moved())
+            outcome.value = space.evaluate();
     }
-    outcome.gradient_norm = max_norm(gradient_);
+    outcome.gradient_norm = space.gradient_norm();
     return outcome;
-}
-
-/// Makes a Newton step.
-/// @return the accepted part of it, 0 if there is none
-double Newton::iterate(Objective& objective, View<Vec3> x, View<const double> masses,
-                       const Settings& settings, OuterLoop::Outcome& outcome)
-{
-    objective.accept(x);
-    Hessian* const K = objective.hessian();
-    if (K == nullptr)
-        throw InvalidInput("newton: the objective has no second derivatives; choose another method");
-    K->linearise(x, Definiteness::Projected);
-    solver_.update(K->parts(), outcome.iterations == 0);
-    const HessianSolver::Outcome solve =
-        solver_.solve(gradient_, masses, kIncrement * settings.tolerance * settings.dt, direction_);
-    const double step = backtrack(objective, x, outcome.value, gradient_, direction_, trial_, trial_gradient_,
-                                  LineSearch::kMaxTrials);
-    if (step > 0.0)
-        gradient_.swap(trial_gradient_);
-    ++outcome.iterations;
-    outcome.linear_iterations += solve.iterations;
-    outcome.speed = objective.speed_of(direction_);
-    outcome.displacement = step * max_norm(direction_);
-    outcome.converged = solve.is_solved && outcome.speed <= settings.tolerance;
-    return step;
 }
 
 } // namespace toile

@@ -1,50 +1,38 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
 #include "core/pd/minimiser/outer_loop.h"
-#include "core/pd/newton/hessian_solver.h"
+#include "core/pd/newton/newton_space.h"
 
 namespace toile {
 
 /// Newton's method on the projected Hessian K of a step [Nocedal & Wright 2006, alg. 7.1]. It folds stiff
 /// cloth, where a method around a fixed H gives folding modes the stiffness of the membrane.
 ///
-/// HessianSolver solves K d = -g; its coarse matrix is factored once per step. Both loops stop by speeds, so
-/// an accuracy does not depend on the step length: after a time T the trajectory is within about
+/// Conjugate gradients solve K d = -g; their coarse matrix is made once per step. Both loops stop by speeds,
+/// so an accuracy does not depend on the step length: after a time T the trajectory is within about
 /// 2 T tolerance of the converged one.
-class Newton {
-public:
+struct Newton {
     struct Settings {
         /// [m/s] Newton's method stops when the whole Newton step d, not the part that the line search
         /// accepts, is slower: RMS |d| / h < tolerance.
         double tolerance = 0.01;
         int max_iterations = 100;
-        double dt = 0.0;     ///< h [s]
-        int small_steps = 1; ///< that slow, in succession, after which it has converged
+        double dt = 0.0; ///< h [s]
     };
 
-    /// Looks for contact at x between Newton steps. May move x and change the objective.
+    /// Looks for contact at the current point between Newton steps. May move it and change the objective.
     /// @param is_converged  the step was below the tolerance
     /// @return true if it did either
     using Revise = std::function<bool(bool is_converged)>;
 
-    /// @param points  [vertices] undeformed positions, for the clusters of the AffineSpace
-    explicit Newton(std::vector<EmbeddedPoint> points) : solver_(std::move(points)) {}
-
-    /// Minimises from x, in place.
-    /// @param masses  [vertices] [kg]
-    /// @param revise  may be empty
-    OuterLoop::Outcome minimise(Objective& objective, View<Vec3> x, View<const double> masses,
-                                const Settings& settings, const Revise& revise);
-
-private:
-    double iterate(Objective& objective, View<Vec3> x, View<const double> masses, const Settings& settings,
-                   OuterLoop::Outcome& outcome);
-
-    HessianSolver solver_;
-    std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_;
+    /// Minimises from the current point, in place. Begins at rest instead if the value is lower there, else
+    /// with a local and a global step while nothing touches.
+    /// @param revise   may be empty
+    /// @param is_calm  nothing touches
+    static OuterLoop::Outcome minimise(NewtonSpace& space, const Settings& settings, const Revise& revise,
+                                       bool is_calm);
 };
 
 } // namespace toile

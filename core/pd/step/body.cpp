@@ -2,30 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/linear/field.h"
+#include "core/pd/step/rest_start.h"
 #include "core/pd/step/step_tolerance.h"
 
 namespace toile {
 
 namespace {
-
-/// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
-/// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
-/// error of its acceleration is at most about kOfDriving, and vanishes with the step below kDrivingOfStep,
-/// gravity's speed in 1/120 s.
-constexpr double kOfDriving = 0.15, kDrivingOfStep = 0.04;
-
-/// Small Newton steps in succession after which touching cloth has converged. The first leaves contact forces
-/// unbalanced by 14 % of the weight, which moves cloth by next to nothing, but friction by as much.
-constexpr int kSmallSteps = 2;
-
-double tolerance_by_driving(double driving)
-{
-    return kOfDriving * driving * std::min(1.0, driving / kDrivingOfStep);
-}
 
 std::vector<EmbeddedPoint> embedded(View<const Vec3> x)
 {
@@ -140,27 +125,12 @@ OuterLoop::Outcome Body::minimise(ActiveSetEnergy*, int max_iterations, bool is_
     return outcome;
 }
 
-/// Value of the objective without motion [J], at standing_; infinite if its inertia alone exceeds `found`.
-double Body::value_at_rest(double found)
-{
-    const View<const unsigned char> fixed = system_->fixed();
-    standing_ = x_;
-    for (size_t i = 0; i < x_.size(); ++i)
-        if (fixed[int(i)])
-            standing_[i] = prediction_[i];
-    const double inertia = 0.5 * parallel_sum(kCpu, int(x_.size()), 0.0, [&](int i) {
-                               return inertia_[i] * (standing_[i] - prediction_[i]).squaredNorm();
-                           });
-    if (found <= inertia)
-        return std::numeric_limits<double>::infinity();
-    const double value = objective_->evaluate(standing_, gradient_);
-    return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
-}
-
 /// Restarts at the positions of t0 if that start has a lower value than the result from the prediction.
 OuterLoop::Outcome Body::no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found)
 {
-    if (found.value <= value_at_rest(found.value))
+    const RestStart rest{x_, prediction_, inertia_, system_->fixed()};
+    standing_.resize(x_.size());
+    if (found.value <= rest.value(*objective_, found.value, standing_, gradient_))
         return found;
     x_t1_ = standing_;
     settings.tolerance *= StepTolerance::kStanding;
@@ -173,48 +143,9 @@ OuterLoop::Outcome Body::no_worse_than_standing(OuterLoop::Settings settings, co
 OuterLoop::Outcome Body::minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                             bool is_calm)
 {
-    const double value = objective_->evaluate(x_t1_, gradient_);
-    if (value_at_rest(value) < value)
-        x_t1_ = standing_;
-    else if (is_calm && !are_fixed_moving())
-        step_local_global();
-    Newton::Settings of_step = settings;
-    if (!is_calm) {
-        of_step.tolerance = std::min(settings.tolerance, tolerance_by_driving(driving_speed()));
-        of_step.small_steps = kSmallSteps;
-    }
-    return newton_->minimise(*objective_, x_t1_, system_->masses(), of_step, revise);
-}
-
-/// RMS speed that external forces alone would add in the step [m/s].
-double Body::driving_speed()
-{
-    parallel_for(kCpu, "pd/driving", int(x_.size()),
-                 [&](int i) { standing_[i] = prediction_[i] - x_[i] - dt_ * v_[i]; });
-    return objective_->speed_of(standing_);
-}
-
-/// True if a fixed vertex has another target than its position.
-bool Body::are_fixed_moving() const
-{
-    const View<const unsigned char> fixed = system_->fixed();
-    for (size_t i = 0; i < x_.size(); ++i)
-        if (fixed[int(i)] && prediction_[i] != x_[i])
-            return true;
-    return false;
-}
-
-/// A local and a global step, x -= H^-1 g(x): the best first step while nothing touches.
-void Body::step_local_global()
-{
-    const double before = objective_->evaluate(x_t1_, gradient_);
-    standing_.resize(x_.size());
-    objective_->precondition_linearly(gradient_, standing_);
-    for (size_t i = 0; i < x_.size(); ++i)
-        standing_[i] = x_t1_[i] - standing_[i];
-    // H does not contain internal friction and may leave bending out.
-    if (objective_->evaluate(standing_, gradient_) < before)
-        x_t1_ = standing_;
+    newton_->set_problem(
+        {&*objective_, x_t1_, x_, v_, prediction_, inertia_, system_->masses(), system_->fixed(), dt_});
+    return Newton::minimise(*newton_, settings, revise, is_calm);
 }
 
 void Body::finish(ActiveSetEnergy* active, StepProjection* projection)

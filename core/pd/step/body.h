@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/pd/minimiser/make_outer_loop.h"
+#include "core/pd/newton/host_newton.h"
 #include "core/pd/step/bdf2.h"
 #include "core/pd/step/point_masses.h"
 #include "core/pd/step/step_objective.h"
@@ -61,16 +62,12 @@ private:
     MotionView motion();
     void predict(const StepInput& input);
     double tolerance() const;
-    bool are_fixed_moving() const;
-    double value_at_rest(double found);
-    void step_local_global();
-    double driving_speed();
     OuterLoop::Outcome no_worse_than_standing(OuterLoop::Settings settings, const OuterLoop::Outcome& found);
 
     std::unique_ptr<System> system_;
     Settings settings_;
     std::unique_ptr<OuterLoop> outer_; ///< null: Newton's method
-    std::optional<Newton> newton_;
+    std::optional<HostNewton> newton_;
     double dt_ = 0.0;                        ///< of the current step [s]
     std::optional<StepObjective> objective_; ///< of the current step
     std::vector<Vec3> prediction_, standing_, gradient_;

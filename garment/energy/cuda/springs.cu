@@ -36,7 +36,7 @@ void DeviceSprings::add(const Springs& springs, int first_vertex)
     take_springs();
 }
 
-void DeviceSprings::begin_step(View<const Vec3>) { take_springs(); }
+void DeviceSprings::begin_step(View<const Vec3>, double) { take_springs(); }
 
 void DeviceSprings::take_springs()
 {
@@ -54,6 +54,12 @@ void DeviceSprings::add_gradient(const DeviceEvaluation& at)
 {
     parallel_for(space_, "springs/pull", first_.size() - 1,
                  PullAnchoredVertex{anchors_.view(), first_.view(), at.x, at.gradient, at.energy});
+}
+
+void DeviceSprings::add_curvature(const DeviceCurvature& at)
+{
+    parallel_for(space_, "springs/curvature", first_.size() - 1,
+                 StiffenAnchoredVertex{anchors_.view(), first_.view(), at.sum});
 }
 
 } // namespace toile::garment

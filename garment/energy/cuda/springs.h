@@ -18,8 +18,9 @@ public:
     /// @param first_vertex  first vertex of the cloth in the body
     void add(const Springs& springs, int first_vertex);
 
-    void begin_step(View<const Vec3> x) override;
+    void begin_step(View<const Vec3> x, double dt) override;
     void add_gradient(const DeviceEvaluation& at) override;
+    void add_curvature(const DeviceCurvature& at) override;
 
 private:
     struct Part {

@@ -73,7 +73,6 @@ bool StretchTension::find_entries(SparseWindow, BlockWindow K)
     return false;
 }
 
-/// Adds the second derivatives. The excess is convex in x, so exact and projected curvature are equal.
 void StretchTension::add_curvature(View<const Vec3> x, Definiteness, BlockWindow K)
 {
     const TensionPull pull{triangles(), x, rotated_tension_};
@@ -84,12 +83,10 @@ void StretchTension::add_curvature(View<const Vec3> x, Definiteness, BlockWindow
         if (!exceeds_[i])
             continue;
         const int t = taut_[i];
-        const Mat32 G = pull.triangles.deformation_gradient(t, x) + rotated_tension_[t];
-        const TensionLimits& limits = limits_[kind_[t]];
-        const StretchCurvature H = excess_curvature(G, limits.allowed);
+        const StretchCurvature H = pull.curvature(t);
         for (int row = 0; row < 3; ++row)
-            add_corner_row(H, rest_->edges_inv[t], limits.stiffness * rest_->areas[t], row,
-                           position_[3 * t + row], K.values(rest_->triangles[t][row]));
+            add_corner_row(H, rest_->edges_inv[t], pull.weight(t), row, position_[3 * t + row],
+                           K.values(rest_->triangles[t][row]));
     }
 }
 

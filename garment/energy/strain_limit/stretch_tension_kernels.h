@@ -2,6 +2,7 @@
 
 #include "garment/energy/membrane_kernels.h"
 #include "garment/energy/principal_stretch.h"
+#include "garment/energy/side_blocks_kernels.h"
 
 namespace toile::garment {
 
@@ -23,10 +24,7 @@ struct TensionTriangles {
 
     TOILE_HD Mat32 deformation_gradient(int t, View<const Vec3> x) const
     {
-        Mat32 edges;
-        edges.col(0) = x[tri[t][1]] - x[tri[t][0]];
-        edges.col(1) = x[tri[t][2]] - x[tri[t][0]];
-        return edges.lazyProduct(rest_inv[t]);
+        return garment::deformation_gradient(x, tri[t], rest_inv[t]);
     }
 };
 
@@ -80,15 +78,25 @@ struct TensionPull {
         return stretch_excess(triangles.deformation_gradient(t, x) + rotated_tension[t],
                               triangles.limits[triangles.kind[t]].allowed);
     }
+    /// Stiffness times area [J].
+    TOILE_HD double weight(int t) const
+    {
+        return triangles.limits[triangles.kind[t]].stiffness * triangles.area[t];
+    }
     TOILE_HD MembraneResponse<double> of(int t) const
     {
         const Mat32 stress = excess(t);
-        const double weight = triangles.limits[triangles.kind[t]].stiffness * triangles.area[t];
         MembraneResponse<double> response;
-        response.energy = 0.5 * weight * stress.squaredNorm();
+        response.energy = 0.5 * weight(t) * stress.squaredNorm();
         response.corner_gradient = stress.lazyProduct(triangles.rest_inv[t].transpose());
-        response.corner_gradient *= weight;
+        response.corner_gradient *= weight(t);
         return response;
+    }
+    /// Second derivative per weight. The excess is convex in x, so exact and projected curvature are equal.
+    TOILE_HD StretchCurvature curvature(int t) const
+    {
+        return excess_curvature(triangles.deformation_gradient(t, x) + rotated_tension[t],
+                                triangles.limits[triangles.kind[t]].allowed);
     }
 };
 
@@ -157,6 +165,22 @@ private:
     }
 };
 
+/// Second derivative of the triangles beyond their limit, as a GPU evaluates it.
+struct CurveTensionTriangle {
+    TensionPull pull;
+    View<const unsigned char> near; ///< [triangles]
+    View<unsigned char> exceeds;    ///< [triangles] out
+    HessianBlocks sides;            ///< out where it exceeds: see set_sides()
+
+    TOILE_HD void operator()(int t) const
+    {
+        const bool is_beyond = near[t] && pull.exceeds(t);
+        exceeds[t] = is_beyond ? 1 : 0;
+        if (is_beyond)
+            set_sides(pull.curvature(t), pull.triangles.rest_inv[t], pull.weight(t), t, sides);
+    }
+};
+
 /// Marks vertex v if it has a triangle near its limit.
 struct WatchVertex {
     View<const unsigned char> near; ///< [triangles]
@@ -181,11 +205,12 @@ struct RememberTension {
 
     TOILE_HD void operator()(int t) const
     {
-        if (!near[t])
-            return;
+        const double max_tension = pull.triangles.limits[pull.triangles.kind[t]].max_tension;
+        if (!near[t] || max_tension == 0.0)
+            return; // zero since the start
         const Mat32 R = closest_isometry<double>(pull.triangles.deformation_gradient(t, pull.x));
         Mat2 T = R.transpose().lazyProduct(pull.excess(t));
-        const double size = T.norm(), max_tension = pull.triangles.limits[pull.triangles.kind[t]].max_tension;
+        const double size = T.norm();
         if (size > max_tension)
             T *= max_tension / size;
         tension[t] = T;

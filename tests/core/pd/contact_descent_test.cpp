@@ -80,7 +80,7 @@ private:
     }
 
     /// Terms of two vertices each and without force; only their number matters.
-    DeviceActiveSet::Frozen contact() const { return {list_of_, vertices_, active_count_, {}, {}}; }
+    DeviceActiveSet::Frozen contact() { return {list_of_, vertices_, {{}, active_count_, {}}, {}, {}}; }
 
     void take(const StepProducts* products)
     {

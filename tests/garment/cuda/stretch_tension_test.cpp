@@ -12,6 +12,7 @@
 #include "garment/energy/strain_limit/stretch_tension.h"
 #include "quadrature2d/geodesic_embedding.h"
 #include "tests/core/compute/cuda/on_device.h"
+#include "tests/garment/cuda/energies_on_gpu.h"
 #include "tests/garment/sheets.h"
 
 /// Tension of strain limits on a GPU compared with the CPU.
@@ -24,6 +25,8 @@ namespace {
 
 constexpr double kLimit = 0.06;
 constexpr double kStiffness = 250.0; // [N/m]
+constexpr double kDt = 1.0 / 60.0;
+constexpr double kRounding = 1e-12;
 
 /// Positions stretched along u by the factor `stretch`, with waves across.
 std::vector<Vec3> pulled(const Sheet& sheet, double stretch)
@@ -39,93 +42,20 @@ std::shared_ptr<StretchTension> tension_of(const std::shared_ptr<const RestShape
     return std::make_shared<StretchTension>(rest, StretchTension::Settings{kLimit, kStiffness, 1.0});
 }
 
-/// Value and gradient.
-struct Pull {
-    double energy = 0.0;
-    std::vector<Vec3> gradient;
-};
-
-Pull pull_of(StretchTension& tension, View<const Vec3> x)
-{
-    Pull pull;
-    pull.gradient.assign(x.size(), Vec3::Zero());
-    pull.energy = tension.add_gradient(x, pull.gradient);
-    return pull;
-}
-
-double largest_of(const std::vector<Vec3>& field)
-{
-    double largest = 0.0;
-    for (const Vec3& value : field)
-        largest = std::max(largest, value.norm());
-    return largest;
-}
-
-/// Energies of a body on the device, and the inputs of an evaluation.
-class OnGpu {
-public:
-    OnGpu(const CudaSpace& space, int vertex_count)
-        : energies(space), x_(space, "test/x"), gradient_(space, "test/gradient", vertex_count),
-          energy_(space, "test/energy", vertex_count), partials_(space, "test/own")
-    {
-    }
-
-    void begin_step(const std::vector<Vec3>& x)
-    {
-        x_.upload(x);
-        for (const auto& energy : energies.all())
-            energy->begin_step(x_.view());
-    }
-    Pull pull(const std::vector<Vec3>& x)
-    {
-        x_.upload(x);
-        gradient_.fill_zero();
-        energy_.fill_zero();
-        partials_.resize(energies.partial_count());
-        energies.add_gradient(at());
-        Pull pull;
-        pull.gradient = gradient_.downloaded();
-        for (const double part : energy_.downloaded())
-            pull.energy += part;
-        return pull;
-    }
-    void end_minimisation(const std::vector<Vec3>& x)
-    {
-        x_.upload(x);
-        for (const auto& energy : energies.all())
-            energy->end_minimisation(x_.view());
-    }
-    DeviceEvaluation at() { return {x_.view(), gradient_.view(), energy_.view(), partials_.view()}; }
-
-    DeviceEnergies energies;
-
-private:
-    DeviceArray<Vec3> x_, gradient_;
-    DeviceArray<double> energy_, partials_;
-};
-
 using DeviceStretchTensionTest = OnDevice;
-
-void expect_equal(const Pull& on_gpu, const Pull& on_cpu)
-{
-    EXPECT_NEAR(on_gpu.energy, on_cpu.energy, 1e-12 * std::abs(on_cpu.energy));
-    const double scale = largest_of(on_cpu.gradient);
-    for (size_t v = 0; v < on_cpu.gradient.size(); ++v)
-        EXPECT_LT((on_gpu.gradient[v] - on_cpu.gradient[v]).norm(), 1e-12 * scale) << v;
-}
 
 TEST_F(DeviceStretchTensionTest, KeepsItsTensionFromStepToStepAsOnTheCpu)
 {
     const Sheet sheet = make_sheet(Vec2(0.4, 0.3), 20, 15, Pattern::Irregular);
     const auto rest = sheet.rest();
     const auto on_cpu = tension_of(rest), on_gpu = tension_of(rest);
-    OnGpu gpu(space(), rest->vertex_count());
+    EnergiesOnGpu gpu(space(), rest->vertex_count());
     ASSERT_TRUE(on_gpu->add_to(gpu.energies, 0));
     for (const double stretch : {1.1, 1.08, 1.05, 1.02, 3.0, 0.9, 0.9}) {
         const std::vector<Vec3> start = pulled(sheet, stretch), end = pulled(sheet, stretch + 0.01);
         on_cpu->begin_step(start);
-        gpu.begin_step(start);
-        expect_equal(gpu.pull(end), pull_of(*on_cpu, end));
+        gpu.begin_step(start, kDt);
+        expect_equal(gpu.pull(end), pull_of(*on_cpu, end), kRounding);
         on_cpu->remember(end);
         gpu.end_minimisation(end);
     }
@@ -135,11 +65,11 @@ TEST_F(DeviceStretchTensionTest, IsExactlyZeroOnASlackSheet)
 {
     const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 8, 8, Pattern::Irregular);
     const auto rest = sheet.rest();
-    OnGpu gpu(space(), rest->vertex_count());
+    EnergiesOnGpu gpu(space(), rest->vertex_count());
     const auto tension = tension_of(rest);
     tension->add_to(gpu.energies, 0);
     for (int step = 0; step < 2; ++step) {
-        gpu.begin_step(pulled(sheet, 1.0));
+        gpu.begin_step(pulled(sheet, 1.0), kDt);
         const Pull pull = gpu.pull(pulled(sheet, 1.2)); // stretched within the step: visible in the next
         EXPECT_EQ(pull.energy, 0.0);
         EXPECT_EQ(largest_of(pull.gradient), 0.0);
@@ -159,7 +89,7 @@ TEST_F(DeviceStretchTensionTest, KeepsClothsApartAndForgetsOneByOne)
     const auto on_cpu = tension_of(taut_rest), on_gpu = tension_of(taut_rest);
     StretchTension other_host(other_rest, stiff);
     const auto other_device = std::make_shared<StretchTension>(other_rest, stiff);
-    OnGpu gpu(space(), gap + n + m);
+    EnergiesOnGpu gpu(space(), gap + n + m);
     on_gpu->add_to(gpu.energies, gap);
     other_device->add_to(gpu.energies, gap + n);
     ASSERT_EQ(gpu.energies.all().size(), 1u);
@@ -180,16 +110,38 @@ TEST_F(DeviceStretchTensionTest, KeepsClothsApartAndForgetsOneByOne)
         }
         on_cpu->begin_step(x_part);
         other_host.begin_step(others);
-        gpu.begin_step(x);
+        gpu.begin_step(x, kDt);
         Pull expected{0.0, std::vector<Vec3>(gap, Vec3::Zero())};
         for (const Pull& part : {pull_of(*on_cpu, x_part), pull_of(other_host, others)}) {
             expected.energy += part.energy;
             expected.gradient.insert(expected.gradient.end(), part.gradient.begin(), part.gradient.end());
         }
-        expect_equal(gpu.pull(x), expected);
+        expect_equal(gpu.pull(x), expected, kRounding);
         on_cpu->remember(x_part);
         other_host.remember(others);
         gpu.end_minimisation(x);
+    }
+}
+
+TEST_F(DeviceStretchTensionTest, StoresNothingIfTheLimitIsElastic)
+{
+    const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 8, 8, Pattern::Irregular);
+    const auto rest = sheet.rest();
+    const auto elastic = StretchTension::Settings::elastic(kLimit, kStiffness);
+    const auto on_cpu = std::make_shared<StretchTension>(rest, elastic),
+               on_gpu = std::make_shared<StretchTension>(rest, elastic);
+    EnergiesOnGpu gpu(space(), rest->vertex_count());
+    on_gpu->add_to(gpu.energies, 0);
+    for (const double stretch : {1.2, 1.0, 1.08}) {
+        // Stretched within the step: visible at once.
+        const std::vector<Vec3> start = pulled(sheet, 1.0), end = pulled(sheet, stretch);
+        on_cpu->begin_step(start);
+        gpu.begin_step(start, kDt);
+        const Pull pull = gpu.pull(end);
+        expect_equal(pull, pull_of(*on_cpu, end), kRounding);
+        EXPECT_EQ(pull.energy > 0.0, stretch > 1.0 + kLimit);
+        on_cpu->remember(end);
+        gpu.end_minimisation(end);
     }
 }
 
@@ -201,17 +153,17 @@ TEST_F(DeviceStretchTensionTest, IgnoresSlivers)
     const auto rest = std::make_shared<const RestShape>(rest_shape_of_pattern(uv, triangles, "test"));
     ASSERT_TRUE(rest->is_sliver(2));
     const auto tension = tension_of(rest);
-    OnGpu gpu(space(), 5);
+    EnergiesOnGpu gpu(space(), 5);
     tension->add_to(gpu.energies, 0);
     std::vector<Vec3> x;
     x.reserve(uv.size());
     for (const Vec2& p : uv)
         x.emplace_back(p.x(), 0.0, p.y());
     x[4].z() = -0.002;
-    gpu.begin_step(x);
+    gpu.begin_step(x, kDt);
     EXPECT_EQ(gpu.pull(x).energy, 0.0);
     x[2].x() += 0.02;
-    gpu.begin_step(x);
+    gpu.begin_step(x, kDt);
     const Pull pull = gpu.pull(x);
     EXPECT_GT(pull.energy, 0.0);
     EXPECT_EQ(pull.gradient[4], Vec3(0.0, 0.0, 0.0));
@@ -222,13 +174,13 @@ TEST_F(DeviceStretchTensionTest, HasTheSameBitsTwiceAndAllocatesNothingInSteps)
     const Sheet sheet = make_sheet(Vec2(0.4, 0.3), 40, 30, Pattern::Irregular);
     const auto rest = sheet.rest();
     const auto run = [&] {
-        OnGpu gpu(space(), rest->vertex_count());
+        EnergiesOnGpu gpu(space(), rest->vertex_count());
         const auto tension = tension_of(rest);
         tension->add_to(gpu.energies, 0);
         Pull pull;
         const auto step = [&](double stretch) {
             const std::vector<Vec3> x = pulled(sheet, stretch);
-            gpu.begin_step(x);
+            gpu.begin_step(x, kDt);
             pull = gpu.pull(x);
             gpu.end_minimisation(x);
         };
@@ -294,7 +246,6 @@ private:
 
 TEST_F(DeviceStretchTensionTest, LimitsASheetOnTwoPinsAsOnTheCpu)
 {
-    constexpr double kDt = 1.0 / 60.0;
     const HeavySheet heavy;
     const auto on_cpu =
         std::make_shared<StretchTension>(heavy.rest(), StretchTension::Settings{0.06, 30.0, 1.0});

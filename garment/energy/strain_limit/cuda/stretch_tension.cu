@@ -22,7 +22,8 @@ DeviceStretchTension::DeviceStretchTension(const CudaSpace& space)
       tension_(space, "stretch_tension/tension"), rotated_tension_(space, "stretch_tension/rotated_tension"),
       near_(space, "stretch_tension/near"), has_near_(space, "stretch_tension/has_near"),
       watched_(space, "stretch_tension/watched"), watched_count_(space, "stretch_tension/watched_count", 1),
-      scratch_(space, "stretch_tension/scratch")
+      scratch_(space, "stretch_tension/scratch"), exceeds_(space, "stretch_tension/exceeds"),
+      side_blocks_(space, "stretch_tension")
 {
 }
 
@@ -68,6 +69,8 @@ void DeviceStretchTension::upload()
     tension_.fill_zero();
     rotated_tension_.resize(triangles_.size());
     near_.resize(triangles_.size());
+    near_.fill_zero();
+    exceeds_.resize(triangles_.size());
     has_near_.resize(first_corner_.size() - 1);
     watched_.resize(first_corner_.size() - 1);
     watched_count_.fill_zero();
@@ -80,7 +83,7 @@ TensionPull DeviceStretchTension::pull(View<const Vec3> x) const
             rotated_tension_.view()};
 }
 
-void DeviceStretchTension::begin_step(View<const Vec3> x)
+void DeviceStretchTension::begin_step(View<const Vec3> x, double)
 {
     for (Part& part : parts_)
         if (part.forgotten != part.tension->forgotten()) {
@@ -102,6 +105,18 @@ void DeviceStretchTension::add_gradient(const DeviceEvaluation& at)
                               PullWatchedVertices{pull(at.x), near_.view(), watched_.view(),
                                                   watched_count_.view(), first_corner_.view(),
                                                   corners_.view(), at.gradient, at.energy, kTeamCount});
+}
+
+void DeviceStretchTension::find_entries(const HessianPattern& pattern)
+{
+    side_blocks_.find_entries(host_.triangles, pattern);
+}
+
+void DeviceStretchTension::add_curvature(const DeviceCurvature& at)
+{
+    parallel_for(space_, "stretch_tension/curvature", triangles_.size(),
+                 CurveTensionTriangle{pull(at.x), near_.view(), exceeds_.view(), side_blocks_.sides()});
+    side_blocks_.add_to(at.blocks, "stretch_tension/gather_curvature", exceeds_.view());
 }
 
 void DeviceStretchTension::end_minimisation(View<const Vec3> x)

@@ -5,6 +5,7 @@
 #include "core/compute/cuda/array.h"
 #include "core/compute/cuda/scan.h"
 #include "core/pd/cuda/energy.h"
+#include "garment/energy/cuda/side_blocks.h"
 #include "garment/energy/strain_limit/stretch_tension.h"
 
 namespace toile::garment {
@@ -13,7 +14,8 @@ namespace toile::garment {
 ///
 /// An evaluation is one kernel over the vertices of triangles near their limit. It evaluates each triangle
 /// once per corner. The list of vertices is made at the start of a step; the launches do not depend on its
-/// length.
+/// length. The second derivative costs a kernel over triangles and one over edges that does little at most of
+/// them.
 class DeviceStretchTension : public DeviceEnergy {
 public:
     explicit DeviceStretchTension(const CudaSpace& space);
@@ -23,8 +25,10 @@ public:
     /// @param first_vertex  first vertex of the cloth in the body
     void add(const StretchTension& tension, int first_vertex);
 
-    void begin_step(View<const Vec3> x) override;
+    void begin_step(View<const Vec3> x, double dt) override;
     void add_gradient(const DeviceEvaluation& at) override;
+    void find_entries(const HessianPattern& pattern) override;
+    void add_curvature(const DeviceCurvature& at) override;
     void end_minimisation(View<const Vec3> x) override;
 
 private:
@@ -60,6 +64,8 @@ private:
     DeviceArray<unsigned char> near_, has_near_; ///< [triangles]; [vertices] with one that is near
     DeviceArray<int> watched_, watched_count_;   ///< vertices with a triangle that is near, [1] their number
     DeviceScratch scratch_;
+    DeviceArray<unsigned char> exceeds_; ///< [triangles] at the last add_curvature()
+    DeviceSideBlocks side_blocks_;
 };
 
 } // namespace toile::garment

@@ -265,6 +265,74 @@ TEST_F(DeviceBodyTest, HandlesContactAsOnTheCpu)
 }
 
 /// PCG's kernels then do not depend on the solver.
+/// Both converge to the same minimiser, from the same start, by different preconditioners.
+TEST_F(DeviceBodyTest, MinimisesByNewtonAsOnTheCpu)
+{
+    constexpr double kTolerance = 1e-4;
+    Body::Settings settings = exact();
+    settings.outer = OuterMethod::Newton;
+    settings.speed_tolerance = kTolerance;
+    DeviceBody::Settings device_settings;
+    device_settings.outer = OuterMethod::Newton;
+    device_settings.speed_tolerance = kTolerance;
+    device_settings.max_iterations = settings.max_iterations;
+    for (const bool touches : {false, true}) {
+        const Swings swings(3);
+        TouchingPlane plane(swings.start(), rough_floor());
+        Body cpu(swings.start(), swings.system(swings.solver()), settings);
+        const auto gpu = make_body(swings, device_settings);
+        for (int k = 0; k < 12; ++k) {
+            start_where(cpu, *gpu);
+            const StepReport expected = step(cpu, swings, touches ? &plane : nullptr);
+            const StepReport report = step(*gpu, swings, touches ? &plane : nullptr);
+            ASSERT_EQ(expected.status, StepReport::Status::Converged) << k;
+            ASSERT_EQ(report.status, StepReport::Status::Converged)
+                << k << ": " << report.iterations << " and " << expected.iterations << " iterations";
+            EXPECT_NEAR(report.iterations, expected.iterations, 3 + 0.5 * expected.iterations) << k;
+            EXPECT_LT(report.linear_iterations, 20 + 4 * expected.linear_iterations) << k;
+            EXPECT_NEAR(report.energy, expected.energy, 1e-6 * std::abs(expected.energy)) << k;
+            EXPECT_LT(max_distance(gpu->positions(), cpu.positions()), 5e-5) << touches << ", step " << k;
+        }
+    }
+}
+
+/// Motion and rest of the second order, with its touch rule.
+TEST_F(DeviceBodyTest, TakesStepsOfSecondOrderAsOnTheCpu)
+{
+    Body::Settings settings = exact();
+    settings.outer = OuterMethod::Newton;
+    settings.integrator = Integrator::Bdf2;
+    settings.speed_tolerance = 1e-4;
+    DeviceBody::Settings device_settings;
+    device_settings.outer = OuterMethod::Newton;
+    device_settings.integrator = Integrator::Bdf2;
+    device_settings.speed_tolerance = 1e-4;
+    device_settings.max_iterations = settings.max_iterations;
+    const Swings swings(2);
+    Body cpu(swings.start(), swings.system(swings.solver()), settings);
+    const auto gpu = make_body(swings, device_settings);
+    for (int k = 0; k < 6; ++k) {
+        step(cpu, swings);
+        step(*gpu, swings);
+        EXPECT_LT(max_distance(gpu->positions(), cpu.positions()), 1e-4 * (k + 1)) << k;
+    }
+}
+
+TEST_F(DeviceBodyTest, HasTheSameBitsOfNewtonEveryTime)
+{
+    DeviceBody::Settings settings;
+    settings.outer = OuterMethod::Newton;
+    settings.integrator = Integrator::Bdf2;
+    const Swings swings(3);
+    TouchingPlane plane(swings.start(), rough_floor());
+    const auto first = make_body(swings, settings), second = make_body(swings, settings);
+    for (int k = 0; k < 8; ++k) {
+        step(*first, swings, k > 3 ? &plane : nullptr);
+        step(*second, swings, k > 3 ? &plane : nullptr);
+        ASSERT_EQ(copy_of(first->positions()), copy_of(second->positions())) << k;
+    }
+}
+
 TEST_F(DeviceBodyTest, HasTheSameContactBitsWithAnySolver)
 {
     const Swings swings(2);

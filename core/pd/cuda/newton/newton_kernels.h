@@ -1,0 +1,177 @@
+#pragma once
+
+/// Kernels of DeviceNewton: trial points, and sums over them.
+
+#include <cmath>
+
+#include "core/compute/lanes.h"
+#include "core/pd/step/step_kernels.h"
+
+namespace toile {
+
+/// Starts a trial point: the gradient of its inertia, to which other terms add.
+struct BeginNewtonTrial {
+    InertiaOfVertex inertia; ///< at the trial point
+    View<double> energy;     ///< [vertices and more] out [J]
+
+    TOILE_HD void at(int i, const Vec3& x, View<Vec3> trial) const
+    {
+        trial[i] = x;
+        energy[i] = inertia.at(i, x, inertia.prediction[i], inertia.inertia[i]);
+    }
+};
+
+/// The current point as the trial point.
+struct TryHere {
+    View<const Vec3> x;
+    View<Vec3> trial;
+    BeginNewtonTrial begin;
+    TOILE_HD void operator()(int i) const { begin.at(i, x[i], trial); }
+};
+
+/// A step of some length along the direction.
+struct TryAlong {
+    View<const Vec3> x;
+    View<const PaddedVec3> direction;
+    double length; ///< [-]
+    View<Vec3> trial;
+    BeginNewtonTrial begin;
+    TOILE_HD void operator()(int i) const
+    {
+        begin.at(i, Vec3(x[i] + length * unpadded(direction[i])), trial);
+    }
+};
+
+/// No motion.
+struct TryRest {
+    View<const Vec3> start, prediction;
+    View<const unsigned char> fixed;
+    View<Vec3> trial;
+    BeginNewtonTrial begin;
+    TOILE_HD void operator()(int i) const { begin.at(i, fixed[i] != 0 ? prediction[i] : start[i], trial); }
+};
+
+/// A local and a global step.
+struct TryLocalGlobal {
+    View<const Vec3> x, z; ///< z = H^-1 g [m]
+    View<const unsigned char> fixed;
+    View<Vec3> trial;
+    BeginNewtonTrial begin;
+    TOILE_HD void operator()(int i) const
+    {
+        begin.at(i, fixed[i] != 0 ? Vec3(x[i]) : Vec3(x[i] - z[i]), trial);
+    }
+};
+
+/// Copies gradients, zero where fixed.
+struct CopyFreeGradient {
+    View<const Vec3> gradient;
+    View<const unsigned char> fixed;
+    View<Vec3> to;
+    TOILE_HD void operator()(int i) const { to[i] = fixed[i] != 0 ? Vec3(0.0, 0.0, 0.0) : Vec3(gradient[i]); }
+};
+
+/// Sums at a trial point.
+struct NewtonTrialSums {
+    static constexpr int kLargest = 0; ///< index of the number that is a maximum
+
+    double largest_square = 0.0; ///< [m^2] of the direction's vectors: a maximum, not a sum
+    double value = 0.0;          ///< [J]
+    double slope = 0.0;          ///< [J] gradient . direction
+    double mass_square = 0.0;    ///< [kg m^2] mass times squared direction
+    double bound = 0.0; ///< [kg m^2] mass times the square of gradient over inertia, at the trial point
+
+    TOILE_HD NewtonTrialSums& operator+=(const NewtonTrialSums& other)
+    {
+        largest_square = std::fmax(largest_square, other.largest_square);
+        value += other.value;
+        slope += other.slope;
+        mass_square += other.mass_square;
+        bound += other.bound;
+        return *this;
+    }
+};
+
+struct MeasureNewtonTrial {
+    View<const double> energy;          ///< [vertices and more] parts of the value [J]
+    View<const Vec3> gradient;          ///< [vertices] at the current point [N]
+    View<const Vec3> trial_gradient;    ///< [vertices] [N]
+    View<const PaddedVec3> direction;   ///< [vertices] [m]
+    View<const double> masses, inertia; ///< [vertices] [kg], [N/m]
+    View<const unsigned char> fixed;    ///< [vertices]
+
+    TOILE_HD NewtonTrialSums operator()(int i) const
+    {
+        NewtonTrialSums sums;
+        for (int k = i; k < energy.size(); k += masses.size())
+            sums.value += energy[k];
+        if (fixed[i] != 0)
+            return sums;
+        const Vec3 d = unpadded(direction[i]);
+        sums.largest_square = d.squaredNorm();
+        sums.slope = gradient[i].dot(d);
+        sums.mass_square = masses[i] * sums.largest_square;
+        sums.bound = masses[i] * (trial_gradient[i] / inertia[i]).squaredNorm();
+        return sums;
+    }
+};
+
+/// Sums over the start of a step.
+struct NewtonStartSums {
+    static constexpr int kLargest = 0;
+
+    double moving = 0.0;  ///< 1 if a fixed vertex has another target than its position
+    double inertia = 0.0; ///< [J] of no motion
+    double driving = 0.0; ///< [kg m^2] mass times the square of what external forces alone would move
+    double mass = 0.0;    ///< [kg] of the free vertices
+
+    TOILE_HD NewtonStartSums& operator+=(const NewtonStartSums& other)
+    {
+        moving = std::fmax(moving, other.moving);
+        inertia += other.inertia;
+        driving += other.driving;
+        mass += other.mass;
+        return *this;
+    }
+};
+
+struct MeasureNewtonStart {
+    View<const Vec3> x, v, prediction;  ///< [vertices] at t0 [m], [m/s]; [m]
+    View<const double> masses, inertia; ///< [vertices] [kg], [N/m]
+    View<const unsigned char> fixed;    ///< [vertices]
+    double dt;                          ///< [s]
+
+    TOILE_HD NewtonStartSums operator()(int i) const
+    {
+        NewtonStartSums sums;
+        const Vec3 move = prediction[i] - x[i];
+        if (fixed[i] != 0) {
+            sums.moving = move != Vec3(0.0, 0.0, 0.0) ? 1.0 : 0.0;
+            return sums;
+        }
+        sums.inertia = 0.5 * inertia[i] * move.squaredNorm();
+        sums.driving = masses[i] * (move - dt * v[i]).squaredNorm();
+        sums.mass = masses[i];
+        return sums;
+    }
+};
+
+/// Whether positions differ.
+struct CountMoved {
+    View<const Vec3> x, trial;
+    TOILE_HD double operator()(int i) const { return x[i] != trial[i] ? 1.0 : 0.0; }
+};
+
+/// Start guess of a step: free vertices keep their velocity.
+struct GuessByVelocity {
+    View<const Vec3> x, v, prediction;
+    View<const unsigned char> fixed;
+    double dt;
+    View<Vec3> guess;
+    TOILE_HD void operator()(int i) const
+    {
+        guess[i] = fixed[i] != 0 ? Vec3(prediction[i]) : Vec3(x[i] + dt * v[i]);
+    }
+};
+
+} // namespace toile

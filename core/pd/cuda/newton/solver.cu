@@ -1,0 +1,90 @@
+#include "core/pd/cuda/newton/solver.h"
+
+#include "core/compute/cuda/record_sum.cuh"
+#include "core/compute/cuda/teams.cuh"
+
+namespace toile {
+
+DeviceHessianSolver::DeviceHessianSolver(const CudaSpace& space, View<const EmbeddedPoint> points,
+                                         const BlockMatrix& blocks, const SparseMatrix& isotropic,
+                                         DeviceEnergies& energies)
+    : space_(space), hessian_(space, HessianPattern(blocks, isotropic), energies),
+      hierarchy_(space, ClusterHierarchy(points, blocks, isotropic)), masses_(space, "newton/masses"),
+      fixed_(space, "newton/fixed"), first_part_(space, "newton/first_part", points.size()),
+      second_part_(space, "newton/second_part", points.size()), x_(space, "newton/x", points.size()),
+      r_(space, "newton/r", points.size()), z_(space, "newton/z", points.size()),
+      p_(space, "newton/p", points.size()), Kz_(space, "newton/Kz", points.size()),
+      Kp_(space, "newton/Kp", points.size()),
+      state_(space, "newton/state", 1), reports_{{space, "newton/report"}, {space, "newton/report"}},
+      sums_(space)
+{
+}
+
+void DeviceHessianSolver::set_fixed(const std::vector<unsigned char>& fixed, View<const double> masses)
+{
+    fixed_.upload(fixed);
+    masses_.upload(masses);
+    hierarchy_.set_fixed(fixed);
+    mass_ = 0.0;
+    for (int i = 0; i < masses.size(); ++i)
+        mass_ += fixed[i] ? 0.0 : masses[i];
+}
+
+NewtonPcgFields DeviceHessianSolver::fields()
+{
+    return {x_.view(), r_.view(), z_.view(), p_.view(), Kz_.view(), Kp_.view()};
+}
+
+void DeviceHessianSolver::update(View<const Vec3> x, View<const double> inertia, DeviceActiveSet* active,
+                                 bool with_coarse)
+{
+    active_ = active;
+    hessian_.linearise(x, inertia);
+    const FrozenTerms terms = active_ ? FrozenTerms::of(active_->frozen()) : FrozenTerms{};
+    parallel_for(
+        space_, "newton/invert_diagonal", x.size(),
+        InvertDiagonal{hessian_.view(), terms, fixed_.view(), first_part_.view(), second_part_.view()});
+    if (with_coarse)
+        hierarchy_.update(hessian_.view(), terms);
+}
+
+NewtonSpace::Direction DeviceHessianSolver::solve(View<const Vec3> g, double increment)
+{
+    const StageScope stage("newton/pcg");
+    parallel_for_teams(space_, "newton/begin", hierarchy_.cluster_count(),
+                       BeginNewtonPcg{g, fixed_.view(), fields(), hierarchy_.fields(), state_.view()});
+    NewtonPcgState now;
+    for (int iteration = 0; !now.is_over; ++iteration) {
+        precondition();
+        multiply(increment);
+        parallel_for_teams(
+            space_, "newton/advance", hierarchy_.cluster_count(),
+            AdvanceNewtonPcg{fields(), hierarchy_.fields(), state_.view(), reports_[iteration % 2].next()});
+        // The device is an iteration ahead, so that it never waits. That one does nothing after the last.
+        if (iteration > 0)
+            now = reports_[(iteration - 1) % 2].await();
+    }
+    return {now.iterations, now.is_solved};
+}
+
+void DeviceHessianSolver::precondition()
+{
+    hierarchy_.solve();
+    parallel_for_teams(space_, "newton/precondition", hierarchy_.cluster_count(),
+                       Precondition{fields(), hierarchy_.fields(), first_part_.view(), second_part_.view()});
+}
+
+void DeviceHessianSolver::multiply(double increment)
+{
+    const MultiplyHessian multiply{fields(), hessian_.view(), masses_.view(), fixed_.view()};
+    const FindNewtonStep then{state_.view(), mass_, increment};
+    if (!active_)
+        return parallel_sum_record_then<NewtonPcgSums>(space_, "newton/multiply", x_.size(), multiply, then,
+                                                       sums_);
+    active_->multiply(z_.view());
+    parallel_sum_record_then<NewtonPcgSums>(space_, "newton/multiply", x_.size(),
+                                            MultiplyWithTerms{multiply, FrozenTerms::of(active_->frozen())},
+                                            then, sums_);
+}
+
+} // namespace toile

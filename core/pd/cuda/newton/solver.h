@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+
+#include "core/compute/cuda/report.h"
+#include "core/compute/cuda/sum_scratch.h"
+#include "core/pd/cuda/active_set.h"
+#include "core/pd/cuda/newton/hessian.h"
+#include "core/pd/cuda/newton/hierarchy.h"
+#include "core/pd/cuda/newton/solver_kernels.h"
+#include "core/pd/newton/newton_space.h"
+
+namespace toile {
+
+/// HessianSolver on a GPU, with a DeviceHierarchy as the coarse part of its preconditioner.
+class DeviceHessianSolver {
+public:
+    /// @param space, energies  borrowed
+    /// @param points  [vertices] undeformed positions
+    /// @param blocks, isotropic  pattern of the Hessian, see HessianPattern
+    DeviceHessianSolver(const CudaSpace& space, View<const EmbeddedPoint> points, const BlockMatrix& blocks,
+                        const SparseMatrix& isotropic, DeviceEnergies& energies);
+
+    /// Takes other fixed vertices.
+    /// @param masses  [vertices] [kg]
+    void set_fixed(const std::vector<unsigned char>& fixed, View<const double> masses);
+
+    /// Takes the Hessian at x, with the frozen terms of `active`, which may be null. Enqueued.
+    /// @param with_coarse  also for the coarse part, which may be older
+    void update(View<const Vec3> x, View<const double> inertia, DeviceActiveSet* active, bool with_coarse);
+
+    /// Solves K d = -g; see HessianSolver::solve. Waits.
+    NewtonSpace::Direction solve(View<const Vec3> g, double increment);
+
+    View<const PaddedVec3> direction() const { return x_.view(); } ///< d [vertices] [m]
+
+private:
+    void precondition();
+    void multiply(double increment);
+    NewtonPcgFields fields();
+
+    const CudaSpace& space_;
+    DeviceHessian hessian_;
+    DeviceHierarchy hierarchy_;
+    DeviceActiveSet* active_ = nullptr; ///< null: no frozen terms
+    double mass_ = 0.0;                 ///< [kg] of the free vertices
+    DeviceArray<double> masses_;
+    DeviceArray<unsigned char> fixed_;
+    DeviceArray<Floats<4>> first_part_; ///< see InvertDiagonal
+    DeviceArray<Floats<2>> second_part_;
+    DeviceArray<PaddedVec3> x_, r_, z_, p_, Kz_, Kp_;
+    DeviceArray<NewtonPcgState> state_;
+    DeviceReport<NewtonPcgState> reports_[2];
+    RecordScratch sums_;
+};
+
+} // namespace toile

@@ -1,0 +1,90 @@
+#include "core/pd/newton/host_newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/compute/parallel.h"
+#include "core/linear/field.h"
+#include "core/pd/step/rest_start.h"
+
+namespace toile {
+
+void HostNewton::set_problem(const Problem& problem)
+{
+    problem_ = problem;
+    for (std::vector<Vec3>* field : {&gradient_, &direction_, &trial_, &trial_gradient_})
+        field->resize(problem.x.size());
+}
+
+double HostNewton::evaluate() { return problem_.objective->evaluate(problem_.x, gradient_); }
+
+double HostNewton::max_speed() { return problem_.objective->max_speed_of(gradient_); }
+
+NewtonSpace::Direction HostNewton::find_direction(bool is_first, double increment)
+{
+    Objective& objective = *problem_.objective;
+    objective.accept(problem_.x);
+    Hessian* const K = objective.hessian();
+    if (K == nullptr)
+        throw InvalidInput("newton: the objective has no second derivatives; choose another method");
+    K->linearise(problem_.x, Definiteness::Projected);
+    solver_.update(K->parts(), is_first);
+    const HessianSolver::Outcome outcome = solver_.solve(gradient_, problem_.masses, increment, direction_);
+    return {outcome.iterations, outcome.is_solved};
+}
+
+NewtonSpace::Trial HostNewton::try_step(double length)
+{
+    parallel_for(
+        kCpu, "newton/trial", problem_.x.size(),
+        [&](int i) { trial_[i] = problem_.x[i] + length * direction_[i]; }, kFieldGrain);
+    Trial trial;
+    trial.value = problem_.objective->evaluate(trial_, trial_gradient_);
+    trial.slope = dot(gradient_, direction_);
+    trial.speed = problem_.objective->speed_of(direction_);
+    trial.displacement = max_norm(direction_);
+    return trial;
+}
+
+double HostNewton::try_rest(double limit)
+{
+    const RestStart rest{problem_.start, problem_.prediction, problem_.inertia, problem_.fixed};
+    return rest.value(*problem_.objective, limit, trial_, trial_gradient_);
+}
+
+double HostNewton::try_local_global()
+{
+    problem_.objective->precondition_linearly(gradient_, trial_);
+    for (int i = 0; i < problem_.x.size(); ++i)
+        trial_[i] = problem_.x[i] - trial_[i];
+    return problem_.objective->evaluate(trial_, trial_gradient_);
+}
+
+void HostNewton::take()
+{
+    std::copy(trial_.begin(), trial_.end(), problem_.x.begin());
+    gradient_.swap(trial_gradient_);
+}
+
+bool HostNewton::has_moved() { return !std::equal(problem_.x.begin(), problem_.x.end(), trial_.begin()); }
+
+double HostNewton::driving_speed()
+{
+    const Problem& p = problem_;
+    parallel_for(kCpu, "newton/driving", p.x.size(),
+                 [&](int i) { trial_[i] = p.prediction[i] - p.start[i] - p.dt * p.v[i]; });
+    return p.objective->speed_of(trial_);
+}
+
+bool HostNewton::are_fixed_moving()
+{
+    for (int i = 0; i < problem_.x.size(); ++i)
+        if (problem_.fixed[i] && problem_.prediction[i] != problem_.start[i])
+            return true;
+    return false;
+}
+
+double HostNewton::gradient_norm() { return max_norm(gradient_); }
+
+} // namespace toile

@@ -1,0 +1,67 @@
+#pragma once
+
+namespace toile {
+
+/// Points of a step's objective that Newton's method visits, on the machine that makes the step: the current
+/// point with its gradient, a direction from there, and a trial point with its own.
+class NewtonSpace {
+public:
+    struct Direction {
+        int iterations = 0;     ///< of conjugate gradients
+        bool is_solved = false; ///< false: stopped by their limit
+    };
+    struct Trial {
+        double value = 0.0;        ///< [J] of the objective
+        double slope = 0.0;        ///< [J] gradient . direction, at the current point
+        double speed = 0.0;        ///< [m/s] RMS of the whole direction by mass, per time of the step
+        double displacement = 0.0; ///< [m] largest of the whole direction
+    };
+
+    /// Evaluates value [J] and gradient at the current point, which others may have moved.
+    virtual double evaluate() = 0;
+
+    /// Bound on the speed of the Newton step from the current point, by its gradient and the inertia [m/s].
+    virtual double max_speed() = 0;
+
+    /// Solves K d = -g with the Hessian K at the current point.
+    /// @param is_first   of the minimisation: the coarse part of the preconditioner is made anew
+    /// @param increment  [m] see HessianSolver::solve
+    virtual Direction find_direction(bool is_first, double increment) = 0;
+
+    // Trial points.
+
+    /// @param length  [-] along the direction
+    virtual Trial try_step(double length) = 0;
+
+    /// No motion. @return its value; infinite, without evaluation, if its inertia alone is `limit` [J] or
+    /// more
+    virtual double try_rest(double limit) = 0;
+
+    /// A local and a global step, x - H^-1 g(x): the best first step while nothing touches.
+    virtual double try_local_global() = 0;
+
+    /// Makes the last trial point the current one.
+    virtual void take() = 0;
+
+    /// True if others have moved the current point since take().
+    virtual bool has_moved() = 0;
+
+    // The step.
+
+    /// RMS speed that external forces alone would add in it [m/s].
+    virtual double driving_speed() = 0;
+
+    /// True if a fixed vertex has another target than its position.
+    virtual bool are_fixed_moving() = 0;
+
+    /// Largest entry of the gradient at the current point [N].
+    virtual double gradient_norm() = 0;
+
+protected:
+    NewtonSpace() = default;
+    NewtonSpace(const NewtonSpace&) = default;
+    NewtonSpace& operator=(const NewtonSpace&) = default;
+    ~NewtonSpace() = default;
+};
+
+} // namespace toile
