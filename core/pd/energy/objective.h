@@ -31,6 +31,12 @@ public:
     /// Computes out = K p [N].
     virtual void multiply(View<const Vec3> p, View<Vec3> out) = 0;
 
+    /// Computes out = K p without the part of an active set [N].
+    virtual void multiply_without_active_set(View<const Vec3> p, View<Vec3> out) { multiply(p, out); }
+
+    /// Takes over another frozen Hessian of the active set; the rest stays.
+    virtual void update_active_set() {}
+
     /// 3 x 3 blocks on the diagonal, or bounds on them: positive definite when projected. [vertices]
     virtual View<const Mat3> diagonal_blocks() const = 0;
 

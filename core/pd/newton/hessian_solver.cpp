@@ -68,7 +68,7 @@ HessianSolver::Sums HessianSolver::for_chunks(const char* name, const Kernel& ke
     return total;
 }
 
-HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const double> masses, double increment,
+HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const double> masses, const Stop& stop,
                                             View<Vec3> d)
 {
     const StageScope stage("newton/pcg");
@@ -113,12 +113,13 @@ HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const doubl
             }
         });
         ++outcome.iterations;
-        small = step * std::sqrt(curvature.second) < increment ? small + 1 : 0;
-        if (small >= 2 && rz <= kReduction * first_rz) {
+        small = step * std::sqrt(curvature.second) < stop.increment ? small + 1 : 0;
+        if (small >= 2 && rz <= (stop.residual > 0.0 ? stop.residual : kReduction * first_rz)) {
             outcome.is_solved = true;
             break;
         }
     }
+    outcome.residual = rz;
     std::fill(d.begin(), d.end(), Vec3::Zero());
     for (int i = 0; i < order.size(); ++i)
         d[order[i]] = unpadded(x_[i]);

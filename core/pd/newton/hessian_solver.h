@@ -18,6 +18,7 @@ public:
     struct Outcome {
         int iterations = 0;
         bool is_solved = false; ///< the increments became small; false: stopped by kMaxIterations
+        double residual = 0.0;  ///< [J] r . P r at the last iteration
     };
 
     /// Limit of iterations.
@@ -34,11 +35,16 @@ public:
     /// @param with_coarse  also of the coarse space, which may be older
     void update(const HessianParts& K, bool with_coarse);
 
-    /// Solves until the RMS of the increment, by mass, is below `increment` [m] twice in succession.
+    /// When a solve ends.
+    struct Stop {
+        double increment = 0.0; ///< [m] RMS of the increment, by mass, twice in succession
+        double residual = 0.0;  ///< [J] bound on r . P r as well; 0: kReduction of the first
+    };
+
     /// @param g       [vertices] [N]
     /// @param masses  [vertices] [kg]
     /// @param d       [vertices] out [m]; zero where fixed
-    Outcome solve(View<const Vec3> g, View<const double> masses, double increment, View<Vec3> d);
+    Outcome solve(View<const Vec3> g, View<const double> masses, const Stop& stop, View<Vec3> d);
 
 private:
     struct Sums {

@@ -21,7 +21,7 @@ double HostNewton::evaluate() { return problem_.objective->evaluate(problem_.x, 
 
 double HostNewton::max_speed() { return problem_.objective->max_speed_of(gradient_); }
 
-NewtonSpace::Direction HostNewton::find_direction(bool is_first, double increment)
+NewtonSpace::Solution HostNewton::find_direction(bool is_first, double increment)
 {
     Objective& objective = *problem_.objective;
     objective.accept(problem_.x);
@@ -30,8 +30,65 @@ NewtonSpace::Direction HostNewton::find_direction(bool is_first, double incremen
         throw InvalidInput("newton: the objective has no second derivatives; choose another method");
     K->linearise(problem_.x, Definiteness::Projected);
     solver_.update(K->parts(), is_first);
-    const HessianSolver::Outcome outcome = solver_.solve(gradient_, problem_.masses, increment, direction_);
-    return {outcome.iterations, outcome.is_solved};
+    correction_.resize(problem_.x.size());
+    const Solution solution = solve(gradient_, {increment, 0.0});
+    direction_ = correction_;
+    return solution;
+}
+
+NewtonSpace::Solution HostNewton::solve(View<const Vec3> gradient, const HessianSolver::Stop& stop)
+{
+    const HessianSolver::Outcome outcome = solver_.solve(gradient, problem_.masses, stop, correction_);
+    if (stop.residual == 0.0)
+        first_residual_ = outcome.residual;
+    return {outcome.iterations, outcome.is_solved, -0.5 * dot(gradient, correction_)};
+}
+
+bool HostNewton::has_contact()
+{
+    if (problem_.active == nullptr || !problem_.active->may_be_active())
+        return false;
+    const int n = problem_.x.size();
+    for (std::vector<Vec3>* field : {&base_, &contact_gradient_})
+        field->assign(n, Vec3::Zero());
+    product_.resize(n);
+    model_gradient_.resize(n);
+    contact_here_ = problem_.active->add_gradient(problem_.x, contact_gradient_);
+    gradient_without_contact_.resize(n);
+    for (int i = 0; i < n; ++i)
+        gradient_without_contact_[i] =
+            problem_.fixed[i] ? Vec3(Vec3::Zero()) : Vec3(gradient_[i] - contact_gradient_[i]);
+    return true;
+}
+
+double HostNewton::model(double length)
+{
+    parallel_for(
+        kCpu, "newton/model", problem_.x.size(),
+        [&](int i) {
+            direction_[i] = base_[i] + length * correction_[i];
+            trial_[i] = problem_.x[i] + direction_[i];
+            contact_gradient_[i].setZero();
+        },
+        kFieldGrain);
+    const double contact = problem_.active->add_gradient(trial_, contact_gradient_);
+    problem_.objective->hessian()->multiply_without_active_set(direction_, product_);
+    return dot(gradient_without_contact_, direction_) + 0.5 * dot(direction_, product_) + contact -
+           contact_here_;
+}
+
+NewtonSpace::Solution HostNewton::correct(double increment)
+{
+    base_ = direction_;
+    for (int i = 0; i < problem_.x.size(); ++i)
+        model_gradient_[i] = problem_.fixed[i]
+                                 ? Vec3(Vec3::Zero())
+                                 : Vec3(gradient_without_contact_[i] + product_[i] + contact_gradient_[i]);
+    problem_.objective->accept(trial_);
+    Hessian* const K = problem_.objective->hessian();
+    K->update_active_set();
+    solver_.update(K->parts(), false);
+    return solve(model_gradient_, {increment, kCorrectionResidual * first_residual_});
 }
 
 NewtonSpace::Trial HostNewton::try_step(double length)

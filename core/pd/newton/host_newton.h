@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/pd/energy/active_set_energy.h"
 #include "core/pd/newton/hessian_solver.h"
 #include "core/pd/newton/newton_space.h"
 
@@ -13,14 +14,15 @@ public:
     /// Objective and fields of a step; borrowed.
     struct Problem {
         Objective* objective = nullptr;
-        View<Vec3> x;                    ///< [vertices] the current point [m]
-        View<const Vec3> start;          ///< [vertices] positions at t0 [m]
-        View<const Vec3> v;              ///< [vertices] velocities at t0 [m/s]
-        View<const Vec3> prediction;     ///< [vertices] [m]
-        View<const double> inertia;      ///< [vertices] [N/m]
-        View<const double> masses;       ///< [vertices] [kg]
-        View<const unsigned char> fixed; ///< [vertices]
-        double dt = 0.0;                 ///< [s]
+        View<Vec3> x;                      ///< [vertices] the current point [m]
+        View<const Vec3> start;            ///< [vertices] positions at t0 [m]
+        View<const Vec3> v;                ///< [vertices] velocities at t0 [m/s]
+        View<const Vec3> prediction;       ///< [vertices] [m]
+        View<const double> inertia;        ///< [vertices] [N/m]
+        View<const double> masses;         ///< [vertices] [kg]
+        View<const unsigned char> fixed;   ///< [vertices]
+        double dt = 0.0;                   ///< [s]
+        ActiveSetEnergy* active = nullptr; ///< contact; may be null
     };
 
     /// @param points  [vertices] undeformed positions, for the clusters of the AffineSpace
@@ -31,7 +33,10 @@ public:
 
     double evaluate() override;
     double max_speed() override;
-    Direction find_direction(bool is_first, double increment) override;
+    Solution find_direction(bool is_first, double increment) override;
+    bool has_contact() override;
+    double model(double length) override;
+    Solution correct(double increment) override;
     Trial try_step(double length) override;
     double try_rest(double limit) override;
     double try_local_global() override;
@@ -42,9 +47,18 @@ public:
     double gradient_norm() override;
 
 private:
+    Solution solve(View<const Vec3> gradient, const HessianSolver::Stop& stop);
+
     Problem problem_;
     HessianSolver solver_;
+    double first_residual_ = 0.0; ///< HessianSolver::Outcome::residual of find_direction()
     std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_;
+
+    // Contact ahead, see NewtonSpace::model().
+    double contact_here_ = 0.0;                  ///< [J] contact's energy at the current point
+    std::vector<Vec3> base_, correction_;        ///< d, e [m]
+    std::vector<Vec3> gradient_without_contact_; ///< at the current point [N]
+    std::vector<Vec3> product_, contact_gradient_, model_gradient_; ///< K d, both at the end of d [N]
 };
 
 } // namespace toile

@@ -38,6 +38,14 @@ double tolerance_by_driving(double driving)
     return kOfDriving * driving * std::min(1.0, driving / kDrivingOfStep);
 }
 
+/// Corrections of a direction by the contact ahead. Most need one or two.
+constexpr int kContactCorrections = 4;
+
+/// Part of its predicted decrease [-] that a model must reach to be trusted, and the factor by which its
+/// direction is shortened otherwise, at most kMaxShortenings times.
+constexpr double kTrusted = 0.7, kShorten = 0.3;
+constexpr int kMaxShortenings = 7;
+
 /// Chooses the start. @return its value
 double begin(NewtonSpace& space, bool is_calm)
 {
@@ -56,12 +64,43 @@ double begin(NewtonSpace& space, bool is_calm)
     return moved;
 }
 
+/// Finds a direction that sees the contact ahead. K knows what presses now; along its direction cloth meets
+/// what does not press yet, a thousand times stiffer than what moves it, and a line search would allow a
+/// hundredth of the step. So contact is linearised anew where the direction leads, as far as the model's
+/// value falls, and the direction is corrected: a semi-smooth Newton method on the model [Hintermueller et
+/// al. 2002].
+NewtonSpace::Solution find_direction(NewtonSpace& space, bool is_first, double increment)
+{
+    NewtonSpace::Solution found = space.find_direction(is_first, increment);
+    if (!space.has_contact())
+        return found;
+    double value = 0.0, predicted = found.decrease;
+    for (int correction = 0;; ++correction) {
+        double length = 1.0, now = space.model(length);
+        for (int k = 0;
+             k < kMaxShortenings && !(now <= value - LineSearch::kSufficientDecrease * length * predicted);
+             ++k)
+            now = space.model(length *= kShorten);
+        if (!(now < value)) {
+            space.model(correction == 0 ? 1.0 : 0.0); // the line search has more trials
+            return found;
+        }
+        if (value - now >= kTrusted * predicted || correction == kContactCorrections)
+            return found;
+        value = now;
+        const NewtonSpace::Solution more = space.correct(increment);
+        predicted = more.decrease;
+        found.iterations += more.iterations;
+        found.is_solved = more.is_solved;
+    }
+}
+
 /// Makes a Newton step.
 /// @return the accepted part of it, 0 if there is none
 double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::Outcome& outcome)
 {
-    const NewtonSpace::Direction direction =
-        space.find_direction(outcome.iterations == 0, kIncrement * settings.tolerance * settings.dt);
+    const NewtonSpace::Solution direction =
+        find_direction(space, outcome.iterations == 0, kIncrement * settings.tolerance * settings.dt);
     NewtonSpace::Trial trial = space.try_step(1.0);
     LineSearch search{outcome.value, trial.slope};
     double step = 0.0;

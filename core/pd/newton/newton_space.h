@@ -6,9 +6,11 @@ namespace toile {
 /// point with its gradient, a direction from there, and a trial point with its own.
 class NewtonSpace {
 public:
-    struct Direction {
-        int iterations = 0;     ///< of conjugate gradients
+    /// Solution of a linear system, by conjugate gradients.
+    struct Solution {
+        int iterations = 0;
         bool is_solved = false; ///< false: stopped by their limit
+        double decrease = 0.0;  ///< [J] that the model predicts
     };
     struct Trial {
         double value = 0.0;        ///< [J] of the objective
@@ -23,10 +25,22 @@ public:
     /// Bound on the speed of the Newton step from the current point, by its gradient and the inertia [m/s].
     virtual double max_speed() = 0;
 
-    /// Solves K d = -g with the Hessian K at the current point.
+    /// Finds the direction d by K d = -g, with the Hessian K at the current point.
     /// @param is_first   of the minimisation: the coarse part of the preconditioner is made anew
-    /// @param increment  [m] see HessianSolver::solve
-    virtual Direction find_direction(bool is_first, double increment) = 0;
+    /// @param increment  [m] see HessianSolver::Stop
+    virtual Solution find_direction(bool is_first, double increment) = 0;
+
+    // Contact ahead. The direction is d + length e: e is find_direction()'s with d = 0, or correct()'s.
+
+    /// True if there are contact terms.
+    virtual bool has_contact() = 0;
+
+    /// Sets the length [-] of e. @return change of the value [J] where everything but contact is quadratic,
+    /// and contact what it is at the end of the direction
+    virtual double model(double length) = 0;
+
+    /// Takes d + length e as d, and finds e by the contact there.
+    virtual Solution correct(double increment) = 0;
 
     // Trial points.
 
@@ -56,6 +70,10 @@ public:
 
     /// Largest entry of the gradient at the current point [N].
     virtual double gradient_norm() = 0;
+
+    /// Bound on the residual of correct(), relative to that where find_direction() has ended [-]. The first
+    /// residual is contact's: stiff, and soon gone, while the rest has hardly moved.
+    static constexpr double kCorrectionResidual = 4.0;
 
 protected:
     NewtonSpace() = default;

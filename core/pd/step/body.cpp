@@ -59,6 +59,7 @@ void Body::begin(const StepInput& input)
         for (size_t i = 0; i < x_.size(); ++i)
             if (!input.fixed[i])
                 x_t1_[i] = x_[i] + dt_ * v_[i];
+    active_ = input.active;
     objective_.emplace(*system_, start(), input.active, settings_.contact_solve, settings_.stop);
 }
 
@@ -143,8 +144,8 @@ OuterLoop::Outcome Body::no_worse_than_standing(OuterLoop::Settings settings, co
 OuterLoop::Outcome Body::minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                             bool is_calm)
 {
-    newton_->set_problem(
-        {&*objective_, x_t1_, x_, v_, prediction_, inertia_, system_->masses(), system_->fixed(), dt_});
+    newton_->set_problem({&*objective_, x_t1_, x_, v_, prediction_, inertia_, system_->masses(),
+                          system_->fixed(), dt_, active_});
     return Newton::minimise(*newton_, settings, revise, is_calm);
 }
 

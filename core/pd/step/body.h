@@ -70,6 +70,7 @@ private:
     std::optional<HostNewton> newton_;
     double dt_ = 0.0;                        ///< of the current step [s]
     std::optional<StepObjective> objective_; ///< of the current step
+    ActiveSetEnergy* active_ = nullptr;      ///< likewise; may be null
     std::vector<Vec3> prediction_, standing_, gradient_;
 
     // State of the integrator: see MotionView.

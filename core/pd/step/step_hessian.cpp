@@ -13,6 +13,11 @@ StepHessian::StepHessian(Curvature& curvature, View<const double> inertia, View<
 void StepHessian::linearise(View<const Vec3> x, Definiteness definiteness)
 {
     curvature_.assemble(x, definiteness);
+    update_active_set();
+}
+
+void StepHessian::update_active_set()
+{
     const SparseMatrix& isotropic = curvature_.isotropic();
     parallel_for(kCpu, "pd/hessian_diagonal", int(diagonal_.size()), [&](int i) {
         if (fixed_[i]) {
@@ -28,6 +33,17 @@ void StepHessian::linearise(View<const Vec3> x, Definiteness definiteness)
 
 void StepHessian::multiply(View<const Vec3> p, View<Vec3> out)
 {
+    multiply_without_active_set(p, out);
+    if (!active_)
+        return;
+    active_->add_hessian_product(free_, out);
+    for (int i = 0; i < p.size(); ++i)
+        if (fixed_[i])
+            out[i] = p[i];
+}
+
+void StepHessian::multiply_without_active_set(View<const Vec3> p, View<Vec3> out)
+{
     const SparseMatrix& isotropic = curvature_.isotropic();
     parallel_for(
         kCpu, "pd/hessian_input", p.size(), [&](int i) { free_[i] = fixed_[i] ? Vec3(Vec3::Zero()) : p[i]; },
@@ -36,8 +52,6 @@ void StepHessian::multiply(View<const Vec3> p, View<Vec3> out)
         out[i] =
             inertia_[i] * p[i] + row_times(isotropic, i, free_) + curvature_.blocks().row_times(i, free_);
     });
-    if (active_)
-        active_->add_hessian_product(free_, out);
     for (int i = 0; i < p.size(); ++i)
         if (fixed_[i])
             out[i] = p[i];

@@ -20,6 +20,8 @@ public:
 
     void linearise(View<const Vec3> x, Definiteness definiteness) override;
     void multiply(View<const Vec3> p, View<Vec3> out) override;
+    void multiply_without_active_set(View<const Vec3> p, View<Vec3> out) override;
+    void update_active_set() override;
     View<const Mat3> diagonal_blocks() const override { return diagonal_; }
     SparseMatrix matrix() const override;
     HessianParts parts() const override;

@@ -16,10 +16,16 @@ DeviceNewton::DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> poi
       solver_(space, points, blocks, isotropic, energies), gradient_(space, "newton/gradient", points.size()),
       trial_x_(space, "newton/trial_x", points.size()),
       trial_gradient_(space, "newton/trial_gradient", points.size()),
-      energy_(space, "newton/energy", points.size() + energies.partial_count()), sums_(space),
-      trial_report_(space, "newton/trial"), start_report_(space, "newton/start"), moved_(space)
+      energy_(space, "newton/energy", points.size() + energies.partial_count()),
+      direction_(space, "newton/direction", points.size()), base_(space, "newton/base"),
+      gradient_without_contact_(space, "newton/gradient_without_contact"),
+      contact_gradient_(space, "newton/contact_gradient"), model_gradient_(space, "newton/model_gradient"),
+      contact_energy_(space, "newton/contact_energy"), sums_(space), model_report_(space, "newton/model"),
+      trial_report_(space, "newton/trial"), start_report_(space, "newton/start"), moved_(space),
+      decrease_(space)
 {
     gradient_.fill_zero();
+    direction_.fill_zero();
 }
 
 void DeviceNewton::set_problem(const Problem& problem)
@@ -70,7 +76,7 @@ NewtonTrialSums DeviceNewton::measure()
         active->evaluate(trial_x_.view(), trial_gradient_.view(), of_vertices);
     parallel_sum_record_then<NewtonTrialSums>(
         space_, "newton/measure", n,
-        MeasureNewtonTrial{energy_.view(), gradient_.view(), trial_gradient_.view(), solver_.direction(),
+        MeasureNewtonTrial{energy_.view(), gradient_.view(), trial_gradient_.view(), direction_.view(),
                            problem_.masses, problem_.inertia, problem_.fixed},
         trial_report_.next(), sums_);
     trial_ = trial_report_.await();
@@ -95,17 +101,84 @@ double DeviceNewton::evaluate()
 
 double DeviceNewton::max_speed() { return speed(bound_); }
 
-NewtonSpace::Direction DeviceNewton::find_direction(bool is_first, double increment)
+NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double increment)
 {
     freeze_here();
     solver_.update(problem_.x.device(), problem_.inertia, active(), is_first);
-    return solver_.solve(gradient_.view(), increment);
+    const Solution solution = solve(gradient_.view(), {increment, 0.0});
+    parallel_for(space_, "newton/copy_direction", direction_.size(),
+                 CopyDirection{solver_.direction(), direction_.view()});
+    return solution;
+}
+
+NewtonSpace::Solution DeviceNewton::solve(View<const Vec3> gradient, const HessianSolver::Stop& stop)
+{
+    const HessianSolver::Outcome outcome = solver_.solve(gradient, stop);
+    if (stop.residual == 0.0)
+        first_residual_ = outcome.residual;
+    const double promised = active()
+                                ? parallel_sum(space_, "newton/decrease", gradient.size(), 0.0,
+                                               PromisedDecrease{gradient, solver_.direction()}, decrease_)
+                                : 0.0;
+    return {outcome.iterations, outcome.is_solved, 0.5 * promised};
+}
+
+/// Evaluates contact alone, and freezes its terms.
+void DeviceNewton::evaluate_contact(View<const Vec3> x)
+{
+    is_frozen_here_ = false;
+    active()->evaluate(x, contact_gradient_.view(), contact_energy_.view());
+}
+
+bool DeviceNewton::has_contact()
+{
+    if (active() == nullptr)
+        return false;
+    const int n = trial_x_.size();
+    base_.resize(n);
+    base_.fill_zero();
+    for (DeviceArray<Vec3>* field : {&gradient_without_contact_, &contact_gradient_, &model_gradient_})
+        field->resize(n);
+    contact_energy_.resize(n);
+    contact_gradient_.fill_zero();
+    contact_energy_.fill_zero();
+    evaluate_contact(problem_.x.device());
+    contact_here_ = parallel_sum(space_, "newton/remove_contact", n, 0.0,
+                                 RemoveContact{gradient_.view(), contact_gradient_.view(),
+                                               contact_energy_.view(), gradient_without_contact_.view()},
+                                 decrease_);
+    return true;
+}
+
+double DeviceNewton::model(double length)
+{
+    const int n = trial_x_.size();
+    parallel_for(space_, "newton/begin_model", n,
+                 BeginModel{problem_.x.device(), base_.view(), solver_.direction(), length, direction_.view(),
+                            trial_x_.view(), contact_gradient_.view(), contact_energy_.view()});
+    evaluate_contact(trial_x_.view());
+    parallel_sum_record_then<ModelSums>(space_, "newton/model", n,
+                                        MeasureModel{solver_.hessian(), direction_.view(),
+                                                     gradient_without_contact_.view(),
+                                                     contact_gradient_.view(), contact_energy_.view(),
+                                                     problem_.fixed, model_gradient_.view()},
+                                        model_report_.next(), sums_);
+    const ModelSums sums = model_report_.await();
+    return sums.elastic + sums.contact - contact_here_;
+}
+
+NewtonSpace::Solution DeviceNewton::correct(double increment)
+{
+    parallel_for(space_, "newton/copy_direction", direction_.size(),
+                 CopyDirection{direction_.view(), base_.view()});
+    solver_.update_active_set(active());
+    return solve(model_gradient_.view(), {increment, kCorrectionResidual * first_residual_});
 }
 
 NewtonSpace::Trial DeviceNewton::try_step(double length)
 {
     parallel_for(space_, "newton/try_along", trial_x_.size(),
-                 TryAlong{problem_.x.device(), solver_.direction(), length, trial_x_.view(), begin_trial()});
+                 TryAlong{problem_.x.device(), direction_.view(), length, trial_x_.view(), begin_trial()});
     const NewtonTrialSums sums = measure();
     return {sums.value, sums.slope, speed(sums.mass_square), std::sqrt(sums.largest_square)};
 }

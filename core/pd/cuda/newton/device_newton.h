@@ -42,7 +42,10 @@ public:
 
     double evaluate() override;
     double max_speed() override;
-    Direction find_direction(bool is_first, double increment) override;
+    Solution find_direction(bool is_first, double increment) override;
+    bool has_contact() override;
+    double model(double length) override;
+    Solution correct(double increment) override;
     Trial try_step(double length) override;
     double try_rest(double limit) override;
     double try_local_global() override;
@@ -57,6 +60,8 @@ private:
     NewtonTrialSums measure();
     DeviceActiveSet* active();
     void freeze_here();
+    void evaluate_contact(View<const Vec3> x);
+    Solution solve(View<const Vec3> gradient, const HessianSolver::Stop& stop);
     double speed(double mass_square) const;
 
     const CudaSpace& space_;
@@ -69,11 +74,21 @@ private:
     double bound_ = 0.0;          ///< NewtonTrialSums::bound at the current point
     bool is_frozen_here_ = false; ///< the active set's terms are those of the current point
     DeviceArray<Vec3> gradient_, trial_x_, trial_gradient_;
-    DeviceArray<double> energy_; ///< [vertices and more] parts of the value [J]
+    DeviceArray<double> energy_;        ///< [vertices and more] parts of the value [J]
+    DeviceArray<PaddedVec3> direction_; ///< [vertices] [m]
+
+    // Contact ahead, see NewtonSpace::model().
+    double first_residual_ = 0.0; ///< HessianSolver::Outcome::residual of find_direction()
+    double contact_here_ = 0.0;   ///< [J] contact's energy at the current point
+    DeviceArray<PaddedVec3> base_;
+    DeviceArray<Vec3> gradient_without_contact_, contact_gradient_, model_gradient_;
+    DeviceArray<double> contact_energy_;
+
     RecordScratch sums_;
+    DeviceReport<ModelSums> model_report_;
     DeviceReport<NewtonTrialSums> trial_report_;
     DeviceReport<NewtonStartSums> start_report_;
-    SumScratch<double> moved_;
+    SumScratch<double> moved_, decrease_;
 };
 
 } // namespace toile

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/compute/lanes.h"
+#include "core/pd/cuda/newton/hessian_kernels.h"
 #include "core/pd/step/step_kernels.h"
 
 namespace toile {
@@ -114,6 +115,93 @@ struct MeasureNewtonTrial {
         sums.bound = masses[i] * (trial_gradient[i] / inertia[i]).squaredNorm();
         return sums;
     }
+};
+
+/// Begins the model of the objective with contact as it is ahead: the direction base + length * correction,
+/// and the point there.
+struct BeginModel {
+    View<const Vec3> x;
+    View<const PaddedVec3> base, correction;
+    double length; ///< [-]
+    View<PaddedVec3> direction;
+    View<Vec3> ahead, contact_gradient; ///< the latter zero, to add to
+    View<double> contact_energy;        ///< [vertices] likewise
+
+    TOILE_HD void operator()(int i) const
+    {
+        PaddedVec3 d = base[i];
+        d += float(length) * correction[i];
+        direction[i] = d;
+        ahead[i] = x[i] + unpadded(d);
+        contact_gradient[i] = Vec3(0.0, 0.0, 0.0);
+        contact_energy[i] = 0.0;
+    }
+};
+
+/// Sums of the model: its value is elastic + contact, less contact's at the current point.
+struct ModelSums {
+    static constexpr int kLargest = -1;
+
+    double elastic = 0.0, contact = 0.0; ///< [J]
+
+    TOILE_HD ModelSums& operator+=(const ModelSums& other)
+    {
+        elastic += other.elastic;
+        contact += other.contact;
+        return *this;
+    }
+};
+
+/// Evaluates the model, and its gradient.
+struct MeasureModel {
+    SlicedHessian hessian;
+    View<const PaddedVec3> direction;
+    View<const Vec3> gradient;         ///< [vertices] at the current point, without contact [N]
+    View<const Vec3> contact_gradient; ///< [vertices] ahead [N]
+    View<const double> contact_energy; ///< [vertices] ahead [J]
+    View<const unsigned char> fixed;
+    View<Vec3> model_gradient; ///< [vertices] out [N]
+
+    TOILE_HD ModelSums operator()(int i) const
+    {
+        ModelSums sums;
+        sums.contact = contact_energy[i];
+        if (fixed[i] != 0) {
+            model_gradient[i] = Vec3(0.0, 0.0, 0.0);
+            return sums;
+        }
+        const Vec3 product = unpadded(hessian.times(i, direction)), d = unpadded(direction[i]);
+        sums.elastic = (gradient[i] + 0.5 * product).dot(d);
+        model_gradient[i] = gradient[i] + product + contact_gradient[i];
+        return sums;
+    }
+};
+
+/// Removes contact's part from a gradient, and sums contact's energy.
+struct RemoveContact {
+    View<const Vec3> gradient, contact_gradient;
+    View<const double> contact_energy;
+    View<Vec3> rest; ///< [vertices] out [N]
+
+    TOILE_HD double operator()(int i) const
+    {
+        rest[i] = gradient[i] - contact_gradient[i];
+        return contact_energy[i];
+    }
+};
+
+/// Twice the decrease that a direction promises with this gradient [J].
+struct PromisedDecrease {
+    View<const Vec3> gradient;
+    View<const PaddedVec3> direction;
+    TOILE_HD double operator()(int i) const { return -gradient[i].dot(unpadded(direction[i])); }
+};
+
+/// Copies directions.
+struct CopyDirection {
+    View<const PaddedVec3> from;
+    View<PaddedVec3> to;
+    TOILE_HD void operator()(int i) const { to[i] = from[i]; }
 };
 
 /// Sums over the start of a step.

@@ -35,20 +35,29 @@ NewtonPcgFields DeviceHessianSolver::fields()
     return {x_.view(), r_.view(), z_.view(), p_.view(), Kz_.view(), Kp_.view()};
 }
 
+FrozenTerms DeviceHessianSolver::terms() const
+{
+    return active_ ? FrozenTerms::of(active_->frozen()) : FrozenTerms{};
+}
+
 void DeviceHessianSolver::update(View<const Vec3> x, View<const double> inertia, DeviceActiveSet* active,
                                  bool with_coarse)
 {
-    active_ = active;
     hessian_.linearise(x, inertia);
-    const FrozenTerms terms = active_ ? FrozenTerms::of(active_->frozen()) : FrozenTerms{};
-    parallel_for(
-        space_, "newton/invert_diagonal", x.size(),
-        InvertDiagonal{hessian_.view(), terms, fixed_.view(), first_part_.view(), second_part_.view()});
+    update_active_set(active);
     if (with_coarse)
-        hierarchy_.update(hessian_.view(), terms);
+        hierarchy_.update(hessian_.view(), terms());
 }
 
-NewtonSpace::Direction DeviceHessianSolver::solve(View<const Vec3> g, double increment)
+void DeviceHessianSolver::update_active_set(DeviceActiveSet* active)
+{
+    active_ = active;
+    parallel_for(
+        space_, "newton/invert_diagonal", x_.size(),
+        InvertDiagonal{hessian_.view(), terms(), fixed_.view(), first_part_.view(), second_part_.view()});
+}
+
+HessianSolver::Outcome DeviceHessianSolver::solve(View<const Vec3> g, const HessianSolver::Stop& stop)
 {
     const StageScope stage("newton/pcg");
     parallel_for_teams(space_, "newton/begin", hierarchy_.cluster_count(),
@@ -56,7 +65,7 @@ NewtonSpace::Direction DeviceHessianSolver::solve(View<const Vec3> g, double inc
     NewtonPcgState now;
     for (int iteration = 0; !now.is_over; ++iteration) {
         precondition();
-        multiply(increment);
+        multiply(stop);
         parallel_for_teams(
             space_, "newton/advance", hierarchy_.cluster_count(),
             AdvanceNewtonPcg{fields(), hierarchy_.fields(), state_.view(), reports_[iteration % 2].next()});
@@ -64,7 +73,7 @@ NewtonSpace::Direction DeviceHessianSolver::solve(View<const Vec3> g, double inc
         if (iteration > 0)
             now = reports_[(iteration - 1) % 2].await();
     }
-    return {now.iterations, now.is_solved};
+    return {now.iterations, now.is_solved, now.rz};
 }
 
 void DeviceHessianSolver::precondition()
@@ -74,10 +83,10 @@ void DeviceHessianSolver::precondition()
                        Precondition{fields(), hierarchy_.fields(), first_part_.view(), second_part_.view()});
 }
 
-void DeviceHessianSolver::multiply(double increment)
+void DeviceHessianSolver::multiply(const HessianSolver::Stop& stop)
 {
     const MultiplyHessian multiply{fields(), hessian_.view(), masses_.view(), fixed_.view()};
-    const FindNewtonStep then{state_.view(), mass_, increment};
+    const FindNewtonStep then{state_.view(), mass_, stop};
     if (!active_)
         return parallel_sum_record_then<NewtonPcgSums>(space_, "newton/multiply", x_.size(), multiply, then,
                                                        sums_);

@@ -29,14 +29,20 @@ public:
     /// @param with_coarse  also for the coarse part, which may be older
     void update(View<const Vec3> x, View<const double> inertia, DeviceActiveSet* active, bool with_coarse);
 
+    /// Takes other frozen terms of the active set; the rest stays. Enqueued.
+    void update_active_set(DeviceActiveSet* active);
+
     /// Solves K d = -g; see HessianSolver::solve. Waits.
-    NewtonSpace::Direction solve(View<const Vec3> g, double increment);
+    HessianSolver::Outcome solve(View<const Vec3> g, const HessianSolver::Stop& stop);
+
+    SlicedHessian hessian() { return hessian_.view(); } ///< without frozen terms
 
     View<const PaddedVec3> direction() const { return x_.view(); } ///< d [vertices] [m]
 
 private:
     void precondition();
-    void multiply(double increment);
+    void multiply(const HessianSolver::Stop& stop);
+    FrozenTerms terms() const;
     NewtonPcgFields fields();
 
     const CudaSpace& space_;

@@ -134,7 +134,7 @@ struct MultiplyWithTerms {
 struct FindNewtonStep {
     View<NewtonPcgState> state; ///< [1]
     double mass;                ///< [kg] of the free vertices
-    double increment;           ///< [m]
+    HessianSolver::Stop stop;
 
     TOILE_HD void operator()(const NewtonPcgSums& sums) const
     {
@@ -157,8 +157,10 @@ struct FindNewtonStep {
         all.step = (sums.r_z + beta * sums.p_r) / all.pKp;
         ++all.iterations;
         const double size = std::fabs(all.step) * std::sqrt(all.mass_pp / mass);
-        all.small = size < increment ? all.small + 1 : 0;
-        all.is_solved = all.small >= 2 && sums.r_z <= HessianSolver::kReduction * all.first_rz;
+        all.small = size < stop.increment ? all.small + 1 : 0;
+        const double residual =
+            stop.residual > 0.0 ? stop.residual : HessianSolver::kReduction * all.first_rz;
+        all.is_solved = all.small >= 2 && sums.r_z <= residual;
         all.is_over = all.is_solved || all.iterations >= HessianSolver::kMaxIterations;
     }
 };
