@@ -86,6 +86,11 @@ struct RecordExpected {
     }
 };
 
+struct MarkAll {
+    View<unsigned char> marks; ///< [vertices] out
+    TOILE_HD void operator()(int v) const { marks[v] = 1; }
+};
+
 /// Computes the displacement of vertex v to x and marks it if the lists do not cover it. Returns 1 for a
 /// marked vertex, to count them.
 struct MarkOutOfBounds {

@@ -34,7 +34,7 @@ void DeviceCollisionFreeStep::begin(View<const Vec3> x, View<const Vec3> expecte
     parallel_for(space_, "collision/record_expected", x.size(), RecordExpected{x, expected, slack, known()});
     count_ = 0;
     exempt_.append_kept(found, pairs_, count_);
-    expected_count_ = count_;
+    expected_count_ = complete_count_ = count_;
 }
 
 View<const BlockedPair> DeviceCollisionFreeStep::query_all(View<const Vec3> x)
@@ -48,9 +48,7 @@ View<const BlockedPair> DeviceCollisionFreeStep::query_all(View<const Vec3> x)
     if (counts.out_of_bounds > 0) {
         parallel_for(space_, "collision/widen_known", x.size(),
                      WidenKnown{marks_.view(), displacement_.view(), slack_, known()});
-        const int before = count_;
-        find_near_marked(counts.out_of_bounds);
-        count_blocked(before);
+        count_blocked(find_near_marked(counts.out_of_bounds));
         counts = read_counts();
     }
     return counts.blocked == 0 ? View<const BlockedPair>() : list_blocked();
@@ -67,20 +65,32 @@ View<const BlockedPair> DeviceCollisionFreeStep::update(View<const ChangedTrajec
                  RecordChanged{changed_.view(), slack_, known(), displacement_.view(), is_stale_.view(),
                                marks_.view()},
                  counts_.view().subview(0, 1), block_sums_);
-    const int before = count_;
+    int first_new = count_;
     if (const int out_of_bounds = read_counts().out_of_bounds; out_of_bounds > 0)
-        find_near_marked(out_of_bounds);
-    count_blocked(before);
+        first_new = find_near_marked(out_of_bounds);
+    count_blocked(first_new);
     return list_blocked();
 }
 
-/// Appends the pairs of marked vertices.
+/// Appends the pairs of marked vertices. Vertices that are marked again and again have theirs several times;
+/// when too many are, all pairs since begin() are found anew.
 /// @param count  of marked vertices
-void DeviceCollisionFreeStep::find_near_marked(int count)
+/// @return the first of the appended pairs
+int DeviceCollisionFreeStep::find_near_marked(int count)
 {
     const StageScope stage("collision/search_again");
+    const bool is_complete = double(count_) > kMaxGrowth * complete_count_;
+    if (is_complete) {
+        count = marks_.size();
+        count_ = expected_count_;
+        parallel_for(space_, "collision/mark_all", count, MarkAll{marks_.view()});
+    }
+    const int first = count_;
     const Trajectories trajectories{known_motion_.view(), known_radius_.view(), marks_.view()};
     exempt_.append_kept(near_.find_near(base_, trajectories, count, gap_.largest()), pairs_, count_);
+    if (is_complete)
+        complete_count_ = count_;
+    return first;
 }
 
 /// @param known  pairs before this one are tested only if they have a stale vertex

@@ -37,7 +37,10 @@ private:
     struct Counts {
         int out_of_bounds, blocked; ///< vertices; pairs
     };
-    void find_near_marked(int count);
+    /// Pairs relative to those of the last complete search [-] above which the next one is complete.
+    static constexpr double kMaxGrowth = 3.0;
+
+    int find_near_marked(int count);
     void count_blocked(int known);
     Counts read_counts();
     View<const BlockedPair> list_blocked();
@@ -52,6 +55,7 @@ private:
     DeviceArray<double> known_radius_;
     DeviceArray<NearPair> pairs_; ///< of begin(), then those found since
     int expected_count_ = 0, count_ = 0;
+    int complete_count_ = 0; ///< pairs after the last complete search
 
     // Of one update and those after it.
     DeviceArray<Vec3> displacement_;        ///< [vertices] [m]
