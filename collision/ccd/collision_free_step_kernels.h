@@ -86,9 +86,19 @@ struct RecordExpected {
     }
 };
 
-struct MarkAll {
-    View<unsigned char> marks; ///< [vertices] out
-    TOILE_HD void operator()(int v) const { marks[v] = 1; }
+/// Makes the present displacement of vertex v the known one, and marks it.
+struct RecentreKnown {
+    View<const Vec3> displacement; ///< [vertices] [m]
+    View<const double> slack;      ///< [vertices] [m]
+    KnownTrajectories known;       ///< out
+    View<unsigned char> marks;     ///< [vertices] out
+
+    TOILE_HD void operator()(int v) const
+    {
+        known.motion[v] = displacement[v];
+        known.radius[v] = slack[v];
+        marks[v] = 1;
+    }
 };
 
 /// Computes the displacement of vertex v to x and marks it if the lists do not cover it. Returns 1 for a

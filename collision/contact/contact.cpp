@@ -21,6 +21,9 @@ constexpr double kLeftOver = 1e-4;
 /// 0.1 a walking skirt takes three minimisations per step, without measurable benefit.
 constexpr double kFrictionChange = 0.5;
 
+/// Such minimisations in a step. Forces of cloth between two others may go to and fro without end.
+constexpr int kMaxLandings = 3;
+
 std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Triangle> triangles,
                                          View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                          const std::vector<ContactCollider>& colliders,
@@ -50,6 +53,7 @@ void Contact::begin_step(const StepStart& start)
 {
     dt_ = start.dt;
     has_cleared_ = false;
+    landings_ = 0;
     energy_.use_true_hessian(start.wants_true_hessian);
     if (between_)
         between_->begin_step(start);
@@ -96,9 +100,12 @@ bool Contact::revise(StepField x, bool is_converged)
         return false;
     terms_->see(x);
     const FrictionLimits friction = terms_->update_forces();
-    const bool has_landed = is_converged && friction.change > kFrictionChange * friction.total;
-    if (has_landed)
+    const bool has_landed =
+        is_converged && landings_ < kMaxLandings && friction.change > kFrictionChange * friction.total;
+    if (has_landed) {
         terms_->adopt_forces();
+        ++landings_;
+    }
     const bool has_new_pairs = between_ && between_->advance(x, [&] { return terms_->supported(); });
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);

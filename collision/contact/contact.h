@@ -89,6 +89,7 @@ private:
     std::unique_ptr<ClothContact> between_; ///< cloth with cloth; null if that is switched off
     ContactEnergy energy_;                  ///< without terms if they are on a GPU
     std::unique_ptr<ContactTerms> terms_;
+    int landings_ = 0;         ///< in this step: minimisations for changed friction limits
     bool has_cleared_ = false; ///< in this step: pairs are newer than those stored for friction
     int active_count_ = 0;
     double min_gap_ = 0.0;

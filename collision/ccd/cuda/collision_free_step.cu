@@ -72,18 +72,22 @@ View<const BlockedPair> DeviceCollisionFreeStep::update(View<const ChangedTrajec
     return list_blocked();
 }
 
-/// Appends the pairs of marked vertices. Vertices that are marked again and again have theirs several times;
-/// when too many are, all pairs since begin() are found anew.
+/// Appends the pairs of marked vertices. If these are many, or have been marked so often that most pairs are
+/// repeated, the pairs of all present trajectories replace those found since begin(): trajectories grow wide
+/// otherwise, with pairs by the cube of their width.
 /// @param count  of marked vertices
 /// @return the first of the appended pairs
 int DeviceCollisionFreeStep::find_near_marked(int count)
 {
     const StageScope stage("collision/search_again");
-    const bool is_complete = double(count_) > kMaxGrowth * complete_count_;
+    const int vertices = marks_.size();
+    const bool is_complete =
+        double(count) > kMaxMarked * vertices || double(count_) > kMaxGrowth * complete_count_;
     if (is_complete) {
-        count = marks_.size();
+        count = vertices;
         count_ = expected_count_;
-        parallel_for(space_, "collision/mark_all", count, MarkAll{marks_.view()});
+        parallel_for(space_, "collision/recentre_known", vertices,
+                     RecentreKnown{displacement_.view(), slack_, known(), marks_.view()});
     }
     const int first = count_;
     const Trajectories trajectories{known_motion_.view(), known_radius_.view(), marks_.view()};

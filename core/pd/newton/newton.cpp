@@ -20,8 +20,10 @@ constexpr double kIncrement = 0.1;
 constexpr double kNegligible = 0.03;
 
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
-/// would cross, where contact does not hold it, is pushed there again by the next step.
-constexpr int kStall = 8;
+/// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
+/// raises the value, as where a body pulls it through other cloth, it is not moved back more often than
+/// kMaxSetbacks times.
+constexpr int kStall = 8, kMaxSetbacks = 12;
 
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
 /// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
@@ -137,7 +139,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         settings.tolerance = std::min(settings.tolerance, tolerance_by_driving(space.driving_speed()));
     const int small_steps = is_calm ? 1 : kSmallSteps;
     double lowest = std::numeric_limits<double>::infinity();
-    int since_lowest = 0, small = 0;
+    int since_lowest = 0, small = 0, setbacks = 0;
     for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
         since_lowest = outcome.value < lowest ? 0 : since_lowest + 1;
         lowest = std::min(lowest, outcome.value);
@@ -161,8 +163,14 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
             small = 0;
         }
         // Cloth may have been moved back by less than counts as a change: stiff terms feel that too.
-        if (has_changed || step == 0.0 || space.has_moved())
-            outcome.value = space.evaluate();
+        const bool has_moved = step > 0.0 && space.has_moved();
+        if (!has_changed && !has_moved && step > 0.0)
+            continue;
+        const double before = outcome.value;
+        outcome.value = space.evaluate();
+        setbacks += has_moved && outcome.value > before ? 1 : 0;
+        if (setbacks > kMaxSetbacks)
+            break;
     }
     outcome.gradient_norm = space.gradient_norm();
     return outcome;

@@ -8,7 +8,7 @@ namespace toile {
 
 /// Hessian of a step as kernels read it, without the terms of an active set; see HessianPattern.
 struct SlicedHessian {
-    static constexpr int kBlocksAtOnce = 4, kScalarsAtOnce = 8; ///< entries of a row that are loaded together
+    static constexpr int kBlocksAtOnce = 2, kScalarsAtOnce = 6; ///< entries that a thread loads together
 
     View<const int> first_block, block_columns;   ///< SlicedPattern
     HessianBlocks blocks;                         ///< by position [N/m]
@@ -33,25 +33,28 @@ struct SlicedHessian {
     }
 
     /// Row i times x [N], x zero where fixed.
-    TOILE_HD PaddedVec3 times(int i, View<const PaddedVec3> x) const
+    TOILE_HD PaddedVec3 times(int i, View<const PaddedVec3> x) const { return part_of_row(i, 0, 1, x); }
+
+    /// Part of that product by one of `width` threads, which take the entries by turns.
+    TOILE_HD PaddedVec3 part_of_row(int i, int thread, int width, View<const PaddedVec3> x) const
     {
         const PaddedVec3 own = x[i];
-        PaddedVec3 product = float(sum[i]) * own;
-        add_blocks(i, own, x, product);
-        add_scalars(i, own, x, product);
+        PaddedVec3 product = thread == 0 ? float(sum[i]) * own : PaddedVec3(0.0F);
+        const int slice = i / kWarp, first = i % kWarp + thread * kWarp, stride = width * kWarp;
+        add_blocks(first_block[slice] + first, first_block[slice + 1], stride, own, x, product);
+        add_scalars(first_scalar[slice] + first, first_scalar[slice + 1], stride, own, x, product);
         return product;
     }
 
 private:
-    TOILE_HD void add_blocks(int i, const PaddedVec3& own, View<const PaddedVec3> x,
+    TOILE_HD void add_blocks(int begin, int end, int stride, const PaddedVec3& own, View<const PaddedVec3> x,
                              PaddedVec3& product) const
     {
-        const int slice = i / kWarp, end = first_block[slice + 1];
-        for (int first = first_block[slice] + i % kWarp; first < end; first += kBlocksAtOnce * kWarp) {
+        for (int first = begin; first < end; first += kBlocksAtOnce * stride) {
             Floats<4> a[kBlocksAtOnce], b[kBlocksAtOnce], move[kBlocksAtOnce];
             float c[kBlocksAtOnce];
             for (int n = 0; n < kBlocksAtOnce; ++n) {
-                const int k = first + n * kWarp;
+                const int k = first + n * stride;
                 const bool exists = k < end;
                 move[n] = exists ? x[block_columns[k]] : own;
                 a[n] = exists ? blocks.first[k] : Floats<4>(0.0F);
@@ -66,16 +69,15 @@ private:
             }
         }
     }
-    TOILE_HD void add_scalars(int i, const PaddedVec3& own, View<const PaddedVec3> x,
+    TOILE_HD void add_scalars(int begin, int end, int stride, const PaddedVec3& own, View<const PaddedVec3> x,
                               PaddedVec3& product) const
     {
-        const int slice = i / kWarp, end = first_scalar[slice + 1];
         const PaddedVec3 back = -1.0F * own;
-        for (int first = first_scalar[slice] + i % kWarp; first < end; first += kScalarsAtOnce * kWarp) {
+        for (int first = begin; first < end; first += kScalarsAtOnce * stride) {
             PaddedVec3 move[kScalarsAtOnce];
             float value[kScalarsAtOnce];
             for (int n = 0; n < kScalarsAtOnce; ++n) {
-                const int k = first + n * kWarp;
+                const int k = first + n * stride;
                 move[n] = k < end ? x[scalar_columns[k]] : own;
                 value[n] = k < end ? scalars[k] : 0.0F;
             }

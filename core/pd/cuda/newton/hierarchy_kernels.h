@@ -401,7 +401,7 @@ private:
     }
 };
 
-/// Restriction of a field to a cluster of level 0, and prolongation, by a team of threads.
+/// Restriction of a field to a cluster of level 0, and prolongation, by a block of threads.
 struct ClusterFields {
     HierarchyView clusters;
     View<float> restricted;         ///< see MultiplyInverses
@@ -438,34 +438,35 @@ struct ClusterFields {
         return sum;
     }
 
-    /// Calls visit(vertex) for the cluster's vertices that belong to this thread.
-    template <typename Team, typename Visit>
-    TOILE_HD void for_vertices(int c, const Team& team, const Visit& visit) const
+    static constexpr int kThreads = ClusterHierarchy::kClusterSize; ///< of a block: one for a vertex
+    static constexpr std::size_t kBytes = sizeof(float) * HierarchyView::kUnknowns * (kThreads / kWarp);
+
+    /// Vertex of a thread of cluster c, -1: none.
+    TOILE_HD int vertex(int c, int thread) const
     {
-        const int end = clusters.first_vertex[c + 1];
-        for (int k = clusters.first_vertex[c] + team.thread; k < end; k += Team::width())
-            visit(clusters.vertices[k]);
+        const int k = clusters.first_vertex[c] + thread;
+        return k < clusters.first_vertex[c + 1] ? clusters.vertices[k] : -1;
     }
 
-    /// Sums of function times field over the cluster, from those of each thread.
-    struct Sums {
-        float of[HierarchyView::kUnknowns] = {};
-
-        TOILE_HD void add(const PaddedVec3& functions, const PaddedVec3& field)
-        {
-            for (int a = 0; a < 3; ++a)
-                for (int k = 0; k < 3; ++k)
-                    of[3 * a + k] += functions[a] * field[k];
-        }
-    };
-    template <typename Team>
-    TOILE_HD void store(int c, const Team& team, const Sums& sums, bool is_in_range) const
+    /// Restricts the field, whose value at vertex i belongs to this thread, to cluster c.
+    template <typename Block>
+    TOILE_HD void restrict_from(int c, const Block& block, int i, const PaddedVec3& value) const
     {
+        float* const of_warps = static_cast<float*>(block.memory);
+        const Team team{block.thread % kWarp};
+        const PaddedVec3 functions = i >= 0 ? clusters.functions[i] : PaddedVec3(0.0F);
         for (int k = 0; k < HierarchyView::kUnknowns; ++k) {
-            const float total = team.sum(1, sums.of[k]);
-            if (team.thread == 0 && is_in_range)
-                restricted[HierarchyView::kUnknowns * c + k] = total;
+            const float sum = team.sum(1, functions[k / 3] * value[k % 3]);
+            if (team.thread == 0)
+                of_warps[block.thread / kWarp * HierarchyView::kUnknowns + k] = sum;
         }
+        block.wait();
+        if (block.thread >= HierarchyView::kUnknowns)
+            return;
+        float total = 0.0F;
+        for (int w = 0; w < kThreads / kWarp; ++w)
+            total += of_warps[w * HierarchyView::kUnknowns + block.thread];
+        restricted[HierarchyView::kUnknowns * c + block.thread] = total;
     }
 };
 

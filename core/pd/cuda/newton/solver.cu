@@ -60,14 +60,15 @@ void DeviceHessianSolver::update_active_set(DeviceActiveSet* active)
 HessianSolver::Outcome DeviceHessianSolver::solve(View<const Vec3> g, const HessianSolver::Stop& stop)
 {
     const StageScope stage("newton/pcg");
-    parallel_for_teams(space_, "newton/begin", hierarchy_.cluster_count(),
-                       BeginNewtonPcg{g, fixed_.view(), fields(), hierarchy_.fields(), state_.view()});
+    parallel_for_blocks<ClusterFields::kThreads>(
+        space_, "newton/begin", hierarchy_.cluster_count(), ClusterFields::kBytes,
+        BeginNewtonPcg{g, fixed_.view(), fields(), hierarchy_.fields(), state_.view()});
     NewtonPcgState now;
     for (int iteration = 0; !now.is_over; ++iteration) {
         precondition();
         multiply(stop);
-        parallel_for_teams(
-            space_, "newton/advance", hierarchy_.cluster_count(),
+        parallel_for_blocks<ClusterFields::kThreads>(
+            space_, "newton/advance", hierarchy_.cluster_count(), ClusterFields::kBytes,
             AdvanceNewtonPcg{fields(), hierarchy_.fields(), state_.view(), reports_[iteration % 2].next()});
         // The device is an iteration ahead, so that it never waits. That one does nothing after the last.
         if (iteration > 0)
@@ -79,21 +80,24 @@ HessianSolver::Outcome DeviceHessianSolver::solve(View<const Vec3> g, const Hess
 void DeviceHessianSolver::precondition()
 {
     hierarchy_.solve();
-    parallel_for_teams(space_, "newton/precondition", hierarchy_.cluster_count(),
-                       Precondition{fields(), hierarchy_.fields(), first_part_.view(), second_part_.view()});
+    parallel_for_blocks<ClusterFields::kThreads>(
+        space_, "newton/precondition", hierarchy_.cluster_count(), 0,
+        Precondition{fields(), hierarchy_.fields(), first_part_.view(), second_part_.view()});
 }
 
 void DeviceHessianSolver::multiply(const HessianSolver::Stop& stop)
 {
-    const MultiplyHessian multiply{fields(), hessian_.view(), masses_.view(), fixed_.view()};
-    const FindNewtonStep then{state_.view(), mass_, stop};
-    if (!active_)
-        return parallel_sum_record_then<NewtonPcgSums>(space_, "newton/multiply", x_.size(), multiply, then,
-                                                       sums_);
-    active_->multiply(z_.view());
-    parallel_sum_record_then<NewtonPcgSums>(space_, "newton/multiply", x_.size(),
-                                            MultiplyWithTerms{multiply, FrozenTerms::of(active_->frozen())},
-                                            then, sums_);
+    constexpr int kTeam = 4;
+    const MultiplyHessian multiply{fields(), hessian_.view(), terms(), fixed_.view()};
+    if (active_) {
+        active_->multiply(z_.view());
+        parallel_for_teams<kTeam>(space_, "newton/multiply", x_.size(), MultiplyBesideTerms{multiply});
+    } else {
+        parallel_for_teams<kTeam>(space_, "newton/multiply", x_.size(), multiply);
+    }
+    parallel_sum_record_then<NewtonPcgSums>(space_, "newton/measure_iteration", x_.size(),
+                                            MeasureIteration{fields(), masses_.view()},
+                                            FindNewtonStep{state_.view(), mass_, stop}, sums_);
 }
 
 } // namespace toile

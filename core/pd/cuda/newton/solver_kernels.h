@@ -88,45 +88,84 @@ struct NewtonPcgSums {
     }
 };
 
-/// Computes K z and the terms of all sums at vertex i.
+/// Computes K z. By vertex; with frozen terms it follows the launch that computes their product.
 struct MultiplyHessian {
     NewtonPcgFields fields;
     SlicedHessian hessian;
-    View<const double> masses;       ///< [vertices] [kg]
+    FrozenTerms terms;
     View<const unsigned char> fixed; ///< [vertices]
 
-    TOILE_HD NewtonPcgSums operator()(int i) const { return finish(i, hessian.times(i, fields.z)); }
-
-    TOILE_HD NewtonPcgSums finish(int i, const PaddedVec3& product) const
+    template <typename Team>
+    TOILE_HD PaddedVec3 of_thread(int i, const Team& team) const
     {
-        const PaddedVec3 r = fields.r[i], z = fields.z[i], p = fields.p[i], Kp = fields.Kp[i];
-        const PaddedVec3 Kz = fixed[i] ? PaddedVec3(0.0F) : product;
-        fields.Kz[i] = Kz;
-        NewtonPcgSums sums;
-        sums.r_z = dot(r, z);
-        sums.p_r = dot(p, r);
-        sums.z_Kz = dot(z, Kz);
-        sums.z_Kp = dot(z, Kp);
-        sums.mass_zz = masses[i] * dot(z, z);
-        sums.mass_zp = masses[i] * dot(z, p);
-        return sums;
+        return hessian.part_of_row(i, team.thread, Team::width(), fields.z);
+    }
+    template <typename Team>
+    TOILE_HD void store(int i, const Team& team, bool is_in_range, const PaddedVec3& part) const
+    {
+        PaddedVec3 product(0.0F);
+        for (int k = 0; k < 3; ++k)
+            product.value[k] = team.sum(1, part[k]);
+        if (team.thread != 0 || !is_in_range)
+            return;
+        if (const int list = terms.list(i); list >= 0)
+            product += padded(terms.product[list]);
+        fields.Kz[i] = fixed[i] != 0 ? PaddedVec3(0.0F) : product;
+    }
+
+    template <typename Team>
+    TOILE_HD void operator()(int i, const Team& team, bool is_in_range) const
+    {
+        store(i, team, is_in_range, of_thread(i, team));
     }
 };
 
-/// The same with frozen terms, whose product is computed by the previous launch.
-struct MultiplyWithTerms {
+/// The same where the previous launch computes the frozen terms' product, and all of z is there.
+struct MultiplyBesideTerms {
     MultiplyHessian multiply;
-    FrozenTerms terms;
 
-    TOILE_HD PaddedVec3 prologue(int i) const { return multiply.hessian.times(i, multiply.fields.z); }
-
-    TOILE_HD NewtonPcgSums operator()(int i) const { return (*this)(i, prologue(i)); }
-    TOILE_HD NewtonPcgSums operator()(int i, const PaddedVec3& of_hessian) const
+    template <typename Team>
+    TOILE_HD PaddedVec3 prologue(int i, const Team& team, bool /*is_in_range*/) const
     {
-        PaddedVec3 product = of_hessian;
-        if (const int list = terms.list(i); list >= 0)
-            product += padded(terms.product[list]);
-        return multiply.finish(i, product);
+        return multiply.of_thread(i, team);
+    }
+    template <typename Team>
+    TOILE_HD void operator()(int i, const Team& team, bool is_in_range) const
+    {
+        (*this)(i, team, is_in_range, prologue(i, team, is_in_range));
+    }
+    template <typename Team>
+    TOILE_HD void operator()(int i, const Team& team, bool is_in_range, const PaddedVec3& part) const
+    {
+        multiply.store(i, team, is_in_range, part);
+    }
+};
+
+/// Terms of all sums at vertex i.
+struct MeasureIteration {
+    NewtonPcgFields fields;
+    View<const double> masses; ///< [vertices] [kg]
+
+    /// What the product does not write.
+    struct Prologue {
+        PaddedVec3 r, z, p, Kp;
+        double mass;
+    };
+    TOILE_HD Prologue prologue(int i) const
+    {
+        return {fields.r[i], fields.z[i], fields.p[i], fields.Kp[i], masses[i]};
+    }
+    TOILE_HD NewtonPcgSums operator()(int i) const { return (*this)(i, prologue(i)); }
+    TOILE_HD NewtonPcgSums operator()(int i, const Prologue& local) const
+    {
+        NewtonPcgSums sums;
+        sums.r_z = dot(local.r, local.z);
+        sums.p_r = dot(local.p, local.r);
+        sums.z_Kz = dot(local.z, fields.Kz[i]);
+        sums.z_Kp = dot(local.z, local.Kp);
+        sums.mass_zz = local.mass * dot(local.z, local.z);
+        sums.mass_zp = local.mass * dot(local.z, local.p);
+        return sums;
     }
 };
 
@@ -173,20 +212,20 @@ struct BeginNewtonPcg {
     ClusterFields clusters;
     View<NewtonPcgState> state; ///< [1]
 
-    template <typename Team>
-    TOILE_HD void operator()(int c, const Team& team, bool is_in_range) const
+    template <typename Block>
+    TOILE_HD void operator()(int c, const Block& block) const
     {
-        ClusterFields::Sums sums;
-        if (c == 0 && team.thread == 0 && is_in_range)
+        if (c == 0 && block.thread == 0)
             state[0] = {};
-        if (is_in_range)
-            clusters.for_vertices(c, team, [&](int i) {
-                const PaddedVec3 r = fixed[i] ? PaddedVec3(0.0F) : padded(Vec3(-g[i]));
-                fields.x[i] = fields.p[i] = fields.Kp[i] = PaddedVec3(0.0F);
-                fields.r[i] = r;
-                sums.add(clusters.clusters.functions[i], r);
-            });
-        clusters.store(c, team, sums, is_in_range);
+        const int i = clusters.vertex(c, block.thread);
+        PaddedVec3 r(0.0F);
+        if (i >= 0) {
+            if (fixed[i] == 0)
+                r = padded(Vec3(-g[i]));
+            fields.x[i] = fields.p[i] = fields.Kp[i] = PaddedVec3(0.0F);
+            fields.r[i] = r;
+        }
+        clusters.restrict_from(c, block, i, r);
     }
 };
 
@@ -197,17 +236,30 @@ struct Precondition {
     View<const Floats<4>> first; ///< see InvertDiagonal
     View<const Floats<2>> second;
 
-    template <typename Team>
-    TOILE_HD void operator()(int c, const Team& team, bool is_in_range) const
+    /// What the coarse solution does not write.
+    struct Prologue {
+        int i;
+        PaddedVec3 smooth;
+    };
+    template <typename Block>
+    TOILE_HD Prologue prologue(int c, const Block& block) const
     {
-        if (!is_in_range)
+        const int i = clusters.vertex(c, block.thread);
+        return {i, i >= 0 ? DiagonalInverse{first[i], second[i]} * fields.r[i] : PaddedVec3(0.0F)};
+    }
+    template <typename Block>
+    TOILE_HD void operator()(int c, const Block& block) const
+    {
+        (*this)(c, block, prologue(c, block));
+    }
+    template <typename Block>
+    TOILE_HD void operator()(int c, const Block&, const Prologue& local) const
+    {
+        if (local.i < 0)
             return;
-        const ClusterFields::Coefficients coefficients = clusters.coefficients(c);
-        clusters.for_vertices(c, team, [&](int i) {
-            PaddedVec3 z = DiagonalInverse{first[i], second[i]} * fields.r[i];
-            z += coefficients.at(clusters.clusters.functions[i]);
-            fields.z[i] = z;
-        });
+        PaddedVec3 z = local.smooth;
+        z += clusters.coefficients(c).at(clusters.clusters.functions[local.i]);
+        fields.z[local.i] = z;
     }
 };
 
@@ -218,29 +270,46 @@ struct AdvanceNewtonPcg {
     View<const NewtonPcgState> state; ///< [1]
     SendReport<NewtonPcgState> report;
 
-    template <typename Team>
-    TOILE_HD void operator()(int c, const Team& team, bool is_in_range) const
+    /// What the sums do not change.
+    struct Prologue {
+        int i;
+        PaddedVec3 p, Kp, x, r, z, Kz;
+    };
+    template <typename Block>
+    TOILE_HD Prologue prologue(int c, const Block& block) const
     {
-        if (c == 0 && team.thread == 0 && is_in_range)
+        const int i = clusters.vertex(c, block.thread);
+        if (i < 0)
+            return {i, {}, {}, {}, {}, {}, {}};
+        return {i, fields.p[i], fields.Kp[i], fields.x[i], fields.r[i], fields.z[i], fields.Kz[i]};
+    }
+    template <typename Block>
+    TOILE_HD void operator()(int c, const Block& block) const
+    {
+        (*this)(c, block, prologue(c, block));
+    }
+    template <typename Block>
+    TOILE_HD void operator()(int c, const Block& block, const Prologue& local) const
+    {
+        if (c == 0 && block.thread == 0)
             report(state[0]);
         if (!state[0].advances)
             return;
         const float step = float(state[0].step), beta = float(state[0].beta);
-        ClusterFields::Sums sums;
-        if (is_in_range)
-            clusters.for_vertices(c, team, [&](int i) {
-                PaddedVec3 p = fields.z[i], Kp = fields.Kz[i], x = fields.x[i], r = fields.r[i];
-                p += beta * fields.p[i];
-                Kp += beta * fields.Kp[i];
-                x += step * p;
-                r += -step * Kp;
-                fields.p[i] = p;
-                fields.Kp[i] = Kp;
-                fields.x[i] = x;
-                fields.r[i] = r;
-                sums.add(clusters.clusters.functions[i], r);
-            });
-        clusters.store(c, team, sums, is_in_range);
+        PaddedVec3 r(0.0F);
+        if (const int i = local.i; i >= 0) {
+            PaddedVec3 p = local.z, Kp = local.Kz, x = local.x;
+            r = local.r;
+            p += beta * local.p;
+            Kp += beta * local.Kp;
+            x += step * p;
+            r += -step * Kp;
+            fields.p[i] = p;
+            fields.Kp[i] = Kp;
+            fields.x[i] = x;
+            fields.r[i] = r;
+        }
+        clusters.restrict_from(c, block, local.i, r);
     }
 };
 
