@@ -86,6 +86,17 @@ struct RecordExpected {
     }
 };
 
+/// When a search for the pairs of marked vertices finds those of all vertices anew, in place of all that were
+/// found since CollisionFreeStep::begin(). Where many are marked, or have been so often that most pairs are
+/// repeated, trajectories would grow wide, with pairs by the cube of their width.
+/// @param marked, vertices     numbers of vertices
+/// @param pairs, of_complete  pairs now, and after the last such search
+inline bool is_search_complete(int marked, int vertices, int pairs, int of_complete)
+{
+    constexpr double kMaxMarked = 0.1, kMaxGrowth = 3.0;
+    return double(marked) > kMaxMarked * vertices || double(pairs) > kMaxGrowth * of_complete;
+}
+
 /// Makes the present displacement of vertex v the known one, and marks it.
 struct RecentreKnown {
     View<const Vec3> displacement; ///< [vertices] [m]

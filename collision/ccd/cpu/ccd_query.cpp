@@ -14,6 +14,7 @@ void CpuCcdQuery::begin(View<const Vec3> base, View<const Vec3> expected, View<c
     slack_ = slack;
     expected_pairs_ = pairs;
     more_pairs_.clear();
+    complete_count_ = pair_count();
     known_radius_.resize(base.size());
     known_motion_.resize(base.size());
     parallel_for(kCpu, "collision/record_expected", base.size(),
@@ -26,10 +27,10 @@ View<const BlockedPair> CpuCcdQuery::query_all(View<const Vec3> x)
     is_marked_.resize(x.size());
     is_stale_.assign(x.size(), 1);
     const MarkOutOfBounds mark{base_, x, known(), motion_, is_marked_};
-    if (parallel_sum(kCpu, x.size(), 0, mark) > 0) {
+    if (const int count = parallel_sum(kCpu, x.size(), 0, mark); count > 0) {
         parallel_for(kCpu, "collision/widen_known", x.size(),
                      WidenKnown{is_marked_, motion_, slack_, known()});
-        find_near_marked();
+        find_near_marked(count);
     }
     return query_pairs();
 }
@@ -39,18 +40,29 @@ View<const BlockedPair> CpuCcdQuery::update(View<const ChangedTrajectory> change
     is_stale_.assign(motion_.size(), 0);
     is_marked_.assign(motion_.size(), 0);
     const RecordChanged record{changed, slack_, known(), motion_, is_stale_, is_marked_};
-    if (parallel_sum(kCpu, changed.size(), 0, record) > 0)
-        find_near_marked();
+    if (const int count = parallel_sum(kCpu, changed.size(), 0, record); count > 0)
+        find_near_marked(count);
     return query_pairs();
 }
 
-/// Adds the pairs of marked vertices.
-void CpuCcdQuery::find_near_marked()
+/// Adds the pairs of marked vertices, or replaces all since begin(): is_search_complete().
+/// @param count  of marked vertices
+void CpuCcdQuery::find_near_marked(int count)
 {
     const StageScope stage("collision/search_again");
+    const bool is_complete = is_search_complete(count, base_.size(), pair_count(), complete_count_);
+    if (is_complete) {
+        more_pairs_.clear();
+        pair_fraction_.resize(std::min(int(pair_fraction_.size()), pair_count()));
+        is_stale_.assign(base_.size(), 1);
+        parallel_for(kCpu, "collision/recentre_known", base_.size(),
+                     RecentreKnown{motion_, slack_, known(), is_marked_});
+    }
     near_.find(base_, {known_motion_, known_radius_, is_marked_}, gap_.largest(), found_);
     std::copy_if(found_.begin(), found_.end(), std::back_inserter(more_pairs_),
                  [&](const NearPair& pair) { return !exempt_.is_exempt(pair); });
+    if (is_complete)
+        complete_count_ = pair_count();
 }
 
 /// Updates the fractions of pairs with stale vertices, and lists all blocked pairs.

@@ -34,7 +34,7 @@ public:
 
 private:
     KnownTrajectories known() { return {known_motion_, known_radius_}; }
-    void find_near_marked();
+    void find_near_marked(int count);
     View<const BlockedPair> query_pairs();
     const NearPair& pair(int i) const
     {
@@ -48,6 +48,8 @@ private:
     View<const Vec3> base_;
     View<const double> slack_;
     View<const NearPair> expected_pairs_;
+
+    int complete_count_ = 0; ///< pairs after the last complete search
 
     // Since begin().
     std::vector<NearPair> more_pairs_; ///< missing in the list of begin()

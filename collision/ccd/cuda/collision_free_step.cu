@@ -72,17 +72,14 @@ View<const BlockedPair> DeviceCollisionFreeStep::update(View<const ChangedTrajec
     return list_blocked();
 }
 
-/// Appends the pairs of marked vertices. If these are many, or have been marked so often that most pairs are
-/// repeated, the pairs of all present trajectories replace those found since begin(): trajectories grow wide
-/// otherwise, with pairs by the cube of their width.
+/// Appends the pairs of marked vertices, or replaces all since begin(): is_search_complete().
 /// @param count  of marked vertices
 /// @return the first of the appended pairs
 int DeviceCollisionFreeStep::find_near_marked(int count)
 {
     const StageScope stage("collision/search_again");
     const int vertices = marks_.size();
-    const bool is_complete =
-        double(count) > kMaxMarked * vertices || double(count_) > kMaxGrowth * complete_count_;
+    const bool is_complete = is_search_complete(count, vertices, count_, complete_count_);
     if (is_complete) {
         count = vertices;
         count_ = expected_count_;

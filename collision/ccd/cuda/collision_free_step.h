@@ -37,10 +37,6 @@ private:
     struct Counts {
         int out_of_bounds, blocked; ///< vertices; pairs
     };
-    /// Part of the vertices, and pairs relative to those of the last complete search [-], above which a
-    /// search is complete.
-    static constexpr double kMaxMarked = 0.1, kMaxGrowth = 3.0;
-
     int find_near_marked(int count);
     void count_blocked(int known);
     Counts read_counts();

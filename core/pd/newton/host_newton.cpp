@@ -124,6 +124,10 @@ void HostNewton::take()
     gradient_.swap(trial_gradient_);
 }
 
+void HostNewton::keep() { kept_.assign(problem_.x.begin(), problem_.x.end()); }
+
+void HostNewton::restore() { std::copy(kept_.begin(), kept_.end(), problem_.x.begin()); }
+
 bool HostNewton::has_moved() { return !std::equal(problem_.x.begin(), problem_.x.end(), trial_.begin()); }
 
 double HostNewton::driving_speed()

@@ -41,6 +41,8 @@ public:
     double try_rest(double limit) override;
     double try_local_global() override;
     void take() override;
+    void keep() override;
+    void restore() override;
     bool has_moved() override;
     double driving_speed() override;
     bool are_fixed_moving() override;
@@ -52,7 +54,7 @@ private:
     Problem problem_;
     HessianSolver solver_;
     double first_residual_ = 0.0; ///< HessianSolver::Outcome::residual of find_direction()
-    std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_;
+    std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, kept_;
 
     // Contact ahead, see NewtonSpace::model().
     double contact_here_ = 0.0;                  ///< [J] contact's energy at the current point

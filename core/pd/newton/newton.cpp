@@ -21,8 +21,8 @@ constexpr double kNegligible = 0.03;
 
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
-/// raises the value, as where a body pulls it through other cloth, it is not moved back more often than
-/// kMaxSetbacks times.
+/// raises the value, as where a body pulls it through other cloth, that happens kMaxSetbacks times at most,
+/// and the point with the lowest value is the result.
 constexpr int kStall = 8, kMaxSetbacks = 12;
 
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
@@ -138,12 +138,16 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
     if (!is_calm)
         settings.tolerance = std::min(settings.tolerance, tolerance_by_driving(space.driving_speed()));
     const int small_steps = is_calm ? 1 : kSmallSteps;
-    double lowest = std::numeric_limits<double>::infinity();
+    double lowest = std::numeric_limits<double>::infinity(), kept = lowest;
     int since_lowest = 0, small = 0, setbacks = 0;
     for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
         since_lowest = outcome.value < lowest ? 0 : since_lowest + 1;
         lowest = std::min(lowest, outcome.value);
-        if (since_lowest > kStall)
+        if (look > 0 && outcome.value < kept) {
+            space.keep();
+            kept = outcome.value;
+        }
+        if (since_lowest > kStall || setbacks > kMaxSetbacks)
             break;
 
         double step = 0.0;
@@ -169,8 +173,10 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         const double before = outcome.value;
         outcome.value = space.evaluate();
         setbacks += has_moved && outcome.value > before ? 1 : 0;
-        if (setbacks > kMaxSetbacks)
-            break;
+    }
+    if (setbacks > kMaxSetbacks && kept < outcome.value) {
+        space.restore();
+        outcome.value = kept;
     }
     outcome.gradient_norm = space.gradient_norm();
     return outcome;

@@ -57,6 +57,10 @@ public:
     /// Makes the last trial point the current one.
     virtual void take() = 0;
 
+    /// Keeps the current point, and returns to the one that was kept last.
+    virtual void keep() = 0;
+    virtual void restore() = 0;
+
     /// True if others have moved the current point since take().
     virtual bool has_moved() = 0;
 

@@ -16,6 +16,7 @@ DeviceNewton::DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> poi
       solver_(space, points, blocks, isotropic, energies), gradient_(space, "newton/gradient", points.size()),
       trial_x_(space, "newton/trial_x", points.size()),
       trial_gradient_(space, "newton/trial_gradient", points.size()),
+      kept_(space, "newton/kept", points.size()),
       energy_(space, "newton/energy", points.size() + energies.partial_count()),
       direction_(space, "newton/direction", points.size()), base_(space, "newton/base"),
       gradient_without_contact_(space, "newton/gradient_without_contact"),
@@ -212,6 +213,17 @@ void DeviceNewton::take()
     std::swap(gradient_, trial_gradient_);
     bound_ = trial_.bound;
     is_frozen_here_ = true;
+}
+
+void DeviceNewton::keep()
+{
+    parallel_for(space_, "newton/keep", trial_x_.size(), CopyPositions{problem_.x.device(), kept_.view()});
+}
+
+void DeviceNewton::restore()
+{
+    parallel_for(space_, "newton/restore", trial_x_.size(),
+                 CopyPositions{kept_.view(), problem_.x.change_on_device()});
 }
 
 bool DeviceNewton::has_moved()
