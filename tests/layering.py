@@ -40,7 +40,7 @@ MAY_INCLUDE = {
                      "core/pd/preconditioner", "core/pd/minimiser", "core/pd/newton"],
     "core/pd/rigid": ["core/base", "core/compute", "core/mesh", "core/pd/energy"],
     "core/pd/cuda": ["core/base", "core/compute", "core/linear", "core/quadrature", "core/pd/energy",
-                     "core/pd/preconditioner", "core/pd/minimiser", "core/pd/step"],
+                     "core/pd/preconditioner", "core/pd/minimiser", "core/pd/newton", "core/pd/step"],
     "quadrature2d": CORE,
     "volume": CORE,
     "garment/fabric": CORE,

@@ -94,18 +94,21 @@ struct RecordExpected {
 inline bool is_search_complete(int marked, int vertices, int pairs, int of_complete)
 {
     constexpr double kMaxMarked = 0.1, kMaxGrowth = 3.0;
-    return double(marked) > kMaxMarked * vertices || double(pairs) > kMaxGrowth * of_complete;
+    return marked > kMaxMarked * vertices || pairs > kMaxGrowth * std::max(of_complete, vertices);
 }
 
-/// Makes the present displacement of vertex v the known one, and marks it.
+/// Makes the present displacement of vertex v the known one, and marks it. It is that of marked vertices
+/// already.
 struct RecentreKnown {
     View<const Vec3> displacement; ///< [vertices] [m]
     View<const double> slack;      ///< [vertices] [m]
     KnownTrajectories known;       ///< out
-    View<unsigned char> marks;     ///< [vertices] out
+    View<unsigned char> marks;     ///< [vertices] changed
 
     TOILE_HD void operator()(int v) const
     {
+        if (marks[v] != 0)
+            return;
         known.motion[v] = displacement[v];
         known.radius[v] = slack[v];
         marks[v] = 1;

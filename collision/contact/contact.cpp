@@ -22,7 +22,7 @@ constexpr double kLeftOver = 1e-4;
 constexpr double kFrictionChange = 0.5;
 
 /// Such minimisations in a step. Forces of cloth between two others may go to and fro without end.
-constexpr int kMaxLandings = 3;
+constexpr int kMaxLandings = 8;
 
 std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Triangle> triangles,
                                          View<const Vec3> positions, const std::vector<ContactCloth>& cloths,

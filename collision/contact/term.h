@@ -78,8 +78,8 @@ struct ContactTerm {
 /// Stiffness of a term in its frozen Hessian: normal n n^T + tangential (I - n n^T - s s^T) [N/m].
 struct FrozenContact {
     double normal = 0.0, tangential = 0.0;
-    Vec3 sliding{0.0, 0.0,
-                 0.0}; ///< s [-] unit direction in which friction slides and resists no more; or zero
+    /// s [-]: unit direction in which friction slides and resists no more; zero while it sticks.
+    Vec3 sliding{0.0, 0.0, 0.0};
 
     TOILE_HD bool is_active() const { return normal > 0.0 || tangential > 0.0; }
     TOILE_HD Vec3 times(const Vec3& n, const Vec3& u) const

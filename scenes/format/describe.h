@@ -308,7 +308,7 @@ void describe(V& v, Solver& s)
             "Solver of the global linear system: exact (direct), quadrature of its kernel, the faster of the "
             "two (auto), or a baseline for comparison. xpbd and vbd replace the whole time step.");
     v.field("outer", s.outer,
-            "Minimiser of a step. Absent: newton, which folds stiff cloth; lbfgs on a GPU and for previews. "
+            "Minimiser of a step. Absent: newton, which folds stiff cloth; lbfgs for previews. "
             "The others are for comparison.");
     v.field("contact_preconditioner", s.contact_preconditioner,
             "Active contact in the preconditioner of conjugate gradients: a bound for each vertex (block), "

@@ -263,7 +263,7 @@ struct Solver {
     std::optional<Integrator> integrator; ///< absent: second order where Newton's method runs
     std::optional<int> max_iterations; ///< outer iterations per minimisation; absent: enough for the method
     SolverMethod method = SolverMethod::Auto;
-    std::optional<OuterMethod> outer; ///< absent: Newton's method, or L-BFGS where that does not run
+    std::optional<OuterMethod> outer; ///< absent: Newton's method, or L-BFGS for previews and baselines
     ContactPreconditioner contact_preconditioner = ContactPreconditioner::Block;
     Sleep sleep;
     int threads = 0; ///< 0: all threads of the machine

@@ -91,7 +91,7 @@ HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const doubl
         if (outcome.iterations == 0)
             first_rz = rz;
         if (!(rz > 0.0)) {
-            outcome.is_solved = true;
+            outcome.is_solved = rz == 0.0;
             break;
         }
         const float beta = previous > 0.0 ? float(rz / previous) : 0.0F;
@@ -101,10 +101,8 @@ HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const doubl
                     p_[i].value[k] = z_[i].value[k] + beta * p_[i].value[k];
         });
         const Sums curvature = multiply();
-        if (!(curvature.first > 0.0)) {
-            outcome.is_solved = true;
+        if (!(curvature.first > 0.0))
             break;
-        }
         const double step = rz / curvature.first;
         for_chunks("newton/advance", [&](int first, int last, Sums&) {
             for (int i = first; i < last; ++i) {
@@ -114,7 +112,7 @@ HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const doubl
         });
         ++outcome.iterations;
         small = step * std::sqrt(curvature.second) < stop.increment ? small + 1 : 0;
-        if (small >= 2 && rz <= (stop.residual > 0.0 ? stop.residual : kReduction * first_rz)) {
+        if (small >= 2 && rz <= (stop.residual >= 0.0 ? stop.residual : kReduction * first_rz)) {
             outcome.is_solved = true;
             break;
         }

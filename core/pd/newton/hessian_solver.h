@@ -38,7 +38,7 @@ public:
     /// When a solve ends.
     struct Stop {
         double increment = 0.0; ///< [m] RMS of the increment, by mass, twice in succession
-        double residual = 0.0;  ///< [J] bound on r . P r as well; 0: kReduction of the first
+        double residual = -1.0; ///< [J] bound on r . P r as well; negative: kReduction of the first
     };
 
     /// @param g       [vertices] [N]

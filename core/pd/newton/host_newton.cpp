@@ -1,12 +1,11 @@
 #include "core/pd/newton/host_newton.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
 #include "core/linear/field.h"
-#include "core/pd/step/rest_start.h"
+#include "core/pd/newton/rest_start.h"
 
 namespace toile {
 
@@ -31,7 +30,7 @@ NewtonSpace::Solution HostNewton::find_direction(bool is_first, double increment
     K->linearise(problem_.x, Definiteness::Projected);
     solver_.update(K->parts(), is_first);
     correction_.resize(problem_.x.size());
-    const Solution solution = solve(gradient_, {increment, 0.0});
+    const Solution solution = solve(gradient_, {increment});
     direction_ = correction_;
     return solution;
 }
@@ -39,7 +38,7 @@ NewtonSpace::Solution HostNewton::find_direction(bool is_first, double increment
 NewtonSpace::Solution HostNewton::solve(View<const Vec3> gradient, const HessianSolver::Stop& stop)
 {
     const HessianSolver::Outcome outcome = solver_.solve(gradient, problem_.masses, stop, correction_);
-    if (stop.residual == 0.0)
+    if (stop.residual < 0.0)
         first_residual_ = outcome.residual;
     return {outcome.iterations, outcome.is_solved, -0.5 * dot(gradient, correction_)};
 }
@@ -88,7 +87,7 @@ NewtonSpace::Solution HostNewton::correct(double increment)
     Hessian* const K = problem_.objective->hessian();
     K->update_active_set();
     solver_.update(K->parts(), false);
-    return solve(model_gradient_, {increment, kCorrectionResidual * first_residual_});
+    return solve(model_gradient_, {increment, kCorrectionResidual * std::max(first_residual_, 0.0)});
 }
 
 NewtonSpace::Trial HostNewton::try_step(double length)

@@ -48,6 +48,9 @@ constexpr int kContactCorrections = 4;
 constexpr double kTrusted = 0.7, kShorten = 0.3;
 constexpr int kMaxShortenings = 7;
 
+/// Rounding error of the model relative to the objective's value [-].
+constexpr double kModelNoise = 1e-12;
+
 /// Chooses the start. @return its value
 double begin(NewtonSpace& space, bool is_calm)
 {
@@ -71,25 +74,32 @@ double begin(NewtonSpace& space, bool is_calm)
 /// hundredth of the step. So contact is linearised anew where the direction leads, as far as the model's
 /// value falls, and the direction is corrected: a semi-smooth Newton method on the model [Hintermueller et
 /// al. 2002].
-NewtonSpace::Solution find_direction(NewtonSpace& space, bool is_first, double increment)
+/// @param value  of the objective [J]
+/// @return not solved if the direction is not the model's minimum
+NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first, double increment,
+                                               double value)
 {
     NewtonSpace::Solution found = space.find_direction(is_first, increment);
     if (!space.has_contact())
         return found;
-    double value = 0.0, predicted = found.decrease;
+    const double noise = kModelNoise * std::fabs(value);
+    double reached = 0.0, predicted = found.decrease;
     for (int correction = 0;; ++correction) {
         double length = 1.0, now = space.model(length);
+        if (reached - now >= kTrusted * predicted - noise)
+            return found;
         for (int k = 0;
-             k < kMaxShortenings && !(now <= value - LineSearch::kSufficientDecrease * length * predicted);
+             k < kMaxShortenings && !(now <= reached - LineSearch::kSufficientDecrease * length * predicted);
              ++k)
             now = space.model(length *= kShorten);
-        if (!(now < value)) {
+        found.is_solved = false;
+        if (!(now < reached)) {
             space.model(correction == 0 ? 1.0 : 0.0); // the line search has more trials
             return found;
         }
-        if (value - now >= kTrusted * predicted || correction == kContactCorrections)
+        if (correction == kContactCorrections)
             return found;
-        value = now;
+        reached = now;
         const NewtonSpace::Solution more = space.correct(increment);
         predicted = more.decrease;
         found.iterations += more.iterations;
@@ -101,8 +111,8 @@ NewtonSpace::Solution find_direction(NewtonSpace& space, bool is_first, double i
 /// @return the accepted part of it, 0 if there is none
 double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::Outcome& outcome)
 {
-    const NewtonSpace::Solution direction =
-        find_direction(space, outcome.iterations == 0, kIncrement * settings.tolerance * settings.dt);
+    const NewtonSpace::Solution direction = find_corrected_direction(
+        space, outcome.iterations == 0, kIncrement * settings.tolerance * settings.dt, outcome.value);
     NewtonSpace::Trial trial = space.try_step(1.0);
     LineSearch search{outcome.value, trial.slope};
     double step = 0.0;
@@ -138,14 +148,14 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
     if (!is_calm)
         settings.tolerance = std::min(settings.tolerance, tolerance_by_driving(space.driving_speed()));
     const int small_steps = is_calm ? 1 : kSmallSteps;
-    double lowest = std::numeric_limits<double>::infinity(), kept = lowest;
+    double lowest = std::numeric_limits<double>::infinity(), kept_value = lowest;
     int since_lowest = 0, small = 0, setbacks = 0;
     for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
         since_lowest = outcome.value < lowest ? 0 : since_lowest + 1;
         lowest = std::min(lowest, outcome.value);
-        if (look > 0 && outcome.value < kept) {
+        if (look > 0 && outcome.value < kept_value) {
             space.keep();
-            kept = outcome.value;
+            kept_value = outcome.value;
         }
         if (since_lowest > kStall || setbacks > kMaxSetbacks)
             break;
@@ -174,9 +184,9 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         outcome.value = space.evaluate();
         setbacks += has_moved && outcome.value > before ? 1 : 0;
     }
-    if (setbacks > kMaxSetbacks && kept < outcome.value) {
+    if (setbacks > kMaxSetbacks) {
         space.restore();
-        outcome.value = kept;
+        outcome.value = space.evaluate();
     }
     outcome.gradient_norm = space.gradient_norm();
     return outcome;

@@ -10,8 +10,8 @@ namespace toile {
 /// Newton's method on the projected Hessian K of a step [Nocedal & Wright 2006, alg. 7.1]. It folds stiff
 /// cloth, where a method around a fixed H gives folding modes the stiffness of the membrane.
 ///
-/// Conjugate gradients solve K d = -g; their coarse matrix is made once per step. Both loops stop by speeds,
-/// so an accuracy does not depend on the step length: after a time T the trajectory is within about
+/// Conjugate gradients solve K d = -g; their coarse matrix is made once per minimisation. Both loops stop by
+/// speeds, so an accuracy does not depend on the step length: after a time T the trajectory is within about
 /// 2 T tolerance of the converged one.
 struct Newton {
     struct Settings {

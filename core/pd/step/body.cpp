@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/linear/field.h"
-#include "core/pd/step/rest_start.h"
+#include "core/pd/newton/rest_start.h"
 #include "core/pd/step/step_tolerance.h"
 
 namespace toile {

@@ -1,8 +1,8 @@
 #include "garment/energy/cuda/elasticity.h"
 
 #include "core/compute/cuda/teams.cuh"
+#include "garment/energy/cuda/membrane_sides_kernels.h"
 #include "garment/energy/gather_elastic.h"
-#include "garment/energy/membrane_sides_kernels.h"
 
 namespace toile::garment {
 

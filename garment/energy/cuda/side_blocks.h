@@ -5,7 +5,7 @@
 
 #include "core/compute/cuda/array.h"
 #include "core/pd/cuda/newton/hessian_pattern.h"
-#include "garment/energy/side_blocks_kernels.h"
+#include "garment/energy/cuda/side_blocks_kernels.h"
 
 namespace toile::garment {
 

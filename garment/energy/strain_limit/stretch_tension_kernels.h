@@ -2,7 +2,7 @@
 
 #include "garment/energy/membrane_kernels.h"
 #include "garment/energy/principal_stretch.h"
-#include "garment/energy/side_blocks_kernels.h"
+#include "garment/energy/stretch_curvature.h"
 
 namespace toile::garment {
 
@@ -162,22 +162,6 @@ private:
         }
         sum -= response.corner_gradient.col(0) + response.corner_gradient.col(1);
         energy_sum += response.energy;
-    }
-};
-
-/// Second derivative of the triangles beyond their limit, as a GPU evaluates it.
-struct CurveTensionTriangle {
-    TensionPull pull;
-    View<const unsigned char> near; ///< [triangles]
-    View<unsigned char> exceeds;    ///< [triangles] out
-    HessianBlocks sides;            ///< out where it exceeds: see set_sides()
-
-    TOILE_HD void operator()(int t) const
-    {
-        const bool is_beyond = near[t] && pull.exceeds(t);
-        exceeds[t] = is_beyond ? 1 : 0;
-        if (is_beyond)
-            set_sides(pull.curvature(t), pull.triangles.rest_inv[t], pull.weight(t), t, sides);
     }
 };
 

@@ -26,6 +26,7 @@ constexpr Rule kRules[] = {
     {"collision/blocked", Part::TrajectoryLimiter},
     {"collision/keep_base", Part::TrajectoryLimiter},
     {"collision/widen_known", Part::TrajectoryLimiter},
+    {"collision/recentre_known", Part::TrajectoryLimiter},
     {"collision/support", Part::TrajectoryLimiter},
     {"collision/overstretched_edges", Part::TrajectoryLimiter},
     {"collision/clearance", Part::AvatarPairs},
@@ -46,6 +47,7 @@ constexpr Rule kRules[] = {
     {"contact/", Part::Minimise},
     {"outer/", Part::Minimise},
     {"lbfgs/", Part::Minimise},
+    {"newton/", Part::Minimise},
     {"field/", Part::Minimise}, // a few per cent of it, of PCG and the outer method alike
     {"garment/strain_limit", Part::StrainLimit},
     {"strain_limit/", Part::StrainLimit},

@@ -88,6 +88,10 @@ scenes::Scene scene_of(const SceneCase& what)
     scene.solver.stop = what.stop.value_or(scene.solver.stop);
     if (what.substeps > 0)
         scene.solver.substeps = what.substeps;
+    // 1 mm a step by L-BFGS: what the tables compare.
+    scene.solver.outer = OuterMethod::Lbfgs;
+    scene.solver.velocity_tolerance = 1e-3 / scene.step_duration();
+    scene.solver.max_iterations = 30;
     return scene;
 }
 

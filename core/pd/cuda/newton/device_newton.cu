@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -106,7 +107,7 @@ NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double increme
 {
     freeze_here();
     solver_.update(problem_.x.device(), problem_.inertia, active(), is_first);
-    const Solution solution = solve(gradient_.view(), {increment, 0.0});
+    const Solution solution = solve(gradient_.view(), {increment});
     parallel_for(space_, "newton/copy_direction", direction_.size(),
                  CopyDirection{solver_.direction(), direction_.view()});
     return solution;
@@ -115,7 +116,7 @@ NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double increme
 NewtonSpace::Solution DeviceNewton::solve(View<const Vec3> gradient, const HessianSolver::Stop& stop)
 {
     const HessianSolver::Outcome outcome = solver_.solve(gradient, stop);
-    if (stop.residual == 0.0)
+    if (stop.residual < 0.0)
         first_residual_ = outcome.residual;
     const double promised = active()
                                 ? parallel_sum(space_, "newton/decrease", gradient.size(), 0.0,
@@ -173,7 +174,7 @@ NewtonSpace::Solution DeviceNewton::correct(double increment)
     parallel_for(space_, "newton/copy_direction", direction_.size(),
                  CopyDirection{direction_.view(), base_.view()});
     solver_.update_active_set(active());
-    return solve(model_gradient_.view(), {increment, kCorrectionResidual * first_residual_});
+    return solve(model_gradient_.view(), {increment, kCorrectionResidual * std::max(first_residual_, 0.0)});
 }
 
 NewtonSpace::Trial DeviceNewton::try_step(double length)

@@ -1,7 +1,5 @@
 #include "core/pd/cuda/newton/hierarchy.h"
 
-#include <numeric>
-
 #include "core/compute/cuda/teams.cuh"
 
 namespace toile {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "core/compute/cuda/report.h"
 #include "core/compute/cuda/sum_scratch.h"
 #include "core/pd/cuda/active_set.h"

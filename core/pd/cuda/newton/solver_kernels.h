@@ -189,7 +189,8 @@ struct FindNewtonStep {
         if (all.iterations == 0)
             all.first_rz = sums.r_z;
         if (!(sums.r_z > 0.0) || !(all.pKp > 0.0)) {
-            all.is_over = all.is_solved = true;
+            all.is_over = true;
+            all.is_solved = sums.r_z == 0.0;
             all.advances = false;
             return;
         }
@@ -198,7 +199,7 @@ struct FindNewtonStep {
         const double size = std::fabs(all.step) * std::sqrt(all.mass_pp / mass);
         all.small = size < stop.increment ? all.small + 1 : 0;
         const double residual =
-            stop.residual > 0.0 ? stop.residual : HessianSolver::kReduction * all.first_rz;
+            stop.residual >= 0.0 ? stop.residual : HessianSolver::kReduction * all.first_rz;
         all.is_solved = all.small >= 2 && sums.r_z <= residual;
         all.is_over = all.is_solved || all.iterations >= HessianSolver::kMaxIterations;
     }
@@ -236,16 +237,16 @@ struct Precondition {
     View<const Floats<4>> first; ///< see InvertDiagonal
     View<const Floats<2>> second;
 
-    /// What the coarse solution does not write.
+    /// Constant data: without clusters nothing is launched between the residual and this.
     struct Prologue {
         int i;
-        PaddedVec3 smooth;
+        DiagonalInverse inverse;
     };
     template <typename Block>
     TOILE_HD Prologue prologue(int c, const Block& block) const
     {
         const int i = clusters.vertex(c, block.thread);
-        return {i, i >= 0 ? DiagonalInverse{first[i], second[i]} * fields.r[i] : PaddedVec3(0.0F)};
+        return {i, i >= 0 ? DiagonalInverse{first[i], second[i]} : DiagonalInverse{}};
     }
     template <typename Block>
     TOILE_HD void operator()(int c, const Block& block) const
@@ -257,7 +258,7 @@ struct Precondition {
     {
         if (local.i < 0)
             return;
-        PaddedVec3 z = local.smooth;
+        PaddedVec3 z = local.inverse * fields.r[local.i];
         z += clusters.coefficients(c).at(clusters.clusters.functions[local.i]);
         fields.z[local.i] = z;
     }

@@ -1,6 +1,7 @@
 #include "garment/energy/strain_limit/cuda/stretch_tension.h"
 
 #include "core/compute/cuda/teams.cuh"
+#include "garment/energy/strain_limit/cuda/tension_sides_kernels.h"
 
 namespace toile::garment {
 
