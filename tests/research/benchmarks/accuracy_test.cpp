@@ -24,8 +24,8 @@ TEST(ExactAccuracy, HasTheCatenary)
     EXPECT_NEAR(catenary_sag(0.9), 0.19071, 1e-5);
 }
 
-/// Cases without a converged run take seconds; they hold at default settings. Only whether cloth comes to rest
-/// on the sharp edges of a box is left to chance today (docs/performance.md).
+/// Cases without a converged run take seconds; they hold at default settings. Only whether cloth comes to
+/// rest on the sharp edges of a box is left to chance today (docs/performance.md).
 TEST(Accuracy, HoldsWhereTheAnswerIsExact)
 {
     int count = 0;
