@@ -9,7 +9,7 @@
 namespace toile {
 
 /// NewtonSpace on the CPU.
-class HostNewton : public NewtonSpace {
+class HostNewton final : public NewtonSpace {
 public:
     /// Objective and fields of a step; borrowed.
     struct Problem {
