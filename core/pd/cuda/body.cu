@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/compute/cuda/parallel.cuh"
+#include "core/pd/newton/embedded_points.h"
 
 namespace toile {
 
@@ -17,14 +18,6 @@ DeviceSolver* device_solver_of(System& system, const CudaSpace& space)
     if (&solver->space() != &space)
         throw InvalidInput("the global solver was made for another stream or device than the body");
     return solver;
-}
-
-std::vector<EmbeddedPoint> embedded(const std::vector<Vec3>& x)
-{
-    std::vector<EmbeddedPoint> points(x.size(), EmbeddedPoint::Zero());
-    for (size_t i = 0; i < x.size(); ++i)
-        points[i].head<3>() = x[i];
-    return points;
 }
 
 DeviceEnergies energies_of(const CudaSpace& space, const System& system)

@@ -9,7 +9,7 @@
 namespace toile {
 
 /// NewtonSpace on the CPU.
-class HostNewton final : public NewtonSpace {
+class HostNewton : public NewtonSpace {
 public:
     /// Objective and fields of a step; borrowed.
     struct Problem {

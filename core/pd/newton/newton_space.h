@@ -6,6 +6,8 @@ namespace toile {
 /// point with its gradient, a direction from there, and a trial point with its own.
 class NewtonSpace {
 public:
+    virtual ~NewtonSpace() = default;
+
     /// Solution of a linear system, by conjugate gradients.
     struct Solution {
         int iterations = 0;
@@ -78,12 +80,6 @@ public:
     /// Bound on the residual of correct(), relative to that where find_direction() has ended [-]. The first
     /// residual is contact's: stiff, and soon gone, while the rest has hardly moved.
     static constexpr double kCorrectionResidual = 4.0;
-
-protected:
-    NewtonSpace() = default;
-    NewtonSpace(const NewtonSpace&) = default;
-    NewtonSpace& operator=(const NewtonSpace&) = default;
-    ~NewtonSpace() = default;
 };
 
 } // namespace toile

@@ -5,22 +5,11 @@
 #include <utility>
 
 #include "core/linear/field.h"
+#include "core/pd/newton/embedded_points.h"
 #include "core/pd/newton/rest_start.h"
 #include "core/pd/step/step_tolerance.h"
 
 namespace toile {
-
-namespace {
-
-std::vector<EmbeddedPoint> embedded(View<const Vec3> x)
-{
-    std::vector<EmbeddedPoint> points(x.size(), EmbeddedPoint::Zero());
-    for (int i = 0; i < x.size(); ++i)
-        points[i].head<3>() = x[i];
-    return points;
-}
-
-} // namespace
 
 Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings)
     : PointMassesOnHost(std::move(positions)), system_(std::move(system)), settings_(settings),

@@ -9,7 +9,7 @@
 namespace toile {
 
 /// NewtonSpace on a GPU.
-class DeviceNewton final : public NewtonSpace {
+class DeviceNewton : public NewtonSpace {
 public:
     /// Fields of a step, on the device; borrowed.
     struct Problem {
