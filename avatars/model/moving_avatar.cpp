@@ -1,5 +1,6 @@
 #include "avatars/model/moving_avatar.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -18,6 +19,35 @@ Affine Placement::world_from_avatar() const
     transform.col(3) = translate;
     return transform;
 }
+
+namespace {
+
+/// Boxes around the rest positions of the vertices that follow each bone. [bones]
+std::vector<Bounds> boxes_of_bones(const SkinView& skin, int bone_count)
+{
+    std::vector<Bounds> boxes(static_cast<size_t>(bone_count));
+    for (int v = 0; v < skin.rest.size(); ++v)
+        for (int k = skin.first[v]; k < skin.first[v + 1]; ++k)
+            boxes[skin.influences[k].bone].extend(skin.rest[v]);
+    return boxes;
+}
+
+/// Largest distance [m] between the images of a point of the box under two maps: both are affine, so a corner
+/// has it.
+double max_distance(const Bounds& box, const Affine& a, const Affine& b)
+{
+    double largest = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        Vec3 p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = ((corner >> axis) & 1) != 0 ? box.upper[axis] : box.lower[axis];
+        const Vec3 difference = (a.leftCols<3>() - b.leftCols<3>()) * p + a.col(3) - b.col(3);
+        largest = std::max(largest, difference.norm());
+    }
+    return largest;
+}
+
+} // namespace
 
 MovingAvatar::MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const Placement& placement,
                            const Affine& root_transform)
@@ -56,6 +86,23 @@ void MovingAvatar::advance_to(double t_t1, const Affine& root_transform)
     moved_ = !(next == shown_ && root_transform == shown_root_transform_);
     if (moved_)
         show(next, root_transform);
+}
+
+/// A vertex moves by a weighted mean of its bones' displacements.
+double MovingAvatar::max_motion_to(double t, const Affine& root_transform)
+{
+    const PoseAt next = at(t);
+    if (next == shown_ && root_transform == shown_root_transform_)
+        return 0.0;
+    if (bone_boxes_.empty())
+        bone_boxes_ = boxes_of_bones(avatar_->skin(), avatar_->bone_count());
+    bones_ahead_.resize(bones_t1_.size());
+    avatar_->pose_bones(next, compose(root_transform, world_from_avatar_), bones_ahead_);
+    double largest = 0.0;
+    for (size_t b = 0; b < bones_t1_.size(); ++b)
+        if (!bone_boxes_[b].empty())
+            largest = std::max(largest, max_distance(bone_boxes_[b], bones_t1_[b], bones_ahead_[b]));
+    return largest;
 }
 
 } // namespace toile::avatars

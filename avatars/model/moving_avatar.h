@@ -4,6 +4,7 @@
 
 #include "avatars/model/avatar.h"
 #include "avatars/model/motion.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace toile::avatars {
 
@@ -32,6 +33,10 @@ public:
     /// @param root_transform  moves the whole avatar: x_world = root_transform(placement(x))
     void advance_to(double t_t1, const Affine& root_transform = identity_affine());
 
+    /// Bound on the displacement of any vertex from the end of the last step to time t [s], without a step
+    /// [m].
+    double max_motion_to(double t, const Affine& root_transform = identity_affine());
+
     const Avatar& avatar() const { return *avatar_; }
 
     /// world_from_mesh at the step's start and end, for avatar().skin(). [bones]
@@ -56,6 +61,10 @@ private:
     Affine shown_root_transform_; ///< root transform at t1
     bool moved_ = false;
     std::vector<Affine> bones_t0_, bones_t1_;
+
+    // State of max_motion_to().
+    std::vector<Bounds> bone_boxes_; ///< [bones] around the rest positions of a bone's vertices; empty: unset
+    std::vector<Affine> bones_ahead_;
 };
 
 } // namespace toile::avatars

@@ -30,6 +30,11 @@ public:
     /// @return false if both poses are equal
     bool advance_to(double t);
 
+    /// Largest displacement of any of its points from the end of the last step to time t [s], relative to the
+    /// one that cloth can follow in a step: half the thickness of a limb or of a shape, beyond which cloth
+    /// would leave on the other side. No step is taken. [-]
+    double motion_to(double t);
+
     /// Shape of an avatar given as plane, sphere, capsule or box; else null.
     const collision::Shape* shape() const { return shape_ ? &*shape_ : nullptr; }
     const Eigen::Isometry3d& pose() const { return pose_; } ///< world_from_shape at the step's end

@@ -18,6 +18,9 @@ public:
     /// Advances to the step that starts at the end of the last one and ends at t_t1 [s].
     void advance_to(double t_t1);
 
+    /// See BodyMotion.
+    double motion_to(double t) { return body_.motion_to(t); }
+
     /// True if anything moved in the current step.
     bool moved() const { return moved_; }
 

@@ -26,6 +26,12 @@ public:
     /// @return false if both poses are equal
     bool advance_to(double t_t1, const avatars::Affine& root_transform);
 
+    /// See MovingAvatar.
+    double max_motion_to(double t, const avatars::Affine& root_transform)
+    {
+        return avatar_.max_motion_to(t, root_transform);
+    }
+
     // The whole body.
     const std::vector<Triangle>& triangles() const { return avatar_.avatar().triangles(); }
     int body_vertex_count() const { return avatar_.avatar().vertex_count(); }

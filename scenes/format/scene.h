@@ -255,7 +255,9 @@ struct Sleep {
 };
 
 struct Solver {
-    int substeps = 4; ///< time steps per sample
+    static constexpr int kSubsteps = 4; ///< where nothing estimates the error of a step
+    std::optional<int> substeps;        ///< time steps per sample; absent: chosen by what moves
+    std::optional<double> step_error;   ///< [m] of steps by what moves; absent: that of the quality
     Quality quality = Quality::Standard;
     std::optional<double> velocity_tolerance; ///< [m/s] absent: that of the quality
     std::optional<double> tolerance;          ///< [m] of a step; former key for velocity_tolerance
@@ -311,8 +313,11 @@ struct Scene {
 
     /// Time between samples [s].
     double frame_duration() const { return 1.0 / fps; }
-    /// Length of a time step [s].
-    double step_duration() const { return frame_duration() / solver.substeps; }
+    /// Length of a time step of a fixed number per sample [s].
+    double step_duration() const
+    {
+        return frame_duration() / solver.substeps.value_or(scene::Solver::kSubsteps);
+    }
 };
 
 } // namespace toile::scenes

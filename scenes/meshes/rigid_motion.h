@@ -11,7 +11,9 @@ namespace toile::scenes {
 /// R = Rz Ry Rx: rotation about the fixed X axis first, then Y, then Z.
 Mat3 rotation_of(const Vec3& rotate_deg);
 
-/// Keyframes of a rigid motion about a pivot, linearly interpolated, constant outside.
+/// Keyframes of a rigid motion about a pivot, constant outside. Between them, positions and angles follow
+/// monotone cubics [Fritsch & Butland 1984]: speed has no jumps at inner keyframes, nothing overshoots, and
+/// two keyframes alone make a uniform motion.
 class RigidMotion {
 public:
     RigidMotion() = default;
@@ -25,6 +27,7 @@ public:
 
 private:
     std::vector<scene::Keyframe> keyframes_;
+    std::vector<scene::Keyframe> rates_; ///< [keyframes] translate [m/s] and rotate_deg [1/s] at a keyframe
     Vec3 pivot_ = Vec3::Zero();
 };
 

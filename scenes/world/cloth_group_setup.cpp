@@ -115,6 +115,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.speed_tolerance = method.velocity_tolerance;
     settings.stop = scene.solver.stop;
     settings.integrator = method.integrator;
+    settings.begins_by_local_global = method.substeps > 0;
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
@@ -137,6 +138,7 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
     settings.tolerance = method.velocity_tolerance * scene.step_duration();
     settings.stop = scene.solver.stop;
     settings.integrator = method.integrator;
+    settings.begins_by_local_global = method.substeps > 0;
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;
     settings.speed_tolerance = method.velocity_tolerance;

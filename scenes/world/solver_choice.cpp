@@ -43,7 +43,20 @@ StepMethod step_method_of(const Scene& scene)
     method.velocity_tolerance = solver.velocity_tolerance.value_or(method.velocity_tolerance);
     method.max_iterations = is_preview ? 30 : method.outer == OuterMethod::Newton ? 100 : 300;
     method.max_iterations = solver.max_iterations.value_or(method.max_iterations);
+    // A named method prepares H for one step length; solids are rigid, and their motion has no estimate.
+    const bool is_by_motion =
+        method.outer == OuterMethod::Newton && solver.method == SolverMethod::Auto && scene.solids.empty();
+    method.substeps = solver.substeps.value_or(is_by_motion ? 0 : scene::Solver::kSubsteps);
+    method.step_error =
+        solver.step_error.value_or(solver.quality == scene::Quality::Final ? 3e-5 : method.step_error);
     return method;
+}
+
+StepControl step_control_of(const Scene& scene)
+{
+    const StepMethod method = step_method_of(scene);
+    return method.substeps > 0 ? StepControl::fixed(scene.frame_duration(), method.substeps)
+                               : StepControl::by_motion(scene.frame_duration(), method.step_error);
 }
 
 std::string former_keys_of(const Scene& scene)

@@ -12,6 +12,7 @@
 #include "garment/energy/rest_shape.h"
 #include "scenes/format/solver_methods.h"
 #include "scenes/world/baseline_methods.h"
+#include "scenes/world/step_control.h"
 
 namespace toile::scenes {
 
@@ -41,8 +42,13 @@ struct StepMethod {
     Integrator integrator = Integrator::Bdf2;
     double velocity_tolerance = 0.01; ///< [m/s]
     int max_iterations = 100;
+    int substeps = 0;         ///< time steps of a sample; 0: chosen by what moves
+    double step_error = 1e-4; ///< [m] of those, see StepControl
 };
 StepMethod step_method_of(const Scene& scene);
+
+/// Division of a scene's samples into steps.
+StepControl step_control_of(const Scene& scene);
 
 /// Message about keys of the scene that have another name now; empty: none.
 std::string former_keys_of(const Scene& scene);

@@ -24,7 +24,10 @@ long vertex_count(const std::vector<SceneCloth>& cloths)
 } // namespace
 
 struct World::Parts {
+    explicit Parts(const Scene& of) : scene(of), control(step_control_of(of)) {}
+
     Scene scene;
+    StepControl control;
     std::shared_ptr<const CudaSpace> space; ///< null: the CPU
     std::vector<Collider> colliders;
     std::vector<ClothGroup> groups;
@@ -34,24 +37,31 @@ struct World::Parts {
     bool is_shown = true; ///< states are up to date
     int frame = 0;
 
-    double dt() const { return scene.step_duration(); }
-    int settle_steps() const { return int(std::ceil(scene.settle / dt() - 1e-9)); }
+    /// Ticks before sample 0 in which the scene settles: whole numbers of the longest step.
+    int settle_ticks() const
+    {
+        const int longest = control.longest();
+        return longest * int(std::ceil(scene.settle / (longest * control.tick()) - 1e-9));
+    }
 
-    /// Takes steps of dt [s], the last of them ending at `end` [s]. Avatars do not move before time 0.
-    StepReport advance(int steps, double dt, double end)
+    /// Takes steps of `ticks` altogether, the last of them ending at `end` [s]. Avatars do not move before
+    /// time 0.
+    StepReport advance(int ticks, double end)
     {
         const ThreadLimit threads(scene.solver.threads);
         const Stages::Activate recording(stages);
         StepReport total;
-        for (int step = 1; step <= steps; ++step) {
-            const double t = end - (steps - step) * dt;
-            const StageScope stage("scenes/step");
-            for (Collider& collider : colliders)
-                collider.advance_to(std::max(t, 0.0));
-            StepReport report;
-            for (ClothGroup& group : groups)
-                report.merge(group.step(dt, t, colliders));
-            report.steps = 1;
+        for (int done = 0; done < ticks;) {
+            const auto time_after = [&](int more) { return end - (ticks - done - more) * control.tick(); };
+            const int length = control.choose(done, [&](int more) {
+                double largest = 0.0;
+                for (Collider& collider : colliders)
+                    largest = std::max(largest, collider.motion_to(std::max(time_after(more), 0.0)));
+                return largest;
+            });
+            const StepReport report = step(length * control.tick(), time_after(length));
+            control.observe(report);
+            done += length;
             total.energy = 0.0;
             total.contacts = 0;
             total.merge(report);
@@ -62,6 +72,19 @@ struct World::Parts {
         if (!space)
             show();
         return total;
+    }
+
+    /// Takes a step of dt [s] that ends at t [s].
+    StepReport step(double dt, double t)
+    {
+        const StageScope stage("scenes/step");
+        for (Collider& collider : colliders)
+            collider.advance_to(std::max(t, 0.0));
+        StepReport report;
+        for (ClothGroup& group : groups)
+            report.merge(group.step(dt, t, colliders));
+        report.steps = 1;
+        return report;
     }
 
     /// Updates states from the groups. Positions on a GPU are copied only on request.
@@ -83,12 +106,11 @@ struct World::Parts {
     }
 };
 
-World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make_unique<Parts>())
+World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make_unique<Parts>(scene))
 {
     require_methods(scene, options.baselines);
     if (const std::string former = former_keys_of(scene); !former.empty() && options.warn)
         options.warn(former);
-    parts_->scene = scene;
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->colliders.emplace_back(avatar, scene.contact.friction);
     parts_->space = open_backend(options.backend, options.device, scene, options.warn);
@@ -133,20 +155,19 @@ void World::prepare()
 {
     const ThreadLimit threads(parts_->scene.solver.threads);
     const Stages::Activate recording(parts_->stages);
-    const double dt = parts_->dt();
-    const int steps = parts_->settle_steps();
-    const double first_end = steps > 0 ? -(steps - 1) * dt : dt;
+    const StepControl& control = parts_->control;
+    const double dt = control.first() * control.tick();
+    const double first_end = dt - parts_->settle_ticks() * control.tick();
     for (ClothGroup& group : parts_->groups)
         group.prepare(dt, first_end);
 }
 
-StepReport World::settle() { return parts_->advance(parts_->settle_steps(), parts_->dt(), 0.0); }
+StepReport World::settle() { return parts_->advance(parts_->settle_ticks(), 0.0); }
 
 StepReport World::advance_frame()
 {
-    const Scene& scene = parts_->scene;
     ++parts_->frame;
-    return parts_->advance(scene.solver.substeps, parts_->dt(), parts_->frame * scene.frame_duration());
+    return parts_->advance(parts_->control.ticks_of_sample(), parts_->frame * parts_->scene.frame_duration());
 }
 
 int World::frame() const { return parts_->frame; }

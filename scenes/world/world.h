@@ -19,8 +19,8 @@ namespace toile::scenes {
 /// A running scene: avatars, cloths, solids, contact and the time-step loop. The only class that combines
 /// them all.
 ///
-/// Sample k belongs to time k / fps. Each sample takes Solver::substeps time steps; stages that the
-/// scene does not need are never entered (stages() shows it).
+/// Sample k belongs to time k / fps. StepControl divides samples into time steps; stages that the scene does
+/// not need are never entered (stages() shows it).
 class World {
 public:
     /// Loads and places everything, and repairs a start pose with cloth inside avatars or through cloth

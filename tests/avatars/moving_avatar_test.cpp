@@ -49,6 +49,24 @@ std::string refusal(const Motion& motion, const Placement& placement = {})
 
 } // namespace
 
+TEST(MovingAvatar, BoundsItsMotionAheadWithoutAStep)
+{
+    MovingAvatar avatar = column(play("bend"));
+    avatar.advance_to(0.1);
+    const std::vector<Vec3> before = x_t1(avatar);
+    const double bound = avatar.max_motion_to(0.3);
+    EXPECT_EQ(x_t1(avatar), before);
+    avatar.advance_to(0.3);
+    const std::vector<Vec3> after = x_t1(avatar);
+    double largest = 0.0;
+    for (size_t v = 0; v < after.size(); ++v)
+        largest = std::max(largest, (after[v] - before[v]).norm());
+    EXPECT_GT(largest, 0.0);
+    EXPECT_GE(bound, largest * (1.0 - 1e-12));
+    EXPECT_LE(bound, 1.5 * largest);
+    EXPECT_EQ(avatar.max_motion_to(0.3), 0.0) << "the pose that it has";
+}
+
 TEST(MovingAvatar, StartsAStepWhereTheLastEnded)
 {
     MovingAvatar avatar = column(play("bend"));

@@ -20,7 +20,7 @@ TEST(ReadScene, GivesTheDocumentedDefaultsToAMinimalScene)
     EXPECT_EQ(scene.fps, 30.0);
     EXPECT_DOUBLE_EQ(scene.frame_duration(), 1.0 / 30.0);
     EXPECT_EQ(scene.gravity, Vec3(0.0, -9.81, 0.0));
-    EXPECT_EQ(scene.solver.substeps, 4);
+    EXPECT_FALSE(scene.solver.substeps.has_value());
     EXPECT_EQ(scene.solver.quality, scene::Quality::Standard);
     EXPECT_FALSE(scene.solver.tolerance.has_value());
     EXPECT_EQ(scene.solver.stop, StepStop::Error);

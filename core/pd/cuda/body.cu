@@ -48,8 +48,9 @@ DeviceBody::DeviceBody(const CudaSpace& space, const std::vector<Vec3>& position
       masses_(space, "body/masses"), diagonal_(space, "body/diagonal"),
       inverse_masses_(space, "body/inverse_masses"), fixed_(space, "body/fixed"),
       begin_sums_(space, "body/begin_sums", block_count(x_.size(), kSumItems)),
+      finish_sums_(space, "body/finish_sums", block_count(x_.size(), kSumItems)),
       end_sums_(space, "body/end_sums", block_count(x_.size(), kSumItems)),
-      gradient_(space, "body/largest_gradient", 1), speed_(space, "body/largest_speed", 1),
+      finished_(space, "body/finished", 1), speed_(space, "body/largest_speed", 1),
       drive_(space, "body/drive"), found_gradient_(space, "body/found_gradient")
 {
     TOILE_ASSERT(x_.size() == system_->vertex_count());
@@ -75,17 +76,19 @@ void DeviceBody::prepare(double dt, const std::vector<unsigned char>& fixed)
 {
     TOILE_ASSERT(int(fixed.size()) == x_.size());
     const double step = Bdf2::make(settings_.integrator, dt, previous_dt_).implicit_step();
-    const bool is_new = step != prepared_step_ || fixed != host_fixed_;
+    const bool is_new_step = step != prepared_step_, is_new_set = fixed != host_fixed_;
     prepared_step_ = 0.0; // not prepared, should the solver refuse H
-    system_->prepare(step, fixed);
-    if (is_new) {
+    if (newton_ && !settings_.begins_by_local_global)
+        system_->prepare_diagonal(step, fixed);
+    else
+        system_->prepare(step, fixed);
+    if (is_new_set)
         set_fixed(fixed);
-        if (newton_)
-            newton_->set_fixed(fixed, masses());
-        else
+    if (is_new_set || is_new_step) {
+        diagonal_.upload(system_->diagonal());
+        if (!newton_)
             descent_->record(problem());
         is_contact_prepared_ = false;
-        host_fixed_ = fixed;
     }
     prepared_step_ = step;
     dt_ = dt;
@@ -106,9 +109,9 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
                             View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     const StageScope stage("pd/device_step");
-    return take_step(
-        *this, {dt, acceleration, fixed, targets, active, projection},
-        {settings_.max_iterations, settings_.max_passes, newton_ ? settings_.speed_tolerance : 0.0});
+    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
+                     {settings_.max_iterations, settings_.max_passes,
+                      newton_ ? settings_.speed_tolerance : 0.0, settings_.begins_by_local_global});
 }
 
 void DeviceBody::begin(const StepInput& input)

@@ -35,6 +35,7 @@ public:
         Integrator integrator = Integrator::ImplicitEuler;
         OuterMethod outer = OuterMethod::Lbfgs; ///< or Newton
         double speed_tolerance = 0.01;          ///< [m/s] of Newton's method, in place of `tolerance`
+        bool begins_by_local_global = true;     ///< as Body's
     };
 
     /// @param space      borrowed; the solver's too
@@ -134,10 +135,12 @@ private:
     DeviceArray<double> inverse_masses_;    ///< [1/kg] 0 where fixed
     DeviceArray<unsigned char> fixed_;
     DeviceArray<StepSums> begin_sums_;
+    DeviceArray<FinishSums> finish_sums_;
     DeviceArray<LargestSquare> end_sums_;
-    PinnedArray<LargestSquare> gradient_, speed_; ///< [1]
-    bool is_speed_current_ = false;               ///< speed_ belongs to the current velocities
-    ActiveSetEnergy* active_ = nullptr;           ///< of the current step; may be null
+    PinnedArray<FinishSums> finished_;  ///< [1]
+    PinnedArray<LargestSquare> speed_;  ///< [1]
+    bool is_speed_current_ = false;     ///< speed_ belongs to the current velocities
+    ActiveSetEnergy* active_ = nullptr; ///< of the current step; may be null
     std::optional<DeviceNewton> newton_;
 
     // L-BFGS.

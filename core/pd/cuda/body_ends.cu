@@ -37,7 +37,7 @@ std::shared_ptr<const Readback<Vec3>> DeviceBody::read_back_positions()
     return readback;
 }
 
-/// Uploads the fixed vertices and the diagonal of H.
+/// Takes other fixed vertices.
 void DeviceBody::set_fixed(const std::vector<unsigned char>& fixed)
 {
     fixed_.upload(fixed);
@@ -49,9 +49,11 @@ void DeviceBody::set_fixed(const std::vector<unsigned char>& fixed)
         else
             inverse_masses[i] = 1.0 / masses()[i];
     inverse_masses_.upload(inverse_masses);
-    diagonal_.upload(system_->diagonal());
     fixed_vertices_.upload(fixed_vertices_on_host_);
     fixed_targets_on_host_.resize(fixed_vertices_.size());
+    if (newton_)
+        newton_->set_fixed(fixed, masses());
+    host_fixed_ = fixed;
 }
 
 void DeviceBody::begin_forces(View<const Vec3> acceleration)
@@ -122,11 +124,11 @@ void DeviceBody::finish(ActiveSetEnergy* active, StepProjection*)
         active->mark_touching(x_t1_, touches_.view());
     for (const auto& energy : energies_.all())
         energy->end_minimisation(x_t1_.device());
-    parallel_sum(space_, "pd/finish", x_.size(), LargestSquare{},
-                 FinishVertex{{scheme_, motion(), x_t1_.device()},
+    parallel_sum(space_, "pd/finish", x_.size(), FinishSums{},
+                 FinishVertex{{scheme_, motion(), x_t1_.device(), previous_dt_ == 0.0},
                               newton_ ? newton_->gradient() : descent_->gradient(),
                               minimiser_.view()},
-                 gradient_.view(), end_sums_);
+                 finished_.view(), finish_sums_);
 }
 
 /// Waits once for all numbers of the report.
@@ -139,7 +141,8 @@ void DeviceBody::end(StepProjection* projection, StepReport& report)
         projection->on_device(space_)->end_step(x_.device());
     space_.synchronise();
     is_speed_current_ = true;
-    report.gradient_norm = std::sqrt(gradient_[0].value);
+    report.gradient_norm = std::sqrt(finished_[0].gradient.value);
+    report.step_error = finished_[0].error.rms();
 }
 
 } // namespace toile

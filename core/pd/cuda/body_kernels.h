@@ -142,18 +142,30 @@ struct LargestSquare {
     }
 };
 
+/// Sums over all vertices where the minimisation of a step has ended.
+struct FinishSums {
+    LargestSquare gradient; ///< [N^2] zero where fixed
+    StepErrorSum error;
+
+    TOILE_HD FinishSums& operator+=(const FinishSums& other)
+    {
+        gradient += other.gradient;
+        error += other.error;
+        return *this;
+    }
+};
+
 /// Finishes the motion of vertex i at the minimiser, which is kept.
 struct FinishVertex {
     FinishMotion finish;
     View<const Vec3> gradient; ///< [vertices] [N]
     View<Vec3> minimiser;      ///< [vertices] out [m]
 
-    /// @return squared length of the gradient [N^2], zero where fixed
-    TOILE_HD LargestSquare operator()(int i) const
+    TOILE_HD FinishSums operator()(int i) const
     {
-        finish(i);
+        const StepErrorSum error = finish(i);
         minimiser[i] = finish.x_t1[i];
-        return {finish.motion.fixed[i] != 0 ? 0.0 : gradient[i].squaredNorm()};
+        return {{finish.motion.fixed[i] != 0 ? 0.0 : gradient[i].squaredNorm()}, error};
     }
 };
 

@@ -36,24 +36,32 @@ System::System(std::vector<double> masses, std::vector<std::shared_ptr<Energy>> 
 
 void System::prepare(double dt, const std::vector<unsigned char>& fixed)
 {
-    if (dt != dt_ || fixed != fixed_)
-        update(dt, fixed);
+    prepare_diagonal(dt, fixed);
+    if (!has_matrix_)
+        update();
     solver_->begin_step();
 }
 
-void System::update(double dt, const std::vector<unsigned char>& fixed)
+void System::prepare_diagonal(double dt, const std::vector<unsigned char>& fixed)
 {
-    dt_ = 0.0; // not prepared if the solver throws
+    if (dt == dt_ && fixed == fixed_)
+        return;
+    dt_ = dt;
     fixed_ = fixed;
-    H_ = elastic_;
+    has_matrix_ = false;
     diagonal_.resize(masses_.size());
-    for (int i = 0; i < vertex_count(); ++i) {
-        H_.coeffRef(i, i) += masses_[i] / (dt * dt);
-        diagonal_[i] = H_.coeff(i, i);
-    }
+    for (int i = 0; i < vertex_count(); ++i)
+        diagonal_[i] = elastic_.coeff(i, i) + masses_[i] / (dt * dt);
+}
+
+void System::update()
+{
+    H_ = elastic_;
+    for (int i = 0; i < vertex_count(); ++i)
+        H_.coeffRef(i, i) = diagonal_[i];
     eliminate(H_, fixed_);
     solver_->update(H_, fixed_);
-    dt_ = dt;
+    has_matrix_ = true;
 }
 
 double System::add_gradient(View<const Vec3> x, View<Vec3> gradient) const

@@ -30,6 +30,10 @@ public:
     /// If neither changed, only calls the solver's begin_step().
     void prepare(double dt, const std::vector<unsigned char>& fixed);
 
+    /// Called before every step of a minimiser without H: in place of prepare(), only for diagonal() and
+    /// fixed().
+    void prepare_diagonal(double dt, const std::vector<unsigned char>& fixed);
+
     /// Diagonal of H with nothing fixed [N/m].
     View<const double> diagonal() const { return diagonal_; }
     const SparseMatrix& matrix() const { return H_; }
@@ -44,7 +48,7 @@ public:
     Curvature& curvature() const;
 
 private:
-    void update(double dt, const std::vector<unsigned char>& fixed);
+    void update();
 
     std::vector<double> masses_;
     std::vector<std::shared_ptr<Energy>> energies_;
@@ -54,7 +58,8 @@ private:
     std::vector<double> diagonal_;
     std::unique_ptr<GlobalSolver> solver_;
     mutable std::unique_ptr<Curvature> curvature_;
-    double dt_ = 0.0;
+    double dt_ = 0.0;         ///< [s] of the diagonal
+    bool has_matrix_ = false; ///< H_ and the solver are those of dt_ and fixed_
 };
 
 } // namespace toile

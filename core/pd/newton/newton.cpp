@@ -52,14 +52,14 @@ constexpr int kMaxShortenings = 7;
 constexpr double kModelNoise = 1e-12;
 
 /// Chooses the start. @return its value
-double begin(NewtonSpace& space, bool is_calm)
+double begin(NewtonSpace& space, bool tries_local_global)
 {
     const double value = space.evaluate();
     if (const double at_rest = space.try_rest(value); at_rest < value) {
         space.take();
         return at_rest;
     }
-    if (!is_calm || space.are_fixed_moving())
+    if (!tries_local_global || space.are_fixed_moving())
         return value;
     // H does not contain internal friction and may leave bending out.
     const double moved = space.try_local_global();
@@ -143,7 +143,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
 {
     const StageScope stage("pd/newton");
     OuterLoop::Outcome outcome;
-    outcome.value = begin(space, is_calm);
+    outcome.value = begin(space, is_calm && of_scene.begins_by_local_global);
     Settings settings = of_scene;
     if (!is_calm)
         settings.tolerance = std::min(settings.tolerance, tolerance_by_driving(space.driving_speed()));

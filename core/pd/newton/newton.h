@@ -19,7 +19,8 @@ struct Newton {
         /// accepts, is slower: RMS |d| / h < tolerance.
         double tolerance = 0.01;
         int max_iterations = 100;
-        double dt = 0.0; ///< h [s]
+        double dt = 0.0;                    ///< h [s]
+        bool begins_by_local_global = true; ///< while nothing touches
     };
 
     /// Looks for contact at the current point between Newton steps. May move it and change the objective.
@@ -27,8 +28,7 @@ struct Newton {
     /// @return true if it did either
     using Revise = std::function<bool(bool is_converged)>;
 
-    /// Minimises from the current point, in place. Begins at rest instead if the value is lower there, else
-    /// with a local and a global step while nothing touches.
+    /// Minimises from the current point, in place. Begins at rest instead if the value is lower there.
     /// @param revise   may be empty
     /// @param is_calm  nothing touches
     static OuterLoop::Outcome minimise(NewtonSpace& space, const Settings& settings, const Revise& revise,

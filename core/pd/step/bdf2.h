@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/compute/types.h"
 
 namespace toile {
@@ -20,12 +22,14 @@ struct Bdf2 {
 
     double h = 0.0; ///< [s]
     double beta = 1.0, a0 = 1.0, a1 = 0.0;
+    double ratio = 0.0; ///< [-] 0: implicit Euler
 
-    TOILE_HD static Bdf2 implicit_euler(double h) { return {h, 1.0, 1.0, 0.0}; }
+    TOILE_HD static Bdf2 implicit_euler(double h) { return {h, 1.0, 1.0, 0.0, 0.0}; }
     TOILE_HD static Bdf2 of_ratio(double h, double ratio)
     {
         const double scale = 1.0 / (1.0 + 2.0 * ratio);
-        return {h, (1.0 + ratio) * scale, (1.0 + ratio) * (1.0 + ratio) * scale, ratio * ratio * scale};
+        return {h, (1.0 + ratio) * scale, (1.0 + ratio) * (1.0 + ratio) * scale, ratio * ratio * scale,
+                ratio};
     }
 
     /// @param previous  length of the last step [s], 0 for none: the matrix is that of equal steps
@@ -39,6 +43,33 @@ struct Bdf2 {
 
     /// Step length of the implicit Euler step with the same matrix [s].
     TOILE_HD double implicit_step() const { return beta * h; }
+
+    /// Local error of a step: a fixed part of its distance from a guess by the velocities before, of the same
+    /// order [Hairer & Wanner 1996, V.1 (Milne's device)].
+    /// @param x, v, v_previous  at the start of the step, and one step earlier [m], [m/s]
+    TOILE_HD Vec3 error_of(const Vec3& x_t1, const Vec3& x, const Vec3& v, const Vec3& v_previous) const
+    {
+        if (ratio == 0.0)
+            return 0.5 * (x_t1 - x - h * v);
+        const Vec3 guess = x + h * ((1.0 + 0.5 * ratio) * v - 0.5 * ratio * v_previous);
+        const double own = (1.0 + ratio) * (1.0 + ratio) / (6.0 * ratio * (1.0 + 2.0 * ratio));
+        const double of_guess = 1.0 / 6.0 + 1.0 / (4.0 * ratio);
+        return own / (own + of_guess) * (x_t1 - guess);
+    }
+};
+
+/// Sum of the local errors of a step.
+struct StepErrorSum {
+    double squares = 0.0; ///< [m^2]
+    double count = 0.0;   ///< vertices
+
+    TOILE_HD StepErrorSum& operator+=(const StepErrorSum& other)
+    {
+        squares += other.squares;
+        count += other.count;
+        return *this;
+    }
+    TOILE_HD double rms() const { return count > 0.0 ? std::sqrt(squares / count) : 0.0; }
 };
 
 /// State of the integrator for kernels: the last two steps, and what touched. [vertices]
@@ -96,13 +127,20 @@ struct FinishMotion {
     Bdf2 scheme;
     MotionView motion;
     View<const Vec3> x_t1; ///< [vertices] [m]
+    bool is_first;         ///< of the body: every vertex begins its motion
 
-    TOILE_HD void operator()(int i) const
+    /// @return local error, of a free vertex that nothing has hit
+    TOILE_HD StepErrorSum operator()(int i) const
     {
+        const bool is_hit = motion.has_begun_to_touch(i) || (motion.restart[i] != 0 && !is_first);
         RestartTouching{motion}(i);
         const Bdf2 s = motion.scheme_of(i, scheme);
+        StepErrorSum error;
+        if (!is_hit && motion.fixed[i] == 0)
+            error = {s.error_of(x_t1[i], motion.x[i], motion.v[i], motion.v_previous[i]).squaredNorm(), 1.0};
         motion.v_previous[i] = motion.v[i];
         motion.v[i] = (x_t1[i] - s.a0 * motion.x[i] + s.a1 * motion.x_previous[i]) / s.implicit_step();
+        return error;
     }
 };
 

@@ -25,9 +25,18 @@ Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings
 StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                       View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
-    return take_step(
-        *this, {dt, acceleration, fixed, targets, active, projection},
-        {settings_.max_iterations, settings_.max_passes, newton_ ? settings_.speed_tolerance : 0.0});
+    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
+                     {settings_.max_iterations, settings_.max_passes,
+                      newton_ ? settings_.speed_tolerance : 0.0, settings_.begins_by_local_global});
+}
+
+void Body::prepare(double dt, const std::vector<unsigned char>& fixed)
+{
+    const double step = Bdf2::make(settings_.integrator, dt, previous_dt_).implicit_step();
+    if (newton_ && !settings_.begins_by_local_global)
+        system_->prepare_diagonal(step, fixed);
+    else
+        system_->prepare(step, fixed);
 }
 
 MotionView Body::motion()
@@ -142,7 +151,8 @@ void Body::finish(ActiveSetEnergy* active, StepProjection* projection)
 {
     if (active && settings_.integrator != Integrator::ImplicitEuler)
         active->mark_touching(x_t1_, touches_);
-    parallel_for(kCpu, "pd/finish", int(x_.size()), FinishMotion{scheme_, motion(), x_t1_});
+    error_ = parallel_sum(kCpu, int(x_.size()), StepErrorSum{},
+                          FinishMotion{scheme_, motion(), x_t1_, previous_dt_ == 0.0});
     minimiser_ = x_t1_;
     if (projection)
         projection->observe(x_t1_);
@@ -153,10 +163,11 @@ void Body::project(StepProjection& projection, const std::function<bool()>& clea
     PointMassesOnHost::project(projection, dt_, system_->masses(), system_->fixed(), clear_contacts);
 }
 
-void Body::end(StepProjection*, StepReport&)
+void Body::end(StepProjection*, StepReport& report)
 {
     parallel_for(kCpu, "pd/end", int(x_.size()), EndMotion{motion(), minimiser_, x_t1_});
     previous_dt_ = dt_;
+    report.step_error = error_.rms();
 }
 
 } // namespace toile

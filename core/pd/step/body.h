@@ -29,14 +29,14 @@ public:
         NestedPcg::Settings contact_solve; ///< while contacts are active
         StepStop stop = StepStop::Error;   ///< what the tolerance bounds
         Integrator integrator = Integrator::ImplicitEuler;
+        /// Newton's method begins with a local and a global step while nothing touches. Needs the inverse of
+        /// H, anew for every step length.
+        bool begins_by_local_global = true;
     };
 
     Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings settings);
 
-    void prepare(double dt, const std::vector<unsigned char>& fixed) override
-    {
-        system_->prepare(Bdf2::make(settings_.integrator, dt, previous_dt_).implicit_step(), fixed);
-    }
+    void prepare(double dt, const std::vector<unsigned char>& fixed) override;
     StepReport step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                     View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection) override;
 
@@ -80,6 +80,7 @@ private:
     std::vector<unsigned char> restart_, touched_, touches_;
     std::vector<Vec3> minimiser_; ///< [vertices] [m]
     std::vector<double> inertia_; ///< [vertices] [N/m]
+    StepErrorSum error_;          ///< of the current step
 };
 
 } // namespace toile

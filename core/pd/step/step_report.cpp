@@ -12,6 +12,7 @@ void StepReport::merge(const StepReport& other)
     linear_iterations += other.linear_iterations;
     displacement = std::max(displacement, other.displacement);
     speed = std::max(speed, other.speed);
+    step_error = std::max(step_error, other.step_error);
     gradient_norm = std::max(gradient_norm, other.gradient_norm);
     energy += other.energy;
     contacts += other.contacts;

@@ -18,6 +18,7 @@ struct StepReport {
     int linear_iterations = 0;  ///< PCG iterations inside them, summed
     double displacement = 0.0;  ///< [m] largest vertex move of the last outer iteration, worst step
     double speed = 0.0;         ///< [m/s] RMS of the last Newton step per time, worst step; 0: other methods
+    double step_error = 0.0;    ///< [m] RMS local error of time integration by estimate, worst step
     double gradient_norm = 0.0; ///< [N] largest residual force on a vertex, worst step
     double energy = 0.0;        ///< [J] objective of the last step
     int contacts = 0;           ///< active contact pairs at the end of the last step

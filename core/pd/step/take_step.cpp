@@ -50,7 +50,9 @@ void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimi
     if (active)
         revise = [&](bool is_converged) { return active->revise(space.end_positions(), is_converged); };
     const double tolerance = (is_calm ? StepLimits::kCalm : 1.0) * limits.speed_tolerance;
-    add(report, space.minimise_by_newton({tolerance, limits.max_iterations, input.dt}, revise, is_calm));
+    const Newton::Settings settings{tolerance, limits.max_iterations, input.dt,
+                                    limits.begins_by_local_global};
+    add(report, space.minimise_by_newton(settings, revise, is_calm));
 }
 
 /// Satisfies contact, limits and separation of cloth. Cloth that contact moves back stretches against cloth

@@ -43,13 +43,13 @@ std::string lossless_fabric(double areal_density, double stretch, double bend, d
            number(damping) + ", " + kLossless + "}}";
 }
 
-/// The same scene in finer steps, each minimised much further.
+/// The same scene in equal, finer steps, each minimised much further.
 scenes::Scene converged(scenes::Scene scene, int finer)
 {
     scene.solver.quality = scene::Quality::Final;
     scene.solver.velocity_tolerance = 1e-4;
     scene.solver.max_iterations = 2000;
-    scene.solver.substeps *= finer;
+    scene.solver.substeps = finer * scene.solver.substeps.value_or(scene::Solver::kSubsteps);
     return scene;
 }
 

@@ -102,7 +102,7 @@ void run_on(scenes::Backend backend, const SceneCase& what, const scenes::Scene&
     SceneRun start;
     start.name = what.name;
     start.backend = backend == scenes::Backend::Cuda ? "cuda" : "cpu";
-    start.dt = scene.frame_duration() / scene.solver.substeps;
+    start.dt = scene.step_duration();
     const double free_before = double(space.free_memory());
 
     scenes::WorldOptions options;

@@ -1,0 +1,55 @@
+#include "scenes/world/step_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/assert.h"
+
+namespace toile::scenes {
+
+namespace {
+
+/// Error of a step relative to the allowed one [-] that allows twice the length: the error of a step grows
+/// with the third power of its length, and a margin keeps the two from alternating.
+constexpr double kSmall = 0.1;
+
+/// Length of the first step relative to the longest [-]. It is of first order.
+constexpr int kFirst = 4;
+
+} // namespace
+
+StepControl StepControl::fixed(double sample_duration, int steps)
+{
+    return {sample_duration / steps, steps, 1, 1, 0.0};
+}
+
+StepControl StepControl::by_motion(double sample_duration, double error)
+{
+    TOILE_ASSERT(error > 0.0);
+    const int longest_steps = std::max(1, int(std::ceil(sample_duration / kLongest - 1e-9)));
+    const int ticks = longest_steps * kTicksOfLongest;
+    return {sample_duration / ticks, ticks, kTicksOfLongest, kTicksOfLongest / kFirst, error};
+}
+
+int StepControl::choose(int begin, const std::function<double(int ticks)>& motion)
+{
+    if (error_ == 0.0)
+        return 1;
+    const int most = chosen_ == 0 ? length_ : std::min(length_, 2 * chosen_);
+    chosen_ = most;
+    while (begin % chosen_ != 0 || (chosen_ > 1 && motion(chosen_) > 1.0))
+        chosen_ /= 2;
+    return chosen_;
+}
+
+void StepControl::observe(const StepReport& step)
+{
+    if (error_ == 0.0)
+        return;
+    if (step.step_error > error_)
+        length_ = std::max(1, chosen_ / 2);
+    else if (step.step_error < kSmall * error_)
+        length_ = std::min(longest_, std::max(length_, 2 * chosen_));
+}
+
+} // namespace toile::scenes
