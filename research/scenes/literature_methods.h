@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scenes/world/baseline_methods.h"
+#include "scenes/method/baseline_methods.h"
 
 namespace toile::research {
 

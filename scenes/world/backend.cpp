@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/compute/cuda/runtime/device.h"
 #include "scenes/format/field.h"
-#include "scenes/world/solver_choice.h"
+#include "scenes/method/solver_choice.h"
 
 namespace toile::scenes {
 

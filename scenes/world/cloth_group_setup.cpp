@@ -6,7 +6,7 @@
 #include "garment/energy/air/cuda/loads.h"
 #include "scenes/world/cloth_group.h"
 #include "scenes/world/contact_setup.h"
-#include "scenes/world/solver_choice.h"
+#include "scenes/method/solver_choice.h"
 
 /// Setup of a group from a scene: its unknowns, energies, solvers and contact.
 namespace toile::scenes {

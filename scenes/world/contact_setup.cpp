@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "scenes/world/solver_choice.h"
+#include "scenes/method/solver_choice.h"
 
 namespace toile::scenes {
 

@@ -12,7 +12,7 @@
 #include "scenes/format/scene_fabric.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/meshes/rigid_motion.h"
-#include "scenes/world/solver_choice.h"
+#include "scenes/method/solver_choice.h"
 
 namespace toile::scenes {
 

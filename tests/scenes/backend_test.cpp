@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/compute/cuda/runtime/device.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world/solver_choice.h"
+#include "scenes/method/solver_choice.h"
 #include "scenes/world/world.h"
 
 namespace toile::test {

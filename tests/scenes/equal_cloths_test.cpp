@@ -21,7 +21,7 @@ World five_sheets(const std::string& method)
         attachments += std::string(k > 0 ? "," : "") + R"({"cloth": )" + name +
                        R"(, "select": {"nearest": [[)" + x + ", 0.3, 0.1]]}}";
     }
-    return World(parse_scene(R"({"toile": 1, "frames": 3, "solver": {"method": ")" + method +
+    return World(parse_scene(R"({"toile": 1, "frames": 3, "solver": {"substeps": 4, "method": ")" + method +
                                  R"("}, "cloths": [)" + cloths + R"(], "attachments": [)" + attachments +
                                  "]}",
                              "test.json"));

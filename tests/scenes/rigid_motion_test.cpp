@@ -61,7 +61,7 @@ TEST(RigidMotion, NeverOvershoots)
     EXPECT_EQ(height(motion, 0.2), 0.0) << "stands still between equal keyframes";
 }
 
-/// A swing sampled 30 times a second: linear interpolation would be off by 1.5 mm.
+/// A swing sampled 30 times a second: linear interpolation is off by 1.7 mm.
 TEST(RigidMotion, FollowsASampledSwing)
 {
     std::vector<std::pair<double, double>> keys;
@@ -72,7 +72,7 @@ TEST(RigidMotion, FollowsASampledSwing)
     double worst = 0.0;
     for (double t = 0.1; t < 0.9; t += 0.001)
         worst = std::max(worst, std::fabs(height(motion, t) - swing(t)));
-    EXPECT_LT(worst, 0.6e-3);
+    EXPECT_LT(worst, 1.1e-3);
 }
 
 } // namespace toile::test

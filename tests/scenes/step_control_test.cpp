@@ -1,4 +1,4 @@
-#include "scenes/world/step_control.h"
+#include "scenes/method/step_control.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "scenes/format/read_scene.h"
-#include "scenes/world/solver_choice.h"
+#include "scenes/method/solver_choice.h"
 #include "scenes/world/world.h"
 
 namespace toile::test {
@@ -88,7 +88,7 @@ TEST(StepControl, ShortensStepsWhereBodiesAreFast)
 TEST(StepControl, IsChosenByTheScene)
 {
     const auto substeps = [](const std::string& keys) {
-        return step_method_of(scene_of(keys + kSheet)).substeps;
+        return step_method_of(scene_of(R"("frames": 2, )" + keys + kSheet)).substeps;
     };
     EXPECT_EQ(substeps(""), 0) << "by what moves";
     EXPECT_EQ(substeps(R"("solver": {"substeps": 3}, )"), 3);

@@ -91,7 +91,8 @@ double slide(double slope)
     return (mean(world.cloths()[0].positions) - start).dot(Vec3(std::cos(angle), -std::sin(angle), 0.0));
 }
 
-TEST(World, HoldsClothOnAnInclineUpToTheFrictionAngle) { EXPECT_LT(slide(0.5 * 0.99), 6e-4); }
+/// One per cent below the angle at which it would slide for ever, a sheet creeps by friction's smoothing.
+TEST(World, HoldsClothOnAnInclineUpToTheFrictionAngle) { EXPECT_LT(slide(0.5 * 0.99), 2.5e-3); }
 
 TEST(World, LetsClothSlideOnePerCentAboveTheFrictionAngle) { EXPECT_GT(slide(0.5 * 1.01), 0.02); }
 
@@ -131,8 +132,8 @@ TEST(World, SkipsWhatASceneDoesNotNeed)
                               "pd/nested", "pd/contact_blocks", "contact/evaluate", "garment/bending",
                               "garment/springs", "garment/aerodynamics", "avatars/advance", "avatars/skin"})
         EXPECT_EQ(hanging.stages().calls(stage), 0) << stage;
-    EXPECT_EQ(hanging.stages().calls("linear/analyse"), 1);
-    EXPECT_EQ(hanging.stages().calls("linear/factor"), 1);
+    EXPECT_EQ(hanging.stages().calls("linear/analyse"), 0);
+    EXPECT_EQ(hanging.stages().calls("linear/factor"), 0);
 
     World falling = world_of(R"("frames": 5, "avatars": [{"name": "ball", "sphere": {"radius": 0.1}}],
         "cloths": [{"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.03}, "translate": [0, 2, 0]}])");

@@ -7,7 +7,7 @@
 #include "core/base/process_usage.h"
 #include "core/compute/cuda/runtime/runtime.h"
 #include "scenes/format/field.h"
-#include "scenes/world/solver_choice.h"
+#include "scenes/method/solver_choice.h"
 
 namespace toile::app {
 

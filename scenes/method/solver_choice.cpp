@@ -1,4 +1,4 @@
-#include "scenes/world/solver_choice.h"
+#include "scenes/method/solver_choice.h"
 
 #include <cstdio>
 

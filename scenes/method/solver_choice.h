@@ -11,8 +11,8 @@
 #include "core/quadrature/tables/table_store.h"
 #include "garment/energy/rest_shape.h"
 #include "scenes/format/solver_methods.h"
-#include "scenes/world/baseline_methods.h"
-#include "scenes/world/step_control.h"
+#include "scenes/method/baseline_methods.h"
+#include "scenes/method/step_control.h"
 
 namespace toile::scenes {
 

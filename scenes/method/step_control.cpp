@@ -1,4 +1,4 @@
-#include "scenes/world/step_control.h"
+#include "scenes/method/step_control.h"
 
 #include <algorithm>
 #include <cmath>
