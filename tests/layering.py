@@ -70,7 +70,8 @@ MAY_INCLUDE |= {
     "scenes/format": BELOW_SCENES,
     "scenes/meshes": BELOW_SCENES + ["scenes/format"],
     "scenes/colliders": BELOW_SCENES + ["scenes/format", "scenes/meshes"],
-    "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders"],
+    "scenes/method": BELOW_SCENES + ["scenes/format"],
+    "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders", "scenes/method"],
 }
 BELOW_APPS = BELOW_SCENES + ["scenes", "export"]
 MAY_INCLUDE |= {
