@@ -64,7 +64,7 @@ constexpr const char* kSwing =
 
 std::vector<Vec3> swing(const std::string& solver)
 {
-    World world = world_of(kSwing, solver);
+    World world = world_of(kSwing, R"("substeps": 4, )" + solver);
     return positions_after(world, 3);
 }
 
