@@ -4,9 +4,9 @@
 #include "core/pd/step/body.h"
 #include "core/quadrature/cuda/quadrature_solver.h"
 #include "garment/energy/air/cuda/loads.h"
+#include "scenes/method/solver_choice.h"
 #include "scenes/world/cloth_group.h"
 #include "scenes/world/contact_setup.h"
-#include "scenes/method/solver_choice.h"
 
 /// Setup of a group from a scene: its unknowns, energies, solvers and contact.
 namespace toile::scenes {

@@ -5,8 +5,8 @@
 
 #include "core/compute/cuda/runtime/device.h"
 #include "core/compute/parallel.h"
-#include "scenes/world/cloth_group.h"
 #include "scenes/method/solver_choice.h"
+#include "scenes/world/cloth_group.h"
 #include "scenes/world/start_pose.h"
 
 namespace toile::scenes {
