@@ -15,11 +15,14 @@ std::string markdown_line(const Row& row, const std::vector<size_t>& widths, cha
     return line + "\n";
 }
 
+/// Cells with commas are quoted [RFC 4180].
 std::string csv_line(const Row& row)
 {
     std::string line;
-    for (size_t i = 0; i < row.size(); ++i)
-        line += (i > 0 ? "," : "") + row[i];
+    for (size_t i = 0; i < row.size(); ++i) {
+        const bool is_quoted = row[i].find(',') != std::string::npos;
+        line += (i > 0 ? "," : "") + (is_quoted ? '"' + row[i] + '"' : row[i]);
+    }
     return line + "\n";
 }
 

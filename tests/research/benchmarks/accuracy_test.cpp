@@ -56,6 +56,13 @@ TEST(Accuracy, MeasuresAgainstAConvergedRun)
     FAIL() << "no case has a converged run";
 }
 
+TEST(Accuracy, QuotesNamesWithCommas)
+{
+    Result result;
+    result.name = "sheet, 0.2 s";
+    EXPECT_NE(csv_table({result}).find("\n\"sheet, 0.2 s\",,"), std::string::npos) << csv_table({result});
+}
+
 TEST(Accuracy, EndsWhenAsked)
 {
     int frames = 0;
