@@ -1,3 +1,5 @@
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "scenes/format/read_scene.h"
@@ -12,18 +14,19 @@ namespace {
 /// Five equal sheets at five positions, each fixed at one corner.
 World five_sheets(const std::string& method)
 {
-    std::string cloths, attachments;
+    std::ostringstream cloths, attachments;
     for (int k = 0; k < 5; ++k) {
-        const std::string name = "\"sheet" + std::to_string(k) + "\"", x = std::to_string(k * 0.7);
-        cloths += std::string(k > 0 ? "," : "") + R"({"name": )" + name +
-                  R"(, "rectangle": {"size": [0.3, 0.3], "resolution": 0.02}, "translate": [)" + x +
-                  ", 0.3, 0.1]}";
-        attachments += std::string(k > 0 ? "," : "") + R"({"cloth": )" + name +
-                       R"(, "select": {"nearest": [[)" + x + ", 0.3, 0.1]]}}";
+        const char* const comma = k > 0 ? ", " : "";
+        const double x = k * 0.7;
+        cloths << comma << R"({"name": "sheet)" << k
+               << R"(", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02}, "translate": [)" << x
+               << ", 0.3, 0.1]}";
+        attachments << comma << R"({"cloth": "sheet)" << k << R"(", "select": {"nearest": [[)" << x
+                    << ", 0.3, 0.1]]}}";
     }
     return World(parse_scene(R"({"toile": 1, "frames": 3, "solver": {"substeps": 4, "method": ")" + method +
-                                 R"("}, "cloths": [)" + cloths + R"(], "attachments": [)" + attachments +
-                                 "]}",
+                                 R"("}, "cloths": [)" + cloths.str() + R"(], "attachments": [)" +
+                                 attachments.str() + "]}",
                              "test.json"));
 }
 
