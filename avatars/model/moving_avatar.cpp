@@ -73,7 +73,11 @@ PoseAt MovingAvatar::at(double t) const
 
 void MovingAvatar::show(const PoseAt& at, const Affine& root_transform)
 {
-    avatar_->pose_bones(at, compose(root_transform, world_from_avatar_), bones_t1_);
+    if (is_posed_ahead_ && at == ahead_ && root_transform == ahead_root_transform_)
+        bones_t1_.swap(bones_ahead_);
+    else
+        avatar_->pose_bones(at, compose(root_transform, world_from_avatar_), bones_t1_);
+    is_posed_ahead_ = false;
     shown_ = at;
     shown_root_transform_ = root_transform;
 }
@@ -98,6 +102,9 @@ double MovingAvatar::max_motion_to(double t, const Affine& root_transform)
         bone_boxes_ = boxes_of_bones(avatar_->skin(), avatar_->bone_count());
     bones_ahead_.resize(bones_t1_.size());
     avatar_->pose_bones(next, compose(root_transform, world_from_avatar_), bones_ahead_);
+    ahead_ = next;
+    ahead_root_transform_ = root_transform;
+    is_posed_ahead_ = true;
     double largest = 0.0;
     for (size_t b = 0; b < bones_t1_.size(); ++b)
         if (!bone_boxes_[b].empty())

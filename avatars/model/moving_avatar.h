@@ -62,9 +62,12 @@ private:
     bool moved_ = false;
     std::vector<Affine> bones_t0_, bones_t1_;
 
-    // State of max_motion_to().
+    // State of max_motion_to(). A step to the pose that it has looked at takes its bones.
     std::vector<Bounds> bone_boxes_; ///< [bones] around the rest positions of a bone's vertices; empty: unset
     std::vector<Affine> bones_ahead_;
+    PoseAt ahead_;
+    Affine ahead_root_transform_;
+    bool is_posed_ahead_ = false; ///< bones_ahead_ are those of the two
 };
 
 } // namespace toile::avatars

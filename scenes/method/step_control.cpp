@@ -13,7 +13,7 @@ namespace {
 /// with the third power of its length, and a margin keeps the two from alternating.
 constexpr double kSmall = 0.1;
 
-/// Length of the first step relative to the longest [-]. It is of first order.
+/// Longest step over the first one [-], which is of first order.
 constexpr int kFirst = 4;
 
 } // namespace

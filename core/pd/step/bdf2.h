@@ -45,7 +45,7 @@ struct Bdf2 {
     TOILE_HD double implicit_step() const { return beta * h; }
 
     /// Local error of a step: a fixed part of its distance from a guess by the velocities before, of the same
-    /// order [Hairer & Wanner 1996, V.1 (Milne's device)].
+    /// order (Milne's device).
     /// @param x, v, v_previous  at the start of the step, and one step earlier [m], [m/s]
     TOILE_HD Vec3 error_of(const Vec3& x_t1, const Vec3& x, const Vec3& v, const Vec3& v_previous) const
     {
