@@ -72,8 +72,8 @@ struct ContactRules {
                    : collider_friction[cloth * (collider_friction.size() / cloths) + pair.collider];
     }
 
-    /// Stiffness of the pair, proportional to that of the cloth at its vertices [N/m]; between cloths, to
-    /// that of the softer side.
+    /// Stiffness of the pair, its share of that of the cloth at its vertices [N/m]; between cloths, of that of the
+    /// softer side.
     TOILE_HD double stiffness_of(const ContactPair& pair) const
     {
         double ahead = 0.0, behind = 0.0;
@@ -81,7 +81,7 @@ struct ContactRules {
             const double contribution = pair.weight[k] * diagonal[pair.vertex[k]];
             (contribution > 0.0 ? ahead : behind) += std::abs(contribution);
         }
-        return stiffness * (pair.is_between_cloths() && behind < ahead ? behind : ahead);
+        return stiffness * pair.share * (pair.is_between_cloths() && behind < ahead ? behind : ahead);
     }
 
     /// True if the surface has moved rather than jumped.

@@ -43,6 +43,9 @@ struct ContactPair {
     /// Collider triangle, vertex or edge, by kind. For a shape: 0 with a cloth vertex, else the number of the
     /// skeleton's corner, or corner count plus edge number.
     int feature = -1;
+    /// Stiffness over that of a whole contact, in (0, 1]. It grows from zero where pairs come and go with small
+    /// motions, so that forces do not jump.
+    double share = 1.0;
 
     /// Number of cloth vertices in use.
     TOILE_HD int count() const

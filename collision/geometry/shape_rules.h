@@ -14,7 +14,8 @@
 namespace toile::collision {
 
 /// Distance [m] by which a face or edge must be nearer to a round shape than its vertices to form its own
-/// pair. Normally well below the contact thickness, so that fine cloth needs vertex pairs only.
+/// pair, which is a whole contact at twice that distance. Normally well below the contact thickness, so that fine
+/// cloth needs vertex pairs only.
 inline constexpr double kSag = 1e-4;
 
 /// Minimum cosine between a pair's normal and the faces adjacent to a sharp corner or edge [-]. Negative, so
@@ -260,7 +261,8 @@ TOILE_HD bool ShapeRules<Solid>::is_round_pair(const Meeting& meeting, ContactPa
         at_vertices = std::fmin(at_vertices, distance[meeting.vertex[k]]);
     pair.normal = offset.norm() > kTouchDistance ? Vec3(offset.normalized()) : meeting.across;
     pair.point = meeting.on_skeleton + skeleton.radius * pair.normal;
-    return length < radius && length <= at_vertices - kSag;
+    pair.share = std::fmin(1.0, (at_vertices - length) / kSag - 1.0);
+    return length < radius && pair.share > 0.0;
 }
 
 /// True if the cloth at c, `depth` behind a sharp feature with outward normal n, is pierced by that feature.

@@ -10,8 +10,7 @@ namespace toile::garment {
 namespace {
 
 /// Weight of the edge-averaged operator beside the exact fit [-]. The six points of a fit may lie nearly on a
-/// conic, and a border triangle has fewer than six. A larger weight is smoother in those cases and less exact
-/// on irregular meshes.
+/// conic. A larger weight is smoother there and less exact on irregular meshes.
 constexpr double kAveragedWeight = 0.05;
 
 /// Weights below this fraction of the stencil's largest are dropped [-]: on regular meshes the outer ring
@@ -66,7 +65,8 @@ struct Deviation {
     double height = 0.0; ///< of the vertex above the edge [m]
 };
 
-/// The quadratic through a triangle and the opposite vertices of its neighbours.
+/// The quadratic through a triangle and the opposite vertices of its neighbours. Across a border edge, where
+/// there is no such vertex, it has no curvature: no moment acts there, and Poisson's ratio is zero.
 struct Fit {
     std::array<Deviation, 3> deviation;
     Mat3 slopes;  ///< fit's slopes across the edges, by deviations [1/m]
@@ -80,7 +80,7 @@ Fit fit_triangle(const RestShape& rest, int t)
     const std::array<Vec2, 3> corner = flat_corners(rest, t);
     const Mat2 to_barycentric = rest.edges_inv[t];
     Fit result;
-    Mat3 deviations = Mat3::Zero(); // of the opposite vertices, by second derivatives
+    Mat3 deviations = Mat3::Zero(); // of the opposite vertices, by second derivatives; 0 across borders
     Mat3 averaged = Mat3::Zero();   // second derivatives of the edge-averaged operator, by deviations
     for (int k = 0; k < 3; ++k) {
         const Vec2 edge = corner[(k + 1) % 3] - corner[k];
@@ -91,8 +91,10 @@ Fit fit_triangle(const RestShape& rest, int t)
             edge.norm() / rest.areas[t] * Vec3(m.x() * m.x(), m.x() * m.y(), m.y() * m.y());
 
         const int s = neighbour(rest, t, k);
-        if (s < 0)
+        if (s < 0) {
+            deviations.row(k) = rest.areas[t] * Vec3(m.x() * m.x(), 2.0 * m.x() * m.y(), m.y() * m.y());
             continue;
+        }
         const int e = shared_edge(rest, t, k, s);
         const Vec2 p = unfold(rest, t, k, s, e);
         const Vec2 b = to_barycentric * p;

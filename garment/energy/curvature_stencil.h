@@ -26,7 +26,7 @@ struct CurvatureStencil {
 ///   phi_tk = ( theta_k + fit_t(k) - fit_s(k) ) / 2,   s the triangle across edge k
 ///
 /// The result is within 1 % on the same meshes and converges (docs/journal/bending.md). At the border phi is
-/// the fit's own slope: the moment-free edge.
+/// the fit's own slope, and the fit has no curvature across the border: the moment-free edge.
 std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest);
 
 } // namespace toile::garment

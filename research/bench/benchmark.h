@@ -27,6 +27,7 @@ struct BenchOptions {
 // options.
 int bench_accuracy(const BenchOptions& options);
 int bench_contact(const BenchOptions& options);
+int bench_error_time(const BenchOptions& options);
 int bench_gpu(const BenchOptions& options);
 int bench_sheet(const BenchOptions& options);
 int bench_solvers(const BenchOptions& options);

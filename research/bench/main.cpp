@@ -34,6 +34,8 @@ constexpr Benchmark kBenchmarks[] = {
      bench_accuracy, kOnly | kBackend},
     {"contact", "Cloth on cloth: crossings under stress, cost by part against size, with and without it",
      bench_contact, kOnly | kThreads},
+    {"error_time", "Whole scenes at default and other settings, and by methods of the literature: error, milliseconds",
+     bench_error_time, kOnly},
     {"gpu", "One GPU: the global solve by pass, beside the CPU and the card's bandwidth", bench_gpu, kOnly},
     {"sheet", "A hanging sheet of 10 000 vertices: milliseconds per step against the error", bench_sheet,
      kOnly | kRepeats | kTimesOnly},

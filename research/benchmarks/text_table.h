@@ -25,7 +25,7 @@ std::string format(const char* form, double value);
 /// Columns aligned: for terminals and for Markdown.
 std::string markdown(const Row& header, const std::vector<Row>& rows);
 
-/// Comma separated values. Cells contain no commas.
+/// Comma separated values; cells with commas are quoted.
 std::string csv(const Row& header, const std::vector<Row>& rows);
 
 } // namespace toile::research

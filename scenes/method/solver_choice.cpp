@@ -26,6 +26,44 @@ std::string methods_that(const Condition& holds)
     return list;
 }
 
+// Parts of solver_warnings_of(): empty if there is nothing to say.
+
+std::string former_key_of(const Scene& scene)
+{
+    if (!scene.solver.tolerance)
+        return {};
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "solver.tolerance [m] is solver.velocity_tolerance [m/s] now: %g m per step of %.4g s is %.3g m/s",
+        *scene.solver.tolerance, scene.step_duration(), *scene.solver.tolerance / scene.step_duration());
+    return text;
+}
+
+std::string ignored_friction_of(const Scene& scene)
+{
+    if (step_method_of(scene).outer == OuterMethod::Newton)
+        return {};
+    for (const auto& [name, fabric] : scene.fabrics)
+        for (const auto& [key, value] : {std::pair{"stretch_damping", fabric.stretch_damping},
+                                         {"shear_damping", fabric.shear_damping},
+                                         {"bend_damping", fabric.bend_damping},
+                                         {"bend_friction", fabric.bend_friction}})
+            if (value.value_or(0.0) > 0.0)
+                return "fabrics." + name + "." + key +
+                       " has no effect: internal friction acts with Newton's method (solver.outer)";
+    return {};
+}
+
+std::string ignored_step_error_of(const Scene& scene)
+{
+    const StepMethod method = step_method_of(scene);
+    if (!scene.solver.step_error || method.substeps == 0)
+        return {};
+    return "solver.step_error has no effect: all steps are equal, " + std::to_string(method.substeps) +
+           " a sample; see solver.substeps for when what moves chooses them";
+}
+
 } // namespace
 
 StepMethod step_method_of(const Scene& scene)
@@ -59,31 +97,13 @@ StepControl step_control_of(const Scene& scene)
                                : StepControl::by_motion(scene.frame_duration(), method.step_error);
 }
 
-std::string former_keys_of(const Scene& scene)
+std::vector<std::string> solver_warnings_of(const Scene& scene)
 {
-    if (!scene.solver.tolerance)
-        return {};
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "solver.tolerance [m] is solver.velocity_tolerance [m/s] now: %g m per step of %.4g s is %.3g m/s",
-        *scene.solver.tolerance, scene.step_duration(), *scene.solver.tolerance / scene.step_duration());
-    return scene.source.string() + ": " + text;
-}
-
-std::string ignored_friction_of(const Scene& scene)
-{
-    if (step_method_of(scene).outer == OuterMethod::Newton)
-        return {};
-    for (const auto& [name, fabric] : scene.fabrics)
-        for (const auto& [key, value] : {std::pair{"stretch_damping", fabric.stretch_damping},
-                                         {"shear_damping", fabric.shear_damping},
-                                         {"bend_damping", fabric.bend_damping},
-                                         {"bend_friction", fabric.bend_friction}})
-            if (value.value_or(0.0) > 0.0)
-                return scene.source.string() + ": fabrics." + name + "." + key +
-                       " has no effect: internal friction acts with Newton's method (solver.outer)";
-    return {};
+    std::vector<std::string> warnings;
+    for (const std::string& text : {former_key_of(scene), ignored_friction_of(scene), ignored_step_error_of(scene)})
+        if (!text.empty())
+            warnings.push_back(scene.source.string() + ": " + text);
+    return warnings;
 }
 
 std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest)

@@ -50,11 +50,9 @@ StepMethod step_method_of(const Scene& scene);
 /// Division of a scene's samples into steps.
 StepControl step_control_of(const Scene& scene);
 
-/// Message about keys of the scene that have another name now; empty: none.
-std::string former_keys_of(const Scene& scene);
-
-/// Message about internal friction of the scene's fabrics that its minimiser ignores; empty: none.
-std::string ignored_friction_of(const Scene& scene);
+/// Messages about keys of the scene that have another name now, or no effect: internal friction that its minimiser
+/// ignores, an error of steps whose length nothing chooses.
+std::vector<std::string> solver_warnings_of(const Scene& scene);
 
 /// @throws InvalidInput if the scene's method is a baseline and there are none
 void require_methods(const Scene& scene, const BaselineMethods* baselines);

@@ -125,7 +125,9 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     if (outer == OuterMethod::Newton) {
         strain_limit_ = std::make_unique<garment::StrainLimit>(
             rest_, garment::StrainLimit::Settings{fabric.strain_limit, kYielding}, source_);
-        tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness);
+        const Bounds box = bounds(state_.rest.positions);
+        const double weight = fabric.areal_density * gravity_.norm() * (box.upper - box.lower).norm();
+        tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, weight);
     }
     tension_ = std::make_shared<garment::StretchTension>(rest_, tension);
     strain_limit_->set_tension(tension_);

@@ -109,16 +109,15 @@ struct World::Parts {
 World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make_unique<Parts>(scene))
 {
     require_methods(scene, options.baselines);
-    if (const std::string former = former_keys_of(scene); !former.empty() && options.warn)
-        options.warn(former);
+    if (options.warn)
+        for (const std::string& warning : solver_warnings_of(scene))
+            options.warn(warning);
     for (const scene::Avatar& avatar : scene.avatars)
         parts_->colliders.emplace_back(avatar, scene.contact.friction);
     parts_->space = open_backend(options.backend, options.device, scene, options.warn);
     std::vector<SceneCloth> cloths = make_cloths(scene, parts_->colliders, options);
     if (options.backend == Backend::Auto)
         parts_->space = space_with_capacity(parts_->space, vertex_count(cloths), options.warn);
-    if (const std::string ignored = ignored_friction_of(scene); !ignored.empty() && options.warn)
-        options.warn(ignored);
     parts_->groups = make_groups(scene, std::move(cloths), parts_->colliders, options, parts_->space.get());
 
     const ThreadLimit threads(scene.solver.threads);

@@ -68,12 +68,26 @@ TEST(Backend, SaysWhichInternalFrictionHasNoEffect)
     const auto scene = [](const std::string& solver) {
         return scene_with(solver + R"("fabrics": {"rubber": {"bend_friction": 5, "shear_damping": 0}}, )");
     };
-    EXPECT_EQ(ignored_friction_of(scene("")), "");
-    EXPECT_EQ(
-        ignored_friction_of(scene(R"("solver": {"quality": "preview"}, )")),
-        "test.json: fabrics.rubber.bend_friction has no effect: internal friction acts with Newton's method "
-        "(solver.outer)");
-    EXPECT_EQ(ignored_friction_of(scene_with(R"("solver": {"outer": "lbfgs"}, )")), "");
+    const std::vector<std::string> none,
+        preview{"test.json: fabrics.rubber.bend_friction has no effect: internal friction acts with Newton's "
+                "method (solver.outer)"};
+    EXPECT_EQ(solver_warnings_of(scene("")), none);
+    EXPECT_EQ(solver_warnings_of(scene(R"("solver": {"quality": "preview"}, )")), preview);
+    EXPECT_EQ(solver_warnings_of(scene_with(R"("solver": {"outer": "lbfgs"}, )")), none);
+}
+
+TEST(Backend, SaysThatEqualStepsHaveNoChosenError)
+{
+    const auto warnings = [](const std::string& solver) {
+        return solver_warnings_of(scene_with("\"solver\": {\"step_error\": 1e-4" + solver + "}, "));
+    };
+    EXPECT_TRUE(warnings("").empty());
+    const std::vector<std::string> two{
+        "test.json: solver.step_error has no effect: all steps are equal, 2 a sample; see solver.substeps for when "
+        "what moves chooses them"};
+    EXPECT_EQ(warnings(R"(, "substeps": 2)"), two);
+    EXPECT_EQ(warnings(R"(, "quality": "preview")").size(), 1u);
+    EXPECT_EQ(warnings(R"(, "method": "direct")").size(), 1u);
 }
 
 TEST(Backend, ReportsWhyThereIsNoGpu)

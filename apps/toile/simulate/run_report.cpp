@@ -23,7 +23,7 @@ Json settings_of(const scenes::Scene& scene)
             {"fps", scene.fps},
             {"settle_s", scene.settle},
             {"substeps", method.substeps > 0 ? Json(method.substeps) : Json("by_motion")},
-            {"step_error_m", method.step_error},
+            {"step_error_m", method.substeps > 0 ? Json() : Json(method.step_error)},
             {"integrator", scene_format::word_of(method.integrator)},
             {"velocity_tolerance_m_s", method.velocity_tolerance},
             {"stop", scene_format::word_of(solver.stop)},

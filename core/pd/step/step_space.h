@@ -52,7 +52,8 @@ public:
     /// Moves the end positions onto the constraint. The displacement becomes velocity, like that of any
     /// force.
     /// @param clear_contacts  see StepProjection::project
-    virtual void project(StepProjection& projection, const std::function<bool()>& clear_contacts) = 0;
+    /// @return true if anything has moved
+    virtual bool project(StepProjection& projection, const std::function<bool()>& clear_contacts) = 0;
 
     /// Makes the end the next start, and completes the report.
     virtual void end(StepProjection* projection, StepReport& report) = 0;

@@ -104,10 +104,10 @@ void StrainLimit::observe(View<const Vec3> x)
         tension_->remember(x);
 }
 
-void StrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
+bool StrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
                           const std::function<bool()>& clear_contacts)
 {
-    JointStrainLimit({{this, 0, x.size()}}).project(x, inverse_masses, clear_contacts);
+    return JointStrainLimit({{this, 0, x.size()}}).project(x, inverse_masses, clear_contacts);
 }
 
 bool StrainLimit::find_violations(View<const Vec3> x)

@@ -40,7 +40,7 @@ public:
     void set_tension(std::shared_ptr<StretchTension> tension) { tension_ = std::move(tension); }
 
     void observe(View<const Vec3> x) override;
-    void project(View<Vec3> x, View<const double> inverse_masses,
+    bool project(View<Vec3> x, View<const double> inverse_masses,
                  const std::function<bool()>& clear_contacts) override;
 
     /// Parts of project(), for several cloths that are moved by contact between them. find_violations() is

@@ -39,13 +39,17 @@ public:
         /// Stored tension lags behind the motion by a step, which adds energy to cloth that swings back from
         /// its limit.
         /// @param stiffness  [N/m] the larger of the membrane's two
-        static Settings elastic(double limit, double stiffness)
+        /// @param load       [N/m] over the width of the cloth, such as its weight
+        static Settings elastic(double limit, double stiffness, double load)
         {
-            return {limit, kElastic * stiffness, 0.0, -std::numeric_limits<double>::infinity()};
+            return {limit, std::max(kElastic * stiffness, load / kExcess), 0.0,
+                    -std::numeric_limits<double>::infinity()};
         }
         /// Stiffness beyond the limit relative to the membrane's [-]: cloth under a load that would stretch
         /// it to twice its limit exceeds the limit by a twentieth.
         static constexpr double kElastic = 20.0;
+        /// Excess over the limit under the load [-], however soft the membrane is.
+        static constexpr double kExcess = 0.01;
     };
 
     StretchTension(std::shared_ptr<const RestShape> rest, const Settings& settings);

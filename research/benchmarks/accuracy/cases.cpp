@@ -2,85 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include <Eigen/Geometry>
 
 #include "core/mesh/obj.h"
 #include "research/benchmarks/accuracy/exact.h"
-#include "scenes/format/read_scene.h"
+#include "research/benchmarks/accuracy/scene_text.h"
+#include "research/benchmarks/accuracy/statistics.h"
 
 namespace toile::research::accuracy {
 
 namespace {
-
-constexpr double kGravity = 9.81; // [m/s^2]
-
-/// Keys of a fabric without internal friction, strain limit or decay of velocities.
-const std::string kLossless =
-    R"("strain_limit": 9, "stretch_damping": 0, "shear_damping": 0, "bend_damping": 0,
-    "bend_friction": 0)";
-
-std::string number(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.9g", value);
-    return text;
-}
-
-scenes::Scene scene_of(const std::string& name, const std::string& keys)
-{
-    return scenes::parse_scene(R"({"toile": 1, )" + keys + "}", name);
-}
-
-/// A fabric of equal threads without internal friction.
-std::string lossless_fabric(double areal_density, double stretch, double bend, double damping = 0.0)
-{
-    return R"("fabrics": {"f": {"areal_density": )" + number(areal_density) + R"(, "stretch": {"warp": )" +
-           number(stretch) + R"(, "weft": )" + number(stretch) + R"(}, "shear": )" + number(0.5 * stretch) +
-           R"(, "bend": {"warp": )" + number(bend) + R"(, "weft": )" + number(bend) + R"(}, "damping": )" +
-           number(damping) + ", " + kLossless + "}}";
-}
-
-/// The same scene in equal, finer steps, each minimised much further.
-scenes::Scene converged(scenes::Scene scene, int finer)
-{
-    scene.solver.quality = scene::Quality::Final;
-    scene.solver.velocity_tolerance = 1e-4;
-    scene.solver.max_iterations = 2000;
-    scene.solver.substeps = finer * scene.solver.substeps.value_or(scene::Solver::kSubsteps);
-    return scene;
-}
-
-double rms(View<const Vec3> a, View<const Vec3> b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < a.size(); ++i)
-        sum += (a[i] - b[i]).squaredNorm();
-    return std::sqrt(sum / a.size());
-}
-
-double rms(View<const Vec3> v)
-{
-    const std::vector<Vec3> zero(v.size(), Vec3::Zero());
-    return rms(v, zero);
-}
-
-Vec3 mean(View<const Vec3> x)
-{
-    Vec3 sum = Vec3::Zero();
-    for (const Vec3& p : x)
-        sum += p;
-    return sum / x.size();
-}
-
-double quantile(std::vector<double> values, double share)
-{
-    const auto at = values.begin() + long(share * double(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
 
 // --- bending and hanging ------------------------------------------------------------------------------
 
@@ -142,6 +75,88 @@ Case catenary()
     result.right = catenary_sag(0.9);
     result.is_relative = true;
     result.aim = 0.005;
+    return result;
+}
+
+/// A strip of four cells across that is clamped like the elastica's, edge-on in gravity that is tilted a little out
+/// of its plane: near the load that buckles it sideways, the tilt is amplified by what bends and twists it.
+Case lateral_buckling(double load)
+{
+    const double free_length = 0.3, width = 0.015, density = 0.1, tilt = 0.02;
+    const double cell = width / 4.0, length = free_length + 0.5 * cell;
+    // Per width, a strip has the lateral stiffness D and the torsional one 2 D.
+    const double rigidity =
+        density * kGravity * free_length * free_length * free_length / (std::sqrt(2.0) * load);
+    Case result;
+    result.name = "strip clamped edge-on, g = " + number(load);
+    result.quantity = "twist of the tip over the tilt of gravity [-]";
+    result.scene =
+        scene_of(result.name,
+                 R"("frames": 241, "gravity": [0, )" + number(-tilt * kGravity) + ", " + number(-kGravity) +
+                     R"(], "air": {"density": 0}, "contact": {"self": false},
+        "cloths": [{"name": "strip", "rectangle": {"size": [)" +
+                     number(length) + ", " + number(width) + R"(], "resolution": )" + number(cell) +
+                     R"(}, "fabric": "f", "translate": [)" + number(0.5 * length) + R"(, 0, 0]}],
+        "attachments": [{"cloth": "strip", "select": {"box": {"lower": [-1, -1, -1], "upper": [)" +
+                     number(1.5 * cell) + ", 1, 1]}}}], " +
+                     lossless_fabric(density, 1e5, rigidity, 5.0));
+    result.measure = [=](const Trajectory& run, const Trajectory*) {
+        Vec3 upper = Vec3::Zero(), lower = Vec3::Zero();
+        for (size_t i = 0; i < run.last().size(); ++i) {
+            const Vec3& start = run.positions.front()[i];
+            if (start.x() > length - 0.5 * cell && std::abs(start.z()) > 0.49 * width)
+                (start.z() > 0.0 ? upper : lower) = run.last()[i];
+        }
+        return (upper - lower).y() / width / tilt;
+    };
+    result.right = lateral_twist(load, width / free_length);
+    result.is_relative = true;
+    result.aim = 0.05;
+    return result;
+}
+
+/// A strip of four cells across that is clamped like the elastica's. Soft springs pull the other end towards a
+/// twisted line.
+Case torsion()
+{
+    const double width = 0.04, cell = width / 4.0, free_length = 0.4, length = free_length + 0.5 * cell;
+    const double rigidity = 1e-4, twist = 0.1, spring = 0.01; // [N m], [-] of the targets, [N/m] of a vertex
+    std::string springs;
+    double stiffness = 0.0; // of the springs [N m]
+    for (int k = -2; k <= 2; ++k) {
+        const double z = k * cell;
+        stiffness += spring * z * z;
+        springs += R"(, {"cloth": "strip", "select": {"nearest": [)" + ("[" + number(length) + ", 0, " + number(z)) +
+                   R"(]]}, "stiffness": )" + number(spring) +
+                   R"(, "keyframes": [{"time": 0}, {"time": 0.5, "translate": [0, )" + number(twist * z) +
+                   ", 0]}]}";
+    }
+    Case result;
+    result.name = "torsion of a strip";
+    result.quantity = "torsional stiffness over the exact one [-]";
+    result.scene = scene_of(result.name, R"("frames": 241, "gravity": [0, 0, 0], "air": {"density": 0},
+        "contact": {"self": false}, "cloths": [{"name": "strip", "rectangle": {"size": [)" +
+                                             number(length) + ", " + number(width) + R"(], "resolution": )" +
+                                             number(cell) + R"(}, "fabric": "f", "translate": [)" +
+                                             number(0.5 * length) + R"(, 0, 0]}],
+        "attachments": [{"cloth": "strip", "select": {"box": {"lower": [-1, -1, -1], "upper": [)" +
+                                             number(1.5 * cell) + ", 1, 1]}}}" + springs + "], " +
+                                             lossless_fabric(0.1, 1000.0, rigidity, 5.0));
+    result.measure = [=](const Trajectory& run, const Trajectory*) {
+        double tip = 0.0, squares = 0.0;
+        for (size_t i = 0; i < run.last().size(); ++i)
+            if (const Vec3& start = run.positions.front()[i]; start.x() > length - 0.5 * cell) {
+                tip += start.z() * run.last()[i].y();
+                squares += start.z() * start.z();
+            }
+        tip /= squares;
+        // The clamp keeps the strip from warping near it, over width / sqrt(24).
+        const double exact = 2.0 * rigidity * width / (free_length - width / std::sqrt(24.0));
+        return stiffness * (twist - tip) / tip / exact;
+    };
+    result.right = 1.0;
+    result.is_relative = true;
+    result.aim = 0.03;
     return result;
 }
 
@@ -379,9 +394,45 @@ Case rest(const std::string& name, const std::string& body)
     return result;
 }
 
-// --- a garment --------------------------------------------------------------------------------------------
+/// Five stiff cloths fall on a ball, one on the other. *Late* is the largest difference of the mean height to the
+/// converged run.
+Case pile()
+{
+    Case result;
+    result.name = "five cloths that fall on a ball";
+    result.quantity = "lateness within 0.5 s [mm]";
+    std::string cloths;
+    for (int i = 0; i < 5; ++i)
+        cloths += std::string(i > 0 ? "," : "") + R"({"name": "cloth)" + std::to_string(i) +
+                  R"(", "rectangle": {"size": [0.35, 0.35], "resolution": 0.014}, "fabric": "linen",
+            "translate": [)" + number(0.005 * (i % 3)) + ", " + number(0.02 * (i + 1)) + ", " + number(0.01 * (i % 2)) + "]}";
+    result.scene = scene_of(result.name, R"("fps": 60, "frames": 31,
+        "avatars": [{"name": "ball", "sphere": {"radius": 0.1}, "translate": [0, -0.1, 0], "friction": 0.3}],
+        "fabrics": {"linen": {"base": "cotton", "stretch": {"warp": 10000, "weft": 10000}}},
+        "cloths": [)" + cloths + "]");
+    result.reference = converged(result.scene, 2, 1e-3);
+    result.measure = [](const Trajectory& run, const Trajectory* reference) {
+        double worst = 0.0;
+        for (size_t frame = 0; frame < run.positions.size(); ++frame)
+            worst = std::max(worst, std::abs(mean(run.positions[frame]).y() - mean(reference->positions[frame]).y()));
+        return 1e3 * worst;
+    };
+    result.aim = 5.0;
+    return result;
+}
 
-/// Quantile of strain over the triangles and frames of a cone of cloth that falls from its waist.
+// --- garments --------------------------------------------------------------------------------------------
+
+/// Quantile of strain over all triangles and frames but the first [%].
+double strain_percent(const Trajectory& run, double share)
+{
+    std::vector<double> strain;
+    for (size_t frame = 1; frame < run.strain.size(); ++frame)
+        strain.insert(strain.end(), run.strain[frame].begin(), run.strain[frame].end());
+    return 100.0 * quantile(std::move(strain), share);
+}
+
+/// Strain of a cone of cloth that falls from its waist.
 Case hanging_skirt(const std::string& word, double share)
 {
     Case result;
@@ -392,12 +443,27 @@ Case hanging_skirt(const std::string& word, double share)
             "resolution": 0.02}, "translate": [0, 1, 0]}],
         "attachments": [{"cloth": "skirt", "select": {"box": {"lower": [-1, 0.999, -1], "upper": [1, 2, 1]}}}])");
     result.reference = converged(result.scene, 2);
-    result.measure = [share](const Trajectory& run, const Trajectory*) {
-        std::vector<double> strain;
-        for (size_t frame = 1; frame < run.strain.size(); ++frame)
-            strain.insert(strain.end(), run.strain[frame].begin(), run.strain[frame].end());
-        return 100.0 * quantile(std::move(strain), share);
-    };
+    result.measure = [share](const Trajectory& run, const Trajectory*) { return strain_percent(run, share); };
+    result.is_measured = result.is_relative = true;
+    result.aim = 0.1;
+    return result;
+}
+
+/// Strain of a denim skirt on the built-in figure as it walks.
+Case walk()
+{
+    Case result;
+    result.name = "skirt on a walking figure";
+    result.quantity = "median strain of its triangles [%]";
+    result.scene = scene_of(result.name, R"("frames": 31, "settle": 0.5,
+        "avatars": [{"name": "mannequin", "mannequin": {}, "clip": "walk",
+            "preroll": {"ease": 0.5, "from_bind": true}}, {"name": "floor", "plane": {}}],
+        "cloths": [{"name": "skirt", "skirt": {"waist_radius": 0.135, "hem_radius": 0.3, "length": 0.55,
+            "resolution": 0.02}, "translate": [0, 1.08, 0], "fabric": "denim"}],
+        "attachments": [{"cloth": "skirt", "to": "mannequin",
+            "select": {"box": {"lower": [-0.5, 1.07, -0.5], "upper": [0.5, 1.1, 0.5]}}}])");
+    result.reference = converged(result.scene, 2, 1e-3);
+    result.measure = [](const Trajectory& run, const Trajectory*) { return strain_percent(run, 0.5); };
     result.is_measured = result.is_relative = true;
     result.aim = 0.1;
     return result;
@@ -418,6 +484,8 @@ std::vector<Case> make_cases(const std::filesystem::path& folder, bool quick)
     std::vector<Case> cases{elastica(10.0),
                             elastica(50.0),
                             catenary(),
+                            torsion(),
+                            lateral_buckling(10.0),
                             incline(0.95),
                             incline(1.3),
                             capstan(),
@@ -435,6 +503,8 @@ std::vector<Case> make_cases(const std::filesystem::path& folder, bool quick)
         cases.push_back(drape(resolution, support));
     cases.push_back(hanging_skirt("median", 0.5));
     cases.push_back(hanging_skirt("99th percentile", 0.99));
+    cases.push_back(walk());
+    cases.push_back(pile());
     return cases;
 }
 

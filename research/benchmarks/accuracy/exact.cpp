@@ -73,4 +73,16 @@ double catenary_sag(double span)
     return a * (std::cosh(half / a) - 1.0);
 }
 
+double lateral_twist(double load, double width)
+{
+    // phi = 1 - c f(1 - s), and f is a power series in the sixth power of the distance to the tip.
+    double f = 1.0, slope = 0.0, term = 1.0;
+    for (int k = 6; k < 200; k += 6) {
+        term *= -0.25 * load * load / (k * (k - 1.0));
+        f += term;
+        slope += k * term;
+    }
+    return 1.0 - 1.0 / (f - width / std::sqrt(24.0) * slope);
+}
+
 } // namespace toile::research::accuracy

@@ -15,13 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Run {
-    Trajectory trajectory;
-    double seconds = 0.0;
-    int unfinished = 0;
-    bool is_complete = true;
-};
-
 /// Appends the current state.
 void append(const scenes::World& world, const std::vector<garment::RestShape>& rest, Trajectory& trajectory)
 {
@@ -37,6 +30,25 @@ void append(const scenes::World& world, const std::vector<garment::RestShape>& r
     trajectory.positions.push_back(std::move(x));
     trajectory.strain.push_back(std::move(strain));
 }
+
+const Row kHeader{"case",  "quantity", "right", "from",     "value",
+                  "error", "aim",      "holds", "ms/frame", "unfinished"};
+
+Row cells_of(const Result& r)
+{
+    return {r.name,
+            r.quantity,
+            format("%.4g", r.right),
+            r.from,
+            format("%.4g", r.value),
+            format("%.2g", r.error),
+            format("%.2g", r.aim),
+            r.holds ? "yes" : "no",
+            format("%.1f", r.ms_per_frame),
+            std::to_string(r.unfinished) + " of " + std::to_string(r.frames)};
+}
+
+} // namespace
 
 Run run_scene(const Case& trial, const scenes::Scene& scene, const scenes::WorldOptions& options,
               const std::function<bool()>& after_frame)
@@ -63,24 +75,15 @@ Run run_scene(const Case& trial, const scenes::Scene& scene, const scenes::World
     return run;
 }
 
-const Row kHeader{"case",  "quantity", "right", "from",     "value",
-                  "error", "aim",      "holds", "ms/frame", "unfinished"};
-
-Row cells_of(const Result& r)
+double right_value(const Case& trial, const Trajectory* converged)
 {
-    return {r.name,
-            r.quantity,
-            format("%.4g", r.right),
-            r.from,
-            format("%.4g", r.value),
-            format("%.2g", r.error),
-            format("%.2g", r.aim),
-            r.holds ? "yes" : "no",
-            format("%.1f", r.ms_per_frame),
-            std::to_string(r.unfinished) + " of " + std::to_string(r.frames)};
+    return trial.is_measured ? trial.measure(*converged, converged) : trial.right;
 }
 
-} // namespace
+double error_of(const Case& trial, double value, double right)
+{
+    return std::abs(value - right) / (trial.is_relative ? std::abs(right) : 1.0);
+}
 
 int frames_of(const Case& trial)
 {
@@ -105,9 +108,9 @@ Result run(const Case& trial, const scenes::WorldOptions& options, const std::fu
     if (!own.is_complete || (converged && !converged->is_complete))
         return result;
     const Trajectory* const reference = converged ? &converged->trajectory : nullptr;
-    result.right = trial.is_measured ? trial.measure(*reference, reference) : trial.right;
+    result.right = right_value(trial, reference);
     result.value = trial.measure(own.trajectory, reference);
-    result.error = std::abs(result.value - result.right) / (trial.is_relative ? std::abs(result.right) : 1.0);
+    result.error = error_of(trial, result.value, result.right);
     result.holds = result.error <= result.aim;
     return result;
 }

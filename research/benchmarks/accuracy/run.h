@@ -19,6 +19,21 @@ struct Result {
     int frames = 0;
 };
 
+/// All frames of a case's scene, or of another one with the same cloth.
+struct Run {
+    Trajectory trajectory;
+    double seconds = 0.0; ///< [s] in steps
+    int unfinished = 0;   ///< frames with a step that ended at a limit
+    bool is_complete = true;
+};
+Run run_scene(const Case& trial, const scenes::Scene& scene, const scenes::WorldOptions& options,
+              const std::function<bool()>& after_frame);
+
+/// Right value of a case, and the error of a value against it.
+/// @param converged  run of the reference; null without
+double right_value(const Case& trial, const Trajectory* converged);
+double error_of(const Case& trial, double value, double right);
+
 /// Runs a case and, on the CPU, its reference.
 /// @param after_frame  called after every frame; false stops the case
 Result run(const Case& trial, const scenes::WorldOptions& options, const std::function<bool()>& after_frame);

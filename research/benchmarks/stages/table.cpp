@@ -1,7 +1,5 @@
 #include "research/benchmarks/stages/table.h"
 
-#include <algorithm>
-
 #include "research/benchmarks/text_table.h"
 
 namespace toile::research::stages {
@@ -10,19 +8,12 @@ namespace {
 
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
-/// Scene name as a cell: names are free text, and a comma would end a cell.
-std::string cell(std::string text)
-{
-    std::replace(text.begin(), text.end(), ',', ';');
-    return text;
-}
-
 std::vector<Row> scene_rows(const std::vector<Result>& results)
 {
     std::vector<Row> rows;
     rows.reserve(results.size());
     for (const Result& r : results)
-        rows.push_back({cell(r.name), std::to_string(r.vertices), std::to_string(r.frames),
+        rows.push_back({r.name, std::to_string(r.vertices), std::to_string(r.frames),
                         format("%.1f", r.ms_per_frame), format("%.1f", r.median_ms),
                         format("%.1f", r.slowest_ms), format("%.1f", r.user_ms), format("%.1f", r.iterations),
                         format("%.0f", r.contacts), format("%.2f", r.load_s),
@@ -35,7 +26,7 @@ std::vector<Row> stage_rows(const std::vector<Result>& results)
     std::vector<Row> rows;
     for (const Result& r : results)
         for (const Stage& stage : r.stages)
-            rows.push_back({cell(r.name), stage.name, format("%.1f", stage.calls), format("%.2f", stage.ms),
+            rows.push_back({r.name, stage.name, format("%.1f", stage.calls), format("%.2f", stage.ms),
                             format("%.3f", stage.fraction)});
     return rows;
 }

@@ -127,7 +127,7 @@ TEST_F(DeviceStretchTensionTest, StoresNothingIfTheLimitIsElastic)
 {
     const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 8, 8, Pattern::Irregular);
     const auto rest = sheet.rest();
-    const auto elastic = StretchTension::Settings::elastic(kLimit, kStiffness);
+    const auto elastic = StretchTension::Settings::elastic(kLimit, kStiffness, 0.0);
     const auto on_cpu = std::make_shared<StretchTension>(rest, elastic),
                on_gpu = std::make_shared<StretchTension>(rest, elastic);
     EnergiesOnGpu gpu(space(), rest->vertex_count());

@@ -24,6 +24,15 @@ TEST(ExactAccuracy, HasTheCatenary)
     EXPECT_NEAR(catenary_sag(0.9), 0.19071, 1e-5);
 }
 
+TEST(ExactAccuracy, HasTheLoadThatBucklesAStripEdgeOn)
+{
+    // A load of 12.854 [Timoshenko & Gere 1961, section 6.3]: the twist changes its sign through infinity.
+    EXPECT_LT(lateral_twist(12.85, 0.0), -1e3);
+    EXPECT_GT(lateral_twist(12.86, 0.0), 1e3);
+    // Small loads: the moment of the weight along the strip, twisted by the tilt.
+    EXPECT_NEAR(lateral_twist(0.1, 0.0), -0.01 / 4.0 / 30.0, 1e-7);
+}
+
 /// Cases without a converged run take seconds; they hold at default settings. Only whether cloth comes to
 /// rest on the sharp edges of a box is left to chance today (docs/performance.md).
 TEST(Accuracy, HoldsWhereTheAnswerIsExact)

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "research/benchmarks/error_time/problems.h"
+
+namespace toile::research::error_time {
+
+/// A contender's point in the plane of time and error.
+struct Point {
+    std::string problem, quantity, method, setting;
+    bool is_default = false;
+    double ms_per_frame = 0.0;
+    double error = 0.0;
+    int unfinished = 0; ///< frames with a step that ended at a limit
+    int frames = 0;
+};
+
+/// Runs the reference of a problem, then all contenders. Those that do not support the problem have no point:
+/// vertex block descent and XPBD know no contact of cloth with cloth.
+/// @param after_frame  called after every frame with the contender's name; false stops the run
+std::vector<Point> run(const accuracy::Case& problem, const std::vector<Contender>& contenders,
+                       const std::function<bool(const std::string& name)>& after_frame);
+
+/// Frames that run() simulates.
+int frames_of(const accuracy::Case& problem, const std::vector<Contender>& contenders);
+
+std::string markdown_table(const std::vector<Point>& points);
+std::string csv_table(const std::vector<Point>& points);
+
+} // namespace toile::research::error_time
