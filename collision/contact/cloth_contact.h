@@ -40,6 +40,10 @@ public:
     /// Pairs of append_pairs() on the device, until the next search; empty on the CPU.
     virtual View<const ContactPair> pressing_on_device() const { return {}; }
 
+    /// True if no cloth was expected near other cloth when pairs were found: none of it presses, and what an
+    /// unfinished minimisation reaches need not be looked at.
+    virtual bool is_clear() const = 0;
+
     /// Limits x where cloth would cross. Searches again from there if the correction is large or pressing
     /// pairs have slid. True if there are new pairs.
     virtual bool advance(StepField x, const FindSupported& find_supported) = 0;

@@ -12,6 +12,8 @@ namespace {
 /// stack of layers, a slack of many thicknesses makes pairs of every layer with as many others.
 constexpr double kMaxSlack = 0.1, kMaxLayers = 1.0;
 constexpr double kMinSlack = 0.03, kMinLayers = 0.25;
+/// Largest slack where no cloth is near other cloth: it makes no pairs of neighbours in a sheet.
+constexpr double kClearSlack = 0.2;
 
 /// Missing distance, relative to the mean edge [-], up to which pinched cloth is deflected.
 constexpr double kMaxDeflection = 0.1;
@@ -88,6 +90,11 @@ SlackBounds ClothContactRules::slack() const
 {
     return {std::min(kMinSlack * edge_, kMinLayers * thickest_),
             std::min(kMaxSlack * edge_, kMaxLayers * thickest_)};
+}
+
+SlackBounds ClothContactRules::learned_slack(bool is_clear) const
+{
+    return is_clear ? SlackBounds{slack().min, kClearSlack * edge_} : slack();
 }
 
 double ClothContactRules::ignored_correction() const

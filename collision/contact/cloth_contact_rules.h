@@ -21,6 +21,8 @@ public:
     double thickest() const { return thickest_; } ///< [m] maximum over the cloths
 
     SlackBounds slack() const;
+    /// Of the slack for the next step. @param is_clear  no pairs were found in this one
+    SlackBounds learned_slack(bool is_clear) const;
 
     double ignored_correction() const; ///< [m] correction up to which pairs are not searched for again
     double slid() const;               ///< [m] allowed deviation of a pressing pair

@@ -106,7 +106,8 @@ bool Contact::revise(StepField x, bool is_converged)
         terms_->adopt_forces();
         ++landings_;
     }
-    const bool has_new_pairs = between_ && between_->advance(x, [&] { return terms_->supported(); });
+    const bool has_new_pairs = between_ && (is_converged || !between_->is_clear()) &&
+                               between_->advance(x, [&] { return terms_->supported(); });
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);
         find_again();

@@ -94,7 +94,7 @@ void HostClothContact::end_step(StepField positions)
 {
     const View<const Vec3> x = positions.host();
     parallel_for(kCpu, "collision/update_deviation", x.size(),
-                 UpdateDeviation{x, prediction_, rules().slack(), deviation_, slack_});
+                 UpdateDeviation{x, prediction_, rules().learned_slack(is_clear()), deviation_, slack_});
 }
 
 void HostClothContact::forget()

@@ -13,6 +13,7 @@ public:
 
     void begin_step(const StepStart& start) override;
     void append_pairs(std::vector<ContactPair>& out) const override;
+    bool is_clear() const override { return pairs_.empty(); }
     bool advance(StepField x, const FindSupported& find_supported) override;
     bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) override;
     void set_crossing(View<const unsigned char> crosses) override { exempt_.set_crossing(crosses); }

@@ -179,7 +179,8 @@ bool DeviceClothContact::has_slid(View<const Vec3> x)
 void DeviceClothContact::end_step(StepField x)
 {
     parallel_for(space_, "collision/update_deviation", x.size(),
-                 UpdateDeviation{x.device(), prediction_, rules().slack(), deviation_.view(), slack_.view()});
+                 UpdateDeviation{x.device(), prediction_, rules().learned_slack(is_clear()),
+                                 deviation_.view(), slack_.view()});
 }
 
 } // namespace toile::collision

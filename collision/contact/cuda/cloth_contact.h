@@ -20,6 +20,7 @@ public:
     void end_search() override;
     void append_pairs(std::vector<ContactPair>& out) const override;
     View<const ContactPair> pressing_on_device() const override { return pressing_.view(); }
+    bool is_clear() const override { return free_step_.pairs().size() == 0; }
     bool advance(StepField x, const FindSupported& find_supported) override;
     bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) override;
     void set_crossing(View<const unsigned char> crosses) override;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "research/benchmarks/contact/parts.h"
-#include "research/benchmarks/contact/power_fit.h"
+#include "research/benchmarks/power_fit.h"
 #include "research/benchmarks/contact/stress_cases.h"
 
 namespace toile::research::contact_stress {

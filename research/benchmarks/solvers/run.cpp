@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/compute/parallel.h"
-#include "research/benchmarks/solvers/memory_meter.h"
+#include "research/benchmarks/memory_meter.h"
 #include "research/benchmarks/text_table.h"
 #include "research/linear/jacobi_pcg.h"
 

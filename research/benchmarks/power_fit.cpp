@@ -1,4 +1,4 @@
-#include "research/benchmarks/contact/power_fit.h"
+#include "research/benchmarks/power_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace toile::research::contact_stress {
+namespace toile::research {
 
 PowerFit fit_power(const std::vector<double>& x, const std::vector<double>& y)
 {
@@ -44,4 +44,4 @@ PowerFit fit_power(const std::vector<double>& x, const std::vector<double>& y)
     return fit;
 }
 
-} // namespace toile::research::contact_stress
+} // namespace toile::research

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace toile::research::contact_stress {
+namespace toile::research {
 
 /// Fit y = factor x^exponent, by least squares of logarithms.
 struct PowerFit {
@@ -16,4 +16,4 @@ struct PowerFit {
 /// @throws InvalidInput if they are not, or a number is not finite
 PowerFit fit_power(const std::vector<double>& x, const std::vector<double>& y);
 
-} // namespace toile::research::contact_stress
+} // namespace toile::research

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace toile::research::solvers {
+namespace toile::research {
 
 /// Peak memory of the process above that at construction: of one method among many. Linux can reset its
 /// high-water mark. If that is refused, the resident memory at the time of the call counts instead, and
@@ -18,4 +18,4 @@ private:
     bool can_reset_ = false;
 };
 
-} // namespace toile::research::solvers
+} // namespace toile::research

@@ -1,4 +1,4 @@
-#include "research/benchmarks/solvers/memory_meter.h"
+#include "research/benchmarks/memory_meter.h"
 
 #include <algorithm>
 #include <fstream>
@@ -6,7 +6,7 @@
 
 #include <malloc.h>
 
-namespace toile::research::solvers {
+namespace toile::research {
 
 namespace {
 
@@ -47,4 +47,4 @@ double MemoryMeter::peak_mb()
     return peak_mb_;
 }
 
-} // namespace toile::research::solvers
+} // namespace toile::research
