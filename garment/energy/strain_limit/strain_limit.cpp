@@ -112,7 +112,8 @@ bool StrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
 
 bool StrainLimit::find_violations(View<const Vec3> x)
 {
-    check_all(x);
+    if (settings_.max_sweeps > 0)
+        check_all(x);
     return violates();
 }
 
@@ -138,10 +139,9 @@ void StrainLimit::update_violations(View<const Vec3> x, bool has_moved_elsewhere
 
 void StrainLimit::end(View<Vec3> x) const
 {
-    // Undo sweeps that end worse than they began, since they would become velocity. Millimetres that correct
-    // a wide triangle or a contact are many times the height of a sliver beside it. The membrane alone does
-    // better.
-    if ((violates() || has_slivers_) && max_strain(x) > max_strain(before_))
+    if (!violates() && !has_slivers_)
+        return;
+    if (undoes_sweeps(1.0 + max_strain(before_), 1.0 + max_strain(x), limits_[0].tolerated, !violates()))
         std::copy(before_.begin(), before_.end(), x.begin());
 }
 

@@ -47,9 +47,9 @@ public:
         }
         /// Stiffness beyond the limit relative to the membrane's [-]: cloth under a load that would stretch
         /// it to twice its limit exceeds the limit by a twentieth.
-        static constexpr double kElastic = 20.0;
+        static constexpr double kElastic = 50.0;
         /// Excess over the limit under the load [-], however soft the membrane is.
-        static constexpr double kExcess = 0.01;
+        static constexpr double kExcess = 0.005;
     };
 
     StretchTension(std::shared_ptr<const RestShape> rest, const Settings& settings);

@@ -202,7 +202,7 @@ TEST_F(DeviceStretchTensionTest, HasTheSameBitsTwiceAndAllocatesNothingInSteps)
 class OnlyObserves : public StrainLimit {
 public:
     using StrainLimit::StrainLimit;
-    void project(View<Vec3>, View<const double>, const std::function<bool()>&) override {}
+    bool project(View<Vec3>, View<const double>, const std::function<bool()>&) override { return false; }
 };
 
 /// Sheet too heavy for its stiffness, on two pins.
