@@ -26,7 +26,7 @@ Vec3 warp_direction(const Vec3& normal, const Vec3& grain)
 }
 
 /// Maximum longest edge over its altitude of a triangle that is not a sliver [-].
-constexpr double kMaxAspect = 100.0;
+constexpr double kMaxAspect = 20.0;
 
 /// Completes a shape that has triangles and edges with areas and topology.
 RestShape complete(RestShape shape, int vertex_count, const std::string& source)

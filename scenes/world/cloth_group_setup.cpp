@@ -76,7 +76,7 @@ std::vector<std::shared_ptr<Energy>> ClothGroup::make_energies(OuterMethod outer
 {
     std::vector<std::shared_ptr<Energy>> energies;
     for (size_t i = 0; i < cloths_.size(); ++i)
-        for (auto& energy : cloths_[i].make_energies(outer, solids_ != nullptr))
+        for (auto& energy : cloths_[i].make_energies(outer))
             energies.push_back(
                 cloths_.size() == 1 && !solids_
                     ? energy

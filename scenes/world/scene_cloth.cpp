@@ -18,9 +18,9 @@ namespace toile::scenes {
 
 namespace {
 
-/// Excess over the strain limit that is clamped after a step of Newton's method among rigid bodies [-]: their impulses
-/// move cloth after the minimisation, in which the limit is an elastic energy.
-constexpr double kYielding = 0.02;
+/// Excess over the strain limit that is clamped after a step of Newton's method [-]. Below it the limit is an
+/// elastic energy; above it something has moved the cloth that is stronger, such as bodies that close on it.
+constexpr double kYielding = 0.045;
 
 /// The warp of flat cloth is the X axis of its own frame, however it is placed. That of a garment is the
 /// vertical in which it stands.
@@ -113,7 +113,7 @@ void SceneCloth::add_elasticity(bool has_internal_friction, std::vector<std::sha
     energies.push_back(bend_damping_);
 }
 
-std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer, bool meets_rigid_bodies)
+std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer)
 {
     const garment::Fabric& fabric = state_.fabric;
     std::vector<std::shared_ptr<Energy>> energies;
@@ -123,10 +123,8 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
     garment::StretchTension::Settings tension{fabric.strain_limit, stiffness};
     if (outer == OuterMethod::Newton) {
-        garment::StrainLimit::Settings clamped{fabric.strain_limit, kYielding};
-        if (!meets_rigid_bodies)
-            clamped.max_sweeps = 0;
-        strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, clamped, source_);
+        strain_limit_ = std::make_unique<garment::StrainLimit>(
+            rest_, garment::StrainLimit::Settings{fabric.strain_limit, kYielding}, source_);
         const Bounds box = bounds(state_.rest.positions);
         const double weight = fabric.areal_density * gravity_.norm() * (box.upper - box.lower).norm();
         tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, weight);

@@ -42,7 +42,7 @@ public:
 
     /// Makes the energies of projective dynamics. Call once: the strain limit is connected to the tension
     /// among them.
-    std::vector<std::shared_ptr<Energy>> make_energies(OuterMethod outer, bool meets_rigid_bodies);
+    std::vector<std::shared_ptr<Energy>> make_energies(OuterMethod outer);
 
     /// Adds the forces of accelerate() to the loads of a body on a GPU.
     void add_loads(garment::DeviceLoads& loads, int first_vertex) const;

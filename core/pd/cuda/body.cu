@@ -145,16 +145,15 @@ StepStart DeviceBody::start() const
             {x_.device(), prediction_.device(), diagonal_.view(), fixed_.view(), masses_.view()}};
 }
 
-bool DeviceBody::project(StepProjection& projection, const std::function<bool()>& clear_contacts)
+void DeviceBody::project(StepProjection& projection, const std::function<bool()>& clear_contacts)
 {
     DeviceStepProjection& limits = *projection.on_device(space_);
     if (limits.is_satisfied(x_t1_.device()))
-        return false;
+        return;
     parallel_for(space_, "pd/keep_unprojected", x_.size(), CopyPositions{x_t1_.device(), found_.view()});
     limits.project(x_t1_.change_on_device(), inverse_masses_.view(), clear_contacts);
     parallel_for(space_, "pd/projected", x_.size(),
                  AddProjected{found_.view(), x_t1_.device(), dt_, v_.change_on_device()});
-    return true;
 }
 
 void DeviceBody::restart_touching(const StepInput& input)

@@ -81,7 +81,7 @@ private:
                                           bool is_calm) override;
     void restart_touching(const StepInput& input) override;
     void finish(ActiveSetEnergy* active, StepProjection* projection) override;
-    bool project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
+    void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
 
     static void overwrite(MirroredArray<Vec3>& field, View<const Vec3> values);

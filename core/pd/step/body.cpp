@@ -158,9 +158,9 @@ void Body::finish(ActiveSetEnergy* active, StepProjection* projection)
         projection->observe(x_t1_);
 }
 
-bool Body::project(StepProjection& projection, const std::function<bool()>& clear_contacts)
+void Body::project(StepProjection& projection, const std::function<bool()>& clear_contacts)
 {
-    return PointMassesOnHost::project(projection, dt_, system_->masses(), system_->fixed(), clear_contacts);
+    PointMassesOnHost::project(projection, dt_, system_->masses(), system_->fixed(), clear_contacts);
 }
 
 void Body::end(StepProjection*, StepReport& report)

@@ -56,7 +56,7 @@ private:
     OuterLoop::Outcome minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                           bool is_calm) override;
     void finish(ActiveSetEnergy* active, StepProjection* projection) override;
-    bool project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
+    void project(StepProjection& projection, const std::function<bool()>& clear_contacts) override;
     void end(StepProjection* projection, StepReport& report) override;
 
     MotionView motion();

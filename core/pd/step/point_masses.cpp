@@ -12,18 +12,16 @@ void PointMassesOnHost::predict(double dt, View<const Vec3> acceleration, View<c
                  PredictVertex{x_, v_, acceleration, fixed, targets, dt, prediction});
 }
 
-bool PointMassesOnHost::project(StepProjection& projection, double dt, View<const double> masses,
+void PointMassesOnHost::project(StepProjection& projection, double dt, View<const double> masses,
                                 View<const unsigned char> fixed, const std::function<bool()>& clear_contacts)
 {
     inverse_masses_.resize(x_t1_.size());
     for (int i = 0; i < int(x_t1_.size()); ++i)
         inverse_masses_[i] = fixed[i] ? 0.0 : 1.0 / masses[i];
     unprojected_ = x_t1_;
-    if (!projection.project(x_t1_, inverse_masses_, clear_contacts))
-        return false;
+    projection.project(x_t1_, inverse_masses_, clear_contacts);
     parallel_for(kCpu, "pd/finish", int(x_t1_.size()),
                  [&](int i) { v_[i] += (x_t1_[i] - unprojected_[i]) / dt; });
-    return true;
 }
 
 } // namespace toile

@@ -75,8 +75,7 @@ protected:
     /// Moves x_t1_ onto the constraint. The displacement becomes velocity, like that of any force.
     /// @param masses, fixed   [vertices] [kg], 1 if the position is prescribed
     /// @param clear_contacts  see StepProjection::project
-    /// @return true if anything has moved
-    bool project(StepProjection& projection, double dt, View<const double> masses,
+    void project(StepProjection& projection, double dt, View<const double> masses,
                  View<const unsigned char> fixed, const std::function<bool()>& clear_contacts);
 
     std::vector<Vec3> x_, v_; ///< [vertices] [m], [m/s]

@@ -22,8 +22,7 @@ public:
     /// @param inverse_masses  [vertices] [1/kg], 0 for fixed vertices
     /// @param clear_contacts  to be called while projecting, so that contact is respected: moves x, false
     ///                        only if nothing has moved; may be empty
-    /// @return false if x was on the constraint
-    virtual bool project(View<Vec3> x, View<const double> inverse_masses,
+    virtual void project(View<Vec3> x, View<const double> inverse_masses,
                          const std::function<bool()>& clear_contacts) = 0;
 
     /// GPU counterpart; null if there is none.

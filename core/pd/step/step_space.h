@@ -52,8 +52,7 @@ public:
     /// Moves the end positions onto the constraint. The displacement becomes velocity, like that of any
     /// force.
     /// @param clear_contacts  see StepProjection::project
-    /// @return true if anything has moved
-    virtual bool project(StepProjection& projection, const std::function<bool()>& clear_contacts) = 0;
+    virtual void project(StepProjection& projection, const std::function<bool()>& clear_contacts) = 0;
 
     /// Makes the end the next start, and completes the report.
     virtual void end(StepProjection* projection, StepReport& report) = 0;

@@ -55,8 +55,8 @@ void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimi
     add(report, space.minimise_by_newton(settings, revise, is_calm));
 }
 
-/// Satisfies limits, contact and separation of cloth, the one that yields first before the others. Cloth that contact
-/// moves back stretches against cloth that it does not move, so the limits are then applied again.
+/// Satisfies contact, limits and separation of cloth. Cloth that contact moves back stretches against cloth
+/// that it does not move, so the limits are then applied again.
 void correct(StepSpace& space, const StepInput& input)
 {
     ActiveSetEnergy* const active = input.active;
@@ -69,8 +69,7 @@ void correct(StepSpace& space, const StepInput& input)
             active->clear(space.end_positions(), space.end_velocities());
         if (input.projection) {
             const StageScope stage("pd/limits");
-            if (space.project(*input.projection, clear_contacts) && active)
-                active->clear(space.end_positions(), space.end_velocities());
+            space.project(*input.projection, clear_contacts);
         }
         goes_on = active && active->keep_apart(space.end_positions(), space.end_velocities());
     }

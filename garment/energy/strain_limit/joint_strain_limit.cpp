@@ -22,14 +22,14 @@ void JointStrainLimit::observe(View<const Vec3> x)
         part.limit->observe(x.subview(part.first, part.count));
 }
 
-bool JointStrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
+void JointStrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
                                const std::function<bool()>& clear_contacts)
 {
     bool violates = false;
     for (const Part& part : parts_)
         violates = part.limit->find_violations(x.subview(part.first, part.count)) || violates;
     if (!violates)
-        return false;
+        return;
     for (const Part& part : parts_)
         part.limit->keep(x.subview(part.first, part.count));
     const auto has_sweep = [](const Part& part, int sweep) {
@@ -52,7 +52,6 @@ bool JointStrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
     }
     for (const Part& part : parts_)
         part.limit->end(x.subview(part.first, part.count));
-    return true;
 }
 
 DeviceStepProjection* JointStrainLimit::on_device(const CudaSpace& space)

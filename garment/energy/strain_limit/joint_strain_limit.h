@@ -22,7 +22,7 @@ public:
     ~JointStrainLimit() override;
 
     void observe(View<const Vec3> x) override;
-    bool project(View<Vec3> x, View<const double> inverse_masses,
+    void project(View<Vec3> x, View<const double> inverse_masses,
                  const std::function<bool()>& clear_contacts) override;
     DeviceStepProjection* on_device(const CudaSpace& space) override;
 

@@ -17,15 +17,15 @@ namespace toile::garment {
 /// Enforced after the step's minimisation by nonlinear Gauss-Seidel over the violating triangles. Each moves,
 /// mass-weighted, to the closest edges with clamped singular values [Wang et al. 2010; projecting after the
 /// step: Goldenthal et al. 2007]. Triangles are ordered by colour; no two of a colour share a vertex. A GPU
-/// therefore clamps a colour at once (DeviceStrainLimit), with the same result as the CPU. Sweeps that gain
-/// little are undone (undoes_sweeps()). Inside H the limit would need weights that stall
+/// therefore clamps a colour at once (DeviceStrainLimit), with the same result as the CPU. Sweeps that end
+/// with a larger strain than they began with are undone. Inside H the limit would need weights that stall
 /// every method built on a fixed H (docs/theory/strain_limit.md).
 class StrainLimit : public StepProjection {
 public:
     struct Settings {
         double limit = 0.06;     ///< [-] maximum principal stretch minus one. Must be positive.
         double tolerance = 1e-3; ///< [-] excess over the limit that is not corrected
-        int max_sweeps = 100;    ///< bound for an unreachable limit (pins too far apart); 0: clamps nothing
+        int max_sweeps = 100;    ///< bound for an unreachable limit (pins too far apart)
     };
 
     /// Sweeps that also clear contacts. Beyond them the limit takes precedence over contact. Cloth caught
@@ -40,11 +40,11 @@ public:
     void set_tension(std::shared_ptr<StretchTension> tension) { tension_ = std::move(tension); }
 
     void observe(View<const Vec3> x) override;
-    bool project(View<Vec3> x, View<const double> inverse_masses,
+    void project(View<Vec3> x, View<const double> inverse_masses,
                  const std::function<bool()>& clear_contacts) override;
 
     /// Parts of project(), for several cloths that are moved by contact between them. find_violations() is
-    /// true if something violates the limit and may be swept; keep() saves positions. Sweeps follow, each with an update.
+    /// true if something violates the limit; keep() saves positions. Sweeps follow, each with an update.
     /// end() restores the saved positions if the sweeps made the strain worse.
     bool find_violations(View<const Vec3> x);
     void keep(View<const Vec3> x);

@@ -169,32 +169,19 @@ struct KeepPosition {
     TOILE_HD void operator()(int v) const { kept[v] = x[v]; }
 };
 
-/// True if sweeps are undone, since their displacement would become velocity. They end with a larger stretch than they
-/// began with: millimetres that correct a wide triangle or a contact are many times the height of a sliver beside it.
-/// Or triangles still exceed the limit, by more than half of the excess at first: what cannot be met is not fought for.
-/// @param before, after  maximum stretch of a cloth, slivers included
-/// @param tolerated      maximum stretch
-/// @param is_met         no triangle exceeds it in the end; slivers have no limit
-TOILE_HD inline bool undoes_sweeps(double before, double after, double tolerated, bool is_met)
-{
-    return after > before || (!is_met && after - tolerated > 0.5 * (before - tolerated));
-}
-
-/// Restores vertex v if its cloth exceeded its limit at first and its sweeps are undone. Cloth within its limit keeps
-/// the corrections of contact clearing.
+/// Restores vertex v if its cloth exceeded its limit at first and ended with a larger stretch than it began
+/// with. Cloth within its limit keeps the corrections of contact clearing.
 struct UndoVertex {
     View<const int> cloth;                     ///< [vertices] -1: no cloth
     View<const double> tolerated;              ///< [cloths] maximum stretch
     View<const double> stretch_t0, stretch_t1; ///< [cloths] maximum, before and after
-    bool is_met;                               ///< nothing exceeds its limit in the end
     View<const Vec3> kept;                     ///< [vertices] [m]
     View<Vec3> x;                              ///< [vertices] in, out [m]
 
     TOILE_HD void operator()(int v) const
     {
         const int c = cloth[v];
-        if (c >= 0 && stretch_t0[c] > tolerated[c] &&
-            undoes_sweeps(stretch_t0[c], stretch_t1[c], tolerated[c], is_met))
+        if (c >= 0 && stretch_t0[c] > tolerated[c] && stretch_t1[c] > stretch_t0[c])
             x[v] = kept[v];
     }
 };

@@ -20,7 +20,6 @@ public:
     double value = 1.0;    ///< [J] of every minimisation
     int searches_left = 0; ///< calls of revise() that find something
     int moves_left = 0;    ///< calls of keep_apart() that move cloth
-    bool limits_move = false;
 
     void begin(const StepInput&) override { calls.push_back("begin"); }
     StepStart start() const override { return {}; }
@@ -49,11 +48,7 @@ public:
     }
     void restart_touching(const StepInput&) override { calls.push_back("restart touching"); }
     void finish(ActiveSetEnergy*, StepProjection*) override { calls.push_back("finish"); }
-    bool project(StepProjection&, const std::function<bool()>&) override
-    {
-        calls.push_back("project");
-        return limits_move;
-    }
+    void project(StepProjection&, const std::function<bool()>&) override { calls.push_back("project"); }
     void end(StepProjection*, StepReport&) override { calls.push_back("end"); }
 
     void begin_step(const StepStart&) override { calls.push_back("find contact"); }
@@ -78,7 +73,7 @@ public:
     void end_step(StepField) override { calls.push_back("end contact"); }
 
     void observe(View<const Vec3>) override {}
-    bool project(View<Vec3>, View<const double>, const std::function<bool()>&) override { return false; }
+    void project(View<Vec3>, View<const double>, const std::function<bool()>&) override {}
 
     StepReport step(bool in_contact, bool is_limited)
     {
@@ -130,16 +125,6 @@ TEST(TakeStep, LooksForContactInsideOneMinimisationByNewton)
     report = take_step(step, {0.1, {}, fixed, {}, nullptr, nullptr}, limits);
     EXPECT_THAT(step.calls, ElementsAre("begin", "calm newton", "finish", "end"));
     EXPECT_EQ(report.speed, StepLimits::kCalm * 0.01);
-}
-
-TEST(TakeStep, ClearsContactAgainAfterLimitsThatMoveCloth)
-{
-    NotedStep step;
-    step.limits_move = true;
-    step.step(true, true);
-    EXPECT_THAT(step.calls,
-                ElementsAre("begin", "find contact", "restart touching", "minimise first", "revise", "finish", "clear",
-                            "project", "clear", "keep apart", "end contact", "end"));
 }
 
 TEST(TakeStep, BoundsTheNumberOfCorrections)

@@ -202,7 +202,7 @@ TEST_F(DeviceStretchTensionTest, HasTheSameBitsTwiceAndAllocatesNothingInSteps)
 class OnlyObserves : public StrainLimit {
 public:
     using StrainLimit::StrainLimit;
-    bool project(View<Vec3>, View<const double>, const std::function<bool()>&) override { return false; }
+    void project(View<Vec3>, View<const double>, const std::function<bool()>&) override {}
 };
 
 /// Sheet too heavy for its stiffness, on two pins.

@@ -148,15 +148,17 @@ void DeviceStrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
     parallel_for(space_, "strain_limit/keep", cloth_.size(), KeepPosition{x, kept_.view()});
     find_largest(x, stretch_t0_.view());
     record(x, inverse_masses);
-    const bool is_met = sweep(x, clear_contacts);
+    sweep(x, clear_contacts);
+
+    // Undo sweeps that end worse than they began, since they would become velocity: see StrainLimit::end.
     find_largest(x, stretch_t1_.view());
     parallel_for(space_, "strain_limit/undo", cloth_.size(),
                  UndoVertex{cloth_.view(), tolerated_.view(), stretch_t0_.view(), stretch_t1_.view(),
-                            is_met, kept_.view(), x});
+                            kept_.view(), x});
 }
 
-/// Sweeps until nothing violates its limit, or false at the maximum number of sweeps.
-bool DeviceStrainLimit::sweep(View<const Vec3> x, const std::function<bool()>& clear_contacts)
+/// Sweeps until nothing violates its limit or the maximum number of sweeps is reached.
+void DeviceStrainLimit::sweep(View<const Vec3> x, const std::function<bool()>& clear_contacts)
 {
     int done = 0, left = violating_on_host_[0];
     while (left > 0 && done < max_sweeps_) {
@@ -166,7 +168,6 @@ bool DeviceStrainLimit::sweep(View<const Vec3> x, const std::function<bool()>& c
             (done % 2 == 0 ? forward_ : backward_).launch();
         left = clears && clear_contacts() ? count_violations(x) : how_many();
     }
-    return left == 0;
 }
 
 /// Records a sweep in either direction, unless the graphs already refer to these arrays.

@@ -27,7 +27,7 @@ public:
     /// @param first_vertex  first vertex of the cloth in the body
     void add(const StrainLimit& limit, int first_vertex);
 
-    bool is_satisfied(View<const Vec3> x) override { return max_sweeps_ == 0 || count_violations(x) == 0; }
+    bool is_satisfied(View<const Vec3> x) override { return count_violations(x) == 0; }
     void project(View<Vec3> x, View<const double> inverse_masses,
                  const std::function<bool()>& clear_contacts) override;
 
@@ -62,7 +62,7 @@ private:
     void find_largest(View<const Vec3> x, View<double> of_cloth);
     void record(View<Vec3> x, View<const double> inverse_masses);
     void enqueue_clamp(View<Vec3> x, View<const double> inverse_masses, int colour);
-    bool sweep(View<const Vec3> x, const std::function<bool()>& clear_contacts);
+    void sweep(View<const Vec3> x, const std::function<bool()>& clear_contacts);
 
     const CudaSpace& space_;
     OnHost host_;
