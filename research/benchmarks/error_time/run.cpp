@@ -13,7 +13,7 @@ namespace {
 
 bool supports(const scene::Solver& solver, const scenes::Scene& scene)
 {
-    return !scene::replaces_minimiser(solver.method) || !scene.contact.self;
+    return !scene::is_baseline(solver.method) || !scene.contact.self;
 }
 
 std::vector<Contender> supported(const accuracy::Case& problem, std::vector<Contender> contenders)

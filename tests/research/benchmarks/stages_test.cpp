@@ -47,8 +47,8 @@ TEST(StagesTable, HasARowPerSceneAndPerStage)
     result.peak_memory = 3l << 20;
     result.stages = {{"scenes/step", 4.0, 2.0, 0.99}, {"pd/minimise", 4.0, 1.0, 0.5}};
     EXPECT_EQ(csv_of_stages({result}), "scene,stage,calls_per_frame,ms_per_frame,share\n"
-                                       "Ball; small,scenes/step,4.0,2.00,0.990\n"
-                                       "Ball; small,pd/minimise,4.0,1.00,0.500\n");
+                                       "\"Ball, small\",scenes/step,4.0,2.00,0.990\n"
+                                       "\"Ball, small\",pd/minimise,4.0,1.00,0.500\n");
     const std::string scenes = csv_of_scenes({result});
     EXPECT_EQ(std::count(scenes.begin(), scenes.end(), '\n'), 2);
     EXPECT_EQ(scenes.substr(scenes.rfind(',')), ",3\n");
