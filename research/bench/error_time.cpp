@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <iostream>
 
 #include "apps/toile/terminal/command_line.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -46,7 +47,7 @@ public:
                     -std::numeric_limits<double>::infinity()};
         }
         /// Stiffness beyond the limit relative to the membrane's [-]: cloth under a load that would stretch
-        /// it to twice its limit exceeds the limit by a twentieth.
+        /// it to twice its limit exceeds the limit by a fiftieth.
         static constexpr double kElastic = 50.0;
         /// Excess over the limit under the load [-], however soft the membrane is.
         static constexpr double kExcess = 0.005;

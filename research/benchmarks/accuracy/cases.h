@@ -38,6 +38,12 @@ struct Case {
     double aim = 0.0;         ///< largest error that is good
 };
 
+/// A skirt that falls from its waist: a quantile of the strain of its triangles.
+Case hanging_skirt(const std::string& word, double share);
+
+/// Five stiff cloths that fall on a ball: how late.
+Case pile();
+
 /// @param folder  for meshes of scenes; must exist
 /// @param quick   only those that take seconds
 std::vector<Case> make_cases(const std::filesystem::path& folder, bool quick);

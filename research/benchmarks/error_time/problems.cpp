@@ -1,5 +1,7 @@
 #include "research/benchmarks/error_time/problems.h"
 
+#include <utility>
+
 #include "research/benchmarks/accuracy/scene_text.h"
 #include "research/benchmarks/accuracy/statistics.h"
 
@@ -24,7 +26,7 @@ accuracy::Case hanging_sheet(int vertices_along_side)
             "rectangle": {"size": [1, 1], "resolution": )" + number(edge) + R"(}}],
         "attachments": [{"cloth": "sheet", "select": {"nearest": [[-0.5, 0, -0.5], [0.5, 0, -0.5]]}}], )" +
                                                         accuracy::lossless_fabric(0.15, 1000.0, 5e-6));
-    result.reference = accuracy::converged(result.scene, 2);
+    result.reference = accuracy::converged(result.scene, 8);
     result.measure = [edge](const accuracy::Trajectory& run, const accuracy::Trajectory* reference) {
         return accuracy::rms(run.last(), reference->last()) / edge;
     };
@@ -49,10 +51,9 @@ std::vector<accuracy::Case> problems(bool quick)
     std::vector<accuracy::Case> result{hanging_sheet(50)};
     if (!quick)
         result.push_back(hanging_sheet(100));
-    for (accuracy::Case& trial : accuracy::make_cases({}, false))
-        if (trial.name == "skirt held at its waist, median of strain" ||
-            (!quick && trial.name == "five cloths that fall on a ball"))
-            result.push_back(std::move(trial));
+    result.push_back(accuracy::hanging_skirt("99th percentile", 0.99));
+    if (!quick)
+        result.push_back(accuracy::pile());
     return result;
 }
 

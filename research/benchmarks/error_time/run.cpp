@@ -1,7 +1,5 @@
 #include "research/benchmarks/error_time/run.h"
 
-#include <algorithm>
-
 #include "research/benchmarks/accuracy/run.h"
 #include "research/benchmarks/text_table.h"
 #include "research/scenes/literature_methods.h"
@@ -60,7 +58,8 @@ std::vector<Point> run(const accuracy::Case& problem, const std::vector<Contende
         });
         if (!reference.is_complete || !own.is_complete)
             return points;
-        Point point{problem.name, problem.quantity, contender.method, contender.setting, contender.is_default};
+        Point point{problem.name, (problem.is_relative ? "relative error of " : "") + problem.quantity, contender.method,
+                    contender.setting, contender.is_default};
         point.frames = int(own.trajectory.positions.size()) - 1;
         point.ms_per_frame = 1e3 * own.seconds / point.frames;
         point.unfinished = own.unfinished;

@@ -62,8 +62,11 @@ PowerFit fit(const std::vector<Result>& results)
 
 std::string markdown_table(const std::vector<Result>& results)
 {
-    return markdown(kHeader, rows_of(results, cells_of)) + "\nMilliseconds a frame grow as the vertices to the power " +
-           format("%.2f", fit(results).exponent) + ".\n";
+    const PowerFit power = fit(results);
+    const std::string table = markdown(kHeader, rows_of(results, cells_of));
+    return power.points < 2 ? table
+                            : table + "\nMilliseconds a frame grow as the vertices to the power " +
+                                  format("%.2f", power.exponent) + ".\n";
 }
 
 std::string csv_table(const std::vector<Result>& results) { return csv(kHeader, rows_of(results, cells_of)); }
