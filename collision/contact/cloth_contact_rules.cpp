@@ -12,8 +12,8 @@ namespace {
 /// stack of layers, a slack of many thicknesses makes pairs of every layer with as many others.
 constexpr double kMaxSlack = 0.1, kMaxLayers = 1.0;
 constexpr double kMinSlack = 0.03, kMinLayers = 0.25;
-/// Largest slack where no cloth is near other cloth, relative to the mean edge [-]: in a sheet of even edges it makes no
-/// pairs of neighbours.
+/// Largest slack where no cloth is near other cloth, relative to the mean edge [-]: in a sheet of even edges
+/// it makes no pairs of neighbours.
 constexpr double kClearSlack = 0.2;
 
 /// Missing distance, relative to the mean edge [-], up to which pinched cloth is deflected.

@@ -72,8 +72,8 @@ struct ContactRules {
                    : collider_friction[cloth * (collider_friction.size() / cloths) + pair.collider];
     }
 
-    /// Stiffness of the pair, its share of that of the cloth at its vertices [N/m]; between cloths, of that of the
-    /// softer side.
+    /// Stiffness of the pair, its share of that of the cloth at its vertices [N/m]; between cloths, of that
+    /// of the softer side.
     TOILE_HD double stiffness_of(const ContactPair& pair) const
     {
         double ahead = 0.0, behind = 0.0;

@@ -43,8 +43,8 @@ struct ContactPair {
     /// Collider triangle, vertex or edge, by kind. For a shape: 0 with a cloth vertex, else the number of the
     /// skeleton's corner, or corner count plus edge number.
     int feature = -1;
-    /// Stiffness of its energy over that of a whole contact, in (0, 1]. It grows from zero where pairs come and go with
-    /// small motions, so that forces do not jump. Projections take every pair for a whole one.
+    /// Stiffness of its energy over that of a whole contact, in (0, 1]. It grows from zero where pairs come
+    /// and go with small motions, so that forces do not jump. Projections take every pair for a whole one.
     double share = 1.0;
 
     /// Number of cloth vertices in use.

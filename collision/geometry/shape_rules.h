@@ -14,8 +14,8 @@
 namespace toile::collision {
 
 /// Distance [m] by which a face or edge must be nearer to a round shape than its vertices to form its own
-/// pair, which is a whole contact at twice that distance. Normally well below the contact thickness, so that fine
-/// cloth needs vertex pairs only.
+/// pair, which is a whole contact at twice that distance. Normally well below the contact thickness, so that
+/// fine cloth needs vertex pairs only.
 inline constexpr double kSag = 1e-4;
 
 /// Minimum cosine between a pair's normal and the faces adjacent to a sharp corner or edge [-]. Negative, so

@@ -66,8 +66,8 @@ struct Deviation {
 };
 
 /// The quadratic through a triangle and the opposite vertices of its neighbours. Across a border edge, where
-/// there is no such vertex, it has no curvature. With equal rigidities no moment acts there then, as Poisson's ratio is
-/// zero.
+/// there is no such vertex, it has no curvature. With equal rigidities no moment acts there then, as
+/// Poisson's ratio is zero.
 struct Fit {
     std::array<Deviation, 3> deviation;
     Mat3 slopes;  ///< fit's slopes across the edges, by deviations [1/m]

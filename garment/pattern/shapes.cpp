@@ -88,8 +88,8 @@ TriangleMesh cut_disc(double radius, double resolution)
 
 namespace {
 
-/// Deviation of a skirt's hem from its circle over the radius [-] at an angle, the same in every run. A cone in perfect
-/// symmetry would not fold: dry friction in the weave holds what rounding starts.
+/// Deviation of a skirt's hem from its circle over the radius [-] at an angle, the same in every run. A cone
+/// in perfect symmetry would not fold: dry friction in the weave holds what rounding starts.
 double unevenness(double angle)
 {
     constexpr double kLargest = 0.002;

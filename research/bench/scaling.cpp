@@ -19,7 +19,8 @@ const std::vector<std::string> kTables{"scaling.csv", "scaling.md"};
 const std::filesystem::path kScene = "scenes/demo/tablecloth.json";
 constexpr int kFrames = 31;
 
-const std::vector<int> kVertices{1000, 2000, 5000, 10000, 20000, 40000, 80000}, kQuickVertices{500, 1000, 2000};
+const std::vector<int> kVertices{1000, 2000, 5000, 10000, 20000, 40000, 80000},
+    kQuickVertices{500, 1000, 2000};
 
 } // namespace
 
@@ -42,7 +43,8 @@ int bench_scaling(const BenchOptions& options)
     double done = 0.0;
     for (const int vertices : sizes) {
         const scaling::Result result = scaling::run(scaling::with_vertices(scene, vertices), [&](int frame) {
-            progress.update(int(1e-3 * (done + double(frame) * vertices)), std::to_string(vertices) + " vertices");
+            progress.update(int(1e-3 * (done + double(frame) * vertices)),
+                            std::to_string(vertices) + " vertices");
             return !interrupt.requested();
         });
         if (interrupt.requested())

@@ -100,7 +100,8 @@ StepControl step_control_of(const Scene& scene)
 std::vector<std::string> solver_warnings_of(const Scene& scene)
 {
     std::vector<std::string> warnings;
-    for (const std::string& text : {former_key_of(scene), ignored_friction_of(scene), ignored_step_error_of(scene)})
+    for (const std::string& text :
+         {former_key_of(scene), ignored_friction_of(scene), ignored_step_error_of(scene)})
         if (!text.empty())
             warnings.push_back(scene.source.string() + ": " + text);
     return warnings;

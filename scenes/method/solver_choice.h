@@ -50,8 +50,8 @@ StepMethod step_method_of(const Scene& scene);
 /// Division of a scene's samples into steps.
 StepControl step_control_of(const Scene& scene);
 
-/// Messages about keys of the scene that have another name now, or no effect: internal friction that its minimiser
-/// ignores, an error of steps whose length nothing chooses.
+/// Messages about keys of the scene that have another name now, or no effect: internal friction that its
+/// minimiser ignores, an error of steps whose length nothing chooses.
 std::vector<std::string> solver_warnings_of(const Scene& scene);
 
 /// @throws InvalidInput if the scene's method is a baseline and there are none

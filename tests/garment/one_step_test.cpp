@@ -177,6 +177,7 @@ struct OneStep {
     std::vector<Vec3> expect_agreement(double min_correction) const
     {
         std::vector<Vec3> oracle_end = by_newton();
+        // Each ends at the tolerance of its own criterion.
         for (const OuterMethod outer : {OuterMethod::Lbfgs, OuterMethod::Anderson, OuterMethod::NewtonPcg})
             EXPECT_LT(max_distance(by_body(outer), oracle_end), 2e-8) << "method " << int(outer);
         if (!active) {

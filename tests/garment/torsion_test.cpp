@@ -11,8 +11,8 @@ using namespace garment;
 
 namespace {
 
-/// Energy over the exact one, rigidity x area x twist^2, of a strip twisted as a whole: w = twist u v. No moment
-/// acts on its free edges in this state.
+/// Energy over the exact one, rigidity x area x twist^2, of a strip twisted as a whole: w = twist u v. No
+/// moment acts on its free edges in this state.
 double relative_energy(const Vec2& size, int columns, int rows, Pattern pattern)
 {
     constexpr double kRigidity = 1e-5, kTwist = 0.5; // [N m], [1/m]

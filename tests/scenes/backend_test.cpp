@@ -82,9 +82,9 @@ TEST(Backend, SaysThatEqualStepsHaveNoChosenError)
         return solver_warnings_of(scene_with("\"solver\": {\"step_error\": 1e-4" + solver + "}, "));
     };
     EXPECT_TRUE(warnings("").empty());
-    const std::vector<std::string> two{
-        "test.json: solver.step_error has no effect: all steps are equal, 2 a sample; see solver.substeps for when "
-        "what moves chooses them"};
+    const std::vector<std::string> two{"test.json: solver.step_error has no effect: all steps are equal, 2 a "
+                                       "sample; see solver.substeps for when "
+                                       "what moves chooses them"};
     EXPECT_EQ(warnings(R"(, "substeps": 2)"), two);
     EXPECT_EQ(warnings(R"(, "quality": "preview")").size(), 1u);
     EXPECT_EQ(warnings(R"(, "method": "direct")").size(), 1u);

@@ -66,7 +66,8 @@ public:
 
     /// Called after every minimisation. Refreshes lagged quantities (friction limits) if x is converged, and
     /// searches again if x left the neighbourhood of the candidates. Moves x [vertices] back if it violates
-    /// the invariants of keep_apart(); where nothing is near, only once x is converged. True if the energy changed enough to minimise again.
+    /// the invariants of keep_apart(); where nothing is near, only once x is converged. True if the energy
+    /// changed enough to minimise again.
     /// @param is_converged  the minimisation was not cut short: forces at x exceed its residual
     virtual bool revise(StepField x, bool is_converged) = 0;
 

@@ -78,8 +78,9 @@ Case catenary()
     return result;
 }
 
-/// A strip of four cells across that is clamped like the elastica's, edge-on in gravity that is tilted a little out
-/// of its plane: near the load that buckles it sideways, the tilt is amplified by what bends and twists it.
+/// A strip of four cells across that is clamped like the elastica's, edge-on in gravity that is tilted a
+/// little out of its plane: near the load that buckles it sideways, the tilt is amplified by what bends and
+/// twists it.
 Case lateral_buckling(double load)
 {
     const double free_length = 0.3, width = 0.015, density = 0.1, tilt = 0.02;
@@ -98,8 +99,7 @@ Case lateral_buckling(double load)
                      number(length) + ", " + number(width) + R"(], "resolution": )" + number(cell) +
                      R"(}, "fabric": "f", "translate": [)" + number(0.5 * length) + R"(, 0, 0]}],
         "attachments": [{"cloth": "strip", "select": {"box": {"lower": [-1, -1, -1], "upper": [)" +
-                     number(1.5 * cell) + ", 1, 1]}}}], " +
-                     lossless_fabric(density, 1e5, rigidity, 5.0));
+                     number(1.5 * cell) + ", 1, 1]}}}], " + lossless_fabric(density, 1e5, rigidity, 5.0));
     result.measure = [=](const Trajectory& run, const Trajectory*) {
         Vec3 upper = Vec3::Zero(), lower = Vec3::Zero();
         for (size_t i = 0; i < run.last().size(); ++i) {
@@ -115,8 +115,8 @@ Case lateral_buckling(double load)
     return result;
 }
 
-/// A strip of four cells across that is clamped like the elastica's. Soft springs pull the other end towards a
-/// twisted line.
+/// A strip of four cells across that is clamped like the elastica's. Soft springs pull the other end towards
+/// a twisted line.
 Case torsion()
 {
     const double width = 0.04, cell = width / 4.0, free_length = 0.4, length = free_length + 0.5 * cell;
@@ -126,8 +126,8 @@ Case torsion()
     for (int k = -2; k <= 2; ++k) {
         const double z = k * cell;
         stiffness += spring * z * z;
-        springs += R"(, {"cloth": "strip", "select": {"nearest": [)" + ("[" + number(length) + ", 0, " + number(z)) +
-                   R"(]]}, "stiffness": )" + number(spring) +
+        springs += R"(, {"cloth": "strip", "select": {"nearest": [)" +
+                   ("[" + number(length) + ", 0, " + number(z)) + R"(]]}, "stiffness": )" + number(spring) +
                    R"(, "keyframes": [{"time": 0}, {"time": 0.5, "translate": [0, )" + number(twist * z) +
                    ", 0]}]}";
     }
@@ -437,7 +437,9 @@ Case pile()
     for (int i = 0; i < 5; ++i)
         cloths += std::string(i > 0 ? "," : "") + R"({"name": "cloth)" + std::to_string(i) +
                   R"(", "rectangle": {"size": [0.35, 0.35], "resolution": 0.014}, "fabric": "stiff",
-            "translate": [)" + number(0.005 * (i % 3)) + ", " + number(0.02 * (i + 1)) + ", " + number(0.01 * (i % 2)) + "]}";
+            "translate": [)" +
+                  number(0.005 * (i % 3)) + ", " + number(0.02 * (i + 1)) + ", " + number(0.01 * (i % 2)) +
+                  "]}";
     result.scene = scene_of(result.name, R"("fps": 60, "frames": 31,
         "avatars": [{"name": "ball", "sphere": {"radius": 0.1}, "translate": [0, -0.1, 0], "friction": 0.3}],
         "fabrics": {"stiff": {"base": "cotton", "stretch": {"warp": 10000, "weft": 10000}}},
@@ -446,7 +448,8 @@ Case pile()
     result.measure = [](const Trajectory& run, const Trajectory* reference) {
         double worst = 0.0;
         for (size_t frame = 0; frame < run.positions.size(); ++frame)
-            worst = std::max(worst, std::abs(mean(run.positions[frame]).y() - mean(reference->positions[frame]).y()));
+            worst = std::max(
+                worst, std::abs(mean(run.positions[frame]).y() - mean(reference->positions[frame]).y()));
         return 1e3 * worst;
     };
     result.aim = 5.0;

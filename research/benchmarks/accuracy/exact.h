@@ -12,10 +12,11 @@ double heavy_elastica(double load);
 /// @param span  [-] distance of the bars over the length of the sheet, below 1
 double catenary_sag(double span);
 
-/// Twist of the tip [-] over a small tilt of gravity out of the plane of a strip that is clamped edge-on, bends
-/// sideways and twists under its own weight: phi'' = -g^2/4 (1 - s)^4 (phi - 1), phi'(1) = 0, linear in the tilt. The
-/// clamp keeps a strip without Poisson's effect from warping over lambda = width / sqrt(24): phi(0) = -lambda phi'(0)
-/// outside of that layer. A narrow strip buckles sideways at g = 12.85, where the twist is unbounded.
+/// Twist of the tip [-] over a small tilt of gravity out of the plane of a strip that is clamped edge-on,
+/// bends sideways and twists under its own weight: phi'' = -g^2/4 (1 - s)^4 (phi - 1), phi'(1) = 0, linear in
+/// the tilt. The clamp keeps a strip without Poisson's effect from warping over lambda = width / sqrt(24):
+/// phi(0) = -lambda phi'(0) outside of that layer. A narrow strip buckles sideways at g = 12.85, where the
+/// twist is unbounded.
 /// @param load   [-] g = weight per length x length^3 / sqrt(lateral stiffness x torsional stiffness)
 /// @param width  [-] over the length
 double lateral_twist(double load, double width);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "research/benchmarks/contact/parts.h"
-#include "research/benchmarks/power_fit.h"
 #include "research/benchmarks/contact/stress_cases.h"
+#include "research/benchmarks/power_fit.h"
 
 namespace toile::research::contact_stress {
 

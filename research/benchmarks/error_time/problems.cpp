@@ -13,19 +13,21 @@ namespace {
 
 using accuracy::number;
 
-/// Distance to the converged run after a quarter of a second, in edge lengths: the problem and the unit in which
-/// other solvers have been measured too.
+/// Distance to the converged run after a quarter of a second, in edge lengths: the problem and the unit in
+/// which other solvers have been measured too.
 accuracy::Case hanging_sheet(int vertices_along_side)
 {
     const double edge = 1.0 / (vertices_along_side - 1);
     accuracy::Case result;
-    result.name = "sheet on two corners, " + std::to_string(vertices_along_side * vertices_along_side) + " vertices";
+    result.name =
+        "sheet on two corners, " + std::to_string(vertices_along_side * vertices_along_side) + " vertices";
     result.quantity = "RMS distance after 0.25 s [edges]";
     result.scene = accuracy::scene_of(result.name, R"("fps": 120, "frames": 31, "air": {"density": 0},
         "contact": {"self": false}, "cloths": [{"name": "sheet", "fabric": "f",
-            "rectangle": {"size": [1, 1], "resolution": )" + number(edge) + R"(}}],
+            "rectangle": {"size": [1, 1], "resolution": )" +
+                                                       number(edge) + R"(}}],
         "attachments": [{"cloth": "sheet", "select": {"nearest": [[-0.5, 0, -0.5], [0.5, 0, -0.5]]}}], )" +
-                                                        accuracy::lossless_fabric(0.15, 1000.0, 5e-6));
+                                                       accuracy::lossless_fabric(0.15, 1000.0, 5e-6));
     result.reference = accuracy::converged(result.scene, 8);
     result.measure = [edge](const accuracy::Trajectory& run, const accuracy::Trajectory* reference) {
         return accuracy::rms(run.last(), reference->last()) / edge;

@@ -7,8 +7,8 @@
 
 namespace toile::research::error_time {
 
-/// Cases of accuracy with a converged run, and sheets that hang from two corners: 2 500 and, unless quick, 10 000
-/// vertices.
+/// Cases of accuracy with a converged run, and sheets that hang from two corners: 2 500 and, unless quick, 10
+/// 000 vertices.
 std::vector<accuracy::Case> problems(bool quick);
 
 /// A way of taking the steps of a problem.

@@ -53,13 +53,12 @@ std::vector<Point> run(const accuracy::Case& problem, const std::vector<Contende
     for (const Contender& contender : supported(problem, contenders)) {
         scenes::Scene scene = problem.scene;
         scene.solver = contender.solver;
-        const accuracy::Run own = accuracy::run_scene(problem, scene, options, [&] {
-            return after_frame(problem.name + ", " + contender.method);
-        });
+        const accuracy::Run own = accuracy::run_scene(
+            problem, scene, options, [&] { return after_frame(problem.name + ", " + contender.method); });
         if (!reference.is_complete || !own.is_complete)
             return points;
-        Point point{problem.name, (problem.is_relative ? "relative error of " : "") + problem.quantity, contender.method,
-                    contender.setting, contender.is_default};
+        Point point{problem.name, (problem.is_relative ? "relative error of " : "") + problem.quantity,
+                    contender.method, contender.setting, contender.is_default};
         point.frames = int(own.trajectory.positions.size()) - 1;
         point.ms_per_frame = 1e3 * own.seconds / point.frames;
         point.unfinished = own.unfinished;

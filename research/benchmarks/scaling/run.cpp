@@ -16,9 +16,9 @@ const Row kHeader{"vertices", "ms/frame", "iterations", "contacts", "self-collis
 
 Row cells_of(const Result& r)
 {
-    return {std::to_string(r.vertices),         format("%.1f", r.ms_per_frame),
-            format("%.1f", r.iterations),       format("%.0f", r.contacts),
-            format("%.3f", r.self_collision),   format("%.2f", 1e-3 * r.bytes_per_vertex)};
+    return {std::to_string(r.vertices),       format("%.1f", r.ms_per_frame),
+            format("%.1f", r.iterations),     format("%.0f", r.contacts),
+            format("%.3f", r.self_collision), format("%.2f", 1e-3 * r.bytes_per_vertex)};
 }
 
 } // namespace
@@ -28,8 +28,9 @@ scenes::Scene with_vertices(scenes::Scene scene, int vertices)
     auto* const rectangle =
         scene.cloths.size() == 1 ? std::get_if<scene::Rectangle>(&scene.cloths.front().shape) : nullptr;
     if (rectangle == nullptr)
-        throw InvalidInput(scene.source.string() + ": its size is changed by the resolution of a rectangle; give a "
-                                                   "scene with a single cloth of that shape");
+        throw InvalidInput(scene.source.string() +
+                           ": its size is changed by the resolution of a rectangle; give a "
+                           "scene with a single cloth of that shape");
     rectangle->resolution = std::sqrt(rectangle->size.prod() / vertices);
     return scene;
 }

@@ -13,10 +13,10 @@ namespace toile::research::scaling {
 struct Result {
     int vertices = 0;
     double ms_per_frame = 0.0;
-    double iterations = 0.0;        ///< of Newton's method, per frame
+    double iterations = 0.0; ///< of Newton's method, per frame
     double contacts = 0.0;
-    double self_collision = 0.0;    ///< [-] share of the search for near cloth and of the collision-free step
-    double bytes_per_vertex = 0.0;  ///< peak memory beyond that at the start of the run
+    double self_collision = 0.0;   ///< [-] share of the search for near cloth and of the collision-free step
+    double bytes_per_vertex = 0.0; ///< peak memory beyond that at the start of the run
 };
 
 /// The scene with a rectangle as its only cloth, cut into about this many vertices.

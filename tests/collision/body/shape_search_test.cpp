@@ -69,6 +69,28 @@ TEST(ShapeSkeleton, HasTheSignedDistanceOfItsSolid)
         }
 }
 
+/// Share of the pair of an edge that lies across a post and is nearer to it than its vertices; 0: no pair.
+double share_across_a_post(double nearer)
+{
+    const double radius = 0.03, y = radius + 0.001;
+    const double half = std::sqrt((y + nearer) * (y + nearer) - y * y);
+    const ShapeCollider post(CapsuleShape{0.3, radius},
+                             pose_of(Vec3::Zero(), 0.5 * std::acos(-1.0), Vec3::UnitX()), "post");
+    const TriangleMesh cloth{{{-half, y, 0.0}, {half, y, 0.0}, {0.0, y + 0.2, 0.0}}, {{0, 1, 2}}};
+    for (const ContactPair& pair : pairs_of(cloth, post))
+        if (pair.kind == ContactKind::kEdgeShape)
+            return pair.share;
+    return 0.0;
+}
+
+TEST(ShapeSearch, LetsPairsOfRoundShapesGrowFromNothing)
+{
+    EXPECT_EQ(share_across_a_post(0.99e-4), 0.0);
+    EXPECT_NEAR(share_across_a_post(1.01e-4), 0.01, 1e-6);
+    EXPECT_NEAR(share_across_a_post(1.5e-4), 0.5, 1e-6);
+    EXPECT_EQ(share_across_a_post(2.1e-4), 1.0);
+}
+
 TEST(ShapeSearch, FindsABallUnderOneFace)
 {
     const ShapeCollider ball(SphereShape{0.03}, Eigen::Isometry3d::Identity(), "ball");

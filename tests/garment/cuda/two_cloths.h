@@ -66,9 +66,9 @@ struct TwoCloths {
                                                   : Membrane::Settings{900.0, 700.0, 60.0},
                                            "sheet");
             const Bending::Settings rigidity{2e-5, 1e-5};
-            const auto tension =
-                std::make_shared<StretchTension>(rest, k == 0 ? StretchTension::Settings::elastic(0.06, 300.0, 0.0)
-                                                              : StretchTension::Settings{0.06, 900.0});
+            const auto tension = std::make_shared<StretchTension>(
+                rest, k == 0 ? StretchTension::Settings::elastic(0.06, 300.0, 0.0)
+                             : StretchTension::Settings{0.06, 900.0});
             add(membrane, k, made.membranes);
             add(std::make_shared<Bending>(rest, rigidity, "sheet"), k, made.all);
             add(tension, k, made.all);
