@@ -10,6 +10,7 @@
 #include "research/benchmarks/accuracy/exact.h"
 #include "research/benchmarks/accuracy/scene_text.h"
 #include "research/benchmarks/accuracy/statistics.h"
+#include "research/benchmarks/accuracy/support_mesh.h"
 
 namespace toile::research::accuracy {
 
@@ -192,29 +193,6 @@ Case drape(double resolution, const std::filesystem::path& support)
     result.is_measured = true;
     result.aim = 0.03;
     return result;
-}
-
-/// Cylinder of radius 9 cm whose upper side is at height 0.
-TriangleMesh support_mesh()
-{
-    constexpr int kSides = 96;
-    TriangleMesh mesh;
-    for (const double height : {-0.2, 0.0}) {
-        for (int i = 0; i < kSides; ++i) {
-            const double angle = 2.0 * std::numbers::pi * i / kSides;
-            mesh.positions.emplace_back(0.09 * std::cos(angle), height, 0.09 * std::sin(angle));
-        }
-        mesh.positions.emplace_back(0.0, height, 0.0);
-    }
-    const int upper = kSides + 1;
-    for (int i = 0; i < kSides; ++i) {
-        const int next = (i + 1) % kSides;
-        mesh.triangles.emplace_back(kSides, i, next);
-        mesh.triangles.emplace_back(upper + kSides, upper + next, upper + i);
-        mesh.triangles.emplace_back(i, upper + i, upper + next);
-        mesh.triangles.emplace_back(i, upper + next, next);
-    }
-    return mesh;
 }
 
 // --- friction -------------------------------------------------------------------------------------------
