@@ -26,6 +26,18 @@ struct Ring {
     double middle(int k) const { return (k + 0.5 + shift) / count; }
 };
 
+/// Deviation of a skirt's hem from its circle over the radius [-] at an angle, the same in every run. A cone
+/// in perfect symmetry would not fold: dry friction in the weave holds what rounding starts.
+double unevenness(double angle)
+{
+    constexpr double kLargest = 0.002;
+    constexpr int kWaves[] = {5, 8, 11, 13};
+    double sum = 0.0;
+    for (const int n : kWaves)
+        sum += std::sin(n * angle + n * n);
+    return 0.25 * kLargest * sum;
+}
+
 /// Triangulates the band between two rings by advancing on the ring that is behind in angle.
 void bridge_rings(const Ring& inner, const Ring& outer, std::vector<Triangle>& out)
 {
@@ -85,22 +97,6 @@ TriangleMesh cut_disc(double radius, double resolution)
     }
     return mesh;
 }
-
-namespace {
-
-/// Deviation of a skirt's hem from its circle over the radius [-] at an angle, the same in every run. A cone
-/// in perfect symmetry would not fold: dry friction in the weave holds what rounding starts.
-double unevenness(double angle)
-{
-    constexpr double kLargest = 0.002;
-    constexpr int kWaves[] = {5, 8, 11, 13};
-    double sum = 0.0;
-    for (const int n : kWaves)
-        sum += std::sin(n * angle + n * n);
-    return 0.25 * kLargest * sum;
-}
-
-} // namespace
 
 TriangleMesh cut_skirt(const SkirtCut& cut)
 {

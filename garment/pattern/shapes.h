@@ -21,9 +21,9 @@ struct SkirtCut {
     double resolution = 0.015;  ///< [m]
 };
 
-/// A skirt as a truncated cone around the Y axis: waist at y = 0, hem below. Towards the hem it is up to 0.2
-/// % wider or narrower, as cloth is: a perfect cone hangs like a lampshade. A quarter, half or full circle
-/// skirt is the cone whose length equals (hem_radius - waist_radius) / sin(opening).
+/// A skirt as a truncated cone around the Y axis: waist at y = 0, hem below. Towards the hem its
+/// radius deviates by up to 0.2 %, as that of cloth does: a perfect cone hangs like a lampshade. A quarter,
+/// half or full circle skirt is the cone whose length equals (hem_radius - waist_radius) / sin(opening).
 /// @throws InvalidInput if the hem lies further out than the length reaches.
 TriangleMesh cut_skirt(const SkirtCut& cut);
 

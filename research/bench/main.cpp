@@ -1,3 +1,4 @@
+#include <limits>
 #include <memory>
 
 #include "apps/toile/terminal/command_line.h"
@@ -59,7 +60,8 @@ void add_options(CLI::App& add, BenchOptions& options, unsigned which)
         add.add_option("--mesh", options.mesh, "sheet, skirt or drape, or NAME:VERTICES");
     if (which & kScenes) {
         add.add_option("scenes", options.scenes, "Scene files (.json)");
-        add.add_option("--frames", options.frames, "Samples of each scene, instead of its own");
+        add.add_option("--frames", options.frames, "Samples of each scene, instead of its own; 2 or more")
+            ->check(CLI::Range(2, std::numeric_limits<int>::max()));
     }
     if (which & kSolver)
         add.add_option("--solver", options.solver, "solver.method of all cases")

@@ -38,9 +38,6 @@ std::vector<scenes::Scene> default_scenes()
 
 std::vector<scenes::Scene> chosen_scenes(const BenchOptions& options)
 {
-    if (options.frames && *options.frames < 2)
-        throw InvalidInput("--frames: " + std::to_string(*options.frames) +
-                           " leaves nothing to simulate; give 2 or more");
     std::vector<scenes::Scene> scenes;
     for (const std::filesystem::path& file : options.scenes)
         scenes.push_back(scenes::read_scene(file));
