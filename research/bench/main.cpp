@@ -1,4 +1,4 @@
-#include <limits>
+#include <cstdlib>
 #include <memory>
 
 #include "apps/toile/terminal/command_line.h"
@@ -51,6 +51,13 @@ constexpr Benchmark kBenchmarks[] = {
      bench_stress, kOnly | kSolver},
 };
 
+/// Check of an option: empty, or what is wrong.
+std::string at_least_two(const std::string& frames)
+{
+    return std::atoi(frames.c_str()) < 2 ? frames + " leaves nothing to simulate; give 2 or more"
+                                         : std::string();
+}
+
 void add_options(CLI::App& add, BenchOptions& options, unsigned which)
 {
     add.add_option("-o,--output", options.output, "Folder for the table as CSV and Markdown");
@@ -60,8 +67,8 @@ void add_options(CLI::App& add, BenchOptions& options, unsigned which)
         add.add_option("--mesh", options.mesh, "sheet, skirt or drape, or NAME:VERTICES");
     if (which & kScenes) {
         add.add_option("scenes", options.scenes, "Scene files (.json)");
-        add.add_option("--frames", options.frames, "Samples of each scene, instead of its own; 2 or more")
-            ->check(CLI::Range(2, std::numeric_limits<int>::max()));
+        add.add_option("--frames", options.frames, "Samples of each scene, instead of its own")
+            ->check(at_least_two);
     }
     if (which & kSolver)
         add.add_option("--solver", options.solver, "solver.method of all cases")
