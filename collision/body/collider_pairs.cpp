@@ -36,12 +36,15 @@ ColliderPairs::ColliderPairs(View<const Triangle> triangles, View<const Vec3> po
 {
 }
 
-void ColliderPairs::find(const StepStart& start)
+void ColliderPairs::find(const StepStart& start, View<const Vec3> from)
 {
     if (empty())
         return;
+    if (from.empty())
+        advect(start);
+    else
+        found_at_.assign(from.begin(), from.end());
     max_motion_ = kMaxAdvectionSpeed * start.dt;
-    advect(start.x);
     const ReachVertex reach{start.prediction, found_at_, settings_.gap};
     for (int v = 0; v < start.x.size(); ++v)
         wanted_[v] = reach_[v] = reach(v);
@@ -49,8 +52,9 @@ void ColliderPairs::find(const StepStart& start)
     search(found_at_);
 }
 
-void ColliderPairs::advect(View<const Vec3> x)
+View<const Vec3> ColliderPairs::advect(const StepStart& start)
 {
+    max_motion_ = kMaxAdvectionSpeed * start.dt;
     std::vector<AdvectingCollider> colliders;
     for (const ContactCollider& collider : colliders_) {
         colliders.push_back(advecting_collider(collider));
@@ -59,8 +63,9 @@ void ColliderPairs::advect(View<const Vec3> x)
         colliders.back().mesh = collider.mesh->pose();
         colliders.back().motion = collider.mesh->last_motion().view();
     }
-    parallel_for(kCpu, "contact/advect", x.size(),
-                 AdvectVertex{colliders, nearest_, x, max_motion_, found_at_});
+    parallel_for(kCpu, "contact/advect", start.x.size(),
+                 AdvectVertex{colliders, nearest_, start.x, max_motion_, found_at_});
+    return found_at_;
 }
 
 void ColliderPairs::find_again(View<const Vec3> x, View<const unsigned char> out_of_bounds)

@@ -30,8 +30,12 @@ public:
     ColliderPairs(const ColliderPairs&) = delete;
     ColliderPairs& operator=(const ColliderPairs&) = delete;
 
+    /// Returns the positions at t0 advected with the nearest surfaces [vertices] [m].
+    View<const Vec3> advect(const StepStart& start);
+
     /// Finds all pairs at the start of a step.
-    void find(const StepStart& start);
+    /// @param from  [vertices] positions around which they are searched for [m]; empty: advect()
+    void find(const StepStart& start, View<const Vec3> from = {});
 
     /// Marks vertices that may be in contact with a mesh outside the region searched for them. True if there
     /// are any.
@@ -52,11 +56,12 @@ public:
     bool empty() const { return colliders_.empty(); }
     const std::vector<ContactPair>& all() const { return pairs_; }
 
+    View<const NearestSurface> nearest() const { return nearest_; } ///< [vertices] of the last search
+
     /// [vertices] Positions around which pairs were searched [m].
     View<const Vec3> found_at() const { return found_at_; }
 
 private:
-    void advect(View<const Vec3> x);
     void search(View<const Vec3> x);
     void take_nearest();
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "collision/ccd/cpu/ccd_query.h"
@@ -34,6 +35,9 @@ public:
         double min_gap_fraction = 0.1; ///< [-] of a pair's start distance, or of `thickness`, that remains
         double thickness = 5e-4;       ///< [m] of the thinnest cloth
         double max_deflection = 1e-3;  ///< [m] missing distance up to which a pair is deflected
+
+        /// All vertices from this one on belong to bodies that stand still.
+        int first_prescribed = std::numeric_limits<int>::max();
 
         MinGap gap() const { return {min_gap, min_gap_fraction, thickness}; }
     };

@@ -22,7 +22,7 @@ public:
     double weight(int body) const { return bodies_[body].weight; }
     const Vec3& move(int body) const { return bodies_[body].move; } ///< total displacement of its middle [m]
 
-    bool is_rigid(int v) const { return !leader_.empty() && leader_[v] >= 0; }
+    bool is_rigid(int v) const { return v < int(leader_.size()) && leader_[v] >= 0; }
 
     /// First vertex of v's body; v itself in cloth.
     int leader_of(int v) const { return is_rigid(v) ? leader_[v] : v; }
@@ -46,7 +46,7 @@ private:
     };
 
     std::vector<Body> bodies_;
-    std::vector<int> leader_; ///< [vertices] -1 in cloth; or empty
+    std::vector<int> leader_; ///< [vertices] -1 in cloth; shorter if none follows
     View<const Vec3> x_;
 };
 

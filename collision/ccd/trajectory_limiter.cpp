@@ -21,8 +21,7 @@ constexpr int kDeflections = 4;
 constexpr int kSweeps = 3;
 constexpr double kMinGapFactor = 1.1;
 
-/// Displacement, relative to max_deflection [-], below which cloth is stopped. Deflected or moved by its
-/// zone, resting cloth would creep.
+/// Displacement, relative to max_deflection [-], below which cloth is slow.
 constexpr double kSlow = 0.5;
 
 /// Excess length of an edge with a limited end, relative to max_deflection [-].
@@ -34,11 +33,13 @@ constexpr int kPasses = 16;
 
 /// Edges of cloth.
 std::vector<EdgeStretchLimiter::Edge> flexible_edges(const SurfaceEdges& edges,
-                                                     const RigidTrajectories& bodies)
+                                                     const RigidTrajectories& bodies, int first_prescribed)
 {
     std::vector<EdgeStretchLimiter::Edge> flexible;
     std::copy_if(edges.vertex.begin(), edges.vertex.end(), std::back_inserter(flexible),
-                 [&](const EdgeStretchLimiter::Edge& edge) { return !bodies.is_rigid(edge[0]); });
+                 [&](const EdgeStretchLimiter::Edge& edge) {
+                     return edge[0] < first_prescribed && !bodies.is_rigid(edge[0]);
+                 });
     return flexible;
 }
 
@@ -47,8 +48,15 @@ std::vector<EdgeStretchLimiter::Edge> flexible_edges(const SurfaceEdges& edges,
 TrajectoryLimiter::TrajectoryLimiter(const SurfaceEdges& edges, const Settings& settings,
                                      RigidTrajectories bodies)
     : settings_(settings), bodies_(std::move(bodies)),
-      stretch_limiter_(flexible_edges(edges, bodies_), int(edges.corners_of_vertex.first.size()) - 1)
+      stretch_limiter_(flexible_edges(edges, bodies_, settings.first_prescribed),
+                       int(edges.corners_of_vertex.first.size()) - 1)
 {
+}
+
+/// Displacement [m] below which cloth is stopped.
+double TrajectoryLimiter::slow() const
+{
+    return settings_.stops_slow ? kSlow * settings_.max_deflection : 0.0;
 }
 
 void TrajectoryLimiter::begin(View<const Vec3> base, View<const unsigned char> fixed)
@@ -129,7 +137,8 @@ bool TrajectoryLimiter::separate_pairs()
             const double kept = std::min(kMinGapFactor * settings_.gap.of(pair), pair.distance);
             const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
             const bool is_small = lacking <= settings_.max_deflection;
-            const bool is_slow = longest < kSlow * settings_.max_deflection;
+            // Against a body cloth slides on, however slowly.
+            const bool is_slow = !is_of_body(pair) && longest < slow();
             if (lacking > 0.0 && is_small && !is_slow)
                 separate_pair(pair, lacking);
         }
@@ -171,7 +180,7 @@ void TrajectoryLimiter::find_fractions(View<const unsigned char> supported)
                       : !supported.empty() && supported[v] ? Support::kSupported
                                                            : Support::kNone;
     });
-    zones_.reset(displacement_, support_, kSlow * settings_.max_deflection);
+    zones_.reset(displacement_, support_, slow());
     bodies_.begin(base_, displacement_);
     for (int body = 0; body < bodies_.count(); ++body)
         zones_.set_body(bodies_.leader(body), bodies_.move(body), bodies_.weight(body));

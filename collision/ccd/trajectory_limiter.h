@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "collision/ccd/ccd_query.h"
@@ -18,6 +19,12 @@ public:
     struct Settings {
         MinGap gap;            ///< of pairs
         double max_deflection; ///< [m] CollisionFreeStep::Settings
+
+        /// All vertices from this one on belong to bodies, whose edges do not stretch.
+        int first_prescribed = std::numeric_limits<int>::max();
+
+        /// Slow cloth is stopped rather than deflected or moved by its zone: resting cloth would creep.
+        bool stops_slow = true;
     };
 
     /// @param edges  of the soup; those of rigid bodies are left out
@@ -39,12 +46,17 @@ public:
     View<const int> moved() const { return moved_.items(); }
 
 private:
+    double slow() const;
     void start(View<const Vec3> x);
     void update_query();
     void deflect();
     bool separate_pairs();
     void separate_pair(const NearPair& pair, double lacking);
     double mobility_of(const NearPair& pair, bool is_first_side) const;
+    bool is_of_body(const NearPair& pair) const
+    {
+        return pair.vertex[0] >= settings_.first_prescribed || pair.vertex[3] >= settings_.first_prescribed;
+    }
     bool may_deflect(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
     void find_fractions(View<const unsigned char> supported);
     void shorten(bool for_good);

@@ -74,8 +74,10 @@ struct PenetrationMeter::Inside {
     bool is_excluded = false;
 };
 
-PenetrationMeter::PenetrationMeter(View<const Triangle> triangles, View<const Vec3> positions)
-    : surface_(triangles, positions), bounds_(bounds(positions)), is_closed_(surface_.edges().is_closed),
+PenetrationMeter::PenetrationMeter(View<const Triangle> triangles, View<const Vec3> positions,
+                                   const Settings& settings)
+    : settings_(settings), surface_(triangles, positions), bounds_(bounds(positions)),
+      is_closed_(surface_.edges().is_closed),
       is_border_vertex_(positions.size(), 0)
 {
     rays_.add(positions, triangles);
@@ -94,13 +96,15 @@ void PenetrationMeter::move(View<const Vec3> positions)
     bounds_ = bounds(positions);
 }
 
-Penetration PenetrationMeter::measure(View<const Vec3> samples, const Settings& settings) const
+Penetration PenetrationMeter::measure(View<const Vec3> samples, Sides* sides) const
 {
     const StageScope stage("collision/penetration");
-    std::vector<Inside> inside = is_closed_ ? find_inside(samples) : find_behind(samples, settings);
+    std::vector<Inside> inside = is_closed_ ? find_inside(samples)
+                                 : sides ? find_beyond(samples, *sides)
+                                         : std::vector<Inside>{};
     std::erase_if(inside, [](const Inside& item) { return item.sample < 0; });
     if (is_closed_)
-        exclude_self_intersections(inside, settings.self_intersection_margin);
+        exclude_pinched(inside);
 
     Penetration result;
     for (const Inside& item : inside) {
@@ -132,17 +136,24 @@ std::vector<PenetrationMeter::Inside> PenetrationMeter::find_inside(View<const V
     return inside;
 }
 
-/// Samples behind an open surface. Those nearest to its border are left out: beside the border no side is
-/// defined.
-std::vector<PenetrationMeter::Inside> PenetrationMeter::find_behind(View<const Vec3> samples,
-                                                                    const Settings& settings) const
+/// Samples that have come to the other side of an open surface. Beside its border no side is defined.
+std::vector<PenetrationMeter::Inside> PenetrationMeter::find_beyond(View<const Vec3> samples,
+                                                                    Sides& sides) const
 {
+    sides.resize(samples.size(), 0);
     std::vector<Inside> inside(samples.size());
     parallel_for(kCpu, "collision/penetration_sign", samples.size(), [&](int i) {
         if (!samples[i].allFinite())
             return;
-        const std::optional<SurfacePoint> nearest = surface_.closest(samples[i], settings.open_depth);
-        if (nearest && nearest->signed_distance < 0.0 && !is_on_border(*nearest))
+        const std::optional<SurfacePoint> nearest = surface_.closest(samples[i], settings_.open_depth);
+        if (!nearest || is_on_border(*nearest)) {
+            sides[i] = 0;
+            return;
+        }
+        const signed char side = nearest->signed_distance < 0.0 ? -1 : 1;
+        if (sides[i] == 0)
+            sides[i] = side;
+        else if (side != sides[i])
             inside[i] = {i, samples[i], *nearest, false};
     });
     return inside;
@@ -176,8 +187,43 @@ bool PenetrationMeter::is_buried(int triangle) const
     });
 }
 
-void PenetrationMeter::exclude_self_intersections(std::vector<Inside>& inside, double margin) const
+/// Looks from the centroid and from near each corner, in front of the triangle.
+bool PenetrationMeter::is_narrow(int triangle) const
 {
+    if (settings_.room <= 0.0)
+        return false;
+    constexpr double kInFront = 0.2; // [-] cosine with the normal: creases open sideways
+    const View<const Vec3> x = surface_.positions();
+    const Triangle& corner = surface_.triangles()[triangle];
+    const Vec3 normal = surface_.face_normal(triangle);
+    std::vector<int> near;
+    for (int k = 0; k < 4; ++k) {
+        const Vec3 p = k < 3 ? x[corner[k]] : Vec3((x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0);
+        surface_.triangles_within(p, settings_.room, near);
+        for (const int t : near) {
+            if (surface_.face_normal(t).dot(normal) >= 0.0)
+                continue;
+            const Triangle& other = surface_.triangles()[t];
+            const Vec3 across = closest_on_triangle(p, x[other[0]], x[other[1]], x[other[2]]).point - p;
+            if (normal.dot(across) > kInFront * across.norm())
+                return true;
+        }
+    }
+    return false;
+}
+
+bool PenetrationMeter::is_pinched(const Vec3& point, View<const char> marked) const
+{
+    std::vector<int> near;
+    surface_.triangles_within(point, settings_.pinch_margin, near);
+    return std::any_of(near.begin(), near.end(), [&](int t) {
+        return (!marked.empty() && marked[t] != 0) || is_buried(t) || is_narrow(t);
+    });
+}
+
+void PenetrationMeter::exclude_pinched(std::vector<Inside>& inside) const
+{
+    const double margin = settings_.pinch_margin;
     // Find the surface near each sample and near its exit.
     std::vector<std::vector<int>> nearby(inside.size());
     parallel_for(kCpu, "collision/penetration_exits", int(inside.size()), [&](int i) {
@@ -197,7 +243,7 @@ void PenetrationMeter::exclude_self_intersections(std::vector<Inside>& inside, d
     asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
     std::vector<char> buried(surface_.triangles().size(), 0);
     parallel_for(kCpu, "collision/penetration_buried", int(asked.size()),
-                 [&](int i) { buried[asked[i]] = is_buried(asked[i]); });
+                 [&](int i) { buried[asked[i]] = is_buried(asked[i]) || is_narrow(asked[i]); });
 
     parallel_for(kCpu, "collision/penetration_exits", int(inside.size()), [&](int i) {
         const SurfacePoint& exit = inside[i].nearest;

@@ -45,39 +45,56 @@ struct Penetration {
 /// armpit is inside one part or the other. A sample is therefore excluded, and counted as such, if
 ///   - the mesh winds around it more than once,
 ///   - its nearest surface point is buried in another part of the body, or
-///   - surface within self_intersection_margin of the sample or of that point is buried.
-/// Open mesh: winding numbers are undefined. The pseudo-normal defines behind, down to open_depth and not
-/// beyond the border. A mesh turned inside out has no inside.
+///   - surface within pinch_margin of the sample or of that point is buried, or has no room in front.
+/// Open mesh: winding numbers are undefined, and neither side is the inside. A sample is inside if it is near the
+/// mesh, within open_depth and not beside its border, on the other side than when it was last near. A mesh turned
+/// inside out has no inside.
 class PenetrationMeter {
 public:
     struct Settings {
-        double self_intersection_margin = 0.01; ///< [m]
-        double open_depth = 0.05;               ///< [m] deeper points behind an open mesh do not count
+        double pinch_margin = 0.01; ///< [m]
+        double room = 0.0; ///< [m] that cloth needs between two surfaces that face each other; 0: none
+        double open_depth = 0.05; ///< [m] of an open mesh: samples farther away may be on their way around it
     };
+
+    /// Sides of an open mesh on which samples were last seen near it: 1 in front, -1 behind, 0 not near.
+    using Sides = std::vector<signed char>;
 
     /// @param triangles  [triangles x 3]
     /// @param positions  [vertices x 3] [m]
-    PenetrationMeter(View<const Triangle> triangles, View<const Vec3> positions);
+    PenetrationMeter(View<const Triangle> triangles, View<const Vec3> positions, const Settings& settings);
+    PenetrationMeter(View<const Triangle> triangles, View<const Vec3> positions)
+        : PenetrationMeter(triangles, positions, Settings{})
+    {
+    }
 
     /// Sets new positions of the mesh [vertices x 3] [m]. O(n).
     void move(View<const Vec3> positions);
 
     /// Penetration at the deepest sample of [n x 3] [m]; of equally deep ones the first. Samples that are not
     /// finite are skipped.
-    Penetration measure(View<const Vec3> samples, const Settings& settings) const;
-    Penetration measure(View<const Vec3> samples) const { return measure(samples, Settings{}); }
+    /// @param sides  of the same samples, kept between frames; null: an open mesh then has no inside
+    Penetration measure(View<const Vec3> samples, Sides* sides = nullptr) const;
 
     /// True if the outside of a triangle is inside another part of a closed mesh, at its centroid or near a
     /// corner. Always false for an open mesh.
     bool is_buried(int triangle) const;
 
+    /// True if another surface that faces the triangle is nearer than the room.
+    bool is_narrow(int triangle) const;
+
+    /// True near surface that is buried, has no room in front, or is marked.
+    /// @param marked  [triangles]; empty: none
+    bool is_pinched(const Vec3& point, View<const char> marked) const;
+
 private:
     struct Inside;
     std::vector<Inside> find_inside(View<const Vec3> samples) const;
-    std::vector<Inside> find_behind(View<const Vec3> samples, const Settings& settings) const;
-    void exclude_self_intersections(std::vector<Inside>& inside, double margin) const;
+    std::vector<Inside> find_beyond(View<const Vec3> samples, Sides& sides) const;
+    void exclude_pinched(std::vector<Inside>& inside) const;
     bool is_on_border(const SurfacePoint& at) const;
 
+    Settings settings_;
     SurfaceProximity surface_;
     RayScene rays_;
     Bounds bounds_;

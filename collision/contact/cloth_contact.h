@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "collision/body/body_surfaces.h"
 #include "collision/contact/cloth_contact_rules.h"
 #include "collision/geometry/contact_pair.h"
 #include "core/pd/energy/active_set_energy.h"
@@ -14,8 +15,17 @@ class CudaSpace;
 
 namespace toile::collision {
 
-/// Contact of cloth with itself and other cloth during a step: finds the pressing pairs, and prevents
-/// crossings.
+/// What contact knows of the bodies near each vertex of cloth, on the CPU.
+class NearbyBodies {
+public:
+    virtual ~NearbyBodies() = default;
+    /// [vertices] positions at t0 advected with the nearest surfaces [m]
+    virtual View<const Vec3> advect(const StepStart& start) = 0;
+    virtual View<const NearestSurface> nearest() const = 0; ///< [vertices] of the last step
+};
+
+/// Keeps cloth from crossing cloth and bodies during a step, and finds the pairs of cloth with cloth that press.
+/// On the CPU bodies are colliders; on a GPU they are left out.
 ///
 /// Pairs are found once, for the expected motion of the step. They serve until the cloth is limited or has
 /// slid from where they were found; then they are searched for again from its new position.
@@ -31,7 +41,25 @@ public:
 
     /// Finds the pairs for a step from start.x to about start.prediction, or begins that search. Fields are
     /// borrowed during the step.
-    virtual void begin_step(const StepStart& start) = 0;
+    virtual void begin_step(const StepStart& start, NearbyBodies& bodies) = 0;
+    /// [vertices] where cloth stands, carried along, when the bodies have arrived at t1: the start of all its
+    /// trajectories in the step [m]. Empty if bodies are left out. Valid after begin_step().
+    virtual View<const Vec3> carried() const { return {}; }
+    /// Number of pairs in this step that bodies have closed on and that cross from now on.
+    virtual int stuck_count() const { return 0; }
+    virtual int first_stuck() const { return -1; } ///< a vertex of cloth of the first of them
+    /// Number of vertices that let a body through (LetThrough).
+    virtual int let_through_count() const { return 0; }
+    virtual int first_let_through() const { return -1; }
+    /// True for a pair with a collider that makes no term: its cloth lets the body through, or the pairs here know
+    /// the side, which a surface without an inside does not.
+    virtual bool replaces(const ContactPair&) const { return false; }
+    /// Ends it where nothing crosses any more. @param crossing  all triangles of cloth that cross bodies() at t0
+    virtual void close_let_through(View<const int>) {}
+    /// True for a triangle of cloth that lets a body through.
+    virtual bool lets_through(const Triangle&) const { return false; }
+    /// Surfaces of the bodies; null if they are left out.
+    virtual const BodySurfaces* bodies() const { return nullptr; }
     /// Waits for the search that begin_step() has begun, before any other call.
     virtual void end_search() {}
 
@@ -40,8 +68,8 @@ public:
     /// Pairs of append_pairs() on the device, until the next search; empty on the CPU.
     virtual View<const ContactPair> pressing_on_device() const { return {}; }
 
-    /// True if no cloth was expected near other cloth when pairs were found: none of it presses, and what an
-    /// unfinished minimisation reaches need not be looked at.
+    /// True if no cloth was expected near cloth or bodies when pairs were found: none of it presses, and what
+    /// an unfinished minimisation reaches need not be looked at.
     virtual bool is_clear() const = 0;
 
     /// Limits x where cloth would cross. Searches again from there if the correction is large or pressing
@@ -52,7 +80,7 @@ public:
     /// [s]. True if the correction was large: x may go on from there, and be limited again.
     virtual bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) = 0;
 
-    /// See ExemptPairs.
+    /// See ExemptPairs. @param crosses  [vertices of cloth, then of bodies()]
     virtual void set_crossing(View<const unsigned char> crosses) = 0;
 
     /// Updates the deviation of the cloth from its prediction.
@@ -74,10 +102,15 @@ private:
 /// @param positions  [vertices] start positions, without crossings [m]
 /// @param cloths     in the order of their vertices
 /// @param altitude   [vertices] shortest altitude of the adjacent triangles [m]
+/// @param colliders  bodies
+/// @param cloth_with_cloth  false: with bodies alone
 /// @param space      device on which pairs are searched for and tested, and steps made; borrowed. null: the
 ///                   CPU
+/// @return null if there is nothing to keep apart
 std::unique_ptr<ClothContact> make_cloth_contact(View<const Triangle> triangles, View<const Vec3> positions,
                                                  const std::vector<ContactCloth>& cloths,
-                                                 View<const double> altitude, const CudaSpace* space);
+                                                 View<const double> altitude,
+                                                 const std::vector<ContactCollider>& colliders,
+                                                 bool cloth_with_cloth, const CudaSpace* space);
 
 } // namespace toile::collision

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/contact/rules.h"
+
 namespace toile::collision {
 
 namespace {
@@ -73,7 +75,8 @@ RigidTrajectories rigid_trajectories_of(const std::vector<ContactCloth>& cloths)
 } // namespace
 
 ClothContactRules::ClothContactRules(View<const Triangle> triangles, View<const Vec3> positions,
-                                     const std::vector<ContactCloth>& cloths, View<const double> altitude)
+                                     const std::vector<ContactCloth>& cloths, View<const double> altitude,
+                                     View<const unsigned char> is_open)
     : edge_(mean_edge(triangles, positions, rigid_bodies_of(cloths))),
       collision_free_step_(settings_for(cloths, edge_)), bodies_(rigid_trajectories_of(cloths))
 {
@@ -85,6 +88,11 @@ ClothContactRules::ClothContactRules(View<const Triangle> triangles, View<const 
         for (last += cloths[c].vertex_count; v < last; ++v)
             if (!cloths[c].is_rigid)
                 half_thickness_[v] = std::min(half_thickness_[v], 0.25 * altitude[v]);
+    const double of_cloth = 0.5 * thickest_, gap = largest_gap(cloths);
+    for (const unsigned char open : is_open) {
+        half_thickness_.push_back((open != 0 ? 1.0 : kGuardGap) * gap);
+        thickest_ = std::max(thickest_, of_cloth + half_thickness_.back());
+    }
 }
 
 SlackBounds ClothContactRules::slack() const

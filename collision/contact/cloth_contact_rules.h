@@ -14,11 +14,13 @@ class ClothContactRules {
 public:
     /// See make_cloth_contact. Thickness is at most half of an altitude, or a fine mesh would push itself
     /// apart; rigid bodies cannot.
+    /// @param is_open  [vertices of bodies] that follow those of the cloths; 1: they have no inside
     ClothContactRules(View<const Triangle> triangles, View<const Vec3> positions,
-                      const std::vector<ContactCloth>& cloths, View<const double> altitude);
+                      const std::vector<ContactCloth>& cloths, View<const double> altitude,
+                      View<const unsigned char> is_open = {});
 
     PairThickness thickness() const { return {half_thickness_}; }
-    double thickest() const { return thickest_; } ///< [m] maximum over the cloths
+    double thickest() const { return thickest_; } ///< [m] maximum of a pair
 
     SlackBounds slack() const;
     /// Of the slack for the next step. @param is_clear  no pairs were found in this one

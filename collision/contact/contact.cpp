@@ -42,11 +42,11 @@ std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Trian
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
                  const std::vector<ContactCloth>& cloths, const std::vector<ContactCollider>& colliders,
                  const Settings& settings, const CudaSpace* space)
-    : terms_(make_terms(energy_, triangles, positions, cloths, colliders, settings, space))
+    : is_on_host_(space == nullptr),
+      terms_(make_terms(energy_, triangles, positions, cloths, colliders, settings, space))
 {
-    if (settings.cloth_with_cloth)
-        between_ =
-            make_cloth_contact(triangles, positions, cloths, shortest_altitudes(triangles, positions), space);
+    between_ = make_cloth_contact(triangles, positions, cloths, shortest_altitudes(triangles, positions),
+                                  colliders, settings.cloth_with_cloth, space);
 }
 
 void Contact::begin_step(const StepStart& start)
@@ -56,8 +56,8 @@ void Contact::begin_step(const StepStart& start)
     landings_ = 0;
     energy_.use_true_hessian(start.wants_true_hessian);
     if (between_)
-        between_->begin_step(start);
-    terms_->begin_step(start);
+        between_->begin_step(start, *terms_);
+    terms_->begin_step(start, between_ ? between_->carried() : View<const Vec3>());
     if (between_)
         between_->end_search();
     terms_->make(between_.get());

@@ -60,14 +60,26 @@ public:
     bool revise(StepField x, bool is_converged) override;
     void clear(StepField x, StepField v) override;
     void resolve(StepField x, StepField v) override;
+    bool is_complete() const override { return is_on_host_; }
     bool keep_apart(StepField x, StepField v) override;
     void end_step(StepField x) override;
 
     bool keeps_cloth_apart() const { return between_ != nullptr; }
+    /// Surfaces that cloth is kept from crossing; null if there are none.
+    const BodySurfaces* bodies() const { return between_ ? between_->bodies() : nullptr; }
+    /// Number of pairs in the last step that bodies have closed on and that cross from now on.
+    int stuck_count() const { return between_ ? between_->stuck_count() : 0; }
+    int first_stuck() const { return between_->first_stuck(); } ///< a vertex of cloth of the first of them
+    int first_let_through() const { return between_->first_let_through(); }
+    /// Number of vertices between body parts that let one of them through (LetThrough).
+    int let_through_count() const { return between_ ? between_->let_through_count() : 0; }
+    bool lets_through(const Triangle& t) const { return between_ && between_->lets_through(t); }
+    /// See ClothContact.
+    void close_let_through(View<const int> crossing) { between_->close_let_through(crossing); }
 
     /// Marks cloth that crosses cloth at the start of the next step. Contact would keep it on the wrong side,
     /// so its pairs are exempt (ExemptPairs).
-    /// @param crosses  [vertices] 1 for the corners of triangles that cross others
+    /// @param crosses  [vertices of cloth, then of bodies()] see Crosses
     void set_crossing(View<const unsigned char> crosses)
     {
         if (between_)
@@ -85,8 +97,9 @@ private:
     void find_again();
     void remember_end();
 
+    bool is_on_host_;                       ///< bodies, too, are kept from crossing
     double dt_ = 0.0;                       ///< of this step [s]
-    std::unique_ptr<ClothContact> between_; ///< cloth with cloth; null if that is switched off
+    std::unique_ptr<ClothContact> between_; ///< keeps apart; null if there is nothing to
     ContactEnergy energy_;                  ///< without terms if they are on a GPU
     std::unique_ptr<ContactTerms> terms_;
     int landings_ = 0;         ///< in this step: minimisations for changed friction limits

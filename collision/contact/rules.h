@@ -19,8 +19,12 @@ inline constexpr double kSupportDistance = 0.25;
 /// ContactQuery::has_slid.
 inline constexpr double kPressing = 0.5;
 
-/// Depth over which a term's spring reaches its full stiffness, relative to the gap to keep [-].
-inline constexpr double kRampPerGap = 0.6;
+/// Gap that a guard keeps, relative to that of the cloth [-].
+inline constexpr double kGuardGap = 0.25;
+
+/// Depths over which a term's spring reaches its full stiffness, and from which on it hardens, relative to the
+/// gap to keep [-].
+inline constexpr double kRampPerGap = 0.6, kHardPerGap = 0.7;
 
 /// Half of the clearance between two planes of a vertex [m], negative if body parts overlap.
 /// @param x  [vertices] positions at which the planes were found [m]
@@ -59,7 +63,7 @@ struct ContactRules {
     TOILE_HD double gap_of(const ContactPair& pair) const
     {
         if (!pair.is_between_cloths())
-            return gap[cloth_of[pair.vertex[0]]];
+            return (pair.is_guard() ? kGuardGap : 1.0) * gap[cloth_of[pair.vertex[0]]];
         return thickness.of(pair.vertex, pair.kind == ContactKind::kClothEdgeEdge);
     }
 
@@ -123,7 +127,7 @@ struct ContactRules {
         // the middle, where neither can push it through the other, and each grips it with the force at one
         // gap's depth.
         const double keep = gap_of(pair);
-        term.spring = {stiffness_of(pair), kRampPerGap * keep};
+        term.spring = {stiffness_of(pair), kRampPerGap * keep, kHardPerGap * keep};
         const Vec3 start = at_start(pair);
         const double recovered = pair.normal.dot(start - pair.point) + max_recovery;
         term.offset = recovered < keep ? recovered : keep;
@@ -182,7 +186,7 @@ struct ContactQuery {
     TOILE_HD bool has_slid(int i, const ContactRules& rules, View<const Vec3> found_at, double trust) const
     {
         const ContactPair& pair = terms[i].pair;
-        if (pair.is_between_cloths() || terms[i].gap(x) > kPressing * rules.gap_of(pair))
+        if (pair.kind >= ContactKind::kGuard || terms[i].gap(x) > kPressing * rules.gap_of(pair))
             return false;
         bool has_slid = false;
         for (int k = 0; k < pair.count(); ++k)

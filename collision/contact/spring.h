@@ -15,29 +15,35 @@ namespace toile::collision {
 /// A linear spring as stiff as cloth has its whole stiffness at once. Depth errors of an unfinished
 /// minimisation, micrometres, would then give forces above the cloth's weight and friction limits from these
 /// forces. Every iteration would switch springs on and off (docs/theory/contact.md).
+///
+/// From the depth `hard` on, a second spring adds to it, kHardening times as stiff after a ramp of its own: cloth
+/// that is squeezed meets more resistance before there is no gap left.
 struct ContactSpring {
+    /// Stiffness of the second spring over that of the first, and its ramp over the depth where it begins [-].
+    static constexpr double kHardening = 8.0, kHardRamp = 0.2;
+
     double stiffness = 0.0; ///< [N/m] w
     double ramp = 0.0;      ///< [m] D; 0: linear
+    double hard = 0.0;      ///< [m] at least D; 0: it does not harden
 
     /// @param depth  [m] negative without contact
     TOILE_HD double force(double depth) const // [N]
     {
         if (depth <= 0.0)
             return 0.0;
-        return depth < ramp ? 0.5 * stiffness * depth * depth / ramp : stiffness * (depth - 0.5 * ramp);
+        return soft_force(depth) + (hardens_at(depth) ? second().soft_force(depth - hard) : 0.0);
     }
     TOILE_HD double energy(double depth) const // [J]
     {
         if (depth <= 0.0)
             return 0.0;
-        return depth < ramp ? stiffness * depth * depth * depth / (6.0 * ramp)
-                            : 0.5 * stiffness * (depth * (depth - ramp) + ramp * ramp / 3.0);
+        return soft_energy(depth) + (hardens_at(depth) ? second().soft_energy(depth - hard) : 0.0);
     }
     TOILE_HD double stiffness_at(double depth) const // [N/m]
     {
         if (depth <= 0.0)
             return 0.0;
-        return depth < ramp ? stiffness * depth / ramp : stiffness;
+        return soft_stiffness(depth) + (hardens_at(depth) ? second().soft_stiffness(depth - hard) : 0.0);
     }
 
     /// Depth at a given force [N], the inverse of force() [m].
@@ -45,6 +51,8 @@ struct ContactSpring {
     {
         if (force <= 0.0)
             return 0.0;
+        if (hard > 0.0 && force > soft_force(hard))
+            return hard + beyond_hard(force - soft_force(hard), stiffness, 1.0);
         const double beyond = force / stiffness + 0.5 * ramp;
         return beyond >= ramp ? beyond : std::sqrt(2.0 * ramp * force / stiffness);
     }
@@ -56,10 +64,39 @@ struct ContactSpring {
         if (reach <= 0.0)
             return 0.0;
         const double wm = stiffness * mobility;
+        if (hard > 0.0 && reach > hard + mobility * soft_force(hard))
+            return hard + beyond_hard(reach - hard - mobility * soft_force(hard), 1.0 + wm, mobility);
         const double beyond = (reach + 0.5 * wm * ramp) / (1.0 + wm);
         if (beyond >= ramp)
             return beyond;
         return 2.0 * reach / (1.0 + std::sqrt(1.0 + 2.0 * wm * reach / ramp));
+    }
+
+private:
+    TOILE_HD bool hardens_at(double depth) const { return hard > 0.0 && depth > hard; }
+    TOILE_HD ContactSpring second() const { return {kHardening * stiffness, kHardRamp * hard, 0.0}; }
+    TOILE_HD double soft_force(double depth) const
+    {
+        return depth < ramp ? 0.5 * stiffness * depth * depth / ramp : stiffness * (depth - 0.5 * ramp);
+    }
+    TOILE_HD double soft_energy(double depth) const
+    {
+        return depth < ramp ? stiffness * depth * depth * depth / (6.0 * ramp)
+                            : 0.5 * stiffness * (depth * (depth - ramp) + ramp * ramp / 3.0);
+    }
+    TOILE_HD double soft_stiffness(double depth) const
+    {
+        return depth < ramp ? stiffness * depth / ramp : stiffness;
+    }
+
+    /// Solves slope z + scale second().force(z) = rest for the depth z beyond `hard`.
+    TOILE_HD double beyond_hard(double rest, double slope, double scale) const
+    {
+        const double w = scale * kHardening * stiffness, ramp2 = kHardRamp * hard;
+        const double past = (rest + 0.5 * w * ramp2) / (slope + w);
+        if (past >= ramp2)
+            return past;
+        return 2.0 * rest / (slope + std::sqrt(slope * slope + 2.0 * w * rest / ramp2));
     }
 };
 

@@ -20,7 +20,7 @@ namespace toile::collision {
 /// Terms of Contact during a step: their construction from pairs with colliders, which this class finds, and
 /// pairs of cloth with cloth; their queries; and the contact memory of friction. HostContactTerms has them on
 /// the CPU, DeviceContactTerms on a GPU, the same terms in the same order.
-class ContactTerms {
+class ContactTerms : public NearbyBodies {
 public:
     struct Settings {
         double stiffness = 0.0, recovery_speed = 0.0; ///< see Contact::Settings
@@ -30,12 +30,15 @@ public:
     using Slip = RememberedSlip;
 
     ContactTerms() = default;
-    virtual ~ContactTerms() = default;
     ContactTerms(const ContactTerms&) = delete;
     ContactTerms& operator=(const ContactTerms&) = delete;
 
+    View<const Vec3> advect(const StepStart&) override { return {}; }
+    View<const NearestSurface> nearest() const override { return {}; }
+
     /// Finds the pairs with colliders of a step.
-    virtual void begin_step(const StepStart& start) = 0;
+    /// @param carried  [vertices] positions at t1 of cloth that goes along with bodies [m]; empty: advect()
+    virtual void begin_step(const StepStart& start, View<const Vec3> carried) = 0;
 
     /// Makes the terms of these pairs and of those of `between`, which may be null. Pairs that cannot move at
     /// all make none. Faces and edges with a caught vertex are left to the planes of their vertices.

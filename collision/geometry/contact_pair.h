@@ -14,6 +14,8 @@ enum class ContactKind {
     kVertexShape,
     kFaceShape,
     kEdgeShape,
+    kGuard,
+    kTwoSided,
     kClothVertexFace,
     kClothEdgeEdge
 };
@@ -30,6 +32,9 @@ enum class ContactKind {
 //       ___x___ collider face          x collider vertex       x  collider edge (end on)
 //                                     / \                      |
 //    kFaceShape, kEdgeShape: a cloth face or edge against a corner or edge of a ShapeSkeleton
+//    kGuard: any of the first three, of the pairs that may not cross: it presses at a small part of the gap,
+//                                      towards the side on which the cloth is
+//    kTwoSided: likewise, of surfaces without an inside: it presses at the whole gap
 //    kClothVertexFace, kClothEdgeEdge: both are cloth. Weights are signed, sum 0, and point is zero:
 //                                      sum_k weight_k x_k runs from one side to the other.
 struct ContactPair {
@@ -56,6 +61,7 @@ struct ContactPair {
         return used;
     }
 
+    TOILE_HD bool is_guard() const { return kind == ContactKind::kGuard; }
     TOILE_HD bool is_between_cloths() const { return kind >= ContactKind::kClothVertexFace; }
 
     /// sum_k weight_k x_k at cloth positions x [m].
@@ -77,10 +83,10 @@ TOILE_HD inline std::array<int, 4> contact_vertices(int a, int b = -1, int c = -
     return {a, b, c, d};
 }
 
-/// True for a pair of a single cloth vertex with a collider.
+/// True for a pair of a single cloth vertex with a collider that has an outside, guards apart.
 TOILE_HD inline bool is_plane(const ContactPair& pair)
 {
-    return !pair.is_between_cloths() && pair.vertex[1] < 0;
+    return pair.kind < ContactKind::kGuard && pair.vertex[1] < 0;
 }
 
 } // namespace toile::collision

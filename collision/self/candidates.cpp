@@ -15,8 +15,9 @@ constexpr double kWornOut = 2.5;
 
 } // namespace
 
-Candidates::Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions)
-    : triangles_(triangles), edges_(edges), points_(positions.size())
+Candidates::Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions,
+                       View<const int> rigid)
+    : triangles_(triangles), edges_(edges), rigid_(rigid), points_(positions.size())
 {
     place(positions, {}, 0.0);
     rebuild();

@@ -13,8 +13,10 @@ namespace toile::collision {
 /// the margin.
 class Candidates {
 public:
-    /// Builds the tree. triangles and edges must outlive this.
-    Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions);
+    /// Builds the tree. triangles, edges and rigid must outlive this.
+    /// @param rigid  see NearPairs: pairs of prescribed primitives are not visited
+    Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions,
+               View<const int> rigid);
 
     /// Sets positions and trajectories of the vertices. See NearPairs::find.
     void place(View<const Vec3> x, const Trajectories& trajectories, double margin);
@@ -37,7 +39,8 @@ public:
     }
 
     /// Calls try_edges(e, f) and try_triangle(v, t) for the task's candidates, including primitives with
-    /// common vertices. If update() was given `selected`, candidates without a selected vertex are skipped.
+    /// common vertices. If update() was given `selected`, candidates without a selected vertex are skipped,
+    /// and those whose selected vertices are all prescribed.
     /// Over all tasks each pair occurs at most once.
     template <typename TryEdges, typename TryTriangle>
     void visit(int task, const TryEdges& try_edges, const TryTriangle& try_triangle) const
@@ -66,6 +69,8 @@ private:
     template <typename Vertices>
     bool is_wanted(const Vertices& vertices) const
     {
+        if (!rigid_.empty() && rigid_[vertices[0]] == kPrescribed)
+            return false;
         return selected_.empty() ||
                std::any_of(vertices.begin(), vertices.end(), [&](int v) { return selected_[v] != 0; });
     }
@@ -80,6 +85,7 @@ private:
 
     View<const Triangle> triangles_;
     const SurfaceEdges& edges_;
+    View<const int> rigid_;
     BoxTree tree_;
     PrimitiveBoxes boxes_;
     double built_surface_ = 0.0; ///< [m^2] surface of the tree when it was built

@@ -6,27 +6,54 @@
 
 namespace toile::collision {
 
+/// What the triangles of a vertex cross, as flags.
+struct Crosses {
+    static constexpr unsigned char kCloth = 1, kBody = 2; ///< of a vertex of cloth
+    static constexpr unsigned char kOfBody = 4;           ///< of a vertex of a body: it crosses cloth
+};
+
 /// ExemptPairs for kernels: borrowed fields of host or device.
 struct ExemptRule {
     View<const Vec3> rest;             ///< [vertices] [m]
     double too_near;                   ///< [m]
     View<const unsigned char> is_thin; ///< [vertices] around a sliver
-    View<const unsigned char> crosses; ///< [vertices] of triangles that cross
+    View<const unsigned char> crosses; ///< [vertices] see Crosses
+
+    // Bodies that cloth lets through: see LetThrough.
+    View<const unsigned char> lets_through = {}; ///< [cloth] empty: no cloth does
+    View<const Vec3> owner_normal = {};          ///< [cloth] unit
+    View<const Vec3> body_normal = {};           ///< [bodies] unit
 
     TOILE_HD bool is_exempt(const NearPair& pair) const
     {
         const int first = first_count(pair.is_edge_edge);
-        bool crossing[2] = {false, false};
+        unsigned char side[2] = {0, 0};
         bool is_near_sliver = false;
         for (int k = 0; k < 4; ++k) {
-            bool& side = crossing[k < first ? 0 : 1];
-            side = side || crosses[pair.vertex[k]];
+            side[k < first ? 0 : 1] |= crosses[pair.vertex[k]];
             is_near_sliver = is_near_sliver || is_thin[pair.vertex[k]];
         }
-        return (crossing[0] && crossing[1]) || (is_near_sliver && is_sliver_pair(pair));
+        const unsigned char all = side[0] | side[1];
+        const bool crossing = (side[0] & side[1] & Crosses::kCloth) != 0 ||
+                              ((all & Crosses::kBody) != 0 && (all & Crosses::kOfBody) != 0);
+        return crossing || (is_near_sliver && is_sliver_pair(pair)) || is_let_through(pair);
     }
 
 private:
+    TOILE_HD bool is_let_through(const NearPair& pair) const
+    {
+        if (lets_through.empty())
+            return false;
+        const int cloth = lets_through.size();
+        Vec3 normal = Vec3::Zero();
+        for (const int v : pair.vertex)
+            if (v >= cloth)
+                normal += body_normal[v - cloth];
+        for (const int v : pair.vertex)
+            if (v < cloth && lets_through[v] != 0 && owner_normal[v].dot(normal) < 0.0)
+                return true;
+        return false;
+    }
     TOILE_HD bool is_sliver_pair(const NearPair& pair) const
     {
         const std::array<Vec3, 4> x = corners_of(pair.vertex, rest);
@@ -36,10 +63,11 @@ private:
 
 /// Pairs that contact of cloth with cloth ignores, because it could only do harm:
 ///
-/// - Cloth that crosses cloth already (a start pose that could not be repaired, cloth that was moved):
-///   contact would keep it on the wrong side. Pairs with vertices of crossing triangles on both sides are
-///   exempt until these triangles no longer cross. All other pairs are kept apart, so crossings can move,
-///   shrink and vanish, but none begins elsewhere.
+/// - Cloth that crosses cloth or a body already (a start pose that could not be repaired, cloth that was moved,
+///   body parts that close on it): contact would keep it on the wrong side. Pairs with vertices of crossing
+///   triangles on both sides are exempt until these triangles no longer cross. All other pairs are kept apart,
+///   so crossings can move, shrink and vanish, but none begins elsewhere.
+/// - Cloth that is caught between two surfaces of bodies and lets one of them through (LetThrough).
 /// - Neighbours around slivers in one cloth that are closer in the start pose than a multiple of the minimum
 ///   gap.
 class ExemptPairs {
@@ -49,17 +77,33 @@ public:
     /// @param min_gap  [m] see CollisionFreeStep
     ExemptPairs(View<const Vec3> rest, View<const double> altitude, double min_gap);
 
-    /// @param crosses  [vertices] 1 for the corners of triangles that cross others; initially none
+    /// @param crosses  [vertices] see Crosses, for the corners of triangles that cross; initially none
     void set_crossing(View<const unsigned char> crosses) { crosses_.assign(crosses.begin(), crosses.end()); }
+    /// Adds a flag to a vertex.
+    void add_crossing(int v, unsigned char flag) { crosses_[v] |= flag; }
+
+    /// Sets the bodies that cloth lets through; borrowed. See ExemptRule.
+    void set_let_through(View<const unsigned char> lets_through, View<const Vec3> owner_normal,
+                         View<const Vec3> body_normal)
+    {
+        lets_through_ = lets_through;
+        owner_normal_ = owner_normal;
+        body_normal_ = body_normal;
+    }
 
     bool is_exempt(const NearPair& pair) const { return rule().is_exempt(pair); }
-    ExemptRule rule() const { return {rest_, too_near_, is_thin_, crosses_}; }
+    ExemptRule rule() const
+    {
+        return {rest_, too_near_, is_thin_, crosses_, lets_through_, owner_normal_, body_normal_};
+    }
 
 private:
     std::vector<Vec3> rest_;
     double too_near_;                    ///< [m]
     std::vector<unsigned char> is_thin_; ///< [vertices] around a sliver
-    std::vector<unsigned char> crosses_; ///< [vertices] of triangles that cross
+    std::vector<unsigned char> crosses_; ///< [vertices] see Crosses
+    View<const unsigned char> lets_through_;
+    View<const Vec3> owner_normal_, body_normal_;
 };
 
 } // namespace toile::collision

@@ -16,13 +16,17 @@ namespace {
 /// Kept pairs per task.
 constexpr int kPairsOfTask = 4096;
 
-/// Mean length of the edges [m]; 0 without edges.
-double mean_length(const SurfaceEdges& edges, View<const Vec3> x)
+/// Mean length of the edges that are not prescribed [m]; 0 without any.
+double mean_length(const SurfaceEdges& edges, View<const Vec3> x, const std::vector<int>& rigid)
 {
     double sum = 0.0;
+    int count = 0;
     for (const auto& [a, b] : edges.vertex)
-        sum += (x[b] - x[a]).norm();
-    return edges.edge_count() > 0 ? sum / edges.edge_count() : 0.0;
+        if (rigid.empty() || rigid[a] != kPrescribed) {
+            sum += (x[b] - x[a]).norm();
+            ++count;
+        }
+    return count > 0 ? sum / count : 0.0;
 }
 
 } // namespace
@@ -62,7 +66,8 @@ private:
     }
     bool are_in_one_body(int a, int b) const
     {
-        return !rigid_.empty() && rigid_[a] >= 0 && rigid_[a] == rigid_[b];
+        return !rigid_.empty() && rigid_[a] >= 0 && rigid_[b] >= 0 &&
+               (rigid_[a] == rigid_[b] || rigid_[a] == kPrescribed || rigid_[b] == kPrescribed);
     }
     bool are_candidates(const Record& record, bool is_edge_edge) const;
     bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const
@@ -93,7 +98,8 @@ NearPairs::Search::Search(View<const Triangle> triangle_list, View<const Vec3> p
                           std::vector<int> rigid, Keeping keeping)
     : triangles_(triangle_list.begin(), triangle_list.end()), rigid_(std::move(rigid)),
       edges_(build_surface_edges(triangle_list, positions.size())),
-      candidates_(triangles_, edges_, positions), keeping_(keeping), kept_(mean_length(edges_, positions))
+      candidates_(triangles_, edges_, positions, rigid_), keeping_(keeping),
+      kept_(mean_length(edges_, positions, rigid_))
 {
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -11,6 +12,10 @@
 namespace toile::collision {
 
 struct SoupView;
+
+/// In place of the number of a rigid body: vertices whose motion is given. They make no pairs with each other
+/// nor with rigid bodies.
+inline constexpr int kPrescribed = std::numeric_limits<int>::max();
 
 /// Two primitives of one triangle soup that share no vertex and are near each other: a vertex and a
 /// triangle, or two edges. "First" and "second" below are these two.
@@ -54,8 +59,8 @@ public:
     /// @param triangles  [triangles x 3] indices into positions; collapsed and non-manifold triangles are
     ///                   allowed
     /// @param positions  [vertices x 3] [m] first pose
-    /// @param rigid      [vertices] number of the rigid body, -1 for none: no pairs within one body. Empty:
-    ///                   no bodies
+    /// @param rigid      [vertices] number of the rigid body, -1 for none, or kPrescribed: no pairs within one
+    ///                   body. Empty: no bodies
     NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {},
               Keeping keeping = Keeping::kPairs);
     ~NearPairs();

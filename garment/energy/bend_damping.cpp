@@ -77,7 +77,7 @@ BendDamping::BendDamping(const RestShape& rest, const Settings& settings, const 
         hinge.slip_rate = kSlipRate * area / (3.0 * length);
         hinges_.push_back(hinge);
     }
-    start_.resize(hinges_.size(), 0.0);
+    start_.resize(hinges_.size());
     force_.resize(hinges_.size());
     energy_.resize(hinges_.size());
     stiffness_.resize(hinges_.size());
@@ -110,9 +110,10 @@ HingeResponse<Lanes> BendDamping::response(const Fold<Lanes>& fold, int block) c
 {
     const int first = block * kLanes, count = int(hinges_.size());
     const auto of_hinges = [&](const auto& value) { return gather(first, count, value); };
-    return hinge_response<Lanes>(fold.s - of_hinges([&](int h) { return start_[h]; }),
-                                 of_hinges([&](int h) { return hinges_[h].viscous / dt_; }),
-                                 of_hinges([&](int h) { return hinges_[h].dry; }),
+    const Lanes share = of_hinges([&](int h) { return start_[h].share; });
+    return hinge_response<Lanes>(fold.s - of_hinges([&](int h) { return start_[h].s; }),
+                                 share * of_hinges([&](int h) { return hinges_[h].viscous / dt_; }),
+                                 share * of_hinges([&](int h) { return hinges_[h].dry; }),
                                  of_hinges([&](int h) { return hinges_[h].slip_rate * dt_; }));
 }
 
@@ -122,8 +123,10 @@ void BendDamping::begin_step(View<const Vec3> x, double dt)
     const int count = int(hinges_.size());
     parallel_for(kCpu, "bend_damping/start", lane_blocks(count), [&](int block) {
         const Lanes s = folds(x, block).s;
-        for (int k = 0; k < std::min(kLanes, count - block * kLanes); ++k)
-            start_[block * kLanes + k] = s[k];
+        for (int k = 0; k < std::min(kLanes, count - block * kLanes); ++k) {
+            const int h = block * kLanes + k;
+            start_[h] = {s[k], friction_share(hinges_[h], x)};
+        }
     });
 }
 

@@ -55,7 +55,7 @@ private:
     std::vector<Hinge> hinges_;
     Incidence slots_of_vertex_;                ///< 4 * hinge + slot
     double dt_ = 0.0;                          ///< [s] of the step, 0 before the first
-    std::vector<double> start_;                ///< [hinges] s at the start of the step
+    std::vector<HingeStart> start_;            ///< [hinges]
     std::vector<Forces> force_;                ///< [hinges] scratch [N]
     std::vector<double> energy_, stiffness_;   ///< [hinges] scratch [J], [N m]
     std::vector<std::array<int, 4>> position_; ///< [slots] of the hinge's vertices in the row

@@ -85,11 +85,35 @@ struct Hinge {
     double slip_rate;             ///< [1/s]
 };
 
+/// State of a hinge at the start of a step.
+struct HingeStart {
+    double s = 0.0; ///< see Fold
+
+    /// Part of its friction that acts, by the heights of both triangles over those at rest, squared [-]. The fold
+    /// of crushed triangles turns about by next to no motion, and the curvature of the potential counts on
+    /// heights at rest.
+    double share = 1.0;
+};
+
+/// @param x  [vertices] [m]
+TOILE_HD inline double friction_share(const Hinge& hinge, View<const Vec3> x)
+{
+    const Vec3& v0 = x[hinge.vertex[0]];
+    const Vec3 e = x[hinge.vertex[1]] - v0;
+    double share = 1.0;
+    for (int k = 2; k < 4; ++k) {
+        const double squared_height = e.cross(x[hinge.vertex[k]] - v0).squaredNorm() / e.squaredNorm();
+        const double now = squared_height * hinge.weight[k] * hinge.weight[k];
+        share = now < share ? now : share; // a collapsed edge keeps its share
+    }
+    return share;
+}
+
 /// Hinges during a step, one at a time as a GPU runs them; the CPU runs eight (BendDamping).
 struct HingesInStep {
     View<const Hinge> hinges;
     View<const double> dt;    ///< [1] [s] 0 before the first step: no response
-    View<const double> start; ///< [hinges] s at the start of the step
+    View<const HingeStart> start; ///< [hinges]
     View<const Vec3> x;       ///< [vertices] [m]
 
     TOILE_HD Fold<double> fold(int h) const
@@ -102,17 +126,21 @@ struct HingesInStep {
         if (dt[0] == 0.0)
             return {0.0, 0.0, 0.0};
         const Hinge& hinge = hinges[h];
-        return hinge_response<double>(fold.s - start[h], hinge.viscous / dt[0], hinge.dry,
+        const double share = start[h].share;
+        return hinge_response<double>(fold.s - start[h].s, share * hinge.viscous / dt[0], share * hinge.dry,
                                       hinge.slip_rate * dt[0]);
     }
 };
 
-/// Fold of a hinge at the start of a step.
+/// Starts a hinge's step.
 struct StartHinge {
     HingesInStep step;
-    View<double> start; ///< [hinges] out
+    View<HingeStart> start; ///< [hinges] out
 
-    TOILE_HD void operator()(int h) const { start[h] = step.fold(h).s; }
+    TOILE_HD void operator()(int h) const
+    {
+        start[h] = {step.fold(h).s, friction_share(step.hinges[h], step.x)};
+    }
 };
 
 /// Energy of a hinge and its forces, in single precision.

@@ -1,7 +1,7 @@
 #include "scenes/colliders/attachment_constraint.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
@@ -9,21 +9,6 @@
 namespace toile::scenes {
 
 namespace {
-
-/// Minimum height [m] above an avatar's surface of a vertex attached to it.
-constexpr double kMinHeight = 0.0005;
-
-/// Orthonormal frame of a triangle: first edge, in-plane normal to it, normal.
-Mat3 frame_of(const Vec3& a, const Vec3& b, const Vec3& c)
-{
-    const Vec3 edge = b - a;
-    const Vec3 normal = edge.cross(c - a);
-    Mat3 frame;
-    frame.col(0) = edge.normalized();
-    frame.col(2) = normal.normalized();
-    frame.col(1) = frame.col(2).cross(frame.col(0));
-    return frame;
-}
 
 int nearest_vertex(View<const Vec3> x, const Vec3& point)
 {
@@ -34,12 +19,20 @@ int nearest_vertex(View<const Vec3> x, const Vec3& point)
     return best;
 }
 
-double distance_to(const Collider& collider, const Vec3& x)
+struct SkinPoint {
+    Vec3 point, normal;
+    double signed_distance;
+};
+
+SkinPoint nearest_skin(const Collider& collider, const Vec3& x)
 {
     const collision::ContactCollider contact_collider = collider.contact_collider();
-    if (contact_collider.shape)
-        return contact_collider.shape->closest(x).signed_distance;
-    return contact_collider.mesh->surface().closest(x)->signed_distance;
+    if (contact_collider.shape) {
+        const collision::ShapePoint at = contact_collider.shape->closest(x);
+        return {at.point, at.normal, at.signed_distance};
+    }
+    const collision::SurfacePoint at = *contact_collider.mesh->surface().closest(x);
+    return {at.point, at.normal, at.signed_distance};
 }
 
 int index_of(const std::vector<Collider>& colliders, const std::string& name)
@@ -52,20 +45,19 @@ int index_of(const std::vector<Collider>& colliders, const std::string& name)
 } // namespace
 
 AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
-                                           const std::vector<Collider>& colliders,
+                                           const std::vector<Collider>& colliders, bool has_springs,
                                            const std::string& location)
-    : settings_(settings), motion_(settings.keyframes, Vec3::Zero())
+    : settings_(settings), location_(location), motion_(settings.keyframes, Vec3::Zero())
 {
     select(start, colliders, location);
     if (vertices_.empty())
         throw InvalidInput(location + ": selects no vertex of \"" + settings.cloth +
                            "\"; move the selection to where the cloth starts");
-    for (const int v : vertices_)
-        start_.push_back(start[v]);
-    if (settings.to != scene::kFixed) {
-        collider_ = index_of(colliders, settings.to);
-        tie(colliders[collider_]);
-    }
+    if (settings.to == scene::kFixed)
+        return;
+    collider_ = index_of(colliders, settings.to);
+    if (!settings.exact && !settings.stiffness && has_springs)
+        settings_.stiffness = scene::kSkinStiffness;
 }
 
 void AttachmentConstraint::select(View<const Vec3> start, const std::vector<Collider>& colliders,
@@ -90,35 +82,69 @@ void AttachmentConstraint::select(View<const Vec3> start, const std::vector<Coll
         const auto& near = std::get<scene::SelectNearAvatar>(settings_.select.by);
         const Collider& collider = colliders[index_of(colliders, near.avatar)];
         for (int v = 0; v < start.size(); ++v)
-            if (distance_to(collider, start[v]) <= near.distance)
+            if (nearest_skin(collider, start[v]).signed_distance <= near.distance)
                 vertices_.push_back(v);
     }
     std::sort(vertices_.begin(), vertices_.end());
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
 }
 
-void AttachmentConstraint::tie(const Collider& collider)
+void AttachmentConstraint::tie(View<const Vec3> x, View<const Triangle> triangles, double gap,
+                               const std::vector<Collider>& colliders)
 {
-    shape_from_world_ = collider.body().pose().inverse();
-    if (collider.contact_collider().shape)
+    start_.clear();
+    for (const int v : vertices_)
+        start_.push_back(x[v]);
+    if (!is_on_avatar())
         return;
-    const collision::MeshCollider& mesh = *collider.contact_collider().mesh;
-    std::map<int, int> anchor_of;
-    for (const Vec3& x : start_) {
-        const collision::SurfacePoint at = *mesh.surface().closest(x);
-        const Triangle& corner = mesh.triangles()[at.triangle];
-        const Mat3 frame = frame_of(mesh.x_t1()[corner[0]], mesh.x_t1()[corner[1]], mesh.x_t1()[corner[2]]);
-        SurfaceTie tie{{}, at.barycentric, frame.transpose() * (x - at.point)};
-        if (at.signed_distance < kMinHeight) // starts inside: attached to the surface, not below it
-            tie.offset = kMinHeight * Vec3::UnitZ();
-        for (int c = 0; c < 3; ++c) {
-            const auto [anchor, is_new] = anchor_of.emplace(corner[c], int(anchors_.size()));
-            if (is_new)
-                anchors_.push_back(corner[c]);
-            tie.corner[size_t(c)] = anchor->second;
-        }
-        ties_.push_back(tie);
+    const Collider& collider = colliders[collider_];
+    shape_from_world_ = collider.body().pose().inverse();
+    const std::vector<double> clearance = clearances(collider, x, triangles, gap);
+    farthest_ = {};
+    for (size_t k = 0; k < start_.size(); ++k) {
+        const SkinPoint skin = nearest_skin(collider, start_[k]);
+        if (skin.signed_distance > farthest_.distance)
+            farthest_ = {vertices_[k], skin.signed_distance};
+        if (skin.signed_distance < clearance[k])
+            start_[k] = skin.point + clearance[k] * skin.normal;
     }
+    if (collider.body().skinned())
+        tie_to_skin(*collider.contact_collider().mesh);
+}
+
+/// Height to keep above the skin at each attached vertex [m]: the gap, and the sagitta by which the edges
+/// between attached vertices dip below it, length times turn of the normal over 8.
+std::vector<double> AttachmentConstraint::clearances(const Collider& collider, View<const Vec3> x,
+                                                     View<const Triangle> triangles, double gap) const
+{
+    std::vector<int> number(x.size(), -1);
+    std::vector<Vec3> normal;
+    for (size_t k = 0; k < vertices_.size(); ++k) {
+        number[vertices_[k]] = int(k);
+        normal.push_back(nearest_skin(collider, x[vertices_[k]]).normal);
+    }
+    std::vector<double> clearance(vertices_.size(), gap);
+    for (const Triangle& t : triangles)
+        for (int k = 0; k < 3; ++k) {
+            const int v = t[k], w = t[(k + 1) % 3], a = number[v], b = number[w];
+            if (a < 0 || b < 0)
+                continue;
+            const double turn = 2.0 * std::asin(std::min(1.0, 0.5 * (normal[a] - normal[b]).norm()));
+            const double height = gap + 0.125 * turn * (x[v] - x[w]).norm();
+            clearance[a] = std::max(clearance[a], height);
+            clearance[b] = std::max(clearance[b], height);
+        }
+    return clearance;
+}
+
+void AttachmentConstraint::tie_to_skin(const collision::MeshCollider& mesh)
+{
+    patches_.clear();
+    anchors_.clear();
+    const std::vector<Vec3> normals = vertex_normals(mesh.x_t1(), mesh.triangles());
+    std::vector<int> index(normals.size(), -1);
+    for (const Vec3& x : start_)
+        patches_.emplace_back(mesh, normals, *mesh.surface().closest(x), index, anchors_);
     anchored_.resize(anchors_.size());
 }
 
@@ -129,7 +155,7 @@ void AttachmentConstraint::follow(double t, const std::vector<Collider>& collide
         return;
     }
     const BodyMotion& body = colliders[collider_].body();
-    if (ties_.empty()) {
+    if (patches_.empty()) {
         world_from_start_ = body.pose() * shape_from_world_;
         return;
     }
@@ -140,12 +166,7 @@ void AttachmentConstraint::follow(double t, const std::vector<Collider>& collide
 
 Vec3 AttachmentConstraint::target(int k) const
 {
-    if (ties_.empty())
-        return world_from_start_ * start_[k];
-    const SurfaceTie& tie = ties_[k];
-    const Vec3 &a = anchored_[tie.corner[0]], &b = anchored_[tie.corner[1]], &c = anchored_[tie.corner[2]];
-    return tie.barycentric[0] * a + tie.barycentric[1] * b + tie.barycentric[2] * c +
-           frame_of(a, b, c) * tie.offset;
+    return patches_.empty() ? world_from_start_ * start_[k] : patches_[k].moved(start_[k], anchored_);
 }
 
 } // namespace toile::scenes

@@ -4,20 +4,39 @@
 #include <vector>
 
 #include "scenes/colliders/collider.h"
+#include "scenes/colliders/skin_patch.h"
 
 namespace toile::scenes {
 
 /// An attachment of a running scene: its vertices and their targets over time.
 class AttachmentConstraint {
 public:
-    /// Selects vertices by their start positions and attaches them to the world or to a collider's surface.
+    /// Selects vertices by their start positions, to be attached to the world or to a collider's surface.
+    /// @param has_springs  false: the method knows none, so that attachments are exact where not asked otherwise
     /// @param location  named in errors, e.g. "tablecloth.json: attachments[0]"
-    /// @throws InvalidInput if it selects no vertex, an index is out of range, or the avatar is too far away.
+    /// @throws InvalidInput if it selects no vertex or an index is out of range
     AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
-                         const std::vector<Collider>& colliders, const std::string& location);
+                         const std::vector<Collider>& colliders, bool has_springs,
+                         const std::string& location);
+
+    /// Attaches the vertices where they are. Those on an avatar are lifted so that neither they nor the edges
+    /// between them are nearer to the skin than `gap` [m].
+    /// @param x  [vertices of the cloth] [m]
+    void tie(View<const Vec3> x, View<const Triangle> triangles, double gap,
+             const std::vector<Collider>& colliders);
+
+    /// Vertex that is farthest from the avatar to which it is attached, as of tie().
+    struct Farthest {
+        int vertex = -1;
+        double distance = 0.0; ///< [m]
+    };
+    const Farthest& farthest() const { return farthest_; }
+    const std::string& location() const { return location_; }
+    const std::string& target_name() const { return settings_.to; }
 
     const std::vector<int>& vertices() const { return vertices_; }
     std::optional<double> stiffness() const { return settings_.stiffness; }
+    bool is_on_avatar() const { return collider_ >= 0; }
     bool is_active_at(double t) const { return !settings_.release || t < *settings_.release; }
 
     /// True if the targets move at time t [s] or the vertices are released then: cloth must not sleep.
@@ -30,24 +49,21 @@ public:
     Vec3 target(int k) const;
 
 private:
-    /// A point in the frame of a collider's triangle.
-    struct SurfaceTie {
-        std::array<int, 3> corner; ///< indices into anchors_
-        Vec3 barycentric;
-        Vec3 offset; ///< [m] in the triangle's frame
-    };
-
     void select(View<const Vec3> start, const std::vector<Collider>& colliders, const std::string& location);
-    void tie(const Collider& collider);
+    void tie_to_skin(const collision::MeshCollider& mesh);
+    std::vector<double> clearances(const Collider& collider, View<const Vec3> x, View<const Triangle> triangles,
+                                   double gap) const;
 
     scene::Attachment settings_;
+    std::string location_;
     std::vector<int> vertices_;
-    std::vector<Vec3> start_; ///< [attached vertices] start positions [m]
+    std::vector<Vec3> start_; ///< [attached vertices] where they were tied [m]
+    Farthest farthest_;
     RigidMotion motion_;
     int collider_ = -1;
     Eigen::Isometry3d shape_from_world_ = Eigen::Isometry3d::Identity(); ///< at the start, for shapes
-    std::vector<SurfaceTie> ties_;                                       ///< [attached vertices] for meshes
-    std::vector<int> anchors_; ///< vertices of the collider's mesh used by ties_
+    std::vector<SkinPatch> patches_;                                     ///< [attached vertices] for meshes
+    std::vector<int> anchors_; ///< vertices of the collider's mesh used by patches_
 
     // State at the time of follow().
     Eigen::Isometry3d world_from_start_ = Eigen::Isometry3d::Identity(); ///< for the world and shapes

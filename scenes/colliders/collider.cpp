@@ -1,5 +1,6 @@
 #include "scenes/colliders/collider.h"
 
+#include "collision/geometry/shape_surface.h"
 #include "core/base/stages.h"
 
 namespace toile::scenes {
@@ -7,6 +8,11 @@ namespace toile::scenes {
 Collider::Collider(const scene::Avatar& settings, double default_friction)
     : body_(settings), friction_(settings.friction.value_or(default_friction))
 {
+    if (body_.shape() && std::holds_alternative<collision::BoxShape>(*body_.shape())) {
+        box_ = collision::shape_surface(*body_.shape(), 0.0);
+        mesh_collider_ = std::make_unique<collision::MeshCollider>(sides(body_.pose()));
+        return;
+    }
     if (body_.shape()) {
         shape_collider_ =
             std::make_unique<collision::ShapeCollider>(*body_.shape(), body_.pose(), settings.name);
@@ -28,8 +34,21 @@ void Collider::advance_to(double t_t1)
         return;
     if (shape_collider_)
         shape_collider_->move(pose_t0, body_.pose());
+    else if (!box_.triangles.empty())
+        mesh_collider_->move(sides(pose_t0));
     else
         mesh_collider_->follow_poses(moved_);
+}
+
+/// Sides of the box from one pose to its present one.
+MovingMesh Collider::sides(const Eigen::Isometry3d& pose_t0) const
+{
+    MovingMesh mesh{box_.triangles, box_.positions, box_.positions};
+    for (size_t i = 0; i < box_.positions.size(); ++i) {
+        mesh.x_t0[i] = pose_t0 * box_.positions[i];
+        mesh.x_t1[i] = body_.pose() * box_.positions[i];
+    }
+    return mesh;
 }
 
 } // namespace toile::scenes

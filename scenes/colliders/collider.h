@@ -8,7 +8,8 @@
 
 namespace toile::scenes {
 
-/// An avatar of a running scene: its motion from step to step and its contact collider.
+/// An avatar of a running scene: its motion from step to step and its contact collider. A box is a mesh: what
+/// holds cloth at the corners of a mesh holds it at its corners too.
 class Collider {
 public:
     explicit Collider(const scene::Avatar& settings, double default_friction);
@@ -35,9 +36,12 @@ public:
     const BodyMotion& body() const { return body_; }
 
 private:
+    MovingMesh sides(const Eigen::Isometry3d& pose_t0) const;
+
     BodyMotion body_;
     double friction_;
     bool moved_ = false;
+    TriangleMesh box_; ///< sides of a box, in its own frame [m]; empty for others
     std::unique_ptr<collision::MeshCollider> mesh_collider_;
     std::unique_ptr<collision::ShapeCollider> shape_collider_;
 };

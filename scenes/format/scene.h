@@ -205,13 +205,18 @@ struct Selection {
 inline constexpr const char* kFixed = "fixed";
 
 /// Vertices attached to the world, along keyframes, or to an avatar's moving surface.
+/// Stiffness of attachments to avatars [N/m] per vertex: firm enough for a wide coat, soft enough that cloth
+/// yields where skin stretches.
+inline constexpr double kSkinStiffness = 300.0;
+
 struct Attachment {
     std::string cloth;
     Selection select;
     std::string to = kFixed;         ///< "fixed" or an avatar's name
     std::vector<Keyframe> keyframes; ///< motion of the attached points; only with "fixed"
     std::optional<double> release;   ///< [s] end of the attachment; absent: never
-    std::optional<double> stiffness; ///< [N/m] of a spring per vertex; absent: exact
+    std::optional<double> stiffness; ///< [N/m] of a spring per vertex; absent: kSkinStiffness, or exact if fixed
+    bool exact = false;              ///< no springs
 };
 
 // --- the rest -------------------------------------------------------------------------------------------

@@ -1,14 +1,13 @@
 #include "scenes/meshes/shape_mesh.h"
 
-#include <cmath>
-#include <numbers>
+#include "collision/geometry/shape_surface.h"
 
 namespace toile::scenes {
 
 namespace {
 
-constexpr int kSegments = 48; ///< about the axis of a capsule
-constexpr int kRings = 12;    ///< from the pole of a cap to its rim
+/// Depth of facets below a round shape, relative to its radius [-]: 48 segments about its axis.
+constexpr double kSag = 0.0045;
 
 /// Appends a quad of separate vertices, counter-clockwise seen from outside.
 void add_quad(TriangleMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
@@ -33,47 +32,14 @@ TriangleMesh box_mesh(const Vec3& half)
     return mesh;
 }
 
-/// Two half spheres around (0, +-half_length, 0) and the tube between their rims.
-TriangleMesh capsule_mesh(double half_length, double radius)
-{
-    TriangleMesh mesh;
-    mesh.positions.push_back(Vec3(0.0, half_length + radius, 0.0));
-    const auto add_ring = [&](double angle, double center) {
-        for (int s = 0; s < kSegments; ++s) {
-            const double azimuth = 2.0 * std::numbers::pi * s / kSegments;
-            mesh.positions.push_back(Vec3(radius * std::sin(angle) * std::sin(azimuth),
-                                          center + radius * std::cos(angle),
-                                          radius * std::sin(angle) * std::cos(azimuth)));
-        }
-    };
-    const double step = 0.5 * std::numbers::pi / kRings;
-    for (int k = 1; k <= kRings; ++k)
-        add_ring(k * step, half_length);
-    for (int k = kRings; k < 2 * kRings; ++k)
-        add_ring(k * step, -half_length);
-    mesh.positions.push_back(Vec3(0.0, -half_length - radius, 0.0));
-
-    const auto at = [](int ring, int s) { return 1 + ring * kSegments + s % kSegments; };
-    const int last = mesh.vertex_count() - 1;
-    for (int s = 0; s < kSegments; ++s) {
-        mesh.triangles.push_back(Triangle(0, at(0, s), at(0, s + 1)));
-        for (int ring = 0; ring + 1 < 2 * kRings; ++ring) {
-            mesh.triangles.push_back(Triangle(at(ring, s), at(ring + 1, s), at(ring + 1, s + 1)));
-            mesh.triangles.push_back(Triangle(at(ring, s), at(ring + 1, s + 1), at(ring, s + 1)));
-        }
-        mesh.triangles.push_back(Triangle(last, at(2 * kRings - 1, s + 1), at(2 * kRings - 1, s)));
-    }
-    return mesh;
-}
-
 } // namespace
 
 TriangleMesh shape_mesh(const collision::Shape& shape, double plane_side)
 {
     if (const auto* sphere = std::get_if<collision::SphereShape>(&shape))
-        return capsule_mesh(0.0, sphere->radius);
+        return collision::shape_surface(shape, kSag * sphere->radius);
     if (const auto* capsule = std::get_if<collision::CapsuleShape>(&shape))
-        return capsule_mesh(capsule->half_length, capsule->radius);
+        return collision::shape_surface(shape, kSag * capsule->radius);
     if (const auto* box = std::get_if<collision::BoxShape>(&shape))
         return box_mesh(box->half_extent);
     const double h = 0.5 * plane_side;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "collision/check/find_crossings.h"
 #include "garment/energy/air/cuda/loads.h"
@@ -61,6 +62,13 @@ void ClothGroup::add_cloths_to(Snapshot& snapshot) const
             snapshot.add(positions_of(i));
 }
 
+void ClothGroup::tie(double gap, const std::vector<Collider>& colliders,
+                     const std::function<void(const std::string&)>& warn)
+{
+    for (SceneCloth& cloth : cloths_)
+        cloth.tie(gap, colliders, warn);
+}
+
 void ClothGroup::mark_fixed(double t_t1)
 {
     for (int i = 0; i < int(cloths_.size()); ++i)
@@ -91,6 +99,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         accelerate(dt, t_t1);
     begin_solids(dt);
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
+    may_cross_ =
+        may_cross_ || (contact_ && (contact_->stuck_count() > 0 || contact_->let_through_count() > 0));
     if (report.status != StepReport::Status::NonFinite)
         end_solids();
     if (contact_) {
@@ -101,10 +111,57 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         report.message = names() + ": " + report.message;
     report.max_strain = loads_ ? limits_->max_strain_on_device() : limits_->max_strain(body_->positions());
 
+    judge(report);
+
     // A solver whose every direction was refused leaves the cloth where it is: that is not rest.
     const bool is_stuck = report.status == StepReport::Status::IterationLimit && report.iterations == 0;
     watch_rest(is_stuck, dt);
     return report;
+}
+
+/// Completes the status: what has yielded, and where.
+void ClothGroup::judge(StepReport& report)
+{
+    const auto raise = [&](StepReport::Status status) { report.status = std::max(report.status, status); };
+    if (contact_ && contact_->bodies()) {
+        const View<const Vec3> x = body_->positions();
+        report.pinched.count = contact_->let_through_count();
+        if (report.pinched.count > 0) {
+            const int v = contact_->first_let_through();
+            report.pinched.place = place_of(v, x[v]);
+            raise(StepReport::Status::Pinched);
+        }
+        report.stuck.count = crossing_bodies_ + contact_->stuck_count();
+        if (report.stuck.count > 0) {
+            const int v = contact_->stuck_count() > 0 ? contact_->first_stuck() : first_crossing_;
+            report.stuck.place = place_of(v, x[v]);
+            raise(StepReport::Status::Stuck);
+        }
+    }
+    for (int c = 0; c < int(cloths_.size()) && !loads_; ++c) {
+        const View<const Vec3> x = part(body_->positions(), c);
+        const garment::StrainLimit& limit = cloths_[c].strain_limit();
+        if (report.max_strain <= limit.settings().limit + garment::kStrainMargin)
+            continue;
+        const garment::StrainLimit::Excess excess = limit.excess(x, garment::kStrainMargin);
+        if (excess.count == 0)
+            continue;
+        const int v = cloths_[c].state().triangles[excess.triangle][0];
+        report.yielded.merge({excess.count, place_of(first_[c] + v, x[v])});
+        raise(StepReport::Status::Yielded);
+    }
+}
+
+/// Vertex 12 of "skirt" near (0.100, 0.900, 0.020) m.
+std::string ClothGroup::place_of(int vertex, const Vec3& x) const
+{
+    int cloth = 0;
+    while (cloth + 1 < int(cloths_.size()) && vertex >= first_[cloth + 1])
+        ++cloth;
+    char at[80];
+    std::snprintf(at, sizeof at, " near (%.3f, %.3f, %.3f) m", x.x(), x.y(), x.z());
+    return "vertex " + std::to_string(vertex - first_[cloth]) + " of \"" + cloths_[cloth].state().name +
+           "\"" + at;
 }
 
 /// Accelerations and tension on the CPU.
@@ -117,22 +174,46 @@ void ClothGroup::accelerate(double dt, double t_t1)
     }
 }
 
-/// Marks vertices of crossing triangles, by exact predicates. Runs at the first step unless the start is
-/// known to be free of crossings, after place(), and while crossings remain. Self-crossings of a solid are
-/// ignored.
+/// Marks vertices of crossing triangles of cloth, solids and bodies, by exact predicates. Runs at the first
+/// step unless the start is known to be free of crossings, after place(), and while crossings remain.
+/// Self-crossings of a solid are ignored.
 void ClothGroup::mark_crossings()
 {
     const StageScope stage("scenes/find_crossings");
     const std::vector<Vec3> x = surfaces();
-    std::vector<unsigned char> crosses(x.size(), 0);
+    const collision::BodySurfaces* bodies = contact_->bodies();
+    std::vector<unsigned char> crosses(x.size() + (bodies ? bodies->vertex_count() : 0), 0);
     may_cross_ = false;
+    using collision::Crosses;
+    const auto mark = [&](const Triangle& t, int first, unsigned char flag) {
+        may_cross_ = true;
+        for (const int v : t)
+            crosses[first + v] |= flag;
+    };
     for (const collision::Crossing& crossing : collision::find_crossings(triangles_, x)) {
         if (solids_ && solid_of(crossing.a) >= 0 && solid_of(crossing.a) == solid_of(crossing.b))
             continue;
-        may_cross_ = true;
-        for (const int t : {crossing.a, crossing.b})
-            for (const int v : triangles_[t])
-                crosses[v] = 1;
+        mark(triangles_[crossing.a], 0, Crosses::kCloth);
+        mark(triangles_[crossing.b], 0, Crosses::kCloth);
+    }
+    if (bodies) {
+        std::vector<Vec3> body_x(bodies->vertex_count());
+        bodies->pose_t0(body_x);
+        const std::vector<collision::Crossing> crossings =
+            collision::find_crossings(triangles_, x, bodies->triangles(), body_x);
+        std::vector<int> crossing_cloth;
+        for (const collision::Crossing& crossing : crossings)
+            crossing_cloth.push_back(crossing.a);
+        contact_->close_let_through(crossing_cloth);
+        crossing_bodies_ = 0;
+        for (const collision::Crossing& crossing : crossings) {
+            if (contact_->lets_through(triangles_[crossing.a]))
+                continue;
+            if (crossing_bodies_++ == 0)
+                first_crossing_ = triangles_[crossing.a][0];
+            mark(triangles_[crossing.a], 0, Crosses::kBody);
+            mark(bodies->triangles()[crossing.b], int(x.size()), Crosses::kOfBody);
+        }
     }
     contact_->set_crossing(crosses);
 }

@@ -38,15 +38,19 @@ public:
 
     const SceneSolids* solids() const { return solids_.get(); } ///< null: none
 
+    /// Attaches cloth where it is. See SceneCloth::tie.
+    void tie(double gap, const std::vector<Collider>& colliders,
+             const std::function<void(const std::string&)>& warn);
+
     /// Prepares the global solvers for a step of dt [s] that ends at time t_t1 [s].
     void prepare(double dt, double t_t1);
 
     /// Takes one time step of dt [s] that ends at time t_t1 [s]. Colliders are already advanced to it.
     StepReport step(double dt, double t_t1, const std::vector<Collider>& colliders);
 
-    /// Declares that the start pose has no crossings: the first step skips their search, unless there are
-    /// solids, which cloth may cross.
-    void assume_no_crossings() { may_cross_ = solids_ != nullptr; }
+    /// Declares that no cloth crosses cloth in the start pose: the first step skips their search, unless there
+    /// are solids or bodies, which cloth may cross.
+    void assume_no_crossings() { may_cross_ = solids_ != nullptr || (contact_ && contact_->bodies()); }
 
     /// Moves the vertices of one cloth to new positions; velocities and rest shape are kept.
     void place(int cloth, View<const Vec3> positions);
@@ -72,6 +76,8 @@ private:
     void mark_crossings();
     int solid_of(int triangle) const;
     std::string names() const;
+    void judge(StepReport& report);
+    std::string place_of(int vertex, const Vec3& x) const;
     void watch_rest(bool is_stuck, double dt);
     bool has_moved(View<const Vec3> from, View<const Vec3> to) const;
     bool is_asleep(double t_t1, const std::vector<Collider>& colliders);
@@ -89,7 +95,9 @@ private:
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;
     std::vector<Triangle> triangles_; ///< of all cloths, then of all solids
-    bool may_cross_ = true;           ///< cloth is known to cross cloth, or has been placed
+    bool may_cross_ = true;           ///< cloth is known to cross cloth or bodies, or has been placed
+    int crossing_bodies_ = 0;         ///< triangles of cloth that crossed bodies when last looked at
+    int first_crossing_ = -1;         ///< a vertex of the first of them
     double still_time_ = 0.0;         ///< [s] since still_
     std::vector<Vec3> still_;         ///< [surfaces] where everything has stayed since [m]; empty: it moves
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <numbers>
 
 #include "core/compute/parallel.h"
@@ -21,6 +22,9 @@ namespace {
 /// Excess over the strain limit that is clamped after a step of Newton's method [-]. Below it the limit is an
 /// elastic energy; above it something has moved the cloth that is stronger, such as bodies that close on it.
 constexpr double kYielding = 0.045;
+
+/// Distance from an avatar [m] beyond which attached cloth is not on it.
+constexpr double kFar = 0.05;
 
 /// The warp of flat cloth is the X axis of its own frame, however it is placed. That of a garment is the
 /// vertical in which it stands.
@@ -75,7 +79,8 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
         if (scene.attachments[i].cloth == settings.name) {
             const std::string location = scene.source.string() + ": attachments[" + std::to_string(i) + "]";
             require_method_supports(scene.solver.method, scene.attachments[i], location);
-            attachments_.emplace_back(scene.attachments[i], state_.positions, colliders, location);
+            attachments_.emplace_back(scene.attachments[i], state_.positions, colliders,
+                                      !replaces_minimiser(scene.solver.method), location);
         }
 
     masses_ = rest_->vertex_areas();
@@ -183,14 +188,30 @@ void SceneCloth::forget()
         tension_->forget();
 }
 
-std::vector<char> SceneCloth::exactly_attached() const
+std::vector<char> SceneCloth::fixed_in_world() const
 {
     std::vector<char> attached(state_.positions.size(), 0);
     for (const AttachmentConstraint& attachment : attachments_)
-        if (!attachment.stiffness())
+        if (!attachment.stiffness() && !attachment.is_on_avatar())
             for (const int v : attachment.vertices())
                 attached[v] = 1;
     return attached;
+}
+
+void SceneCloth::tie(double gap, const std::vector<Collider>& colliders,
+                     const std::function<void(const std::string&)>& warn)
+{
+    for (AttachmentConstraint& attachment : attachments_) {
+        attachment.tie(state_.positions, state_.triangles, gap + 0.5 * state_.fabric.thickness, colliders);
+        const AttachmentConstraint::Farthest& far = attachment.farthest();
+        if (!warn || far.distance <= kFar)
+            continue;
+        char distance[32];
+        std::snprintf(distance, sizeof distance, "%.3g", 100.0 * far.distance);
+        warn(attachment.location() + ": vertex " + std::to_string(far.vertex) + " of \"" + state_.name +
+             "\" is attached to \"" + attachment.target_name() + "\" from " + distance +
+             " cm away; move the selection to where the cloth lies on it");
+    }
 }
 
 void SceneCloth::mark_fixed(double t_t1, View<unsigned char> fixed) const

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/pd/energy/energy.h"
@@ -50,8 +52,13 @@ public:
     /// Model of the cloth for a method that replaces the minimiser.
     garment::ClothModel model() const;
 
-    /// [vertices] nonzero for those with an exact attachment, now or later.
-    std::vector<char> exactly_attached() const;
+    /// [vertices] nonzero for those with an exact attachment to the world, now or later.
+    std::vector<char> fixed_in_world() const;
+
+    /// Attaches the attached vertices where they are, and warns of those that are far from their avatar.
+    /// @param gap   [m] between avatars and the faces of cloth
+    /// @param warn  may be empty
+    void tie(double gap, const std::vector<Collider>& colliders, const std::function<void(const std::string&)>& warn);
 
     /// Marks the vertices whose position is prescribed at time t_t1 [s]; clears the others.
     void mark_fixed(double t_t1, View<unsigned char> fixed) const;

@@ -12,7 +12,7 @@ collision::StartCloth start_of(const Scene& scene, const scene::Cloth& settings,
     collision::StartCloth start;
     start.triangles = cloth.state().triangles;
     start.positions = cloth.state().positions;
-    start.fixed = cloth.exactly_attached();
+    start.fixed = cloth.fixed_in_world();
     start.layer = settings.layer;
     start.thickness = cloth.state().fabric.thickness;
     start.gap = scene.contact.gap + 0.5 * start.thickness;

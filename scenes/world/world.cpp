@@ -123,6 +123,8 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);
     parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders);
+    for (ClothGroup& group : parts_->groups)
+        group.tie(scene.contact.gap, parts_->colliders, options.warn);
     for (const ClothGroup& group : parts_->groups)
         for (const SceneCloth& cloth : group.cloths())
             parts_->states.push_back(cloth.state());

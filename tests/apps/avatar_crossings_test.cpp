@@ -57,7 +57,7 @@ TEST(AvatarCrossings, CountsCrossingsAtDoubledVerticesAsClean)
     EXPECT_EQ(found.clean[0].body, 0);
     EXPECT_EQ(found.clean[0].crossing.a, 1);
     EXPECT_NEAR(found.clean[0].crossing.point.x(), -0.5, 1e-12);
-    EXPECT_EQ(found.elsewhere, 0);
+    EXPECT_EQ(found.pinched.size(), 0);
 }
 
 TEST(AvatarCrossings, CountsSelfIntersectingTrianglesSeparately)
@@ -68,7 +68,7 @@ TEST(AvatarCrossings, CountsSelfIntersectingTrianglesSeparately)
     add_box(body, Vec3(0.2, 0.01, 0.01), Vec3(0.5, 0.031, 0.02));
     const AvatarCrossings found = crossings_at(body, {Vec3(0.5, 0.31, 0.29), kOpenWall});
     EXPECT_EQ(found.clean.size(), 1u);
-    EXPECT_EQ(found.elsewhere, 1);
+    EXPECT_EQ(found.pinched.size(), 1);
 }
 
 TEST(AvatarCrossings, CountsBuriedTrianglesSeparately)
@@ -79,7 +79,7 @@ TEST(AvatarCrossings, CountsBuriedTrianglesSeparately)
     add_box(body, Vec3::Constant(0.1), Vec3(0.2, 0.2, 0.2));
     const AvatarCrossings found = crossings_at(weld(body, 0.0).mesh, {Vec3(0.1, 0.23, 0.21), kOpenWall});
     EXPECT_EQ(found.clean.size(), 1u);
-    EXPECT_EQ(found.elsewhere, 1);
+    EXPECT_EQ(found.pinched.size(), 1);
 }
 
 TEST(AvatarCrossings, OmitsTheFacesOfExcludedBones)

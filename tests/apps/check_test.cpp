@@ -104,12 +104,12 @@ TEST(Check, ReportsDepthInSelfIntersectionsSeparately)
     // The sheet of 0.4 m lies 2 cm below the tops: on one box alone, then over the overlap too.
     const auto beside = found_at(-0.05);
     EXPECT_NEAR(beside["max_penetration_m"], 0.02, 1e-6);
-    EXPECT_EQ(beside["max_penetration_in_self_intersections_m"], 0.0);
-    EXPECT_EQ(beside["cloth_avatar_crossings_in_self_intersections"], 0);
+    EXPECT_EQ(beside["pinches"]["max_penetration_m"], 0.0);
+    EXPECT_EQ(beside["pinches"]["crossings"], 0);
     const auto folded = found_at(-0.5);
-    EXPECT_GT(folded["max_penetration_in_self_intersections_m"], 0.01);
+    EXPECT_GT(folded["pinches"]["max_penetration_m"], 0.01);
     // Within one box the sheet crosses the walls of the other, which are buried.
-    EXPECT_GT(folded["cloth_avatar_crossings_in_self_intersections"], 10);
+    EXPECT_GT(folded["pinches"]["crossings"], 10);
     EXPECT_EQ(folded["cloth_avatar_crossings"], 0);
     // Halfway over the edge of the left box it crosses a wall in the open.
     EXPECT_GT(found_at(0.45)["cloth_avatar_crossings"], 5);

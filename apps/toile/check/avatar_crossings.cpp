@@ -35,11 +35,11 @@ AvatarCrossings find_avatar_crossings(const ScenePenetration& avatars, View<cons
         const std::vector<collision::Crossing> crossings =
             collision::find_crossings(triangles, x, surface.triangles, surface.positions);
         if (crossings.empty())
-            continue; // the body's self-crossings are ignored and cost more than the cloth's
+            continue; // the body's self-crossings cost more to find than the cloth's
         const std::vector<char> crosses_itself = crossing_themselves(surface);
         for (const collision::Crossing& crossing : crossings) {
-            if (crosses_itself[size_t(crossing.b)] != 0 || meter->is_buried(crossing.b))
-                ++result.elsewhere;
+            if (meter->is_pinched(crossing.point, crosses_itself))
+                result.pinched.push_back({b, crossing});
             else
                 result.clean.push_back({b, crossing});
         }

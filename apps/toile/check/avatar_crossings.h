@@ -14,14 +14,14 @@ struct AvatarCrossings {
         int body;                     ///< index in ScenePenetration::bodies()
         collision::Crossing crossing; ///< a: triangle of the cloth, b: triangle of the body
     };
-    std::vector<Site> clean; ///< crossings with clean triangles, by body, then by triangles
-    int elsewhere = 0;       ///< number of crossings with triangles that are not clean
+    std::vector<Site> clean;   ///< by body, then by triangles
+    std::vector<Site> pinched; ///< where body parts leave no room for cloth, likewise
 };
 
-/// Finds crossings of cloth with avatars, counted separately for clean triangles of a body. Every realistic
-/// moving body intersects itself, and cloth pinched there must cross one part or the other. A triangle is
-/// clean unless it crosses another triangle of the body or lies inside another part of it
-/// (PenetrationMeter::is_buried). Coincident vertices are merged.
+/// Finds crossings of cloth with avatars, those in pinches apart. Every realistic moving body intersects itself,
+/// and cloth pinched there must cross one part or the other. A place is pinched if surface within 1 cm of it
+/// crosses other surface of the body, lies inside another part of it, or faces another part that is nearer than
+/// the room that cloth needs (PenetrationMeter::is_pinched). Coincident vertices are merged.
 /// @param avatars    at their current time
 /// @param triangles  of the cloth
 /// @param x          [vertices] of the cloth [m]

@@ -65,7 +65,10 @@ void Certificate::add(const FrameFindings& found)
     non_finite += found.non_finite;
     cloth_cloth_crossings += found.cloth_cloth_crossings;
     cloth_avatar_crossings += found.cloth_avatar_crossings;
-    crossings_in_self_intersections += found.crossings_in_self_intersections;
+    pinched_crossings += found.pinched_crossings;
+    pinched_frames += found.pinched_crossings > 0 || found.pinched_depth > limits.penetration ? 1 : 0;
+    if (!first_pinch)
+        first_pinch = found.pinch;
     if (!first_crossing)
         first_crossing = found.crossing;
     if (found.gap && (!min_gap || *found.gap < *min_gap)) {
@@ -80,7 +83,7 @@ void Certificate::add(const FrameFindings& found)
         worst.strain = found.strain;
         worst_strain_frame = frame;
     }
-    worst.excluded = std::max(worst.excluded, found.excluded);
+    worst.pinched_depth = std::max(worst.pinched_depth, found.pinched_depth);
     if (const std::string reason = reason_of(found, limits); !reason.empty() && holds()) {
         first_bad_frame = frame;
         first_bad_reason = reason;
@@ -108,16 +111,19 @@ std::string to_json(const Certificate& certificate)
         {"first_bad_frame", certificate.holds() ? Json(nullptr) : Json(certificate.first_bad_frame)},
         {"cloth_cloth_crossings", certificate.cloth_cloth_crossings},
         {"cloth_avatar_crossings", certificate.cloth_avatar_crossings},
-        {"cloth_avatar_crossings_in_self_intersections", certificate.crossings_in_self_intersections},
         {"first_crossing", has_crossing ? json_of(*certificate.first_crossing) : Json(nullptr)},
         {"min_gap_m", json_or_null(certificate.min_gap)},
         {"min_gap_frame", certificate.min_gap ? Json(certificate.min_gap_frame) : Json(nullptr)},
         {"max_penetration_m", certificate.worst.penetration},
         {"max_penetration_frame", certificate.worst_penetration_frame},
-        {"max_penetration_in_self_intersections_m", certificate.worst.excluded},
         {"max_strain", certificate.worst.strain},
         {"max_strain_frame", certificate.worst_strain_frame},
         {"non_finite", certificate.non_finite},
+        {"pinches",
+         {{"frames", certificate.pinched_frames},
+          {"crossings", certificate.pinched_crossings},
+          {"max_penetration_m", certificate.worst.pinched_depth},
+          {"first", certificate.first_pinch ? json_of(*certificate.first_pinch) : Json(nullptr)}}},
         {"limits",
          {{"penetration_m", certificate.limits.penetration},
           {"strain", strain_limits},
@@ -135,6 +141,8 @@ std::string summary_of(const Certificate& certificate)
                   "certificate holds for %d frames: no crossings, %.3g mm deep at most, strain %.3g %%",
                   certificate.frames, 1e3 * certificate.worst.penetration, 1e2 * certificate.worst.strain);
     std::string left_out;
+    if (certificate.pinched_frames > 0)
+        left_out = "; pinched between body parts in " + std::to_string(certificate.pinched_frames) + " frames";
     for (const auto& [avatar, bones] : certificate.excluded_bones)
         left_out += "; " + std::to_string(bones.size()) + (bones.size() == 1 ? " bone of " : " bones of ") +
                     avatar + " left out";

@@ -31,12 +31,13 @@ struct FrameFindings {
 
     int non_finite = 0; ///< vertices
     int cloth_cloth_crossings = 0;
-    int cloth_avatar_crossings = 0;          ///< with clean triangles (AvatarCrossings)
-    int crossings_in_self_intersections = 0; ///< with triangles that are not clean
+    int cloth_avatar_crossings = 0;          ///< outside of pinches (AvatarCrossings)
+    int pinched_crossings = 0;               ///< in pinches
+    std::optional<CrossingSite> pinch;       ///< the first of them
     std::optional<CrossingSite> crossing;    ///< first crossing that makes the frame bad
     std::optional<double> gap;               ///< [m] none: larger than kGapReach
     double penetration = 0.0;                ///< [m] maximum depth
-    double excluded = 0.0;                   ///< [m] maximum depth where an avatar intersects itself
+    double pinched_depth = 0.0;              ///< [m] maximum depth in pinches
     double strain = 0.0;                     ///< [-] maximum of all cloths
     bool is_overstretched = false;           ///< a cloth exceeded its limit
 };
@@ -67,10 +68,12 @@ struct Certificate {
     int non_finite = 0;
     long cloth_cloth_crossings = 0; ///< pairs of triangles, summed over frames, as the other count
     long cloth_avatar_crossings = 0;
-    long crossings_in_self_intersections = 0;
+    long pinched_crossings = 0;
+    int pinched_frames = 0;
+    std::optional<FrameFindings::CrossingSite> first_pinch;
     std::optional<FrameFindings::CrossingSite> first_crossing;
     std::optional<double> min_gap; ///< [m] 0 where cloth crosses cloth
-    FrameFindings worst;           ///< maximum penetration, excluded and strain of any frame
+    FrameFindings worst;           ///< maximum depths and strain of any frame
     int min_gap_frame = 0;
     int worst_penetration_frame = 0;
     int worst_strain_frame = 0;

@@ -26,6 +26,7 @@ struct MeasuredCloth {
     collision::ClothSamples samples;
     double strain_limit;              ///< [-] the margin included
     int first_vertex, first_triangle; ///< in the arrays of all cloths
+    std::vector<collision::PenetrationMeter::Sides> sides; ///< [avatars]
 };
 
 /// All cloths of a certificate as one list of triangles.
@@ -42,10 +43,11 @@ public:
 
 private:
     void load(int frame);
-    void measure_each(FrameFindings& found) const;
+    void measure_each(FrameFindings& found);
     void find_cloth_crossings(int frame, FrameFindings& found) const;
     void find_all_avatar_crossings(int frame, FrameFindings& found) const;
     FrameFindings::Side side(int triangle) const;
+    FrameFindings::Side avatar_side(int body, int contact_triangle) const;
 
     std::vector<MeasuredCloth> cloths_;
     int frame_count_ = 0, longest_ = 0;
@@ -70,7 +72,7 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
         cloths_.push_back({cloth, std::move(cache), StrainMeter(cloth.rest.positions, cloth.triangles),
                            collision::ClothSamples(cloth.triangles, vertex_count),
                            cloth.fabric.strain_limit + limits.strain_margin, int(rest.size()),
-                           int(triangles_.size())});
+                           int(triangles_.size()), {}});
         for (const Triangle& t : cloth.triangles)
             triangles_.push_back(t + Triangle::Constant(int(rest.size())));
         rest.insert(rest.end(), cloth.rest.positions.begin(), cloth.rest.positions.end());
@@ -98,16 +100,16 @@ FrameFindings Examiner::examine(int frame, double time)
     return found;
 }
 
-void Examiner::measure_each(FrameFindings& found) const
+void Examiner::measure_each(FrameFindings& found)
 {
-    for (const MeasuredCloth& cloth : cloths_) {
+    for (MeasuredCloth& cloth : cloths_) {
         const int vertex_count = int(cloth.state.rest.positions.size());
         const View<const Vec3> x(x_.data() + cloth.first_vertex, vertex_count);
         const auto bad = std::count_if(x.begin(), x.end(), [](const Vec3& p) { return !p.allFinite(); });
         found.non_finite += int(bad);
-        const ScenePenetration::Depth depth = avatars_.measure(x, cloth.state.triangles, cloth.samples);
+        const ScenePenetration::Depth depth = avatars_.measure(x, cloth.state.triangles, cloth.samples, cloth.sides);
         found.penetration = std::max(found.penetration, depth.deepest);
-        found.excluded = std::max(found.excluded, depth.excluded);
+        found.pinched_depth = std::max(found.pinched_depth, depth.pinched);
         if (bad > 0)
             continue;
         const double strain = cloth.strain.largest(x);
@@ -133,12 +135,21 @@ void Examiner::find_all_avatar_crossings(int frame, FrameFindings& found) const
 {
     const AvatarCrossings crossings = find_avatar_crossings(avatars_, triangles_, x_);
     found.cloth_avatar_crossings = int(crossings.clean.size());
-    found.crossings_in_self_intersections = crossings.elsewhere;
+    found.pinched_crossings = int(crossings.pinched.size());
+    if (!crossings.pinched.empty()) {
+        const auto& [pinching, at] = crossings.pinched.front();
+        found.pinch = {frame, side(at.a), avatar_side(pinching, at.b), at.point};
+    }
     if (crossings.clean.empty() || found.crossing)
         return;
     const auto& [body, first] = crossings.clean.front();
-    const scenes::SceneBody& crossed = avatars_.bodies()[size_t(body)];
-    found.crossing = {frame, side(first.a), {crossed.settings().name, crossed.face_of(first.b)}, first.point};
+    found.crossing = {frame, side(first.a), avatar_side(body, first.b), first.point};
+}
+
+FrameFindings::Side Examiner::avatar_side(int body, int contact_triangle) const
+{
+    const scenes::SceneBody& avatar = avatars_.bodies()[size_t(body)];
+    return {avatar.settings().name, avatar.face_of(contact_triangle)};
 }
 
 /// Cloth that owns a triangle of triangles_.

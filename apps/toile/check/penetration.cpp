@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/compute/parallel.h"
+#include "scenes/format/scene_fabric.h"
 
 namespace toile::app {
 
@@ -20,15 +21,28 @@ double deepest_in(const scenes::SceneBody& solid, View<const Vec3> x, View<const
     return depths.empty() ? 0.0 : *std::max_element(depths.begin(), depths.end());
 }
 
+/// Room that cloth needs between two surfaces that face each other [m]: its gap to both, and a layer of cloth on
+/// each with cloth between them.
+double room_of(const scenes::Scene& scene)
+{
+    double thickness = 0.0;
+    for (const scene::Cloth& cloth : scene.cloths)
+        thickness = std::max(thickness, scenes::fabric_of(scene, cloth).thickness);
+    return 2.0 * scene.contact.gap + 3.0 * thickness;
+}
+
 } // namespace
 
 ScenePenetration::ScenePenetration(const scenes::Scene& scene) : bodies_(make_bodies(scene))
 {
+    collision::PenetrationMeter::Settings settings;
+    settings.room = room_of(scene);
     for (const scenes::SceneBody& body : bodies_)
         meters_.push_back(body.shape() != nullptr
                               ? nullptr
                               : std::make_unique<collision::PenetrationMeter>(
-                                    body.contact_surface().triangles, body.contact_surface().positions));
+                                    body.contact_surface().triangles, body.contact_surface().positions,
+                                    settings));
 }
 
 void ScenePenetration::advance_to(double t)
@@ -38,9 +52,12 @@ void ScenePenetration::advance_to(double t)
             meters_[b]->move(bodies_[b].contact_surface().positions);
 }
 
-ScenePenetration::Depth ScenePenetration::measure(View<const Vec3> x, View<const Triangle> triangles,
-                                                  const collision::ClothSamples& samples) const
+ScenePenetration::Depth
+ScenePenetration::measure(View<const Vec3> x, View<const Triangle> triangles,
+                          const collision::ClothSamples& samples,
+                          std::vector<collision::PenetrationMeter::Sides>& sides) const
 {
+    sides.resize(bodies_.size());
     const std::vector<Vec3> points = samples.at(x);
     Depth depth;
     for (size_t b = 0; b < bodies_.size(); ++b) {
@@ -48,9 +65,9 @@ ScenePenetration::Depth ScenePenetration::measure(View<const Vec3> x, View<const
             depth.deepest = std::max(depth.deepest, deepest_in(bodies_[b], x, triangles));
             continue;
         }
-        const collision::Penetration found = meters_[b]->measure(points);
+        const collision::Penetration found = meters_[b]->measure(points, &sides[b]);
         depth.deepest = std::max(depth.deepest, found.max_depth);
-        depth.excluded = std::max(depth.excluded, found.deepest_excluded);
+        depth.pinched = std::max(depth.pinched, found.deepest_excluded);
     }
     return depth;
 }

@@ -25,15 +25,16 @@ public:
     /// Maximum depths below the surface of any avatar [m].
     struct Depth {
         double deepest = 0.0;
-        double excluded = 0.0; ///< where a mesh intersects itself (PenetrationMeter)
+        double pinched = 0.0; ///< where parts of a mesh leave no room (PenetrationMeter)
     };
 
     /// Depth of the cloth's vertices in planes, spheres, capsules and boxes, of its samples in meshes.
     /// Non-finite points are skipped.
     /// @param x        [vertices] of the cloth [m]
     /// @param samples  of the cloth with these triangles
-    Depth measure(View<const Vec3> x, View<const Triangle> triangles,
-                  const collision::ClothSamples& samples) const;
+    /// @param sides    [bodies] of this cloth, kept between frames
+    Depth measure(View<const Vec3> x, View<const Triangle> triangles, const collision::ClothSamples& samples,
+                  std::vector<collision::PenetrationMeter::Sides>& sides) const;
 
 private:
     std::vector<scenes::SceneBody> bodies_;

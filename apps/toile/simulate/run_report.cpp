@@ -53,6 +53,13 @@ Json json_of(int frame, const StepReport& report, double seconds)
                  {"contacts", report.contacts},
                  {"min_gap_m", report.min_gap},
                  {"max_strain", report.max_strain}};
+    const auto add = [&](const char* name, const StepReport::Findings& findings) {
+        if (findings.count > 0)
+            json[name] = {{"count", findings.count}, {"place", findings.place}};
+    };
+    add("yielded", report.yielded);
+    add("pinched", report.pinched);
+    add("stuck", report.stuck);
     if (!report.message.empty())
         json["message"] = report.message;
     return json;
@@ -65,6 +72,12 @@ const char* to_word(StepReport::Status status)
     switch (status) {
     case StepReport::Status::IterationLimit:
         return "iteration_limit";
+    case StepReport::Status::Yielded:
+        return "yielded";
+    case StepReport::Status::Pinched:
+        return "pinched";
+    case StepReport::Status::Stuck:
+        return "stuck";
     case StepReport::Status::NonFinite:
         return "non_finite";
     case StepReport::Status::Converged:

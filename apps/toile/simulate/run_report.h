@@ -49,7 +49,7 @@ private:
     std::vector<Frame> frames_;
 };
 
-/// "converged", "iteration_limit" or "non_finite".
+/// "converged", "iteration_limit", "yielded", "pinched", "stuck" or "non_finite".
 const char* to_word(StepReport::Status status);
 
 } // namespace toile::app

@@ -9,6 +9,7 @@
 #include "apps/toile/check/certify.h"
 #include "apps/toile/simulate/run_report.h"
 #include "apps/toile/simulate/start_text.h"
+#include "apps/toile/simulate/unmet.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/exports.h"
 #include "core/base/error.h"
@@ -87,6 +88,7 @@ void run_frames(scenes::World& world, const scenes::Scene& scene, std::vector<Op
                 RunReport& report, const InterruptGuard& interrupt, const RunLog& log, Outcome& outcome)
 {
     world.settle();
+    Unmet unmet(log);
     Progress progress = log.progress("frame", scene.frames);
     write_frame(world, caches);
     progress.update(1);
@@ -99,6 +101,7 @@ void run_frames(scenes::World& world, const scenes::Scene& scene, std::vector<Op
         const StepReport step = world.advance_frame();
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         report.add_frame(world.frame(), step, seconds.count());
+        unmet.add(world.frame(), step);
         if (step.status == StepReport::Status::NonFinite) {
             outcome.word = "failed";
             outcome.message = step.message;
@@ -107,6 +110,7 @@ void run_frames(scenes::World& world, const scenes::Scene& scene, std::vector<Op
         write_frame(world, caches);
         progress.update(world.frame() + 1, note_of(step));
     }
+    unmet.sum_up(scene.frames);
 }
 
 Outcome run_or_stop(scenes::World& world, const scenes::Scene& scene, std::vector<OpenCache>& caches,

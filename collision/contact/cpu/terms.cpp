@@ -24,7 +24,7 @@ HostContactTerms::HostContactTerms(ContactEnergy& energy, View<const Triangle> t
     TOILE_ASSERT(int(tables_.cloth_of.size()) == positions.size());
 }
 
-void HostContactTerms::begin_step(const StepStart& start)
+void HostContactTerms::begin_step(const StepStart& start, View<const Vec3> carried)
 {
     rules_ = rules_of(start, settings_);
     rules_.cloth_of = tables_.cloth_of;
@@ -34,7 +34,7 @@ void HostContactTerms::begin_step(const StepStart& start)
     projection_rules_ = projection_rules_of(start);
     projection_rules_.rigid = tables_.rigid;
     projection_rules_.altitude = tables_.altitude;
-    colliders_.find(start);
+    colliders_.find(start, carried);
 }
 
 /// Half of the clearance between each plane of a vertex and the nearest opposing one, [pairs] [m]. It is
@@ -66,7 +66,7 @@ std::vector<double> HostContactTerms::clearance_of_planes(const std::vector<Cont
     if (overlap.empty())
         return clearance;
     for (size_t i = 0; i < pairs.size(); ++i)
-        for (int k = 0; k < pairs[i].count() && !pairs[i].is_between_cloths() && !is_plane(pairs[i]); ++k)
+        for (int k = 0; k < pairs[i].count() && pairs[i].kind < ContactKind::kGuard && !is_plane(pairs[i]); ++k)
             if (const auto caught = overlap.find(pairs[i].vertex[k]); caught != overlap.end())
                 clearance[i] = std::min(clearance[i], caught->second);
     return clearance;
@@ -83,7 +83,8 @@ void HostContactTerms::make(const ClothContact* between)
     const std::vector<double> clearance = clearance_of_planes(pairs);
     std::vector<ContactTerm> terms;
     for (size_t i = 0; i < pairs.size(); ++i) {
-        if ((!is_plane(pairs[i]) && clearance[i] < 0.0) || rules_.is_fixed(pairs[i]))
+        if ((!is_plane(pairs[i]) && clearance[i] < 0.0) || rules_.is_fixed(pairs[i]) ||
+            (between && between->replaces(pairs[i])))
             continue;
         terms.push_back(rules_.term_of(pairs[i], clearance[i]));
         memory_.warm_start(terms.back()); // the same contact of the step before

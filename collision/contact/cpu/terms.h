@@ -18,7 +18,9 @@ public:
                      const std::vector<ContactCloth>& cloths, const std::vector<ContactCollider>& colliders,
                      const Settings& settings);
 
-    void begin_step(const StepStart& start) override;
+    View<const Vec3> advect(const StepStart& start) override { return colliders_.advect(start); }
+    View<const NearestSurface> nearest() const override { return colliders_.nearest(); }
+    void begin_step(const StepStart& start, View<const Vec3> carried) override;
     void make(const ClothContact* between) override;
     bool empty() const override { return energy_.terms().empty(); }
     void see(StepField x) override

@@ -51,7 +51,7 @@ void DeviceClothContact::forget()
     slack_.upload(std::vector<double>(slack_.size(), rules().slack().min));
 }
 
-void DeviceClothContact::begin_step(const StepStart& start)
+void DeviceClothContact::begin_step(const StepStart& start, NearbyBodies&)
 {
     TOILE_ASSERT(start.device.x.size() == slack_.size());
     near_.abandon(); // of a step that an error has aborted

@@ -16,7 +16,7 @@ public:
                        const std::vector<ContactCloth>& cloths, View<const double> altitude);
 
     /// @param start  with `device`
-    void begin_step(const StepStart& start) override;
+    void begin_step(const StepStart& start, NearbyBodies& bodies) override;
     void end_search() override;
     void append_pairs(std::vector<ContactPair>& out) const override;
     View<const ContactPair> pressing_on_device() const override { return pressing_.view(); }

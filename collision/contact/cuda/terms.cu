@@ -33,7 +33,7 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
     altitude_.upload(tables_.altitude);
 }
 
-void DeviceContactTerms::begin_step(const StepStart& start)
+void DeviceContactTerms::begin_step(const StepStart& start, View<const Vec3>)
 {
     TOILE_ASSERT(start.device.x.size() == overlap_.size());
     energy_.use_true_hessian(start.wants_true_hessian);

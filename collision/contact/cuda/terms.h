@@ -20,7 +20,7 @@ public:
                        const std::vector<ContactCloth>& cloths, const std::vector<ContactCollider>& colliders,
                        const Settings& settings);
 
-    void begin_step(const StepStart& start) override;
+    void begin_step(const StepStart& start, View<const Vec3> carried) override;
     void make(const ClothContact* between) override;
     bool empty() const override { return !energy_.has_terms(); }
     void see(StepField x) override { x_ = x; }

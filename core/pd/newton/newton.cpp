@@ -23,7 +23,7 @@ constexpr double kNegligible = 0.03;
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
 /// raises the value, as where a body pulls it through other cloth, that happens kMaxSetbacks times at most,
 /// and the point with the lowest value is the result.
-constexpr int kStall = 8, kMaxSetbacks = 12;
+constexpr int kStall = 8, kMaxSetbacks = 5;
 
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
 /// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The

@@ -4,6 +4,12 @@
 
 namespace toile {
 
+void StepReport::Findings::merge(const Findings& other)
+{
+    if (other.count > count)
+        *this = other;
+}
+
 void StepReport::merge(const StepReport& other)
 {
     status = std::max(status, other.status);
@@ -18,6 +24,9 @@ void StepReport::merge(const StepReport& other)
     contacts += other.contacts;
     min_gap = std::min(min_gap, other.min_gap);
     max_strain = std::max(max_strain, other.max_strain);
+    yielded.merge(other.yielded);
+    pinched.merge(other.pinched);
+    stuck.merge(other.stuck);
     if (message.empty())
         message = other.message;
 }

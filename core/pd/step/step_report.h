@@ -6,10 +6,21 @@ namespace toile {
 
 /// Outcome of one or several time steps. Numerical problems are reported here, never thrown.
 struct StepReport {
+    /// What was reached, the worst last.
     enum class Status {
-        Converged,      ///< the last move fell below the tolerance
+        Converged,      ///< the last move fell below the tolerance, and nothing had to yield
         IterationLimit, ///< stopped at the iteration limit; displacement measures the remaining error
+        Yielded,        ///< the strain limit had to yield
+        Pinched,        ///< there is no room between body parts: cloth lets one of them through
+        Stuck,          ///< cloth crosses a body that has closed on it, or that it crossed before
         NonFinite,      ///< the first non-finite energy stopped the run; message names it
+    };
+
+    /// What one status is about.
+    struct Findings {
+        int count = 0;
+        std::string place; ///< of the first or worst; empty if there is none
+        void merge(const Findings& other);
     };
 
     Status status = Status::Converged;
@@ -24,6 +35,9 @@ struct StepReport {
     int contacts = 0;           ///< active contact pairs at the end of the last step
     double min_gap = 0.0;       ///< [m] smallest signed gap of a contact candidate; 0 without candidates
     double max_strain = 0.0;    ///< [-] largest principal stretch - 1 after strain limiting
+    Findings yielded;           ///< triangles beyond their strain limit by more than is tolerated
+    Findings pinched;           ///< vertices that let a body part through
+    Findings stuck;             ///< triangles of cloth that cross a body
     std::string message;        ///< empty unless status is NonFinite
 
     /// Combines with the report of another step or body: counts add, extremes are kept, worst status wins.

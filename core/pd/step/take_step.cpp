@@ -55,11 +55,17 @@ void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimi
     add(report, space.minimise_by_newton(settings, revise, is_calm));
 }
 
-/// Satisfies contact, limits and separation of cloth. Cloth that contact moves back stretches against cloth
-/// that it does not move, so the limits are then applied again.
-void correct(StepSpace& space, const StepInput& input)
+/// Keeps apart what must not cross. Where the minimiser's result does not stand, satisfies contact and limits
+/// before. Cloth that contact moves back stretches against cloth that it does not move, so the limits are then
+/// applied again.
+void correct(StepSpace& space, const StepInput& input, bool stands)
 {
     ActiveSetEnergy* const active = input.active;
+    if (stands) {
+        if (active)
+            active->keep_apart(space.end_positions(), space.end_velocities());
+        return;
+    }
     std::function<bool()> clear_contacts;
     if (active)
         clear_contacts = [&] { return active->sweep_once(space.end_positions()); };
@@ -95,7 +101,8 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
         return report;
 
     space.finish(input.active, input.projection);
-    correct(space, input);
+    const bool stands = limits.speed_tolerance > 0.0 && (!input.active || input.active->is_complete());
+    correct(space, input, stands);
     if (input.active)
         input.active->end_step(space.end_positions());
     space.end(input.projection, report);

@@ -37,7 +37,7 @@ private:
     DeviceArray<Hinge> hinges_;
     DeviceArray<int> first_, slots_;
     DeviceArray<double> dt_;             ///< [1] [s] of this step, 0 before the first
-    DeviceArray<double> start_;          ///< [hinges] s at the start of this step
+    DeviceArray<HingeStart> start_;      ///< [hinges]
     DeviceArray<PaddedVec3> force_;      ///< [4 * hinges] [N]
     DeviceArray<float> stiffness_;       ///< [hinges] [N m]
     DeviceArray<int> pair_first_;        ///< [pairs + 1] into pair_weights_

@@ -68,6 +68,23 @@ double StrainLimit::max_strain(View<const Vec3> x) const
     return largest.value - 1.0;
 }
 
+StrainLimit::Excess StrainLimit::excess(View<const Vec3> x, double margin) const
+{
+    const double tolerated = 1.0 + settings_.limit + margin;
+    Excess excess;
+    for (int t = 0; t < int(kind_.size()); ++t) {
+        if (kind_[t] != 0)
+            continue;
+        const double stretch = triangles().stretch(t, x);
+        if (!(stretch > tolerated))
+            continue;
+        ++excess.count;
+        if (stretch - 1.0 > excess.strain)
+            excess = {excess.count, t, stretch - 1.0};
+    }
+    return excess;
+}
+
 void StrainLimit::check_all(View<const Vec3> x)
 {
     parallel_for(kCpu, "strain_limit/find", int(kind_.size()),

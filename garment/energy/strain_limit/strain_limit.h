@@ -10,6 +10,9 @@
 
 namespace toile::garment {
 
+/// Strain beyond its limit that counts as kept [-]: the limit is an elastic energy.
+inline constexpr double kStrainMargin = 0.05;
+
 /// Hard limit on the principal stretches of every triangle.
 ///
 ///   sigma_max(F_t) <= 1 + limit   for all t
@@ -56,6 +59,14 @@ public:
 
     /// Maximum principal stretch minus one at x, including slivers [-].
     double max_strain(View<const Vec3> x) const;
+
+    /// Triangles, slivers apart, that exceed the limit at x by more than `margin` [-].
+    struct Excess {
+        int count = 0;
+        int triangle = -1; ///< that with the largest strain, of equal ones the first
+        double strain = 0.0;
+    };
+    Excess excess(View<const Vec3> x, double margin) const;
 
     const RestShape& rest() const { return *rest_; }
     const Settings& settings() const { return settings_; }

@@ -77,16 +77,32 @@ TEST(Penetration, ExcludesSelfIntersectionsOfTheBody)
 
 TEST(Penetration, ExcludesWithinTheMarginOfASelfIntersectionOnly)
 {
-    const PenetrationMeter body = meter_of(overlapping_blocks());
+    const TriangleMesh blocks = overlapping_blocks();
     // Below the right block's top, beside the left block's flank at x = 0.05, whose buried part ends 1 mm
     // lower.
     const auto excluded = [&](double x, double margin) {
-        return body.measure(std::vector<Vec3>{Vec3(x, 0.449, 0.0)}, {.self_intersection_margin = margin})
-                   .excluded_count == 1;
+        const PenetrationMeter body(blocks.triangles, blocks.positions, {.pinch_margin = margin});
+        return body.measure(std::vector<Vec3>{Vec3(x, 0.449, 0.0)}).excluded_count == 1;
     };
     EXPECT_TRUE(excluded(0.055, 0.01));
     EXPECT_FALSE(excluded(0.2, 0.01));
     EXPECT_TRUE(excluded(0.2, 0.16));
+}
+
+TEST(Penetration, CallsPartsThatFaceEachOtherWithinTheRoomPinched)
+{
+    TriangleMesh blocks = subdivide(box_mesh(Vec3(-1, -1, -1), Vec3(-0.001, 0, 1)), 4);
+    const TriangleMesh right = subdivide(box_mesh(Vec3(0.001, -1, -1), Vec3(1, 0, 1)), 4);
+    const int first = blocks.vertex_count();
+    blocks.positions.insert(blocks.positions.end(), right.positions.begin(), right.positions.end());
+    for (const Triangle& t : right.triangles)
+        blocks.triangles.push_back(t + Triangle::Constant(first));
+    const auto pinched = [&](double room, const Vec3& at) {
+        return PenetrationMeter(blocks.triangles, blocks.positions, {.room = room}).is_pinched(at, {});
+    };
+    EXPECT_TRUE(pinched(0.003, Vec3(0.0, -0.5, 0.0)));
+    EXPECT_FALSE(pinched(0.001, Vec3(0.0, -0.5, 0.0))) << "2 mm are room enough";
+    EXPECT_FALSE(pinched(0.003, Vec3(-0.5, 0.0, 0.0))) << "on top, far from the slit";
 }
 
 TEST(Penetration, FollowsTheMesh)
@@ -100,14 +116,24 @@ TEST(Penetration, FollowsTheMesh)
     EXPECT_EQ(block.measure(std::vector<Vec3>{{0, 0.53, 0}}).max_depth, 0.0);
 }
 
-TEST(Penetration, OfAnOpenSheetDependsOnItsSideAndEndsAtItsBorder)
+TEST(Penetration, OfAnOpenSheetIsAChangeOfSides)
 {
     const PenetrationMeter sheet = meter_of(sheet_mesh(1.0, 10, 0.0));
-    const auto depth = [&](const Vec3& p) { return sheet.measure(std::vector<Vec3>{p}).max_depth; };
-    EXPECT_NEAR(depth(Vec3(0.13, -0.02, 0.11)), 0.02, 1e-12);
-    EXPECT_EQ(depth(Vec3(0.13, 0.02, 0.11)), 0.0);
-    EXPECT_EQ(depth(Vec3(0.13, -0.2, 0.11)), 0.0) << "deeper than open_depth is elsewhere";
-    EXPECT_EQ(depth(Vec3(0.51, -0.02, 0.11)), 0.0) << "beside the border";
+    const Vec3 above(0.13, 0.02, 0.11), below(0.13, -0.02, 0.11);
+    const auto depth = [&](const std::vector<Vec3>& way) {
+        PenetrationMeter::Sides sides;
+        double last = 0.0;
+        for (const Vec3& p : way)
+            last = sheet.measure(std::vector<Vec3>{p}, &sides).max_depth;
+        return last;
+    };
+    EXPECT_EQ(depth({above, above}), 0.0);
+    EXPECT_EQ(depth({below, below}), 0.0) << "either side is outside";
+    EXPECT_NEAR(depth({above, below}), 0.02, 1e-12);
+    EXPECT_NEAR(depth({below, above}), 0.02, 1e-12);
+    EXPECT_EQ(depth({above, below, above}), 0.0) << "it has come back";
+    EXPECT_EQ(depth({above, Vec3(0.51, -0.02, 0.11), below}), 0.0) << "around the border";
+    EXPECT_EQ(depth({above, Vec3(0.13, 0.2, 0.11), below}), 0.0) << "not near in between";
 }
 
 TEST(Penetration, SkipsNonFiniteVertices)

@@ -81,7 +81,7 @@ void expect_same_pressing(const std::vector<ContactPair>& cpu, const std::vector
 struct Sides {
     Sides(const CudaSpace& on, const ClothCase& made)
         : space(on), altitude(made.x.size(), kAltitude), fixed(made.x.size(), 0), ones(made.x.size(), 1.0),
-          host(made.triangles, made.x, {cloth(made)}, altitude),
+          host(made.triangles, made.x, {cloth(made)}, altitude, BodySurfaces({}, 0.0), true),
           device(space, made.triangles, made.x, {cloth(made)}, altitude)
     {
     }
@@ -98,12 +98,17 @@ struct Sides {
     {
         x = std::make_unique<Field>(space, made.x);
         prediction = std::make_unique<Field>(space, made.expected);
-        host.begin_step({x->host(), prediction->host(), ones, fixed, ones, kDt, {}});
+        host.begin_step({x->host(), prediction->host(), ones, fixed, ones, kDt, {}}, no_bodies);
         device.begin_step(
-            {{}, {}, ones, fixed, ones, kDt, {}, false, {x->device(), prediction->device(), {}, {}, {}}});
+            {{}, {}, ones, fixed, ones, kDt, {}, false, {x->device(), prediction->device(), {}, {}, {}}},
+            no_bodies);
         device.end_search();
     }
 
+    struct NoBodies : NearbyBodies {
+        View<const Vec3> advect(const StepStart&) override { return {}; }
+        View<const NearestSurface> nearest() const override { return {}; }
+    } no_bodies;
     const CudaSpace& space;
     std::vector<double> altitude;
     std::vector<unsigned char> fixed;

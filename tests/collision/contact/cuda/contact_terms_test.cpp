@@ -224,19 +224,19 @@ TEST_F(DeviceContactTermsTest, MatchTheCpuFromStepToStep)
     DeviceContactTerms device(space(), made.mesh.triangles, made.x, made.cloths, made.colliders,
                               made.settings());
     const std::vector<double> altitude(made.x.size(), 0.005);
-    const auto between = make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, nullptr);
+    const auto between = make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, {}, true, nullptr);
     const auto between_device =
-        make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, &space());
+        make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, {}, true, &space());
     OnBoard board(space(), count);
     int gripped = 0, warm_started = 0, with_cloth = 0, faces = 0;
     for (int step = 0; step < 5; ++step) {
         const std::string what = "step " + std::to_string(step);
         made.advance();
         const StepStart start = board.begin(made);
-        between->begin_step(start);
-        between_device->begin_step(start);
-        cpu.begin_step(start);
-        device.begin_step(start);
+        between->begin_step(start, cpu);
+        between_device->begin_step(start, device);
+        cpu.begin_step(start, {});
+        device.begin_step(start, {});
         between_device->end_search();
         cpu.make(between.get());
         device.make(between_device.get());
@@ -316,7 +316,7 @@ TEST_F(DeviceContactTermsTest, SkipCollidersFarFromAllCloth)
         for (Vec3& v : made.x)
             v += offset;
         made.advance();
-        terms.begin_step(board.begin(made));
+        terms.begin_step(board.begin(made), {});
         terms.make(nullptr);
     };
     Stages far, near;
@@ -361,7 +361,7 @@ TEST_F(DeviceContactTermsTest, HaveTheSameBitsInTwoRuns)
         OnBoard board(space(), int(made.x.size()));
         for (int step = 0; step < 3; ++step) {
             made.advance();
-            terms.begin_step(board.begin(made));
+            terms.begin_step(board.begin(made), {});
             terms.make(nullptr);
             terms.see(board.found);
             terms.update_forces();

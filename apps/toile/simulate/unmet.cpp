@@ -1,0 +1,60 @@
+#include "apps/toile/simulate/unmet.h"
+
+namespace toile::app {
+
+namespace {
+
+const char* const kYielded = "cloth is stretched beyond its limit";
+const char* const kPinched = "there is no room for cloth between body parts, which pass through it";
+const char* const kStuck = "cloth crosses a body";
+const char* const kUnfinished = "steps ended unfinished";
+
+std::string at(const StepReport::Findings& findings)
+{
+    return findings.place.empty() ? "" : ", " + findings.place;
+}
+
+} // namespace
+
+void Unmet::add(Kind& kind, int frame, bool is_unmet, const StepReport::Findings& findings,
+                const std::string& text)
+{
+    if (!is_unmet)
+        return;
+    if (kind.frames++ == 0) {
+        kind.first = frame;
+        log_.note("frame " + std::to_string(frame) + ": " + text + at(findings));
+    }
+    if (findings.count > kind.worst.count) {
+        kind.worst = findings;
+        kind.worst_frame = frame;
+    }
+}
+
+void Unmet::add(int frame, const StepReport& report)
+{
+    add(stuck_, frame, report.stuck.count > 0, report.stuck, kStuck);
+    add(pinched_, frame, report.pinched.count > 0, report.pinched, kPinched);
+    add(yielded_, frame, report.yielded.count > 0, report.yielded, kYielded);
+    add(unfinished_, frame, report.status == StepReport::Status::IterationLimit, {}, kUnfinished);
+}
+
+void Unmet::sum_up(int frames) const
+{
+    const auto say = [&](const Kind& kind, const std::string& text, const std::string& things) {
+        if (kind.frames == 0)
+            return;
+        std::string line = std::to_string(kind.frames) + " of " + std::to_string(frames) + " frames: " + text +
+                           "; first at frame " + std::to_string(kind.first);
+        if (kind.worst.count > 0)
+            line += ", worst at frame " + std::to_string(kind.worst_frame) + " with " +
+                    std::to_string(kind.worst.count) + " " + things + at(kind.worst);
+        log_.note(line);
+    };
+    say(stuck_, kStuck, "triangles");
+    say(pinched_, kPinched, "vertices");
+    say(yielded_, kYielded, "triangles");
+    say(unfinished_, kUnfinished, "");
+}
+
+} // namespace toile::app

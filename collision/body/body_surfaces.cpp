@@ -1,0 +1,99 @@
+#include "collision/body/body_surfaces.h"
+
+#include <algorithm>
+
+#include "collision/geometry/distance.h"
+#include "collision/geometry/shape_surface.h"
+
+namespace toile::collision {
+
+BodySurfaces::BodySurfaces(const std::vector<ContactCollider>& colliders, double sag) : colliders_(colliders)
+{
+    for (int number = 0; number < int(colliders.size()); ++number) {
+        const ContactCollider& collider = colliders[number];
+        Part part{collider, number, vertex_count_, 0, {}};
+        View<const Triangle> triangles;
+        TriangleMesh facets;
+        if (collider.mesh) {
+            triangles = collider.mesh->triangles();
+            part.count = collider.mesh->x_t1().size();
+        } else {
+            facets = shape_surface(collider.shape->shape(), sag);
+            triangles = facets.triangles;
+            part.count = facets.vertex_count();
+            part.facets = std::move(facets.positions);
+        }
+        for (const Triangle& t : triangles)
+            triangles_.push_back(t + Triangle::Constant(vertex_count_));
+        vertex_count_ += part.count;
+        if (part.count > 0)
+            parts_.push_back(std::move(part));
+    }
+}
+
+bool BodySurfaces::is_moving() const
+{
+    return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) {
+        const ContactCollider& collider = part.collider;
+        return collider.mesh ? collider.mesh->is_moving()
+                             : collider.shape->pose_t0().matrix() != collider.shape->pose().matrix();
+    });
+}
+
+int BodySurfaces::collider_of(int vertex) const
+{
+    const auto part = std::find_if(parts_.begin(), parts_.end(), [vertex](const Part& candidate) {
+        return vertex < candidate.first + candidate.count;
+    });
+    return part->number;
+}
+
+bool BodySurfaces::is_open(int collider) const
+{
+    const MeshCollider* mesh = colliders_[collider].mesh;
+    return mesh != nullptr && !mesh->surface().edges().is_closed;
+}
+
+std::vector<unsigned char> BodySurfaces::are_open() const
+{
+    std::vector<unsigned char> open;
+    for (const Part& part : parts_)
+        open.insert(open.end(), part.count, (unsigned char)(is_open(part.number) ? 1 : 0));
+    return open;
+}
+
+Vec3 BodySurfaces::normal_at(const NearestSurface& at, const Vec3& x) const
+{
+    const ContactCollider& collider = colliders_[at.collider];
+    if (collider.shape)
+        return collider.shape->closest(x).normal;
+    const View<const Vec3> y = collider.mesh->x_t1();
+    const Triangle& t = collider.mesh->triangles()[at.feature];
+    return (y[t[1]] - y[t[0]]).cross(y[t[2]] - y[t[0]]).normalized();
+}
+
+double BodySurfaces::distance_to(const NearestSurface& at, const Vec3& x) const
+{
+    const ContactCollider& collider = colliders_[at.collider];
+    if (collider.shape)
+        return std::abs(collider.shape->closest(x).signed_distance);
+    const View<const Vec3> y = collider.mesh->x_t1();
+    const Triangle& t = collider.mesh->triangles()[at.feature];
+    return (x - closest_on_triangle(x, y[t[0]], y[t[1]], y[t[2]]).point).norm();
+}
+
+void BodySurfaces::pose(View<Vec3> x, bool is_end) const
+{
+    for (const Part& part : parts_) {
+        const auto out = x.begin() + part.first;
+        if (part.collider.mesh) {
+            const View<const Vec3> from = is_end ? part.collider.mesh->x_t1() : part.collider.mesh->x_t0();
+            std::copy(from.begin(), from.end(), out);
+            continue;
+        }
+        const Eigen::Isometry3d& pose = is_end ? part.collider.shape->pose() : part.collider.shape->pose_t0();
+        std::transform(part.facets.begin(), part.facets.end(), out, [&](const Vec3& p) { return pose * p; });
+    }
+}
+
+} // namespace toile::collision

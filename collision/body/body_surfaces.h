@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/body/collider_pairs_kernels.h"
+#include "collision/body/colliders.h"
+
+namespace toile::collision {
+
+/// Triangle surfaces of all colliders as one list of vertices, at both ends of the current step: meshes as they
+/// are, boxes by their sides, round shapes by facets just below them. Planes are left out: nothing passes through
+/// a half space.
+class BodySurfaces {
+public:
+    /// @param sag  [m] maximum depth of facets below a round shape
+    BodySurfaces(const std::vector<ContactCollider>& colliders, double sag);
+
+    const std::vector<Triangle>& triangles() const { return triangles_; }
+    int vertex_count() const { return vertex_count_; }
+    bool is_empty() const { return triangles_.empty(); }
+    bool is_moving() const; ///< in the current step
+    int collider_of(int vertex) const; ///< number of the collider in the constructor's list
+    bool is_open(int collider) const;  ///< a mesh with a border: it has no inside
+    std::vector<unsigned char> are_open() const; ///< [vertices] 1: of an open mesh
+
+    /// Unit normal at t1 of a surface point, or of a solid near x.
+    Vec3 normal_at(const NearestSurface& at, const Vec3& x) const;
+    /// Distance at t1 of x from the triangle of a surface point, or from a solid [m].
+    double distance_to(const NearestSurface& at, const Vec3& x) const;
+
+    /// Positions at t0 and t1 of the current step. @param x  [vertices] out [m]
+    void pose_t0(View<Vec3> x) const { pose(x, false); }
+    void pose_t1(View<Vec3> x) const { pose(x, true); }
+
+private:
+    struct Part {
+        ContactCollider collider;
+        int number;               ///< of the collider
+        int first;                ///< vertex
+        int count;                ///< vertices
+        std::vector<Vec3> facets; ///< [vertices] of a shape, in its own frame [m]
+    };
+
+    void pose(View<Vec3> x, bool is_end) const;
+
+    std::vector<ContactCollider> colliders_;
+    std::vector<Part> parts_;
+    std::vector<Triangle> triangles_;
+    int vertex_count_ = 0;
+};
+
+} // namespace toile::collision

@@ -1,0 +1,95 @@
+#include "collision/contact/cpu/let_through.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/compute/parallel.h"
+
+namespace toile::collision {
+
+namespace {
+
+/// Distance from its owner [m] beyond which cloth may be dressed on a surface that opposes it.
+constexpr double kLeft = 0.01;
+
+int root_of(std::vector<int>& parent, int v)
+{
+    while (parent[v] != v)
+        v = parent[v] = parent[parent[v]];
+    return v;
+}
+
+} // namespace
+
+LetThrough::LetThrough(const BodySurfaces& bodies, View<const Triangle> triangles, int vertices)
+    : bodies_(bodies), triangles_(triangles.begin(), triangles.end()), owner_(vertices),
+      released_(vertices, 0), owner_normal_(vertices, Vec3::Zero())
+{
+}
+
+void LetThrough::begin_step(View<const Vec3> x, View<const NearestSurface> nearest)
+{
+    parallel_for(kCpu, "collision/owners", x.size(), [&](int v) { walk(v, x[v], nearest[v]); });
+    if (bodies_.is_moving() || body_normal_.empty()) {
+        std::vector<Vec3> body_x(bodies_.vertex_count());
+        bodies_.pose_t1(body_x);
+        body_normal_ = vertex_normals(body_x, bodies_.triangles());
+    }
+}
+
+/// The owner moves on to the nearest surface, but not to one that opposes it while it is near itself.
+void LetThrough::walk(int v, const Vec3& x, const NearestSurface& nearest)
+{
+    NearestSurface& owner = owner_[v];
+    if (nearest.collider >= 0) {
+        const bool opposes = owner.collider >= 0 &&
+                             bodies_.normal_at(nearest, x).dot(bodies_.normal_at(owner, x)) < 0.0;
+        if (!opposes || (released_[v] == 0 && bodies_.distance_to(owner, x) > kLeft))
+            owner = nearest;
+    }
+    if (owner.collider >= 0)
+        owner_normal_[v] = bodies_.normal_at(owner, x);
+}
+
+bool LetThrough::release(View<const int> vertices)
+{
+    bool any = false;
+    for (const int v : vertices)
+        if (owner_[v].collider >= 0 && released_[v] == 0) {
+            released_[v] = 1;
+            ++count_;
+            any = true;
+        }
+    return any;
+}
+
+void LetThrough::close(View<const int> crossing)
+{
+    if (count_ == 0)
+        return;
+    std::vector<int> parent(released_.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    for (const Triangle& t : triangles_)
+        for (int k = 0; k < 3; ++k)
+            if (is_released(t[k]) && is_released(t[(k + 1) % 3]))
+                parent[root_of(parent, t[k])] = root_of(parent, t[(k + 1) % 3]);
+    std::vector<unsigned char> crosses(released_.size(), 0);
+    for (const int t : crossing)
+        for (const int v : triangles_[t])
+            if (is_released(v))
+                crosses[root_of(parent, v)] = 1;
+    count_ = 0;
+    for (int v = 0; v < int(released_.size()); ++v) {
+        released_[v] = released_[v] != 0 && crosses[root_of(parent, v)] != 0 ? 1 : 0;
+        count_ += released_[v];
+    }
+}
+
+void LetThrough::forget()
+{
+    std::fill(owner_.begin(), owner_.end(), NearestSurface{});
+    std::fill(released_.begin(), released_.end(), 0);
+    count_ = 0;
+}
+
+} // namespace toile::collision

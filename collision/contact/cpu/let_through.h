@@ -1,0 +1,61 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "collision/body/body_surfaces.h"
+#include "collision/body/collider_pairs_kernels.h"
+
+namespace toile::collision {
+
+/// Cloth between body parts that close on it until there is no room. It cannot stay outside both: the surface that
+/// it is dressed on, its owner, keeps it, and surfaces that oppose the owner pass through it. They leave as they
+/// came, and cloth that nothing crosses any more keeps off all surfaces again.
+class LetThrough {
+public:
+    /// @param triangles  [triangles] of cloth
+    LetThrough(const BodySurfaces& bodies, View<const Triangle> triangles, int vertices);
+
+    /// Updates the owners at the start of a step, at x [vertices] [m], and the normals to those at t1.
+    /// @param nearest  [vertices] surface nearest to each
+    void begin_step(View<const Vec3> x, View<const NearestSurface> nearest);
+
+    /// Lets surfaces that oppose their owners pass through these vertices. False if they did so already or have
+    /// no owner.
+    bool release(View<const int> vertices);
+
+    /// Ends it for patches of cloth that no longer cross bodies.
+    /// @param crossing  all triangles of cloth that cross bodies at the start of the step
+    void close(View<const int> crossing);
+
+    bool any() const { return count_ > 0; }
+    int count() const { return count_; } ///< vertices
+    int first() const { return int(std::find(released_.begin(), released_.end(), 1) - released_.begin()); }
+    bool is_released(int v) const { return released_[v] != 0; }
+    bool is_released(const Triangle& t) const
+    {
+        return is_released(t[0]) || is_released(t[1]) || is_released(t[2]);
+    }
+    /// True if the normal of a surface opposes the owner of a released vertex.
+    bool lets_pass(int v, const Vec3& normal) const
+    {
+        return is_released(v) && owner_normal_[v].dot(normal) < 0.0;
+    }
+
+    View<const unsigned char> released() const { return released_; }   ///< [vertices]
+    View<const Vec3> owner_normal() const { return owner_normal_; }    ///< [vertices]
+    View<const Vec3> body_normal() const { return body_normal_; }      ///< [bodies]
+    void forget();
+
+private:
+    void walk(int v, const Vec3& x, const NearestSurface& nearest);
+
+    const BodySurfaces& bodies_;
+    std::vector<Triangle> triangles_;
+    std::vector<NearestSurface> owner_; ///< [vertices]
+    std::vector<unsigned char> released_;
+    std::vector<Vec3> owner_normal_, body_normal_;
+    int count_ = 0;
+};
+
+} // namespace toile::collision
