@@ -11,7 +11,7 @@ BodySurfaces::BodySurfaces(const std::vector<ContactCollider>& colliders, double
 {
     for (int number = 0; number < int(colliders.size()); ++number) {
         const ContactCollider& collider = colliders[number];
-        Part part{collider, number, vertex_count_, 0, {}};
+        Part part{collider, number, vertex_count_, 0, {}, false};
         View<const Triangle> triangles;
         TriangleMesh facets;
         if (collider.mesh) {
@@ -31,13 +31,33 @@ BodySurfaces::BodySurfaces(const std::vector<ContactCollider>& colliders, double
     }
 }
 
+bool BodySurfaces::is_moving(const Part& part)
+{
+    const ContactCollider& collider = part.collider;
+    return !part.jumps && (collider.mesh ? collider.mesh->is_moving()
+                                         : collider.shape->pose_t0().matrix() != collider.shape->pose().matrix());
+}
+
 bool BodySurfaces::is_moving() const
 {
-    return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) {
-        const ContactCollider& collider = part.collider;
-        return collider.mesh ? collider.mesh->is_moving()
-                             : collider.shape->pose_t0().matrix() != collider.shape->pose().matrix();
-    });
+    return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return is_moving(part); });
+}
+
+bool BodySurfaces::find_jumps(double dt)
+{
+    bool any = false;
+    for (Part& part : parts_) {
+        part.jumps = false;
+        if (!is_moving(part))
+            continue;
+        std::vector<Vec3> x(part.count), y(part.count);
+        pose(part, x, false);
+        pose(part, y, true);
+        for (int v = 0; v < part.count && !part.jumps; ++v)
+            part.jumps = !((y[v] - x[v]).norm() <= kMaxSpeed * dt);
+        any = any || part.jumps;
+    }
+    return any;
 }
 
 int BodySurfaces::collider_of(int vertex) const
@@ -82,18 +102,28 @@ double BodySurfaces::distance_to(const NearestSurface& at, const Vec3& x) const
     return (x - closest_on_triangle(x, y[t[0]], y[t[1]], y[t[2]]).point).norm();
 }
 
-void BodySurfaces::pose(View<Vec3> x, bool is_end) const
+void BodySurfaces::pose_t0(View<Vec3> x) const
 {
-    for (const Part& part : parts_) {
-        const auto out = x.begin() + part.first;
-        if (part.collider.mesh) {
-            const View<const Vec3> from = is_end ? part.collider.mesh->x_t1() : part.collider.mesh->x_t0();
-            std::copy(from.begin(), from.end(), out);
-            continue;
-        }
-        const Eigen::Isometry3d& pose = is_end ? part.collider.shape->pose() : part.collider.shape->pose_t0();
-        std::transform(part.facets.begin(), part.facets.end(), out, [&](const Vec3& p) { return pose * p; });
+    for (const Part& part : parts_)
+        pose(part, x.subview(part.first, part.count), part.jumps);
+}
+
+void BodySurfaces::pose_t1(View<Vec3> x) const
+{
+    for (const Part& part : parts_)
+        pose(part, x.subview(part.first, part.count), true);
+}
+
+void BodySurfaces::pose(const Part& part, View<Vec3> x, bool is_end) const
+{
+    if (part.collider.mesh) {
+        const View<const Vec3> from = is_end ? part.collider.mesh->x_t1() : part.collider.mesh->x_t0();
+        std::copy(from.begin(), from.end(), x.begin());
+        return;
     }
+    const Eigen::Isometry3d& pose = is_end ? part.collider.shape->pose() : part.collider.shape->pose_t0();
+    std::transform(part.facets.begin(), part.facets.end(), x.begin(),
+                   [&](const Vec3& p) { return pose * p; });
 }
 
 } // namespace toile::collision

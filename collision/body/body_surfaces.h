@@ -19,6 +19,12 @@ public:
     int vertex_count() const { return vertex_count_; }
     bool is_empty() const { return triangles_.empty(); }
     bool is_moving() const; ///< in the current step
+
+    /// Maximum speed of a surface that carries cloth along [m/s]. A faster one was replaced.
+    static constexpr double kMaxSpeed = 50.0;
+
+    /// Finds the colliders that jump in the current step of dt [s]. They are at their poses at t1 all the time.
+    bool find_jumps(double dt);
     int collider_of(int vertex) const; ///< number of the collider in the constructor's list
     bool is_open(int collider) const;  ///< a mesh with a border: it has no inside
     std::vector<unsigned char> are_open() const; ///< [vertices] 1: of an open mesh
@@ -29,8 +35,8 @@ public:
     double distance_to(const NearestSurface& at, const Vec3& x) const;
 
     /// Positions at t0 and t1 of the current step. @param x  [vertices] out [m]
-    void pose_t0(View<Vec3> x) const { pose(x, false); }
-    void pose_t1(View<Vec3> x) const { pose(x, true); }
+    void pose_t0(View<Vec3> x) const;
+    void pose_t1(View<Vec3> x) const;
 
 private:
     struct Part {
@@ -39,9 +45,11 @@ private:
         int first;                ///< vertex
         int count;                ///< vertices
         std::vector<Vec3> facets; ///< [vertices] of a shape, in its own frame [m]
+        bool jumps;               ///< in the current step
     };
 
-    void pose(View<Vec3> x, bool is_end) const;
+    static bool is_moving(const Part& part);
+    void pose(const Part& part, View<Vec3> x, bool is_end) const;
 
     std::vector<ContactCollider> colliders_;
     std::vector<Part> parts_;

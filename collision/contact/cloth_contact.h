@@ -58,6 +58,8 @@ public:
     virtual void close_let_through(View<const int>) {}
     /// True for a triangle of cloth that lets a body through.
     virtual bool lets_through(const Triangle&) const { return false; }
+    /// Finds bodies that jump in this step of dt [s]: they stand where they have jumped to from its start.
+    virtual bool have_bodies_jumped(double) { return false; }
     /// Surfaces of the bodies; null if they are left out.
     virtual const BodySurfaces* bodies() const { return nullptr; }
     /// Waits for the search that begin_step() has begun, before any other call.
@@ -80,7 +82,9 @@ public:
     /// [s]. True if the correction was large: x may go on from there, and be limited again.
     virtual bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) = 0;
 
-    /// See ExemptPairs. @param crosses  [vertices of cloth, then of bodies()]
+    /// See ExemptPairs. @param crossings  vertices of cloth and of bodies(), of triangles that cross
+    virtual void set_body_crossings(View<const std::pair<int, int>>) {}
+    /// See ExemptPairs.
     virtual void set_crossing(View<const unsigned char> crosses) = 0;
 
     /// Updates the deviation of the cloth from its prediction.

@@ -79,12 +79,21 @@ public:
 
     /// Marks cloth that crosses cloth at the start of the next step. Contact would keep it on the wrong side,
     /// so its pairs are exempt (ExemptPairs).
-    /// @param crosses  [vertices of cloth, then of bodies()] see Crosses
+    /// @param crosses  [vertices] 1 for the corners of triangles that cross others
     void set_crossing(View<const unsigned char> crosses)
     {
         if (between_)
             between_->set_crossing(crosses);
     }
+
+    /// Likewise with bodies. @param crossings  vertices of cloth and of bodies(), of triangles that cross
+    void set_body_crossings(View<const std::pair<int, int>> crossings)
+    {
+        between_->set_body_crossings(crossings);
+    }
+
+    /// True if a body jumps in a step of dt [s] that has been set: it was replaced rather than moved.
+    bool have_bodies_jumped(double dt) { return between_ && between_->have_bodies_jumped(dt); }
 
     /// Discards the state of earlier steps, for cloth that was moved elsewhere.
     void forget();

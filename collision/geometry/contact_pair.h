@@ -34,7 +34,7 @@ enum class ContactKind {
 //    kFaceShape, kEdgeShape: a cloth face or edge against a corner or edge of a ShapeSkeleton
 //    kGuard: any of the first three, of the pairs that may not cross: it presses at a small part of the gap,
 //                                      towards the side on which the cloth is
-//    kTwoSided: likewise, of surfaces without an inside: it presses at the whole gap
+//    kTwoSided: likewise, of cloth behind a surface without an inside: it presses at the whole gap
 //    kClothVertexFace, kClothEdgeEdge: both are cloth. Weights are signed, sum 0, and point is zero:
 //                                      sum_k weight_k x_k runs from one side to the other.
 struct ContactPair {

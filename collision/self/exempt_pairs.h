@@ -1,23 +1,22 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "collision/self/pair_rules.h"
 
 namespace toile::collision {
 
-/// What the triangles of a vertex cross, as flags.
-struct Crosses {
-    static constexpr unsigned char kCloth = 1, kBody = 2; ///< of a vertex of cloth
-    static constexpr unsigned char kOfBody = 4;           ///< of a vertex of a body: it crosses cloth
-};
+/// A surface that faces within this cosine of
+/// the owner's normal is the owner's own [-]; all others pass.
+inline constexpr double kOwnSheet = 0.3;
 
 /// ExemptPairs for kernels: borrowed fields of host or device.
 struct ExemptRule {
     View<const Vec3> rest;             ///< [vertices] [m]
     double too_near;                   ///< [m]
     View<const unsigned char> is_thin; ///< [vertices] around a sliver
-    View<const unsigned char> crosses; ///< [vertices] see Crosses
+    View<const unsigned char> crosses; ///< [vertices] of triangles of cloth that cross
 
     // Bodies that cloth lets through: see LetThrough.
     View<const unsigned char> lets_through = {}; ///< [cloth] empty: no cloth does
@@ -27,16 +26,14 @@ struct ExemptRule {
     TOILE_HD bool is_exempt(const NearPair& pair) const
     {
         const int first = first_count(pair.is_edge_edge);
-        unsigned char side[2] = {0, 0};
+        bool crossing[2] = {false, false};
         bool is_near_sliver = false;
         for (int k = 0; k < 4; ++k) {
-            side[k < first ? 0 : 1] |= crosses[pair.vertex[k]];
+            bool& side = crossing[k < first ? 0 : 1];
+            side = side || crosses[pair.vertex[k]];
             is_near_sliver = is_near_sliver || is_thin[pair.vertex[k]];
         }
-        const unsigned char all = side[0] | side[1];
-        const bool crossing = (side[0] & side[1] & Crosses::kCloth) != 0 ||
-                              ((all & Crosses::kBody) != 0 && (all & Crosses::kOfBody) != 0);
-        return crossing || (is_near_sliver && is_sliver_pair(pair)) || is_let_through(pair);
+        return (crossing[0] && crossing[1]) || (is_near_sliver && is_sliver_pair(pair)) || is_let_through(pair);
     }
 
 private:
@@ -50,7 +47,7 @@ private:
             if (v >= cloth)
                 normal += body_normal[v - cloth];
         for (const int v : pair.vertex)
-            if (v < cloth && lets_through[v] != 0 && owner_normal[v].dot(normal) < 0.0)
+            if (v < cloth && lets_through[v] != 0 && owner_normal[v].dot(normal) < kOwnSheet * normal.norm())
                 return true;
         return false;
     }
@@ -77,10 +74,12 @@ public:
     /// @param min_gap  [m] see CollisionFreeStep
     ExemptPairs(View<const Vec3> rest, View<const double> altitude, double min_gap);
 
-    /// @param crosses  [vertices] see Crosses, for the corners of triangles that cross; initially none
+    /// @param crosses  [vertices] 1 for the corners of triangles of cloth that cross others; initially none
     void set_crossing(View<const unsigned char> crosses) { crosses_.assign(crosses.begin(), crosses.end()); }
-    /// Adds a flag to a vertex.
-    void add_crossing(int v, unsigned char flag) { crosses_[v] |= flag; }
+    /// A vertex of cloth and one of a body, of triangles that cross.
+    using BodyCrossing = std::pair<int, int>;
+    void set_body_crossings(std::vector<BodyCrossing> crossings);
+    void add_body_crossings(View<const BodyCrossing> more);
 
     /// Sets the bodies that cloth lets through; borrowed. See ExemptRule.
     void set_let_through(View<const unsigned char> lets_through, View<const Vec3> owner_normal,
@@ -91,7 +90,7 @@ public:
         body_normal_ = body_normal;
     }
 
-    bool is_exempt(const NearPair& pair) const { return rule().is_exempt(pair); }
+    bool is_exempt(const NearPair& pair) const { return rule().is_exempt(pair) || crosses_body(pair); }
     ExemptRule rule() const
     {
         return {rest_, too_near_, is_thin_, crosses_, lets_through_, owner_normal_, body_normal_};
@@ -101,7 +100,10 @@ private:
     std::vector<Vec3> rest_;
     double too_near_;                    ///< [m]
     std::vector<unsigned char> is_thin_; ///< [vertices] around a sliver
-    std::vector<unsigned char> crosses_; ///< [vertices] see Crosses
+    bool crosses_body(const NearPair& pair) const;
+
+    std::vector<unsigned char> crosses_;        ///< [vertices] of triangles of cloth that cross
+    std::vector<BodyCrossing> body_crossings_; ///< ascending
     View<const unsigned char> lets_through_;
     View<const Vec3> owner_normal_, body_normal_;
 };

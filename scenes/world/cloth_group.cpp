@@ -88,6 +88,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         report.steps = 1;
         return report;
     }
+    if (contact_ && contact_->have_bodies_jumped(dt))
+        may_cross_ = true;
     if (may_cross_ && contact_ && contact_->keeps_cloth_apart())
         mark_crossings();
     mark_fixed(t_t1);
@@ -182,20 +184,17 @@ void ClothGroup::mark_crossings()
     const StageScope stage("scenes/find_crossings");
     const std::vector<Vec3> x = surfaces();
     const collision::BodySurfaces* bodies = contact_->bodies();
-    std::vector<unsigned char> crosses(x.size() + (bodies ? bodies->vertex_count() : 0), 0);
+    std::vector<unsigned char> crosses(x.size(), 0);
     may_cross_ = false;
-    using collision::Crosses;
-    const auto mark = [&](const Triangle& t, int first, unsigned char flag) {
-        may_cross_ = true;
-        for (const int v : t)
-            crosses[first + v] |= flag;
-    };
     for (const collision::Crossing& crossing : collision::find_crossings(triangles_, x)) {
         if (solids_ && solid_of(crossing.a) >= 0 && solid_of(crossing.a) == solid_of(crossing.b))
             continue;
-        mark(triangles_[crossing.a], 0, Crosses::kCloth);
-        mark(triangles_[crossing.b], 0, Crosses::kCloth);
+        may_cross_ = true;
+        for (const int t : {crossing.a, crossing.b})
+            for (const int v : triangles_[t])
+                crosses[v] = 1;
     }
+    contact_->set_crossing(crosses);
     if (bodies) {
         std::vector<Vec3> body_x(bodies->vertex_count());
         bodies->pose_t0(body_x);
@@ -206,16 +205,19 @@ void ClothGroup::mark_crossings()
             crossing_cloth.push_back(crossing.a);
         contact_->close_let_through(crossing_cloth);
         crossing_bodies_ = 0;
+        std::vector<std::pair<int, int>> body_crossings;
         for (const collision::Crossing& crossing : crossings) {
             if (contact_->lets_through(triangles_[crossing.a]))
                 continue;
             if (crossing_bodies_++ == 0)
                 first_crossing_ = triangles_[crossing.a][0];
-            mark(triangles_[crossing.a], 0, Crosses::kBody);
-            mark(bodies->triangles()[crossing.b], int(x.size()), Crosses::kOfBody);
+            for (const int v : triangles_[crossing.a])
+                for (const int w : bodies->triangles()[crossing.b])
+                    body_crossings.emplace_back(v, w);
         }
+        may_cross_ = may_cross_ || crossing_bodies_ > 0;
+        contact_->set_body_crossings(body_crossings);
     }
-    contact_->set_crossing(crosses);
 }
 
 /// Solid that owns a triangle of triangles_, -1 for cloth.

@@ -104,9 +104,14 @@ void HostClothContact::carry(View<const Vec3> advected)
         body_motion_[b] = end[b] - base_[count_ + b];
     carry_.carry(base_, way, end, slack_, fixed_,
                  [this](View<const BlockedPair> blocked) { return release(blocked); });
+    std::vector<ExemptPairs::BodyCrossing> crossings;
     for (const CarriedStart::StuckPair& stuck : carry_.stuck())
         for (const int v : stuck)
-            exempt_.add_crossing(v, v < count_ ? Crosses::kBody : Crosses::kOfBody);
+            for (const int w : stuck)
+                if (v < count_ && w >= count_)
+                    crossings.emplace_back(v, w);
+    if (!crossings.empty())
+        exempt_.add_body_crossings(crossings);
 }
 
 void HostClothContact::show_let_through()
@@ -131,6 +136,22 @@ bool HostClothContact::release(View<const BlockedPair> blocked)
     return has_released;
 }
 
+void HostClothContact::set_crossing(View<const unsigned char> crosses)
+{
+    std::vector<unsigned char> all(crosses.begin(), crosses.end());
+    all.resize(base_.size(), 0);
+    exempt_.set_crossing(all);
+}
+
+/// Numbers the vertices of bodies after those of cloth.
+void HostClothContact::set_body_crossings(View<const std::pair<int, int>> crossings)
+{
+    std::vector<ExemptPairs::BodyCrossing> all(crossings.begin(), crossings.end());
+    for (auto& [cloth, body] : all)
+        body += count_;
+    exempt_.set_body_crossings(std::move(all));
+}
+
 int HostClothContact::first_stuck() const
 {
     const CarriedStart::StuckPair& pair = carry_.stuck().front();
@@ -139,8 +160,8 @@ int HostClothContact::first_stuck() const
 
 bool HostClothContact::replaces(const ContactPair& pair) const
 {
-    if (pair.kind < ContactKind::kGuard && bodies_.is_open(pair.collider))
-        return true;
+    if (pair.kind < ContactKind::kGuard && bodies_.is_open(pair.collider) && pair.gap(base_) < 0.0)
+        return true; // it stays behind: a guard keeps it there
     if (!let_through_.any() || pair.is_between_cloths())
         return false;
     for (int k = 0; k < pair.count(); ++k)
@@ -200,8 +221,14 @@ ContactPair HostClothContact::guard_of(const ContactPair& pair, const NearPair& 
             guard.collider = bodies_.collider_of(v - count_);
         }
     }
-    if (bodies_.is_open(guard.collider))
-        guard.kind = ContactKind::kTwoSided;
+    if (bodies_.is_open(guard.collider)) {
+        Vec3 outwards = Vec3::Zero();
+        for (const int v : pair.vertex)
+            if (v >= count_)
+                outwards += let_through_.body_normal()[v - count_];
+        if (outwards.dot(guard.normal) < 0.0)
+            guard.kind = ContactKind::kTwoSided;
+    }
     return guard;
 }
 

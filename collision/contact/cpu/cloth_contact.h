@@ -23,12 +23,14 @@ public:
     bool replaces(const ContactPair& pair) const override;
     void close_let_through(View<const int> crossing) override { let_through_.close(crossing); }
     bool lets_through(const Triangle& t) const override { return let_through_.is_released(t); }
+    bool have_bodies_jumped(double dt) override { return bodies_.find_jumps(dt); }
     const BodySurfaces* bodies() const override { return &bodies_; }
     void append_pairs(std::vector<ContactPair>& out) const override;
     bool is_clear() const override { return pairs_.empty(); }
     bool advance(StepField x, const FindSupported& find_supported) override;
     bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) override;
-    void set_crossing(View<const unsigned char> crosses) override { exempt_.set_crossing(crosses); }
+    void set_crossing(View<const unsigned char> crosses) override;
+    void set_body_crossings(View<const std::pair<int, int>> crossings) override;
     void end_step(StepField x) override;
     void forget() override;
 

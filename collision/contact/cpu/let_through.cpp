@@ -25,6 +25,11 @@ LetThrough::LetThrough(const BodySurfaces& bodies, View<const Triangle> triangle
     : bodies_(bodies), triangles_(triangles.begin(), triangles.end()), owner_(vertices),
       released_(vertices, 0), owner_normal_(vertices, Vec3::Zero())
 {
+    neighbours_.resize(vertices);
+    for (const Triangle& t : triangles)
+        for (int k = 0; k < 3; ++k)
+            for (const int other : {t[(k + 1) % 3], t[(k + 2) % 3]})
+                neighbours_[t[k]].push_back(other);
 }
 
 void LetThrough::begin_step(View<const Vec3> x, View<const NearestSurface> nearest)
@@ -37,14 +42,15 @@ void LetThrough::begin_step(View<const Vec3> x, View<const NearestSurface> neare
     }
 }
 
-/// The owner moves on to the nearest surface, but not to one that opposes it while it is near itself.
+/// The owner moves on to the nearest surface, but not to one that faces elsewhere while it is near itself.
 void LetThrough::walk(int v, const Vec3& x, const NearestSurface& nearest)
 {
     NearestSurface& owner = owner_[v];
     if (nearest.collider >= 0) {
-        const bool opposes = owner.collider >= 0 &&
-                             bodies_.normal_at(nearest, x).dot(bodies_.normal_at(owner, x)) < 0.0;
-        if (!opposes || (released_[v] == 0 && bodies_.distance_to(owner, x) > kLeft))
+        const bool is_other =
+            owner.collider >= 0 &&
+            bodies_.normal_at(nearest, x).dot(bodies_.normal_at(owner, x)) < kOwnSheet;
+        if (!is_other || (released_[v] == 0 && bodies_.distance_to(owner, x) > kLeft))
             owner = nearest;
     }
     if (owner.collider >= 0)
@@ -53,14 +59,55 @@ void LetThrough::walk(int v, const Vec3& x, const NearestSurface& nearest)
 
 bool LetThrough::release(View<const int> vertices)
 {
-    bool any = false;
+    std::vector<int> added;
     for (const int v : vertices)
         if (owner_[v].collider >= 0 && released_[v] == 0) {
             released_[v] = 1;
-            ++count_;
-            any = true;
+            added.push_back(v);
         }
-    return any;
+    count_ += int(added.size());
+    std::vector<unsigned char> is_seen(released_.size(), 0);
+    std::vector<int> patch;
+    for (const int seed : added) {
+        if (is_seen[seed] != 0)
+            continue;
+        patch.assign(1, seed);
+        is_seen[seed] = 1;
+        for (size_t i = 0; i < patch.size(); ++i)
+            for (const int v : neighbours_[patch[i]])
+                if (released_[v] != 0 && is_seen[v] == 0) {
+                    is_seen[v] = 1;
+                    patch.push_back(v);
+                }
+        agree(patch);
+    }
+    return !added.empty();
+}
+
+/// Gives a connected patch owners on one side, that of most of its vertices. The others take the owner of a
+/// neighbour. Cloth that belonged to both sides would be torn between them.
+void LetThrough::agree(View<const int> patch)
+{
+    const Vec3 reference = owner_normal_[patch[0]];
+    int ahead = 0;
+    for (const int v : patch)
+        ahead += owner_normal_[v].dot(reference) >= 0.0 ? 1 : -1;
+    const double side = ahead >= 0 ? 1.0 : -1.0;
+    const auto agrees = [&](int v) { return side * owner_normal_[v].dot(reference) >= 0.0; };
+    for (bool goes_on = true; goes_on;) {
+        goes_on = false;
+        for (const int v : patch) {
+            if (agrees(v))
+                continue;
+            const auto model = std::find_if(neighbours_[v].begin(), neighbours_[v].end(),
+                                            [&](int n) { return released_[n] != 0 && agrees(n); });
+            if (model == neighbours_[v].end())
+                continue;
+            owner_[v] = owner_[*model];
+            owner_normal_[v] = owner_normal_[*model];
+            goes_on = true;
+        }
+    }
 }
 
 void LetThrough::close(View<const int> crossing)

@@ -5,6 +5,7 @@
 
 #include "collision/body/body_surfaces.h"
 #include "collision/body/collider_pairs_kernels.h"
+#include "collision/self/exempt_pairs.h"
 
 namespace toile::collision {
 
@@ -20,8 +21,8 @@ public:
     /// @param nearest  [vertices] surface nearest to each
     void begin_step(View<const Vec3> x, View<const NearestSurface> nearest);
 
-    /// Lets surfaces that oppose their owners pass through these vertices. False if they did so already or have
-    /// no owner.
+    /// Lets surfaces that oppose their owners pass through these vertices. All of a patch have owners on one
+    /// side. False if they did so already or have no owner.
     bool release(View<const int> vertices);
 
     /// Ends it for patches of cloth that no longer cross bodies.
@@ -39,7 +40,7 @@ public:
     /// True if the normal of a surface opposes the owner of a released vertex.
     bool lets_pass(int v, const Vec3& normal) const
     {
-        return is_released(v) && owner_normal_[v].dot(normal) < 0.0;
+        return is_released(v) && owner_normal_[v].dot(normal) < kOwnSheet;
     }
 
     View<const unsigned char> released() const { return released_; }   ///< [vertices]
@@ -49,9 +50,11 @@ public:
 
 private:
     void walk(int v, const Vec3& x, const NearestSurface& nearest);
+    void agree(View<const int> patch);
 
     const BodySurfaces& bodies_;
     std::vector<Triangle> triangles_;
+    std::vector<std::vector<int>> neighbours_; ///< [vertices]
     std::vector<NearestSurface> owner_; ///< [vertices]
     std::vector<unsigned char> released_;
     std::vector<Vec3> owner_normal_, body_normal_;

@@ -140,7 +140,8 @@ TEST(Penetration, SkipsNonFiniteVertices)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<Vec3> samples{{0.1, -0.02, 0.1}, {nan, 0.0, 0.0}, {0.0, -HUGE_VAL, 0.0}};
-    EXPECT_NEAR(meter_of(sheet_mesh(1.0, 10, 0.0)).measure(samples).max_depth, 0.02, 1e-12);
+    PenetrationMeter::Sides sides(samples.size(), 1);
+    EXPECT_NEAR(meter_of(sheet_mesh(1.0, 10, 0.0)).measure(samples, &sides).max_depth, 0.02, 1e-12);
     const PenetrationMeter block = meter_of(subdivide(box_mesh(Vec3(-1, -1, -1), Vec3(1, 0, 1)), 1));
     EXPECT_NEAR(block.measure(samples).max_depth, 0.02, 1e-12);
 }
