@@ -1,0 +1,175 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/check/find_crossings.h"
+#include "collision/check/penetration.h"
+#include "garment/energy/strain_limit/strain_limit.h"
+#include "scenes/colliders/scene_body.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/world/world.h"
+#include "tests/support/temporary_folder.h"
+
+/// Cloth never crosses a body: fast, thin, sharp and open ones.
+namespace toile::test {
+
+using namespace collision;
+using namespace scenes;
+
+namespace {
+
+/// What a run has come to.
+struct Outcome {
+    int crossings = 0;   ///< with meshes, sum over frames
+    double depth = 0.0;  ///< [m] in shapes, max over frames
+    double strain = 0.0; ///< [-] max over frames
+    StepReport::Status worst = StepReport::Status::Converged;
+    std::vector<Vec3> x; ///< in the last frame [m]
+};
+
+Outcome run(const std::string& text, const std::string& source = "bodies.json")
+{
+    const Scene scene = parse_scene(text, source);
+    World world(scene);
+    std::vector<SceneBody> bodies = make_bodies(scene);
+    const ClothState& cloth = world.cloths()[0];
+    Outcome outcome;
+    while (world.frame() + 1 < world.frame_count()) {
+        const StepReport report = world.advance_frame();
+        outcome.worst = std::max(outcome.worst, report.status);
+        outcome.strain = std::max(outcome.strain, report.max_strain);
+        for (SceneBody& body : bodies) {
+            body.advance_to(world.frame() * scene.frame_duration());
+            if (!body.shape()) {
+                const TriangleMesh& surface = body.contact_surface();
+                outcome.crossings += int(find_crossings(cloth.triangles, cloth.positions, surface.triangles,
+                                                        surface.positions)
+                                             .size());
+                continue;
+            }
+            for (const Triangle& t : cloth.triangles)
+                outcome.depth =
+                    std::max(outcome.depth, penetration_of_triangle(*body.shape(), body.pose(),
+                                                                    cloth.positions[t[0]], cloth.positions[t[1]],
+                                                                    cloth.positions[t[2]]));
+        }
+    }
+    outcome.x = cloth.positions;
+    return outcome;
+}
+
+/// An arm that goes through 60 cm at `speed` [m/s], and a curtain in its way.
+std::string curtain(const std::string& arm, double speed)
+{
+    return R"({"toile": 1, "frames": 20, "avatars": [{"name": "arm", "rotate_deg": [0, 0, 90],
+        "translate": [0, 0.6, 0.3], "keyframes": [{"time": 0.3}, {"time": )" +
+           std::to_string(0.3 + 0.6 / speed) + R"(, "translate": [0, 0, -0.6]}], )" + arm + R"(}],
+        "cloths": [{"name": "curtain", "rectangle": {"size": [0.8, 1], "resolution": 0.04},
+        "rotate_deg": [90, 0, 0], "translate": [0, 0.6, 0]}], "attachments": [{"cloth": "curtain",
+        "select": {"box": {"lower": [-1, 1.08, -1], "upper": [1, 1.2, 1]}}}]})";
+}
+
+/// Vertices of a curtain that the arm has left behind: at its height, behind its front.
+int left_behind(const Outcome& outcome)
+{
+    return int(std::count_if(outcome.x.begin(), outcome.x.end(), [](const Vec3& x) {
+        return std::abs(x.y() - 0.6) < 0.03 && x.z() > -0.3;
+    }));
+}
+
+TEST(Bodies, CarryACurtainAlongAtAnySpeed)
+{
+    for (const double speed : {5.0, 15.0, 40.0}) {
+        const Outcome outcome = run(curtain(R"("capsule": {"radius": 0.04, "length": 0.8})", speed));
+        EXPECT_LT(outcome.depth, 1e-3) << speed << " m/s";
+        EXPECT_EQ(left_behind(outcome), 0) << speed << " m/s";
+        EXPECT_LT(outcome.strain, 0.06 + garment::kStrainMargin) << speed << " m/s";
+    }
+}
+
+TEST(Bodies, SayThatTheyHaveJumpedThroughCloth)
+{
+    const Outcome outcome = run(curtain(R"("capsule": {"radius": 0.04, "length": 0.8})", 500.0));
+    EXPECT_NE(outcome.worst, StepReport::Status::Converged);
+}
+
+TEST(Bodies, HoldClothOnBoxesOfAnyThickness)
+{
+    for (const double thickness : {0.02, 0.05, 0.1}) {
+        const Outcome outcome = run(R"({"toile": 1, "frames": 30, "avatars": [{"name": "box", "box":
+            {"size": [0.3, )" + std::to_string(thickness) +
+                                    R"(, 0.3]}, "translate": [0, )" + std::to_string(0.5 - 0.5 * thickness) +
+                                    R"(, 0]}], "cloths": [{"name": "c", "rectangle": {"size": [0.5, 0.5],
+            "resolution": 0.03}, "translate": [0.01, 0.53, 0], "rotate_deg": [0, 10, 0], "fabric": "silk"}]})");
+        EXPECT_LT(outcome.depth, 1e-3) << thickness;
+        EXPECT_LT(outcome.strain, 0.05 + garment::kStrainMargin) << thickness;
+        const double lowest = std::min_element(outcome.x.begin(), outcome.x.end(), [](const Vec3& a,
+                                                                                      const Vec3& b) {
+                                  return a.y() < b.y();
+                              })->y();
+        EXPECT_GT(lowest, 0.2) << thickness << ": it has slid off";
+    }
+}
+
+/// Writes a square plate of two triangles at height 0.
+void write_plate(const TemporaryFolder& folder, bool faces_up)
+{
+    folder.write("plate.obj", std::string("v -0.2 0 -0.2\nv 0.2 0 -0.2\nv 0.2 0 0.2\nv -0.2 0 0.2\n") +
+                                  (faces_up ? "f 1 4 3\nf 1 3 2\n" : "f 1 3 4\nf 1 2 3\n"));
+}
+
+TEST(Bodies, HaveTwoSidesWhereTheyAreOpen)
+{
+    for (const bool faces_up : {true, false}) {
+        const TemporaryFolder folder;
+        write_plate(folder, faces_up);
+        const Outcome outcome = run(R"({"toile": 1, "frames": 20, "avatars": [{"name": "plate",
+            "file": "plate.obj", "translate": [0, 0.5, 0]}], "cloths": [{"name": "c", "rectangle":
+            {"size": [0.3, 0.3], "resolution": 0.04}, "translate": [0, 0.6, 0], "fabric": "cotton"}]})",
+                                    folder.path() / "scene.json");
+        EXPECT_EQ(outcome.crossings, 0) << faces_up;
+        for (const Vec3& x : outcome.x)
+            EXPECT_GT(x.y(), 0.5) << faces_up;
+    }
+}
+
+TEST(Bodies, HoldAtTheirCorners)
+{
+    const TemporaryFolder folder;
+    folder.write("cube.obj", "v -0.2 -0.2 -0.2\nv 0.2 -0.2 -0.2\nv 0.2 0.2 -0.2\nv -0.2 0.2 -0.2\n"
+                             "v -0.2 -0.2 0.2\nv 0.2 -0.2 0.2\nv 0.2 0.2 0.2\nv -0.2 0.2 0.2\n"
+                             "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\nf 1 5 8 4\nf 2 3 7 6\n");
+    const Outcome outcome = run(R"({"toile": 1, "frames": 12, "avatars": [{"name": "box", "file": "cube.obj",
+        "translate": [0, 0.2, 0]}], "cloths": [{"name": "c", "rectangle": {"size": [1, 1], "resolution": 0.05},
+        "translate": [0.03, 0.46, 0.02], "rotate_deg": [0, 17, 0], "fabric": "cotton"}]})",
+                                folder.path() / "scene.json");
+    EXPECT_EQ(outcome.crossings, 0);
+    EXPECT_LT(outcome.strain, 0.06 + garment::kStrainMargin);
+}
+
+/// Springs to a body by default; exactly where that is asked for.
+TEST(Bodies, AttachBySpringsUnlessAskedToHoldExactly)
+{
+    const auto stretched = [](const std::string& more) {
+        // A band around a ball, held on its whole upper half while the ball sinks away below a plate.
+        return run(R"({"toile": 1, "frames": 6, "avatars": [{"name": "ball", "sphere": {"radius": 0.2},
+            "keyframes": [{"time": 0}, {"time": 0.15, "translate": [0, -0.03, 0]}]}],
+            "cloths": [{"name": "c", "rectangle": {"size": [0.3, 0.3], "resolution": 0.03},
+            "translate": [0, 0.205, 0], "fabric": "cotton"}],
+            "attachments": [{"cloth": "c", "select": {"box": {"lower": [-0.05, 0, -0.05],
+            "upper": [0.05, 1, 0.05]}}, "to": "ball")" +
+                   more + "}]}");
+    };
+    for (const char* more : {"", R"(, "exact": true)"}) {
+        const Outcome outcome = stretched(more);
+        EXPECT_LT(outcome.depth, 1e-3) << more;
+        double nearest = 1.0;
+        for (const Vec3& x : outcome.x)
+            nearest = std::min(nearest, (x - Vec3(0, 0.17, 0)).norm());
+        EXPECT_LT(nearest, 0.01) << more << ": the middle has gone along";
+    }
+}
+
+} // namespace
+} // namespace toile::test
