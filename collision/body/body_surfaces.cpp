@@ -34,8 +34,9 @@ BodySurfaces::BodySurfaces(const std::vector<ContactCollider>& colliders, double
 bool BodySurfaces::is_moving(const Part& part)
 {
     const ContactCollider& collider = part.collider;
-    return !part.jumps && (collider.mesh ? collider.mesh->is_moving()
-                                         : collider.shape->pose_t0().matrix() != collider.shape->pose().matrix());
+    return !part.jumps &&
+           (collider.mesh ? collider.mesh->is_moving()
+                          : collider.shape->pose_t0().matrix() != collider.shape->pose().matrix());
 }
 
 bool BodySurfaces::is_moving() const
@@ -80,6 +81,23 @@ std::vector<unsigned char> BodySurfaces::are_open() const
     for (const Part& part : parts_)
         open.insert(open.end(), part.count, (unsigned char)(is_open(part.number) ? 1 : 0));
     return open;
+}
+
+bool BodySurfaces::is_inside(const Vec3& x) const
+{
+    for (int c = 0; c < int(colliders_.size()); ++c) {
+        const ContactCollider& collider = colliders_[c];
+        if (collider.shape) {
+            if (!std::holds_alternative<PlaneShape>(collider.shape->shape()) &&
+                collider.shape->closest(x).signed_distance < 0.0)
+                return true;
+        } else if (!is_open(c)) {
+            const std::optional<SurfacePoint> at = collider.mesh->surface().closest(x);
+            if (at && at->signed_distance < 0.0)
+                return true;
+        }
+    }
+    return false;
 }
 
 Vec3 BodySurfaces::normal_at(const NearestSurface& at, const Vec3& x) const

@@ -7,9 +7,9 @@
 
 namespace toile::collision {
 
-/// Triangle surfaces of all colliders as one list of vertices, at both ends of the current step: meshes as they
-/// are, boxes by their sides, round shapes by facets just below them. Planes are left out: nothing passes through
-/// a half space.
+/// Triangle surfaces of all colliders as one list of vertices, at both ends of the current step: meshes as
+/// they are, boxes by their sides, round shapes by facets just below them. Planes are left out: nothing
+/// passes through a half space.
 class BodySurfaces {
 public:
     /// @param sag  [m] maximum depth of facets below a round shape
@@ -23,12 +23,14 @@ public:
     /// Maximum speed of a surface that carries cloth along [m/s]. A faster one was replaced.
     static constexpr double kMaxSpeed = 50.0;
 
-    /// Finds the colliders that jump in the current step of dt [s]. They are at their poses at t1 all the time.
+    /// Finds the colliders that jump in the current step of dt [s]. They are at their poses at t1 all the
+    /// time.
     bool find_jumps(double dt);
-    int collider_of(int vertex) const; ///< number of the collider in the constructor's list
-    bool is_open(int collider) const;  ///< a mesh with a border: it has no inside
+    int collider_of(int vertex) const;           ///< number of the collider in the constructor's list
+    bool is_open(int collider) const;            ///< a mesh with a border: it has no inside
     std::vector<unsigned char> are_open() const; ///< [vertices] 1: of an open mesh
 
+    bool is_inside(const Vec3& x) const; ///< of a body at t1 that has an inside
     /// Unit normal at t1 of a surface point, or of a solid near x.
     Vec3 normal_at(const NearestSurface& at, const Vec3& x) const;
     /// Distance at t1 of x from the triangle of a surface point, or from a solid [m].

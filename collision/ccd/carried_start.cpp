@@ -18,7 +18,8 @@ constexpr double kReleasing = 1.0 / 4.0, kSmallestPart = 1.0 / 16.0;
 /// Releases in one part: each lets bodies through one more ring of cloth.
 constexpr int kReleases = 8;
 
-/// Part of the motion up to a contact that cloth makes before it goes along [-]. Rounding must not meet it again.
+/// Part of the motion up to a contact that cloth makes before it goes along [-]. Rounding must not meet it
+/// again.
 constexpr double kTaken = 0.95;
 
 /// Gap that a push restores, relative to the minimum gap [-]; bounds of a push and of all pushes of a vertex
@@ -157,8 +158,7 @@ void CarriedStart::divert(const BlockedPair& blocked, View<const Vec3> x)
             rides = rides && rides_[v] != 0;
     }
     if (rides) {
-        push(pair,
-             separating_direction(pair.is_edge_edge, at, weight, closest_difference(weight, at)));
+        push(pair, separating_direction(pair.is_edge_edge, at, weight, closest_difference(weight, at)));
         return;
     }
     const double kept = kTaken * blocked.fraction;

@@ -17,8 +17,8 @@ namespace toile::collision {
 ///   2. cloth that does so already is pushed off, along the direction at the time of contact, by little;
 ///   3. cloth that would now meet cloth is limited as in CollisionFreeStep.
 /// Where this does not end in a few rounds, the motion is divided into two parts, each of which begins anew.
-/// Where bodies close on the cloth between them from both sides, pairs are left in small parts; the caller may
-/// release some of them. Those that are left in the smallest part are stuck.
+/// Where bodies close on the cloth between them from both sides, pairs are left in small parts; the caller
+/// may release some of them. Those that are left in the smallest part are stuck.
 ///
 /// Known relatives: IPC moves prescribed bodies as far as collisions let them and pulls them on by an
 /// augmented Lagrangian [Li et al. 2020, section 5.3]. Here a body always arrives on time.
@@ -26,8 +26,8 @@ class CarriedStart {
 public:
     using StuckPair = std::array<int, 4>; ///< NearPair::vertex
 
-    /// Exempts some of the pairs that block bodies in a small part; the part is then tried again. Returns false
-    /// if there are none that may be exempt.
+    /// Exempts some of the pairs that block bodies in a small part; the part is then tried again. Returns
+    /// false if there are none that may be exempt.
     using Release = std::function<bool(View<const BlockedPair> blocked)>;
 
     /// @param near, exempt      of cloth and bodies; borrowed

@@ -77,8 +77,7 @@ struct PenetrationMeter::Inside {
 PenetrationMeter::PenetrationMeter(View<const Triangle> triangles, View<const Vec3> positions,
                                    const Settings& settings)
     : settings_(settings), surface_(triangles, positions), bounds_(bounds(positions)),
-      is_closed_(surface_.edges().is_closed),
-      is_border_vertex_(positions.size(), 0)
+      is_closed_(surface_.edges().is_closed), is_border_vertex_(positions.size(), 0)
 {
     rays_.add(positions, triangles);
     rays_.commit();
@@ -100,8 +99,8 @@ Penetration PenetrationMeter::measure(View<const Vec3> samples, Sides* sides) co
 {
     const StageScope stage("collision/penetration");
     std::vector<Inside> inside = is_closed_ ? find_inside(samples)
-                                 : sides ? find_beyond(samples, *sides)
-                                         : std::vector<Inside>{};
+                                 : sides    ? find_beyond(samples, *sides)
+                                            : std::vector<Inside>{};
     std::erase_if(inside, [](const Inside& item) { return item.sample < 0; });
     if (is_closed_)
         exclude_pinched(inside);

@@ -46,14 +46,14 @@ struct Penetration {
 ///   - the mesh winds around it more than once,
 ///   - its nearest surface point is buried in another part of the body, or
 ///   - surface within pinch_margin of the sample or of that point is buried, or has no room in front.
-/// Open mesh: winding numbers are undefined, and neither side is the inside. A sample is inside if it is near the
-/// mesh, within open_depth and not beside its border, on the other side than when it was last near. A mesh turned
-/// inside out has no inside.
+/// Open mesh: winding numbers are undefined, and neither side is the inside. A sample is inside if it is near
+/// the mesh, within open_depth and not beside its border, on the other side than when it was last near. A
+/// mesh turned inside out has no inside.
 class PenetrationMeter {
 public:
     struct Settings {
         double pinch_margin = 0.01; ///< [m]
-        double room = 0.0; ///< [m] that cloth needs between two surfaces that face each other; 0: none
+        double room = 0.0;        ///< [m] that cloth needs between two surfaces that face each other; 0: none
         double open_depth = 0.05; ///< [m] of an open mesh: samples farther away may be on their way around it
     };
 

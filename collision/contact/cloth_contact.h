@@ -24,8 +24,8 @@ public:
     virtual View<const NearestSurface> nearest() const = 0; ///< [vertices] of the last step
 };
 
-/// Keeps cloth from crossing cloth and bodies during a step, and finds the pairs of cloth with cloth that press.
-/// On the CPU bodies are colliders; on a GPU they are left out.
+/// Keeps cloth from crossing cloth and bodies during a step, and finds the pairs of cloth with cloth that
+/// press. On the CPU bodies are colliders; on a GPU they are left out.
 ///
 /// Pairs are found once, for the expected motion of the step. They serve until the cloth is limited or has
 /// slid from where they were found; then they are searched for again from its new position.
@@ -51,10 +51,11 @@ public:
     /// Number of vertices that let a body through (LetThrough).
     virtual int let_through_count() const { return 0; }
     virtual int first_let_through() const { return -1; }
-    /// True for a pair with a collider that makes no term: its cloth lets the body through, or the pairs here know
-    /// the side, which a surface without an inside does not.
+    /// True for a pair with a collider that makes no term: its cloth lets the body through, or the pairs here
+    /// know the side, which a surface without an inside does not.
     virtual bool replaces(const ContactPair&) const { return false; }
-    /// Ends it where nothing crosses any more. @param crossing  all triangles of cloth that cross bodies() at t0
+    /// Ends it where nothing crosses any more. @param crossing  all triangles of cloth that cross bodies() at
+    /// t0
     virtual void close_let_through(View<const int>) {}
     /// True for a triangle of cloth that lets a body through.
     virtual bool lets_through(const Triangle&) const { return false; }
@@ -83,7 +84,9 @@ public:
     virtual bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) = 0;
 
     /// See ExemptPairs. @param crossings  vertices of cloth and of bodies(), of triangles that cross
-    virtual void set_body_crossings(View<const std::pair<int, int>>) {}
+    /// @param inside  [vertices of cloth] 1: inside a body; empty: none is
+    virtual void set_body_crossings(View<const std::pair<int, int>>, View<const unsigned char> /*inside*/) {}
+    virtual bool lets_through(int /*vertex*/) const { return false; } ///< of cloth
     /// See ExemptPairs.
     virtual void set_crossing(View<const unsigned char> crosses) = 0;
 

@@ -86,11 +86,14 @@ public:
             between_->set_crossing(crosses);
     }
 
-    /// Likewise with bodies. @param crossings  vertices of cloth and of bodies(), of triangles that cross
-    void set_body_crossings(View<const std::pair<int, int>> crossings)
+    /// Likewise with bodies.
+    /// @param crossings  vertices of cloth and of bodies(), of triangles that cross
+    /// @param inside     [vertices] 1: inside a body; empty: none is
+    void set_body_crossings(View<const std::pair<int, int>> crossings, View<const unsigned char> inside)
     {
-        between_->set_body_crossings(crossings);
+        between_->set_body_crossings(crossings, inside);
     }
+    bool lets_through(int vertex) const { return between_ && between_->lets_through(vertex); }
 
     /// True if a body jumps in a step of dt [s] that has been set: it was replaced rather than moved.
     bool have_bodies_jumped(double dt) { return between_ && between_->have_bodies_jumped(dt); }

@@ -22,8 +22,8 @@ inline constexpr double kPressing = 0.5;
 /// Gap that a guard keeps, relative to that of the cloth [-].
 inline constexpr double kGuardGap = 0.25;
 
-/// Depths over which a term's spring reaches its full stiffness, and from which on it hardens, relative to the
-/// gap to keep [-].
+/// Depths over which a term's spring reaches its full stiffness, and from which on it hardens, relative to
+/// the gap to keep [-].
 inline constexpr double kRampPerGap = 0.6, kHardPerGap = 0.7;
 
 /// Half of the clearance between two planes of a vertex [m], negative if body parts overlap.

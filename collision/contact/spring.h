@@ -16,10 +16,11 @@ namespace toile::collision {
 /// minimisation, micrometres, would then give forces above the cloth's weight and friction limits from these
 /// forces. Every iteration would switch springs on and off (docs/theory/contact.md).
 ///
-/// From the depth `hard` on, a second spring adds to it, kHardening times as stiff after a ramp of its own: cloth
-/// that is squeezed meets more resistance before there is no gap left.
+/// From the depth `hard` on, a second spring adds to it, kHardening times as stiff after a ramp of its own:
+/// cloth that is squeezed meets more resistance before there is no gap left.
 struct ContactSpring {
-    /// Stiffness of the second spring over that of the first, and its ramp over the depth where it begins [-].
+    /// Stiffness of the second spring over that of the first, and its ramp over the depth where it begins
+    /// [-].
     static constexpr double kHardening = 8.0, kHardRamp = 0.2;
 
     double stiffness = 0.0; ///< [N/m] w

@@ -33,11 +33,16 @@ void ExemptPairs::add_body_crossings(View<const BodyCrossing> more)
     set_body_crossings(std::move(all));
 }
 
-/// True if the pair has vertices of two triangles that cross.
+/// True if the pair has vertices of two triangles that cross, or cloth inside a body.
 bool ExemptPairs::crosses_body(const NearPair& pair) const
 {
-    if (body_crossings_.empty())
+    if (body_crossings_.empty() && inside_.empty())
         return false;
+    const int cloth = int(inside_.size());
+    const bool has_body = pair.vertex[0] >= cloth || pair.vertex[3] >= cloth;
+    for (const int v : pair.vertex)
+        if (has_body && v < cloth && inside_[v] != 0)
+            return true;
     const int first = first_count(pair.is_edge_edge);
     for (int a = 0; a < first; ++a)
         for (int b = first; b < 4; ++b) {

@@ -33,7 +33,8 @@ struct ExemptRule {
             side = side || crosses[pair.vertex[k]];
             is_near_sliver = is_near_sliver || is_thin[pair.vertex[k]];
         }
-        return (crossing[0] && crossing[1]) || (is_near_sliver && is_sliver_pair(pair)) || is_let_through(pair);
+        return (crossing[0] && crossing[1]) || (is_near_sliver && is_sliver_pair(pair)) ||
+               is_let_through(pair);
     }
 
 private:
@@ -60,10 +61,11 @@ private:
 
 /// Pairs that contact of cloth with cloth ignores, because it could only do harm:
 ///
-/// - Cloth that crosses cloth or a body already (a start pose that could not be repaired, cloth that was moved,
+/// - Cloth that crosses cloth or a body already (a start pose that could not be repaired, cloth that was
+/// moved,
 ///   body parts that close on it): contact would keep it on the wrong side. Pairs with vertices of crossing
-///   triangles on both sides are exempt until these triangles no longer cross. All other pairs are kept apart,
-///   so crossings can move, shrink and vanish, but none begins elsewhere.
+///   triangles on both sides are exempt until these triangles no longer cross. All other pairs are kept
+///   apart, so crossings can move, shrink and vanish, but none begins elsewhere.
 /// - Cloth that is caught between two surfaces of bodies and lets one of them through (LetThrough).
 /// - Neighbours around slivers in one cloth that are closer in the start pose than a multiple of the minimum
 ///   gap.
@@ -79,6 +81,8 @@ public:
     /// A vertex of cloth and one of a body, of triangles that cross.
     using BodyCrossing = std::pair<int, int>;
     void set_body_crossings(std::vector<BodyCrossing> crossings);
+    /// @param inside  [cloth] 1: inside a body, which it has to leave; all others are of bodies
+    void set_inside(View<const unsigned char> inside) { inside_.assign(inside.begin(), inside.end()); }
     void add_body_crossings(View<const BodyCrossing> more);
 
     /// Sets the bodies that cloth lets through; borrowed. See ExemptRule.
@@ -102,8 +106,9 @@ private:
     std::vector<unsigned char> is_thin_; ///< [vertices] around a sliver
     bool crosses_body(const NearPair& pair) const;
 
-    std::vector<unsigned char> crosses_;        ///< [vertices] of triangles of cloth that cross
+    std::vector<unsigned char> crosses_;       ///< [vertices] of triangles of cloth that cross
     std::vector<BodyCrossing> body_crossings_; ///< ascending
+    std::vector<unsigned char> inside_;        ///< [cloth]
     View<const unsigned char> lets_through_;
     View<const Vec3> owner_normal_, body_normal_;
 };

@@ -59,7 +59,8 @@ public:
     /// @param triangles  [triangles x 3] indices into positions; collapsed and non-manifold triangles are
     ///                   allowed
     /// @param positions  [vertices x 3] [m] first pose
-    /// @param rigid      [vertices] number of the rigid body, -1 for none, or kPrescribed: no pairs within one
+    /// @param rigid      [vertices] number of the rigid body, -1 for none, or kPrescribed: no pairs within
+    /// one
     ///                   body. Empty: no bodies
     NearPairs(View<const Triangle> triangles, View<const Vec3> positions, std::vector<int> rigid = {},
               Keeping keeping = Keeping::kPairs);

@@ -89,9 +89,9 @@ struct Hinge {
 struct HingeStart {
     double s = 0.0; ///< see Fold
 
-    /// Part of its friction that acts, by the heights of both triangles over those at rest, squared [-]. The fold
-    /// of crushed triangles turns about by next to no motion, and the curvature of the potential counts on
-    /// heights at rest.
+    /// Part of its friction that acts, by the heights of both triangles over those at rest, squared [-]. The
+    /// fold of crushed triangles turns about by next to no motion, and the curvature of the potential counts
+    /// on heights at rest.
     double share = 1.0;
 };
 
@@ -112,9 +112,9 @@ TOILE_HD inline double friction_share(const Hinge& hinge, View<const Vec3> x)
 /// Hinges during a step, one at a time as a GPU runs them; the CPU runs eight (BendDamping).
 struct HingesInStep {
     View<const Hinge> hinges;
-    View<const double> dt;    ///< [1] [s] 0 before the first step: no response
+    View<const double> dt;        ///< [1] [s] 0 before the first step: no response
     View<const HingeStart> start; ///< [hinges]
-    View<const Vec3> x;       ///< [vertices] [m]
+    View<const Vec3> x;           ///< [vertices] [m]
 
     TOILE_HD Fold<double> fold(int h) const
     {

@@ -12,7 +12,8 @@ namespace toile::scenes {
 class AttachmentConstraint {
 public:
     /// Selects vertices by their start positions, to be attached to the world or to a collider's surface.
-    /// @param has_springs  false: the method knows none, so that attachments are exact where not asked otherwise
+    /// @param has_springs  false: the method knows none, so that attachments are exact where not asked
+    /// otherwise
     /// @param location  named in errors, e.g. "tablecloth.json: attachments[0]"
     /// @throws InvalidInput if it selects no vertex or an index is out of range
     AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
@@ -51,8 +52,8 @@ public:
 private:
     void select(View<const Vec3> start, const std::vector<Collider>& colliders, const std::string& location);
     void tie_to_skin(const collision::MeshCollider& mesh);
-    std::vector<double> clearances(const Collider& collider, View<const Vec3> x, View<const Triangle> triangles,
-                                   double gap) const;
+    std::vector<double> clearances(const Collider& collider, View<const Vec3> x,
+                                   View<const Triangle> triangles, double gap) const;
 
     scene::Attachment settings_;
     std::string location_;

@@ -41,8 +41,8 @@ SkinPatch::SkinPatch(const collision::MeshCollider& mesh, View<const Vec3> norma
         p -= mean_;
 }
 
-/// Rotation by the singular value decomposition [Kabsch 1976]. A flat patch leaves the third axis to the other
-/// two.
+/// Rotation by the singular value decomposition [Kabsch 1976]. A flat patch leaves the third axis to the
+/// other two.
 Vec3 SkinPatch::moved(const Vec3& start, View<const Vec3> positions) const
 {
     Vec3 mean = Vec3::Zero();

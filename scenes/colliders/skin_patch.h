@@ -6,8 +6,8 @@
 
 namespace toile::scenes {
 
-/// Frame of the skin around a point: the rigid motion that fits all vertices within 2 cm best, nearer ones more.
-/// The frame of a single triangle would turn and stretch with every fold of the skin.
+/// Frame of the skin around a point: the rigid motion that fits all vertices within 2 cm best, nearer ones
+/// more. The frame of a single triangle would turn and stretch with every fold of the skin.
 class SkinPatch {
 public:
     /// @param at     point of the mesh's surface at the start
@@ -21,10 +21,10 @@ public:
     Vec3 moved(const Vec3& start, View<const Vec3> positions) const;
 
 private:
-    std::vector<int> vertex_; ///< numbers in `used`
+    std::vector<int> vertex_;    ///< numbers in `used`
     std::vector<double> weight_; ///< sum 1
-    std::vector<Vec3> start_; ///< [vertex_] from the weighted mean at the start [m]
-    Vec3 mean_ = Vec3::Zero(); ///< at the start [m]
+    std::vector<Vec3> start_;    ///< [vertex_] from the weighted mean at the start [m]
+    Vec3 mean_ = Vec3::Zero();   ///< at the start [m]
 };
 
 } // namespace toile::scenes

@@ -244,7 +244,8 @@ void describe(V& v, Attachment& a)
     v.field("release", a.release, kTime, "Time at which the attachment ends; absent: never.");
     v.field("stiffness", a.stiffness, kStiffness,
             "Attach by a spring per vertex; absent: exactly to \"fixed\", by 300 N/m to an avatar.");
-    v.field("exact", a.exact, "Attach exactly to an avatar too. Cloth then stretches and folds as the skin does.");
+    v.field("exact", a.exact,
+            "Attach exactly to an avatar too. Cloth then stretches and folds as the skin does.");
 }
 
 template <typename V>

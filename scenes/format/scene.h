@@ -215,8 +215,9 @@ struct Attachment {
     std::string to = kFixed;         ///< "fixed" or an avatar's name
     std::vector<Keyframe> keyframes; ///< motion of the attached points; only with "fixed"
     std::optional<double> release;   ///< [s] end of the attachment; absent: never
-    std::optional<double> stiffness; ///< [N/m] of a spring per vertex; absent: kSkinStiffness, or exact if fixed
-    bool exact = false;              ///< no springs
+    std::optional<double>
+        stiffness;      ///< [N/m] of a spring per vertex; absent: kSkinStiffness, or exact if fixed
+    bool exact = false; ///< no springs
 };
 
 // --- the rest -------------------------------------------------------------------------------------------

@@ -88,8 +88,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         report.steps = 1;
         return report;
     }
-    if (contact_ && contact_->have_bodies_jumped(dt))
-        may_cross_ = true;
+    has_jump_ = contact_ && contact_->have_bodies_jumped(dt);
+    may_cross_ = may_cross_ || has_jump_;
     if (may_cross_ && contact_ && contact_->keeps_cloth_apart())
         mark_crossings();
     mark_fixed(t_t1);
@@ -137,6 +137,10 @@ void ClothGroup::judge(StepReport& report)
         if (report.stuck.count > 0) {
             const int v = contact_->stuck_count() > 0 ? contact_->first_stuck() : first_crossing_;
             report.stuck.place = place_of(v, x[v]);
+            raise(StepReport::Status::Stuck);
+        }
+        if (has_jump_) {
+            report.stuck.merge({1, "a body moves faster than 50 m/s and may have left cloth behind"});
             raise(StepReport::Status::Stuck);
         }
     }
@@ -216,8 +220,24 @@ void ClothGroup::mark_crossings()
                     body_crossings.emplace_back(v, w);
         }
         may_cross_ = may_cross_ || crossing_bodies_ > 0;
-        contact_->set_body_crossings(body_crossings);
+        const std::vector<unsigned char> inside = mark_inside(*bodies, x);
+        may_cross_ = may_cross_ || !inside.empty();
+        contact_->set_body_crossings(body_crossings, inside);
     }
+}
+
+/// Marks cloth inside bodies that does not let them through; empty if there is none. Only cloth that has
+/// crossed a body may be there.
+std::vector<unsigned char> ClothGroup::mark_inside(const collision::BodySurfaces& bodies,
+                                                   View<const Vec3> x) const
+{
+    std::vector<unsigned char> inside(first_.back(), 0);
+    bool any = false;
+    for (int v = 0; v < first_.back() && (crossing_bodies_ > 0 || has_jump_); ++v) {
+        inside[v] = !contact_->lets_through(v) && bodies.is_inside(x[v]) ? 1 : 0;
+        any = any || inside[v] != 0;
+    }
+    return any ? inside : std::vector<unsigned char>{};
 }
 
 /// Solid that owns a triangle of triangles_, -1 for cloth.

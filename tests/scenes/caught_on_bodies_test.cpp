@@ -43,7 +43,7 @@ struct Outcome {
     int inside = 0;             ///< vertices, faces and edges in the body in the last frame, everywhere
     int crossings = 0;          ///< with the body in the last frame
     StepReport::Status last = StepReport::Status::Converged;
-    std::vector<Vec3> x, skin;  ///< positions in the last frame [m]
+    std::vector<Vec3> x, skin; ///< positions in the last frame [m]
 };
 
 /// Sum of the signed distances to two opposing sheets of the body within 2 cm [m]: negative where they
@@ -207,8 +207,8 @@ TEST(CaughtOnBodies, IsReleasedUnderASwingingArm)
     expect_caught(outcome, {.caught = 5, .min_clearance = -0.002, .fastest = 3.8, .strain = 0.3});
 }
 
-/// Thighs of a turning dancer press on the sheet between them, where the overlap is 20 mm. Not everything holds:
-/// strain reaches 1.95, and a corner of the sheet, 10 mm deep, is not yet out when the thighs open.
+/// Thighs of a turning dancer press on the sheet between them, where the overlap is 20 mm. Not everything
+/// holds: strain reaches 1.95, and a corner of the sheet, 10 mm deep, is not yet out when the thighs open.
 TEST(CaughtOnBodies, SaysWhatYieldsBetweenTheThighsOfADancer)
 {
     const Case c{"gc_mean_all.glb",

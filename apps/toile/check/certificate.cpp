@@ -142,7 +142,8 @@ std::string summary_of(const Certificate& certificate)
                   certificate.frames, 1e3 * certificate.worst.penetration, 1e2 * certificate.worst.strain);
     std::string left_out;
     if (certificate.pinched_frames > 0)
-        left_out = "; pinched between body parts in " + std::to_string(certificate.pinched_frames) + " frames";
+        left_out =
+            "; pinched between body parts in " + std::to_string(certificate.pinched_frames) + " frames";
     for (const auto& [avatar, bones] : certificate.excluded_bones)
         left_out += "; " + std::to_string(bones.size()) + (bones.size() == 1 ? " bone of " : " bones of ") +
                     avatar + " left out";

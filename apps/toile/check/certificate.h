@@ -31,15 +31,15 @@ struct FrameFindings {
 
     int non_finite = 0; ///< vertices
     int cloth_cloth_crossings = 0;
-    int cloth_avatar_crossings = 0;          ///< outside of pinches (AvatarCrossings)
-    int pinched_crossings = 0;               ///< in pinches
-    std::optional<CrossingSite> pinch;       ///< the first of them
-    std::optional<CrossingSite> crossing;    ///< first crossing that makes the frame bad
-    std::optional<double> gap;               ///< [m] none: larger than kGapReach
-    double penetration = 0.0;                ///< [m] maximum depth
-    double pinched_depth = 0.0;              ///< [m] maximum depth in pinches
-    double strain = 0.0;                     ///< [-] maximum of all cloths
-    bool is_overstretched = false;           ///< a cloth exceeded its limit
+    int cloth_avatar_crossings = 0;       ///< outside of pinches (AvatarCrossings)
+    int pinched_crossings = 0;            ///< in pinches
+    std::optional<CrossingSite> pinch;    ///< the first of them
+    std::optional<CrossingSite> crossing; ///< first crossing that makes the frame bad
+    std::optional<double> gap;            ///< [m] none: larger than kGapReach
+    double penetration = 0.0;             ///< [m] maximum depth
+    double pinched_depth = 0.0;           ///< [m] maximum depth in pinches
+    double strain = 0.0;                  ///< [-] maximum of all cloths
+    bool is_overstretched = false;        ///< a cloth exceeded its limit
 };
 
 /// Maximum distance at which gaps of cloth to cloth are measured [m]: several thicknesses of thick cloth.

@@ -24,8 +24,8 @@ struct MeasuredCloth {
     exports::PointCache cache;
     StrainMeter strain;
     collision::ClothSamples samples;
-    double strain_limit;              ///< [-] the margin included
-    int first_vertex, first_triangle; ///< in the arrays of all cloths
+    double strain_limit;                                   ///< [-] the margin included
+    int first_vertex, first_triangle;                      ///< in the arrays of all cloths
     std::vector<collision::PenetrationMeter::Sides> sides; ///< [avatars]
 };
 
@@ -69,10 +69,14 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
         require_same_points(cache, cached.file, cloth.name, vertex_count);
         frame_count_ = cloths_.empty() ? cache.frame_count() : std::min(frame_count_, cache.frame_count());
         longest_ = std::max(longest_, cache.frame_count());
-        cloths_.push_back({cloth, std::move(cache), StrainMeter(cloth.rest.positions, cloth.triangles),
+        cloths_.push_back({cloth,
+                           std::move(cache),
+                           StrainMeter(cloth.rest.positions, cloth.triangles),
                            collision::ClothSamples(cloth.triangles, vertex_count),
-                           cloth.fabric.strain_limit + limits.strain_margin, int(rest.size()),
-                           int(triangles_.size()), {}});
+                           cloth.fabric.strain_limit + limits.strain_margin,
+                           int(rest.size()),
+                           int(triangles_.size()),
+                           {}});
         for (const Triangle& t : cloth.triangles)
             triangles_.push_back(t + Triangle::Constant(int(rest.size())));
         rest.insert(rest.end(), cloth.rest.positions.begin(), cloth.rest.positions.end());
@@ -107,7 +111,8 @@ void Examiner::measure_each(FrameFindings& found)
         const View<const Vec3> x(x_.data() + cloth.first_vertex, vertex_count);
         const auto bad = std::count_if(x.begin(), x.end(), [](const Vec3& p) { return !p.allFinite(); });
         found.non_finite += int(bad);
-        const ScenePenetration::Depth depth = avatars_.measure(x, cloth.state.triangles, cloth.samples, cloth.sides);
+        const ScenePenetration::Depth depth =
+            avatars_.measure(x, cloth.state.triangles, cloth.samples, cloth.sides);
         found.penetration = std::max(found.penetration, depth.deepest);
         found.pinched_depth = std::max(found.pinched_depth, depth.pinched);
         if (bad > 0)

@@ -21,8 +21,8 @@ double deepest_in(const scenes::SceneBody& solid, View<const Vec3> x, View<const
     return depths.empty() ? 0.0 : *std::max_element(depths.begin(), depths.end());
 }
 
-/// Room that cloth needs between two surfaces that face each other [m]: its gap to both, and a layer of cloth on
-/// each with cloth between them.
+/// Room that cloth needs between two surfaces that face each other [m]: its gap to both, and a layer of cloth
+/// on each with cloth between them.
 double room_of(const scenes::Scene& scene)
 {
     double thickness = 0.0;
@@ -38,11 +38,10 @@ ScenePenetration::ScenePenetration(const scenes::Scene& scene) : bodies_(make_bo
     collision::PenetrationMeter::Settings settings;
     settings.room = room_of(scene);
     for (const scenes::SceneBody& body : bodies_)
-        meters_.push_back(body.shape() != nullptr
-                              ? nullptr
-                              : std::make_unique<collision::PenetrationMeter>(
-                                    body.contact_surface().triangles, body.contact_surface().positions,
-                                    settings));
+        meters_.push_back(body.shape() != nullptr ? nullptr
+                                                  : std::make_unique<collision::PenetrationMeter>(
+                                                        body.contact_surface().triangles,
+                                                        body.contact_surface().positions, settings));
 }
 
 void ScenePenetration::advance_to(double t)

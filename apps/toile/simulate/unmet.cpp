@@ -44,8 +44,8 @@ void Unmet::sum_up(int frames) const
     const auto say = [&](const Kind& kind, const std::string& text, const std::string& things) {
         if (kind.frames == 0)
             return;
-        std::string line = std::to_string(kind.frames) + " of " + std::to_string(frames) + " frames: " + text +
-                           "; first at frame " + std::to_string(kind.first);
+        std::string line = std::to_string(kind.frames) + " of " + std::to_string(frames) +
+                           " frames: " + text + "; first at frame " + std::to_string(kind.first);
         if (kind.worst.count > 0)
             line += ", worst at frame " + std::to_string(kind.worst_frame) + " with " +
                     std::to_string(kind.worst.count) + " " + things + at(kind.worst);

@@ -55,15 +55,16 @@ HostClothContact::HostClothContact(View<const Triangle> triangles, View<const Ve
 HostClothContact::HostClothContact(const Soup& soup, View<const Triangle> triangles,
                                    View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
                                    View<const double> altitude, BodySurfaces&& bodies)
-    : ClothContact({triangles, positions, cloths, altitude, bodies.are_open()}),
-      count_(positions.size()), bodies_(std::move(bodies)), let_through_(bodies_, triangles, count_), near_(soup.triangles, soup.positions, soup.rigid),
+    : ClothContact({triangles, positions, cloths, altitude, bodies.are_open()}), count_(positions.size()),
+      bodies_(std::move(bodies)), let_through_(bodies_, triangles, count_),
+      near_(soup.triangles, soup.positions, soup.rigid),
       exempt_(soup.positions, with_bodies(altitude, soup.positions.size()),
               CollisionFreeStep::Settings{}.min_gap),
       free_step_(near_, exempt_, with_bodies(rules().collision_free_step(), count_), rules().bodies()),
       carry_(near_, exempt_, rules().collision_free_step(), rules().bodies(), count_),
       slack_(soup.positions.size(), rules().slack().min), fixed_(soup.positions.size(), 1),
-      deviation_(count_, Vec3::Zero()), body_motion_(bodies_.vertex_count(), Vec3::Zero()), base_(soup.positions), motion_(base_.size(), Vec3::Zero()),
-      expected_(base_.size()), end_(base_.size())
+      deviation_(count_, Vec3::Zero()), body_motion_(bodies_.vertex_count(), Vec3::Zero()),
+      base_(soup.positions), motion_(base_.size(), Vec3::Zero()), expected_(base_.size()), end_(base_.size())
 {
 }
 
@@ -130,7 +131,7 @@ bool HostClothContact::release(View<const BlockedPair> blocked)
     for (const BlockedPair& pair : blocked)
         if (pair.pair.vertex[0] >= count_ || pair.pair.vertex[3] >= count_)
             std::copy_if(pair.pair.vertex.begin(), pair.pair.vertex.end(), std::back_inserter(vertices),
-                     [&](int v) { return v < count_; });
+                         [&](int v) { return v < count_; });
     const bool has_released = let_through_.release(vertices);
     show_let_through();
     return has_released;
@@ -144,8 +145,10 @@ void HostClothContact::set_crossing(View<const unsigned char> crosses)
 }
 
 /// Numbers the vertices of bodies after those of cloth.
-void HostClothContact::set_body_crossings(View<const std::pair<int, int>> crossings)
+void HostClothContact::set_body_crossings(View<const std::pair<int, int>> crossings,
+                                          View<const unsigned char> inside)
 {
+    exempt_.set_inside(inside);
     std::vector<ExemptPairs::BodyCrossing> all(crossings.begin(), crossings.end());
     for (auto& [cloth, body] : all)
         body += count_;

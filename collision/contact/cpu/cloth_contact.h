@@ -24,13 +24,15 @@ public:
     void close_let_through(View<const int> crossing) override { let_through_.close(crossing); }
     bool lets_through(const Triangle& t) const override { return let_through_.is_released(t); }
     bool have_bodies_jumped(double dt) override { return bodies_.find_jumps(dt); }
-    const BodySurfaces* bodies() const override { return &bodies_; }
+    const BodySurfaces* bodies() const override { return bodies_.is_empty() ? nullptr : &bodies_; }
     void append_pairs(std::vector<ContactPair>& out) const override;
     bool is_clear() const override { return pairs_.empty(); }
     bool advance(StepField x, const FindSupported& find_supported) override;
     bool limit_motion(StepField x, StepField v, double dt, const FindSupported& find_supported) override;
     void set_crossing(View<const unsigned char> crosses) override;
-    void set_body_crossings(View<const std::pair<int, int>> crossings) override;
+    void set_body_crossings(View<const std::pair<int, int>> crossings,
+                            View<const unsigned char> inside) override;
+    bool lets_through(int vertex) const override { return let_through_.is_released(vertex); }
     void end_step(StepField x) override;
     void forget() override;
 
@@ -75,15 +77,16 @@ private:
     ExemptPairs exempt_;
     CollisionFreeStep free_step_;
     CarriedStart carry_;
-    std::vector<double> slack_;         ///< [vertices] see CollisionFreeStep [m]
-    std::vector<unsigned char> fixed_;  ///< [vertices] likewise
-    std::vector<NearPair> pairs_;       ///< of cloth with cloth, then with bodies
-    int between_cloths_ = 0;            ///< the first of them
-    View<const Vec3> prediction_;       ///< [cloth] [m]
-    std::vector<Vec3> deviation_;       ///< [cloth] [m]
-    std::vector<Vec3> body_motion_;     ///< [bodies] displacement in the step [m]
-    std::vector<Vec3> base_, motion_, expected_; ///< [vertices] start, displacement and end of trajectories [m]
-    std::vector<Vec3> end_, wanted_;             ///< [vertices] of the last limit(), and before it [m]
+    std::vector<double> slack_;        ///< [vertices] see CollisionFreeStep [m]
+    std::vector<unsigned char> fixed_; ///< [vertices] likewise
+    std::vector<NearPair> pairs_;      ///< of cloth with cloth, then with bodies
+    int between_cloths_ = 0;           ///< the first of them
+    View<const Vec3> prediction_;      ///< [cloth] [m]
+    std::vector<Vec3> deviation_;      ///< [cloth] [m]
+    std::vector<Vec3> body_motion_;    ///< [bodies] displacement in the step [m]
+    std::vector<Vec3> base_, motion_,
+        expected_;                   ///< [vertices] start, displacement and end of trajectories [m]
+    std::vector<Vec3> end_, wanted_; ///< [vertices] of the last limit(), and before it [m]
 };
 
 } // namespace toile::collision

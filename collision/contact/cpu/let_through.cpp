@@ -48,8 +48,7 @@ void LetThrough::walk(int v, const Vec3& x, const NearestSurface& nearest)
     NearestSurface& owner = owner_[v];
     if (nearest.collider >= 0) {
         const bool is_other =
-            owner.collider >= 0 &&
-            bodies_.normal_at(nearest, x).dot(bodies_.normal_at(owner, x)) < kOwnSheet;
+            owner.collider >= 0 && bodies_.normal_at(nearest, x).dot(bodies_.normal_at(owner, x)) < kOwnSheet;
         if (!is_other || (released_[v] == 0 && bodies_.distance_to(owner, x) > kLeft))
             owner = nearest;
     }

@@ -9,9 +9,9 @@
 
 namespace toile::collision {
 
-/// Cloth between body parts that close on it until there is no room. It cannot stay outside both: the surface that
-/// it is dressed on, its owner, keeps it, and surfaces that oppose the owner pass through it. They leave as they
-/// came, and cloth that nothing crosses any more keeps off all surfaces again.
+/// Cloth between body parts that close on it until there is no room. It cannot stay outside both: the surface
+/// that it is dressed on, its owner, keeps it, and surfaces that oppose the owner pass through it. They leave
+/// as they came, and cloth that nothing crosses any more keeps off all surfaces again.
 class LetThrough {
 public:
     /// @param triangles  [triangles] of cloth
@@ -43,9 +43,9 @@ public:
         return is_released(v) && owner_normal_[v].dot(normal) < kOwnSheet;
     }
 
-    View<const unsigned char> released() const { return released_; }   ///< [vertices]
-    View<const Vec3> owner_normal() const { return owner_normal_; }    ///< [vertices]
-    View<const Vec3> body_normal() const { return body_normal_; }      ///< [bodies]
+    View<const unsigned char> released() const { return released_; } ///< [vertices]
+    View<const Vec3> owner_normal() const { return owner_normal_; }  ///< [vertices]
+    View<const Vec3> body_normal() const { return body_normal_; }    ///< [bodies]
     void forget();
 
 private:
@@ -55,7 +55,7 @@ private:
     const BodySurfaces& bodies_;
     std::vector<Triangle> triangles_;
     std::vector<std::vector<int>> neighbours_; ///< [vertices]
-    std::vector<NearestSurface> owner_; ///< [vertices]
+    std::vector<NearestSurface> owner_;        ///< [vertices]
     std::vector<unsigned char> released_;
     std::vector<Vec3> owner_normal_, body_normal_;
     int count_ = 0;

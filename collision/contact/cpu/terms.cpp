@@ -66,7 +66,8 @@ std::vector<double> HostContactTerms::clearance_of_planes(const std::vector<Cont
     if (overlap.empty())
         return clearance;
     for (size_t i = 0; i < pairs.size(); ++i)
-        for (int k = 0; k < pairs[i].count() && pairs[i].kind < ContactKind::kGuard && !is_plane(pairs[i]); ++k)
+        for (int k = 0; k < pairs[i].count() && pairs[i].kind < ContactKind::kGuard && !is_plane(pairs[i]);
+             ++k)
             if (const auto caught = overlap.find(pairs[i].vertex[k]); caught != overlap.end())
                 clearance[i] = std::min(clearance[i], caught->second);
     return clearance;

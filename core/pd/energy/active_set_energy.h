@@ -79,8 +79,8 @@ public:
     /// [vertices] found without contact, and changes them as rigid contact would.
     virtual void resolve(StepField x, StepField v) { clear(x, v); }
 
-    /// True if the energy and keep_apart() hold all that this holds: the minimiser's result is then only shortened.
-    /// False if clear() is to correct it before.
+    /// True if the energy and keep_apart() hold all that this holds: the minimiser's result is then only
+    /// shortened. False if clear() is to correct it before.
     virtual bool is_complete() const { return false; }
 
     /// Final correction of positions x and velocities v [vertices], after all others. Moves back whatever

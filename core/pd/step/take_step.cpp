@@ -56,8 +56,8 @@ void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimi
 }
 
 /// Keeps apart what must not cross. Where the minimiser's result does not stand, satisfies contact and limits
-/// before. Cloth that contact moves back stretches against cloth that it does not move, so the limits are then
-/// applied again.
+/// before. Cloth that contact moves back stretches against cloth that it does not move, so the limits are
+/// then applied again.
 void correct(StepSpace& space, const StepInput& input, bool stands)
 {
     ActiveSetEnergy* const active = input.active;

@@ -45,8 +45,8 @@ struct Press {
         for (int c = 0; c < 8; ++c)
             x.emplace_back(c & 1 ? upper.x() : lower.x(), c & 2 ? upper.y() : lower.y(),
                            c & 4 ? upper.z() : lower.z());
-        for (const auto& q : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2},
-                              {1, 3, 7, 5}}) {
+        for (const auto& q :
+             {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
             body.emplace_back(first + q[0], first + q[1], first + q[2]);
             body.emplace_back(first + q[0], first + q[2], first + q[3]);
         }
@@ -117,11 +117,12 @@ TEST(CarriedStart, AsksForAReleaseWhereBodiesCloseOnCloth)
     Press press(1);
     press.add_block(Vec3(-0.05, -0.06, -0.05), Vec3(0.05, -0.01, 0.05));
     int asked = 0;
-    const auto stuck = press.carry({Vec3(0.0, -0.02, 0.0), Vec3(0.0, 0.02, 0.0)}, [&](View<const BlockedPair> left) {
-        ++asked;
-        EXPECT_FALSE(left.empty());
-        return false;
-    });
+    const auto stuck =
+        press.carry({Vec3(0.0, -0.02, 0.0), Vec3(0.0, 0.02, 0.0)}, [&](View<const BlockedPair> left) {
+            ++asked;
+            EXPECT_FALSE(left.empty());
+            return false;
+        });
     EXPECT_GT(asked, 0);
     EXPECT_FALSE(stuck.empty());
 }

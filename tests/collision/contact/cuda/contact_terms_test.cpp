@@ -224,7 +224,8 @@ TEST_F(DeviceContactTermsTest, MatchTheCpuFromStepToStep)
     DeviceContactTerms device(space(), made.mesh.triangles, made.x, made.cloths, made.colliders,
                               made.settings());
     const std::vector<double> altitude(made.x.size(), 0.005);
-    const auto between = make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, {}, true, nullptr);
+    const auto between =
+        make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, {}, true, nullptr);
     const auto between_device =
         make_cloth_contact(made.mesh.triangles, made.x, made.cloths, altitude, {}, true, &space());
     OnBoard board(space(), count);
