@@ -104,6 +104,7 @@ TEST(SceneFiles, ReadsTheScenesOfRealData)
     if (!std::filesystem::is_directory(TOILE_DATA_DIR))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no data";
     EXPECT_EQ(read_all(kSource / "scenes/data"), 10);
+    EXPECT_EQ(read_all(kSource / "scenes/dressed"), 17);
 }
 
 TEST(SceneFiles, TheRoundTableIsClosedAndStandsOnTheFloor)
