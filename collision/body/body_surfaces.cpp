@@ -44,6 +44,11 @@ bool BodySurfaces::is_moving() const
     return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return is_moving(part); });
 }
 
+bool BodySurfaces::has_jumped() const
+{
+    return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.jumps; });
+}
+
 bool BodySurfaces::find_jumps(double dt)
 {
     bool any = false;

@@ -18,7 +18,8 @@ public:
     const std::vector<Triangle>& triangles() const { return triangles_; }
     int vertex_count() const { return vertex_count_; }
     bool is_empty() const { return triangles_.empty(); }
-    bool is_moving() const; ///< in the current step
+    bool is_moving() const;  ///< in the current step
+    bool has_jumped() const; ///< likewise, as of the last find_jumps()
 
     /// Maximum speed of a surface that carries cloth along [m/s]. A faster one was replaced.
     static constexpr double kMaxSpeed = 50.0;

@@ -71,16 +71,18 @@ void CarriedStart::carry(View<Vec3> x, View<const Vec3> way, View<const Vec3> en
 void CarriedStart::go(View<Vec3> x, double from, double to)
 {
     const int releases = to - from <= kReleasing ? kReleases : 0;
-    for (int k = 0; k <= releases; ++k)
-        if (try_part(x, from, to, k < releases))
-            return;
+    Part part = Part::kReleased;
+    for (int k = 0; k <= releases && part == Part::kReleased; ++k)
+        part = try_part(x, from, to, k < releases);
+    if (part == Part::kDone)
+        return;
     const double middle = 0.5 * (from + to);
     go(x, from, middle);
     go(x, middle, to);
 }
 
-/// False if pairs are left and the part can be divided: x is then unchanged.
-bool CarriedStart::try_part(View<Vec3> x, double from, double to, bool may_release)
+/// Not done if pairs are left and the part can be divided or tried again: x is then unchanged.
+CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, bool may_release)
 {
     end_.resize(x.size());
     motion_.resize(x.size());
@@ -118,12 +120,14 @@ bool CarriedStart::try_part(View<Vec3> x, double from, double to, bool may_relea
             blocked = query_.query_all(end_);
         }
     }
-    if (!blocked.empty() && ((may_release && (*release_)(blocked)) || to - from > kSmallestPart))
-        return false;
+    if (!blocked.empty() && may_release && (*release_)(blocked))
+        return Part::kReleased;
+    if (!blocked.empty() && to - from > kSmallestPart)
+        return Part::kBlocked;
     for (const BlockedPair& left : blocked)
         stuck_.push_back(left.pair.vertex);
     std::copy(end_.begin(), end_.end(), x.begin());
-    return true;
+    return Part::kDone;
 }
 
 View<const BlockedPair> CarriedStart::between_cloths(View<const BlockedPair> blocked)

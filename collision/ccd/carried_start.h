@@ -45,10 +45,12 @@ public:
                View<const unsigned char> fixed, const Release& release);
 
     const std::vector<StuckPair>& stuck() const { return stuck_; } ///< of the last carry()
+    void forget() { stuck_.clear(); }                              ///< nothing is carried in this step
 
 private:
     void go(View<Vec3> x, double from, double to);
-    bool try_part(View<Vec3> x, double from, double to, bool may_release);
+    enum class Part { kDone, kReleased, kBlocked };
+    Part try_part(View<Vec3> x, double from, double to, bool may_release);
     void divert(const BlockedPair& blocked, View<const Vec3> x);
     void push(const NearPair& pair, const Vec3& direction);
     void change(int v, const Vec3& end);

@@ -7,7 +7,8 @@ namespace toile::collision {
 CollisionFreeStep::CollisionFreeStep(NearPairs& near, const ExemptPairs& exempt, const Settings& settings,
                                      RigidTrajectories bodies)
     : query_(near, exempt, settings.gap()),
-      limiter_(near.edges(), {settings.gap(), settings.max_deflection}, std::move(bodies))
+      limiter_(near.edges(), {settings.gap(), settings.max_deflection, settings.first_prescribed},
+               std::move(bodies))
 {
 }
 

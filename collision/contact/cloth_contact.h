@@ -43,7 +43,7 @@ public:
     /// borrowed during the step.
     virtual void begin_step(const StepStart& start, NearbyBodies& bodies) = 0;
     /// [vertices] where cloth stands, carried along, when the bodies have arrived at t1: the start of all its
-    /// trajectories in the step [m]. Empty if bodies are left out. Valid after begin_step().
+    /// trajectories in the step [m]. Empty if no body moves or bodies are left out. Valid after begin_step().
     virtual View<const Vec3> carried() const { return {}; }
     /// Number of pairs in this step that bodies have closed on and that cross from now on.
     virtual int stuck_count() const { return 0; }

@@ -16,6 +16,8 @@ struct SoupView;
 /// In place of the number of a rigid body: vertices whose motion is given. They make no pairs with each other
 /// nor with rigid bodies.
 inline constexpr int kPrescribed = std::numeric_limits<int>::max();
+/// Likewise: vertices that make pairs with prescribed ones only.
+inline constexpr int kTogether = kPrescribed - 1;
 
 /// Two primitives of one triangle soup that share no vertex and are near each other: a vertex and a
 /// triangle, or two edges. "First" and "second" below are these two.

@@ -204,11 +204,11 @@ struct Selection {
 /// Value of Attachment::to for the world.
 inline constexpr const char* kFixed = "fixed";
 
-/// Vertices attached to the world, along keyframes, or to an avatar's moving surface.
 /// Stiffness of attachments to avatars [N/m] per vertex: firm enough for a wide coat, soft enough that cloth
 /// yields where skin stretches.
 inline constexpr double kSkinStiffness = 300.0;
 
+/// Vertices attached to the world, along keyframes, or to an avatar's moving surface.
 struct Attachment {
     std::string cloth;
     Selection select;

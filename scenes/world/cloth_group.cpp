@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "collision/check/find_crossings.h"
+#include "core/compute/parallel.h"
 #include "garment/energy/air/cuda/loads.h"
 #include "scenes/world/contact_setup.h"
 
@@ -113,10 +114,10 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
         report.message = names() + ": " + report.message;
     report.max_strain = loads_ ? limits_->max_strain_on_device() : limits_->max_strain(body_->positions());
 
-    judge(report);
-
     // A solver whose every direction was refused leaves the cloth where it is: that is not rest.
-    const bool is_stuck = report.status == StepReport::Status::IterationLimit && report.iterations == 0;
+    report.unfinished = report.status == StepReport::Status::IterationLimit ? 1 : 0;
+    const bool is_stuck = report.unfinished > 0 && report.iterations == 0;
+    judge(report);
     watch_rest(is_stuck, dt);
     return report;
 }
@@ -205,14 +206,15 @@ void ClothGroup::mark_crossings()
         const std::vector<collision::Crossing> crossings =
             collision::find_crossings(triangles_, x, bodies->triangles(), body_x);
         std::vector<int> crossing_cloth;
+        crossing_cloth.reserve(crossings.size());
         for (const collision::Crossing& crossing : crossings)
             crossing_cloth.push_back(crossing.a);
         contact_->close_let_through(crossing_cloth);
         crossing_bodies_ = 0;
         std::vector<std::pair<int, int>> body_crossings;
         for (const collision::Crossing& crossing : crossings) {
-            if (contact_->lets_through(triangles_[crossing.a]))
-                continue;
+            if (triangles_[crossing.a][0] >= first_.back() || contact_->lets_through(triangles_[crossing.a]))
+                continue; // a solid, or let through
             if (crossing_bodies_++ == 0)
                 first_crossing_ = triangles_[crossing.a][0];
             for (const int v : triangles_[crossing.a])
@@ -221,7 +223,8 @@ void ClothGroup::mark_crossings()
         }
         may_cross_ = may_cross_ || crossing_bodies_ > 0;
         const std::vector<unsigned char> inside = mark_inside(*bodies, x);
-        may_cross_ = may_cross_ || !inside.empty();
+        has_cloth_inside_ = !inside.empty();
+        may_cross_ = may_cross_ || has_cloth_inside_;
         contact_->set_body_crossings(body_crossings, inside);
     }
 }
@@ -231,12 +234,13 @@ void ClothGroup::mark_crossings()
 std::vector<unsigned char> ClothGroup::mark_inside(const collision::BodySurfaces& bodies,
                                                    View<const Vec3> x) const
 {
-    std::vector<unsigned char> inside(first_.back(), 0);
-    bool any = false;
-    for (int v = 0; v < first_.back() && (crossing_bodies_ > 0 || has_jump_); ++v) {
-        inside[v] = !contact_->lets_through(v) && bodies.is_inside(x[v]) ? 1 : 0;
-        any = any || inside[v] != 0;
-    }
+    if (crossing_bodies_ == 0 && !has_jump_ && !has_cloth_inside_)
+        return {};
+    std::vector<unsigned char> inside(x.size(), 0);
+    parallel_for(kCpu, "scenes/inside", first_.back(), [&](int v) {
+        inside[v] = (unsigned char)(!contact_->lets_through(v) && bodies.is_inside(x[v]) ? 1 : 0);
+    });
+    const bool any = std::find(inside.begin(), inside.end(), 1) != inside.end();
     return any ? inside : std::vector<unsigned char>{};
 }
 

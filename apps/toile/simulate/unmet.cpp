@@ -36,7 +36,7 @@ void Unmet::add(int frame, const StepReport& report)
     add(stuck_, frame, report.stuck.count > 0, report.stuck, kStuck);
     add(pinched_, frame, report.pinched.count > 0, report.pinched, kPinched);
     add(yielded_, frame, report.yielded.count > 0, report.yielded, kYielded);
-    add(unfinished_, frame, report.status == StepReport::Status::IterationLimit, {}, kUnfinished);
+    add(unfinished_, frame, report.unfinished > 0, {}, kUnfinished);
 }
 
 void Unmet::sum_up(int frames) const

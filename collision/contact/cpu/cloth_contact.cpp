@@ -37,7 +37,7 @@ HostClothContact::Soup::Soup(View<const Triangle> cloth, View<const Vec3> start,
     positions.resize(count + bodies.vertex_count());
     bodies.pose_t1(View<Vec3>(positions).subview(count, bodies.vertex_count()));
     if (!cloth_with_cloth)
-        rigid.assign(count, 0); // no pairs within it
+        rigid.assign(count, kTogether);
     else if (rigid.empty() && !bodies.is_empty())
         rigid.assign(count, -1);
     if (!rigid.empty())
@@ -76,7 +76,8 @@ void HostClothContact::begin_step(const StepStart& start, NearbyBodies& near)
     if (!bodies_.is_empty())
         let_through_.begin_step(start.x, near.nearest());
     show_let_through();
-    if (bodies_.is_moving())
+    is_carried_ = bodies_.is_moving();
+    if (is_carried_)
         carry(near.advect(start));
     else
         stand();
@@ -89,6 +90,7 @@ void HostClothContact::begin_step(const StepStart& start, NearbyBodies& near)
 /// Puts bodies that do not move into base_.
 void HostClothContact::stand()
 {
+    carry_.forget();
     bodies_.pose_t1(bodies_of(base_));
     std::fill(body_motion_.begin(), body_motion_.end(), Vec3::Zero());
 }
@@ -98,7 +100,9 @@ void HostClothContact::carry(View<const Vec3> advected)
 {
     std::vector<Vec3> way(count_), end(bodies_.vertex_count());
     for (int v = 0; v < count_; ++v)
-        way[v] = (fixed_[v] != 0 ? prediction_[v] : advected[v]) - base_[v];
+        way[v] = rules().bodies().is_rigid(v)
+                     ? Vec3(Vec3::Zero())
+                     : Vec3((fixed_[v] != 0 ? prediction_[v] : advected[v]) - base_[v]);
     bodies_.pose_t0(bodies_of(base_));
     bodies_.pose_t1(end);
     for (size_t b = 0; b < end.size(); ++b)
@@ -163,6 +167,8 @@ int HostClothContact::first_stuck() const
 
 bool HostClothContact::replaces(const ContactPair& pair) const
 {
+    if (bodies_.is_empty())
+        return false;
     if (pair.kind < ContactKind::kGuard && bodies_.is_open(pair.collider) && pair.gap(base_) < 0.0)
         return true; // it stays behind: a guard keeps it there
     if (!let_through_.any() || pair.is_between_cloths())
@@ -301,6 +307,7 @@ void HostClothContact::forget()
     std::fill(deviation_.begin(), deviation_.end(), Vec3::Zero());
     std::fill(slack_.begin(), slack_.end(), rules().slack().min);
     let_through_.forget();
+    carry_.forget();
 }
 
 } // namespace toile::collision

@@ -15,7 +15,7 @@ public:
                      BodySurfaces bodies, bool cloth_with_cloth);
 
     void begin_step(const StepStart& start, NearbyBodies& bodies) override;
-    View<const Vec3> carried() const override { return cloth_of(base_); }
+    View<const Vec3> carried() const override { return is_carried_ ? cloth_of(base_) : View<const Vec3>(); }
     int stuck_count() const override { return int(carry_.stuck().size()); }
     int first_stuck() const override;
     int let_through_count() const override { return let_through_.count(); }
@@ -70,7 +70,8 @@ private:
     void search_from_end(bool goes_on);
     bool has_slid() const;
 
-    int count_; ///< vertices of cloth; all others are of bodies
+    bool is_carried_ = false; ///< in this step
+    int count_;               ///< vertices of cloth; all others are of bodies
     BodySurfaces bodies_;
     LetThrough let_through_;
     NearPairs near_;

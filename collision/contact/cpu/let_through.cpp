@@ -35,7 +35,7 @@ LetThrough::LetThrough(const BodySurfaces& bodies, View<const Triangle> triangle
 void LetThrough::begin_step(View<const Vec3> x, View<const NearestSurface> nearest)
 {
     parallel_for(kCpu, "collision/owners", x.size(), [&](int v) { walk(v, x[v], nearest[v]); });
-    if (bodies_.is_moving() || body_normal_.empty()) {
+    if (bodies_.is_moving() || bodies_.has_jumped() || body_normal_.empty()) {
         std::vector<Vec3> body_x(bodies_.vertex_count());
         bodies_.pose_t1(body_x);
         body_normal_ = vertex_normals(body_x, bodies_.triangles());

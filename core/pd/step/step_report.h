@@ -25,6 +25,7 @@ struct StepReport {
 
     Status status = Status::Converged;
     int steps = 0;
+    int unfinished = 0;         ///< of these, steps that ended at the iteration limit
     int iterations = 0;         ///< outer iterations, summed over steps
     int linear_iterations = 0;  ///< PCG iterations inside them, summed
     double displacement = 0.0;  ///< [m] largest vertex move of the last outer iteration, worst step
