@@ -31,6 +31,7 @@ public:
         bool edge_edge = true;
 
         bool cloth_with_cloth = false; ///< contact of cloth with itself and other cloth
+        bool keeps_off_bodies = true;  ///< on the CPU; false: bodies are met by the energy alone, as on a GPU
     };
 
     /// @param triangles  [triangles] of all cloths
@@ -60,7 +61,7 @@ public:
     bool revise(StepField x, bool is_converged) override;
     void clear(StepField x, StepField v) override;
     void resolve(StepField x, StepField v) override;
-    bool is_complete() const override { return is_on_host_; }
+    bool is_complete() const override { return keeps_off_bodies_; }
     bool keep_apart(StepField x, StepField v) override;
     void end_step(StepField x) override;
 
@@ -109,7 +110,7 @@ private:
     void find_again();
     void remember_end();
 
-    bool is_on_host_;                       ///< bodies, too, are kept from crossing
+    bool keeps_off_bodies_;                 ///< bodies, too, are kept from crossing
     double dt_ = 0.0;                       ///< of this step [s]
     std::unique_ptr<ClothContact> between_; ///< keeps apart; null if there is nothing to
     ContactEnergy energy_;                  ///< without terms if they are on a GPU
