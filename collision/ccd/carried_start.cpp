@@ -107,7 +107,7 @@ CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, 
     for (int round = 0; round < kRounds && !blocked.empty(); ++round) {
         const std::vector<BlockedPair> now(blocked.begin(), blocked.end());
         for (const BlockedPair& pair : now)
-            if (is_of_body(pair.pair))
+            if (is_with_body(pair.pair, first_prescribed_))
                 divert(pair, x);
         std::vector<ChangedTrajectory> changes;
         for (const int v : changed_.items())
@@ -134,7 +134,7 @@ View<const BlockedPair> CarriedStart::between_cloths(View<const BlockedPair> blo
 {
     blocked_cloths_.clear();
     std::copy_if(blocked.begin(), blocked.end(), std::back_inserter(blocked_cloths_),
-                 [&](const BlockedPair& pair) { return !is_of_body(pair.pair); });
+                 [&](const BlockedPair& pair) { return !is_with_body(pair.pair, first_prescribed_); });
     return blocked_cloths_;
 }
 

@@ -54,10 +54,6 @@ private:
     void divert(const BlockedPair& blocked, View<const Vec3> x);
     void push(const NearPair& pair, const Vec3& direction);
     void change(int v, const Vec3& end);
-    bool is_of_body(const NearPair& pair) const
-    {
-        return pair.vertex[0] >= first_prescribed_ || pair.vertex[3] >= first_prescribed_;
-    }
     View<const BlockedPair> between_cloths(View<const BlockedPair> blocked);
 
     NearPairs& near_;

@@ -138,7 +138,7 @@ bool TrajectoryLimiter::separate_pairs()
             const double lacking = kept - gap_along(pair.normal, pair.is_edge_edge, end);
             const bool is_small = lacking <= settings_.max_deflection;
             // Against a body cloth slides on, however slowly.
-            const bool is_slow = !is_of_body(pair) && longest < slow();
+            const bool is_slow = !is_with_body(pair, settings_.first_prescribed) && longest < slow();
             if (lacking > 0.0 && is_small && !is_slow)
                 separate_pair(pair, lacking);
         }

@@ -53,10 +53,6 @@ private:
     bool separate_pairs();
     void separate_pair(const NearPair& pair, double lacking);
     double mobility_of(const NearPair& pair, bool is_first_side) const;
-    bool is_of_body(const NearPair& pair) const
-    {
-        return pair.vertex[0] >= settings_.first_prescribed || pair.vertex[3] >= settings_.first_prescribed;
-    }
     bool may_deflect(int v) const { return !fixed_[v] && !bodies_.is_rigid(v); }
     void find_fractions(View<const unsigned char> supported);
     void shorten(bool for_good);

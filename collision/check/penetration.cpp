@@ -220,6 +220,7 @@ bool PenetrationMeter::is_pinched(const Vec3& point, View<const char> marked) co
     });
 }
 
+/// Excludes samples in pinches; see the class.
 void PenetrationMeter::exclude_pinched(std::vector<Inside>& inside) const
 {
     const double margin = settings_.pinch_margin;

@@ -39,7 +39,7 @@ bool ExemptPairs::crosses_body(const NearPair& pair) const
     if (body_crossings_.empty() && inside_.empty())
         return false;
     const int cloth = int(inside_.size());
-    const bool has_body = pair.vertex[0] >= cloth || pair.vertex[3] >= cloth;
+    const bool has_body = is_with_body(pair, cloth);
     for (const int v : pair.vertex)
         if (has_body && v < cloth && inside_[v] != 0)
             return true;

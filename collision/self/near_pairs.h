@@ -33,6 +33,13 @@ struct NearPair {
     bool is_facing; ///< represents a local minimum of the distance between two SURFACES (see below)
 };
 
+/// True for a pair of cloth with a body.
+/// @param first_body  all vertices from it on belong to bodies
+inline bool is_with_body(const NearPair& pair, int first_body)
+{
+    return pair.vertex[0] >= first_body || pair.vertex[3] >= first_body;
+}
+
 /// Finds the pairs of primitives that may meet while the vertices of one triangle soup move. The soup
 /// contains all cloths that are stepped together.
 ///

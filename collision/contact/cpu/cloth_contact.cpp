@@ -133,7 +133,7 @@ bool HostClothContact::release(View<const BlockedPair> blocked)
 {
     std::vector<int> vertices;
     for (const BlockedPair& pair : blocked)
-        if (pair.pair.vertex[0] >= count_ || pair.pair.vertex[3] >= count_)
+        if (is_with_body(pair.pair, count_))
             std::copy_if(pair.pair.vertex.begin(), pair.pair.vertex.end(), std::back_inserter(vertices),
                          [&](int v) { return v < count_; });
     const bool has_released = let_through_.release(vertices);
@@ -185,11 +185,10 @@ void HostClothContact::search()
     const StageScope stage("collision/near_pairs");
     near_.find(base_, {motion_, slack_}, rules().thickest(), pairs_);
     std::erase_if(pairs_, [&](const NearPair& pair) { return exempt_.is_exempt(pair); });
-    between_cloths_ = int(std::stable_partition(pairs_.begin(), pairs_.end(),
-                                                [&](const NearPair& pair) {
-                                                    return pair.vertex[0] < count_ && pair.vertex[3] < count_;
-                                                }) -
-                          pairs_.begin());
+    between_cloths_ =
+        int(std::stable_partition(pairs_.begin(), pairs_.end(),
+                                  [&](const NearPair& pair) { return !is_with_body(pair, count_); }) -
+            pairs_.begin());
     parallel_for(kCpu, "collision/expect", int(base_.size()), ExpectEnd{base_, motion_, expected_});
     free_step_.begin(base_, expected_, slack_, fixed_, pairs_);
 }
