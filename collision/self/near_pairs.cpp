@@ -66,10 +66,7 @@ private:
     }
     bool are_in_one_body(int a, int b) const
     {
-        if (rigid_.empty() || rigid_[a] < 0 || rigid_[b] < 0)
-            return false;
-        const auto [low, high] = std::minmax(rigid_[a], rigid_[b]);
-        return low == high || high == kTogether || (high == kPrescribed && low != kTogether);
+        return !rigid_.empty() && collision::are_in_one_body(rigid_[a], rigid_[b]);
     }
     bool are_candidates(const Record& record, bool is_edge_edge) const;
     bool may_meet(const std::array<int, 4>& v, bool is_edge_edge) const

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
@@ -19,6 +20,16 @@ inline constexpr int kPrescribed = std::numeric_limits<int>::max();
 /// Likewise: vertices that make pairs with prescribed ones only.
 inline constexpr int kTogether = kPrescribed - 1;
 
+/// True if vertices of two numbers make no pairs with each other.
+/// @param a, b  numbers of rigid bodies, -1 for none, or one of the above
+TOILE_HD inline bool are_in_one_body(int a, int b)
+{
+    if (a < 0 || b < 0)
+        return false;
+    const int low = std::min(a, b), high = std::max(a, b);
+    return low == high || high == kTogether || (high == kPrescribed && low != kTogether);
+}
+
 /// Two primitives of one triangle soup that share no vertex and are near each other: a vertex and a
 /// triangle, or two edges. "First" and "second" below are these two.
 struct NearPair {
@@ -35,7 +46,7 @@ struct NearPair {
 
 /// True for a pair of cloth with a body.
 /// @param first_body  all vertices from it on belong to bodies
-inline bool is_with_body(const NearPair& pair, int first_body)
+TOILE_HD inline bool is_with_body(const NearPair& pair, int first_body)
 {
     return pair.vertex[0] >= first_body || pair.vertex[3] >= first_body;
 }

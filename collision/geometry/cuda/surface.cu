@@ -22,17 +22,17 @@ std::vector<std::array<int, 1>> list_used(const Incidence& corners_of_vertex, in
 } // namespace
 
 DeviceSurface::DeviceSurface(const CudaSpace& space, View<const Triangle> triangles,
-                             View<const Vec3> positions)
+                             View<const Vec3> positions, View<const unsigned char> passive)
     : space_(space), triangles_(space, "surface/triangles"), edge_vertex_(space, "surface/edge_vertex"),
       edge_triangles_first_(space, "surface/edge_triangles_first"),
       edge_triangles_(space, "surface/edge_triangles"), triangle_edge_(space, "surface/triangle_edge"),
       corners_first_(space, "surface/corners_first"), corners_(space, "surface/corners"),
-      used_vertices_(space, "surface/used_vertices"), vertex_order_(space, "surface/vertex_order"),
-      edge_order_(space, "surface/edge_order"), triangle_order_(space, "surface/triangle_order"),
-      edge_slot_(space, "surface/edge_slot"), triangle_slot_(space, "surface/triangle_slot"),
-      triangle_shape_(triangles.size()), edge_shape_(0), triangle_nodes_(space, "surface/triangle_nodes"),
-      edge_nodes_(space, "surface/edge_nodes"), sort_(space),
-      points_(space, "surface/points", positions.size()), extent_(space, "surface/extent", 1),
+      used_vertices_(space, "surface/used_vertices"), passive_(space, "surface/passive"),
+      vertex_order_(space, "surface/vertex_order"), edge_order_(space, "surface/edge_order"),
+      triangle_order_(space, "surface/triangle_order"), edge_slot_(space, "surface/edge_slot"),
+      triangle_slot_(space, "surface/triangle_slot"), triangle_shape_(triangles.size()), edge_shape_(0),
+      triangle_nodes_(space, "surface/triangle_nodes"), edge_nodes_(space, "surface/edge_nodes"),
+      sort_(space), points_(space, "surface/points", positions.size()), extent_(space, "surface/extent", 1),
       extent_sums_(space, "surface/extent_sums"), largest_(space, "surface/largest", 1),
       largest_sums_(space, "surface/largest_sums"), surface_(space, "surface/surface", 1),
       surface_sums_(space, "surface/surface_sums")
@@ -46,6 +46,7 @@ DeviceSurface::DeviceSurface(const CudaSpace& space, View<const Triangle> triang
     corners_first_.upload(edges.corners_of_vertex.first);
     corners_.upload(edges.corners_of_vertex.items);
     used_vertices_.upload(list_used(edges.corners_of_vertex, positions.size()));
+    passive_.upload(passive);
 
     // Upload empty boxes: nodes that pad a group of four are never written.
     edge_shape_ = ImplicitShape(edges.edge_count());

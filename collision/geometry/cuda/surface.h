@@ -15,7 +15,9 @@ class DeviceSurface {
 public:
     /// @param triangles  [triangles x 3] indices into positions; any list: collapsed, non-manifold
     /// @param positions  [vertices x 3] [m] first pose, on the host
-    DeviceSurface(const CudaSpace& space, View<const Triangle> triangles, View<const Vec3> positions);
+    /// @param passive    [vertices] 1: pairs of primitives of such vertices are not visited; empty: all are
+    DeviceSurface(const CudaSpace& space, View<const Triangle> triangles, View<const Vec3> positions,
+                  View<const unsigned char> passive = {});
 
     /// Enqueues a refit around the straight trajectories of all vertices. As in Candidates::update, the mean
     /// motion is subtracted and boxes grow by slack and half the margin. All arguments are on the device and
@@ -32,7 +34,7 @@ public:
     /// arguments.
     void note(const Trajectories& trajectories, double margin)
     {
-        boxes_ = {points_.view(), trajectories.selected, largest_.view(), margin};
+        boxes_ = {points_.view(), trajectories.selected, largest_.view(), margin, passive_.view()};
     }
 
     /// Enqueues a refit for some vertices; `x` and `trajectories` may differ from those of move() only at
@@ -82,6 +84,7 @@ private:
     DeviceArray<std::array<int, 3>> triangle_edge_;
     DeviceArray<int> corners_first_, corners_;
     DeviceArray<std::array<int, 1>> used_vertices_; ///< that belong to triangles
+    DeviceArray<unsigned char> passive_;            ///< [vertices], or empty
 
     // Trees.
     DeviceArray<int> vertex_order_, edge_order_, triangle_order_;

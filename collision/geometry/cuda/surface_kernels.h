@@ -104,18 +104,21 @@ struct PlaceChanged {
 /// Boxes of primitives at their moving points, as a search needs them.
 struct BoxesAtPoints {
     View<const MovingPoint> points;
-    View<const unsigned char> selected; ///< see Trajectories
-    View<const Largest> largest;        ///< [1]
-    double margin = 0.0;                ///< [m] margin of the search
+    View<const unsigned char> selected;     ///< see Trajectories
+    View<const Largest> largest;            ///< [1]
+    double margin = 0.0;                    ///< [m] margin of the search
+    View<const unsigned char> passive = {}; ///< see DeviceSurface
 
     TOILE_HD float grown_by() const { return box_margin(margin, largest[0].value); }
 
     template <typename... Vertex>
-    TOILE_HD BoxNode node(int number, Vertex... v) const
+    TOILE_HD BoxNode node(int number, int first, Vertex... others) const
     {
-        const bool is_wanted = selected.empty() || ((selected[v] != 0) || ...);
-        return BoxNode::of_item(collision::box_around(grown_by(), MovingPoint(points[v])...), number,
-                                is_wanted);
+        const bool is_selected = selected.empty() || selected[first] != 0 || ((selected[others] != 0) || ...);
+        const bool is_wanted = is_selected && (passive.empty() || passive[first] == 0);
+        return BoxNode::of_item(
+            collision::box_around(grown_by(), MovingPoint(points[first]), MovingPoint(points[others])...),
+            number, is_wanted);
     }
     TOILE_HD BoxNode node(int number, const std::array<int, 2>& v) const { return node(number, v[0], v[1]); }
     TOILE_HD BoxNode node(int number, const Triangle& v) const { return node(number, v[0], v[1], v[2]); }

@@ -5,13 +5,13 @@
 
 namespace toile::collision {
 
-/// Rigid bodies of a soup: no pairs within one.
+/// Bodies of a soup: no pairs within one.
 struct Bodies {
-    View<const int> rigid; ///< [vertices] -1 for none, or empty
+    View<const int> rigid; ///< [vertices] see NearPairs
 
     TOILE_HD bool are_one(int a, int b) const
     {
-        return !rigid.empty() && rigid[a] >= 0 && rigid[a] == rigid[b];
+        return !rigid.empty() && are_in_one_body(rigid[a], rigid[b]);
     }
 };
 

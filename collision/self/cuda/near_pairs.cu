@@ -1,5 +1,6 @@
 #include "collision/self/cuda/near_pairs.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/base/error.h"
@@ -32,12 +33,22 @@ int with_headroom(long needed)
     return int(std::min(long(kHeadroom * double(needed)), max_size));
 }
 
+/// Marks of prescribed vertices, among which there are no pairs; empty without any.
+std::vector<unsigned char> prescribed(View<const int> rigid)
+{
+    std::vector<unsigned char> marks;
+    if (std::find(rigid.begin(), rigid.end(), kPrescribed) != rigid.end())
+        for (const int number : rigid)
+            marks.push_back((unsigned char)(number == kPrescribed ? 1 : 0));
+    return marks;
+}
+
 } // namespace
 
 DeviceNearPairs::DeviceNearPairs(const CudaSpace& space, View<const Triangle> triangles,
                                  View<const Vec3> positions, View<const int> rigid, int capacity)
     : space_(space), beside_(space, CudaSpace::Beside{}), placed_(space), found_(beside_),
-      surface_(space, triangles, positions), rigid_(space, "near_pairs/rigid"),
+      surface_(space, triangles, positions, prescribed(rigid)), rigid_(space, "near_pairs/rigid"),
       graph_(space, "collision/device_search"),
       counts_(space, "near_pairs/counts", positions.size() + surface_.edges().vertex.size() + 1),
       first_(space, "near_pairs/first", counts_.size()),

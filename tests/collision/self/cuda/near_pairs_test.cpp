@@ -221,6 +221,25 @@ TEST_F(DeviceNearPairsTest, AreNotWithinOneRigidBody)
     EXPECT_GT(count(), 100u);
 }
 
+/// Rows of a folded sheet take the parts of cloth, of a rigid body and of prescribed bodies.
+TEST_F(DeviceNearPairsTest, AreNotWithinBodiesWhoseMotionIsGiven)
+{
+    Random random(44);
+    for (const int cloth : {-1, kTogether}) {
+        const Soup soup = folded_sheet(random);
+        const std::array<int, 3> parts{cloth, cloth == kTogether ? cloth : 0, kPrescribed};
+        std::vector<int> rigid(soup.x.size());
+        for (size_t v = 0; v < rigid.size(); ++v)
+            rigid[v] = parts[v / 48 % 3];
+        std::vector<unsigned char> selected(soup.x.size());
+        for (int i = 0; i < 60; ++i)
+            selected[random.below(int(selected.size()))] = 1;
+        compare(soup, 0.003, "all", rigid);
+        compare(soup, 0.003, "selected", rigid, selected);
+    }
+    EXPECT_GT(count(), 100u);
+}
+
 /// A collider is a rigid body of the soup, and only its vertices are selected. The result is the pairs of
 /// cloth and collider.
 TEST_F(DeviceNearPairsTest, OfAColliderInTheSoupAreItsPairsWithCloth)
