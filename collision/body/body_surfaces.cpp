@@ -11,6 +11,8 @@ BodySurfaces::BodySurfaces(const std::vector<ContactCollider>& colliders, double
 {
     for (int number = 0; number < int(colliders.size()); ++number) {
         const ContactCollider& collider = colliders[number];
+        const bool is_open = collider.mesh != nullptr && !collider.mesh->surface().edges().is_closed;
+        is_open_.push_back((unsigned char)(is_open ? 1 : 0));
         Part part{collider, number, vertex_count_, 0, {}, false};
         View<const Triangle> triangles;
         TriangleMesh facets;
@@ -66,25 +68,19 @@ bool BodySurfaces::find_jumps(double dt)
     return any;
 }
 
-int BodySurfaces::collider_of(int vertex) const
+std::vector<int> BodySurfaces::colliders() const
 {
-    const auto part = std::find_if(parts_.begin(), parts_.end(), [vertex](const Part& candidate) {
-        return vertex < candidate.first + candidate.count;
-    });
-    return part->number;
-}
-
-bool BodySurfaces::is_open(int collider) const
-{
-    const MeshCollider* mesh = colliders_[collider].mesh;
-    return mesh != nullptr && !mesh->surface().edges().is_closed;
+    std::vector<int> numbers;
+    for (const Part& part : parts_)
+        numbers.insert(numbers.end(), part.count, part.number);
+    return numbers;
 }
 
 std::vector<unsigned char> BodySurfaces::are_open() const
 {
     std::vector<unsigned char> open;
     for (const Part& part : parts_)
-        open.insert(open.end(), part.count, (unsigned char)(is_open(part.number) ? 1 : 0));
+        open.insert(open.end(), part.count, is_open_[part.number]);
     return open;
 }
 
@@ -96,7 +92,7 @@ bool BodySurfaces::is_inside(const Vec3& x) const
             if (!std::holds_alternative<PlaneShape>(collider.shape->shape()) &&
                 collider.shape->closest(x).signed_distance < 0.0)
                 return true;
-        } else if (!is_open(c)) {
+        } else if (is_open_[c] == 0) {
             const std::optional<SurfacePoint> at = collider.mesh->surface().closest(x);
             if (at && at->signed_distance < 0.0)
                 return true;

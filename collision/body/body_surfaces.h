@@ -27,9 +27,10 @@ public:
     /// Finds the colliders that jump in the current step of dt [s]. They are at their poses at t1 all the
     /// time.
     bool find_jumps(double dt);
-    int collider_of(int vertex) const;           ///< number of the collider in the constructor's list
-    bool is_open(int collider) const;            ///< a mesh with a border: it has no inside
-    std::vector<unsigned char> are_open() const; ///< [vertices] 1: of an open mesh
+    std::vector<int> colliders() const; ///< [vertices] numbers of the colliders in the constructor's list
+    /// [colliders] 1: a mesh with a border, which has no inside
+    View<const unsigned char> open_colliders() const { return is_open_; }
+    std::vector<unsigned char> are_open() const; ///< [vertices] 1: of such a mesh
 
     bool is_inside(const Vec3& x) const; ///< of a body at t1 that has an inside
     /// Unit normal at t1 of a surface point, or of a solid near x.
@@ -55,6 +56,7 @@ private:
     void pose(const Part& part, View<Vec3> x, bool is_end) const;
 
     std::vector<ContactCollider> colliders_;
+    std::vector<unsigned char> is_open_; ///< [colliders]
     std::vector<Part> parts_;
     std::vector<Triangle> triangles_;
     int vertex_count_ = 0;

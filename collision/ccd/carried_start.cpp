@@ -44,23 +44,20 @@ private:
 
 } // namespace
 
-CarriedStart::CarriedStart(NearPairs& near, const ExemptPairs& exempt,
-                           const CollisionFreeStep::Settings& settings, const RigidTrajectories& rigid,
-                           int first_prescribed)
-    : near_(near), exempt_(exempt), gap_(settings.gap()), first_prescribed_(first_prescribed),
-      query_(near, exempt, settings.gap()),
-      limiter_(near.edges(), {settings.gap(), settings.max_deflection, first_prescribed, false}, rigid)
+CarriedStart::CarriedStart(CcdSearch& search, const SurfaceEdges& edges,
+                           const CollisionFreeStep::Settings& settings, const RigidTrajectories& rigid)
+    : search_(search), gap_(settings.gap()), first_prescribed_(settings.first_prescribed),
+      limiter_(edges, {settings.gap(), settings.max_deflection, settings.first_prescribed, false}, rigid)
 {
 }
 
-void CarriedStart::carry(View<Vec3> x, View<const Vec3> way, View<const Vec3> end, View<const double> slack,
+void CarriedStart::carry(View<Vec3> x, View<const Vec3> way, View<const Vec3> end,
                          View<const unsigned char> fixed, const Release& release)
 {
     const StageScope stage("collision/carry");
     way_ = way;
     body_end_ = end;
     body_start_.assign(x.begin() + first_prescribed_, x.end());
-    slack_ = slack;
     fixed_ = fixed;
     release_ = &release;
     stuck_.clear();
@@ -85,7 +82,6 @@ void CarriedStart::go(View<Vec3> x, double from, double to)
 CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, bool may_release)
 {
     end_.resize(x.size());
-    motion_.resize(x.size());
     parallel_for(kCpu, "collision/expect", x.size(), [&](int v) {
         if (v < first_prescribed_) {
             end_[v] = x[v] + (to - from) * way_[v];
@@ -93,17 +89,14 @@ CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, 
             const int b = v - first_prescribed_;
             end_[v] = to == 1.0 ? body_end_[b] : Vec3(body_start_[b] + to * (body_end_[b] - body_start_[b]));
         }
-        motion_[v] = end_[v] - x[v];
     });
-    near_.find(x, {motion_, slack_}, gap_.largest(), pairs_);
-    std::erase_if(pairs_, [&](const NearPair& pair) { return exempt_.is_exempt(pair); });
-    query_.begin(x, end_, slack_, pairs_);
-    limiter_.begin(x, fixed_);
-    rides_.assign(x.size(), 0);
-    pushed_.assign(x.size(), 0.0);
-    changed_.reset(x.size());
-
-    View<const BlockedPair> blocked = query_.query_all(end_);
+    View<const BlockedPair> blocked = search_.begin(x, end_);
+    if (!blocked.empty()) {
+        limiter_.begin(x, fixed_);
+        rides_.assign(x.size(), 0);
+        pushed_.assign(x.size(), 0.0);
+        changed_.reset(x.size());
+    }
     for (int round = 0; round < kRounds && !blocked.empty(); ++round) {
         const std::vector<BlockedPair> now(blocked.begin(), blocked.end());
         for (const BlockedPair& pair : now)
@@ -113,11 +106,11 @@ CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, 
         for (const int v : changed_.items())
             changes.push_back({v, end_[v] - x[v], 0.0});
         changed_.clear();
-        blocked = query_.update(changes);
-        ClothQuery cloths(query_, [this](View<const BlockedPair> all) { return between_cloths(all); });
+        blocked = search_.update(changes);
+        ClothQuery cloths(search_, [this](View<const BlockedPair> all) { return between_cloths(all); });
         if (const auto first = between_cloths(blocked); !first.empty()) {
             limiter_.limit(end_, rides_, cloths, first);
-            blocked = query_.query_all(end_);
+            blocked = search_.query_all(end_);
         }
     }
     if (!blocked.empty() && may_release && (*release_)(blocked))
@@ -126,7 +119,7 @@ CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, 
         return Part::kBlocked;
     for (const BlockedPair& left : blocked)
         stuck_.push_back(left.pair.vertex);
-    std::copy(end_.begin(), end_.end(), x.begin());
+    parallel_for(kCpu, "collision/go", x.size(), [&](int v) { x[v] = end_[v]; });
     return Part::kDone;
 }
 

@@ -30,22 +30,21 @@ public:
     /// false if there are none that may be exempt.
     using Release = std::function<bool(View<const BlockedPair> blocked)>;
 
-    /// @param near, exempt      of cloth and bodies; borrowed
-    /// @param first_prescribed  all vertices from it on belong to bodies
-    CarriedStart(NearPairs& near, const ExemptPairs& exempt, const CollisionFreeStep::Settings& settings,
-                 const RigidTrajectories& rigid, int first_prescribed);
+    /// @param search    finds the pairs of cloth and bodies, without exempt ones; borrowed
+    /// @param edges     of cloth and bodies
+    /// @param settings  with first_prescribed
+    CarriedStart(CcdSearch& search, const SurfaceEdges& edges, const CollisionFreeStep::Settings& settings,
+                 const RigidTrajectories& rigid);
 
     /// @param x      [vertices] pose at the start, without crossings; out: at the end [m]
     /// @param way    [first_prescribed] expected displacement of cloth [m]
     /// @param end    [vertices - first_prescribed] bodies at the end [m]
-    /// @param slack  [vertices] as in CollisionFreeStep::begin [m]
-    /// @param fixed  [vertices] likewise
+    /// @param fixed  [vertices] as in CollisionFreeStep::begin
     /// @param release  see Release
-    void carry(View<Vec3> x, View<const Vec3> way, View<const Vec3> end, View<const double> slack,
-               View<const unsigned char> fixed, const Release& release);
+    void carry(View<Vec3> x, View<const Vec3> way, View<const Vec3> end, View<const unsigned char> fixed,
+               const Release& release);
 
     const std::vector<StuckPair>& stuck() const { return stuck_; } ///< of the last carry()
-    void forget() { stuck_.clear(); }                              ///< nothing is carried in this step
 
 private:
     void go(View<Vec3> x, double from, double to);
@@ -56,24 +55,20 @@ private:
     void change(int v, const Vec3& end);
     View<const BlockedPair> between_cloths(View<const BlockedPair> blocked);
 
-    NearPairs& near_;
-    const ExemptPairs& exempt_;
+    CcdSearch& search_;
     MinGap gap_;
     int first_prescribed_;
-    CpuCcdQuery query_;
     TrajectoryLimiter limiter_;
     std::vector<StuckPair> stuck_;
 
     // Arguments of carry().
     View<const Vec3> way_, body_end_;
     std::vector<Vec3> body_start_; ///< [m]
-    View<const double> slack_;
     View<const unsigned char> fixed_;
     const Release* release_ = nullptr;
 
     // Of one part.
-    std::vector<Vec3> end_, motion_; ///< [vertices] [m]
-    std::vector<NearPair> pairs_;
+    std::vector<Vec3> end_;            ///< [vertices] [m]
     std::vector<unsigned char> rides_; ///< [vertices] 1: cloth that goes on with a body
     std::vector<double> pushed_;       ///< [vertices] sum of its pushes [m]
     VertexSet changed_;

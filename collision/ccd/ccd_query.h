@@ -32,4 +32,16 @@ public:
     virtual View<const BlockedPair> update(View<const ChangedTrajectory> changed) = 0;
 };
 
+/// CcdQuery that finds all its pairs, for poses on the host.
+class CcdSearch : public CcdQuery {
+public:
+    /// Finds the pairs of the straight trajectories from x to `end`, and all that are blocked.
+    /// @param x    [vertices] [m]; borrowed until the next begin()
+    /// @param end  [vertices] [m]
+    virtual View<const BlockedPair> begin(View<const Vec3> x, View<const Vec3> end) = 0;
+
+    /// Finds all blocked pairs after any trajectories have changed: all vertices move to `end`.
+    virtual View<const BlockedPair> query_all(View<const Vec3> end) = 0;
+};
+
 } // namespace toile::collision

@@ -54,6 +54,13 @@ struct PairSafeFraction {
     }
 };
 
+/// Displacement of vertex v.
+struct DisplacementTo {
+    View<const Vec3> x, end; ///< [vertices] [m]
+    View<Vec3> motion;       ///< [vertices] out [m]
+    TOILE_HD void operator()(int v) const { motion[v] = end[v] - x[v]; }
+};
+
 /// Trajectories for which lists of pairs are complete: one sphere of end positions per vertex.
 struct KnownTrajectories {
     View<Vec3> motion;   ///< [vertices] [m]

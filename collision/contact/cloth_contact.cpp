@@ -1,5 +1,7 @@
 #include "collision/contact/cloth_contact.h"
 
+#include <algorithm>
+
 #include "collision/contact/cpu/cloth_contact.h"
 #include "collision/contact/cuda/cloth_contact.h"
 
@@ -12,22 +14,42 @@ constexpr double kSagPerGap = 0.25;
 
 } // namespace
 
+ClothContact::ClothContact(ContactSoup soup)
+    : soup_(std::move(soup)),
+      rules_(soup_.triangles_of_cloth(), soup_.of_cloth(View<const Vec3>(soup_.positions)), soup_.cloths,
+             soup_.of_cloth(View<const double>(soup_.altitude)), soup_.bodies.are_open()),
+      exempt_(soup_.positions, soup_.altitude, CollisionFreeStep::Settings{}.min_gap),
+      bodies_(soup_, rules_, exempt_), fixed_(soup_.positions.size(), 1)
+{
+}
+
+void ClothContact::set_crossing(View<const unsigned char> crosses)
+{
+    std::vector<unsigned char> all(crosses.begin(), crosses.end());
+    all.resize(soup_.positions.size(), 0);
+    exempt_.set_crossing(all);
+}
+
+void ClothContact::forget() { bodies_.forget(); }
+
+void ClothContact::set_fixed(View<const unsigned char> of_cloth)
+{
+    std::copy_n(of_cloth.begin(), soup_.first_body, fixed_.begin());
+}
+
 std::unique_ptr<ClothContact> make_cloth_contact(View<const Triangle> triangles, View<const Vec3> positions,
                                                  const std::vector<ContactCloth>& cloths,
                                                  View<const double> altitude,
                                                  const std::vector<ContactCollider>& colliders,
                                                  bool cloth_with_cloth, const CudaSpace* space)
 {
-    if (space != nullptr) {
-        if (!cloth_with_cloth)
-            return nullptr;
-        return std::make_unique<DeviceClothContact>(*space, triangles, positions, cloths, altitude);
-    }
     BodySurfaces bodies(colliders, kSagPerGap * largest_gap(cloths));
     if (!cloth_with_cloth && bodies.is_empty())
         return nullptr;
-    return std::make_unique<HostClothContact>(triangles, positions, cloths, altitude, std::move(bodies),
-                                              cloth_with_cloth);
+    ContactSoup soup(triangles, positions, cloths, altitude, std::move(bodies), cloth_with_cloth);
+    if (space != nullptr)
+        return std::make_unique<DeviceClothContact>(*space, std::move(soup));
+    return std::make_unique<HostClothContact>(std::move(soup));
 }
 
 } // namespace toile::collision

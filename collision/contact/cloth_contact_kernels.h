@@ -7,6 +7,7 @@
 
 #include "collision/ccd/safe_motion.h"
 #include "collision/geometry/contact_pair.h"
+#include "collision/self/exempt_pairs.h"
 #include "collision/self/pair_rules.h"
 
 namespace toile::collision {
@@ -126,6 +127,74 @@ struct FindPressing {
     }
 };
 
+/// Guard of a pair of cloth with a body: a half space on the side on which the cloth is.
+struct GuardOf {
+    int first_body;                    ///< vertex
+    View<const Vec3> base;             ///< [vertices] start of the trajectories [m]
+    View<const Vec3> motion;           ///< [bodies] displacement in the step [m]
+    View<const int> collider;          ///< [bodies]
+    View<const unsigned char> is_open; ///< [bodies] 1: of a surface without an inside
+    View<const Vec3> outward;          ///< [bodies] normals; may be empty if none is open
+
+    TOILE_HD bool is_of(const NearPair& near) const { return is_with_body(near, first_body); }
+
+    /// @param pair  from FindPressing
+    /// @param near  from which it was made
+    TOILE_HD ContactPair operator()(const ContactPair& pair, const NearPair& near) const
+    {
+        ContactPair guard;
+        guard.kind = ContactKind::kGuard;
+        const bool is_cloth_first = pair.vertex[0] < first_body;
+        const double side = is_cloth_first ? 1.0 : -1.0;
+        guard.normal = side * pair.normal;
+        guard.feature = is_cloth_first ? near.second : near.first;
+        Vec3 ahead = Vec3::Zero();
+        bool is_of_open = false;
+        int used = 0;
+        for (int k = 0; k < 4; ++k) {
+            const int v = pair.vertex[k], b = v - first_body;
+            const double weight = side * pair.weight[k];
+            if (b < 0) {
+                guard.vertex[used] = v;
+                guard.weight[used++] = weight;
+                continue;
+            }
+            guard.point -= weight * base[v];
+            guard.motion -= weight * motion[b];
+            guard.collider = collider[b];
+            is_of_open = is_open[b] != 0;
+            if (is_of_open)
+                ahead += outward[b];
+        }
+        if (is_of_open && ahead.dot(guard.normal) < 0.0)
+            guard.kind = ContactKind::kTwoSided;
+        return guard;
+    }
+};
+
+/// Pairs with a collider that make no term: their cloth lets the body through, or a guard knows the side,
+/// which a surface without an inside does not.
+struct ReplacedPairs {
+    View<const Vec3> base = {};             ///< [vertices] start of the trajectories [m]
+    View<const unsigned char> is_open = {}; ///< [colliders] 1: without an inside; empty: nothing is replaced
+    View<const unsigned char> lets_through = {}; ///< [cloth] see LetThrough; empty: no cloth does
+    View<const Vec3> owner_normal = {};          ///< [cloth] likewise
+
+    TOILE_HD bool operator()(const ContactPair& pair) const
+    {
+        if (is_open.empty() || pair.is_between_cloths())
+            return false;
+        if (pair.kind < ContactKind::kGuard && is_open[pair.collider] != 0 && pair.gap(base) < 0.0)
+            return true; // it stays behind
+        for (int k = 0; k < pair.count() && !lets_through.empty(); ++k) {
+            const int v = pair.vertex[k];
+            if (lets_through[v] != 0 && owner_normal[v].dot(pair.normal) < kOwnSheet)
+                return true;
+        }
+        return false;
+    }
+};
+
 /// Marks the pairs that may press.
 struct MarkPressing {
     FindPressing find;
@@ -143,11 +212,18 @@ struct MarkPressing {
 /// long.
 struct ReportPressing {
     FindPressing find;
+    GuardOf guard_of;
     View<const NearPair> pairs;
     View<const int> indices; ///< of the pairs that may press
     View<ContactPair> out;
 
-    TOILE_HD void operator()(int i) const { find(pairs[indices[i]], out[i]); }
+    TOILE_HD void operator()(int i) const
+    {
+        const NearPair& near = pairs[indices[i]];
+        find(near, out[i]);
+        if (guard_of.is_of(near))
+            out[i] = guard_of(out[i], near);
+    }
 };
 
 /// Returns 1 if a pair that presses at x has slid from the position at which its normal was expected, to

@@ -44,9 +44,11 @@ double mean_edge(View<const Triangle> triangles, View<const Vec3> x, const std::
     return count[kind] > 0 ? sum[kind] / count[kind] : 0.0;
 }
 
-CollisionFreeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double edge)
+CollisionFreeStep::Settings settings_for(const std::vector<ContactCloth>& cloths, double edge,
+                                         int first_prescribed)
 {
     CollisionFreeStep::Settings settings;
+    settings.first_prescribed = first_prescribed;
     settings.max_deflection = kMaxDeflection * edge;
     settings.thickness = std::numeric_limits<double>::max();
     for (const ContactCloth& cloth : cloths)
@@ -78,7 +80,8 @@ ClothContactRules::ClothContactRules(View<const Triangle> triangles, View<const 
                                      const std::vector<ContactCloth>& cloths, View<const double> altitude,
                                      View<const unsigned char> is_open)
     : edge_(mean_edge(triangles, positions, rigid_bodies_of(cloths))),
-      collision_free_step_(settings_for(cloths, edge_)), bodies_(rigid_trajectories_of(cloths))
+      collision_free_step_(settings_for(cloths, edge_, positions.size())),
+      bodies_(rigid_trajectories_of(cloths))
 {
     for (const ContactCloth& cloth : cloths) {
         thickest_ = std::max(thickest_, cloth.thickness);

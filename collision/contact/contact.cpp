@@ -42,12 +42,10 @@ std::unique_ptr<ContactTerms> make_terms(ContactEnergy& energy, View<const Trian
 Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
                  const std::vector<ContactCloth>& cloths, const std::vector<ContactCollider>& colliders,
                  const Settings& settings, const CudaSpace* space)
-    : keeps_off_bodies_(settings.keeps_off_bodies && space == nullptr),
+    : between_(make_cloth_contact(triangles, positions, cloths, shortest_altitudes(triangles, positions),
+                                  colliders, settings.cloth_with_cloth, space)),
       terms_(make_terms(energy_, triangles, positions, cloths, colliders, settings, space))
 {
-    between_ = make_cloth_contact(triangles, positions, cloths, shortest_altitudes(triangles, positions),
-                                  keeps_off_bodies_ ? colliders : std::vector<ContactCollider>(),
-                                  settings.cloth_with_cloth, space);
 }
 
 void Contact::begin_step(const StepStart& start)

@@ -31,7 +31,6 @@ public:
         bool edge_edge = true;
 
         bool cloth_with_cloth = false; ///< contact of cloth with itself and other cloth
-        bool keeps_off_bodies = true;  ///< on the CPU; false: bodies are met by the energy alone, as on a GPU
     };
 
     /// @param triangles  [triangles] of all cloths
@@ -61,22 +60,32 @@ public:
     bool revise(StepField x, bool is_converged) override;
     void clear(StepField x, StepField v) override;
     void resolve(StepField x, StepField v) override;
-    bool is_complete() const override { return keeps_off_bodies_; }
+    bool is_complete() const override { return true; }
     bool keep_apart(StepField x, StepField v) override;
     void end_step(StepField x) override;
 
     bool keeps_cloth_apart() const { return between_ != nullptr; }
     /// Surfaces that cloth is kept from crossing; null if there are none.
-    const BodySurfaces* bodies() const { return between_ ? between_->bodies() : nullptr; }
+    const BodySurfaces* bodies() const
+    {
+        return between_ && !between_->bodies().surfaces().is_empty() ? &between_->bodies().surfaces()
+                                                                     : nullptr;
+    }
     /// Number of pairs in the last step that bodies have closed on and that cross from now on.
-    int stuck_count() const { return between_ ? between_->stuck_count() : 0; }
-    int first_stuck() const { return between_->first_stuck(); } ///< a vertex of cloth of the first of them
-    int first_let_through() const { return between_->first_let_through(); }
+    int stuck_count() const { return between_ ? between_->bodies().stuck_count() : 0; }
+    int first_stuck() const
+    {
+        return between_->bodies().first_stuck();
+    } ///< a vertex of cloth of the first of them
+    int first_let_through() const { return between_->bodies().let_through().first(); }
     /// Number of vertices between body parts that let one of them through (LetThrough).
-    int let_through_count() const { return between_ ? between_->let_through_count() : 0; }
-    bool lets_through(const Triangle& t) const { return between_ && between_->lets_through(t); }
-    /// See ClothContact.
-    void close_let_through(View<const int> crossing) { between_->close_let_through(crossing); }
+    int let_through_count() const { return between_ ? between_->bodies().let_through().count() : 0; }
+    bool lets_through(const Triangle& t) const
+    {
+        return between_ && between_->bodies().let_through().is_released(t);
+    }
+    /// See ContactBodies.
+    void close_let_through(View<const int> crossing) { between_->bodies().close_let_through(crossing); }
 
     /// Marks cloth that crosses cloth at the start of the next step. Contact would keep it on the wrong side,
     /// so its pairs are exempt (ExemptPairs).
@@ -92,12 +101,15 @@ public:
     /// @param inside     [vertices] 1: inside a body; empty: none is
     void set_body_crossings(View<const std::pair<int, int>> crossings, View<const unsigned char> inside)
     {
-        between_->set_body_crossings(crossings, inside);
+        between_->bodies().set_crossings(crossings, inside);
     }
-    bool lets_through(int vertex) const { return between_ && between_->lets_through(vertex); }
+    bool lets_through(int vertex) const
+    {
+        return between_ && between_->bodies().let_through().is_released(vertex);
+    }
 
     /// True if a body jumps in a step of dt [s] that has been set: it was replaced rather than moved.
-    bool have_bodies_jumped(double dt) { return between_ && between_->have_bodies_jumped(dt); }
+    bool have_bodies_jumped(double dt) { return between_ && between_->bodies().find_jumps(dt); }
 
     /// Discards the state of earlier steps, for cloth that was moved elsewhere.
     void forget();
@@ -110,7 +122,6 @@ private:
     void find_again();
     void remember_end();
 
-    bool keeps_off_bodies_;                 ///< bodies, too, are kept from crossing
     double dt_ = 0.0;                       ///< of this step [s]
     std::unique_ptr<ClothContact> between_; ///< keeps apart; null if there is nothing to
     ContactEnergy energy_;                  ///< without terms if they are on a GPU

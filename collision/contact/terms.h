@@ -33,11 +33,8 @@ public:
     ContactTerms(const ContactTerms&) = delete;
     ContactTerms& operator=(const ContactTerms&) = delete;
 
-    View<const Vec3> advect(const StepStart&) override { return {}; }
-    View<const NearestSurface> nearest() const override { return {}; }
-
     /// Finds the pairs with colliders of a step.
-    /// @param carried  [vertices] positions at t1 of cloth that goes along with bodies [m]; empty: advect()
+    /// @param carried  see ClothContact
     virtual void begin_step(const StepStart& start, View<const Vec3> carried) = 0;
 
     /// Makes the terms of these pairs and of those of `between`, which may be null. Pairs that cannot move at

@@ -19,11 +19,24 @@ ExemptPairs::ExemptPairs(View<const Vec3> rest, View<const double> altitude, dou
         is_thin_.push_back(height < too_near_);
 }
 
+void ExemptPairs::set_crossing(View<const unsigned char> crosses)
+{
+    crosses_.assign(crosses.begin(), crosses.end());
+    ++revision_;
+}
+
 void ExemptPairs::set_body_crossings(std::vector<BodyCrossing> crossings)
 {
     std::sort(crossings.begin(), crossings.end());
     crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
     body_crossings_ = std::move(crossings);
+    ++revision_;
+}
+
+void ExemptPairs::set_inside(View<const unsigned char> inside)
+{
+    inside_.assign(inside.begin(), inside.end());
+    ++revision_;
 }
 
 void ExemptPairs::add_body_crossings(View<const BodyCrossing> more)
@@ -33,24 +46,15 @@ void ExemptPairs::add_body_crossings(View<const BodyCrossing> more)
     set_body_crossings(std::move(all));
 }
 
-/// True if the pair has vertices of two triangles that cross, or cloth inside a body.
-bool ExemptPairs::crosses_body(const NearPair& pair) const
+void ExemptPairs::set_let_through(View<const unsigned char> lets_through, View<const Vec3> owner_normal,
+                                  View<const Vec3> body_normal)
 {
-    if (body_crossings_.empty() && inside_.empty())
-        return false;
-    const int cloth = int(inside_.size());
-    const bool has_body = is_with_body(pair, cloth);
-    for (const int v : pair.vertex)
-        if (has_body && v < cloth && inside_[v] != 0)
-            return true;
-    const int first = first_count(pair.is_edge_edge);
-    for (int a = 0; a < first; ++a)
-        for (int b = first; b < 4; ++b) {
-            const auto [low, high] = std::minmax(pair.vertex[a], pair.vertex[b]);
-            if (std::binary_search(body_crossings_.begin(), body_crossings_.end(), BodyCrossing(low, high)))
-                return true;
-        }
-    return false;
+    if (lets_through.empty() && lets_through_.empty())
+        return;
+    lets_through_ = lets_through;
+    owner_normal_ = owner_normal;
+    body_normal_ = body_normal;
+    ++revision_;
 }
 
 } // namespace toile::collision

@@ -122,22 +122,20 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     return report;
 }
 
-/// Completes the status: what has yielded, and where.
+/// Completes the status: what has yielded, and where. Copies positions from a GPU only where something has.
 void ClothGroup::judge(StepReport& report)
 {
     const auto raise = [&](StepReport::Status status) { report.status = std::max(report.status, status); };
     if (contact_ && contact_->bodies()) {
-        const View<const Vec3> x = body_->positions();
         report.pinched.count = contact_->let_through_count();
         if (report.pinched.count > 0) {
-            const int v = contact_->first_let_through();
-            report.pinched.place = place_of(v, x[v]);
+            report.pinched.place = place_of(contact_->first_let_through());
             raise(StepReport::Status::Pinched);
         }
         report.stuck.count = crossing_bodies_ + contact_->stuck_count();
         if (report.stuck.count > 0) {
-            const int v = contact_->stuck_count() > 0 ? contact_->first_stuck() : first_crossing_;
-            report.stuck.place = place_of(v, x[v]);
+            report.stuck.place =
+                place_of(contact_->stuck_count() > 0 ? contact_->first_stuck() : first_crossing_);
             raise(StepReport::Status::Stuck);
         }
         if (has_jump_) {
@@ -145,23 +143,24 @@ void ClothGroup::judge(StepReport& report)
             raise(StepReport::Status::Stuck);
         }
     }
-    for (int c = 0; c < int(cloths_.size()) && !loads_; ++c) {
-        const View<const Vec3> x = part(body_->positions(), c);
+    for (int c = 0; c < int(cloths_.size()); ++c) {
         const garment::StrainLimit& limit = cloths_[c].strain_limit();
         if (report.max_strain <= limit.settings().limit + garment::kStrainMargin)
             continue;
-        const garment::StrainLimit::Excess excess = limit.excess(x, garment::kStrainMargin);
+        const garment::StrainLimit::Excess excess =
+            limit.excess(part(body_->positions(), c), garment::kStrainMargin);
         if (excess.count == 0)
             continue;
         const int v = cloths_[c].state().triangles[excess.triangle][0];
-        report.yielded.merge({excess.count, place_of(first_[c] + v, x[v])});
+        report.yielded.merge({excess.count, place_of(first_[c] + v)});
         raise(StepReport::Status::Yielded);
     }
 }
 
 /// Vertex 12 of "skirt" near (0.100, 0.900, 0.020) m.
-std::string ClothGroup::place_of(int vertex, const Vec3& x) const
+std::string ClothGroup::place_of(int vertex) const
 {
+    const Vec3& x = body_->positions()[vertex];
     int cloth = 0;
     while (cloth + 1 < int(cloths_.size()) && vertex >= first_[cloth + 1])
         ++cloth;
@@ -191,7 +190,11 @@ void ClothGroup::mark_crossings()
     const collision::BodySurfaces* bodies = contact_->bodies();
     std::vector<unsigned char> crosses(x.size(), 0);
     may_cross_ = false;
-    for (const collision::Crossing& crossing : collision::find_crossings(triangles_, x)) {
+    std::vector<collision::Crossing> of_cloth;
+    if (may_cross_cloth_)
+        of_cloth = collision::find_crossings(triangles_, x);
+    may_cross_cloth_ = true;
+    for (const collision::Crossing& crossing : of_cloth) {
         if (solids_ && solid_of(crossing.a) >= 0 && solid_of(crossing.a) == solid_of(crossing.b))
             continue;
         may_cross_ = true;
@@ -309,7 +312,7 @@ void ClothGroup::place(int cloth, View<const Vec3> positions)
     std::vector<Vec3> all(body_->positions().begin(), body_->positions().end());
     std::copy(positions.begin(), positions.end(), all.begin() + first_[cloth]);
     body_->set_positions(all);
-    may_cross_ = true;
+    may_cross_ = may_cross_cloth_ = true;
     still_time_ = 0.0;
     still_.clear();
 }

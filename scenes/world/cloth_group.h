@@ -48,9 +48,13 @@ public:
     /// Takes one time step of dt [s] that ends at time t_t1 [s]. Colliders are already advanced to it.
     StepReport step(double dt, double t_t1, const std::vector<Collider>& colliders);
 
-    /// Declares that no cloth crosses cloth in the start pose: the first step skips their search, unless
-    /// there are solids or bodies, which cloth may cross.
-    void assume_no_crossings() { may_cross_ = solids_ != nullptr || (contact_ && contact_->bodies()); }
+    /// Declares that no cloth crosses cloth in the start pose: the first step skips that search, unless there
+    /// are solids, which cloth may cross.
+    void assume_no_crossings()
+    {
+        may_cross_ = solids_ != nullptr || (contact_ && contact_->bodies());
+        may_cross_cloth_ = solids_ != nullptr;
+    }
 
     /// Moves the vertices of one cloth to new positions; velocities and rest shape are kept.
     void place(int cloth, View<const Vec3> positions);
@@ -78,7 +82,7 @@ private:
     int solid_of(int triangle) const;
     std::string names() const;
     void judge(StepReport& report);
-    std::string place_of(int vertex, const Vec3& x) const;
+    std::string place_of(int vertex) const;
     void watch_rest(bool is_stuck, double dt);
     bool has_moved(View<const Vec3> from, View<const Vec3> to) const;
     bool is_asleep(double t_t1, const std::vector<Collider>& colliders);
@@ -97,6 +101,7 @@ private:
     std::vector<Vec3> targets_, acceleration_;
     std::vector<Triangle> triangles_; ///< of all cloths, then of all solids
     bool may_cross_ = true;           ///< cloth is known to cross cloth or bodies, or has been placed
+    bool may_cross_cloth_ = true;     ///< false: the next look finds no cloth that crosses cloth
     bool has_jump_ = false;           ///< a body jumps in this step
     bool has_cloth_inside_ = false;   ///< cloth was inside a body when last looked at
     int crossing_bodies_ = 0;         ///< triangles of cloth that crossed bodies when last looked at

@@ -96,15 +96,24 @@ void DeviceColliderPairs::follow_colliders()
     advecting_colliders_.upload(advecting);
 }
 
-void DeviceColliderPairs::find(View<const Vec3> x, View<const Vec3> prediction, double dt)
+void DeviceColliderPairs::advect(View<const Vec3> x, double dt)
 {
-    if (empty())
-        return;
     max_motion_ = ColliderPairs::kMaxAdvectionSpeed * dt;
     follow_colliders();
     parallel_for(
         space_, "contact/advect", x.size(),
         AdvectVertex{advecting_colliders_.view(), nearest_.view(), x, max_motion_, found_at_.view()});
+}
+
+void DeviceColliderPairs::find(View<const Vec3> x, View<const Vec3> prediction, double dt,
+                               View<const Vec3> from)
+{
+    if (empty())
+        return;
+    if (from.empty())
+        advect(x, dt);
+    else // after advect() in this step
+        parallel_for(space_, "contact/from", x.size(), CopyItems<Vec3>{from, found_at_.view()});
     const QueryBounds bounds =
         parallel_sum(space_, "contact/reach", x.size(), QueryBounds{},
                      KeepReach{{prediction, found_at_.view(), settings_.gap}, reach_.view(), wanted_.view()},

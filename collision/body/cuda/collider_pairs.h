@@ -22,9 +22,13 @@ public:
                         const std::vector<ContactCollider>& colliders,
                         const ColliderPairs::Settings& settings);
 
+    /// Advects positions x [vertices] at t0 with the nearest surfaces: found_at() [m].
+    void advect(View<const Vec3> x, double dt);
+
     /// Finds all pairs at the start of a step. Waits.
     /// @param x, prediction  [vertices] see StepStart, on the device [m]
-    void find(View<const Vec3> x, View<const Vec3> prediction, double dt);
+    /// @param from           [vertices] positions around which they are searched for [m]; empty: advect()
+    void find(View<const Vec3> x, View<const Vec3> prediction, double dt, View<const Vec3> from = {});
 
     /// Clears all marks of out-of-bounds vertices.
     void clear_out_of_bounds() { out_of_bounds_.fill_zero(); }
@@ -45,6 +49,10 @@ public:
     View<const ContactPair> all() const { return pairs_.view(); }
     PlanesOfVertices planes() const;                               ///< of all()
     View<const Vec3> found_at() const { return found_at_.view(); } ///< [vertices] see ColliderPairs [m]
+
+    /// Copies [vertices] found_at() and the nearest surfaces of the last search, as DeviceArray::download.
+    void download_found_at(View<Vec3> out) const { found_at_.download(out); }
+    void download_nearest(View<NearestSurface> out) const { nearest_.download(out); }
 
 private:
     /// Mesh on the device, with the step of its last pose.

@@ -82,10 +82,10 @@ void HostContactTerms::make(const ClothContact* between)
         between->append_pairs(pairs);
     }
     const std::vector<double> clearance = clearance_of_planes(pairs);
+    const ReplacedPairs replaced = between ? between->replaced() : ReplacedPairs{};
     std::vector<ContactTerm> terms;
     for (size_t i = 0; i < pairs.size(); ++i) {
-        if ((!is_plane(pairs[i]) && clearance[i] < 0.0) || rules_.is_fixed(pairs[i]) ||
-            (between && between->replaces(pairs[i])))
+        if ((!is_plane(pairs[i]) && clearance[i] < 0.0) || rules_.is_fixed(pairs[i]) || replaced(pairs[i]))
             continue;
         terms.push_back(rules_.term_of(pairs[i], clearance[i]));
         memory_.warm_start(terms.back()); // the same contact of the step before

@@ -19,7 +19,7 @@ public:
                      const Settings& settings);
 
     View<const Vec3> advect(const StepStart& start) override { return colliders_.advect(start); }
-    View<const NearestSurface> nearest() const override { return colliders_.nearest(); }
+    View<const NearestSurface> nearest() override { return colliders_.nearest(); }
     void begin_step(const StepStart& start, View<const Vec3> carried) override;
     void make(const ClothContact* between) override;
     bool empty() const override { return energy_.terms().empty(); }

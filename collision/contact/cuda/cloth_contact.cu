@@ -8,66 +8,109 @@
 
 namespace toile::collision {
 
-namespace {
-
-ExemptPairs exempt_pairs(View<const Vec3> positions, View<const double> altitude)
+DeviceClothContact::DeviceClothContact(const CudaSpace& space, ContactSoup soup)
+    : DeviceClothContact(space, soup, build_surface_edges(soup.triangles, soup.vertex_count()))
 {
-    return {positions, altitude, CollisionFreeStep::Settings{}.min_gap};
 }
 
-} // namespace
-
-DeviceClothContact::DeviceClothContact(const CudaSpace& space, View<const Triangle> triangles,
-                                       View<const Vec3> positions, const std::vector<ContactCloth>& cloths,
-                                       View<const double> altitude)
-    : ClothContact({triangles, positions, cloths, altitude}), space_(space),
-      half_thickness_(space, "cloth_contact/half_thickness"),
-      slack_(space, "cloth_contact/slack", positions.size()),
-      base_(space, "cloth_contact/base", positions.size()),
-      deviation_(space, "cloth_contact/deviation", positions.size()),
-      motion_(space, "cloth_contact/motion", positions.size()),
-      expected_(space, "cloth_contact/expected", positions.size()), wanted_(space, "cloth_contact/wanted"),
-      near_(space, triangles, positions, rigid_bodies_of(cloths)),
-      exempt_(space, exempt_pairs(positions, altitude)),
-      free_step_(space, near_, exempt_, rules().collision_free_step().gap(), positions.size()),
+DeviceClothContact::DeviceClothContact(const CudaSpace& space, ContactSoup given, const SurfaceEdges& edges)
+    : ClothContact(std::move(given)), space_(space), half_thickness_(space, "cloth_contact/half_thickness"),
+      slack_(space, "cloth_contact/slack", soup().vertex_count()),
+      deviation_(space, "cloth_contact/deviation", soup().first_body), base_(space, "cloth_contact/base"),
+      motion_(space, "cloth_contact/motion", soup().vertex_count()),
+      expected_(space, "cloth_contact/expected", soup().vertex_count()), end_(space, "cloth_contact/end"),
+      wanted_(space, "cloth_contact/wanted"), body_motion_(space, "cloth_contact/body_motion"),
+      outward_(space, "cloth_contact/outward"), collider_(space, "cloth_contact/collider"),
+      is_open_(space, "cloth_contact/is_open"), open_colliders_(space, "cloth_contact/open_colliders"),
+      near_(space, soup().triangles, soup().positions, soup().rigid), exempt_(space, exempt()),
+      free_step_(space, near_, exempt_, rules().collision_free_step().gap(), soup().vertex_count()),
       pressing_(space, "cloth_contact/pressing"), marks_(space, "cloth_contact/marks"),
       indices_(space, "cloth_contact/indices"), count_(space, "cloth_contact/count", 1), sum_(space),
       scratch_(space, "cloth_contact/scratch"),
-      limiter_(build_surface_edges(triangles, positions.size()),
-               {rules().collision_free_step().gap(), rules().collision_free_step().max_deflection},
+      ccd_search_(space, near_, free_step_, rules().collision_free_step().gap(), slack_),
+      carry_(ccd_search_, edges, rules().collision_free_step(), rules().bodies()),
+      limiter_(edges,
+               {rules().collision_free_step().gap(), rules().collision_free_step().max_deflection,
+                soup().first_body},
                rules().bodies()),
-      host_base_(space, "cloth_contact/host_base", positions.size()),
-      host_wanted_(space, "cloth_contact/host_wanted", positions.size())
+      host_base_(space, "cloth_contact/host_base", soup().vertex_count()),
+      host_wanted_(space, "cloth_contact/host_wanted", soup().vertex_count()),
+      host_prediction_(space, "cloth_contact/host_prediction", soup().has_bodies() ? soup().first_body : 0)
 {
     half_thickness_.upload(rules().thickness().half);
+    base_.upload(soup().positions);
+    end_.upload(soup().positions);
+    motion_.fill_zero();
+    const GuardOf guards = bodies().guards({});
+    body_motion_.upload(guards.motion);
+    collider_.upload(guards.collider);
+    is_open_.upload(guards.is_open);
+    if (soup().has_bodies())
+        open_colliders_.upload(soup().bodies.open_colliders());
     forget();
 }
 
-void DeviceClothContact::set_crossing(View<const unsigned char> crosses) { exempt_.set_crossing(crosses); }
-
 void DeviceClothContact::forget()
 {
+    ClothContact::forget();
     deviation_.fill_zero();
     slack_.upload(std::vector<double>(slack_.size(), rules().slack().min));
 }
 
-void DeviceClothContact::begin_step(const StepStart& start, NearbyBodies&)
+void DeviceClothContact::begin_step(const StepStart& start, NearbyBodies& near)
 {
-    TOILE_ASSERT(start.device.x.size() == slack_.size());
+    const int cloth = soup().first_body;
+    TOILE_ASSERT(start.device.x.size() == cloth);
     near_.abandon(); // of a step that an error has aborted
-    fixed_ = start.fixed;
+    set_fixed(start.fixed);
     prediction_ = start.device.prediction;
-    parallel_for(space_, "collision/expect", start.device.x.size(),
-                 ExpectMotion{start.device.x, prediction_, deviation_.view(), motion_.view()});
-    begin_search(start.device.x);
+    parallel_for(space_, "collision/keep_base", cloth,
+                 CopyPositions{start.device.x, soup().of_cloth(base_.view())});
+    if (bodies().needs_begin())
+        begin_bodies(start, near);
+    parallel_for(space_, "collision/expect", cloth,
+                 ExpectMotion{base_.view(), prediction_, deviation_.view(), motion_.view()});
+    begin_search();
 }
 
-void DeviceClothContact::begin_search(View<const Vec3> x)
+/// Begins a step in which bodies do not just stand. The host has their surfaces and decides who goes along.
+void DeviceClothContact::begin_bodies(const StepStart& start, NearbyBodies& near)
+{
+    const StageScope stage("collision/bodies_on_host");
+    const View<Vec3> base = host_base_.view();
+    base_.download(base);
+    parallel_for(space_, "collision/keep_prediction", prediction_.size(),
+                 CopyPositions{prediction_, soup().of_cloth(expected_.view())});
+    expected_.download_first(host_prediction_.view());
+    space_.synchronise();
+    StepStart on_host = start;
+    on_host.x = soup().of_cloth(base);
+    on_host.prediction = host_prediction_.view();
+    bodies().begin_step(on_host, near, carry_, fixed(), base);
+    base_.upload(base);
+    end_.upload(base);
+    const GuardOf guards = bodies().guards(base);
+    body_motion_.upload(guards.motion);
+    outward_.upload(guards.outward);
+}
+
+View<const Vec3> DeviceClothContact::carried() const
+{
+    return bodies().have_carried() ? soup().of_cloth(base_.view()) : View<const Vec3>();
+}
+
+ReplacedPairs DeviceClothContact::replaced() const
+{
+    const ExemptRule rule = exempt_.rule();
+    return {base_.view(), open_colliders_.view(), rule.lets_through, rule.owner_normal};
+}
+
+/// Finds the pairs of trajectories from base_ that motion_ expects.
+void DeviceClothContact::begin_search()
 {
     const StageScope stage("collision/near_pairs");
     has_base_ = false;
-    parallel_for(space_, "collision/keep_base", x.size(), CopyPositions{x, base_.view()});
-    parallel_for(space_, "collision/expect", x.size(),
+    parallel_for(space_, "collision/expect", base_.size(),
                  ExpectEnd{base_.view(), motion_.view(), expected_.view()});
     near_.begin(base_.view(), {motion_.view(), slack_.view()}, rules().thickest());
 }
@@ -85,6 +128,12 @@ FindPressing DeviceClothContact::find_pressing() const
             expected_.view(), slack_.view(), {half_thickness_.view()}};
 }
 
+GuardOf DeviceClothContact::guards() const
+{
+    return {soup().first_body, base_.view(),    body_motion_.view(),
+            collider_.view(),  is_open_.view(), outward_.view()};
+}
+
 /// Lists the pairs that may press. Waits for their number.
 void DeviceClothContact::list_pressing()
 {
@@ -96,7 +145,7 @@ void DeviceClothContact::list_pressing()
     pressing_.resize(
         list_flagged(space_, "collision/device_list_pressing", marks_.view(), indices_, count_, scratch_));
     parallel_for(space_, "collision/device_report_pressing", pressing_.size(),
-                 ReportPressing{find_pressing(), pairs, indices_.view(), pressing_.view()});
+                 ReportPressing{find_pressing(), guards(), pairs, indices_.view(), pressing_.view()});
 }
 
 void DeviceClothContact::append_pairs(std::vector<ContactPair>& out) const
@@ -106,12 +155,22 @@ void DeviceClothContact::append_pairs(std::vector<ContactPair>& out) const
     pressing_.download({out.data() + before, pressing_.size()});
 }
 
+/// Cloth at x [cloth], followed by the bodies, on the device [m].
+View<const Vec3> DeviceClothContact::with_bodies(View<const Vec3> x)
+{
+    if (!soup().has_bodies())
+        return x;
+    parallel_for(space_, "collision/with_bodies", x.size(), CopyPositions{x, soup().of_cloth(end_.view())});
+    return end_.view();
+}
+
 bool DeviceClothContact::advance(StepField x, const FindSupported& find_supported)
 {
     const double correction = limit(x, find_supported);
-    if (correction <= rules().ignored_correction() && !has_slid(x.device()))
+    const View<const Vec3> all = with_bodies(x.device());
+    if (correction <= rules().ignored_correction() && !has_slid(all))
         return false;
-    search_from(x.device(), correction > 0.0, true);
+    search_from(all, correction > 0.0, true);
     return true;
 }
 
@@ -123,11 +182,12 @@ bool DeviceClothContact::limit_motion(StepField x, StepField v, double dt,
         const View<const Vec3> reached = x.host();
         const View<Vec3> velocity = v.change_on_host();
         for (const int i : limiter_.moved())
-            velocity[i] += (reached[i] - host_wanted_[i]) / dt;
+            if (i < soup().first_body)
+                velocity[i] += (reached[i] - host_wanted_[i]) / dt;
     }
     if (correction <= rules().ignored_correction())
         return false;
-    search_from(x.device(), true, false);
+    search_from(with_bodies(x.device()), true, false);
     return true;
 }
 
@@ -135,15 +195,21 @@ bool DeviceClothContact::limit_motion(StepField x, StepField v, double dt,
 double DeviceClothContact::limit(StepField x, const FindSupported& find_supported)
 {
     const StageScope stage("collision/collision_free_step");
-    const View<const BlockedPair> blocked = free_step_.query_all(x.device());
+    const View<const BlockedPair> blocked = free_step_.query_all(with_bodies(x.device()));
     if (blocked.empty())
         return 0.0;
     if (!has_base_)
         copy_base();
     const View<const Vec3> wanted = x.host();
-    std::copy(wanted.begin(), wanted.end(), host_wanted_.view().begin());
-    const std::vector<unsigned char> supported = find_supported();
-    return limiter_.limit(x.change_on_host(), supported, free_step_, blocked);
+    const View<Vec3> all = host_wanted_.view(), base = host_base_.view();
+    std::copy(wanted.begin(), wanted.end(), all.begin());
+    std::copy(base.begin() + wanted.size(), base.end(), all.begin() + wanted.size());
+    host_end_.assign(all.begin(), all.end());
+    std::vector<unsigned char> supported = find_supported();
+    supported.resize(host_end_.size(), 0);
+    const double correction = limiter_.limit(host_end_, supported, free_step_, blocked);
+    std::copy_n(host_end_.begin(), x.size(), x.change_on_host().begin());
+    return correction;
 }
 
 void DeviceClothContact::copy_base()
@@ -151,10 +217,11 @@ void DeviceClothContact::copy_base()
     const StageScope stage("collision/collision_free_step_to_host");
     base_.download(host_base_.view());
     space_.synchronise();
-    limiter_.begin(host_base_.view(), fixed_);
+    limiter_.begin(host_base_.view(), fixed());
     has_base_ = true;
 }
 
+/// @param x            [vertices] on the device [m]
 /// @param was_limited  host_wanted_ has the requested positions
 void DeviceClothContact::search_from(View<const Vec3> x, bool was_limited, bool goes_on)
 {
@@ -163,7 +230,8 @@ void DeviceClothContact::search_from(View<const Vec3> x, bool was_limited, bool 
     parallel_for(space_, "collision/expect_remaining", x.size(),
                  ExpectRemaining{x, was_limited ? View<const Vec3>(wanted_.view()) : x, goes_on,
                                  rules().slack(), motion_.view(), slack_.view()});
-    begin_search(x);
+    parallel_for(space_, "collision/keep_base", x.size(), CopyPositions{x, base_.view()});
+    begin_search();
     end_search();
 }
 

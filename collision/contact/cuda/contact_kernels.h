@@ -111,7 +111,7 @@ struct FindOpposingClearance {
     }
 };
 
-/// Pairs with colliders, then those of cloth with cloth.
+/// Pairs with colliders, then those of a ClothContact.
 struct ConcatenatedPairs {
     View<const ContactPair> first, second;
     TOILE_HD const ContactPair& operator[](int i) const
@@ -125,14 +125,15 @@ struct FlagTerm {
     ConcatenatedPairs pairs;
     ContactRules rules;
     View<const double> overlap; ///< [vertices] see FindOpposingClearance [m]
-    View<unsigned char> flags;  ///< [pairs] out
+    ReplacedPairs replaced;
+    View<unsigned char> flags; ///< [pairs] out
     TOILE_HD void operator()(int i) const
     {
         const ContactPair& pair = pairs[i];
         bool is_caught = false;
-        for (int k = 0; k < pair.count() && !pair.is_between_cloths() && !is_plane(pair); ++k)
+        for (int k = 0; k < pair.count() && pair.kind < ContactKind::kGuard && !is_plane(pair); ++k)
             is_caught = is_caught || overlap[pair.vertex[k]] < 0.0;
-        flags[i] = !is_caught && !rules.is_fixed(pair) ? 1 : 0;
+        flags[i] = !is_caught && !rules.is_fixed(pair) && !replaced(pair) ? 1 : 0;
     }
 };
 

@@ -21,8 +21,9 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
       overlap_(space, "terms/overlap", positions.size()), pair_flags_(space, "terms/pair_flags"),
       flags_(space, "terms/flags"), supported_(space, "terms/supported", positions.size()),
       list_(space, "terms/list"), gauss_seidel_(space, positions.size()),
-      projection_force_(space, "terms/projection_force"), count_(space, "terms/count", 1), limits_(space),
-      smallest_(space), scratch_(space, "terms/scratch")
+      projection_force_(space, "terms/projection_force"), advected_(space, "terms/advected"),
+      nearest_(space, "terms/nearest"), count_(space, "terms/count", 1), limits_(space), smallest_(space),
+      scratch_(space, "terms/scratch")
 {
     TOILE_ASSERT(int(tables_.cloth_of.size()) == positions.size());
     cloth_of_.upload(tables_.cloth_of);
@@ -33,7 +34,24 @@ DeviceContactTerms::DeviceContactTerms(const CudaSpace& space, View<const Triang
     altitude_.upload(tables_.altitude);
 }
 
-void DeviceContactTerms::begin_step(const StepStart& start, View<const Vec3>)
+View<const Vec3> DeviceContactTerms::advect(const StepStart& start)
+{
+    advected_.resize(start.device.x.size());
+    colliders_.advect(start.device.x, start.dt);
+    colliders_.download_found_at(advected_.view());
+    space_.synchronise();
+    return advected_.view();
+}
+
+View<const NearestSurface> DeviceContactTerms::nearest()
+{
+    nearest_.resize(overlap_.size());
+    colliders_.download_nearest(nearest_.view());
+    space_.synchronise();
+    return nearest_.view();
+}
+
+void DeviceContactTerms::begin_step(const StepStart& start, View<const Vec3> carried)
 {
     TOILE_ASSERT(start.device.x.size() == overlap_.size());
     energy_.use_true_hessian(start.wants_true_hessian);
@@ -50,7 +68,7 @@ void DeviceContactTerms::begin_step(const StepStart& start, View<const Vec3>)
     projection_rules_.masses = start.device.masses;
     projection_rules_.rigid = rigid_.view();
     projection_rules_.altitude = altitude_.view();
-    colliders_.find(start.device.x, start.device.prediction, start.dt);
+    colliders_.find(start.device.x, start.device.prediction, start.dt, carried);
 }
 
 void DeviceContactTerms::make(const ClothContact* between)
@@ -69,7 +87,9 @@ void DeviceContactTerms::make(const ClothContact* between)
         space_, "contact/find_clearance", overlap_.size(),
         FindOpposingClearance{colliders_.planes(), colliders_.found_at(), clearance, overlap_.view()});
     const View<unsigned char> flags = first_items(pair_flags_, count);
-    parallel_for(space_, "contact/flag_terms", count, FlagTerm{pairs, rules_, overlap_.view(), flags});
+    const ReplacedPairs replaced = between != nullptr ? between->replaced() : ReplacedPairs{};
+    parallel_for(space_, "contact/flag_terms", count,
+                 FlagTerm{pairs, rules_, overlap_.view(), replaced, flags});
     const int kept = list_flagged(space_, "contact/list_terms", flags, list_, count_, scratch_);
     const View<ContactTerm> terms = energy_.reserve(kept);
     parallel_for(space_, "contact/make_terms", kept,

@@ -20,6 +20,8 @@ public:
                        const std::vector<ContactCloth>& cloths, const std::vector<ContactCollider>& colliders,
                        const Settings& settings);
 
+    View<const Vec3> advect(const StepStart& start) override;
+    View<const NearestSurface> nearest() override;
     void begin_step(const StepStart& start, View<const Vec3> carried) override;
     void make(const ClothContact* between) override;
     bool empty() const override { return !energy_.has_terms(); }
@@ -71,6 +73,8 @@ private:
     DeviceArray<int> list_;                   ///< indices of flagged items
     DeviceGaussSeidel gauss_seidel_;
     DeviceArray<double> projection_force_; ///< [terms] see ProjectCompliant
+    PinnedArray<Vec3> advected_;           ///< see advect()
+    PinnedArray<NearestSurface> nearest_;  ///< see nearest()
     PinnedArray<int> count_;
     SumScratch<FrictionLimits> limits_;
     SumScratch<Smallest> smallest_;

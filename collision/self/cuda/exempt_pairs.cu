@@ -13,40 +13,50 @@ namespace {
 /// Capacity relative to the needed size [-].
 constexpr double kHeadroom = 1.25;
 
+bool any(View<const unsigned char> marks) { return std::find(marks.begin(), marks.end(), 1) != marks.end(); }
+
 } // namespace
 
 DeviceExemptPairs::DeviceExemptPairs(const CudaSpace& space, const ExemptPairs& exempt)
-    : space_(space), rest_(space, "exempt_pairs/rest"), too_near_(exempt.rule().too_near),
+    : space_(space), exempt_(exempt), too_near_(exempt.rule().too_near), rest_(space, "exempt_pairs/rest"),
       is_thin_(space, "exempt_pairs/is_thin"), crosses_(space, "exempt_pairs/crosses"),
-      has_thin_(any(exempt.rule().is_thin)), marks_(space, "exempt_pairs/marks"),
+      inside_(space, "exempt_pairs/inside"), released_(space, "exempt_pairs/released"),
+      crossings_(space, "exempt_pairs/crossings"), owner_normal_(space, "exempt_pairs/owner_normal"),
+      body_normal_(space, "exempt_pairs/body_normal"), marks_(space, "exempt_pairs/marks"),
       indices_(space, "exempt_pairs/indices"), count_(space, "exempt_pairs/count", 1),
       scratch_(space, "exempt_pairs/scratch")
 {
     rest_.upload(exempt.rule().rest);
     is_thin_.upload(exempt.rule().is_thin);
-    set_crossing(exempt.rule().crosses);
 }
 
-bool DeviceExemptPairs::any(View<const unsigned char> marks)
+/// Copies what has changed on the host.
+void DeviceExemptPairs::follow()
 {
-    return std::find(marks.begin(), marks.end(), 1) != marks.end();
-}
-
-void DeviceExemptPairs::set_crossing(View<const unsigned char> crosses)
-{
-    crosses_.upload(crosses);
-    has_crossing_ = any(crosses);
+    if (revision_ == exempt_.revision())
+        return;
+    revision_ = exempt_.revision();
+    const ExemptRule now = exempt_.rule();
+    crosses_.upload(now.crosses);
+    crossings_.upload(now.body_crossings);
+    inside_.upload(now.inside);
+    released_.upload(now.lets_through);
+    owner_normal_.upload(now.owner_normal);
+    body_normal_.upload(now.body_normal);
+    may_exempt_ = any(now.is_thin) || any(now.crosses) || !now.body_crossings.empty() ||
+                  !now.inside.empty() || !now.lets_through.empty();
 }
 
 void DeviceExemptPairs::append_kept(View<const NearPair> found, DeviceArray<NearPair>& kept, int& count)
 {
+    follow();
     const int max_count = count + found.size();
     if (max_count > kept.size()) {
         kept.resize_keeping(count); // items beyond count are not in use
         kept.resize_keeping(int(kHeadroom * double(max_count)));
     }
     const View<NearPair> rest = kept.view().subview(count, found.size());
-    if (!has_thin_ && !has_crossing_) {
+    if (!may_exempt_) {
         parallel_for(space_, "collision/device_keep_pairs", found.size(), CopyItems<NearPair>{found, rest});
         count = max_count;
         return;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "collision/ccd/cpu/ccd_search.h"
 #include "collision/check/find_crossings.h"
 
 namespace toile::test {
@@ -62,12 +63,16 @@ struct Press {
         std::fill(rigid.begin() + cloth_vertices, rigid.end(), kPrescribed);
         NearPairs near(triangles, x, rigid);
         const ExemptPairs exempt(x, std::vector<double>(x.size(), kEdge), 2e-6);
-        CarriedStart carried(near, exempt, {}, {}, cloth_vertices);
+        CollisionFreeStep::Settings settings;
+        settings.first_prescribed = cloth_vertices;
+        const std::vector<double> slack(x.size(), 1e-4);
+        CpuCcdSearch search(near, exempt, settings.gap(), slack);
+        CarriedStart carried(search, near.edges(), settings, {});
         std::vector<Vec3> end(x.begin() + cloth_vertices, x.end());
         for (size_t v = 0; v < end.size(); ++v)
             end[v] += motion[v / 8];
         carried.carry(x, std::vector<Vec3>(cloth_vertices, Vec3::Zero()), end,
-                      std::vector<double>(x.size(), 1e-4), std::vector<unsigned char>(x.size(), 0), release);
+                      std::vector<unsigned char>(x.size(), 0), release);
         for (size_t v = 0; v < end.size(); ++v)
             EXPECT_EQ(x[cloth_vertices + v], end[v]) << "a body arrives on time";
         return carried.stuck();

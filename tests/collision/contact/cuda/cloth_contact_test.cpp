@@ -81,9 +81,13 @@ void expect_same_pressing(const std::vector<ContactPair>& cpu, const std::vector
 struct Sides {
     Sides(const CudaSpace& on, const ClothCase& made)
         : space(on), altitude(made.x.size(), kAltitude), fixed(made.x.size(), 0), ones(made.x.size(), 1.0),
-          host(made.triangles, made.x, {cloth(made)}, altitude, BodySurfaces({}, 0.0), true),
-          device(space, made.triangles, made.x, {cloth(made)}, altitude)
+          host(soup(made)), device(space, soup(made))
     {
+    }
+
+    ContactSoup soup(const ClothCase& made) const
+    {
+        return {made.triangles, made.x, {cloth(made)}, altitude, BodySurfaces({}, 0.0), true};
     }
 
     static ContactCloth cloth(const ClothCase& made)
@@ -107,7 +111,7 @@ struct Sides {
 
     struct NoBodies : NearbyBodies {
         View<const Vec3> advect(const StepStart&) override { return {}; }
-        View<const NearestSurface> nearest() const override { return {}; }
+        View<const NearestSurface> nearest() override { return {}; }
     } no_bodies;
     const CudaSpace& space;
     std::vector<double> altitude;
@@ -141,6 +145,17 @@ TEST_F(DeviceClothContactTest, KeepsThePairsThatAreNotExemptInTheirOrder)
     std::vector<unsigned char> crosses(vertices, 0);
     for (int i = 0; i < 100; ++i)
         crosses[random.below(vertices)] = 1;
+    const int cloth = vertices / 2; // the others count as bodies
+    std::vector<BodyCrossing> crossings;
+    std::vector<unsigned char> inside(cloth, 0), released(cloth, 0);
+    for (int i = 0; i < 500; ++i)
+        crossings.emplace_back(random.below(cloth), cloth + random.below(vertices - cloth));
+    for (int i = 0; i < 20; ++i)
+        inside[random.below(cloth)] = released[random.below(cloth)] = 1;
+    std::vector<Vec3> normals(vertices);
+    for (Vec3& n : normals)
+        n = random.point().normalized();
+    const View<const Vec3> all_normals = normals;
     DeviceNearPairs near(space(), made.triangles, made.x);
     DeviceArray<Vec3> x(space(), "test/x");
     x.upload(made.x);
@@ -150,7 +165,10 @@ TEST_F(DeviceClothContactTest, KeepsThePairsThatAreNotExemptInTheirOrder)
         DeviceExemptPairs device(space(), exempt);
         if (has_exempt) {
             exempt.set_crossing(crosses);
-            device.set_crossing(crosses);
+            exempt.set_body_crossings(crossings);
+            exempt.set_inside(inside);
+            exempt.set_let_through(released, all_normals.subview(0, cloth),
+                                   all_normals.subview(cloth, vertices - cloth));
         }
         const View<const NearPair> found = near.find(x.view(), {}, 0.004);
         std::vector<NearPair> expected(found.size());

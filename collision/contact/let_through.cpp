@@ -1,4 +1,4 @@
-#include "collision/contact/cpu/let_through.h"
+#include "collision/contact/let_through.h"
 
 #include <algorithm>
 #include <numeric>
@@ -35,11 +35,19 @@ LetThrough::LetThrough(const BodySurfaces& bodies, View<const Triangle> triangle
 void LetThrough::begin_step(View<const Vec3> x, View<const NearestSurface> nearest)
 {
     parallel_for(kCpu, "collision/owners", x.size(), [&](int v) { walk(v, x[v], nearest[v]); });
-    if (bodies_.is_moving() || bodies_.has_jumped() || body_normal_.empty()) {
-        std::vector<Vec3> body_x(bodies_.vertex_count());
-        bodies_.pose_t1(body_x);
-        body_normal_ = vertex_normals(body_x, bodies_.triangles());
+    if (bodies_.is_moving() || bodies_.has_jumped())
+        has_normals_ = false;
+}
+
+View<const Vec3> LetThrough::body_normal()
+{
+    if (!has_normals_) {
+        std::vector<Vec3> x(bodies_.vertex_count());
+        bodies_.pose_t1(x);
+        body_normal_ = vertex_normals(x, bodies_.triangles());
+        has_normals_ = true;
     }
+    return body_normal_;
 }
 
 /// The owner moves on to the nearest surface, but not to one that faces elsewhere while it is near itself.

@@ -17,7 +17,7 @@ public:
     /// @param triangles  [triangles] of cloth
     LetThrough(const BodySurfaces& bodies, View<const Triangle> triangles, int vertices);
 
-    /// Updates the owners at the start of a step, at x [vertices] [m], and the normals to those at t1.
+    /// Updates the owners at the start of a step, at x [vertices] [m].
     /// @param nearest  [vertices] surface nearest to each
     void begin_step(View<const Vec3> x, View<const NearestSurface> nearest);
 
@@ -45,7 +45,8 @@ public:
 
     View<const unsigned char> released() const { return released_; } ///< [vertices]
     View<const Vec3> owner_normal() const { return owner_normal_; }  ///< [vertices]
-    View<const Vec3> body_normal() const { return body_normal_; }    ///< [bodies]
+    /// [bodies] Unit normals at t1, evaluated at the first call after a motion.
+    View<const Vec3> body_normal();
     void forget();
 
 private:
@@ -58,6 +59,7 @@ private:
     std::vector<NearestSurface> owner_;        ///< [vertices]
     std::vector<unsigned char> released_;
     std::vector<Vec3> owner_normal_, body_normal_;
+    bool has_normals_ = false; ///< body_normal_ is that of this step
     int count_ = 0;
 };
 
