@@ -6,6 +6,14 @@
 
 namespace toile::collision {
 
+namespace {
+
+/// Rings of cloth around that near a body over which its motion fades: cloth torn between both would have to
+/// be brought together again.
+constexpr int kFadingRings = 5;
+
+} // namespace
+
 ContactBodies::ContactBodies(ContactSoup& soup, const ClothContactRules& rules, ExemptPairs& exempt)
     : soup_(soup), rules_(rules), exempt_(exempt),
       let_through_(soup.bodies, soup.triangles_of_cloth(), soup.first_body),
@@ -59,6 +67,7 @@ void ContactBodies::move(const StepStart& start, View<const NearestSurface> near
         else if (nearest[v].collider >= 0)
             way[v] = advected[v] - base[v];
     });
+    fade(nearest, fixed, way);
     const View<Vec3> bodies = soup_.of_bodies(base);
     surfaces().pose_t0(bodies);
     surfaces().pose_t1(end);
@@ -67,6 +76,42 @@ void ContactBodies::move(const StepStart& start, View<const NearestSurface> near
     carry.carry(base, way, end, fixed, [this](View<const BlockedPair> blocked) { return release(blocked); });
     stuck_ = carry.stuck();
     exempt_stuck();
+}
+
+/// Lets the motion of cloth that is attached or near a body fade over the rings around it: the mean of the
+/// neighbours, as often as there are rings.
+void ContactBodies::fade(View<const NearestSurface> nearest, View<const unsigned char> fixed,
+                         View<Vec3> way) const
+{
+    std::vector<unsigned char> is_known(way.size());
+    std::vector<int> rings, frontier;
+    for (int v = 0; v < way.size(); ++v)
+        if (fixed[v] != 0 || nearest[v].collider >= 0 || rules_.bodies().is_rigid(v)) {
+            is_known[v] = 1;
+            frontier.push_back(v);
+        }
+    for (int ring = 0; ring < kFadingRings; ++ring) {
+        std::vector<int> next;
+        for (const int v : frontier)
+            for (const int n : let_through_.neighbours(v))
+                if (is_known[n] == 0) {
+                    is_known[n] = 1;
+                    next.push_back(n);
+                }
+        rings.insert(rings.end(), next.begin(), next.end());
+        frontier = std::move(next);
+    }
+    std::vector<Vec3> mean(rings.size());
+    for (int sweep = 0; sweep < kFadingRings; ++sweep) {
+        parallel_for(kCpu, "collision/fade", int(rings.size()), [&](int i) {
+            const View<const int> around = let_through_.neighbours(rings[i]);
+            mean[i].setZero();
+            for (const int n : around)
+                mean[i] += way[n] / around.size();
+        });
+        for (size_t i = 0; i < rings.size(); ++i)
+            way[rings[i]] = mean[i];
+    }
 }
 
 void ContactBodies::exempt_stuck()

@@ -73,6 +73,7 @@ private:
     void stand(View<Vec3> base);
     void move(const StepStart& start, View<const NearestSurface> nearest, View<const Vec3> advected,
               CarriedStart& carry, View<const unsigned char> fixed, View<Vec3> base);
+    void fade(View<const NearestSurface> nearest, View<const unsigned char> fixed, View<Vec3> way) const;
     void exempt_stuck();
     void show_let_through();
     bool release(View<const BlockedPair> blocked);

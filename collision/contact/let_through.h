@@ -29,6 +29,8 @@ public:
     /// @param crossing  all triangles of cloth that cross bodies at the start of the step
     void close(View<const int> crossing);
 
+    View<const int> neighbours(int v) const { return neighbours_[v]; } ///< once for each common triangle
+
     bool any() const { return count_ > 0; }
     int count() const { return count_; } ///< vertices
     int first() const { return int(std::find(released_.begin(), released_.end(), 1) - released_.begin()); }
