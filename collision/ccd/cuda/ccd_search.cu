@@ -1,6 +1,5 @@
 #include "collision/ccd/cuda/ccd_search.h"
 
-#include "collision/body/cuda/pair_kernels.h"
 #include "core/compute/cuda/parallel.cuh"
 #include "core/compute/parallel.h"
 
@@ -36,7 +35,7 @@ void DeviceCcdSearch::send_end(View<const Vec3> end)
 {
     host_end_.resize(end.size());
     const View<Vec3> sent = host_end_.view();
-    parallel_for(kCpu, "collision/send", end.size(), CopyItems<Vec3>{end, sent});
+    parallel_for(kCpu, "collision/send", end.size(), [&](int v) { sent[v] = end[v]; });
     end_.upload(sent);
 }
 
