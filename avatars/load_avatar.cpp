@@ -46,13 +46,8 @@ Affine metres_from_file(const AvatarSettings& settings)
     return metres_per_unit(settings) * result;
 }
 
-} // namespace
-
-std::unique_ptr<Avatar> load_avatar(const AvatarSettings& settings)
+std::unique_ptr<Avatar> read_avatar(const AvatarSettings& settings)
 {
-    if (settings.file.empty())
-        return make_mannequin(settings.mannequin);
-
     const std::string source = settings.file.string();
     const Affine to_metres = metres_from_file(settings);
     if (format_of(settings.file) == ".obj") {
@@ -64,6 +59,17 @@ std::unique_ptr<Avatar> load_avatar(const AvatarSettings& settings)
     RiggedModel model = import_rigged_model(settings.file);
     model.metres_from_file = to_metres;
     return std::make_unique<SkinnedAvatar>(source, std::move(model));
+}
+
+} // namespace
+
+std::unique_ptr<Avatar> load_avatar(const AvatarSettings& settings)
+{
+    if (settings.file.empty())
+        return make_mannequin(settings.mannequin);
+    std::unique_ptr<Avatar> avatar = read_avatar(settings);
+    avatar->face_outwards();
+    return avatar;
 }
 
 } // namespace toile::avatars

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
+#include "core/mesh/winding.h"
 
 namespace toile::avatars {
 
@@ -40,6 +41,14 @@ void Avatar::pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> 
     std::vector<Affine> bones(static_cast<size_t>(bone_count()));
     pose_bones(at, world_from_avatar, bones);
     skin_vertices(bones, out);
+}
+
+void Avatar::face_outwards()
+{
+    TriangleMesh mesh{std::vector<Vec3>(size_t(vertex_count_)), std::move(triangles_)};
+    pose({}, identity_affine(), mesh.positions);
+    turned_count_ = toile::face_outwards(mesh);
+    triangles_ = std::move(mesh.triangles);
 }
 
 } // namespace toile::avatars

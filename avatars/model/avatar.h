@@ -36,6 +36,11 @@ public:
     const std::vector<Triangle>& triangles() const { return triangles_; }
     int vertex_count() const { return vertex_count_; }
 
+    /// Turns the triangles so that the outside of closed pieces is outwards in the bind pose (face_outwards).
+    void face_outwards();
+    /// Number of triangles that face_outwards() has turned: the file has them inside out.
+    int turned_count() const { return turned_count_; }
+
     /// Available clips. Empty: the avatar has only one pose.
     const std::vector<ClipName>& clips() const { return clips_; }
     bool is_static() const { return clips_.empty(); }
@@ -84,6 +89,7 @@ private:
     std::string source_;
     std::vector<Triangle> triangles_;
     int vertex_count_;
+    int turned_count_ = 0;
     std::vector<ClipName> clips_;
 };
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
+#include "collision/check/find_crossings.h"
 #include "core/compute/parallel.h"
 
 namespace toile::collision {
@@ -29,11 +32,59 @@ constexpr double kReach = 4.0;
 constexpr double kMaxTip = 0.004;
 constexpr double kTipGap = 0.0003;
 
+/// Depth inside a body [m] at which the surface of another one is no matter of cloth.
+constexpr double kBuried = 0.0001;
+
+/// Largest push of a vertex off crossings, and sum of them [m]: between parts of a body there may be no way
+/// out.
+constexpr double kMaxPush = 0.002, kMaxPushed = 0.005;
+
+/// Shortest displacement that takes a triangle `a` off a triangle `b` of a body, which it crosses: above its
+/// plane, or until `b` is below that of `a`.
+Vec3 way_off(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b)
+{
+    const auto normal_of = [](const std::array<Vec3, 3>& t) {
+        return Vec3((t[1] - t[0]).cross(t[2] - t[0]).normalized());
+    };
+    const Vec3 out = normal_of(b);
+    const Vec3 own = normal_of(a).dot(out) < 0.0 ? Vec3(-normal_of(a)) : normal_of(a);
+    double below = 0.0, above = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        below = std::max(below, -out.dot(a[k] - b[0]));
+        above = std::max(above, own.dot(b[k] - a[0]));
+    }
+    return below <= above ? Vec3((below + kTipGap) * out) : Vec3((above + kTipGap) * own);
+}
+
+/// Adds a displacement to the moves of vertices: of several, the longest decides along each direction.
+/// @param direction  unit
+void add_move(const std::array<int, 3>& vertices, double length, const Vec3& direction,
+              const std::vector<char>& fixed, std::vector<Vec3>& move)
+{
+    for (const int v : vertices) {
+        if (v < 0 || fixed[v] != 0)
+            continue;
+        const double served = move[v].dot(direction);
+        if (served < length)
+            move[v] += (length - served) * direction;
+    }
+}
+
 } // namespace
 
 BodyClearing::BodyClearing(const JoinedCloths& cloths, std::vector<ContactCollider> bodies)
     : cloths_(cloths), bodies_(std::move(bodies))
 {
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+        if (bodies_[b].mesh == nullptr)
+            continue;
+        const Triangle first = Triangle::Constant(int(mesh_x_.size()));
+        for (const Triangle& t : bodies_[b].mesh->triangles())
+            mesh_triangles_.push_back(t + first);
+        mesh_body_.resize(mesh_triangles_.size(), int(b));
+        const View<const Vec3> x = bodies_[b].mesh->x_t1();
+        mesh_x_.insert(mesh_x_.end(), x.begin(), x.end());
+    }
 }
 
 std::vector<InsideSample> BodyClearing::inside(View<const Vec3> x, double depth) const
@@ -44,15 +95,15 @@ std::vector<InsideSample> BodyClearing::inside(View<const Vec3> x, double depth)
 std::vector<InsideSample> BodyClearing::movable_below(View<const Vec3> x, Limit limit) const
 {
     return samples_below(x, [&](const InsideSample& sample) {
-        if (!can_move(sample))
+        if (!can_move(sample.vertex))
             return -std::numeric_limits<double>::infinity();
         return limit == Limit::Gap ? cloths_.gap[sample.vertex[0]] : 0.0;
     });
 }
 
-bool BodyClearing::can_move(const InsideSample& sample) const
+bool BodyClearing::can_move(const std::array<int, 3>& vertices) const
 {
-    return std::any_of(sample.vertex.begin(), sample.vertex.end(),
+    return std::any_of(vertices.begin(), vertices.end(),
                        [&](int v) { return v >= 0 && cloths_.fixed[v] == 0; });
 }
 
@@ -100,7 +151,7 @@ std::vector<InsideSample> BodyClearing::samples_below(View<const Vec3> x, const 
     return found;
 }
 
-int BodyClearing::grow(View<Vec3> x, const ShapeKeeper& keeper) const
+void BodyClearing::grow(View<Vec3> x, const ShapeKeeper& keeper, const RepairProgress& progress) const
 {
     double deepest = 0.0;
     for (const InsideSample& sample : movable_below(x, Limit::Surface))
@@ -109,12 +160,12 @@ int BodyClearing::grow(View<Vec3> x, const ShapeKeeper& keeper) const
     for (int k = 0; k < increments; ++k) {
         const std::vector<InsideSample> samples = movable_below(x, Limit::Surface);
         if (samples.empty())
-            return k;
+            return;
         displace(x, samples, 1.0 / (increments - k));
         keeper.relax(x, kSweeps);
+        progress.update(double(k + 1) / increments);
     }
     project(x);
-    return increments;
 }
 
 /// Moves every vertex near the samples by `fraction` of the displacement that takes the local depth D out to
@@ -157,13 +208,7 @@ void BodyClearing::project(View<Vec3> x) const
     std::vector<Vec3> move(x.size(), Vec3::Zero());
     for (const InsideSample& sample : movable_below(x, Limit::Gap)) {
         const double depth = cloths_.gap[sample.vertex[0]] - sample.proximity.signed_distance;
-        for (const int v : sample.vertex)
-            if (v >= 0 && cloths_.fixed[v] == 0) {
-                // Of several samples the most demanding one decides along each direction.
-                const double served = move[v].dot(sample.proximity.normal);
-                if (served < depth)
-                    move[v] += (depth - served) * sample.proximity.normal;
-            }
+        add_move(sample.vertex, depth, sample.proximity.normal, cloths_.fixed, move);
     }
     for (int v = 0; v < x.size(); ++v)
         x[v] += move[v];
@@ -192,15 +237,58 @@ void BodyClearing::project_off_tips(View<Vec3> x) const
                 lifts[v] = {at->triangle, (height + kTipGap) * normal};
         });
         for (const auto& [triangle, lift] : lifts)
-            for (int k = 0; triangle >= 0 && k < 3; ++k) {
-                const int v = cloths_.triangles[triangle][k];
-                const double wanted = lift.norm(), served = wanted > 0.0 ? move[v].dot(lift) / wanted : 0.0;
-                if (cloths_.fixed[v] == 0 && served < wanted)
-                    move[v] += (wanted - served) / wanted * lift;
-            }
+            if (triangle >= 0)
+                add_move(corners_of(triangle), lift.norm(), lift.normalized(), cloths_.fixed, move);
     }
     for (int v = 0; v < x.size(); ++v)
         x[v] += move[v];
+}
+
+std::array<int, 3> BodyClearing::corners_of(int triangle) const
+{
+    const Triangle& t = cloths_.triangles[triangle];
+    return {t[0], t[1], t[2]};
+}
+
+std::vector<BodyCrossing> BodyClearing::crossings(View<const Vec3> x, Which which) const
+{
+    std::vector<int> numbers;
+    std::vector<Triangle> triangles;
+    for (int t = 0; t < int(cloths_.triangles.size()); ++t)
+        if (which == Which::All || can_move(corners_of(t))) {
+            numbers.push_back(t);
+            triangles.push_back(cloths_.triangles[t]);
+        }
+    std::vector<BodyCrossing> found;
+    for (const Crossing& crossing : find_crossings(triangles, x, mesh_triangles_, mesh_x_)) {
+        const auto inside = nearest_body(bodies_, crossing.point, 0.0);
+        if (inside && inside->signed_distance < -kBuried)
+            continue;
+        std::array<Vec3, 3> cloth, body;
+        for (int k = 0; k < 3; ++k) {
+            cloth[k] = x[triangles[crossing.a][k]];
+            body[k] = mesh_x_[mesh_triangles_[crossing.b][k]];
+        }
+        found.push_back({numbers[crossing.a], mesh_body_[crossing.b], crossing.point, way_off(cloth, body)});
+    }
+    return found;
+}
+
+bool BodyClearing::push_off_crossings(View<Vec3> x, std::vector<double>& pushed) const
+{
+    std::vector<Vec3> move(x.size(), Vec3::Zero());
+    const std::vector<BodyCrossing> found = crossings(x, Which::Movable);
+    for (const BodyCrossing& crossing : found)
+        add_move(corners_of(crossing.triangle), crossing.way_out.norm(), crossing.way_out.normalized(),
+                 cloths_.fixed, move);
+    for (int v = 0; v < x.size(); ++v) {
+        const double length = std::min(move[v].norm(), kMaxPush);
+        if (length == 0.0 || pushed[v] + length > kMaxPushed)
+            continue;
+        pushed[v] += length;
+        x[v] += length * move[v].normalized();
+    }
+    return !found.empty();
 }
 
 } // namespace toile::collision

@@ -4,6 +4,7 @@
 
 #include "collision/repair/body_distance.h"
 #include "collision/repair/joined_cloths.h"
+#include "collision/repair/repair_progress.h"
 #include "collision/repair/shape_keeper.h"
 
 namespace toile::collision {
@@ -13,6 +14,14 @@ struct InsideSample {
     std::array<int, 3> vertex{-1, -1, -1}; ///< one, two or three vertices of the cloth, equally weighted
     Vec3 point = Vec3::Zero();             ///< [m]
     BodyProximity proximity;
+};
+
+/// Triangle of cloth that crosses the surface of a body.
+struct BodyCrossing {
+    int triangle;                ///< of cloth
+    int body;                    ///< number of the body
+    Vec3 point = Vec3::Zero();   ///< in both [m]
+    Vec3 way_out = Vec3::Zero(); ///< shortest displacement that takes it off the other triangle [m]
 };
 
 /// Moves cloth out of bodies, which are grown from where the cloth is outside.
@@ -25,9 +34,13 @@ public:
     /// vertices.
     std::vector<InsideSample> inside(View<const Vec3> x, double depth) const;
 
+    /// Triangles that cross or touch the surface of a mesh, by the exact test. Left out are places inside
+    /// another part of a body. Round shapes have nothing that could cut a triangle between its samples.
+    std::vector<BodyCrossing> crossings(View<const Vec3> x) const { return crossings(x, Which::All); }
+
     /// Grows the bodies: every increment advects all cloth near inside samples outwards, the deepest most and
-    /// layers in their order, then relaxes it. Returns the number of increments.
-    int grow(View<Vec3> x, const ShapeKeeper& keeper) const;
+    /// layers in their order, then relaxes it.
+    void grow(View<Vec3> x, const ShapeKeeper& keeper, const RepairProgress& progress) const;
 
     /// Moves samples nearer to a body than their gap out to the gap, without moving cloth around them.
     void project(View<Vec3> x) const;
@@ -35,10 +48,17 @@ public:
     /// Moves faces of cloth off body vertices that pierce them between their samples.
     void project_off_tips(View<Vec3> x) const;
 
+    /// Pushes triangles off surfaces that they cross, by little. False if there are none.
+    /// @param pushed  [vertices] sum of the pushes so far, bounded [m]; changed
+    bool push_off_crossings(View<Vec3> x, std::vector<double>& pushed) const;
+
 private:
     enum class Limit { Surface, Gap };
+    enum class Which { All, Movable };
+    std::vector<BodyCrossing> crossings(View<const Vec3> x, Which which) const;
+    bool can_move(const std::array<int, 3>& vertices) const;
     InsideSample sample_at(View<const Vec3> x, int index) const;
-    bool can_move(const InsideSample& sample) const;
+    std::array<int, 3> corners_of(int triangle) const;
     std::vector<InsideSample> movable_below(View<const Vec3> x, Limit limit) const;
     template <typename Bound>
     std::vector<InsideSample> samples_below(View<const Vec3> x, const Bound& bound) const;
@@ -46,6 +66,9 @@ private:
 
     const JoinedCloths& cloths_;
     std::vector<ContactCollider> bodies_;
+    std::vector<Triangle> mesh_triangles_; ///< of all meshes among the bodies
+    std::vector<int> mesh_body_;           ///< [mesh_triangles_] number of the body
+    std::vector<Vec3> mesh_x_;             ///< [vertices of all meshes] [m]
 };
 
 } // namespace toile::collision

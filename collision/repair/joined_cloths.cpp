@@ -72,6 +72,7 @@ JoinedCloths::JoinedCloths(const std::vector<StartCloth>& cloths) : first_vertex
         mean_length += length.back();
     }
     mean_length /= double(std::max(edges.edge_count(), 1));
+    given_layer = layer;
 }
 
 } // namespace toile::collision

@@ -23,7 +23,8 @@ struct JoinedCloths {
     std::vector<int> cloth;        ///< [vertices]
     std::vector<int> first_vertex; ///< [cloths + 1]
     std::vector<int> piece;        ///< [vertices] -1 for a vertex without a triangle
-    std::vector<int> layer;        ///< [pieces]
+    std::vector<int> given_layer;  ///< [pieces] that of its cloth
+    std::vector<int> layer;        ///< [pieces] likewise, or a finer order
     SurfaceEdges edges;
     std::vector<std::array<int, 2>> opposite; ///< [edges] third corners of its two triangles; -1: border
     std::vector<double> length;               ///< [edges] at the start [m]

@@ -4,30 +4,46 @@
 #include <set>
 #include <tuple>
 
+#include "collision/check/find_crossings.h"
 #include "collision/repair/body_clearing.h"
 #include "collision/repair/edge_triangle_intersections.h"
+#include "collision/repair/untangle_cloth.h"
 
 namespace toile::collision {
 
 namespace {
 
-int layer_of(const JoinedCloths& cloths, int vertex)
-{
-    return cloths.piece[vertex] < 0 ? 0 : cloths.layer[cloths.piece[vertex]];
-}
+/// Depth below a lower layer [m] up to which a vertex counts as touching it.
+constexpr double kTouching = 1e-6;
 
-/// Layers that cross a lower one.
-std::set<int> crossing_layers(const JoinedCloths& cloths, View<const Vec3> x)
+/// Layer of a vertex among those of the pieces.
+int layer_of(const JoinedCloths& cloths, const std::vector<int>& layers, int vertex)
+{
+    return cloths.piece[vertex] < 0 ? 0 : layers[cloths.piece[vertex]];
+}
+int layer_of(const JoinedCloths& cloths, int vertex) { return layer_of(cloths, cloths.layer, vertex); }
+
+/// Layers that cross a lower one, or lie under it. If none crosses, those that touch it.
+std::set<int> misplaced_layers(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies,
+                               View<const Vec3> x)
 {
     std::set<int> layers;
     if (std::set<int>(cloths.layer.begin(), cloths.layer.end()).size() < 2)
         return layers;
-    for (const EdgeTriangleIntersection& intersection : find_edge_triangle_intersections(cloths, x)) {
-        const int a = layer_of(cloths, cloths.edges.vertex[intersection.edge][0]);
-        const int b = layer_of(cloths, cloths.triangles[intersection.triangle][0]);
+    const auto add = [&](int vertex_a, int vertex_b) {
+        const int a = layer_of(cloths, vertex_a), b = layer_of(cloths, vertex_b);
         if (a != b)
             layers.insert(std::max(a, b));
-    }
+    };
+    for (const EdgeTriangleIntersection& intersection : find_edge_triangle_intersections(cloths, x))
+        add(cloths.edges.vertex[intersection.edge][0], cloths.triangles[intersection.triangle][0]);
+    if (layers.empty())
+        for (const Crossing& crossing : find_crossings(cloths.triangles, x))
+            add(cloths.triangles[crossing.a][0], cloths.triangles[crossing.b][0]);
+    for (const UnderLayer& under : find_under_layers(cloths, bodies, x))
+        for (int p = 0; p < cloths.piece_count(); ++p)
+            if (cloths.given_layer[p] == under.layer)
+                layers.insert(cloths.layer[p]);
     return layers;
 }
 
@@ -48,13 +64,13 @@ std::vector<char> pieces_inside_out(const JoinedCloths& cloths, const std::vecto
     return inside_out;
 }
 
-/// Cloth below a layer, as a mesh that acts as a body.
-MovingMesh below(const JoinedCloths& cloths, int layer, const std::vector<char>& inside_out,
-                 View<const Vec3> x)
+/// Cloth below a layer, as a mesh that acts as a body. @param layers  [pieces]
+MovingMesh below(const JoinedCloths& cloths, const std::vector<int>& layers, int layer,
+                 const std::vector<char>& inside_out, View<const Vec3> x)
 {
     MovingMesh mesh;
     for (const Triangle& corner : cloths.triangles)
-        if (layer_of(cloths, corner[0]) < layer)
+        if (layer_of(cloths, layers, corner[0]) < layer)
             mesh.triangles.push_back(inside_out[cloths.piece[corner[0]]] != 0
                                          ? Triangle(corner[0], corner[2], corner[1])
                                          : corner);
@@ -65,9 +81,10 @@ MovingMesh below(const JoinedCloths& cloths, int layer, const std::vector<char>&
 
 } // namespace
 
-bool separate_layers(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies, View<Vec3> x)
+bool separate_layers(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies, View<Vec3> x,
+                     const RepairProgress& progress)
 {
-    const std::set<int> layers = crossing_layers(cloths, x);
+    const std::set<int> layers = misplaced_layers(cloths, bodies, x);
     if (layers.empty())
         return false;
     const std::vector<char> inside_out = pieces_inside_out(cloths, bodies, x);
@@ -77,11 +94,45 @@ bool separate_layers(const JoinedCloths& cloths, const std::vector<ContactCollid
             upper.fixed[v] = char(cloths.fixed[v] != 0 || layer_of(cloths, v) != layer);
             upper.gap[v] = cloths.thickness[v];
         }
-        const MeshCollider lower(below(cloths, layer, inside_out, x));
+        const MeshCollider lower(below(cloths, cloths.layer, layer, inside_out, x));
         const BodyClearing clearing(upper, {{&lower, nullptr}});
-        clearing.grow(x, ShapeKeeper(upper));
+        clearing.grow(x, ShapeKeeper(upper), progress);
+        clear_crossings(upper, clearing, x);
     }
     return true;
+}
+
+std::vector<UnderLayer> find_under_layers(const JoinedCloths& cloths,
+                                          const std::vector<ContactCollider>& bodies, View<const Vec3> x)
+{
+    std::vector<UnderLayer> found;
+    std::set<int> layers(cloths.given_layer.begin(), cloths.given_layer.end());
+    if (layers.size() < 2 || bodies.empty())
+        return found;
+    layers.erase(layers.begin());
+    const std::vector<char> inside_out = pieces_inside_out(cloths, bodies, x);
+    for (const int layer : layers) {
+        const MeshCollider lower(below(cloths, cloths.given_layer, layer, inside_out, x));
+        const std::vector<ContactCollider> lower_cloth{{&lower, nullptr}};
+        UnderLayer deepest{layer, -1, -1, kTouching};
+        int under = 0, over = 0;
+        for (int v = 0; v < cloths.vertex_count(); ++v) {
+            if (layer_of(cloths, cloths.given_layer, v) != layer ||
+                !nearest_body(bodies, x[v], kMaxStartDepth))
+                continue;
+            const auto proximity = nearest_body(lower_cloth, x[v], kMaxStartDepth);
+            if (!proximity)
+                continue;
+            const double depth = -proximity->signed_distance;
+            (depth > kTouching ? under : over) += 1;
+            if (depth > deepest.depth)
+                deepest = {layer, v, lower.triangles()[lower.surface().closest(x[v], 1.0)->triangle][0],
+                           depth};
+        }
+        if (under > over)
+            found.push_back(deepest);
+    }
+    return found;
 }
 
 std::vector<int> layers_without_ties(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies)

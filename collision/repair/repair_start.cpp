@@ -42,7 +42,8 @@ class Faults {
 public:
     using Key = std::tuple<StartDefect::Kind, int, std::array<int, 3>, std::array<int, 3>>;
 
-    Faults(const JoinedCloths& cloths, const BodyClearing& clearing, View<const Vec3> x)
+    Faults(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies,
+           const BodyClearing& clearing, View<const Vec3> x)
     {
         for (const InsideSample& sample : clearing.inside(x, kTouchDepth)) {
             StartDefect defect = defect_of(cloths, sample.vertex);
@@ -50,6 +51,26 @@ public:
             defect.depth = -sample.proximity.signed_distance;
             defect.other = sample.proximity.body;
             add({StartDefect::Kind::InsideBody, sample.proximity.body, sample.vertex, {}}, defect);
+        }
+        std::set<std::pair<int, int>> known; // a triangle crosses many of a body's
+        for (const BodyCrossing& crossing : clearing.crossings(x)) {
+            const Triangle& t = cloths.triangles[crossing.triangle];
+            StartDefect defect = defect_of(cloths, {t[0], t[1], t[2]});
+            defect.kind = StartDefect::Kind::CrossesBody;
+            defect.position = crossing.point;
+            defect.depth = crossing.way_out.norm();
+            defect.other = crossing.body;
+            if (known.emplace(crossing.triangle, crossing.body).second)
+                add({defect.kind, crossing.body, {t[0], t[1], t[2]}, {}}, defect);
+        }
+        for (const UnderLayer& under : find_under_layers(cloths, bodies, x)) {
+            StartDefect defect = defect_of(cloths, {under.vertex, -1, -1});
+            defect.kind = StartDefect::Kind::UnderLayer;
+            defect.position = x[under.vertex];
+            defect.depth = under.depth;
+            defect.other = cloths.cloth[under.lower];
+            defect.is_fixed = false;
+            add({defect.kind, defect.cloth, {}, {}}, defect);
         }
         for (const Crossing& crossing : find_crossings(cloths.triangles, x)) {
             const Triangle &a = cloths.triangles[crossing.a], &b = cloths.triangles[crossing.b];
@@ -108,12 +129,47 @@ void compare(const Faults& before, const Faults& after, StartReport& report)
 
 /// Runs one pass of all repair steps.
 void repair_once(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies,
-                 const BodyClearing& clearing, ShapeKeeper& keeper, View<Vec3> x)
+                 const BodyClearing& clearing, ShapeKeeper& keeper, View<Vec3> x,
+                 const RepairProgress& progress)
 {
-    clearing.grow(x, keeper);
-    separate_layers(cloths, bodies, x);
+    clearing.grow(x, keeper, progress.part(0.0, 0.3));
+    separate_layers(cloths, bodies, x, progress.part(0.3, 0.4));
+    progress.update(0.4);
     if (untangle(cloths, clearing, keeper, x))
-        relax_untangled(cloths, clearing, keeper, x);
+        relax_untangled(cloths, clearing, keeper, x, progress.part(0.5, 0.9));
+    clear_crossings(cloths, clearing, x);
+}
+
+/// Value that a fraction of the items does not exceed.
+double quantile(std::vector<double>& items, double fraction)
+{
+    if (items.empty())
+        return 0.0;
+    const auto at = items.begin() + std::ptrdiff_t(fraction * double(items.size() - 1));
+    std::nth_element(items.begin(), at, items.end());
+    return *at;
+}
+
+/// What has changed from the start to x, cloth by cloth.
+std::vector<StartReport::Change> changes_of(const JoinedCloths& cloths, View<const Vec3> x)
+{
+    std::vector<StartReport::Change> changes(cloths.first_vertex.size() - 1);
+    for (int v = 0; v < cloths.vertex_count(); ++v) {
+        StartReport::Change& change = changes[cloths.cloth[v]];
+        const double move = (x[v] - cloths.start[v]).norm();
+        if (move > change.max_move) {
+            change.max_move = move;
+            change.vertex = v - cloths.first_vertex[cloths.cloth[v]];
+        }
+    }
+    std::vector<std::vector<double>> strains(changes.size());
+    for (int e = 0; e < cloths.edges.edge_count(); ++e) {
+        const auto [a, b] = cloths.edges.vertex[e];
+        strains[cloths.cloth[a]].push_back(std::abs((x[a] - x[b]).norm() / cloths.length[e] - 1.0));
+    }
+    for (size_t c = 0; c < changes.size(); ++c)
+        changes[c].strain_p99 = quantile(strains[c], 0.99);
+    return changes;
 }
 
 } // namespace
@@ -122,25 +178,28 @@ StartReport check_start(const std::vector<StartCloth>& cloths, const std::vector
 {
     const JoinedCloths joined(cloths);
     StartReport report;
-    for (const auto& [key, defect] : Faults(joined, BodyClearing(joined, bodies), joined.start).defects)
+    for (const auto& [key, defect] :
+         Faults(joined, bodies, BodyClearing(joined, bodies), joined.start).defects)
         report.defects.push_back(defect);
     return report;
 }
 
-StartReport repair_start(std::vector<StartCloth>& cloths, const std::vector<ContactCollider>& bodies)
+StartReport repair_start(std::vector<StartCloth>& cloths, const std::vector<ContactCollider>& bodies,
+                         const RepairProgress& progress)
 {
     JoinedCloths joined(cloths);
     const BodyClearing clearing(joined, bodies);
     std::optional<ShapeKeeper> keeper(joined);
-    const Faults before(joined, clearing, joined.start);
+    const Faults before(joined, bodies, clearing, joined.start);
     Faults best = before;
     std::vector<Vec3> x = joined.start, best_x = x;
     StartReport report;
     report.was_repaired = true;
     while (report.passes < kMaxPasses && best.can_be_repaired()) {
-        repair_once(joined, bodies, clearing, *keeper, x);
-        ++report.passes;
-        Faults now(joined, clearing, x);
+        const double pass = report.passes++;
+        repair_once(joined, bodies, clearing, *keeper, x,
+                    progress.part(pass / kMaxPasses, (pass + 1.0) / kMaxPasses));
+        Faults now(joined, bodies, clearing, x);
         const bool is_tangled = now.crossing_count > 0;
         if (std::pair(now.crossing_count, now.defects.size()) <
             std::pair(best.crossing_count, best.defects.size())) {
@@ -155,12 +214,14 @@ StartReport repair_start(std::vector<StartCloth>& cloths, const std::vector<Cont
         }
     }
 
+    progress.update(1.0);
     compare(before, best, report);
+    report.changes = changes_of(joined, best_x);
     const EdgeStrain strain = edge_strain(joined, best_x);
     report.max_strain = strain.max;
     report.rms_strain = strain.rms;
-    for (int v = 0; v < joined.vertex_count(); ++v)
-        report.max_move = std::max(report.max_move, (best_x[v] - joined.start[v]).norm());
+    for (const StartReport::Change& change : report.changes)
+        report.max_move = std::max(report.max_move, change.max_move);
     for (size_t c = 0; c < cloths.size(); ++c)
         cloths[c].positions.assign(best_x.begin() + joined.first_vertex[c],
                                    best_x.begin() + joined.first_vertex[c + 1]);

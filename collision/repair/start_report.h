@@ -7,17 +7,22 @@
 
 namespace toile::collision {
 
-/// Defect of a start pose: cloth inside a body, or two crossing triangles of cloth.
+/// Defect of a start pose.
 struct StartDefect {
-    enum class Kind { InsideBody, Crossing };
+    enum class Kind {
+        InsideBody,  ///< a point of cloth
+        CrossesBody, ///< a triangle of cloth and the surface of a body
+        Crossing,    ///< two triangles of cloth
+        UnderLayer   ///< cloth of a higher layer under cloth of a lower one; one place stands for all
+    };
 
     Kind kind = Kind::InsideBody;
     Vec3 position = Vec3::Zero(); ///< [m] before the repair, or after it if it arose there
-    double depth = 0.0; ///< [m] to the body's surface, or the distance that one triangle has to move
-    int cloth = 0;      ///< number of the cloth
-    int other = 0;      ///< number of the body, or of the other cloth (may be the same)
-    /// Vertices of the cloth point that lies inside (one: a vertex; two: the midpoint of an edge; three: the
-    /// centroid of a triangle), or of the crossing triangle.
+    double depth = 0.0;           ///< [m] to the surface, or the distance that one triangle has to move
+    int cloth = 0;                ///< number of the cloth
+    int other = 0;                ///< number of the body, or of the other cloth (may be the same)
+    /// Vertices of the cloth point that lies inside or under (one: a vertex; two: the midpoint of an edge;
+    /// three: the centroid of a triangle), or of the crossing triangle.
     std::array<int, 3> vertex{-1, -1, -1};
     bool is_fixed = false;    ///< every vertex of the defect is fixed by the user, so it stays
     bool is_repaired = false; ///< gone after the repair
@@ -25,12 +30,20 @@ struct StartDefect {
 
 /// Defects of a start pose before and after a repair.
 struct StartReport {
-    std::vector<StartDefect> defects; ///< inside bodies by cloth, then crossings; then new ones that remain
+    std::vector<StartDefect> defects; ///< by kind and cloth; then new ones that remain
     bool was_repaired = false;        ///< a repair ran; otherwise nothing below is set
     int passes = 0;                   ///< passes of growing bodies and untangling
     double max_strain = 0.0;          ///< [-] largest |length / start length - 1| of an edge after it
     double rms_strain = 0.0;          ///< [-] of all edges
     double max_move = 0.0;            ///< [m] of a vertex
+
+    /// What the repair did to one cloth.
+    struct Change {
+        double max_move = 0.0;   ///< [m]
+        int vertex = 0;          ///< moved by it
+        double strain_p99 = 0.0; ///< [-] not exceeded by 99 % of its edges
+    };
+    std::vector<Change> changes; ///< [cloths]
 
     /// Number of defects of a kind: all, or those that remain. A pose that was not repaired keeps all.
     int count(StartDefect::Kind kind) const;

@@ -32,15 +32,24 @@ constexpr double kStrainChange = 1e-3;
 /// Maximum number of times that moves are reverted around crossings before the whole relaxation is.
 constexpr int kMaxTakeBacks = 12;
 
-/// Reverts the corners of crossing triangles to `before`. False if nothing crossed.
+/// Rounds of small pushes off bodies.
+constexpr int kClearRounds = 20;
+
+/// Reverts the corners of crossing triangles to where they were in a pose without crossings. False if that
+/// does not end: then all vertices are.
 bool take_back(const JoinedCloths& cloths, const std::vector<Vec3>& before, View<Vec3> x)
 {
-    const std::vector<Crossing> crossings = find_crossings(cloths.triangles, x);
-    for (const Crossing& crossing : crossings)
-        for (const int triangle : {crossing.a, crossing.b})
-            for (const int v : cloths.triangles[triangle])
-                x[v] = before[v];
-    return !crossings.empty();
+    for (int times = 0; times < kMaxTakeBacks; ++times) {
+        const std::vector<Crossing> crossings = find_crossings(cloths.triangles, x);
+        if (crossings.empty())
+            return true;
+        for (const Crossing& crossing : crossings)
+            for (const int triangle : {crossing.a, crossing.b})
+                for (const int v : cloths.triangles[triangle])
+                    x[v] = before[v];
+    }
+    std::copy(before.begin(), before.end(), x.begin());
+    return false;
 }
 
 /// Smoothing of patches around intersections; a patch grows with every smoothing of its vertices.
@@ -107,26 +116,38 @@ bool untangle(const JoinedCloths& cloths, const BodyClearing& clearing, ShapeKee
 }
 
 void relax_untangled(const JoinedCloths& cloths, const BodyClearing& clearing, const ShapeKeeper& keeper,
-                     View<Vec3> x)
+                     View<Vec3> x, const RepairProgress& progress)
 {
     double min_strain = edge_strain(cloths, x).max;
     int stalled = 0;
     for (int pass = 0; pass < kMaxRelaxations && stalled < kRelaxPatience && min_strain > kGoodStrain;
          ++pass) {
+        progress.update(double(pass) / kMaxRelaxations);
         const std::vector<Vec3> before(x.begin(), x.end());
         keeper.relax(x, kSweepsPerStep);
         clearing.project(x);
         clearing.project_off_tips(x);
-        int times = 0;
-        while (times < kMaxTakeBacks && take_back(cloths, before, x))
-            ++times;
-        if (times == kMaxTakeBacks) {
-            std::copy(before.begin(), before.end(), x.begin());
+        if (!take_back(cloths, before, x))
             return;
-        }
         const double strain = edge_strain(cloths, x).max;
         stalled = strain < min_strain - kStrainChange ? 0 : stalled + 1;
         min_strain = std::min(min_strain, strain);
+    }
+}
+
+void clear_crossings(const JoinedCloths& cloths, const BodyClearing& clearing, View<Vec3> x)
+{
+    if (clearing.crossings(x).empty())
+        return;
+    const bool is_tangled = !find_crossings(cloths.triangles, x).empty();
+    std::vector<Vec3> before(x.begin(), x.end());
+    const auto may_go_on = [&] { return is_tangled || take_back(cloths, before, x); };
+    clearing.project(x);
+    std::vector<double> pushed(x.size(), 0.0);
+    for (int round = 0; round < kClearRounds && may_go_on(); ++round) {
+        before.assign(x.begin(), x.end());
+        if (!clearing.push_off_crossings(x, pushed))
+            return;
     }
 }
 

@@ -14,6 +14,10 @@ bool untangle(const JoinedCloths& cloths, const BodyClearing& clearing, ShapeKee
 /// Restores the shape of untangled cloth without creating crossings: relaxes, and reverts the moves of
 /// vertices that would cross.
 void relax_untangled(const JoinedCloths& cloths, const BodyClearing& clearing, const ShapeKeeper& keeper,
-                     View<Vec3> x);
+                     View<Vec3> x, const RepairProgress& progress);
+
+/// Moves cloth off surfaces of bodies that it crosses between its samples: out to the gap, then by small
+/// pushes. Reverts what would cross cloth.
+void clear_crossings(const JoinedCloths& cloths, const BodyClearing& clearing, View<Vec3> x);
 
 } // namespace toile::collision

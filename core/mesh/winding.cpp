@@ -1,7 +1,11 @@
 #include "core/mesh/winding.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <tuple>
+
+#include <Eigen/Geometry>
 
 namespace toile {
 
@@ -20,13 +24,15 @@ struct Neighbour {
     bool agrees; ///< it runs along the shared edge in the opposite direction
 };
 
-std::vector<Side> sorted_sides(const std::vector<std::vector<int>>& faces)
+/// @tparam Face  container of vertex indices
+template <typename Face>
+std::vector<Side> sorted_sides(const std::vector<Face>& faces)
 {
     std::vector<Side> sides;
     for (size_t f = 0; f < faces.size(); ++f)
-        for (size_t k = 0; k < faces[f].size(); ++k) {
+        for (int k = 0; k < int(faces[f].size()); ++k) {
             const int a = faces[f][k];
-            const int b = faces[f][(k + 1) % faces[f].size()];
+            const int b = faces[f][(k + 1) % int(faces[f].size())];
             sides.push_back({std::min(a, b), std::max(a, b), int(f), a < b});
         }
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
@@ -35,7 +41,8 @@ std::vector<Side> sorted_sides(const std::vector<std::vector<int>>& faces)
     return sides;
 }
 
-std::vector<std::vector<Neighbour>> neighbours_of(const std::vector<std::vector<int>>& faces)
+template <typename Face>
+std::vector<std::vector<Neighbour>> neighbours_of(const std::vector<Face>& faces)
 {
     std::vector<std::vector<Neighbour>> neighbours(faces.size());
     const std::vector<Side> sides = sorted_sides(faces);
@@ -72,33 +79,128 @@ std::vector<int> flood(int first, const std::vector<std::vector<Neighbour>>& nei
     return piece;
 }
 
+/// Faces joined by edges, and which of them differ from the majority.
+struct Piece {
+    std::vector<int> faces;
+    std::vector<int> differing;
+    bool is_closed = true; ///< every edge joins two faces
+};
+
+template <typename Face>
+std::vector<Piece> pieces_of(const std::vector<Face>& faces)
+{
+    const std::vector<std::vector<Neighbour>> neighbours = neighbours_of(faces);
+    std::vector<char> visited(faces.size(), 0), flipped(faces.size(), 0);
+    std::vector<Piece> pieces;
+    for (size_t f = 0; f < faces.size(); ++f) {
+        if (visited[f] != 0)
+            continue;
+        Piece piece;
+        piece.faces = flood(int(f), neighbours, visited, flipped);
+        const auto differing = std::count_if(piece.faces.begin(), piece.faces.end(),
+                                             [&](int face) { return flipped[face] != 0; });
+        const bool keep_others = 2 * differing > std::ptrdiff_t(piece.faces.size());
+        for (const int face : piece.faces) {
+            if ((flipped[face] != 0) != keep_others)
+                piece.differing.push_back(face);
+            piece.is_closed = piece.is_closed && neighbours[face].size() == faces[face].size();
+        }
+        pieces.push_back(std::move(piece));
+    }
+    return pieces;
+}
+
 /// Reverses a face from the same first corner, so that its fan of triangles stays the same.
 void flip(std::vector<int>& corners) { std::reverse(corners.begin() + 1, corners.end()); }
+void flip(Triangle& corners) { std::swap(corners[1], corners[2]); }
+
+/// A closed piece of a body.
+struct Solid {
+    const std::vector<int>* faces;
+    Bounds box;
+    double volume; ///< [m^3] negative: inside out
+};
+
+Solid solid_of(const TriangleMesh& mesh, const Piece& piece)
+{
+    Solid solid{&piece.faces, {}, 0.0};
+    for (const int t : piece.faces)
+        for (const int v : mesh.triangles[t])
+            solid.box.extend(mesh.positions[v]);
+    const Vec3 origin = solid.box.center(); // near the solid, so that little cancels
+    for (const int t : piece.faces) {
+        const Triangle& corner = mesh.triangles[t];
+        const Vec3 a = mesh.positions[corner[0]] - origin, b = mesh.positions[corner[1]] - origin,
+                   c = mesh.positions[corner[2]] - origin;
+        solid.volume += a.dot(b.cross(c)) / 6.0;
+    }
+    return solid;
+}
+
+/// True if p lies in a solid: its triangles cover the full solid angle seen from there [van Oosterom and
+/// Strackee 1983, The solid angle of a plane triangle].
+bool encloses(const TriangleMesh& mesh, const Solid& solid, const Vec3& p)
+{
+    if ((p.array() < solid.box.lower.array()).any() || (p.array() > solid.box.upper.array()).any())
+        return false;
+    double angle = 0.0;
+    for (const int t : *solid.faces) {
+        const Triangle& corner = mesh.triangles[t];
+        const Vec3 a = mesh.positions[corner[0]] - p, b = mesh.positions[corner[1]] - p,
+                   c = mesh.positions[corner[2]] - p;
+        const double x = a.norm(), y = b.norm(), z = c.norm();
+        angle += 2.0 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
+    }
+    return std::fabs(angle) > 2.0 * std::numbers::pi;
+}
 
 } // namespace
 
 int make_windings_agree(ObjMesh& mesh)
 {
-    const std::vector<std::vector<Neighbour>> neighbours = neighbours_of(mesh.polygons);
-    std::vector<char> visited(mesh.polygons.size(), 0), flipped(mesh.polygons.size(), 0);
-    int flipped_count = 0;
-    for (size_t f = 0; f < mesh.polygons.size(); ++f) {
-        if (visited[f] != 0)
-            continue;
-        const std::vector<int> piece = flood(int(f), neighbours, visited, flipped);
-        const auto differing =
-            std::count_if(piece.begin(), piece.end(), [&](int face) { return flipped[face] != 0; });
-        const bool keep_others = 2 * differing > std::ptrdiff_t(piece.size());
-        for (const int face : piece) {
-            if ((flipped[face] != 0) == keep_others)
-                continue;
+    int count = 0;
+    for (const Piece& piece : pieces_of(mesh.polygons))
+        for (const int face : piece.differing) {
             flip(mesh.polygons[face]);
             if (!mesh.polygon_uvs.empty())
                 flip(mesh.polygon_uvs[face]);
-            ++flipped_count;
+            ++count;
         }
+    return count;
+}
+
+int face_outwards(TriangleMesh& mesh)
+{
+    const std::vector<Piece> pieces = pieces_of(mesh.triangles);
+    const std::vector<Triangle> before = mesh.triangles;
+    std::vector<Solid> solids;
+    for (const Piece& piece : pieces) {
+        for (const int t : piece.differing)
+            flip(mesh.triangles[t]);
+        if (piece.is_closed)
+            solids.push_back(solid_of(mesh, piece));
     }
-    return flipped_count;
+    std::stable_sort(solids.begin(), solids.end(), [](const Solid& a, const Solid& b) {
+        return std::fabs(a.volume) > std::fabs(b.volume);
+    });
+    const bool any_inside_out =
+        std::any_of(solids.begin(), solids.end(), [](const Solid& solid) { return solid.volume < 0.0; });
+    std::vector<char> turned(solids.size(), 0);
+    for (size_t i = 0; any_inside_out && i < solids.size(); ++i) {
+        const Vec3& inner = mesh.positions[mesh.triangles[solids[i].faces->front()][0]];
+        size_t outer = 0; // the largest that encloses it
+        while (outer < i && !encloses(mesh, solids[outer], inner))
+            ++outer;
+        turned[i] = char(outer < i ? turned[outer] : solids[i].volume < 0.0);
+    }
+    for (size_t i = 0; i < solids.size(); ++i)
+        for (const int t : *solids[i].faces)
+            if (turned[i] != 0)
+                flip(mesh.triangles[t]);
+    int count = 0;
+    for (size_t t = 0; t < before.size(); ++t)
+        count += mesh.triangles[t] != before[t] ? 1 : 0;
+    return count;
 }
 
 } // namespace toile

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/mesh/obj.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace toile {
 
@@ -14,5 +15,12 @@ namespace toile {
 /// @param mesh  every index in range, as read_obj() returns it
 /// @return number of flipped faces, 0 for a consistent mesh
 int make_windings_agree(ObjMesh& mesh);
+
+/// Turns the triangles of a body so that all closed pieces have their outside outwards. Windings are made to
+/// agree as above. A closed piece of negative volume is turned with all closed pieces that it encloses; one
+/// that lies in a piece of positive volume is a cavity, and stays.
+/// @param mesh  every index in range
+/// @return number of turned triangles
+int face_outwards(TriangleMesh& mesh);
 
 } // namespace toile

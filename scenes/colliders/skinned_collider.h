@@ -35,6 +35,7 @@ public:
     // The whole body.
     const std::vector<Triangle>& triangles() const { return avatar_.avatar().triangles(); }
     int body_vertex_count() const { return avatar_.avatar().vertex_count(); }
+    const avatars::Avatar& avatar() const { return avatar_.avatar(); }
 
     const std::vector<Triangle>& contact_triangles() const
     {

@@ -157,7 +157,8 @@ void describe(V& v, Cloth& c)
             "garments.");
     v.field("thickness", c.thickness, above_zero(0.05, "m"), "Replaces the fabric's thickness.");
     v.field("layer", c.layer, between(-100, 100),
-            "If cloths cross at the start, the repair moves the one with the higher layer outside.");
+            "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
+            "repair moves the one with the higher layer outside.");
     v.field("color", c.color, kColor, "Red, green, blue in pictures.");
     v.field("pattern", c.pattern, "Pattern of the cloth in pictures.");
 }

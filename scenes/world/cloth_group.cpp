@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "collision/check/find_crossings.h"
 #include "core/compute/parallel.h"
@@ -143,18 +144,34 @@ void ClothGroup::judge(StepReport& report)
             raise(StepReport::Status::Stuck);
         }
     }
+    report.yielded = strained(report.max_strain);
+    if (report.yielded.count > 0)
+        raise(StepReport::Status::Yielded);
+}
+
+/// Triangles strained beyond their limit. @param max_strain  of any of them [-]
+StepReport::Findings ClothGroup::strained(double max_strain) const
+{
+    StepReport::Findings all;
     for (int c = 0; c < int(cloths_.size()); ++c) {
         const garment::StrainLimit& limit = cloths_[c].strain_limit();
-        if (report.max_strain <= limit.settings().limit + garment::kStrainMargin)
+        if (max_strain <= limit.settings().limit + garment::kStrainMargin)
             continue;
         const garment::StrainLimit::Excess excess =
             limit.excess(part(body_->positions(), c), garment::kStrainMargin);
         if (excess.count == 0)
             continue;
         const int v = cloths_[c].state().triangles[excess.triangle][0];
-        report.yielded.merge({excess.count, place_of(first_[c] + v)});
-        raise(StepReport::Status::Yielded);
+        all.merge({excess.count, place_of(first_[c] + v)});
     }
+    return all;
+}
+
+bool ClothGroup::is_strained() const { return strained(std::numeric_limits<double>::max()).count > 0; }
+
+void ClothGroup::stop()
+{
+    body_->set_velocities(std::vector<Vec3>(body_->velocities().size(), Vec3::Zero()));
 }
 
 /// Vertex 12 of "skirt" near (0.100, 0.900, 0.020) m.

@@ -48,6 +48,12 @@ public:
     /// Takes one time step of dt [s] that ends at time t_t1 [s]. Colliders are already advanced to it.
     StepReport step(double dt, double t_t1, const std::vector<Collider>& colliders);
 
+    /// True if cloth is strained beyond its limit.
+    bool is_strained() const;
+
+    /// Takes all speed.
+    void stop();
+
     /// Declares that no cloth crosses cloth in the start pose: the first step skips that search, unless there
     /// are solids, which cloth may cross.
     void assume_no_crossings()
@@ -82,6 +88,7 @@ private:
     int solid_of(int triangle) const;
     std::string names() const;
     void judge(StepReport& report);
+    StepReport::Findings strained(double max_strain) const;
     std::string place_of(int vertex) const;
     void watch_rest(bool is_stuck, double dt);
     bool has_moved(View<const Vec3> from, View<const Vec3> to) const;

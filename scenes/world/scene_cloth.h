@@ -84,6 +84,7 @@ public:
     bool is_disturbed(double t) const;
 
     garment::StrainLimit& strain_limit() { return *strain_limit_; }
+    const garment::StrainLimit& strain_limit() const { return *strain_limit_; }
 
 private:
     void add_elasticity(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);

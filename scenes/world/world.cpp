@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/compute/cuda/runtime/device.h"
 #include "core/compute/parallel.h"
@@ -19,6 +20,18 @@ long vertex_count(const std::vector<SceneCloth>& cloths)
     for (const SceneCloth& cloth : cloths)
         count += cloth.vertex_count();
     return count;
+}
+
+/// Warns of a body whose file has triangles inside out.
+void warn_of_turned(const Collider& collider, const std::function<void(const std::string&)>& warn)
+{
+    if (!collider.body().skinned())
+        return;
+    const avatars::Avatar& avatar = collider.body().skinned()->avatar();
+    if (avatar.turned_count() > 0)
+        warn("avatar \"" + collider.name() + "\": " + avatar.source() + ": turned " +
+             std::to_string(avatar.turned_count()) + " of " + std::to_string(avatar.triangles().size()) +
+             " triangles, whose normals pointed into the body");
 }
 
 } // namespace
@@ -74,6 +87,33 @@ struct World::Parts {
         return total;
     }
 
+    /// Relaxes cloth that the repair of the start pose has strained beyond its limit: in steps from rest, so
+    /// that it does not begin to fall, and as long as the strain falls.
+    void relax_start()
+    {
+        constexpr int kMaxSteps = 60, kPatience = 5;
+        constexpr double kProgress = 0.99;
+        const StageScope stage("scenes/relax_start");
+        const auto is_strained = [](const ClothGroup& group) { return group.is_strained(); };
+        const double dt = control.first() * control.tick();
+        double least = std::numeric_limits<double>::max();
+        int stalled = 0;
+        for (int k = 0;
+             k < kMaxSteps && stalled < kPatience && std::any_of(groups.begin(), groups.end(), is_strained);
+             ++k) {
+            double strain = 0.0;
+            for (ClothGroup& group : groups) {
+                strain =
+                    std::max(strain, group.step(dt, -settle_ticks() * control.tick(), colliders).max_strain);
+                group.stop();
+            }
+            stalled = strain < kProgress * least ? 0 : stalled + 1;
+            least = std::min(least, strain);
+            is_shown = false;
+        }
+        show();
+    }
+
     /// Takes a step of dt [s] that ends at t [s].
     StepReport step(double dt, double t)
     {
@@ -112,8 +152,11 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     if (options.warn)
         for (const std::string& warning : solver_warnings_of(scene))
             options.warn(warning);
-    for (const scene::Avatar& avatar : scene.avatars)
+    for (const scene::Avatar& avatar : scene.avatars) {
         parts_->colliders.emplace_back(avatar, scene.contact.friction);
+        if (options.warn)
+            warn_of_turned(parts_->colliders.back(), options.warn);
+    }
     parts_->space = open_backend(options.backend, options.device, scene, options.warn);
     std::vector<SceneCloth> cloths = make_cloths(scene, parts_->colliders, options);
     if (options.backend == Backend::Auto)
@@ -122,7 +165,7 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
 
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);
-    parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders);
+    parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders, options.repairing);
     for (ClothGroup& group : parts_->groups)
         group.tie(scene.contact.gap, parts_->colliders, options.warn);
     for (const ClothGroup& group : parts_->groups)
@@ -163,7 +206,15 @@ void World::prepare()
         group.prepare(dt, first_end);
 }
 
-StepReport World::settle() { return parts_->advance(parts_->settle_ticks(), 0.0); }
+StepReport World::settle()
+{
+    if (parts_->start.was_repaired) {
+        const ThreadLimit threads(parts_->scene.solver.threads);
+        const Stages::Activate recording(parts_->stages);
+        parts_->relax_start();
+    }
+    return parts_->advance(parts_->settle_ticks(), 0.0);
+}
 
 StepReport World::advance_frame()
 {

@@ -42,7 +42,9 @@ public:
     ///         the sample in progress is then lost.
     void prepare();
 
-    /// Simulates Scene::settle seconds with every avatar in its first pose. Call before sample 0 is taken.
+    /// Simulates Scene::settle seconds with every avatar in its first pose. Before, cloth that the repair of
+    /// the start pose has strained beyond its limit relaxes: stage "scenes/relax_start". Call before sample 0
+    /// is taken.
     StepReport settle();
 
     /// Simulates up to the next sample.

@@ -29,6 +29,9 @@ struct WorldOptions {
     /// any of the building threads. Returning false ends the building call with Cancelled. May be empty.
     std::function<bool(const std::string& cloth, double fraction)> building = nullptr;
 
+    /// Called with the finished fraction [0, 1] of a repair of the start pose. May be empty.
+    std::function<void(double fraction)> repairing = nullptr;
+
     /// Receives problems that do not stop the run, e.g. a damaged cache file; may be empty.
     std::function<void(const std::string&)> warn = nullptr;
 };

@@ -9,7 +9,7 @@
 
 #include "apps/toile/check/strain.h"
 #include "apps/toile/render/frame_range.h"
-#include "apps/toile/simulate/table_progress.h"
+#include "apps/toile/simulate/setup_progress.h"
 #include "apps/toile/terminal/progress.h"
 #include "core/base/error.h"
 #include "scenes/meshes/shape_mesh.h"
@@ -107,31 +107,31 @@ TEST(ClockText, ShowsHoursOnlyFromOneHourOn)
     EXPECT_EQ(clock_text(3675.0), "1:01:15");
 }
 
-/// Output of TableProgress until the tables are finished, with a pause after the first call.
+/// Output of SetupProgress until the tables are finished, with a pause after the first call.
 std::string told_of_tables(bool quiet, std::chrono::milliseconds pause)
 {
     testing::internal::CaptureStderr();
     {
-        TableProgress progress(quiet);
-        progress.update("skirt", 0.1);
+        SetupProgress progress(quiet);
+        progress.update("tables of cloth \"skirt\"", 0.1);
         std::this_thread::sleep_for(pause);
-        progress.update("skirt", 0.4);
-        progress.update("skirt", 0.5);
-        progress.update("skirt", 1.0);
+        progress.update("tables of cloth \"skirt\"", 0.4);
+        progress.update("tables of cloth \"skirt\"", 0.5);
+        progress.update("tables of cloth \"skirt\"", 1.0);
     }
     return testing::internal::GetCapturedStderr();
 }
 
-TEST(TableProgress, ReportsBuildsLongerThanHalfASecond)
+TEST(SetupProgress, ReportsBuildsLongerThanHalfASecond)
 {
     EXPECT_EQ(told_of_tables(false, std::chrono::milliseconds(0)), "");
     EXPECT_EQ(told_of_tables(true, std::chrono::milliseconds(600)), "");
     const std::string told = told_of_tables(false, std::chrono::milliseconds(600));
     EXPECT_EQ(told.rfind("tables of cloth \"skirt\": 40 %, ", 0), 0u) << told;
-    EXPECT_NE(told.find(" left\ntables of cloth \"skirt\": 100 %, built in "), std::string::npos) << told;
+    EXPECT_NE(told.find(" left\ntables of cloth \"skirt\": 100 %, done in "), std::string::npos) << told;
 }
 
-TEST(TableProgress, FormatsDurations)
+TEST(SetupProgress, FormatsDurations)
 {
     EXPECT_EQ(duration_text(3.2), "3 s");
     EXPECT_EQ(duration_text(75.0), "1:15");

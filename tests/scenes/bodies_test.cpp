@@ -6,10 +6,12 @@
 
 #include "collision/check/find_crossings.h"
 #include "collision/check/penetration.h"
+#include "core/mesh/obj.h"
 #include "garment/energy/strain_limit/strain_limit.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world.h"
+#include "tests/collision/shapes_for_tests.h"
 #include "tests/support/temporary_folder.h"
 
 /// Cloth never crosses a body: fast, thin, sharp and open ones.
@@ -161,6 +163,53 @@ TEST(Bodies, HoldAtTheirCorners)
                                 folder.path() / "scene.json");
     EXPECT_EQ(outcome.crossings, 0);
     EXPECT_LT(outcome.strain, 0.06 + garment::kStrainMargin);
+}
+
+TEST(Bodies, AreTurnedWhereTheyAreInsideOut)
+{
+    const TemporaryFolder folder;
+    TriangleMesh ball = testing::sphere_mesh(Vec3::Zero(), 0.2, 3);
+    for (Triangle& t : ball.triangles)
+        std::swap(t[1], t[2]);
+    write_obj(folder.path() / "ball.obj", ball);
+    const std::string text = R"({"toile": 1, "frames": 16, "avatars": [{"name": "ball", "file": "ball.obj"}],
+        "cloths": [{"name": "c", "rectangle": {"size": [0.4, 0.4], "resolution": 0.04},
+        "translate": [0, 0.25, 0], "fabric": "cotton"}]})";
+    const Outcome outcome = run(text, folder.path() / "scene.json");
+    EXPECT_EQ(outcome.crossings, 0);
+    EXPECT_LT(outcome.strain, 0.06 + garment::kStrainMargin);
+    for (const Vec3& x : outcome.x)
+        EXPECT_GT(x.norm(), 0.195);
+
+    std::vector<std::string> warnings;
+    WorldOptions options;
+    options.warn = [&](const std::string& warning) { warnings.push_back(warning); };
+    const World world(parse_scene(text, folder.path() / "scene.json"), options);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("turned " + std::to_string(ball.triangle_count()) + " of"), std::string::npos)
+        << warnings[0];
+}
+
+/// Two cloths in one place, on a ball: the higher layer is outside, and stays there.
+TEST(Bodies, WearLayersInTheirOrder)
+{
+    const Scene scene = parse_scene(R"({"toile": 1, "frames": 12, "avatars": [{"name": "ball", "sphere":
+        {"radius": 0.2}}], "cloths": [{"name": "coat", "layer": 1, "rectangle": {"size": [0.5, 0.5],
+        "resolution": 0.04}, "translate": [0, 0.21, 0]}, {"name": "shirt", "rectangle": {"size": [0.5, 0.5],
+        "resolution": 0.04}, "translate": [0, 0.21, 0]}]})",
+                                    "layers.json");
+    World world(scene);
+    const ClothState &coat = world.cloths()[0], &shirt = world.cloths()[1];
+    const auto mean_distance = [](const ClothState& cloth) {
+        double sum = 0.0;
+        for (const Vec3& x : cloth.positions)
+            sum += x.norm();
+        return sum / double(cloth.positions.size());
+    };
+    for (; world.frame() + 1 < world.frame_count(); world.advance_frame()) {
+        EXPECT_TRUE(find_crossings(coat.triangles, coat.positions, shirt.triangles, shirt.positions).empty());
+        EXPECT_GT(mean_distance(coat), mean_distance(shirt)) << "frame " << world.frame();
+    }
 }
 
 /// Springs to a body by default; exactly where that is asked for.

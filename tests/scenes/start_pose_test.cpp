@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "collision/check/find_crossings.h"
+#include "core/base/error.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world.h"
@@ -66,6 +67,41 @@ TEST(StartPose, IsUnchangedWhenRepairIsOff)
     EXPECT_FALSE(world.start().was_repaired);
     EXPECT_GT(world.start().count(Kind::InsideBody), 0);
     EXPECT_EQ(world.cloths()[0].positions, world.cloths()[0].rest.positions);
+}
+
+TEST(StartPose, IsRefusedWhereClothDoesNotFit)
+{
+    try {
+        World world(ball_and_sheet("0.03"));
+        ADD_FAILURE() << "accepted";
+    } catch (const InvalidInput& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find("test.json: cloth \"sheet\" does not fit its start pose"), std::string::npos)
+            << message;
+        EXPECT_NE(message.find("preroll"), std::string::npos) << message;
+    }
+    World world(ball_and_sheet("0.03", R"(, "contact": {"repair_start": false})"));
+    EXPECT_FALSE(world.start().was_repaired);
+}
+
+TEST(StartPose, RelaxesWhatTheRepairHasStrained)
+{
+    // A tube on a ball that is a fifth too large for it.
+    World world(ball_and_sheet("0.062"));
+    ASSERT_TRUE(world.start().was_repaired);
+    const auto highest = [&] {
+        double y = 0.0;
+        for (const Vec3& p : world.cloths()[0].positions)
+            y = std::max(y, p.y());
+        return y;
+    };
+    const double before = highest();
+    const std::vector<Vec3> repaired = world.cloths()[0].positions;
+    world.settle();
+    EXPECT_NE(world.cloths()[0].positions, repaired) << "it was not strained";
+    EXPECT_EQ(world.stages().calls("scenes/relax_start"), 1);
+    EXPECT_NEAR(highest(), before, 0.005) << "it does not fall";
+    EXPECT_LT(world.advance_frame().status, StepReport::Status::Yielded);
 }
 
 TEST(StartPose, PutsTheHigherLayerOnTop)

@@ -193,7 +193,7 @@ int check_caches(const scenes::World& world, const scenes::Scene& scene, const s
 
 SceneRun::SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log)
     : job_(job), no_check_(settings.no_check), log_(std::move(log)),
-      tables_(log_.quiet(), log_.scene(), log_.use()), world_(job.scene, world_options(settings))
+      progress_(log_.quiet(), log_.scene(), log_.use()), world_(job.scene, world_options(settings))
 {
     if (const std::string text = start_text(world_.start(), job.scene); !text.empty())
         log_.note(text);
@@ -209,10 +209,11 @@ scenes::WorldOptions SceneRun::world_options(const RunSettings& settings)
         options.tables = std::make_shared<TableStore>();
     options.building = [this](const std::string& cloth, double fraction) {
         const bool goes_on = !interrupt_->requested();
-        goes_on ? tables_.update(cloth, fraction) : tables_.stop();
+        goes_on ? progress_.update("tables of cloth \"" + cloth + "\"", fraction) : progress_.stop();
         return goes_on;
     };
-    options.warn = [this](const std::string& text) { tables_.warn(text); };
+    options.repairing = [this](double fraction) { progress_.update("repair of the start pose", fraction); };
+    options.warn = [this](const std::string& text) { progress_.warn(text); };
     return options;
 }
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "apps/toile/simulate/table_progress.h"
+#include "apps/toile/simulate/setup_progress.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
 #include "scenes/world/world.h"
@@ -47,7 +47,7 @@ private:
     const SceneJob& job_;
     bool no_check_;
     RunLog log_;
-    TableProgress tables_;
+    SetupProgress progress_;
     const InterruptGuard* interrupt_ = nullptr; ///< argument of run(); read only while tables are built
     scenes::World world_;
 };

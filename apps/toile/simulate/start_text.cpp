@@ -25,11 +25,41 @@ std::string number_of(int count, const std::string& one, const std::string& many
     return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
+bool is_with_avatar(Kind kind) { return kind == Kind::InsideBody || kind == Kind::CrossesBody; }
+
 /// Name of the avatar or cloth that a defect involves.
 const std::string& other_of(const collision::StartDefect& defect, const scenes::Scene& scene)
 {
-    return defect.kind == Kind::InsideBody ? scene.avatars[defect.other].name
-                                           : scene.cloths[defect.other].name;
+    return is_with_avatar(defect.kind) ? scene.avatars[defect.other].name : scene.cloths[defect.other].name;
+}
+
+const char* verb_of(Kind kind)
+{
+    switch (kind) {
+    case Kind::InsideBody:
+        return "is inside";
+    case Kind::UnderLayer:
+        return "lies under";
+    case Kind::CrossesBody:
+    case Kind::Crossing:
+        break;
+    }
+    return "crosses";
+}
+
+const char* word_of(Kind kind)
+{
+    switch (kind) {
+    case Kind::InsideBody:
+        return "inside_avatar";
+    case Kind::CrossesBody:
+        return "crosses_avatar";
+    case Kind::UnderLayer:
+        return "under_layer";
+    case Kind::Crossing:
+        break;
+    }
+    return "crossing";
 }
 
 std::string line_of(const collision::StartDefect& defect, const scenes::Scene& scene)
@@ -37,10 +67,9 @@ std::string line_of(const collision::StartDefect& defect, const scenes::Scene& s
     const Vec3& p = defect.position;
     const std::string at = " at (" + formatted("%.3f", p.x()) + ", " + formatted("%.3f", p.y()) + ", " +
                            formatted("%.3f", p.z()) + ") m";
-    return "cloth \"" + scene.cloths[defect.cloth].name + "\"" +
-           (defect.kind == Kind::InsideBody ? " is inside avatar \"" : " crosses cloth \"") +
-           other_of(defect, scene) + "\"" + at + ", " + millimetres(defect.depth) + " deep" +
-           (defect.is_fixed ? ", attached there" : "");
+    return "cloth \"" + scene.cloths[defect.cloth].name + "\" " + verb_of(defect.kind) +
+           (is_with_avatar(defect.kind) ? " avatar \"" : " cloth \"") + other_of(defect, scene) + "\"" + at +
+           ", " + millimetres(defect.depth) + " deep" + (defect.is_fixed ? ", attached there" : "");
 }
 
 } // namespace
@@ -49,22 +78,26 @@ std::string start_text(const collision::StartReport& report, const scenes::Scene
 {
     if (report.defects.empty())
         return "";
-    std::string text = "start pose: " + number_of(report.vertices_inside(), "vertex", "vertices") + " (" +
-                       number_of(report.count(Kind::InsideBody), "penetration", "penetrations") +
-                       " with edges and faces) inside avatars, up to " +
-                       millimetres(report.deepest(Kind::InsideBody)) + " deep; " +
-                       number_of(report.count(Kind::Crossing), "crossing", "crossings") +
-                       " of cloth with cloth; ";
+    std::string text =
+        "start pose: " + number_of(report.vertices_inside(), "vertex", "vertices") + " (" +
+        number_of(report.count(Kind::InsideBody), "penetration", "penetrations") +
+        " with edges and faces) inside avatars, up to " + millimetres(report.deepest(Kind::InsideBody)) +
+        " deep; " + number_of(report.count(Kind::CrossesBody), "triangle", "triangles") +
+        " of cloth crossing avatars; " + number_of(report.count(Kind::Crossing), "crossing", "crossings") +
+        " of cloth with cloth; ";
+    if (const int under = report.count(Kind::UnderLayer))
+        text += number_of(under, "cloth", "cloths") + " under a lower layer; ";
     if (!report.was_repaired)
         return text + "left as it is";
     text += "repaired by moves of at most " + millimetres(report.max_move) + ", edges strained by " +
             formatted("%.1f %% (RMS), ", 100.0 * report.rms_strain) +
             formatted("%.1f %% at most", 100.0 * report.max_strain);
-    const int left = report.remaining(Kind::InsideBody) + report.remaining(Kind::Crossing);
+    const int crossing = report.remaining(Kind::CrossesBody) + report.remaining(Kind::Crossing);
+    const int left = report.remaining(Kind::InsideBody) + crossing + report.remaining(Kind::UnderLayer);
     if (left == 0)
         return text + "; nothing remains";
     text += "; " + number_of(report.remaining(Kind::InsideBody), "penetration", "penetrations") + " and " +
-            number_of(report.remaining(Kind::Crossing), "crossing", "crossings") + " remain:";
+            number_of(crossing, "crossing", "crossings") + " remain:";
     int listed = 0;
     for (const collision::StartDefect& defect : report.defects)
         if (!defect.is_repaired && listed++ < kMaxListed)
@@ -77,8 +110,10 @@ nlohmann::ordered_json start_json(const collision::StartReport& report, const sc
     nlohmann::ordered_json json = {{"repaired", report.was_repaired},
                                    {"vertices_inside", report.vertices_inside()},
                                    {"places_inside", report.count(Kind::InsideBody)},
+                                   {"avatar_crossings", report.count(Kind::CrossesBody)},
                                    {"crossings", report.count(Kind::Crossing)},
                                    {"places_inside_remaining", report.remaining(Kind::InsideBody)},
+                                   {"avatar_crossings_remaining", report.remaining(Kind::CrossesBody)},
                                    {"crossings_remaining", report.remaining(Kind::Crossing)},
                                    {"max_depth_m", report.deepest(Kind::InsideBody)},
                                    {"max_strain", report.max_strain},
@@ -89,7 +124,7 @@ nlohmann::ordered_json start_json(const collision::StartReport& report, const sc
         nlohmann::ordered_json vertices = nlohmann::ordered_json::array();
         for (int k = 0; k < 3 && defect.vertex[k] >= 0; ++k)
             vertices.push_back(defect.vertex[k]);
-        defects.push_back({{"kind", defect.kind == Kind::InsideBody ? "inside_avatar" : "crossing"},
+        defects.push_back({{"kind", word_of(defect.kind)},
                            {"position_m", {defect.position.x(), defect.position.y(), defect.position.z()}},
                            {"depth_m", defect.depth},
                            {"cloth", scene.cloths[defect.cloth].name},

@@ -165,6 +165,78 @@ TEST(RepairStart, ResolvesEqualLayers)
     EXPECT_LT(report.rms_strain, 0.03);
 }
 
+TEST(RepairStart, TakesCoincidentClothsApartByLayer)
+{
+    for (const bool first_is_outside : {true, false}) {
+        const TriangleMesh sheet = sheet_mesh(0.3, 12, 0.0);
+        std::vector<StartCloth> cloths{cloth_of(sheet, first_is_outside ? 1 : 0),
+                                       cloth_of(sheet, first_is_outside ? 0 : 1), cloth_of(sheet, 2)};
+        const ShapeCollider floor(PlaneShape{}, Eigen::Isometry3d(Eigen::Translation3d(0, -0.01, 0)),
+                                  "floor");
+        const StartReport report = repair_start(cloths, {{nullptr, &floor}});
+        EXPECT_GT(report.count(Kind::Crossing), 100);
+        EXPECT_EQ(report.remaining(Kind::Crossing), 0);
+        EXPECT_LT(report.max_move, 0.002);
+        const StartCloth &inner = cloths[first_is_outside ? 1 : 0], &outer = cloths[first_is_outside ? 0 : 1];
+        for (size_t v = 0; v < sheet.positions.size(); ++v) {
+            EXPECT_GT(outer.positions[v].y(), inner.positions[v].y());
+            EXPECT_GT(cloths[2].positions[v].y(), outer.positions[v].y());
+        }
+    }
+}
+
+TEST(RepairStart, TakesCoincidentClothsOfOneLayerApart)
+{
+    const TriangleMesh sheet = sheet_mesh(0.3, 12, 0.0);
+    std::vector<StartCloth> cloths{cloth_of(sheet), cloth_of(sheet)};
+    EXPECT_EQ(repair_start(cloths, {}).remaining(Kind::Crossing), 0);
+    EXPECT_TRUE(check_start(cloths, {}).is_clean());
+}
+
+TEST(RepairStart, BringsACoatOutsideAShirtThatItLiesUnder)
+{
+    const MeshCollider ball = body_of(sphere_mesh(Vec3::Zero(), 0.1, 3));
+    std::vector<StartCloth> cloths{cloth_of(sphere_mesh(Vec3::Zero(), 0.11, 3), 0),
+                                   cloth_of(sphere_mesh(Vec3::Zero(), 0.105, 3), 1)};
+    const StartReport report = repair_start(cloths, {{&ball, nullptr}});
+    EXPECT_EQ(report.count(Kind::UnderLayer), 1);
+    EXPECT_EQ(report.remaining(Kind::UnderLayer), 0);
+    EXPECT_EQ(report.remaining(Kind::Crossing), 0);
+    for (const Vec3& p : cloths[1].positions)
+        EXPECT_GT(p.norm(), 0.11);
+    for (const Vec3& p : cloths[0].positions)
+        EXPECT_NEAR(p.norm(), 0.11, 1e-3);
+}
+
+TEST(RepairStart, LiftsClothCutFromTheFacesOfABody)
+{
+    const TriangleMesh sphere = sphere_mesh(Vec3::Zero(), 0.1, 3);
+    const MeshCollider ball = body_of(sphere);
+    TriangleMesh cap{sphere.positions, {}};
+    for (const Triangle& t : sphere.triangles)
+        if (sphere.positions[t[0]].y() > 0.0)
+            cap.triangles.push_back(t);
+    std::vector<StartCloth> cloths{cloth_of(cap)};
+    const StartReport report = repair_start(cloths, {{&ball, nullptr}});
+    EXPECT_GT(report.count(Kind::CrossesBody), 100);
+    EXPECT_EQ(report.remaining(Kind::CrossesBody), 0);
+    EXPECT_LT(report.max_move, 0.003);
+    EXPECT_TRUE(
+        find_crossings(cap.triangles, cloths[0].positions, sphere.triangles, sphere.positions).empty());
+}
+
+TEST(RepairStart, ReportsItsProgress)
+{
+    const ShapeCollider ball(SphereShape{0.1}, Eigen::Isometry3d::Identity(), "ball");
+    std::vector<StartCloth> cloths{cloth_of(sheet_mesh(0.4, 24, 0.07))};
+    std::vector<double> told;
+    repair_start(cloths, {{nullptr, &ball}},
+                 RepairProgress([&](double fraction) { told.push_back(fraction); }));
+    EXPECT_GT(told.size(), 10u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_EQ(told.back(), 1.0);
+}
+
 TEST(RepairStart, UntanglesASheetThatCrossesItself)
 {
     // A rolled-up sheet whose ends overlap by 40 degrees; a dent in the outer end crosses the inner one.

@@ -81,5 +81,56 @@ TEST(MakeWindingsAgree, RepairsARealGarment)
     EXPECT_EQ(complaint_about(mesh), "");
 }
 
+/// Adds a tetrahedron of another size, a corner at the given place.
+void add_tetrahedron(TriangleMesh& mesh, const Vec3& corner, double size, bool inside_out)
+{
+    const TriangleMesh one = tetrahedron();
+    const int first = mesh.vertex_count();
+    for (const Vec3& p : one.positions)
+        mesh.positions.push_back(corner + size * p);
+    for (const Triangle& t : one.triangles)
+        mesh.triangles.push_back((inside_out ? Triangle(t[0], t[2], t[1]) : t) + Triangle::Constant(first));
+}
+
+TEST(FaceOutwards, TurnsWhatIsInsideOut)
+{
+    TriangleMesh mesh;
+    add_tetrahedron(mesh, Vec3::Zero(), 1.0, false);
+    const TriangleMesh right = mesh;
+    EXPECT_EQ(face_outwards(mesh), 0);
+
+    mesh = {};
+    add_tetrahedron(mesh, Vec3::Zero(), 1.0, true);
+    EXPECT_EQ(face_outwards(mesh), 4);
+    EXPECT_EQ(mesh.triangles, right.triangles);
+
+    std::swap(mesh.triangles[2][1], mesh.triangles[2][2]); // mixed
+    EXPECT_EQ(face_outwards(mesh), 1);
+    EXPECT_EQ(mesh.triangles, right.triangles);
+}
+
+TEST(FaceOutwards, KnowsACavityFromAPartInsideOut)
+{
+    const auto turned = [](bool outer, bool inner, const Vec3& at) {
+        TriangleMesh mesh;
+        add_tetrahedron(mesh, Vec3::Zero(), 1.0, outer);
+        add_tetrahedron(mesh, at, 0.1, inner);
+        return face_outwards(mesh);
+    };
+    const Vec3 within(0.1, 0.1, 0.1), beside(2.0, 0.0, 0.0);
+    EXPECT_EQ(turned(false, true, within), 0) << "a cavity";
+    EXPECT_EQ(turned(true, false, within), 8) << "a cavity in a body inside out";
+    EXPECT_EQ(turned(false, true, beside), 4);
+    EXPECT_EQ(turned(false, false, within), 0) << "eyes in a head";
+}
+
+TEST(FaceOutwards, LeavesOpenSurfaces)
+{
+    TriangleMesh mesh = two_triangles();
+    for (Triangle& t : mesh.triangles)
+        std::swap(t[1], t[2]);
+    EXPECT_EQ(face_outwards(mesh), 0);
+}
+
 } // namespace
 } // namespace toile::test

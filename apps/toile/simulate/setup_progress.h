@@ -8,24 +8,25 @@
 
 namespace toile::app {
 
-/// Reports the construction of a cloth's quadrature tables on stderr, like Progress: one line rewritten on a
-/// terminal, occasional lines in a log file, nothing if quiet or below half a second. Calls may come from
-/// several threads.
-class TableProgress {
+/// Reports long work before the first frame on stderr, like Progress: one line rewritten on a terminal,
+/// occasional lines in a log file, nothing if quiet or below half a second. Calls may come from several
+/// threads.
+class SetupProgress {
 public:
     /// @param scene  prefix of every text; empty for a single scene
-    explicit TableProgress(bool quiet, const std::string& scene = "", Stderr use = Stderr::Exclusive);
-    ~TableProgress();
-    TableProgress(const TableProgress&) = delete;
-    TableProgress& operator=(const TableProgress&) = delete;
+    explicit SetupProgress(bool quiet, const std::string& scene = "", Stderr use = Stderr::Exclusive);
+    ~SetupProgress();
+    SetupProgress(const SetupProgress&) = delete;
+    SetupProgress& operator=(const SetupProgress&) = delete;
 
+    /// @param task      what is done: "tables of cloth "skirt""
     /// @param fraction  finished [0, 1]; after 1 the next call begins anew
-    void update(const std::string& cloth, double fraction);
+    void update(const std::string& task, double fraction);
 
     /// Prints "toile: warning: ..." on a line of its own, quiet or not.
     void warn(const std::string& text);
 
-    /// Ends the line after the construction was cancelled.
+    /// Ends the line after the work was cancelled.
     void stop();
 
 private:
@@ -37,8 +38,8 @@ private:
     std::mutex mutex_;
     std::string prefix_;
     bool quiet_, rewrites_;
-    bool line_open_ = false, is_building_ = false;
-    std::string cloth_;
+    bool line_open_ = false, is_working_ = false;
+    std::string task_;
     double first_fraction_ = 0.0;
     Clock::time_point start_, last_line_;
 };

@@ -1,4 +1,4 @@
-#include "apps/toile/simulate/table_progress.h"
+#include "apps/toile/simulate/setup_progress.h"
 
 #include <cmath>
 #include <cstdio>
@@ -9,7 +9,7 @@ namespace toile::app {
 
 namespace {
 
-/// Construction times below this are not reported.
+/// Times below this are not reported.
 constexpr std::chrono::milliseconds kSilence(500);
 
 /// Intervals between two lines of a log file, and between two updates of a terminal's line.
@@ -18,21 +18,21 @@ constexpr std::chrono::milliseconds kTerminalInterval(100);
 
 } // namespace
 
-TableProgress::TableProgress(bool quiet, const std::string& scene, Stderr use)
+SetupProgress::SetupProgress(bool quiet, const std::string& scene, Stderr use)
     : prefix_(scene.empty() ? "" : scene + ": "), quiet_(quiet),
       rewrites_(use == Stderr::Exclusive && ::isatty(STDERR_FILENO) == 1)
 {
 }
 
-TableProgress::~TableProgress() { end_line(); }
+SetupProgress::~SetupProgress() { end_line(); }
 
-void TableProgress::update(const std::string& cloth, double fraction)
+void SetupProgress::update(const std::string& task, double fraction)
 {
     const std::lock_guard lock(mutex_);
     const Clock::time_point now = Clock::now();
-    if (!is_building_ || cloth != cloth_) {
-        is_building_ = true;
-        cloth_ = cloth;
+    if (!is_working_ || task != task_) {
+        is_working_ = true;
+        task_ = task;
         first_fraction_ = fraction;
         start_ = now;
         last_line_ = now + kSilence - (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
@@ -42,42 +42,41 @@ void TableProgress::update(const std::string& cloth, double fraction)
     const bool is_due = now - last_line_ >= (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
     if (!quiet_ && (is_finished ? now - start_ >= kSilence : is_due)) {
         last_line_ = now;
-        std::string text =
-            prefix_ + "tables of cloth \"" + cloth + "\": " + std::to_string(int(100.0 * fraction)) + " %";
+        std::string text = prefix_ + task + ": " + std::to_string(int(100.0 * fraction)) + " %";
         if (is_finished)
-            text += ", built in " + duration_text(seconds);
+            text += ", done in " + duration_text(seconds);
         else if (fraction > first_fraction_)
             text += ", " + duration_text(seconds * (1.0 - fraction) / (fraction - first_fraction_)) + " left";
         print(text);
     }
     if (is_finished) {
-        is_building_ = false;
+        is_working_ = false;
         end_line();
     }
 }
 
-void TableProgress::stop()
+void SetupProgress::stop()
 {
     const std::lock_guard lock(mutex_);
-    is_building_ = false;
+    is_working_ = false;
     end_line();
 }
 
-void TableProgress::warn(const std::string& text)
+void SetupProgress::warn(const std::string& text)
 {
     const std::lock_guard lock(mutex_);
     end_line();
     std::fprintf(stderr, "toile: warning: %s%s\n", prefix_.c_str(), text.c_str());
 }
 
-void TableProgress::end_line()
+void SetupProgress::end_line()
 {
     if (line_open_)
         std::fputc('\n', stderr);
     line_open_ = false;
 }
 
-void TableProgress::print(const std::string& text)
+void SetupProgress::print(const std::string& text)
 {
     std::fprintf(stderr, rewrites_ ? "\r%s\033[K" : "%s\n", text.c_str());
     std::fflush(stderr);
