@@ -87,7 +87,10 @@ TEST(StartPose, IsRefusedWhereClothDoesNotFit)
 TEST(StartPose, RelaxesWhatTheRepairHasStrained)
 {
     // A tube on a ball that is a fifth too large for it.
-    World world(ball_and_sheet("0.062"));
+    World world(scene_of(R"("fabrics": {"inextensible": {"base": "cotton", "strain_limit": 1.001}},
+        "avatars": [{"name": "ball", "sphere": {"radius": 0.1}}],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02},
+                    "translate": [0, 0.056, 0], "fabric": "inextensible"}])"));
     ASSERT_TRUE(world.start().was_repaired);
     const auto highest = [&] {
         double y = 0.0;
