@@ -40,8 +40,14 @@ double deeper(const Shape& shape, const Eigen::Isometry3d& pose, const Vec3& a, 
 
 ClothSamples::ClothSamples(View<const Triangle> triangles, int vertex_count)
     : triangles_(triangles.begin(), triangles.end()), edges_(build_surface_edges(triangles, vertex_count)),
-      vertex_count_(vertex_count)
+      vertex_count_(vertex_count), is_on_border_(vertex_count + triangles.size() + edges_.vertex.size(), 0)
 {
+    for (int e = 0; e < edges_.edge_count(); ++e)
+        if (edges_.triangles.of(e).size() == 1) {
+            is_on_border_[vertex_count + triangles.size() + e] = 1;
+            for (const int v : edges_.vertex[e])
+                is_on_border_[v] = 1;
+        }
 }
 
 std::vector<Vec3> ClothSamples::at(View<const Vec3> x) const

@@ -23,10 +23,16 @@ public:
     /// Name of a sample: "vertex 12", "triangle 7" or "edge 3-12".
     std::string name(int sample) const;
 
+    /// True for vertices and midpoints on the border of the cloth.
+    bool is_on_border(int sample) const { return is_on_border_[sample] != 0; }
+
+    const std::vector<Triangle>& triangles() const { return triangles_; }
+
 private:
     std::vector<Triangle> triangles_;
     SurfaceEdges edges_;
     int vertex_count_;
+    std::vector<char> is_on_border_; ///< [samples]
 };
 
 /// Depth of cloth inside a collider.
@@ -86,6 +92,9 @@ public:
     /// True near surface that is buried, has no room in front, or is marked.
     /// @param marked  [triangles]; empty: none
     bool is_pinched(const Vec3& point, View<const char> marked) const;
+
+    const SurfaceProximity& surface() const { return surface_; }
+    const RayScene& rays() const { return rays_; } ///< of the mesh alone
 
 private:
     struct Inside;

@@ -137,6 +137,26 @@ TEST(Certificate, FindsClothCrossingAnotherCloth)
     EXPECT_EQ(alone["cloths_left_out"], Json({"lower"}));
 }
 
+TEST(Certificate, FindsClothThatAFastBodyHasGoneThrough)
+{
+    const TemporaryFolder folder;
+    folder.write("rod.json",
+                 R"({"toile": 1, "frames": 3, "avatars": [{"name": "rod", "rotate_deg": [0, 0, 90],
+        "translate": [0, 0.3, 0.5], "capsule": {"radius": 0.03, "length": 1},
+        "keyframes": [{"time": 0.04}, {"time": 0.05, "translate": [0, 0, -1]}]}],
+        "cloths": [{"name": "curtain", "rectangle": {"size": [0.6, 0.6], "resolution": 0.05},
+        "rotate_deg": [90, 0, 0], "translate": [0, 0.3, 0]}], "attachments": [{"cloth": "curtain",
+        "select": {"box": {"lower": [-1, 0.58, -1], "upper": [1, 1, 1]}}}]})");
+    const Finished run = run_toile({"simulate", "rod.json", "-o", ".", "--quiet"}, folder.path());
+    EXPECT_EQ(run.exit_code, 1);
+    const Json found = json_in(folder, "certificate.json");
+    EXPECT_EQ(found["holds"], false);
+    EXPECT_EQ(found["cloth_avatar_crossings"], 0);
+    EXPECT_GT(found["passages"], 10);
+    EXPECT_EQ(found["first_passage"]["frame"], 2);
+    EXPECT_EQ(found["first_passage"]["avatar"], "rod");
+}
+
 TEST(Certificate, CoversTheFramesThatAllCachesHave)
 {
     const TemporaryFolder folder;

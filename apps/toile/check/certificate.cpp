@@ -17,7 +17,7 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
 {
     std::string reason;
     const auto add = [&](const std::string& text) { reason += (reason.empty() ? "" : ", ") + text; };
-    char text[128];
+    char text[160];
     if (found.non_finite > 0)
         add(std::to_string(found.non_finite) + " vertices are not finite");
     if (found.cloth_cloth_crossings > 0)
@@ -27,6 +27,14 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
     if (found.crossing) {
         const Vec3& p = found.crossing->point;
         std::snprintf(text, sizeof text, "the first near (%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
+        add(text);
+    }
+    if (found.passage) {
+        const Vec3& p = found.passage->point;
+        std::snprintf(text, sizeof text,
+                      "%d points of cloth passed through an avatar since the last frame, the first near "
+                      "(%.3f, %.3f, %.3f) m",
+                      found.passages, p.x(), p.y(), p.z());
         add(text);
     }
     if (found.penetration > limits.penetration) {
@@ -51,6 +59,15 @@ Json json_of(const FrameFindings::CrossingSite& site)
             {"point_m", {site.point.x(), site.point.y(), site.point.z()}}};
 }
 
+Json json_of(const FrameFindings::PassageSite& site)
+{
+    return {{"frame", site.frame},
+            {"cloth", site.cloth},
+            {"sample", site.sample},
+            {"avatar", site.avatar},
+            {"point_m", {site.point.x(), site.point.y(), site.point.z()}}};
+}
+
 template <typename T>
 Json json_or_null(const std::optional<T>& value)
 {
@@ -66,11 +83,15 @@ void Certificate::add(const FrameFindings& found)
     cloth_cloth_crossings += found.cloth_cloth_crossings;
     cloth_avatar_crossings += found.cloth_avatar_crossings;
     pinched_crossings += found.pinched_crossings;
+    pinched_passages += found.pinched_passages;
     pinched_frames += found.pinched_crossings > 0 || found.pinched_depth > limits.penetration ? 1 : 0;
     if (!first_pinch)
         first_pinch = found.pinch;
     if (!first_crossing)
         first_crossing = found.crossing;
+    passages += found.passages;
+    if (!first_passage)
+        first_passage = found.passage;
     if (found.gap && (!min_gap || *found.gap < *min_gap)) {
         min_gap = found.gap;
         min_gap_frame = frame;
@@ -112,6 +133,8 @@ std::string to_json(const Certificate& certificate)
         {"cloth_cloth_crossings", certificate.cloth_cloth_crossings},
         {"cloth_avatar_crossings", certificate.cloth_avatar_crossings},
         {"first_crossing", has_crossing ? json_of(*certificate.first_crossing) : Json(nullptr)},
+        {"passages", certificate.passages},
+        {"first_passage", certificate.first_passage ? json_of(*certificate.first_passage) : Json(nullptr)},
         {"min_gap_m", json_or_null(certificate.min_gap)},
         {"min_gap_frame", certificate.min_gap ? Json(certificate.min_gap_frame) : Json(nullptr)},
         {"max_penetration_m", certificate.worst.penetration},
@@ -122,6 +145,7 @@ std::string to_json(const Certificate& certificate)
         {"pinches",
          {{"frames", certificate.pinched_frames},
           {"crossings", certificate.pinched_crossings},
+          {"passages", certificate.pinched_passages},
           {"max_penetration_m", certificate.worst.pinched_depth},
           {"first", certificate.first_pinch ? json_of(*certificate.first_pinch) : Json(nullptr)}}},
         {"limits",

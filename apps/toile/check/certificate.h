@@ -29,12 +29,24 @@ struct FrameFindings {
         Vec3 point; ///< [m]
     };
 
+    /// Sample of cloth that went through an avatar since the last frame.
+    struct PassageSite {
+        int frame;
+        std::string cloth;
+        std::string sample; ///< "vertex 12"
+        std::string avatar;
+        Vec3 point; ///< [m]
+    };
+
     int non_finite = 0; ///< vertices
     int cloth_cloth_crossings = 0;
     int cloth_avatar_crossings = 0;       ///< outside of pinches (AvatarCrossings)
     int pinched_crossings = 0;            ///< in pinches
     std::optional<CrossingSite> pinch;    ///< the first of them
     std::optional<CrossingSite> crossing; ///< first crossing that makes the frame bad
+    int passages = 0;                     ///< samples of cloth that went through avatars, outside of pinches
+    std::optional<PassageSite> passage;   ///< the first of them
+    int pinched_passages = 0;             ///< in pinches
     std::optional<double> gap;            ///< [m] none: larger than kGapReach
     double penetration = 0.0;             ///< [m] maximum depth
     double pinched_depth = 0.0;           ///< [m] maximum depth in pinches
@@ -69,9 +81,12 @@ struct Certificate {
     long cloth_cloth_crossings = 0; ///< pairs of triangles, summed over frames, as the other count
     long cloth_avatar_crossings = 0;
     long pinched_crossings = 0;
+    long pinched_passages = 0;
     int pinched_frames = 0;
     std::optional<FrameFindings::CrossingSite> first_pinch;
     std::optional<FrameFindings::CrossingSite> first_crossing;
+    long passages = 0;
+    std::optional<FrameFindings::PassageSite> first_passage;
     std::optional<double> min_gap; ///< [m] 0 where cloth crosses cloth
     FrameFindings worst;           ///< maximum depths and strain of any frame
     int min_gap_frame = 0;

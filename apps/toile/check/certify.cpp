@@ -43,6 +43,7 @@ public:
 
 private:
     void load(int frame);
+    void pose_avatars(int frame, double time, FrameFindings& found);
     void measure_each(FrameFindings& found);
     void find_cloth_crossings(int frame, FrameFindings& found) const;
     void find_all_avatar_crossings(int frame, FrameFindings& found) const;
@@ -53,6 +54,7 @@ private:
     int frame_count_ = 0, longest_ = 0;
     std::vector<Triangle> triangles_; ///< of all cloths
     std::vector<Vec3> x_;             ///< [vertices of all cloths] [m]
+    std::vector<Vec3> last_x_;        ///< likewise, of the last frame
     std::optional<collision::GapMeter> gap_;
     ScenePenetration avatars_;
 };
@@ -95,13 +97,42 @@ void Examiner::load(int frame)
 
 FrameFindings Examiner::examine(int frame, double time)
 {
+    std::swap(last_x_, x_);
+    x_.resize(last_x_.size());
     load(frame);
-    avatars_.advance_to(time);
     FrameFindings found;
+    pose_avatars(frame, time, found);
     measure_each(found);
     find_cloth_crossings(frame, found);
     find_all_avatar_crossings(frame, found);
     return found;
+}
+
+/// Poses the avatars, and finds cloth that passed through them.
+void Examiner::pose_avatars(int frame, double time, FrameFindings& found)
+{
+    const auto are_finite = [](const std::vector<Vec3>& x) {
+        return std::all_of(x.begin(), x.end(), [](const Vec3& p) { return p.allFinite(); });
+    };
+    std::vector<collision::ClothFrames> frames;
+    if (frame > 0 && are_finite(last_x_) && are_finite(x_))
+        for (const MeasuredCloth& cloth : cloths_) {
+            const int count = int(cloth.state.rest.positions.size());
+            frames.push_back({cloth.samples, View<const Vec3>(last_x_).subview(cloth.first_vertex, count),
+                              View<const Vec3>(x_).subview(cloth.first_vertex, count)});
+        }
+    const std::vector<AvatarPassage> passages = avatars_.advance_to(time, frames);
+    for (const AvatarPassage& at : passages) {
+        if (at.passage.is_pinched) {
+            ++found.pinched_passages;
+            continue;
+        }
+        if (found.passages++ > 0)
+            continue;
+        const MeasuredCloth& cloth = cloths_[size_t(at.cloth)];
+        found.passage = {frame, cloth.state.name, cloth.samples.name(at.passage.sample),
+                         avatars_.bodies()[size_t(at.body)].settings().name, at.passage.point};
+    }
 }
 
 void Examiner::measure_each(FrameFindings& found)

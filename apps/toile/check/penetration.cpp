@@ -44,11 +44,23 @@ ScenePenetration::ScenePenetration(const scenes::Scene& scene) : bodies_(make_bo
                                                         body.contact_surface().positions, settings));
 }
 
-void ScenePenetration::advance_to(double t)
+std::vector<AvatarPassage> ScenePenetration::advance_to(double t,
+                                                        const std::vector<collision::ClothFrames>& cloths)
 {
-    for (size_t b = 0; b < bodies_.size(); ++b)
-        if (bodies_[b].advance_to(t) && meters_[b])
-            meters_[b]->move(bodies_[b].contact_surface().positions);
+    std::vector<AvatarPassage> all;
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+        const Eigen::Isometry3d before = bodies_[b].pose();
+        const bool has_moved = bodies_[b].advance_to(t);
+        const std::vector<Vec3>& surface = bodies_[b].contact_surface().positions;
+        for (size_t c = 0; c < cloths.size(); ++c)
+            for (const collision::Passage& passage :
+                 meters_[b] ? find_passages(cloths[c], *meters_[b], surface)
+                            : find_passages(cloths[c], *bodies_[b].shape(), before, bodies_[b].pose()))
+                all.push_back({int(c), int(b), passage});
+        if (has_moved && meters_[b])
+            meters_[b]->move(surface);
+    }
+    return all;
 }
 
 ScenePenetration::Depth

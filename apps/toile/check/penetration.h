@@ -3,18 +3,27 @@
 #include <memory>
 #include <vector>
 
+#include "collision/check/passages.h"
 #include "collision/check/penetration.h"
 #include "scenes/colliders/scene_body.h"
 
 namespace toile::app {
 
-/// Penetration depth of cloth in the avatars of a scene, frame by frame.
+/// Cloth that passed through an avatar between two frames.
+struct AvatarPassage {
+    int cloth, body;
+    collision::Passage passage;
+};
+
+/// Penetration of cloth in the avatars of a scene, frame by frame.
 class ScenePenetration {
 public:
     explicit ScenePenetration(const scenes::Scene& scene);
 
     /// Poses the avatars at time t [s].
-    void advance_to(double t);
+    /// @param cloths  from the time of the last pose to t, all finite
+    /// @return cloth that passed through them in between
+    std::vector<AvatarPassage> advance_to(double t, const std::vector<collision::ClothFrames>& cloths);
 
     /// Avatars at the current time.
     const std::vector<scenes::SceneBody>& bodies() const { return bodies_; }

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/check/penetration.h"
+
+namespace toile::collision {
+
+/// A cloth in two frames.
+struct ClothFrames {
+    const ClothSamples& samples;
+    View<const Vec3> x0, x1; ///< [vertices] [m]
+};
+
+/// Sample of cloth that went through a body between two frames.
+struct Passage {
+    int sample = -1;
+    Vec3 point = Vec3::Zero(); ///< middle of its way through the body, in the first frame [m]
+    bool is_pinched = false;   ///< where it entered or left the body (PenetrationMeter::is_pinched)
+};
+
+/// Samples that went through a body between two frames and are free again, which no single frame shows. The
+/// straight way of a sample relative to the body enters it and leaves it on the opposite side, and so does
+/// the cloth around: seen from the middle of the body, it lies behind in the first frame and ahead in the
+/// second. Cloth that slides around a thin body is on both sides of it in both frames, or beside it in both.
+/// Borders may go around a body and are left out.
+///
+///         x0                          x1
+///      ----o----      ( body )     ----o----
+///         behind  <-----  ----->  ahead
+///
+/// Parts of a body that move relative to the one nearest to a sample are not seen by it, and one layer of
+/// several that pass is not told from the others.
+/// @param body  at the first frame
+/// @param y1    [vertices of the body] at the second [m]
+std::vector<Passage> find_passages(const ClothFrames& cloth, const PenetrationMeter& body,
+                                   View<const Vec3> y1);
+
+/// Likewise through a shape.
+/// @param pose0, pose1  world_from_shape
+std::vector<Passage> find_passages(const ClothFrames& cloth, const Shape& shape,
+                                   const Eigen::Isometry3d& pose0, const Eigen::Isometry3d& pose1);
+
+} // namespace toile::collision
