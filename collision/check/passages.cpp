@@ -22,8 +22,9 @@ constexpr double kOpposite = -0.1;
 /// Least depth of a way through a shape [m].
 constexpr double kMinDepth = 1e-4;
 
-/// Rays reach beyond the vertex by this fraction, so that they meet the cloth around it.
-constexpr double kBeyond = 1.05;
+/// Rays to where a sample was and is reach a little beyond it, so that they meet the cloth around it; those to
+/// where no cloth should be reach farther [-].
+constexpr double kBeyond = 1.05, kFar = 4.0;
 
 /// Directions beside the way of a sample in which cloth is looked for.
 constexpr int kSideways = 8;
@@ -153,15 +154,18 @@ std::optional<Through> way_through(const Vec3& x0, const Vec3& x1, const Shape& 
 /// True if the cloth has gone from behind to ahead, and was not beside the body all the time.
 bool has_passed(const Through& way, const RayScene& before, const RayScene& after)
 {
-    const auto was = [&](const Vec3& at) { return before.occluded(way.middle0, at, kBeyond); };
-    const auto is = [&](const Vec3& at) { return after.occluded(way.middle1, way.turn * at, kBeyond); };
-    if (!was(way.behind) || was(way.ahead) || is(way.behind) || !is(way.ahead))
+    const auto was = [&](const Vec3& at, double reach) { return before.occluded(way.middle0, at, reach); };
+    const auto is = [&](const Vec3& at, double reach) {
+        return after.occluded(way.middle1, way.turn * at, reach);
+    };
+    if (!was(way.behind, kBeyond) || !is(way.ahead, kBeyond) || was(way.ahead, kFar) ||
+        is(way.behind, kFar))
         return false;
     const Vec3 side = way.ahead.unitOrthogonal() * std::max(way.behind.norm(), way.ahead.norm());
     for (int k = 0; k < kSideways; ++k) {
         const double angle = 2.0 * std::numbers::pi * k / kSideways;
         const Vec3 at = Eigen::AngleAxisd(angle, way.ahead.normalized()) * side;
-        if (was(at) && is(at))
+        if (was(at, kFar) && is(at, kFar))
             return false;
     }
     return true;

@@ -12,6 +12,10 @@ namespace {
 /// Distance from its owner [m] beyond which cloth may be dressed on a surface that opposes it.
 constexpr double kLeft = 0.01;
 
+/// Excess of vertices with owners on one side over those on the other [-] from which on a patch is of one
+/// side.
+constexpr double kOneSided = 0.6;
+
 int root_of(std::vector<int>& parent, int v)
 {
     while (parent[v] != v)
@@ -69,9 +73,18 @@ bool LetThrough::release(View<const int> vertices)
     std::vector<int> added;
     for (const int v : vertices)
         if (owner_[v].collider >= 0 && released_[v] == 0) {
-            released_[v] = 1;
+            released_[v] = kLetsOpposing;
             added.push_back(v);
         }
+    if (added.empty()) {
+        bool changes = false;
+        for (const int v : vertices)
+            if (released_[v] == kLetsOpposing) {
+                released_[v] = kLetsAll;
+                changes = true;
+            }
+        return changes;
+    }
     count_ += int(added.size());
     std::vector<unsigned char> is_seen(released_.size(), 0);
     std::vector<int> patch;
@@ -91,14 +104,19 @@ bool LetThrough::release(View<const int> vertices)
     return !added.empty();
 }
 
-/// Gives a connected patch owners on one side, that of most of its vertices. The others take the owner of a
-/// neighbour. Cloth that belonged to both sides would be torn between them.
+/// Gives a connected patch owners on one side, that of most of its vertices, if few are on the other: these
+/// take the owner of a neighbour.
 void LetThrough::agree(View<const int> patch)
 {
     const Vec3 reference = owner_normal_[patch[0]];
     int ahead = 0;
     for (const int v : patch)
         ahead += owner_normal_[v].dot(reference) >= 0.0 ? 1 : -1;
+    if (std::abs(ahead) < kOneSided * patch.size()) {
+        for (const int v : patch)
+            released_[v] = kLetsAll;
+        return;
+    }
     const double side = ahead >= 0 ? 1.0 : -1.0;
     const auto agrees = [&](int v) { return side * owner_normal_[v].dot(reference) >= 0.0; };
     for (bool goes_on = true; goes_on;) {
@@ -134,8 +152,9 @@ void LetThrough::close(View<const int> crossing)
                 crosses[root_of(parent, v)] = 1;
     count_ = 0;
     for (int v = 0; v < int(released_.size()); ++v) {
-        released_[v] = released_[v] != 0 && crosses[root_of(parent, v)] != 0 ? 1 : 0;
-        count_ += released_[v];
+        if (crosses[root_of(parent, v)] == 0)
+            released_[v] = 0;
+        count_ += is_released(v) ? 1 : 0;
     }
 }
 

@@ -12,6 +12,10 @@ namespace toile::collision {
 /// Cloth between body parts that close on it until there is no room. It cannot stay outside both: the surface
 /// that it is dressed on, its owner, keeps it, and surfaces that oppose the owner pass through it. They leave
 /// as they came, and cloth that nothing crosses any more keeps off all surfaces again.
+///
+/// Where parts that overlap both wear cloth, such as the sleeve and the side of a shirt in an armpit, owners
+/// cannot keep it either: each layer would have to be beyond the other. All surfaces pass there; owners only
+/// push, and the layers meet in the middle of the overlap.
 class LetThrough {
 public:
     /// @param triangles  [triangles] of cloth
@@ -21,8 +25,9 @@ public:
     /// @param nearest  [vertices] surface nearest to each
     void begin_step(View<const Vec3> x, View<const NearestSurface> nearest);
 
-    /// Lets surfaces that oppose their owners pass through these vertices. All of a patch have owners on one
-    /// side. False if they did so already or have no owner.
+    /// Lets surfaces that oppose their owners pass through these vertices. A patch most of which has owners
+    /// on one side takes them for all of it; one with owners on both lets all surfaces pass, as do vertices
+    /// that are blocked once more. False if that changes nothing.
     bool release(View<const int> vertices);
 
     /// Ends it for patches of cloth that no longer cross bodies.
@@ -33,7 +38,11 @@ public:
 
     bool any() const { return count_ > 0; }
     int count() const { return count_; } ///< vertices
-    int first() const { return int(std::find(released_.begin(), released_.end(), 1) - released_.begin()); }
+    int first() const
+    {
+        return int(std::find_if(released_.begin(), released_.end(), [](auto r) { return r != 0; }) -
+                   released_.begin());
+    }
     bool is_released(int v) const { return released_[v] != 0; }
     bool is_released(const Triangle& t) const
     {
@@ -59,7 +68,7 @@ private:
     std::vector<Triangle> triangles_;
     std::vector<std::vector<int>> neighbours_; ///< [vertices]
     std::vector<NearestSurface> owner_;        ///< [vertices]
-    std::vector<unsigned char> released_;
+    std::vector<unsigned char> released_; ///< [vertices] 0: keeps off all surfaces; kLetsOpposing, kLetsAll
     std::vector<Vec3> owner_normal_, body_normal_;
     bool has_normals_ = false; ///< body_normal_ is that of this step
     int count_ = 0;

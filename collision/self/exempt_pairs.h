@@ -11,6 +11,9 @@ namespace toile::collision {
 /// A surface that faces within this cosine of the owner's normal is the owner's own [-]; all others pass.
 inline constexpr double kOwnSheet = 0.3;
 
+/// Which surfaces pass through a vertex of cloth: those that oppose its owner, or all. See LetThrough.
+inline constexpr unsigned char kLetsOpposing = 1, kLetsAll = 2;
+
 /// A vertex of cloth and one of a body, of triangles that cross.
 using BodyCrossing = std::pair<int, int>;
 
@@ -83,12 +86,16 @@ private:
         if (lets_through.empty())
             return false;
         const int cloth = lets_through.size();
+        if (!is_with_body(pair, cloth))
+            return false;
         Vec3 normal = Vec3::Zero();
         for (const int v : pair.vertex)
             if (v >= cloth)
                 normal += body_normal[v - cloth];
         for (const int v : pair.vertex)
-            if (v < cloth && lets_through[v] != 0 && owner_normal[v].dot(normal) < kOwnSheet * normal.norm())
+            if (v < cloth &&
+                (lets_through[v] == kLetsAll || (lets_through[v] == kLetsOpposing &&
+                                                 owner_normal[v].dot(normal) < kOwnSheet * normal.norm())))
                 return true;
         return false;
     }
