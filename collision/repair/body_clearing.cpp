@@ -250,7 +250,7 @@ std::array<int, 3> BodyClearing::corners_of(int triangle) const
     return {t[0], t[1], t[2]};
 }
 
-std::vector<BodyCrossing> BodyClearing::crossings(View<const Vec3> x, Which which) const
+std::vector<SurfaceCrossing> BodyClearing::crossings(View<const Vec3> x, Which which) const
 {
     std::vector<int> numbers;
     std::vector<Triangle> triangles;
@@ -259,7 +259,7 @@ std::vector<BodyCrossing> BodyClearing::crossings(View<const Vec3> x, Which whic
             numbers.push_back(t);
             triangles.push_back(cloths_.triangles[t]);
         }
-    std::vector<BodyCrossing> found;
+    std::vector<SurfaceCrossing> found;
     for (const Crossing& crossing : find_crossings(triangles, x, mesh_triangles_, mesh_x_)) {
         const auto inside = nearest_body(bodies_, crossing.point, 0.0);
         if (inside && inside->signed_distance < -kBuried)
@@ -277,8 +277,8 @@ std::vector<BodyCrossing> BodyClearing::crossings(View<const Vec3> x, Which whic
 bool BodyClearing::push_off_crossings(View<Vec3> x, std::vector<double>& pushed) const
 {
     std::vector<Vec3> move(x.size(), Vec3::Zero());
-    const std::vector<BodyCrossing> found = crossings(x, Which::Movable);
-    for (const BodyCrossing& crossing : found)
+    const std::vector<SurfaceCrossing> found = crossings(x, Which::Movable);
+    for (const SurfaceCrossing& crossing : found)
         add_move(corners_of(crossing.triangle), crossing.way_out.norm(), crossing.way_out.normalized(),
                  cloths_.fixed, move);
     for (int v = 0; v < x.size(); ++v) {

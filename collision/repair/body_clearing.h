@@ -17,7 +17,7 @@ struct InsideSample {
 };
 
 /// Triangle of cloth that crosses the surface of a body.
-struct BodyCrossing {
+struct SurfaceCrossing {
     int triangle;                ///< of cloth
     int body;                    ///< number of the body
     Vec3 point = Vec3::Zero();   ///< in both [m]
@@ -36,7 +36,7 @@ public:
 
     /// Triangles that cross or touch the surface of a mesh, by the exact test. Left out are places inside
     /// another part of a body. Round shapes have nothing that could cut a triangle between its samples.
-    std::vector<BodyCrossing> crossings(View<const Vec3> x) const { return crossings(x, Which::All); }
+    std::vector<SurfaceCrossing> crossings(View<const Vec3> x) const { return crossings(x, Which::All); }
 
     /// Grows the bodies: every increment advects all cloth near inside samples outwards, the deepest most and
     /// layers in their order, then relaxes it.
@@ -55,7 +55,7 @@ public:
 private:
     enum class Limit { Surface, Gap };
     enum class Which { All, Movable };
-    std::vector<BodyCrossing> crossings(View<const Vec3> x, Which which) const;
+    std::vector<SurfaceCrossing> crossings(View<const Vec3> x, Which which) const;
     bool can_move(const std::array<int, 3>& vertices) const;
     InsideSample sample_at(View<const Vec3> x, int index) const;
     std::array<int, 3> corners_of(int triangle) const;

@@ -53,7 +53,7 @@ public:
             add({StartDefect::Kind::InsideBody, sample.proximity.body, sample.vertex, {}}, defect);
         }
         std::set<std::pair<int, int>> known; // a triangle crosses many of a body's
-        for (const BodyCrossing& crossing : clearing.crossings(x)) {
+        for (const SurfaceCrossing& crossing : clearing.crossings(x)) {
             const Triangle& t = cloths.triangles[crossing.triangle];
             StartDefect defect = defect_of(cloths, {t[0], t[1], t[2]});
             defect.kind = StartDefect::Kind::CrossesBody;

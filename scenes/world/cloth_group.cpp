@@ -118,13 +118,13 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     // A solver whose every direction was refused leaves the cloth where it is: that is not rest.
     report.unfinished = report.status == StepReport::Status::IterationLimit ? 1 : 0;
     const bool is_stuck = report.unfinished > 0 && report.iterations == 0;
-    judge(report);
+    judge(report, t_t1);
     watch_rest(is_stuck, dt);
     return report;
 }
 
 /// Completes the status: what has yielded, and where. Copies positions from a GPU only where something has.
-void ClothGroup::judge(StepReport& report)
+void ClothGroup::judge(StepReport& report, double t_t1)
 {
     const auto raise = [&](StepReport::Status status) { report.status = std::max(report.status, status); };
     if (contact_ && contact_->bodies()) {
@@ -144,30 +144,57 @@ void ClothGroup::judge(StepReport& report)
             raise(StepReport::Status::Stuck);
         }
     }
-    report.yielded = strained(report.max_strain);
-    if (report.yielded.count > 0)
+    find_strained(t_t1, report);
+    find_displaced(report);
+    if (report.yielded.count > 0 || report.displaced.count > 0)
         raise(StepReport::Status::Yielded);
 }
 
-/// Triangles strained beyond their limit. @param max_strain  of any of them [-]
-StepReport::Findings ClothGroup::strained(double max_strain) const
+/// Finds the triangles beyond their limit, given the largest strain of any.
+void ClothGroup::find_strained(double t_t1, StepReport& report) const
 {
-    StepReport::Findings all;
     for (int c = 0; c < int(cloths_.size()); ++c) {
         const garment::StrainLimit& limit = cloths_[c].strain_limit();
-        if (max_strain <= limit.settings().limit + garment::kStrainMargin)
+        if (report.max_strain <= limit.settings().limit + garment::kStrainMargin)
             continue;
-        const garment::StrainLimit::Excess excess =
-            limit.excess(part(body_->positions(), c), garment::kStrainMargin);
-        if (excess.count == 0)
-            continue;
-        const int v = cloths_[c].state().triangles[excess.triangle][0];
-        all.merge({excess.count, place_of(first_[c] + v)});
+        const View<const Vec3> x = part(body_->positions(), c);
+        const std::vector<unsigned char> attached = cloths_[c].attached(t_t1);
+        const garment::StrainLimit::Excess excess = limit.excess(x, garment::kStrainMargin, attached);
+        const auto place = [&](int triangle) {
+            const Triangle& t = cloths_[c].state().triangles[triangle];
+            const auto held = std::find_if(t.begin(), t.end(), [&](int v) { return attached[v] != 0; });
+            return held == t.end() ? place_of(first_[c] + t[0])
+                                   : place_of(first_[c] + *held) + ", which is attached";
+        };
+        if (excess.count > 0)
+            report.yielded.merge({excess.count, place(excess.triangle)});
+        if (excess.held > 0)
+            report.pulled.merge({excess.held, place(excess.first_held)});
     }
-    return all;
 }
 
-bool ClothGroup::is_strained() const { return strained(std::numeric_limits<double>::max()).count > 0; }
+/// Finds exactly held vertices that are off their targets.
+void ClothGroup::find_displaced(StepReport& report) const
+{
+    constexpr double kTolerated = 1e-4; // [m]
+    const bool any_held = std::find(fixed_.begin(), fixed_.end(), 1) != fixed_.end();
+    if (!any_held || !contact_ || !contact_->bodies())
+        return;
+    const View<const Vec3> x = body_->positions();
+    for (int v = 0; v < first_.back(); ++v)
+        if (fixed_[v] != 0 && (x[v] - targets_[v]).norm() > kTolerated) {
+            if (report.displaced.count++ == 0)
+                report.displaced.place = place_of(v);
+        }
+}
+
+bool ClothGroup::is_strained() const
+{
+    StepReport report;
+    report.max_strain = std::numeric_limits<double>::max();
+    find_strained(0.0, report);
+    return report.yielded.count > 0;
+}
 
 void ClothGroup::stop()
 {

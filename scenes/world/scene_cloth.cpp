@@ -198,6 +198,16 @@ std::vector<char> SceneCloth::fixed_in_world() const
     return attached;
 }
 
+std::vector<unsigned char> SceneCloth::attached(double t) const
+{
+    std::vector<unsigned char> attached(size_t(vertex_count()), 0);
+    for (const AttachmentConstraint& attachment : attachments_)
+        if (attachment.is_active_at(t))
+            for (const int v : attachment.vertices())
+                attached[v] = 1;
+    return attached;
+}
+
 void SceneCloth::tie(double gap, const std::vector<Collider>& colliders,
                      const std::function<void(const std::string&)>& warn)
 {

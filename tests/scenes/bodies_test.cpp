@@ -212,6 +212,44 @@ TEST(Bodies, WearLayersInTheirOrder)
     }
 }
 
+/// Vertices that are held exactly, and moved into a box, stay out of it, and the run says so.
+TEST(Bodies, KeepExactlyHeldVerticesOut)
+{
+    const Scene scene = parse_scene(R"({"toile": 1, "frames": 12, "avatars": [{"name": "box", "box":
+        {"size": [0.4, 0.2, 0.4]}}], "cloths": [{"name": "c", "rectangle": {"size": [0.3, 0.3],
+        "resolution": 0.03}, "translate": [0, 0.15, 0], "fabric": "cotton"}], "attachments": [{"cloth": "c",
+        "select": {"box": {"lower": [-1, 0, -0.16], "upper": [1, 1, -0.14]}}, "keyframes": [{"time": 0},
+        {"time": 0.2, "translate": [0, -0.1, 0]}]}]})",
+                                    "held.json");
+    World world(scene);
+    StepReport report;
+    while (world.frame() + 1 < world.frame_count())
+        report = world.advance_frame();
+    EXPECT_GT(report.displaced.count, 3);
+    EXPECT_NE(report.displaced.place.find("of \"c\""), std::string::npos) << report.displaced.place;
+    EXPECT_GE(report.status, StepReport::Status::Yielded);
+    for (const Vec3& x : world.cloths()[0].positions)
+        EXPECT_GT(x.y(), 0.1);
+}
+
+/// Two held corners of a triangle that part stretch what is between them: their own strain is told apart.
+TEST(Bodies, TellTheStrainOfWhatIsHeld)
+{
+    const Scene scene = parse_scene(R"({"toile": 1, "frames": 8, "cloths": [{"name": "c", "rectangle":
+        {"size": [0.2, 0.2], "resolution": 0.02}, "fabric": "cotton"}], "attachments": [
+        {"cloth": "c", "select": {"box": {"lower": [-0.2, -1, -1], "upper": [0.001, 1, 1]}}},
+        {"cloth": "c", "select": {"box": {"lower": [0.019, -1, -1], "upper": [0.2, 1, 1]}},
+         "keyframes": [{"time": 0}, {"time": 0.1, "translate": [0.006, 0, 0]}]}]})",
+                                    "pulled.json");
+    World world(scene);
+    StepReport report;
+    while (world.frame() + 1 < world.frame_count())
+        report = world.advance_frame();
+    EXPECT_GT(report.pulled.count, 5);
+    EXPECT_NE(report.pulled.place.find("which is attached"), std::string::npos) << report.pulled.place;
+    EXPECT_EQ(report.yielded.count, 0);
+}
+
 /// Springs to a body by default; exactly where that is asked for.
 TEST(Bodies, AttachBySpringsUnlessAskedToHoldExactly)
 {

@@ -58,6 +58,8 @@ Json json_of(int frame, const StepReport& report, double seconds)
             json[name] = {{"count", findings.count}, {"place", findings.place}};
     };
     add("yielded", report.yielded);
+    add("pulled", report.pulled);
+    add("displaced", report.displaced);
     add("pinched", report.pinched);
     add("stuck", report.stuck);
     if (!report.message.empty())

@@ -5,6 +5,8 @@ namespace toile::app {
 namespace {
 
 const char* const kYielded = "cloth is stretched beyond its limit";
+const char* const kPulled = "attachments stretch the cloth between them beyond its limit";
+const char* const kDisplaced = "bodies keep exactly held vertices off their targets";
 const char* const kPinched = "there is no room for cloth between body parts, which pass through it";
 const char* const kStuck = "cloth crosses a body";
 const char* const kUnfinished = "steps ended unfinished";
@@ -36,6 +38,8 @@ void Unmet::add(int frame, const StepReport& report)
     add(stuck_, frame, report.stuck.count > 0, report.stuck, kStuck);
     add(pinched_, frame, report.pinched.count > 0, report.pinched, kPinched);
     add(yielded_, frame, report.yielded.count > 0, report.yielded, kYielded);
+    add(displaced_, frame, report.displaced.count > 0, report.displaced, kDisplaced);
+    add(pulled_, frame, report.pulled.count > 0, report.pulled, kPulled);
     add(unfinished_, frame, report.unfinished > 0, {}, kUnfinished);
 }
 
@@ -54,6 +58,8 @@ void Unmet::sum_up(int frames) const
     say(stuck_, kStuck, "triangles");
     say(pinched_, kPinched, "vertices");
     say(yielded_, kYielded, "triangles");
+    say(displaced_, kDisplaced, "vertices");
+    say(pulled_, kPulled, "triangles");
     say(unfinished_, kUnfinished, "");
 }
 

@@ -27,7 +27,7 @@ private:
              const std::string& text);
 
     const RunLog& log_;
-    Kind yielded_, pinched_, stuck_, unfinished_;
+    Kind yielded_, pulled_, displaced_, pinched_, stuck_, unfinished_;
 };
 
 } // namespace toile::app

@@ -26,6 +26,8 @@ void StepReport::merge(const StepReport& other)
     min_gap = std::min(min_gap, other.min_gap);
     max_strain = std::max(max_strain, other.max_strain);
     yielded.merge(other.yielded);
+    pulled.merge(other.pulled);
+    displaced.merge(other.displaced);
     pinched.merge(other.pinched);
     stuck.merge(other.stuck);
     if (message.empty())

@@ -10,7 +10,7 @@ struct StepReport {
     enum class Status {
         Converged,      ///< the last move fell below the tolerance, and nothing had to yield
         IterationLimit, ///< stopped at the iteration limit; displacement measures the remaining error
-        Yielded,        ///< the strain limit had to yield
+        Yielded,        ///< the strain limit had to yield, or exactly held vertices
         Pinched,        ///< there is no room between body parts: cloth lets one of them through
         Stuck,          ///< cloth crosses a body that has closed on it, or that it crossed before
         NonFinite,      ///< the first non-finite energy stopped the run; message names it
@@ -37,6 +37,8 @@ struct StepReport {
     double min_gap = 0.0;       ///< [m] smallest signed gap of a contact candidate; 0 without candidates
     double max_strain = 0.0;    ///< [-] largest principal stretch - 1 after strain limiting
     Findings yielded;           ///< triangles beyond their strain limit by more than is tolerated
+    Findings pulled;            ///< likewise, between attached vertices: the strain of what holds them
+    Findings displaced;         ///< exactly held vertices that bodies keep off their targets
     Findings pinched;           ///< vertices that let a body part through
     Findings stuck;             ///< triangles of cloth that cross a body
     std::string message;        ///< empty unless status is NonFinite

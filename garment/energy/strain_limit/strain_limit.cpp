@@ -68,7 +68,8 @@ double StrainLimit::max_strain(View<const Vec3> x) const
     return largest.value - 1.0;
 }
 
-StrainLimit::Excess StrainLimit::excess(View<const Vec3> x, double margin) const
+StrainLimit::Excess StrainLimit::excess(View<const Vec3> x, double margin,
+                                        View<const unsigned char> held) const
 {
     const double tolerated = 1.0 + settings_.limit + margin;
     Excess excess;
@@ -78,9 +79,16 @@ StrainLimit::Excess StrainLimit::excess(View<const Vec3> x, double margin) const
         const double stretch = triangles().stretch(t, x);
         if (!(stretch > tolerated))
             continue;
+        const Triangle& corner = rest_->triangles[t];
+        if (!held.empty() && held[corner[0]] != 0 && held[corner[1]] != 0 && held[corner[2]] != 0) {
+            excess.first_held = excess.held++ == 0 ? t : excess.first_held;
+            continue;
+        }
         ++excess.count;
-        if (stretch - 1.0 > excess.strain)
-            excess = {excess.count, t, stretch - 1.0};
+        if (stretch - 1.0 > excess.strain) {
+            excess.triangle = t;
+            excess.strain = stretch - 1.0;
+        }
     }
     return excess;
 }

@@ -65,8 +65,11 @@ public:
         int count = 0;
         int triangle = -1; ///< that with the largest strain, of equal ones the first
         double strain = 0.0;
+        int held = 0; ///< not counted: triangles whose corners are all held
+        int first_held = -1;
     };
-    Excess excess(View<const Vec3> x, double margin) const;
+    /// @param held  [vertices] 1: moved by an attachment; empty: none is
+    Excess excess(View<const Vec3> x, double margin, View<const unsigned char> held) const;
 
     const RestShape& rest() const { return *rest_; }
     const Settings& settings() const { return settings_; }
