@@ -1,5 +1,7 @@
 #include "apps/toile/check/avatar_crossings.h"
 
+#include <algorithm>
+
 #include "core/mesh/weld.h"
 
 namespace toile::app {
@@ -38,7 +40,11 @@ AvatarCrossings find_avatar_crossings(const ScenePenetration& avatars, View<cons
             continue; // the body's self-crossings cost more to find than the cloth's
         const std::vector<char> crosses_itself = crossing_themselves(surface);
         for (const collision::Crossing& crossing : crossings) {
-            if (meter->is_pinched(crossing.point, crosses_itself))
+            // A triangle that is caught at one end reaches out of the pinch with the other.
+            const Triangle& cloth = triangles[crossing.a];
+            const auto is_pinched = [&](const Vec3& at) { return meter->is_pinched(at, crosses_itself); };
+            if (is_pinched(crossing.point) ||
+                std::any_of(cloth.begin(), cloth.end(), [&](int v) { return is_pinched(x[v]); }))
                 result.pinched.push_back({b, crossing});
             else
                 result.clean.push_back({b, crossing});
