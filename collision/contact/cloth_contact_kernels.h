@@ -172,6 +172,10 @@ struct GuardOf {
     }
 };
 
+/// Part of the recovery speed [-] at which cloth that all surfaces pass through is pushed by its owner.
+/// Layers that meet in an overlap push each other back.
+inline constexpr double kCaughtRecovery = 0.1;
+
 /// Pairs with a collider that make no term: their cloth lets the body through, or a guard knows the side,
 /// which a surface without an inside does not.
 struct ReplacedPairs {
@@ -192,6 +196,15 @@ struct ReplacedPairs {
                 return true;
         }
         return false;
+    }
+
+    /// Part of the recovery speed for cloth of a pair [-].
+    TOILE_HD double recovery_of(const ContactPair& pair) const
+    {
+        bool is_caught = false;
+        for (int k = 0; k < pair.count() && !lets_through.empty() && !pair.is_between_cloths(); ++k)
+            is_caught = is_caught || lets_through[pair.vertex[k]] == kLetsAll;
+        return is_caught ? kCaughtRecovery : 1.0;
     }
 };
 

@@ -117,7 +117,8 @@ struct ContactRules {
 
     /// Term of a pair, before a warm start.
     /// @param clearance  half the clearance between this plane and an opposing one [m]
-    TOILE_HD ContactTerm term_of(const ContactPair& pair, double clearance) const
+    /// @param recovery   of max_recovery [-]
+    TOILE_HD ContactTerm term_of(const ContactPair& pair, double clearance, double recovery) const
     {
         ContactTerm term;
         term.pair = pair;
@@ -129,7 +130,7 @@ struct ContactRules {
         const double keep = gap_of(pair);
         term.spring = {stiffness_of(pair), kRampPerGap * keep, kHardPerGap * keep};
         const Vec3 start = at_start(pair);
-        const double recovered = pair.normal.dot(start - pair.point) + max_recovery;
+        const double recovered = pair.normal.dot(start - pair.point) + recovery * max_recovery;
         term.offset = recovered < keep ? recovered : keep;
         if (clearance < 0.0 && clearance + keep < term.offset) {
             term.offset = clearance + keep;

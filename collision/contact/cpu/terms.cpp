@@ -87,7 +87,7 @@ void HostContactTerms::make(const ClothContact* between)
     for (size_t i = 0; i < pairs.size(); ++i) {
         if ((!is_plane(pairs[i]) && clearance[i] < 0.0) || rules_.is_fixed(pairs[i]) || replaced(pairs[i]))
             continue;
-        terms.push_back(rules_.term_of(pairs[i], clearance[i]));
+        terms.push_back(rules_.term_of(pairs[i], clearance[i], replaced.recovery_of(pairs[i])));
         memory_.warm_start(terms.back()); // the same contact of the step before
     }
     energy_.set_terms(std::move(terms), rules_.x.size());

@@ -142,14 +142,16 @@ struct MakeTerm {
     ConcatenatedPairs pairs;
     ContactRules rules;
     View<const double> clearance; ///< [pairs with colliders] see FindOpposingClearance [m]
+    ReplacedPairs replaced;
     KnownContacts known;
     View<const int> list;    ///< [terms] pairs
     View<ContactTerm> terms; ///< out
     TOILE_HD void operator()(int i) const
     {
         const ContactPair& pair = pairs[list[i]];
-        ContactTerm term = rules.term_of(pair, is_plane(pair) ? clearance[list[i]]
-                                                              : std::numeric_limits<double>::infinity());
+        ContactTerm term =
+            rules.term_of(pair, is_plane(pair) ? clearance[list[i]] : std::numeric_limits<double>::infinity(),
+                          replaced.recovery_of(pair));
         known.warm_start(term);
         terms[i] = term;
     }

@@ -93,7 +93,7 @@ void DeviceContactTerms::make(const ClothContact* between)
     const int kept = list_flagged(space_, "contact/list_terms", flags, list_, count_, scratch_);
     const View<ContactTerm> terms = energy_.reserve(kept);
     parallel_for(space_, "contact/make_terms", kept,
-                 MakeTerm{pairs, rules_, clearance, memory_.known(), list_.view(), terms});
+                 MakeTerm{pairs, rules_, clearance, replaced, memory_.known(), list_.view(), terms});
     energy_.build_incidence(overlap_.size());
 }
 
