@@ -81,7 +81,8 @@ void print_avatar(const std::filesystem::path& file)
     print("vertices", avatar->vertex_count());
     print("triangles", avatar->triangles().size());
     if (avatar->turned_count() > 0)
-        print("triangles inside out", std::to_string(avatar->turned_count()) + " (turned when it is used)");
+        print("triangles turned", std::to_string(avatar->turned_count()) +
+                                      " (they faced into the body or against their neighbours)");
     print_extent("extent in the bind pose [m]", positions);
     for (const avatars::Avatar::ClipName& clip : avatar->clips())
         print("clip", "\"" + clip.name + "\", " + std::to_string(clip.duration) + " s");

@@ -38,7 +38,7 @@ public:
 
     /// Turns the triangles so that the outside of closed pieces is outwards in the bind pose (face_outwards).
     void face_outwards();
-    /// Number of triangles that face_outwards() has turned: the file has them inside out.
+    /// Number of triangles that face_outwards() has turned.
     int turned_count() const { return turned_count_; }
 
     /// Available clips. Empty: the avatar has only one pose.

@@ -8,8 +8,14 @@ namespace toile::collision {
 
 /// A cloth in two frames.
 struct ClothFrames {
+    ClothFrames(const ClothSamples& samples, View<const Vec3> x0, View<const Vec3> x1)
+        : samples(samples), x0(x0), x1(x1), from(samples.at(x0)), to(samples.at(x1))
+    {
+    }
+
     const ClothSamples& samples;
-    View<const Vec3> x0, x1; ///< [vertices] [m]
+    View<const Vec3> x0, x1;    ///< [vertices] [m]
+    std::vector<Vec3> from, to; ///< [samples] [m]
 };
 
 /// Sample of cloth that went through a body between two frames.
@@ -20,17 +26,17 @@ struct Passage {
 };
 
 /// Samples that went through a body between two frames and are free again, which no single frame shows. The
-/// straight way of a sample relative to the body enters it and leaves it on the opposite side, and so does
-/// the cloth around: seen from the middle of the body, it lies behind in the first frame and ahead in the
-/// second. Cloth that slides around a thin body is on both sides of it in both frames, or beside it in both.
-/// Borders may go around a body and are left out.
+/// straight path of a sample relative to the body enters it and leaves it on the opposite side (or changes
+/// the side of an open one), and the cloth around goes along: seen from the middle of the path, it lay behind
+/// in the first frame, and in no direction has it stayed where it was. Cloth that slides around a thin body
+/// stays in some direction. Borders may go around a body and are left out.
 ///
 ///         x0                          x1
 ///      ----o----      ( body )     ----o----
 ///         behind  <-----  ----->  ahead
 ///
-/// Parts of a body that move relative to the one nearest to a sample are not seen by it, and one layer of
-/// several that pass is not told from the others.
+/// Parts of a body that move relative to the one nearest to a sample are not seen by it. Two layers of one
+/// cloth that pass together are not seen.
 /// @param body  at the first frame
 /// @param y1    [vertices of the body] at the second [m]
 std::vector<Passage> find_passages(const ClothFrames& cloth, const PenetrationMeter& body,

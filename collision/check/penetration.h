@@ -93,6 +93,7 @@ public:
     /// @param marked  [triangles]; empty: none
     bool is_pinched(const Vec3& point, View<const char> marked) const;
 
+    bool is_closed() const { return is_closed_; }
     const SurfaceProximity& surface() const { return surface_; }
     const RayScene& rays() const { return rays_; } ///< of the mesh alone
 

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "collision/check/find_crossings.h"
+#include "collision/geometry/shape_surface.h"
 #include "core/compute/parallel.h"
 
 namespace toile::collision {
@@ -32,8 +33,11 @@ constexpr double kReach = 4.0;
 constexpr double kMaxTip = 0.004;
 constexpr double kTipGap = 0.0003;
 
-/// Depth inside a body [m] at which the surface of another one is no matter of cloth.
-constexpr double kBuried = 0.0001;
+/// Distance in front of a face [m] at which another part of the body is looked for.
+constexpr double kInFront = 2e-5;
+
+/// Depth of facets below a round shape [m].
+constexpr double kSag = 0.0001;
 
 /// Largest push of a vertex off crossings, and sum of them [m]: between parts of a body there may be no way
 /// out.
@@ -76,15 +80,39 @@ BodyClearing::BodyClearing(const JoinedCloths& cloths, std::vector<ContactCollid
     : cloths_(cloths), bodies_(std::move(bodies))
 {
     for (size_t b = 0; b < bodies_.size(); ++b) {
-        if (bodies_[b].mesh == nullptr)
+        if (bodies_[b].mesh != nullptr) {
+            add_surface(int(b), bodies_[b].mesh->triangles(), bodies_[b].mesh->x_t1());
             continue;
-        const Triangle first = Triangle::Constant(int(mesh_x_.size()));
-        for (const Triangle& t : bodies_[b].mesh->triangles())
-            mesh_triangles_.push_back(t + first);
-        mesh_body_.resize(mesh_triangles_.size(), int(b));
-        const View<const Vec3> x = bodies_[b].mesh->x_t1();
-        mesh_x_.insert(mesh_x_.end(), x.begin(), x.end());
+        }
+        TriangleMesh facets = shape_surface(bodies_[b].shape->shape(), kSag);
+        for (Vec3& p : facets.positions)
+            p = bodies_[b].shape->pose() * p;
+        add_surface(int(b), facets.triangles, facets.positions);
     }
+}
+
+void BodyClearing::add_surface(int body, View<const Triangle> triangles, View<const Vec3> x)
+{
+    const Triangle first = Triangle::Constant(int(surface_x_.size()));
+    for (const Triangle& t : triangles)
+        surface_triangles_.push_back(t + first);
+    body_of_.resize(surface_triangles_.size(), body);
+    surface_x_.insert(surface_x_.end(), x.begin(), x.end());
+}
+
+/// True if there is another part of a closed body in front of a face, at p.
+bool BodyClearing::is_buried(int face, const Vec3& p) const
+{
+    if (!rays_) {
+        rays_.emplace();
+        for (const ContactCollider& body : bodies_)
+            if (body.mesh != nullptr && body.mesh->surface().edges().is_closed)
+                rays_->add(body.mesh->x_t1(), body.mesh->triangles());
+        rays_->commit();
+    }
+    const Triangle& t = surface_triangles_[face];
+    const Vec3 normal = (surface_x_[t[1]] - surface_x_[t[0]]).cross(surface_x_[t[2]] - surface_x_[t[0]]);
+    return rays_->winding_number(p + kInFront * normal.normalized()) > 0;
 }
 
 std::vector<InsideSample> BodyClearing::inside(View<const Vec3> x, double depth) const
@@ -260,16 +288,15 @@ std::vector<SurfaceCrossing> BodyClearing::crossings(View<const Vec3> x, Which w
             triangles.push_back(cloths_.triangles[t]);
         }
     std::vector<SurfaceCrossing> found;
-    for (const Crossing& crossing : find_crossings(triangles, x, mesh_triangles_, mesh_x_)) {
-        const auto inside = nearest_body(bodies_, crossing.point, 0.0);
-        if (inside && inside->signed_distance < -kBuried)
+    for (const Crossing& crossing : find_crossings(triangles, x, surface_triangles_, surface_x_)) {
+        if (is_buried(crossing.b, crossing.point))
             continue;
         std::array<Vec3, 3> cloth, body;
         for (int k = 0; k < 3; ++k) {
             cloth[k] = x[triangles[crossing.a][k]];
-            body[k] = mesh_x_[mesh_triangles_[crossing.b][k]];
+            body[k] = surface_x_[surface_triangles_[crossing.b][k]];
         }
-        found.push_back({numbers[crossing.a], mesh_body_[crossing.b], crossing.point, way_off(cloth, body)});
+        found.push_back({numbers[crossing.a], body_of_[crossing.b], crossing.point, way_off(cloth, body)});
     }
     return found;
 }
@@ -277,8 +304,8 @@ std::vector<SurfaceCrossing> BodyClearing::crossings(View<const Vec3> x, Which w
 bool BodyClearing::push_off_crossings(View<Vec3> x, std::vector<double>& pushed) const
 {
     std::vector<Vec3> move(x.size(), Vec3::Zero());
-    const std::vector<SurfaceCrossing> found = crossings(x, Which::Movable);
-    for (const SurfaceCrossing& crossing : found)
+    bool has_moved = false;
+    for (const SurfaceCrossing& crossing : crossings(x, Which::Movable))
         add_move(corners_of(crossing.triangle), crossing.way_out.norm(), crossing.way_out.normalized(),
                  cloths_.fixed, move);
     for (int v = 0; v < x.size(); ++v) {
@@ -287,8 +314,9 @@ bool BodyClearing::push_off_crossings(View<Vec3> x, std::vector<double>& pushed)
             continue;
         pushed[v] += length;
         x[v] += length * move[v].normalized();
+        has_moved = true;
     }
-    return !found.empty();
+    return has_moved;
 }
 
 } // namespace toile::collision

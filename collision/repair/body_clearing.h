@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "collision/bvh/ray_scene.h"
 #include "collision/repair/body_distance.h"
 #include "collision/repair/joined_cloths.h"
 #include "collision/repair/repair_progress.h"
@@ -34,8 +36,8 @@ public:
     /// vertices.
     std::vector<InsideSample> inside(View<const Vec3> x, double depth) const;
 
-    /// Triangles that cross or touch the surface of a mesh, by the exact test. Left out are places inside
-    /// another part of a body. Round shapes have nothing that could cut a triangle between its samples.
+    /// Triangles that cross or touch the surface of a body, by the exact test. Left out are faces of a body
+    /// that lie inside another part of it.
     std::vector<SurfaceCrossing> crossings(View<const Vec3> x) const { return crossings(x, Which::All); }
 
     /// Grows the bodies: every increment advects all cloth near inside samples outwards, the deepest most and
@@ -48,7 +50,7 @@ public:
     /// Moves faces of cloth off body vertices that pierce them between their samples.
     void project_off_tips(View<Vec3> x) const;
 
-    /// Pushes triangles off surfaces that they cross, by little. False if there are none.
+    /// Pushes triangles off surfaces that they cross, by little. False if nothing moves.
     /// @param pushed  [vertices] sum of the pushes so far, bounded [m]; changed
     bool push_off_crossings(View<Vec3> x, std::vector<double>& pushed) const;
 
@@ -56,6 +58,8 @@ private:
     enum class Limit { Surface, Gap };
     enum class Which { All, Movable };
     std::vector<SurfaceCrossing> crossings(View<const Vec3> x, Which which) const;
+    void add_surface(int body, View<const Triangle> triangles, View<const Vec3> x);
+    bool is_buried(int face, const Vec3& p) const;
     bool can_move(const std::array<int, 3>& vertices) const;
     InsideSample sample_at(View<const Vec3> x, int index) const;
     std::array<int, 3> corners_of(int triangle) const;
@@ -66,9 +70,10 @@ private:
 
     const JoinedCloths& cloths_;
     std::vector<ContactCollider> bodies_;
-    std::vector<Triangle> mesh_triangles_; ///< of all meshes among the bodies
-    std::vector<int> mesh_body_;           ///< [mesh_triangles_] number of the body
-    std::vector<Vec3> mesh_x_;             ///< [vertices of all meshes] [m]
+    std::vector<Triangle> surface_triangles_; ///< of all bodies but planes
+    std::vector<int> body_of_;                ///< [surface_triangles_]
+    std::vector<Vec3> surface_x_;             ///< [vertices of all bodies] [m]
+    mutable std::optional<RayScene> rays_;    ///< closed meshes, once is_buried() is asked
 };
 
 } // namespace toile::collision

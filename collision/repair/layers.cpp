@@ -1,6 +1,8 @@
 #include "collision/repair/layers.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -8,6 +10,7 @@
 #include "collision/repair/body_clearing.h"
 #include "collision/repair/edge_triangle_intersections.h"
 #include "collision/repair/untangle_cloth.h"
+#include "core/compute/parallel.h"
 
 namespace toile::collision {
 
@@ -41,9 +44,7 @@ std::set<int> misplaced_layers(const JoinedCloths& cloths, const std::vector<Con
         for (const Crossing& crossing : find_crossings(cloths.triangles, x))
             add(cloths.triangles[crossing.a][0], cloths.triangles[crossing.b][0]);
     for (const UnderLayer& under : find_under_layers(cloths, bodies, x))
-        for (int p = 0; p < cloths.piece_count(); ++p)
-            if (cloths.given_layer[p] == under.layer)
-                layers.insert(cloths.layer[p]);
+        layers.insert(cloths.layer[under.piece]);
     return layers;
 }
 
@@ -51,13 +52,16 @@ std::set<int> misplaced_layers(const JoinedCloths& cloths, const std::vector<Con
 std::vector<char> pieces_inside_out(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies,
                                     View<const Vec3> x)
 {
-    std::vector<double> agreement(cloths.piece_count(), 0.0);
-    for (const Triangle& corner : cloths.triangles) {
+    std::vector<double> agreement(cloths.piece_count(), 0.0), of_triangle(cloths.triangles.size(), 0.0);
+    parallel_for(kCpu, "untangle/layers", int(cloths.triangles.size()), [&](int t) {
+        const Triangle& corner = cloths.triangles[t];
         const Vec3 doubled_area = (x[corner[1]] - x[corner[0]]).cross(x[corner[2]] - x[corner[0]]);
         const Vec3 centroid = (x[corner[0]] + x[corner[1]] + x[corner[2]]) / 3.0;
         if (const auto proximity = nearest_body(bodies, centroid, kMaxStartDepth))
-            agreement[cloths.piece[corner[0]]] += doubled_area.dot(proximity->normal);
-    }
+            of_triangle[t] = doubled_area.dot(proximity->normal);
+    });
+    for (size_t t = 0; t < of_triangle.size(); ++t)
+        agreement[cloths.piece[cloths.triangles[t][0]]] += of_triangle[t];
     std::vector<char> inside_out(agreement.size());
     std::transform(agreement.begin(), agreement.end(), inside_out.begin(),
                    [](double sum) { return char(sum < 0.0); });
@@ -88,7 +92,11 @@ bool separate_layers(const JoinedCloths& cloths, const std::vector<ContactCollid
     if (layers.empty())
         return false;
     const std::vector<char> inside_out = pieces_inside_out(cloths, bodies, x);
+    double done = 0.0;
     for (const int layer : layers) {
+        const RepairProgress of_layer =
+            progress.part(done / double(layers.size()), (done + 1.0) / double(layers.size()));
+        done += 1.0;
         JoinedCloths upper = cloths;
         for (int v = 0; v < cloths.vertex_count(); ++v) {
             upper.fixed[v] = char(cloths.fixed[v] != 0 || layer_of(cloths, v) != layer);
@@ -96,7 +104,7 @@ bool separate_layers(const JoinedCloths& cloths, const std::vector<ContactCollid
         }
         const MeshCollider lower(below(cloths, cloths.layer, layer, inside_out, x));
         const BodyClearing clearing(upper, {{&lower, nullptr}});
-        clearing.grow(x, ShapeKeeper(upper), progress);
+        clearing.grow(x, ShapeKeeper(upper), of_layer);
         clear_crossings(upper, clearing, x);
     }
     return true;
@@ -111,27 +119,35 @@ std::vector<UnderLayer> find_under_layers(const JoinedCloths& cloths,
         return found;
     layers.erase(layers.begin());
     const std::vector<char> inside_out = pieces_inside_out(cloths, bodies, x);
+    struct Tally {
+        int under = 0, over = 0;
+        UnderLayer deepest{-1, -1, -1, kTouching};
+    };
+    std::vector<Tally> tallies(cloths.piece_count());
     for (const int layer : layers) {
         const MeshCollider lower(below(cloths, cloths.given_layer, layer, inside_out, x));
         const std::vector<ContactCollider> lower_cloth{{&lower, nullptr}};
-        UnderLayer deepest{layer, -1, -1, kTouching};
-        int under = 0, over = 0;
-        for (int v = 0; v < cloths.vertex_count(); ++v) {
+        std::vector<double> depth(cloths.vertex_count(), -std::numeric_limits<double>::infinity());
+        parallel_for(kCpu, "untangle/layers", cloths.vertex_count(), [&](int v) {
             if (layer_of(cloths, cloths.given_layer, v) != layer ||
                 !nearest_body(bodies, x[v], kMaxStartDepth))
+                return;
+            if (const auto proximity = nearest_body(lower_cloth, x[v], kMaxStartDepth))
+                depth[v] = -proximity->signed_distance;
+        });
+        for (int v = 0; v < cloths.vertex_count(); ++v) {
+            if (!std::isfinite(depth[v]) || cloths.piece[v] < 0)
                 continue;
-            const auto proximity = nearest_body(lower_cloth, x[v], kMaxStartDepth);
-            if (!proximity)
-                continue;
-            const double depth = -proximity->signed_distance;
-            (depth > kTouching ? under : over) += 1;
-            if (depth > deepest.depth)
-                deepest = {layer, v, lower.triangles()[lower.surface().closest(x[v], 1.0)->triangle][0],
-                           depth};
+            Tally& tally = tallies[cloths.piece[v]];
+            (depth[v] > kTouching ? tally.under : tally.over) += 1;
+            if (depth[v] > tally.deepest.depth)
+                tally.deepest = {cloths.piece[v], v,
+                                 lower.triangles()[lower.surface().closest(x[v])->triangle][0], depth[v]};
         }
-        if (under > over)
-            found.push_back(deepest);
     }
+    for (const Tally& tally : tallies)
+        if (tally.under > tally.over)
+            found.push_back(tally.deepest);
     return found;
 }
 

@@ -8,15 +8,15 @@
 
 namespace toile::collision {
 
-/// Cloth between a body and cloth of a lower layer, which it should be outside of.
+/// Piece of cloth between a body and cloth of a lower layer, which it should be outside of.
 struct UnderLayer {
-    int layer;    ///< JoinedCloths::given_layer
+    int piece;
     int vertex;   ///< deepest of it
     int lower;    ///< vertex of the lower layer's cloth
     double depth; ///< [m]
 };
 
-/// Layers most of which lie under a lower one where both are near a body, one each.
+/// Pieces most of which lie under a lower layer where both are near a body.
 std::vector<UnderLayer> find_under_layers(const JoinedCloths& cloths,
                                           const std::vector<ContactCollider>& bodies, View<const Vec3> x);
 

@@ -69,7 +69,6 @@ public:
             defect.position = x[under.vertex];
             defect.depth = under.depth;
             defect.other = cloths.cloth[under.lower];
-            defect.is_fixed = false;
             add({defect.kind, defect.cloth, {}, {}}, defect);
         }
         for (const Crossing& crossing : find_crossings(cloths.triangles, x)) {

@@ -32,8 +32,8 @@ constexpr double kStrainChange = 1e-3;
 /// Maximum number of times that moves are reverted around crossings before the whole relaxation is.
 constexpr int kMaxTakeBacks = 12;
 
-/// Rounds of small pushes off bodies.
-constexpr int kClearRounds = 20;
+/// Passes of small pushes off bodies.
+constexpr int kClearPasses = 20;
 
 /// Reverts the corners of crossing triangles to where they were in a pose without crossings. False if that
 /// does not end: then all vertices are.
@@ -144,7 +144,7 @@ void clear_crossings(const JoinedCloths& cloths, const BodyClearing& clearing, V
     const auto may_go_on = [&] { return is_tangled || take_back(cloths, before, x); };
     clearing.project(x);
     std::vector<double> pushed(x.size(), 0.0);
-    for (int round = 0; round < kClearRounds && may_go_on(); ++round) {
+    for (int pass = 0; may_go_on() && pass < kClearPasses; ++pass) {
         before.assign(x.begin(), x.end());
         if (!clearing.push_off_crossings(x, pushed))
             return;

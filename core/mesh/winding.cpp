@@ -24,13 +24,20 @@ struct Neighbour {
     bool agrees; ///< it runs along the shared edge in the opposite direction
 };
 
+/// True for a triangle with a repeated corner: it has no neighbours.
+template <typename Face>
+bool is_collapsed(const Face& face)
+{
+    return int(face.size()) == 3 && (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]);
+}
+
 /// @tparam Face  container of vertex indices
 template <typename Face>
 std::vector<Side> sorted_sides(const std::vector<Face>& faces)
 {
     std::vector<Side> sides;
     for (size_t f = 0; f < faces.size(); ++f)
-        for (int k = 0; k < int(faces[f].size()); ++k) {
+        for (int k = 0; k < int(faces[f].size()) && !is_collapsed(faces[f]); ++k) {
             const int a = faces[f][k];
             const int b = faces[f][(k + 1) % int(faces[f].size())];
             sides.push_back({std::min(a, b), std::max(a, b), int(f), a < b});
@@ -114,11 +121,16 @@ std::vector<Piece> pieces_of(const std::vector<Face>& faces)
 void flip(std::vector<int>& corners) { std::reverse(corners.begin() + 1, corners.end()); }
 void flip(Triangle& corners) { std::swap(corners[1], corners[2]); }
 
+/// Min volume of a piece over the cube of its bounding box's diagonal [-], below which it has no inside.
+constexpr double kThinnest = 1e-9;
+
 /// A closed piece of a body.
 struct Solid {
     const std::vector<int>* faces;
     Bounds box;
     double volume; ///< [m^3] negative: inside out
+
+    bool is_inside_out() const { return volume < -kThinnest * std::pow(box.diagonal(), 3); }
 };
 
 Solid solid_of(const TriangleMesh& mesh, const Piece& piece)
@@ -184,14 +196,14 @@ int face_outwards(TriangleMesh& mesh)
         return std::fabs(a.volume) > std::fabs(b.volume);
     });
     const bool any_inside_out =
-        std::any_of(solids.begin(), solids.end(), [](const Solid& solid) { return solid.volume < 0.0; });
+        std::any_of(solids.begin(), solids.end(), [](const Solid& solid) { return solid.is_inside_out(); });
     std::vector<char> turned(solids.size(), 0);
     for (size_t i = 0; any_inside_out && i < solids.size(); ++i) {
         const Vec3& inner = mesh.positions[mesh.triangles[solids[i].faces->front()][0]];
         size_t outer = 0; // the largest that encloses it
         while (outer < i && !encloses(mesh, solids[outer], inner))
             ++outer;
-        turned[i] = char(outer < i ? turned[outer] : solids[i].volume < 0.0);
+        turned[i] = char(outer < i ? turned[outer] : solids[i].is_inside_out());
     }
     for (size_t i = 0; i < solids.size(); ++i)
         for (const int t : *solids[i].faces)

@@ -98,9 +98,11 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     for (int i = 0; i < int(cloths_.size()); ++i)
         cloths_[i].update_targets(t_t1, colliders, part(View<Vec3>(targets_), i));
     if (loads_)
-        loads_->set_time(t_t1);
+        loads_->set_step(t_t1, !is_relaxing_);
     else
         accelerate(dt, t_t1);
+    if (is_relaxing_)
+        std::fill(acceleration_.begin(), acceleration_.end(), Vec3::Zero());
     begin_solids(dt);
     StepReport report = body_->step(dt, acceleration_, fixed_, targets_, active(), limits_.get());
     may_cross_ =
@@ -123,7 +125,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     return report;
 }
 
-/// Completes the status: what has yielded, and where. Copies positions from a GPU only where something has.
+/// Completes the status: what has yielded, and where. Copies positions from a GPU only where something has,
+/// or may have: exactly held vertices.
 void ClothGroup::judge(StepReport& report, double t_t1)
 {
     const auto raise = [&](StepReport::Status status) { report.status = std::max(report.status, status); };
@@ -178,7 +181,7 @@ void ClothGroup::find_displaced(StepReport& report) const
 {
     constexpr double kTolerated = 1e-4; // [m]
     const bool any_held = std::find(fixed_.begin(), fixed_.end(), 1) != fixed_.end();
-    if (!any_held || !contact_ || !contact_->bodies())
+    if (!any_held || !contact_ || !contact_->keeps_cloth_apart())
         return;
     const View<const Vec3> x = body_->positions();
     for (int v = 0; v < first_.back(); ++v)
@@ -196,9 +199,14 @@ bool ClothGroup::is_strained() const
     return report.yielded.count > 0;
 }
 
-void ClothGroup::stop()
+StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>& colliders)
 {
+    TOILE_ASSERT(!solids_);
+    is_relaxing_ = true;
+    const StepReport report = step(dt, t_t1, colliders);
+    is_relaxing_ = false;
     body_->set_velocities(std::vector<Vec3>(body_->velocities().size(), Vec3::Zero()));
+    return report;
 }
 
 /// Vertex 12 of "skirt" near (0.100, 0.900, 0.020) m.

@@ -51,8 +51,10 @@ public:
     /// True if cloth is strained beyond its limit.
     bool is_strained() const;
 
-    /// Takes all speed.
-    void stop();
+    /// Takes a step from rest and to rest, without gravity and air: cloth relaxes and goes nowhere. Not for a
+    /// group with solids.
+    StepReport relax(double dt, double t_t1, const std::vector<Collider>& colliders);
+    bool has_solids() const { return solids_ != nullptr; }
 
     /// Declares that no cloth crosses cloth in the start pose: the first step skips that search, unless there
     /// are solids, which cloth may cross.
@@ -104,6 +106,7 @@ private:
     std::unique_ptr<RigidActiveSet>
         rigid_contact_; ///< contact_ in the minimiser's unknowns; null without solids
     std::unique_ptr<PointMasses> body_;
+    bool is_relaxing_ = false;              ///< within relax()
     garment::DeviceLoads* loads_ = nullptr; ///< owned by body_, on a GPU; null: accelerate()
     std::vector<unsigned char> fixed_;
     std::vector<Vec3> targets_, acceleration_;

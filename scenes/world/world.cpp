@@ -31,7 +31,7 @@ void warn_of_turned(const Collider& collider, const std::function<void(const std
     if (avatar.turned_count() > 0)
         warn("avatar \"" + collider.name() + "\": " + avatar.source() + ": turned " +
              std::to_string(avatar.turned_count()) + " of " + std::to_string(avatar.triangles().size()) +
-             " triangles, whose normals pointed into the body");
+             " triangles, which faced into the body or against their neighbours");
 }
 
 } // namespace
@@ -87,31 +87,31 @@ struct World::Parts {
         return total;
     }
 
-    /// Relaxes cloth that the repair of the start pose has strained beyond its limit: in steps from rest, so
-    /// that it does not begin to fall, and as long as the strain falls.
-    void relax_start()
+    /// Relaxes cloth that the repair of the start pose has strained beyond its limit, as long as the strain
+    /// falls. Cloth that shares its group with solids does so in the first steps.
+    StepReport relax_start()
     {
         constexpr int kMaxSteps = 60, kPatience = 5;
         constexpr double kProgress = 0.99;
-        const StageScope stage("scenes/relax_start");
-        const auto is_strained = [](const ClothGroup& group) { return group.is_strained(); };
-        const double dt = control.first() * control.tick();
-        double least = std::numeric_limits<double>::max();
-        int stalled = 0;
-        for (int k = 0;
-             k < kMaxSteps && stalled < kPatience && std::any_of(groups.begin(), groups.end(), is_strained);
-             ++k) {
-            double strain = 0.0;
-            for (ClothGroup& group : groups) {
-                strain =
-                    std::max(strain, group.step(dt, -settle_ticks() * control.tick(), colliders).max_strain);
-                group.stop();
+        const double dt = control.first() * control.tick(), start = -settle_ticks() * control.tick();
+        StepReport total;
+        for (ClothGroup& group : groups) {
+            double min_strain = std::numeric_limits<double>::max();
+            int stalled = 0;
+            for (int k = 0;
+                 k < kMaxSteps && stalled < kPatience && !group.has_solids() && group.is_strained(); ++k) {
+                const StageScope stage("scenes/relax_start");
+                const StepReport report = group.relax(dt, start, colliders);
+                total.merge(report);
+                if (report.status == StepReport::Status::NonFinite)
+                    return total;
+                stalled = report.max_strain < kProgress * min_strain ? 0 : stalled + 1;
+                min_strain = std::min(min_strain, report.max_strain);
+                is_shown = false;
             }
-            stalled = strain < kProgress * least ? 0 : stalled + 1;
-            least = std::min(least, strain);
-            is_shown = false;
         }
         show();
+        return total;
     }
 
     /// Takes a step of dt [s] that ends at t [s].
@@ -211,7 +211,8 @@ StepReport World::settle()
     if (parts_->start.was_repaired) {
         const ThreadLimit threads(parts_->scene.solver.threads);
         const Stages::Activate recording(parts_->stages);
-        parts_->relax_start();
+        if (const StepReport report = parts_->relax_start(); report.status == StepReport::Status::NonFinite)
+            return report;
     }
     return parts_->advance(parts_->settle_ticks(), 0.0);
 }

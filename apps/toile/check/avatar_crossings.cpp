@@ -8,6 +8,9 @@ namespace toile::app {
 
 namespace {
 
+/// Distance that a caught triangle of cloth reaches out of a pinch [m].
+constexpr double kReach = 0.02;
+
 /// Marks triangles that cross another one of their own surface. [triangles]
 std::vector<char> crossing_themselves(const TriangleMesh& surface)
 {
@@ -43,8 +46,10 @@ AvatarCrossings find_avatar_crossings(const ScenePenetration& avatars, View<cons
             // A triangle that is caught at one end reaches out of the pinch with the other.
             const Triangle& cloth = triangles[crossing.a];
             const auto is_pinched = [&](const Vec3& at) { return meter->is_pinched(at, crosses_itself); };
-            if (is_pinched(crossing.point) ||
-                std::any_of(cloth.begin(), cloth.end(), [&](int v) { return is_pinched(x[v]); }))
+            const auto is_caught = [&](int v) {
+                return (x[v] - crossing.point).norm() < kReach && is_pinched(x[v]);
+            };
+            if (is_pinched(crossing.point) || std::any_of(cloth.begin(), cloth.end(), is_caught))
                 result.pinched.push_back({b, crossing});
             else
                 result.clean.push_back({b, crossing});

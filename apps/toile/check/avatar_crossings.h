@@ -21,7 +21,8 @@ struct AvatarCrossings {
 /// Finds crossings of cloth with avatars, those in pinches apart. Every realistic moving body intersects
 /// itself, and cloth pinched there must cross one part or the other. A place is pinched if surface within 1
 /// cm of it crosses other surface of the body, lies inside another part of it, or faces another part that is
-/// nearer than the room that cloth needs (PenetrationMeter::is_pinched). Coincident vertices are merged.
+/// nearer than the room that cloth needs (PenetrationMeter::is_pinched). A triangle of cloth with a corner in
+/// a pinch reaches out of it by 2 cm at most. Coincident vertices are merged.
 /// @param avatars    at their current time
 /// @param triangles  of the cloth
 /// @param x          [vertices] of the cloth [m]

@@ -84,7 +84,10 @@ void Certificate::add(const FrameFindings& found)
     cloth_avatar_crossings += found.cloth_avatar_crossings;
     pinched_crossings += found.pinched_crossings;
     pinched_passages += found.pinched_passages;
-    pinched_frames += found.pinched_crossings > 0 || found.pinched_depth > limits.penetration ? 1 : 0;
+    pinched_frames +=
+        found.pinched_crossings > 0 || found.pinched_passages > 0 || found.pinched_depth > limits.penetration
+            ? 1
+            : 0;
     if (!first_pinch)
         first_pinch = found.pinch;
     if (!first_crossing)

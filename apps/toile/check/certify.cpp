@@ -118,8 +118,8 @@ void Examiner::pose_avatars(int frame, double time, FrameFindings& found)
     if (frame > 0 && are_finite(last_x_) && are_finite(x_))
         for (const MeasuredCloth& cloth : cloths_) {
             const int count = int(cloth.state.rest.positions.size());
-            frames.push_back({cloth.samples, View<const Vec3>(last_x_).subview(cloth.first_vertex, count),
-                              View<const Vec3>(x_).subview(cloth.first_vertex, count)});
+            frames.emplace_back(cloth.samples, View<const Vec3>(last_x_).subview(cloth.first_vertex, count),
+                                View<const Vec3>(x_).subview(cloth.first_vertex, count));
         }
     const std::vector<AvatarPassage> passages = avatars_.advance_to(time, frames);
     for (const AvatarPassage& at : passages) {

@@ -86,18 +86,20 @@ std::string start_text(const collision::StartReport& report, const scenes::Scene
         " of cloth crossing avatars; " + number_of(report.count(Kind::Crossing), "crossing", "crossings") +
         " of cloth with cloth; ";
     if (const int under = report.count(Kind::UnderLayer))
-        text += number_of(under, "cloth", "cloths") + " under a lower layer; ";
+        text += number_of(under, "layer", "layers") + " under a lower one; ";
     if (!report.was_repaired)
         return text + "left as it is";
     text += "repaired by moves of at most " + millimetres(report.max_move) + ", edges strained by " +
             formatted("%.1f %% (RMS), ", 100.0 * report.rms_strain) +
             formatted("%.1f %% at most", 100.0 * report.max_strain);
     const int crossing = report.remaining(Kind::CrossesBody) + report.remaining(Kind::Crossing);
-    const int left = report.remaining(Kind::InsideBody) + crossing + report.remaining(Kind::UnderLayer);
+    const int under = report.remaining(Kind::UnderLayer);
+    const int left = report.remaining(Kind::InsideBody) + crossing + under;
     if (left == 0)
         return text + "; nothing remains";
     text += "; " + number_of(report.remaining(Kind::InsideBody), "penetration", "penetrations") + " and " +
-            number_of(crossing, "crossing", "crossings") + " remain:";
+            number_of(crossing, "crossing", "crossings") +
+            (under > 0 ? " and " + number_of(under, "misplaced layer", "misplaced layers") : "") + " remain:";
     int listed = 0;
     for (const collision::StartDefect& defect : report.defects)
         if (!defect.is_repaired && listed++ < kMaxListed)
@@ -115,6 +117,8 @@ nlohmann::ordered_json start_json(const collision::StartReport& report, const sc
                                    {"places_inside_remaining", report.remaining(Kind::InsideBody)},
                                    {"avatar_crossings_remaining", report.remaining(Kind::CrossesBody)},
                                    {"crossings_remaining", report.remaining(Kind::Crossing)},
+                                   {"layers_under", report.count(Kind::UnderLayer)},
+                                   {"layers_under_remaining", report.remaining(Kind::UnderLayer)},
                                    {"max_depth_m", report.deepest(Kind::InsideBody)},
                                    {"max_strain", report.max_strain},
                                    {"rms_strain", report.rms_strain},

@@ -6,7 +6,7 @@ namespace {
 
 const char* const kYielded = "cloth is stretched beyond its limit";
 const char* const kPulled = "attachments stretch the cloth between them beyond its limit";
-const char* const kDisplaced = "bodies keep exactly held vertices off their targets";
+const char* const kDisplaced = "contact keeps exactly held vertices off their targets";
 const char* const kPinched = "there is no room for cloth between body parts, which pass through it";
 const char* const kStuck = "cloth crosses a body";
 const char* const kUnfinished = "steps ended unfinished";

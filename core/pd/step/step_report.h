@@ -37,8 +37,8 @@ struct StepReport {
     double min_gap = 0.0;       ///< [m] smallest signed gap of a contact candidate; 0 without candidates
     double max_strain = 0.0;    ///< [-] largest principal stretch - 1 after strain limiting
     Findings yielded;           ///< triangles beyond their strain limit by more than is tolerated
-    Findings pulled;            ///< likewise, between attached vertices: the strain of what holds them
-    Findings displaced;         ///< exactly held vertices that bodies keep off their targets
+    Findings pulled;            ///< likewise, with all corners attached: what holds them has stretched them
+    Findings displaced;         ///< exactly held vertices that contact keeps off their targets
     Findings pinched;           ///< vertices that let a body part through
     Findings stuck;             ///< triangles of cloth that cross a body
     std::string message;        ///< empty unless status is NonFinite

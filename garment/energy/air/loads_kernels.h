@@ -4,6 +4,12 @@
 
 namespace toile::garment {
 
+/// No load on vertex v.
+struct NoLoad {
+    View<Vec3> acceleration; ///< [vertices] out [m/s^2]
+    TOILE_HD void operator()(int v) const { acceleration[v] = Vec3(0.0, 0.0, 0.0); }
+};
+
 /// Gravity, and damping of a fabric as in a step that is implicit in the velocity.
 struct FallDamped {
     Vec3 gravity;       ///< [m/s^2]

@@ -36,7 +36,7 @@ TEST(Passages, AreFoundWhereAShapeGoesThrough)
 {
     const TriangleMesh cloth = sheet(0.0);
     const ClothSamples samples(cloth.triangles, cloth.vertex_count());
-    const ClothFrames still{samples, cloth.positions, cloth.positions};
+    const ClothFrames still(samples, cloth.positions, cloth.positions);
     for (const Shape& shape :
          {Shape(SphereShape{0.04}), Shape(CapsuleShape{0.2, 0.04}), Shape(BoxShape{Vec3(0.1, 0.1, 0.01)})}) {
         const std::vector<Passage> found =
@@ -54,7 +54,7 @@ TEST(Passages, AreFoundWhereAMeshGoesThrough)
     const TriangleMesh ball = sphere_mesh(Vec3(0, 0.1, 0), 0.04, 3);
     const PenetrationMeter meter(ball.triangles, ball.positions);
     const ClothSamples samples(cloth.triangles, cloth.vertex_count());
-    const ClothFrames still{samples, cloth.positions, cloth.positions};
+    const ClothFrames still(samples, cloth.positions, cloth.positions);
     EXPECT_GT(find_passages(still, meter, moved(ball.positions, Vec3(0, -0.25, 0))).size(), 4u);
     EXPECT_TRUE(find_passages(still, meter, moved(ball.positions, Vec3(0, -0.05, 0))).empty());
 
@@ -88,19 +88,49 @@ TEST(Passages, AreNotWhereClothSlidesAroundARod)
                     .empty());
 }
 
+TEST(Passages, AreFoundWhereALimbLeavesItsSleeve)
+{
+    // A ball in a wide sleeve of cloth, which jumps out to the side.
+    const TriangleMesh ball = sphere_mesh(Vec3::Zero(), 0.05, 3);
+    TriangleMesh sleeve = sheet(0.0);
+    for (Vec3& p : sleeve.positions) {
+        const double angle = 2.0 * std::numbers::pi * (p.x() + 0.2) / 0.401;
+        p = Vec3(0.08 * std::cos(angle), 0.08 * std::sin(angle), p.z());
+    }
+    const PenetrationMeter meter(ball.triangles, ball.positions);
+    const ClothSamples samples(sleeve.triangles, sleeve.vertex_count());
+    const ClothFrames still(samples, sleeve.positions, sleeve.positions);
+    EXPECT_GT(find_passages(still, meter, moved(ball.positions, Vec3(0, 0.25, 0))).size(), 4u);
+    EXPECT_GT(find_passages(still, SphereShape{0.05}, at(Vec3::Zero()), at(Vec3(0, 0.25, 0))).size(), 4u);
+    EXPECT_TRUE(find_passages(still, meter, moved(ball.positions, Vec3(0, 0.02, 0))).empty());
+}
+
+TEST(Passages, AreFoundThroughAnOpenMesh)
+{
+    const TriangleMesh plate = sheet_mesh(0.2, 4, 0.1), cloth = sheet(0.0);
+    const PenetrationMeter meter(plate.triangles, plate.positions);
+    const ClothSamples samples(cloth.triangles, cloth.vertex_count());
+    const ClothFrames still(samples, cloth.positions, cloth.positions);
+    EXPECT_GT(find_passages(still, meter, moved(plate.positions, Vec3(0, -0.3, 0))).size(), 20u);
+    EXPECT_TRUE(find_passages(still, meter, moved(plate.positions, Vec3(0, -0.05, 0))).empty());
+}
+
 TEST(Passages, AreNotWhereABodyTurns)
 {
-    // A tube of cloth on an arm that swings by a right angle about its end.
+    // A cap of cloth on an arm that swings by a right angle about its end, and so through where it was not.
     const TriangleMesh arm = sphere_mesh(Vec3(0.3, 0, 0), 0.05, 3);
-    const TriangleMesh cloth = sphere_mesh(Vec3(0.3, 0, 0), 0.052, 3);
+    TriangleMesh cap = sphere_mesh(Vec3(0.3, 0, 0), 0.052, 3);
+    std::erase_if(cap.triangles, [&](const Triangle& t) { return cap.positions[t[0]].x() < 0.3; });
     const Eigen::AngleAxisd turn(0.5 * std::numbers::pi, Vec3::UnitZ());
-    std::vector<Vec3> arm1 = arm.positions, cloth1 = cloth.positions;
-    for (std::vector<Vec3>* x : {&arm1, &cloth1})
+    std::vector<Vec3> arm1 = arm.positions, cap1 = cap.positions;
+    for (std::vector<Vec3>* x : {&arm1, &cap1})
         for (Vec3& p : *x)
             p = turn * p;
     const PenetrationMeter meter(arm.triangles, arm.positions);
-    const ClothSamples samples(cloth.triangles, cloth.vertex_count());
-    EXPECT_TRUE(find_passages({samples, cloth.positions, cloth1}, meter, arm1).empty());
+    const ClothSamples samples(cap.triangles, cap.vertex_count());
+    EXPECT_TRUE(find_passages({samples, cap.positions, cap1}, meter, arm1).empty());
+    EXPECT_FALSE(find_passages({samples, cap.positions, moved(cap1, Vec3(0, -0.2, 0))}, meter, arm1).empty())
+        << "pulled off through the arm";
 }
 
 } // namespace

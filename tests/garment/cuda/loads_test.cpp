@@ -81,7 +81,7 @@ struct Flutter {
             acceleration(space, "test/acceleration", int(x.size()));
         x_device.upload(x);
         v_device.upload(v);
-        loads.set_time(t);
+        loads.set_step(t, true);
         loads.accelerate(kDt, x_device.view(), v_device.view(), acceleration.view());
         return acceleration.downloaded();
     }

@@ -52,6 +52,10 @@ void DeviceLoads::upload()
 void DeviceLoads::accelerate(double dt, View<const Vec3> x, View<const Vec3> v, View<Vec3> acceleration)
 {
     TOILE_ASSERT(x.size() == cloth_.size() && v.size() == x.size() && acceleration.size() == x.size());
+    if (!is_loaded_) {
+        parallel_for(space_, "loads/none", x.size(), NoLoad{acceleration});
+        return;
+    }
     parallel_for(space_, "loads/gusts", gusts_.size(), SampleGusts{modes_.view(), x, t_t1_, gusts_.view()});
     parallel_for(
         space_, "loads/drag", triangles_.size(),

@@ -29,8 +29,12 @@ public:
     /// @param first_vertex  first vertex of the cloth in the body
     void add(const RestShape& rest, View<const double> masses, double damping, int first_vertex);
 
-    /// Sets the end [s] of the coming step: gusts depend on it.
-    void set_time(double t_t1) { t_t1_ = t_t1; }
+    /// Sets the end [s] of the coming step, on which gusts depend, and whether there are loads in it at all.
+    void set_step(double t_t1, bool is_loaded)
+    {
+        t_t1_ = t_t1;
+        is_loaded_ = is_loaded;
+    }
 
     /// Stages "loads/gusts" and "loads/drag" if there are gusts and air, and "loads/vertices".
     void accelerate(double dt, View<const Vec3> x, View<const Vec3> v, View<Vec3> acceleration) override;
@@ -47,6 +51,7 @@ private:
     const CudaSpace& space_;
     Settings settings_;
     double t_t1_ = 0.0;
+    bool is_loaded_ = true;
     OnHost host_;
     DeviceArray<GustMode> modes_;
     DeviceArray<Triangle> triangles_;
