@@ -174,7 +174,7 @@ struct GuardOf {
 
 /// Part of the recovery speed [-] at which cloth that all surfaces pass through is pushed by its owner.
 /// Layers that meet in an overlap push each other back.
-inline constexpr double kCaughtRecovery = 0.1;
+inline constexpr double kCaughtRecovery = 0.3;
 
 /// Pairs with a collider that make no term: their cloth lets the body through, or a guard knows the side,
 /// which a surface without an inside does not.

@@ -16,6 +16,9 @@ constexpr double kLeft = 0.01;
 /// side.
 constexpr double kOneSided = 0.6;
 
+/// Distance of cloth on one part from cloth on the other in an overlap [m].
+constexpr double kBetween = 0.015;
+
 int root_of(std::vector<int>& parent, int v)
 {
     while (parent[v] != v)
@@ -38,6 +41,7 @@ LetThrough::LetThrough(const BodySurfaces& bodies, View<const Triangle> triangle
 
 void LetThrough::begin_step(View<const Vec3> x, View<const NearestSurface> nearest)
 {
+    x_.assign(x.begin(), x.end());
     parallel_for(kCpu, "collision/owners", x.size(), [&](int v) { walk(v, x[v], nearest[v]); });
     if (bodies_.is_moving() || bodies_.has_jumped())
         has_normals_ = false;
@@ -112,7 +116,7 @@ void LetThrough::agree(View<const int> patch)
     int ahead = 0;
     for (const int v : patch)
         ahead += owner_normal_[v].dot(reference) >= 0.0 ? 1 : -1;
-    if (std::abs(ahead) < kOneSided * patch.size()) {
+    if (std::abs(ahead) < kOneSided * patch.size() && is_between(patch)) {
         for (const int v : patch)
             released_[v] = kLetsAll;
         return;
@@ -133,6 +137,17 @@ void LetThrough::agree(View<const int> patch)
             goes_on = true;
         }
     }
+}
+
+/// True if cloth of a patch lies near other cloth of it whose owner is on the other side. Around a limb it
+/// does not.
+bool LetThrough::is_between(View<const int> patch) const
+{
+    for (const int v : patch)
+        for (const int w : patch)
+            if (owner_normal_[v].dot(owner_normal_[w]) < -kOwnSheet && (x_[v] - x_[w]).norm() < kBetween)
+                return true;
+    return false;
 }
 
 void LetThrough::close(View<const int> crossing)

@@ -63,12 +63,14 @@ public:
 private:
     void walk(int v, const Vec3& x, const NearestSurface& nearest);
     void agree(View<const int> patch);
+    bool is_between(View<const int> patch) const;
 
     const BodySurfaces& bodies_;
     std::vector<Triangle> triangles_;
     std::vector<std::vector<int>> neighbours_; ///< [vertices]
     std::vector<NearestSurface> owner_;        ///< [vertices]
     std::vector<unsigned char> released_; ///< [vertices] 0: keeps off all surfaces; kLetsOpposing, kLetsAll
+    std::vector<Vec3> x_;                 ///< [vertices] at the start of the step [m]
     std::vector<Vec3> owner_normal_, body_normal_;
     bool has_normals_ = false; ///< body_normal_ is that of this step
     int count_ = 0;
