@@ -139,15 +139,19 @@ void LetThrough::agree(View<const int> patch)
     }
 }
 
-/// True if cloth of a patch lies near other cloth of it whose owner is on the other side. Around a limb it
-/// does not.
+/// True if cloth of a patch lies near, or beside, other cloth of it whose owner is on the other side. Around
+/// a limb it does not.
 bool LetThrough::is_between(View<const int> patch) const
 {
-    for (const int v : patch)
-        for (const int w : patch)
-            if (owner_normal_[v].dot(owner_normal_[w]) < -kOwnSheet && (x_[v] - x_[w]).norm() < kBetween)
-                return true;
-    return false;
+    const auto are_opposite = [&](int v, int w) {
+        return owner_normal_[v].dot(owner_normal_[w]) < -kOwnSheet;
+    };
+    return std::any_of(patch.begin(), patch.end(), [&](int v) {
+        return std::any_of(neighbours_[v].begin(), neighbours_[v].end(),
+                           [&](int w) { return is_released(w) && are_opposite(v, w); }) ||
+               std::any_of(patch.begin(), patch.end(),
+                           [&](int w) { return are_opposite(v, w) && (x_[v] - x_[w]).norm() < kBetween; });
+    });
 }
 
 void LetThrough::close(View<const int> crossing)

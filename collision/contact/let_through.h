@@ -48,12 +48,6 @@ public:
     {
         return is_released(t[0]) || is_released(t[1]) || is_released(t[2]);
     }
-    /// True if the normal of a surface opposes the owner of a released vertex.
-    bool lets_pass(int v, const Vec3& normal) const
-    {
-        return is_released(v) && owner_normal_[v].dot(normal) < kOwnSheet;
-    }
-
     View<const unsigned char> released() const { return released_; } ///< [vertices]
     View<const Vec3> owner_normal() const { return owner_normal_; }  ///< [vertices]
     /// [bodies] Unit normals at t1, evaluated at the first call after a motion.
