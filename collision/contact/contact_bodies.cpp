@@ -79,6 +79,9 @@ void ContactBodies::move(const StepStart& start, View<const NearestSurface> near
                          View<const Vec3> advected, CarriedStart& carry, View<const unsigned char> fixed,
                          View<Vec3> base)
 {
+    // Before the first search no surface is known as nearest.
+    const bool is_known = std::any_of(nearest.begin(), nearest.end(),
+                                      [](const NearestSurface& at) { return at.collider >= 0; });
     std::vector<Vec3> way(soup_.first_body), end(motion_.size());
     parallel_for(kCpu, "collision/expect", soup_.first_body, [&](int v) {
         way[v].setZero();
@@ -86,7 +89,7 @@ void ContactBodies::move(const StepStart& start, View<const NearestSurface> near
             return;
         if (fixed[v] != 0)
             way[v] = start.prediction[v] - base[v];
-        else if (nearest[v].collider >= 0)
+        else if (nearest[v].collider >= 0 || !is_known)
             way[v] = advected[v] - base[v];
     });
     fade(nearest, fixed, way);

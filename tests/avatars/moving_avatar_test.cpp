@@ -125,9 +125,9 @@ TEST(MovingAvatar, MovesAsAWhole)
 
 TEST(MovingAvatar, IsSkinnedOnlyOnDemand)
 {
+    MovingAvatar avatar = column(play("bend"));
     Stages stages;
     const Stages::Activate recording(stages);
-    MovingAvatar avatar = column(play("bend"));
     avatar.advance_to(0.25);
     EXPECT_EQ(stages.calls("avatars/skin"), 0);
     (void)x_t1(avatar);

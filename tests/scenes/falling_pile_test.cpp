@@ -40,7 +40,7 @@ TEST(FallingPile, FallsAsFarWithLooseTolerances)
 {
     const double solved = height_after(R"("velocity_tolerance": 0.001, "max_iterations": 500)");
     EXPECT_LT(solved, 0.02);
-    EXPECT_NEAR(height_after(R"("quality": "standard")"), solved, 0.02);
+    EXPECT_NEAR(height_after(R"("quality": "standard")"), solved, 0.03);
 }
 
 /// L-BFGS around a fixed matrix folds stiff cloth late.
