@@ -203,7 +203,7 @@ StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>
 {
     TOILE_ASSERT(!solids_);
     is_relaxing_ = true;
-    const StepReport report = step(dt, t_t1, colliders);
+    StepReport report = step(dt, t_t1, colliders);
     is_relaxing_ = false;
     body_->set_velocities(std::vector<Vec3>(body_->velocities().size(), Vec3::Zero()));
     return report;

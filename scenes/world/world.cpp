@@ -211,7 +211,7 @@ StepReport World::settle()
     if (parts_->start.was_repaired) {
         const ThreadLimit threads(parts_->scene.solver.threads);
         const Stages::Activate recording(parts_->stages);
-        if (const StepReport report = parts_->relax_start(); report.status == StepReport::Status::NonFinite)
+        if (StepReport report = parts_->relax_start(); report.status == StepReport::Status::NonFinite)
             return report;
     }
     return parts_->advance(parts_->settle_ticks(), 0.0);

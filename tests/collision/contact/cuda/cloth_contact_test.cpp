@@ -147,6 +147,7 @@ TEST_F(DeviceClothContactTest, KeepsThePairsThatAreNotExemptInTheirOrder)
         crosses[random.below(vertices)] = 1;
     const int cloth = vertices / 2; // the others count as bodies
     std::vector<BodyCrossing> crossings;
+    crossings.reserve(500);
     std::vector<unsigned char> inside(cloth, 0), released(cloth, 0);
     for (int i = 0; i < 500; ++i)
         crossings.emplace_back(random.below(cloth), cloth + random.below(vertices - cloth));
