@@ -212,6 +212,15 @@ TEST(Bodies, WearLayersInTheirOrder)
     }
 }
 
+/// Report of the last frame.
+StepReport run_to_end(World& world)
+{
+    StepReport report;
+    while (world.frame() + 1 < world.frame_count())
+        report = world.advance_frame();
+    return report;
+}
+
 /// Vertices that are held exactly, and moved into a box, stay out of it, and the run says so.
 TEST(Bodies, KeepExactlyHeldVerticesOut)
 {
@@ -222,9 +231,7 @@ TEST(Bodies, KeepExactlyHeldVerticesOut)
         {"time": 0.2, "translate": [0, -0.1, 0]}]}]})",
                                     "held.json");
     World world(scene);
-    StepReport report;
-    while (world.frame() + 1 < world.frame_count())
-        report = world.advance_frame();
+    const StepReport report = run_to_end(world);
     EXPECT_GT(report.displaced.count, 3);
     EXPECT_NE(report.displaced.place.find("of \"c\""), std::string::npos) << report.displaced.place;
     EXPECT_GE(report.status, StepReport::Status::Yielded);
@@ -242,9 +249,7 @@ TEST(Bodies, TellTheStrainOfWhatIsHeld)
          "keyframes": [{"time": 0}, {"time": 0.1, "translate": [0.006, 0, 0]}]}]})",
                                     "pulled.json");
     World world(scene);
-    StepReport report;
-    while (world.frame() + 1 < world.frame_count())
-        report = world.advance_frame();
+    const StepReport report = run_to_end(world);
     EXPECT_GT(report.pulled.count, 5);
     EXPECT_NE(report.pulled.place.find("which is attached"), std::string::npos) << report.pulled.place;
     EXPECT_EQ(report.yielded.count, 0);
