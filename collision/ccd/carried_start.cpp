@@ -113,7 +113,7 @@ CarriedStart::Part CarriedStart::try_part(View<Vec3> x, double from, double to, 
             blocked = search_.query_all(end_);
         }
     }
-    if (!blocked.empty() && may_release && (*release_)(blocked))
+    if (!blocked.empty() && may_release && (*release_)(blocked, to - from <= kSmallestPart))
         return Part::kReleased;
     if (!blocked.empty() && to - from > kSmallestPart)
         return Part::kBlocked;

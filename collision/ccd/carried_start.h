@@ -27,8 +27,8 @@ public:
     using StuckPair = std::array<int, 4>; ///< NearPair::vertex
 
     /// Exempts some of the pairs that block bodies in a small part; the part is then tried again. Returns
-    /// false if there are none that may be exempt.
-    using Release = std::function<bool(View<const BlockedPair> blocked)>;
+    /// false if there are none that may be exempt. is_last: the part cannot be divided further.
+    using Release = std::function<bool(View<const BlockedPair> blocked, bool is_last)>;
 
     /// @param search    finds the pairs of cloth and bodies, without exempt ones; borrowed
     /// @param edges     of cloth and bodies

@@ -24,6 +24,7 @@ double CollisionFreeStep::limit(View<Vec3> x, View<const unsigned char> supporte
 {
     const StageScope stage("collision/collision_free_step");
     const View<const BlockedPair> blocked = query_.query_all(x);
+    blocked_.assign(blocked.begin(), blocked.end());
     return blocked.empty() ? 0.0 : limiter_.limit(x, supported, query_, blocked);
 }
 

@@ -62,6 +62,9 @@ public:
     /// @return maximum correction of a vertex [m]; 0 if x is unchanged, bit for bit
     double limit(View<Vec3> x, View<const unsigned char> supported = {});
 
+    /// Pairs that stopped the trajectories to the x of the last limit().
+    View<const BlockedPair> blocked() const { return blocked_; }
+
     View<const Vec3> base() const { return base_; } ///< [vertices] pose of begin() [m]
     MinGap min_gap() const { return query_.gap(); }
 
@@ -69,6 +72,7 @@ private:
     CpuCcdQuery query_;
     TrajectoryLimiter limiter_;
     std::vector<Vec3> base_;
+    std::vector<BlockedPair> blocked_;
 };
 
 } // namespace toile::collision

@@ -19,7 +19,7 @@ ClothContact::ClothContact(ContactSoup soup)
       rules_(soup_.triangles_of_cloth(), soup_.of_cloth(View<const Vec3>(soup_.positions)), soup_.cloths,
              soup_.of_cloth(View<const double>(soup_.altitude)), soup_.bodies.are_open()),
       exempt_(soup_.positions, soup_.altitude, CollisionFreeStep::Settings{}.min_gap),
-      bodies_(soup_, rules_, exempt_), fixed_(soup_.positions.size(), 1)
+      bodies_(soup_, rules_, exempt_), fixed_(soup_.positions.size(), 1), stopped_(fixed_.size(), 0)
 {
 }
 
@@ -32,9 +32,25 @@ void ClothContact::set_crossing(View<const unsigned char> crosses)
 
 void ClothContact::forget() { bodies_.forget(); }
 
-void ClothContact::set_fixed(View<const unsigned char> of_cloth)
+void ClothContact::begin(View<const unsigned char> fixed_cloth)
 {
-    std::copy_n(of_cloth.begin(), soup_.first_body, fixed_.begin());
+    std::copy_n(fixed_cloth.begin(), soup_.first_body, fixed_.begin());
+    has_limited_ = false;
+    if (has_stopped_)
+        std::fill(stopped_.begin(), stopped_.end(), 0);
+    has_stopped_ = false;
+}
+
+void ClothContact::mark_stopped(View<const BlockedPair> blocked)
+{
+    has_limited_ = !blocked.empty();
+    has_stopped_ = has_stopped_ || has_limited_;
+    stops_more_ = false;
+    for (const BlockedPair& at : blocked)
+        for (const int v : at.pair.vertex) {
+            stops_more_ = stops_more_ || stopped_[v] == 0;
+            stopped_[v] = 1;
+        }
 }
 
 std::unique_ptr<ClothContact> make_cloth_contact(View<const Triangle> triangles, View<const Vec3> positions,

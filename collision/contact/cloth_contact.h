@@ -55,6 +55,7 @@ public:
     /// Limits x where cloth would cross. Searches again from there if the correction is large or pressing
     /// pairs have slid. True if there are new pairs.
     virtual bool advance(StepField x, const FindSupported& find_supported) = 0;
+    bool has_limited() const { return has_limited_; } ///< x in the last advance() or limit_motion()
 
     /// Limits x where cloth would cross, and removes the velocity of the correction from v, for a step of dt
     /// [s]. True if the correction was large: x may go on from there, and be limited again.
@@ -76,7 +77,17 @@ protected:
     const ClothContactRules& rules() const { return rules_; }
     const ExemptPairs& exempt() const { return exempt_; }
     View<const unsigned char> fixed() const { return fixed_; } ///< [vertices of the soup]
-    void set_fixed(View<const unsigned char> of_cloth);
+    /// Begins a step: nothing has been stopped.
+    void begin(View<const unsigned char> fixed_cloth);
+
+    /// [vertices] 1: of a pair that has stopped cloth in this step; empty: none has.
+    View<const unsigned char> stopped() const
+    {
+        return has_stopped_ ? stopped_ : View<const unsigned char>();
+    }
+    /// @param blocked  pairs that limit x
+    void mark_stopped(View<const BlockedPair> blocked);
+    bool stops_more() const { return stops_more_; } ///< some of the last of them are new
 
 private:
     ContactSoup soup_;
@@ -84,6 +95,8 @@ private:
     ExemptPairs exempt_;
     ContactBodies bodies_;
     std::vector<unsigned char> fixed_;
+    bool has_limited_ = false, has_stopped_ = false, stops_more_ = false;
+    std::vector<unsigned char> stopped_; ///< [vertices of the soup]
 };
 
 /// @param triangles  [triangles] of all cloths

@@ -93,12 +93,14 @@ struct UpdateDeviation {
 
 /// Half space that a pair should respect, if it may press at all. It is taken at the expected end of the
 /// step, or at the start if the pair would pass through in between. With the start alone, cloth that slides
-/// over a border would meet the direction in which the border was ahead of it.
+/// over a border would meet the direction in which the border was ahead of it. A pair that has stopped cloth
+/// presses whatever its direction: if nothing resisted, cloth would be stopped there again.
 struct FindPressing {
     SoupView soup;
     View<const Vec3> base, motion, expected; ///< [vertices] start, displacement and end [m]
     View<const double> slack;                ///< [vertices] [m]
     PairThickness thickness;
+    View<const unsigned char> stopped = {}; ///< [vertices] see ClothContact::stopped; empty: none
 
     /// @param now  the pair at the start
     /// @param out  written where the pair may press
@@ -106,6 +108,10 @@ struct FindPressing {
     TOILE_HD bool operator()(const NearPair& now, ContactPair& out) const
     {
         const double thick = thickness.of(now.vertex, now.is_edge_edge);
+        if (!stopped.empty() && now.distance <= thick && has_stopped(now)) {
+            out = pair_of(now);
+            return true;
+        }
         double max_distance = 0.0;
         for (const int v : now.vertex)
             max_distance = std::max(max_distance, slack[v]);
@@ -118,12 +124,24 @@ struct FindPressing {
             return false;
         if (!near.is_facing || (!passes && near.distance > thick + 2.0 * max_distance))
             return false;
-        out = ContactPair{};
-        out.vertex = near.vertex;
-        out.weight = near.weight;
-        out.normal = near.normal;
-        out.kind = near.is_edge_edge ? ContactKind::kClothEdgeEdge : ContactKind::kClothVertexFace;
+        out = pair_of(near);
         return true;
+    }
+
+private:
+    TOILE_HD bool has_stopped(const NearPair& near) const
+    {
+        return stopped[near.vertex[0]] != 0 && stopped[near.vertex[1]] != 0 && stopped[near.vertex[2]] != 0 &&
+               stopped[near.vertex[3]] != 0;
+    }
+    TOILE_HD static ContactPair pair_of(const NearPair& near)
+    {
+        ContactPair pair;
+        pair.vertex = near.vertex;
+        pair.weight = near.weight;
+        pair.normal = near.normal;
+        pair.kind = near.is_edge_edge ? ContactKind::kClothEdgeEdge : ContactKind::kClothVertexFace;
+        return pair;
     }
 };
 
@@ -176,6 +194,15 @@ struct GuardOf {
 /// Layers that meet in an overlap push each other back.
 inline constexpr double kCaughtRecovery = 0.3;
 
+/// Factors of a term in a pinch [-]. How hard surfaces that overlap press is not physical, nor is friction by
+/// that: it would tear cloth that they drag apart.
+struct PinchedTerm {
+    double friction = 1.0, recovery = 1.0;
+};
+
+/// Clearance of a plane [m] that no other opposes is larger.
+inline constexpr double kNoOpposingPlane = 1.0;
+
 /// Pairs with a collider that make no term: their cloth lets the body through, or a guard knows the side,
 /// which a surface without an inside does not.
 struct ReplacedPairs {
@@ -184,27 +211,39 @@ struct ReplacedPairs {
     View<const unsigned char> lets_through = {}; ///< [cloth] see LetThrough; empty: no cloth does
     View<const Vec3> owner_normal = {};          ///< [cloth] likewise
 
-    TOILE_HD bool operator()(const ContactPair& pair) const
+    /// @param clearance  see ContactRules::term_of [m]
+    TOILE_HD bool operator()(const ContactPair& pair, double clearance) const
     {
         if (is_open.empty() || pair.is_between_cloths())
             return false;
         if (pair.kind < ContactKind::kGuard && is_open[pair.collider] != 0 && pair.gap(base) < 0.0)
             return true; // it stays behind
+        // A plane that opposes the owner's goes on pressing while there is room between them.
+        const bool has_room =
+            pair.kind < ContactKind::kGuard && clearance >= 0.0 && clearance < kNoOpposingPlane;
         for (int k = 0; k < pair.count() && !lets_through.empty(); ++k) {
             const int v = pair.vertex[k];
-            if (lets_through[v] != 0 && owner_normal[v].dot(pair.normal) < kOwnSheet)
+            const double ahead = owner_normal[v].dot(pair.normal);
+            if (lets_through[v] != 0 && ahead < kOwnSheet &&
+                (lets_through[v] == kLetsAll || !has_room || ahead > -kOwnSheet))
                 return true;
         }
         return false;
     }
 
-    /// Part of the recovery speed for cloth of a pair [-].
-    TOILE_HD double recovery_of(const ContactPair& pair) const
+    /// How a pair of cloth that lets bodies through presses.
+    TOILE_HD PinchedTerm pinched(const ContactPair& pair) const
     {
-        bool is_caught = false;
-        for (int k = 0; k < pair.count() && !lets_through.empty() && !pair.is_between_cloths(); ++k)
-            is_caught = is_caught || lets_through[pair.vertex[k]] == kLetsAll;
-        return is_caught ? kCaughtRecovery : 1.0;
+        PinchedTerm pinched;
+        for (int k = 0; k < pair.count() && !lets_through.empty(); ++k) {
+            const unsigned char lets = lets_through[pair.vertex[k]];
+            if (lets != 0)
+                pinched.friction = 0.0;
+            if (!pair.is_between_cloths() &&
+                (lets == kLetsAll || (lets != 0 && owner_normal[pair.vertex[k]].dot(pair.normal) < 0.0)))
+                pinched.recovery = kCaughtRecovery;
+        }
+        return pinched;
     }
 };
 

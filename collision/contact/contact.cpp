@@ -93,8 +93,9 @@ bool Contact::sweep_once(StepField x) const
     return terms_->project_compliant(1);
 }
 
-bool Contact::revise(StepField x, bool is_converged)
+bool Contact::revise(StepField x, MinimiserProgress progress)
 {
+    const bool is_converged = progress == MinimiserProgress::kConverged;
     if (terms_->empty() && !between_)
         return false;
     terms_->see(x);
@@ -107,12 +108,15 @@ bool Contact::revise(StepField x, bool is_converged)
     }
     const bool has_new_pairs = between_ && (is_converged || !between_->is_clear()) &&
                                between_->advance(x, [&] { return terms_->supported(); });
+    const bool is_limited = between_ && between_->has_limited();
+    if (is_limited)
+        terms_->update_multipliers(progress != MinimiserProgress::kFar);
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);
         find_again();
         return true;
     }
-    return has_landed;
+    return has_landed || (is_limited && friction.short_count > 0);
 }
 
 /// Finds the pairs of vertices that have left theirs, and makes all terms.
@@ -126,6 +130,7 @@ void Contact::find_again()
 void Contact::remember_end()
 {
     terms_->adopt_forces();
+    terms_->update_multipliers(true);
     terms_->remember(RememberedSlip::kSoFar);
 }
 

@@ -57,7 +57,7 @@ public:
         terms_->see(x);
         terms_->mark_touching(touches);
     }
-    bool revise(StepField x, bool is_converged) override;
+    bool revise(StepField x, MinimiserProgress progress) override;
     void clear(StepField x, StepField v) override;
     void resolve(StepField x, StepField v) override;
     bool is_complete() const override { return true; }

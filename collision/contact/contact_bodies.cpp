@@ -38,7 +38,7 @@ ContactSoup::ContactSoup(View<const Triangle> cloth_triangles, View<const Vec3> 
 
 ContactBodies::ContactBodies(ContactSoup& soup, const ClothContactRules& rules, ExemptPairs& exempt)
     : soup_(soup), rules_(rules), exempt_(exempt),
-      let_through_(soup.bodies, soup.triangles_of_cloth(), soup.first_body),
+      let_through_(soup.bodies, soup.triangles_of_cloth(), soup.first_body, room_of(soup.cloths)),
       collider_(soup.bodies.colliders()), is_open_(soup.bodies.are_open()),
       motion_(soup.bodies.vertex_count(), Vec3::Zero()),
       has_open_(std::find(is_open_.begin(), is_open_.end(), 1) != is_open_.end())
@@ -89,6 +89,8 @@ void ContactBodies::move(const StepStart& start, View<const NearestSurface> near
             return;
         if (fixed[v] != 0)
             way[v] = start.prediction[v] - base[v];
+        else if (let_through_.is_released(v))
+            way[v] = let_through_.owner_motion(v);
         else if (nearest[v].collider >= 0 || !is_known)
             way[v] = advected[v] - base[v];
     });
@@ -98,7 +100,8 @@ void ContactBodies::move(const StepStart& start, View<const NearestSurface> near
     surfaces().pose_t1(end);
     for (size_t b = 0; b < end.size(); ++b)
         motion_[b] = end[b] - bodies[int(b)];
-    carry.carry(base, way, end, fixed, [this](View<const BlockedPair> blocked) { return release(blocked); });
+    carry.carry(base, way, end, fixed,
+                [this](View<const BlockedPair> blocked, bool is_last) { return release(blocked, is_last); });
     stuck_ = carry.stuck();
     exempt_stuck();
 }
@@ -161,14 +164,14 @@ void ContactBodies::show_let_through()
 }
 
 /// Lets bodies through the cloth of blocked pairs. False if that changes nothing.
-bool ContactBodies::release(View<const BlockedPair> blocked)
+bool ContactBodies::release(View<const BlockedPair> blocked, bool is_last)
 {
     std::vector<int> vertices;
     for (const BlockedPair& pair : blocked)
         if (is_with_body(pair.pair, soup_.first_body))
             std::copy_if(pair.pair.vertex.begin(), pair.pair.vertex.end(), std::back_inserter(vertices),
                          [&](int v) { return v < soup_.first_body; });
-    const bool has_released = let_through_.release(vertices);
+    const bool has_released = let_through_.release(vertices, is_last);
     show_let_through();
     return has_released;
 }

@@ -111,7 +111,7 @@ private:
     void fade(View<const NearestSurface> nearest, View<const unsigned char> fixed, View<Vec3> way) const;
     void exempt_stuck();
     void show_let_through();
-    bool release(View<const BlockedPair> blocked);
+    bool release(View<const BlockedPair> blocked, bool is_last);
 
     ContactSoup& soup_;
     const ClothContactRules& rules_;

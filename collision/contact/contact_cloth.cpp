@@ -27,6 +27,14 @@ double largest_gap(const std::vector<ContactCloth>& cloths)
     return largest;
 }
 
+double room_of(const std::vector<ContactCloth>& cloths)
+{
+    double room = 0.0;
+    for (const ContactCloth& cloth : cloths)
+        room = std::max(room, room_of(cloth.gap, cloth.thickness));
+    return room;
+}
+
 std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<const Vec3> x)
 {
     std::vector<double> shortest(x.size(), std::numeric_limits<double>::max());

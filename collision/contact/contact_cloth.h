@@ -24,6 +24,11 @@ std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths);
 /// Largest gap that cloths keep to colliders [m].
 double largest_gap(const std::vector<ContactCloth>& cloths);
 
+/// Room that cloth needs between two surfaces that face each other [m]: its gap to both, and a layer of cloth
+/// on each with cloth between them.
+constexpr double room_of(double gap, double thickness) { return 2.0 * gap + 3.0 * thickness; }
+double room_of(const std::vector<ContactCloth>& cloths); ///< the largest
+
 /// Shortest altitude of the triangles around each vertex, [vertices] [m].
 std::vector<double> shortest_altitudes(View<const Triangle> triangles, View<const Vec3> x);
 

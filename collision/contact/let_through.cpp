@@ -28,8 +28,8 @@ int root_of(std::vector<int>& parent, int v)
 
 } // namespace
 
-LetThrough::LetThrough(const BodySurfaces& bodies, View<const Triangle> triangles, int vertices)
-    : bodies_(bodies), triangles_(triangles.begin(), triangles.end()), owner_(vertices),
+LetThrough::LetThrough(const BodySurfaces& bodies, View<const Triangle> triangles, int vertices, double room)
+    : bodies_(bodies), room_(room), triangles_(triangles.begin(), triangles.end()), owner_(vertices),
       released_(vertices, 0), owner_normal_(vertices, Vec3::Zero())
 {
     neighbours_.resize(vertices);
@@ -72,18 +72,19 @@ void LetThrough::walk(int v, const Vec3& x, const NearestSurface& nearest)
         owner_normal_[v] = bodies_.normal_at(owner, x);
 }
 
-bool LetThrough::release(View<const int> vertices)
+bool LetThrough::release(View<const int> vertices, bool is_last_resort)
 {
     std::vector<int> added;
     for (const int v : vertices)
-        if (owner_[v].collider >= 0 && released_[v] == 0) {
+        if (owner_[v].collider >= 0 && released_[v] == 0 &&
+            (is_last_resort || bodies_.distance_to(owner_[v], x_[v]) < room_)) {
             released_[v] = kLetsOpposing;
             added.push_back(v);
         }
     if (added.empty()) {
         bool changes = false;
         for (const int v : vertices)
-            if (released_[v] == kLetsOpposing) {
+            if (is_last_resort && released_[v] == kLetsOpposing) {
                 released_[v] = kLetsAll;
                 changes = true;
             }

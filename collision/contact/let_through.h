@@ -19,16 +19,18 @@ namespace toile::collision {
 class LetThrough {
 public:
     /// @param triangles  [triangles] of cloth
-    LetThrough(const BodySurfaces& bodies, View<const Triangle> triangles, int vertices);
+    /// @param room       distance between surfaces that leaves cloth no room [m]
+    LetThrough(const BodySurfaces& bodies, View<const Triangle> triangles, int vertices, double room);
 
     /// Updates the owners at the start of a step, at x [vertices] [m].
     /// @param nearest  [vertices] surface nearest to each
     void begin_step(View<const Vec3> x, View<const NearestSurface> nearest);
 
-    /// Lets surfaces that oppose their owners pass through these vertices. A patch most of which has owners
-    /// on one side takes them for all of it; one with owners on both lets all surfaces pass, as do vertices
-    /// that are blocked once more. False if that changes nothing.
-    bool release(View<const int> vertices);
+    /// Lets surfaces that oppose their owners pass through those of these vertices that are near their owner;
+    /// as a last resort through all, and all surfaces through those that are blocked once more. A patch most
+    /// of which has owners on one side takes them for all of it; one with owners on both lets all surfaces
+    /// pass. False if that changes nothing.
+    bool release(View<const int> vertices, bool is_last_resort);
 
     /// Ends it for patches of cloth that no longer cross bodies.
     /// @param crossing  all triangles of cloth that cross bodies at the start of the step
@@ -52,6 +54,8 @@ public:
     View<const Vec3> owner_normal() const { return owner_normal_; }  ///< [vertices]
     /// [bodies] Unit normals at t1, evaluated at the first call after a motion.
     View<const Vec3> body_normal();
+    /// Displacement in the step of the owner of a released vertex [m].
+    Vec3 owner_motion(int v) const { return bodies_.motion_of(owner_[v]); }
     void forget();
 
 private:
@@ -60,6 +64,7 @@ private:
     bool is_between(View<const int> patch) const;
 
     const BodySurfaces& bodies_;
+    double room_;
     std::vector<Triangle> triangles_;
     std::vector<std::vector<int>> neighbours_; ///< [vertices]
     std::vector<NearestSurface> owner_;        ///< [vertices]

@@ -7,8 +7,8 @@
 
 namespace toile::collision {
 
-/// Warm-start data of a pair that pressed, for its successors within the step and in the next: normal force
-/// and elastic slip. The same bodies on CPU and GPU.
+/// Warm-start data of a pair that pressed, for its successors within the step and in the next: normal force,
+/// shift of its spring and elastic slip. The same bodies on CPU and GPU.
 struct ContactRecord {
     /// Cosine of the maximum angle between the normals of the same contact [-].
     static constexpr double kSameContact = 0.7;
@@ -16,8 +16,9 @@ struct ContactRecord {
     ContactKind kind = ContactKind::kVertexFace;
     int collider = -1;
     std::array<int, 4> vertex{-1, -1, -1, -1};
-    double normal_force = 0.0;  ///< [N]
-    double pressing = 0.0;      ///< [N] its successor
+    double normal_force = 0.0; ///< [N]
+    double pressing = 0.0;     ///< [N] its successor
+    ContactMultiplier multiplier;
     Vec3 normal = Vec3::Zero(); ///< unit
     Vec3 stick = Vec3::Zero();  ///< [m] elastic part of the slip
 
@@ -35,14 +36,15 @@ struct ContactRecord {
         return record;
     }
 
-    /// Record of a term that presses or has pressed. Its slip is limited to the elastic part that Coulomb's
-    /// law allows.
+    /// Record of a term that presses or has pressed, after an update of its multiplier. Its slip is limited
+    /// to the elastic part that Coulomb's law allows.
     /// @param slip  slip since the anchor [m]
     TOILE_HD static ContactRecord of(const ContactTerm& term, const Vec3& slip)
     {
         ContactRecord record = of(term.pair);
         record.normal_force = term.normal_force;
         record.pressing = term.pressing;
+        record.multiplier = term.multiplier;
         record.normal = term.pair.normal;
         record.stick = slip;
         if (const double pull = term.sticking_stiffness() * record.stick.norm();
@@ -66,6 +68,8 @@ struct ContactRecord {
             return false;
         term.normal_force = normal_force;
         term.pressing = pressing;
+        term.multiplier = multiplier;
+        term.spring.shift = multiplier.shift;
         term.anchor -= stick - n.dot(stick) * n;
         return true;
     }

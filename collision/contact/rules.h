@@ -26,6 +26,12 @@ inline constexpr double kGuardGap = 0.25;
 /// the gap to keep [-].
 inline constexpr double kRampPerGap = 0.6, kHardPerGap = 0.7;
 
+/// Gap below which a pair that may not cross gets a larger force, relative to the gap to keep [-].
+inline constexpr double kMinGap = 0.2;
+
+/// Shortfall that is left, relative to the minimum gap [-].
+inline constexpr double kShort = 0.4;
+
 /// Half of the clearance between two planes of a vertex [m], negative if body parts overlap.
 /// @param x  [vertices] positions at which the planes were found [m]
 TOILE_HD inline double half_clearance(const ContactPair& a, const ContactPair& b, View<const Vec3> x)
@@ -117,12 +123,11 @@ struct ContactRules {
 
     /// Term of a pair, before a warm start.
     /// @param clearance  half the clearance between this plane and an opposing one [m]
-    /// @param recovery   of max_recovery [-]
-    TOILE_HD ContactTerm term_of(const ContactPair& pair, double clearance, double recovery) const
+    TOILE_HD ContactTerm term_of(const ContactPair& pair, double clearance, const PinchedTerm& pinched) const
     {
         ContactTerm term;
         term.pair = pair;
-        term.friction = friction_of(pair);
+        term.friction = pinched.friction * friction_of(pair);
 
         // Cloth that starts inside leaves at the recovery speed, not at once. Between two parts it moves to
         // the middle, where neither can push it through the other, and each grips it with the force at one
@@ -130,8 +135,10 @@ struct ContactRules {
         const double keep = gap_of(pair);
         term.spring = {stiffness_of(pair), kRampPerGap * keep, kHardPerGap * keep};
         const Vec3 start = at_start(pair);
-        const double recovered = pair.normal.dot(start - pair.point) + recovery * max_recovery;
+        const double recovered = pair.normal.dot(start - pair.point) + pinched.recovery * max_recovery;
         term.offset = recovered < keep ? recovered : keep;
+        if (pair.kind >= ContactKind::kGuard)
+            term.min_gap = std::min(kMinGap * keep, term.offset);
         if (clearance < 0.0 && clearance + keep < term.offset) {
             term.offset = clearance + keep;
             term.give = keep;
@@ -141,18 +148,21 @@ struct ContactRules {
     }
 };
 
-/// Sums over terms of the friction limits [N] and of their changes.
+/// Sums over terms: friction limits [N], their changes, and terms nearer than their minimum gap.
 struct FrictionLimits {
     double total = 0.0, change = 0.0;
+    int short_count = 0;
     TOILE_HD FrictionLimits& operator+=(const FrictionLimits& other)
     {
         total += other.total;
         change += other.change;
+        short_count += other.short_count;
         return *this;
     }
 };
 
-/// Updates how hard a term presses at x. Returns the friction limit by that, for the sum over terms.
+/// Updates how hard a term presses at x, and what it lacks. Returns the friction limit by that, for the sum
+/// over terms.
 struct UpdateForce {
     View<ContactTerm> terms;
     View<const Vec3> x; ///< [vertices] [m]
@@ -160,7 +170,10 @@ struct UpdateForce {
     {
         ContactTerm& term = terms[i];
         term.pressing = term.pressing_force(x);
-        return {term.friction * term.pressing, term.friction * std::abs(term.pressing - term.normal_force)};
+        if (term.pair.kind >= ContactKind::kGuard)
+            term.multiplier.shortfall = term.min_gap - term.pair.gap(x);
+        return {term.friction * term.pressing, term.friction * std::abs(term.pressing - term.normal_force),
+                term.multiplier.shortfall > kShort * term.min_gap ? 1 : 0};
     }
 };
 
@@ -168,6 +181,13 @@ struct UpdateForce {
 struct AdoptForce {
     View<ContactTerm> terms;
     TOILE_HD void operator()(int i) const { terms[i].normal_force = terms[i].pressing; }
+};
+
+/// Updates the multiplier of a term.
+struct UpdateMultiplier {
+    View<ContactTerm> terms;
+    bool is_near; ///< see ContactMultiplier
+    TOILE_HD void operator()(int i) const { terms[i].update_multiplier(is_near); }
 };
 
 /// Queries of terms at x during a step.

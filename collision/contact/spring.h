@@ -17,7 +17,8 @@ namespace toile::collision {
 /// forces. Every iteration would switch springs on and off (docs/theory/contact.md).
 ///
 /// From the depth `hard` on, a second spring adds to it, kHardening times as stiff after a ramp of its own:
-/// cloth that is squeezed meets more resistance before there is no gap left.
+/// cloth that is squeezed meets more resistance before there is no gap left. Where that is not enough, the
+/// second spring begins earlier, by `shift`: the multiplier of an augmented Lagrangian [Powell 1969].
 struct ContactSpring {
     /// Stiffness of the second spring over that of the first, and its ramp over the depth where it begins
     /// [-].
@@ -26,32 +27,32 @@ struct ContactSpring {
     double stiffness = 0.0; ///< [N/m] w
     double ramp = 0.0;      ///< [m] D; 0: linear
     double hard = 0.0;      ///< [m] at least D; 0: it does not harden
+    double shift = 0.0;     ///< [m]
 
     /// @param depth  [m] negative without contact
     TOILE_HD double force(double depth) const // [N]
     {
-        if (depth <= 0.0)
-            return 0.0;
-        return soft_force(depth) + (hardens_at(depth) ? second().soft_force(depth - hard) : 0.0);
+        return (depth > 0.0 ? soft_force(depth) : 0.0) +
+               (hardens_at(depth) ? second().soft_force(depth - begin()) : 0.0);
     }
     TOILE_HD double energy(double depth) const // [J]
     {
-        if (depth <= 0.0)
-            return 0.0;
-        return soft_energy(depth) + (hardens_at(depth) ? second().soft_energy(depth - hard) : 0.0);
+        return (depth > 0.0 ? soft_energy(depth) : 0.0) +
+               (hardens_at(depth) ? second().soft_energy(depth - begin()) : 0.0);
     }
     TOILE_HD double stiffness_at(double depth) const // [N/m]
     {
-        if (depth <= 0.0)
-            return 0.0;
-        return soft_stiffness(depth) + (hardens_at(depth) ? second().soft_stiffness(depth - hard) : 0.0);
+        return (depth > 0.0 ? soft_stiffness(depth) : 0.0) +
+               (hardens_at(depth) ? second().soft_stiffness(depth - begin()) : 0.0);
     }
 
-    /// Depth at a given force [N], the inverse of force() [m].
+    /// Depth at a given force [N], the inverse of force() [m]; not negative.
     TOILE_HD double depth_of(double force) const
     {
-        if (force <= 0.0)
+        if (force <= this->force(0.0))
             return 0.0;
+        if (shift > 0.0)
+            return descend(unshifted().depth_of(force), 0.0, 1.0, force);
         if (hard > 0.0 && force > soft_force(hard))
             return hard + beyond_hard(force - soft_force(hard), stiffness, 1.0);
         const double beyond = force / stiffness + 0.5 * ramp;
@@ -64,6 +65,8 @@ struct ContactSpring {
     {
         if (reach <= 0.0)
             return 0.0;
+        if (shift > 0.0)
+            return descend(unshifted().depth_at_rest(reach, mobility), 1.0, mobility, reach);
         const double wm = stiffness * mobility;
         if (hard > 0.0 && reach > hard + mobility * soft_force(hard))
             return hard + beyond_hard(reach - hard - mobility * soft_force(hard), 1.0 + wm, mobility);
@@ -74,7 +77,9 @@ struct ContactSpring {
     }
 
 private:
-    TOILE_HD bool hardens_at(double depth) const { return hard > 0.0 && depth > hard; }
+    TOILE_HD double begin() const { return hard - shift; } ///< of the second spring
+    TOILE_HD bool hardens_at(double depth) const { return hard > 0.0 && depth > begin(); }
+    TOILE_HD ContactSpring unshifted() const { return {stiffness, ramp, hard}; }
     TOILE_HD ContactSpring second() const { return {kHardening * stiffness, kHardRamp * hard, 0.0}; }
     TOILE_HD double soft_force(double depth) const
     {
@@ -89,6 +94,16 @@ private:
     {
         return depth < ramp ? stiffness * depth / ramp : stiffness;
     }
+
+    /// Solves slope d + scale force(d) = rest for the depth d, not negative, by Newton's method from a larger
+    /// one: the left side is convex.
+    TOILE_HD double descend(double depth, double slope, double scale, double rest) const
+    {
+        for (int k = 0; k < kNewtonSteps && depth > 0.0; ++k)
+            depth -= (slope * depth + scale * force(depth) - rest) / (slope + scale * stiffness_at(depth));
+        return depth > 0.0 ? depth : 0.0;
+    }
+    static constexpr int kNewtonSteps = 8;
 
     /// Solves slope z + scale second().force(z) = rest for the depth z beyond `hard`.
     TOILE_HD double beyond_hard(double rest, double slope, double scale) const

@@ -7,19 +7,64 @@
 
 namespace toile::collision {
 
+/// Multiplier of a term that must keep a minimum gap, as the shift of its spring: the augmented Lagrangian of
+///
+///   gap >= min_gap;      shift = max(0, shift + gain (min_gap - gap))
+///
+/// [Hestenes 1969, Powell 1969]. The gain is 1, and grows where an update does little because what presses
+/// the cloth, such as cloth at its strain limit, is stiffer than the spring. Far from the minimum it does
+/// not.
+struct ContactMultiplier {
+    double shift = 0.0;     ///< [m]
+    double shortfall = 0.0; ///< [m] min_gap - gap at the last look
+    double before = 0.0;    ///< [m] the same at the last update
+    double gain = 1.0;      ///< [-]
+
+    /// Part of a shortfall [-] of which an update that does little leaves more; growth and bound of the gain.
+    static constexpr double kLeft = 0.5, kGrowth = 2.0, kMaxGain = 64.0;
+
+    /// @param most     bound of the shortfall of iterates that go astray [m]
+    /// @param is_near  the minimum is
+    TOILE_HD void update(double most, bool is_near)
+    {
+        const bool did_little = before > 0.0 && shortfall > kLeft * before;
+        if (shortfall < 0.0 || !is_near)
+            gain = 1.0;
+        else if (did_little && gain < kMaxGain)
+            gain *= kGrowth;
+        const double next = shift + gain * (shortfall < most ? shortfall : most);
+        shift = next > 0.0 ? next : 0.0;
+        before = shortfall;
+        shortfall = 0.0;
+    }
+};
+
 /// Contact pair with the data of its energy.
 struct ContactTerm {
     ContactPair pair;
     double offset = 0.0;        ///< [m] gap to keep between cloth and surface
+    double min_gap = 0.0;       ///< [m] that a step may not go below
     ContactSpring spring;       ///< along the normal
     double friction = 0.0;      ///< [-] Coulomb coefficient
     Vec3 anchor = Vec3::Zero(); ///< [m] sticking position of the cloth point, in space at t1
     double give = 0.0; ///< [m] depth below the offset at which a step may end: cloth gripped from both sides
     double normal_force = 0.0; ///< [N] lagged, bounds friction
     double pressing = 0.0;     ///< [N] its successor, from the last update
+    ContactMultiplier multiplier;
 
     /// Slip at which friction reaches its limit, relative to the spring's ramp [-].
     static constexpr double kSlipPerRamp = 0.05;
+
+    /// Bound of a shortfall, relative to the depth from which on the spring hardens [-].
+    static constexpr double kMostPerHard = 0.4;
+
+    TOILE_HD void update_multiplier(bool is_near)
+    {
+        if (multiplier.shortfall == 0.0)
+            return;
+        multiplier.update(kMostPerHard * spring.hard, is_near);
+        spring.shift = multiplier.shift;
+    }
 
     /// Gap g at x [m]; negative if the term presses.
     TOILE_HD double gap(View<const Vec3> x) const { return pair.gap(x) - offset; }

@@ -52,6 +52,9 @@ public:
     /// Bounds friction by the updated forces.
     virtual void adopt_forces() = 0;
 
+    /// Presses harder where the last update found less than the minimum gap. See ContactMultiplier.
+    virtual void update_multipliers(bool is_near) = 0;
+
     /// See ActiveSetEnergy.
     virtual void mark_touching(View<unsigned char> touches) = 0;
 

@@ -74,7 +74,7 @@ public:
         }
         return device_energy_.get();
     }
-    bool revise(StepField, bool) override { return false; }
+    bool revise(StepField, MinimiserProgress) override { return false; }
     void clear(StepField, StepField) override {}
     bool keep_apart(StepField, StepField) override { return false; }
     void end_step(StepField) override {}

@@ -72,19 +72,21 @@ struct Outcome {
     double strain = 0.0;         ///< [-] in the last frame
     double depth = 0.0;          ///< [m] inside the body in the last frame
     int crossings = 0;           ///< with the body in the last frame
+    int unfinished = 0;          ///< steps
     std::vector<Vec3> positions; ///< in the last frame [m]
 };
 
 /// Simulates a sheet between the parts of a body.
+/// @param more  what follows the sheet in the scene
 Outcome run(const std::vector<BodyPart>& parts, const std::string& sheet, int frames,
-            const std::string& more = "")
+            const std::string& more = "]")
 {
     const TemporaryFolder folder;
     write_gltf(folder.path() / "body.gltf", parts);
     folder.write("scene.json", R"({"toile": 1, "frames": )" + std::to_string(frames) +
                                    R"(, "avatars": [{"name": "body", "file": "body.gltf", "clip": "move"}],
         "cloths": [{"name": "sheet", )" +
-                                   sheet + "}]" + more + "}");
+                                   sheet + "}" + more + "}");
     const Scene scene = read_scene(folder.path() / "scene.json");
     World world(scene);
     EXPECT_TRUE(world.start().is_clean());
@@ -94,6 +96,7 @@ Outcome run(const std::vector<BodyPart>& parts, const std::string& sheet, int fr
     while (world.frame() + 1 < world.frame_count()) {
         const StepReport report = world.advance_frame();
         EXPECT_NE(report.status, StepReport::Status::NonFinite);
+        outcome.unfinished += report.unfinished;
         const std::vector<Vec3>& x = world.cloths()[0].positions;
         for (size_t v = 0; v < x.size(); ++v)
             outcome.fastest = std::max(outcome.fastest, (x[v] - before[v]).norm() * scene.fps);
@@ -151,7 +154,7 @@ Outcome thighs(const std::string& more = "")
                          {{0.0}, {0.2}, {0.6, in}, {1.2, in}, {1.6}, {2.2}}});
     }
     return run(parts, R"("rectangle": {"size": [0.3, 0.4], "resolution": 0.03}, "rotate_deg": [90, 90, 0])",
-               66, more + R"(, "attachments": [{"cloth": "sheet",
+               66, more + R"(], "attachments": [{"cloth": "sheet",
                "select": {"box": {"lower": [-1, 0.19, -1], "upper": [1, 1, 1]}}}])");
 }
 
@@ -178,6 +181,7 @@ TEST(CaughtCloth, IsReleasedUnderAHand)
 {
     const Outcome outcome = hand(0.02);
     expect_free(outcome);
+    EXPECT_EQ(outcome.unfinished, 0);
     EXPECT_EQ(count_misplaced(outcome, [](const Vec3& x) { return x.y() > 0.0 && x.y() < 0.06; }), 0);
 }
 
@@ -199,7 +203,7 @@ Outcome armpit()
                R"("rectangle": {"size": [0.2, 0.3], "resolution": 0.02}, "rotate_deg": [90, 90, 0],
                   "translate": [0.003, -0.12, 0])",
                70,
-               R"(, "attachments": [{"cloth": "sheet",
+               R"(], "attachments": [{"cloth": "sheet",
                "select": {"box": {"lower": [-1, 0.02, -1], "upper": [1, 1, 1]}}}])");
 }
 
@@ -207,6 +211,7 @@ TEST(CaughtCloth, IsReleasedFromAnArmpit)
 {
     const Outcome outcome = armpit();
     expect_free(outcome);
+    EXPECT_EQ(outcome.unfinished, 0);
     // Below the shoulder: outside of the trunk and, unless it is in front of the arm or behind, on the inner
     // side of the arm.
     const double slope = std::tan(std::numbers::pi / 6.0);

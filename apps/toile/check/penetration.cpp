@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/contact/contact_cloth.h"
 #include "core/compute/parallel.h"
 #include "scenes/format/scene_fabric.h"
 
@@ -21,14 +22,13 @@ double deepest_in(const scenes::SceneBody& solid, View<const Vec3> x, View<const
     return depths.empty() ? 0.0 : *std::max_element(depths.begin(), depths.end());
 }
 
-/// Room that cloth needs between two surfaces that face each other [m]: its gap to both, and a layer of cloth
-/// on each with cloth between them.
+/// Largest room that a cloth needs between two surfaces [m].
 double room_of(const scenes::Scene& scene)
 {
     double thickness = 0.0;
     for (const scene::Cloth& cloth : scene.cloths)
         thickness = std::max(thickness, scenes::fabric_of(scene, cloth).thickness);
-    return 2.0 * scene.contact.gap + 3.0 * thickness;
+    return collision::room_of(scene.contact.gap, thickness);
 }
 
 } // namespace

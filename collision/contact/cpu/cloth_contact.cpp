@@ -19,7 +19,7 @@ HostClothContact::HostClothContact(ContactSoup given)
 
 void HostClothContact::begin_step(const StepStart& start, NearbyBodies& near)
 {
-    set_fixed(start.fixed);
+    begin(start.fixed);
     prediction_ = start.prediction;
     std::copy(start.x.begin(), start.x.end(), base_.begin());
     if (bodies().needs_begin())
@@ -52,7 +52,8 @@ void HostClothContact::search()
 
 void HostClothContact::append_pairs(std::vector<ContactPair>& out) const
 {
-    const FindPressing find{near_.soup(), free_step_.base(), motion_, expected_, slack_, rules().thickness()};
+    const FindPressing find{near_.soup(), free_step_.base(),   motion_,  expected_,
+                            slack_,       rules().thickness(), stopped()};
     const GuardOf guard_of = bodies().guards(base_);
     parallel_append(
         kCpu, "collision/cloth_terms", int(pairs_.size()),
@@ -74,6 +75,7 @@ double HostClothContact::limit(View<Vec3> x, const FindSupported& find_supported
     std::vector<unsigned char> supported = find_supported();
     supported.resize(end_.size(), 0);
     const double correction = free_step_.limit(end_, supported);
+    mark_stopped(free_step_.blocked());
     if (correction > 0.0)
         std::copy_n(end_.begin(), x.size(), x.begin());
     return correction;
@@ -82,7 +84,7 @@ double HostClothContact::limit(View<Vec3> x, const FindSupported& find_supported
 bool HostClothContact::advance(StepField positions, const FindSupported& find_supported)
 {
     const double correction = limit(positions.change_on_host(), find_supported);
-    if (correction <= rules().ignored_correction() && !has_slid())
+    if (correction <= rules().ignored_correction() && !stops_more() && !has_slid())
         return false;
     search_from_end(true);
     return true;

@@ -85,9 +85,10 @@ void HostContactTerms::make(const ClothContact* between)
     const ReplacedPairs replaced = between ? between->replaced() : ReplacedPairs{};
     std::vector<ContactTerm> terms;
     for (size_t i = 0; i < pairs.size(); ++i) {
-        if ((!is_plane(pairs[i]) && clearance[i] < 0.0) || rules_.is_fixed(pairs[i]) || replaced(pairs[i]))
+        if ((!is_plane(pairs[i]) && clearance[i] < 0.0) || rules_.is_fixed(pairs[i]) ||
+            replaced(pairs[i], clearance[i]))
             continue;
-        terms.push_back(rules_.term_of(pairs[i], clearance[i], replaced.recovery_of(pairs[i])));
+        terms.push_back(rules_.term_of(pairs[i], clearance[i], replaced.pinched(pairs[i])));
         memory_.warm_start(terms.back()); // the same contact of the step before
     }
     energy_.set_terms(std::move(terms), rules_.x.size());
@@ -107,6 +108,13 @@ void HostContactTerms::adopt_forces()
     const AdoptForce adopt{energy_.change_terms()};
     for (int i = 0; i < adopt.terms.size(); ++i)
         adopt(i);
+}
+
+void HostContactTerms::update_multipliers(bool is_near)
+{
+    const UpdateMultiplier update{energy_.change_terms(), is_near};
+    for (int i = 0; i < update.terms.size(); ++i)
+        update(i);
 }
 
 void HostContactTerms::mark_touching(View<unsigned char> touches)

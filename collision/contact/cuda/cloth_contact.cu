@@ -25,8 +25,8 @@ DeviceClothContact::DeviceClothContact(const CudaSpace& space, ContactSoup given
       near_(space, soup().triangles, soup().positions, soup().rigid), exempt_(space, exempt()),
       free_step_(space, near_, exempt_, rules().collision_free_step().gap(), soup().vertex_count()),
       pressing_(space, "cloth_contact/pressing"), marks_(space, "cloth_contact/marks"),
-      indices_(space, "cloth_contact/indices"), count_(space, "cloth_contact/count", 1), sum_(space),
-      scratch_(space, "cloth_contact/scratch"),
+      stopped_on_device_(space, "cloth_contact/stopped"), indices_(space, "cloth_contact/indices"),
+      count_(space, "cloth_contact/count", 1), sum_(space), scratch_(space, "cloth_contact/scratch"),
       ccd_search_(space, near_, free_step_, rules().collision_free_step().gap(), slack_),
       carry_(ccd_search_, edges, rules().collision_free_step(), rules().bodies()),
       limiter_(edges,
@@ -62,7 +62,7 @@ void DeviceClothContact::begin_step(const StepStart& start, NearbyBodies& near)
     const int cloth = soup().first_body;
     TOILE_ASSERT(start.device.x.size() == cloth);
     near_.abandon(); // of a step that an error has aborted
-    set_fixed(start.fixed);
+    begin(start.fixed);
     prediction_ = start.device.prediction;
     parallel_for(space_, "collision/keep_base", cloth,
                  CopyPositions{start.device.x, soup().of_cloth(base_.view())});
@@ -124,8 +124,11 @@ void DeviceClothContact::end_search()
 
 FindPressing DeviceClothContact::find_pressing() const
 {
-    return {near_.soup(),     base_.view(),  motion_.view(),
-            expected_.view(), slack_.view(), {half_thickness_.view()}};
+    FindPressing find{near_.soup(),     base_.view(),  motion_.view(),
+                      expected_.view(), slack_.view(), {half_thickness_.view()}};
+    if (!stopped().empty())
+        find.stopped = stopped_on_device_.view();
+    return find;
 }
 
 GuardOf DeviceClothContact::guards() const
@@ -168,7 +171,7 @@ bool DeviceClothContact::advance(StepField x, const FindSupported& find_supporte
 {
     const double correction = limit(x, find_supported);
     const View<const Vec3> all = with_bodies(x.device());
-    if (correction <= rules().ignored_correction() && !has_slid(all))
+    if (correction <= rules().ignored_correction() && !stops_more() && !has_slid(all))
         return false;
     search_from(all, correction > 0.0, true);
     return true;
@@ -196,8 +199,11 @@ double DeviceClothContact::limit(StepField x, const FindSupported& find_supporte
 {
     const StageScope stage("collision/collision_free_step");
     const View<const BlockedPair> blocked = free_step_.query_all(with_bodies(x.device()));
+    mark_stopped(blocked);
     if (blocked.empty())
         return 0.0;
+    if (stops_more())
+        stopped_on_device_.upload(stopped());
     if (!has_base_)
         copy_base();
     const View<const Vec3> wanted = x.host();

@@ -54,8 +54,9 @@ private:
     DeviceExemptPairs exempt_;
     DeviceCollisionFreeStep free_step_;
     DeviceArray<ContactPair> pressing_;
-    DeviceArray<unsigned char> marks_; ///< [pairs] 1: presses
-    DeviceArray<int> indices_;         ///< [pairs] of the pairs that press
+    DeviceArray<unsigned char> marks_;             ///< [pairs] 1: presses
+    DeviceArray<unsigned char> stopped_on_device_; ///< [vertices] see stopped()
+    DeviceArray<int> indices_;                     ///< [pairs] of the pairs that press
     PinnedArray<int> count_;
     SumScratch<int> sum_;
     DeviceScratch scratch_;

@@ -124,7 +124,8 @@ struct ConcatenatedPairs {
 struct FlagTerm {
     ConcatenatedPairs pairs;
     ContactRules rules;
-    View<const double> overlap; ///< [vertices] see FindOpposingClearance [m]
+    View<const double> overlap;   ///< [vertices] see FindOpposingClearance [m]
+    View<const double> clearance; ///< [pairs with colliders] likewise
     ReplacedPairs replaced;
     View<unsigned char> flags; ///< [pairs] out
     TOILE_HD void operator()(int i) const
@@ -133,7 +134,8 @@ struct FlagTerm {
         bool is_caught = false;
         for (int k = 0; k < pair.count() && pair.kind < ContactKind::kGuard && !is_plane(pair); ++k)
             is_caught = is_caught || overlap[pair.vertex[k]] < 0.0;
-        flags[i] = !is_caught && !rules.is_fixed(pair) && !replaced(pair) ? 1 : 0;
+        const double room = is_plane(pair) ? clearance[i] : std::numeric_limits<double>::infinity();
+        flags[i] = !is_caught && !rules.is_fixed(pair) && !replaced(pair, room) ? 1 : 0;
     }
 };
 
@@ -151,7 +153,7 @@ struct MakeTerm {
         const ContactPair& pair = pairs[list[i]];
         ContactTerm term =
             rules.term_of(pair, is_plane(pair) ? clearance[list[i]] : std::numeric_limits<double>::infinity(),
-                          replaced.recovery_of(pair));
+                          replaced.pinched(pair));
         known.warm_start(term);
         terms[i] = term;
     }

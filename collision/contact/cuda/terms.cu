@@ -89,7 +89,7 @@ void DeviceContactTerms::make(const ClothContact* between)
     const View<unsigned char> flags = first_items(pair_flags_, count);
     const ReplacedPairs replaced = between != nullptr ? between->replaced() : ReplacedPairs{};
     parallel_for(space_, "contact/flag_terms", count,
-                 FlagTerm{pairs, rules_, overlap_.view(), replaced, flags});
+                 FlagTerm{pairs, rules_, overlap_.view(), clearance, replaced, flags});
     const int kept = list_flagged(space_, "contact/list_terms", flags, list_, count_, scratch_);
     const View<ContactTerm> terms = energy_.reserve(kept);
     parallel_for(space_, "contact/make_terms", kept,
@@ -106,6 +106,12 @@ FrictionLimits DeviceContactTerms::update_forces()
 void DeviceContactTerms::adopt_forces()
 {
     parallel_for(space_, "contact/adopt_forces", energy_.terms().size(), AdoptForce{energy_.change_terms()});
+}
+
+void DeviceContactTerms::update_multipliers(bool is_near)
+{
+    parallel_for(space_, "contact/update_multipliers", energy_.terms().size(),
+                 UpdateMultiplier{energy_.change_terms(), is_near});
 }
 
 /// Marks the vertices of flagged terms.

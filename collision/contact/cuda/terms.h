@@ -28,6 +28,7 @@ public:
     void see(StepField x) override { x_ = x; }
     FrictionLimits update_forces() override;
     void adopt_forces() override;
+    void update_multipliers(bool is_near) override;
     void mark_touching(View<unsigned char> touches) override;
     std::vector<unsigned char> supported() override;
     bool has_left(double trust) override;

@@ -8,6 +8,9 @@ namespace toile {
 class CudaSpace;
 class DeviceActiveSet;
 
+/// How far a minimisation is from its minimum.
+enum class MinimiserProgress { kFar, kNear, kConverged };
+
 /// State of a body at the start of a step, for an energy with an active set.
 struct StepStart {
     View<const Vec3> x;              ///< [vertices] positions at t0 [m]; empty if a GPU makes the step
@@ -68,8 +71,8 @@ public:
     /// searches again if x left the neighbourhood of the candidates. Moves x [vertices] back if it violates
     /// the invariants of keep_apart(); where nothing is near, only once x is converged. True if the energy
     /// changed enough to minimise again.
-    /// @param is_converged  the minimisation was not cut short: forces at x exceed its residual
-    virtual bool revise(StepField x, bool is_converged) = 0;
+    /// @param progress  converged: the minimisation was not cut short, and forces at x exceed its residual
+    virtual bool revise(StepField x, MinimiserProgress progress) = 0;
 
     /// Removes what the minimisation has left inside the forbidden half-spaces.
     /// @param x, v  [vertices] its positions and velocities, modified

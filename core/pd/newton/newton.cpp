@@ -15,6 +15,9 @@ namespace {
 /// twice in succession. With a fixed number of iterations several times the last step would remain.
 constexpr double kIncrement = 0.1;
 
+/// Newton step, relative to the tolerance [-], from which on the minimum is near.
+constexpr double kNear = 10.0;
+
 /// Bound on the Newton step, relative to the tolerance [-], below which no step is made. A larger step
 /// is made although it is small: unbalanced forces that no step follows would never come to balance.
 constexpr double kNegligible = 0.03;
@@ -23,7 +26,7 @@ constexpr double kNegligible = 0.03;
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
 /// raises the value, as where a body pulls it through other cloth, that happens kMaxSetbacks times at most,
 /// and the point with the lowest value is the result.
-constexpr int kStall = 8, kMaxSetbacks = 5;
+constexpr int kStall = 8, kMaxSetbacks = 15;
 
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
 /// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
@@ -107,6 +110,13 @@ NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first
     }
 }
 
+MinimiserProgress progress_of(const OuterLoop::Outcome& outcome, double tolerance)
+{
+    if (outcome.converged)
+        return MinimiserProgress::kConverged;
+    return outcome.speed < kNear * tolerance ? MinimiserProgress::kNear : MinimiserProgress::kFar;
+}
+
 /// Makes a Newton step.
 /// @return the accepted part of it, 0 if there is none
 double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::Outcome& outcome)
@@ -168,7 +178,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
             small = outcome.converged ? small + 1 : 0;
             outcome.converged = outcome.converged && (small >= small_steps || step == 0.0);
         }
-        const bool has_changed = revise && revise(outcome.converged);
+        const bool has_changed = revise && revise(progress_of(outcome, settings.tolerance));
         if (!has_changed && (outcome.converged || step == 0.0))
             break;
         outcome.converged = false;

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "core/pd/energy/active_set_energy.h"
 #include "core/pd/minimiser/outer_loop.h"
 #include "core/pd/newton/newton_space.h"
 
@@ -24,9 +25,8 @@ struct Newton {
     };
 
     /// Looks for contact at the current point between Newton steps. May move it and change the objective.
-    /// @param is_converged  the step was below the tolerance
     /// @return true if it did either
-    using Revise = std::function<bool(bool is_converged)>;
+    using Revise = std::function<bool(MinimiserProgress)>;
 
     /// Minimises from the current point, in place. Begins at rest instead if the value is lower there.
     /// @param revise   may be empty

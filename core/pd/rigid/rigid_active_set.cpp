@@ -150,12 +150,12 @@ void RigidActiveSet::mark_touching(StepField positions, View<unsigned char> touc
         touches[i] |= of_surface[i];
 }
 
-bool RigidActiveSet::revise(StepField positions, bool is_converged)
+bool RigidActiveSet::revise(StepField positions, MinimiserProgress progress)
 {
     const View<Vec3> q = positions.change_on_host();
     to_surface(q, x_);
     const std::vector<Vec3> before = x_;
-    const bool changed = surface_.revise(x_, is_converged);
+    const bool changed = surface_.revise(x_, progress);
     take_moved(before, x_, q);
     return changed;
 }

@@ -36,7 +36,7 @@ public:
 
     bool may_be_active() const override { return surface_.may_be_active(); }
     void mark_touching(StepField q, View<unsigned char> touches) override;
-    bool revise(StepField q, bool is_converged) override;
+    bool revise(StepField q, MinimiserProgress progress) override;
     void clear(StepField q, StepField v) override;
     bool keep_apart(StepField q, StepField v) override;
     void end_step(StepField q) override;

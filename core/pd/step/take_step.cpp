@@ -35,7 +35,9 @@ void minimise(StepSpace& space, ActiveSetEnergy* active, const StepLimits& limit
         if (report.status == StepReport::Status::NonFinite)
             return;
         const bool has_changed =
-            active && active->revise(space.end_positions(), passes.is_converged(outcome));
+            active &&
+            active->revise(space.end_positions(), passes.is_converged(outcome) ? MinimiserProgress::kConverged
+                                                                               : MinimiserProgress::kFar);
         goes_on = passes.goes_on(outcome, has_changed);
     }
 }
@@ -48,7 +50,7 @@ void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimi
     const bool is_calm = !active || !active->may_be_active();
     Newton::Revise revise;
     if (active)
-        revise = [&](bool is_converged) { return active->revise(space.end_positions(), is_converged); };
+        revise = [&](MinimiserProgress at) { return active->revise(space.end_positions(), at); };
     const double tolerance = (is_calm ? StepLimits::kCalm : 1.0) * limits.speed_tolerance;
     const Newton::Settings settings{tolerance, limits.max_iterations, input.dt,
                                     limits.begins_by_local_global};

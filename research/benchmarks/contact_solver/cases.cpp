@@ -117,7 +117,7 @@ void Case::press(Kind kind, double stiffness)
     // Friction is limited by the normal forces of the last query.
     std::vector<Vec3> positions = pressed_;
     if (friction > 0.0)
-        contact_->revise(positions, true);
+        contact_->revise(positions, MinimiserProgress::kConverged);
     contact_->activate(pressed_);
     std::vector<FrozenTerm> terms;
     contact_->append_terms(terms);

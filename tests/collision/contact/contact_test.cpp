@@ -219,7 +219,7 @@ TEST(Contact, KeepsTheAnchorOfTheStartWhenPairsAreUpdated)
 {
     RisingPlate scene;
     std::vector<Vec3> x = scene.slid();
-    ASSERT_TRUE(scene.contact.revise(x, true));
+    ASSERT_TRUE(scene.contact.revise(x, MinimiserProgress::kConverged));
     ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
     const ContactTerm& term = scene.contact.energy().terms()[0];
     EXPECT_GT(term.normal_force, 0.0);
@@ -230,7 +230,7 @@ TEST(Contact, IgnoresTruncatedForcesInFrictionButWarmStartsWithThem)
 {
     RisingPlate scene;
     std::vector<Vec3> x = scene.slid();
-    ASSERT_TRUE(scene.contact.revise(x, false));
+    ASSERT_TRUE(scene.contact.revise(x, MinimiserProgress::kNear));
     ASSERT_EQ(scene.contact.energy().terms().size(), 1u);
     EXPECT_EQ(scene.contact.energy().terms()[0].normal_force, 0.0);
 
@@ -248,7 +248,7 @@ TEST(Contact, KeepsTheEquilibriumDepthOfAPair)
     const double depth = 6e-5; // [m]
     std::vector<Vec3> x = scene.start, v(3, Vec3::Zero());
     x[0] = Vec3(0.003, scene.rise + kGap - depth, 0.0); // slid beyond the threshold of a new query
-    scene.contact.revise(x, true);
+    scene.contact.revise(x, MinimiserProgress::kConverged);
     scene.contact.clear(x, v);
     EXPECT_NEAR(x[0].y(), scene.rise + kGap - depth, 1e-12);
 }

@@ -8,7 +8,13 @@ using namespace collision;
 
 namespace {
 
-constexpr ContactSpring kSprings[] = {{800.0, 0.0}, {800.0, 3e-4}, {2e5, 1e-3}};
+/// Linear, with a ramp, hardening, and shifted: the second spring begins inside the ramp, or before contact.
+constexpr ContactSpring kSprings[] = {{800.0, 0.0},
+                                      {800.0, 3e-4},
+                                      {2e5, 1e-3},
+                                      {800.0, 3e-4, 5e-4},
+                                      {800.0, 3e-4, 5e-4, 2.6e-4},
+                                      {800.0, 3e-4, 5e-4, 9e-4}};
 
 TEST(ContactSpring, HasTheSlopesOfItsEnergy)
 {
@@ -25,8 +31,8 @@ TEST(ContactSpring, HasTheSlopesOfItsEnergy)
 TEST(ContactSpring, IsSmoothWhereItBeginsAndWhereItsRampEnds)
 {
     for (const ContactSpring& spring : kSprings)
-        for (const double depth : {0.0, spring.ramp}) {
-            const double h = 1e-9, w = spring.stiffness;
+        for (const double depth : {0.0, spring.ramp, spring.hard - spring.shift}) {
+            const double h = 1e-9, w = 9.0 * spring.stiffness; // of both springs
             const double before = spring.force(depth - h), after = spring.force(depth + h);
             EXPECT_NEAR(spring.energy(depth + h) - spring.energy(depth - h), h * (before + after),
                         3.0 * w * h * h);
@@ -53,6 +59,10 @@ TEST(ContactSpring, RestsWhereItsForceBalances)
         for (const double mobility : {0.0, 1e-4, 0.3, 50.0})
             for (const double reach : {1e-6, 4e-4, 2e-2}) {
                 const double depth = spring.depth_at_rest(reach, mobility);
+                if (mobility * spring.force(0.0) > reach) {
+                    EXPECT_EQ(depth, 0.0);
+                    continue;
+                }
                 EXPECT_NEAR(depth + mobility * spring.force(depth), reach, 1e-9 * reach);
             }
     }

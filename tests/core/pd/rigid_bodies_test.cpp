@@ -188,7 +188,7 @@ public:
     }
     View<const Mat3> diagonal_blocks() const override { return blocks_; }
     void append_terms(std::vector<FrozenTerm>& terms) const override { terms = terms_; }
-    bool revise(StepField, bool) override { return false; }
+    bool revise(StepField, MinimiserProgress) override { return false; }
     void clear(StepField, StepField) override {}
     bool keep_apart(StepField, StepField) override { return false; }
     void end_step(StepField) override {}

@@ -43,7 +43,7 @@ public:
         outcome.speed = settings.tolerance;
         outcome.converged = true;
         if (revise)
-            revise(true);
+            revise(MinimiserProgress::kConverged);
         return outcome;
     }
     void restart_touching(const StepInput&) override { calls.push_back("restart touching"); }
@@ -59,7 +59,7 @@ public:
     void add_hessian_product(View<const Vec3>, View<Vec3>) const override {}
     View<const Mat3> diagonal_blocks() const override { return {}; }
     void append_terms(std::vector<FrozenTerm>&) const override {}
-    bool revise(StepField, bool) override
+    bool revise(StepField, MinimiserProgress) override
     {
         calls.push_back("revise");
         return searches_left-- > 0;

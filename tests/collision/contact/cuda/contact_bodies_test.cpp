@@ -151,8 +151,8 @@ TEST_F(DeviceContactBodiesTest, MoveClothAsOnTheCpu)
     EXPECT_TRUE(device.make_feasible(board.v));
     expect_same_field(guess, board.v.host(), 1e-8);
 
-    EXPECT_TRUE(cpu.revise(x, true));
-    EXPECT_TRUE(device.revise(board.found, true));
+    EXPECT_TRUE(cpu.revise(x, MinimiserProgress::kConverged));
+    EXPECT_TRUE(device.revise(board.found, MinimiserProgress::kConverged));
     OnBoard::fill(board.v, v);
     cpu.clear(x, v);
     device.clear(board.found, board.v);

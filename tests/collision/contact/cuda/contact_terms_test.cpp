@@ -267,7 +267,7 @@ TEST_F(DeviceContactTermsTest, AreEmptyWithoutNearbyColliders)
     contact.begin_step(board.begin(made));
     EXPECT_FALSE(contact.make_feasible(board.prediction));
     EXPECT_FALSE(contact.on_device(space())->has_terms());
-    EXPECT_FALSE(contact.revise(board.found, true));
+    EXPECT_FALSE(contact.revise(board.found, MinimiserProgress::kConverged));
     contact.clear(board.found, board.v);
     contact.end_step(board.found);
     EXPECT_EQ(contact.active_count(), 0);
