@@ -31,7 +31,8 @@ double room_of(const std::vector<ContactCloth>& cloths)
 {
     double room = 0.0;
     for (const ContactCloth& cloth : cloths)
-        room = std::max(room, room_of(cloth.gap, cloth.thickness));
+        if (!cloth.is_rigid)
+            room = std::max(room, room_of(cloth.gap - 0.5 * cloth.thickness, cloth.thickness));
     return room;
 }
 

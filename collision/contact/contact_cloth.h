@@ -24,8 +24,9 @@ std::vector<int> rigid_bodies_of(const std::vector<ContactCloth>& cloths);
 /// Largest gap that cloths keep to colliders [m].
 double largest_gap(const std::vector<ContactCloth>& cloths);
 
-/// Room that cloth needs between two surfaces that face each other [m]: its gap to both, and a layer of cloth
+/// Room that cloth needs between two surfaces that face each other [m]: a gap at both, and a layer of cloth
 /// on each with cloth between them.
+/// @param gap  between a collider and the surface of the cloth [m]
 constexpr double room_of(double gap, double thickness) { return 2.0 * gap + 3.0 * thickness; }
 double room_of(const std::vector<ContactCloth>& cloths); ///< the largest
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "scenes/format/scene_fabric.h"
 #include "scenes/method/solver_choice.h"
 
 namespace toile::scenes {
@@ -96,6 +97,14 @@ std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const st
             all[i].cloth_friction.push_back(friction_of(scene, friction_bodies[i], other));
     }
     return all;
+}
+
+double room_for_cloth(const Scene& scene)
+{
+    double thickness = 0.0;
+    for (const scene::Cloth& cloth : scene.cloths)
+        thickness = std::max(thickness, fabric_of(scene, cloth).thickness);
+    return collision::room_of(scene.contact.gap, thickness);
 }
 
 std::vector<collision::ContactCollider> contact_colliders(const std::vector<Collider>& colliders)

@@ -17,6 +17,9 @@ std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const st
                                                     const SceneSolids* solids,
                                                     const std::vector<Collider>& colliders);
 
+/// Largest room that a cloth of the scene needs between two surfaces that face each other [m].
+double room_for_cloth(const Scene& scene);
+
 std::vector<collision::ContactCollider> contact_colliders(const std::vector<Collider>& colliders);
 
 } // namespace toile::scenes

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "collision/contact/contact_cloth.h"
 #include "core/compute/parallel.h"
-#include "scenes/format/scene_fabric.h"
+#include "scenes/world/contact_setup.h"
 
 namespace toile::app {
 
@@ -22,21 +21,12 @@ double deepest_in(const scenes::SceneBody& solid, View<const Vec3> x, View<const
     return depths.empty() ? 0.0 : *std::max_element(depths.begin(), depths.end());
 }
 
-/// Largest room that a cloth needs between two surfaces [m].
-double room_of(const scenes::Scene& scene)
-{
-    double thickness = 0.0;
-    for (const scene::Cloth& cloth : scene.cloths)
-        thickness = std::max(thickness, scenes::fabric_of(scene, cloth).thickness);
-    return collision::room_of(scene.contact.gap, thickness);
-}
-
 } // namespace
 
 ScenePenetration::ScenePenetration(const scenes::Scene& scene) : bodies_(make_bodies(scene))
 {
     collision::PenetrationMeter::Settings settings;
-    settings.room = room_of(scene);
+    settings.room = scenes::room_for_cloth(scene);
     for (const scenes::SceneBody& body : bodies_)
         meters_.push_back(body.shape() != nullptr ? nullptr
                                                   : std::make_unique<collision::PenetrationMeter>(
