@@ -111,11 +111,16 @@ Vec3 BodySurfaces::normal_at(const NearestSurface& at, const Vec3& x) const
     return (y[t[1]] - y[t[0]]).cross(y[t[2]] - y[t[0]]).normalized();
 }
 
-Vec3 BodySurfaces::motion_of(const NearestSurface& at) const
+Vec3 BodySurfaces::motion_of(const NearestSurface& at, const Vec3& x) const
 {
+    const bool jumps = std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+        return part.number == at.collider && part.jumps;
+    });
+    if (jumps)
+        return Vec3::Zero();
     const ContactCollider& collider = colliders_[at.collider];
     if (collider.shape)
-        return collider.shape->pose() * (collider.shape->pose_t0().inverse() * at.point) - at.point;
+        return collider.shape->pose() * (collider.shape->pose_t0().inverse() * x) - x;
     const Triangle& t = collider.mesh->triangles()[at.feature];
     const View<const Vec3> from = collider.mesh->x_t0(), to = collider.mesh->x_t1();
     return (to[t[0]] + to[t[1]] + to[t[2]] - from[t[0]] - from[t[1]] - from[t[2]]) / 3.0;

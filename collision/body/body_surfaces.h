@@ -35,8 +35,8 @@ public:
     bool is_inside(const Vec3& x) const; ///< of a body at t1 that has an inside
     /// Unit normal at t1 of a surface point, or of a solid near x.
     Vec3 normal_at(const NearestSurface& at, const Vec3& x) const;
-    /// Mean displacement of that triangle in the step, or of a point of a solid [m].
-    Vec3 motion_of(const NearestSurface& at) const;
+    /// Mean displacement of that triangle in the step, or of a solid at x [m]; zero if it jumps.
+    Vec3 motion_of(const NearestSurface& at, const Vec3& x) const;
     /// Distance at t1 of x from the triangle of a surface point, or from a solid [m].
     double distance_to(const NearestSurface& at, const Vec3& x) const;
 

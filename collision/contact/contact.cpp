@@ -51,7 +51,7 @@ Contact::Contact(View<const Triangle> triangles, View<const Vec3> positions,
 void Contact::begin_step(const StepStart& start)
 {
     dt_ = start.dt;
-    has_cleared_ = false;
+    has_cleared_ = is_near_ = false;
     landings_ = 0;
     energy_.use_true_hessian(start.wants_true_hessian);
     if (between_)
@@ -106,11 +106,12 @@ bool Contact::revise(StepField x, MinimiserProgress progress)
         terms_->adopt_forces();
         ++landings_;
     }
-    const bool has_new_pairs = between_ && (is_converged || !between_->is_clear()) &&
-                               between_->advance(x, [&] { return terms_->supported(); });
-    const bool is_limited = between_ && between_->has_limited();
+    is_near_ = progress != MinimiserProgress::kFar;
+    const bool looks = between_ && (is_converged || !between_->is_clear());
+    const bool has_new_pairs = looks && between_->advance(x, [&] { return terms_->supported(); });
+    const bool is_limited = looks && between_->has_limited();
     if (is_limited)
-        terms_->update_multipliers(progress != MinimiserProgress::kFar);
+        terms_->update_multipliers(is_near_);
     if (terms_->has_left(kTrust) || has_new_pairs) {
         terms_->remember(RememberedSlip::kByStart);
         find_again();
@@ -130,7 +131,7 @@ void Contact::find_again()
 void Contact::remember_end()
 {
     terms_->adopt_forces();
-    terms_->update_multipliers(true);
+    terms_->update_multipliers(is_near_);
     terms_->remember(RememberedSlip::kSoFar);
 }
 

@@ -128,6 +128,7 @@ private:
     std::unique_ptr<ContactTerms> terms_;
     int landings_ = 0;         ///< in this step: minimisations for changed friction limits
     bool has_cleared_ = false; ///< in this step: pairs are newer than those stored for friction
+    bool is_near_ = false;     ///< the minimum was at the last look of this step
     int active_count_ = 0;
     double min_gap_ = 0.0;
 };

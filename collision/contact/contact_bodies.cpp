@@ -114,7 +114,8 @@ void ContactBodies::fade(View<const NearestSurface> nearest, View<const unsigned
     std::vector<unsigned char> is_known(way.size());
     std::vector<int> rings, frontier;
     for (int v = 0; v < way.size(); ++v)
-        if (fixed[v] != 0 || nearest[v].collider >= 0 || rules_.bodies().is_rigid(v)) {
+        if (fixed[v] != 0 || nearest[v].collider >= 0 || let_through_.is_released(v) ||
+            rules_.bodies().is_rigid(v)) {
             is_known[v] = 1;
             frontier.push_back(v);
         }

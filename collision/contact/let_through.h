@@ -54,8 +54,8 @@ public:
     View<const Vec3> owner_normal() const { return owner_normal_; }  ///< [vertices]
     /// [bodies] Unit normals at t1, evaluated at the first call after a motion.
     View<const Vec3> body_normal();
-    /// Displacement in the step of the owner of a released vertex [m].
-    Vec3 owner_motion(int v) const { return bodies_.motion_of(owner_[v]); }
+    /// Displacement in the step of the owner of a vertex, which has one [m].
+    Vec3 owner_motion(int v) const { return bodies_.motion_of(owner_[v], x_[v]); }
     void forget();
 
 private:

@@ -12,10 +12,10 @@ void ContactMemory::keep(const ContactTerm& term, const Vec3& slip)
 
 void ContactMemory::warm_start(ContactTerm& term) const
 {
-    const auto [first, last] = known_.equal_range(key_of(ContactRecord::of(term.pair)));
+    WarmStart start{term};
+    const auto [first, last] = known_.equal_range(key_of(start.key));
     for (auto known = first; known != last; ++known)
-        if (known->second.warm_start(term))
-            return;
+        start.consider(known->second);
 }
 
 } // namespace toile::collision

@@ -16,8 +16,9 @@ struct ContactRecord {
     ContactKind kind = ContactKind::kVertexFace;
     int collider = -1;
     std::array<int, 4> vertex{-1, -1, -1, -1};
-    double normal_force = 0.0; ///< [N]
-    double pressing = 0.0;     ///< [N] its successor
+    std::array<int, 3> face{-1, -1, -1}; ///< other side, if the key leaves it out: vertices, or a feature
+    double normal_force = 0.0;           ///< [N]
+    double pressing = 0.0;               ///< [N] its successor
     ContactMultiplier multiplier;
     Vec3 normal = Vec3::Zero(); ///< unit
     Vec3 stick = Vec3::Zero();  ///< [m] elastic part of the slip
@@ -30,14 +31,17 @@ struct ContactRecord {
         record.kind = pair.kind;
         record.collider = pair.collider;
         record.vertex = pair.vertex;
+        record.face[0] = pair.feature;
         if (pair.kind == ContactKind::kClothVertexFace)
-            for (int k = 1; k < 4; ++k)
+            for (int k = 1; k < 4; ++k) {
+                record.face[k - 1] = pair.vertex[k];
                 record.vertex[k] = -1;
+            }
         return record;
     }
 
-    /// Record of a term that presses or has pressed, after an update of its multiplier. Its slip is limited
-    /// to the elastic part that Coulomb's law allows.
+    /// Record of a term that presses or has pressed. Its slip is limited to the elastic part that Coulomb's
+    /// law allows.
     /// @param slip  slip since the anchor [m]
     TOILE_HD static ContactRecord of(const ContactTerm& term, const Vec3& slip)
     {
@@ -59,19 +63,33 @@ struct ContactRecord {
         return kind == other.kind && collider == other.collider && vertex[0] == other.vertex[0] &&
                vertex[1] == other.vertex[1] && vertex[2] == other.vertex[2] && vertex[3] == other.vertex[3];
     }
+};
 
-    /// Warm-starts a term of the same key, if their normals are nearly the same; else returns false.
-    TOILE_HD bool warm_start(ContactTerm& term) const
+/// Warm start of a new term by the records that have its key: forces and slip of the first with nearly its
+/// normal, and the multiplier of the same pair, or else the largest.
+struct WarmStart {
+    ContactTerm& term;
+    ContactRecord key = ContactRecord::of(term.pair);
+    bool is_known = false, is_same_pair = false;
+
+    TOILE_HD void consider(const ContactRecord& record)
     {
         const Vec3& n = term.pair.normal;
-        if (normal.dot(n) < kSameContact)
-            return false;
-        term.normal_force = normal_force;
-        term.pressing = pressing;
-        term.multiplier = multiplier;
-        term.spring.shift = multiplier.shift;
-        term.anchor -= stick - n.dot(stick) * n;
-        return true;
+        if (record.normal.dot(n) < ContactRecord::kSameContact)
+            return;
+        const bool is_same =
+            record.face[0] == key.face[0] && record.face[1] == key.face[1] && record.face[2] == key.face[2];
+        if (!is_known || (!is_same_pair && (is_same || record.multiplier.shift > term.multiplier.shift))) {
+            term.multiplier = record.multiplier;
+            term.spring.shift = record.multiplier.shift;
+        }
+        if (!is_known) {
+            term.normal_force = record.normal_force;
+            term.pressing = record.pressing;
+            term.anchor -= record.stick - n.dot(record.stick) * n;
+        }
+        is_known = true;
+        is_same_pair = is_same_pair || is_same;
     }
 };
 
@@ -85,7 +103,7 @@ public:
     /// @param slip  slip since the anchor [m]
     void keep(const ContactTerm& term, const Vec3& slip);
 
-    /// Warm-starts a new term from the first record with its key and nearly its normal, if there is one.
+    /// See WarmStart.
     void warm_start(ContactTerm& term) const;
 
 private:

@@ -179,14 +179,24 @@ struct ProjectCompliant {
         for (int k = 0; k < 4; ++k)
             mobility += term.pair.weight[k] * prepared.weights[k];
         const double reach = depth + mobility * force[i];
-        const double change = term.spring.force(term.spring.depth_at_rest(reach, mobility)) - force[i];
-        if (mobility == 0.0 || change == 0.0)
+        if (mobility == 0.0)
+            return false;
+        const double change = force_at_rest(term.spring, reach, mobility) - force[i];
+        if (change == 0.0)
             return false;
         force[i] += change;
         return add_move(term.pair, prepared.weights, change * term.pair.normal, x);
     }
 
 private:
+    /// Force of the spring at ContactSpring::depth_at_rest(); a shifted one, which presses before contact,
+    /// brings the point to the surface at most.
+    TOILE_HD static double force_at_rest(const ContactSpring& spring, double reach, double mobility)
+    {
+        const double depth = spring.depth_at_rest(reach, mobility);
+        const double force = spring.force(depth), most = (reach - depth) / mobility;
+        return spring.shift == 0.0 || force < most ? force : most > 0.0 ? most : 0.0;
+    }
     TOILE_HD double depth_of(const ContactTerm& term) const { return -term.gap(x) - term.give; }
 };
 

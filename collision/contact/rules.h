@@ -116,7 +116,7 @@ struct ContactRules {
     /// @param now  [vertices] [m]
     TOILE_HD Vec3 slip_of(const ContactTerm& term, RememberedSlip slip, View<const Vec3> now) const
     {
-        if (slip == RememberedSlip::kNothing || term.normal_force == 0.0)
+        if (slip == RememberedSlip::kNothing || term.normal_force == 0.0 || term.friction == 0.0)
             return Vec3(0.0, 0.0, 0.0);
         return slip == RememberedSlip::kSoFar ? term.slip(now) : Vec3(at_start(term.pair) - term.anchor);
     }
@@ -138,7 +138,7 @@ struct ContactRules {
         const double recovered = pair.normal.dot(start - pair.point) + pinched.recovery * max_recovery;
         term.offset = recovered < keep ? recovered : keep;
         if (pair.kind >= ContactKind::kGuard)
-            term.min_gap = std::min(kMinGap * keep, term.offset);
+            term.min_gap = std::max(0.0, std::min(kMinGap * keep, term.offset));
         if (clearance < 0.0 && clearance + keep < term.offset) {
             term.offset = clearance + keep;
             term.give = keep;
@@ -148,7 +148,8 @@ struct ContactRules {
     }
 };
 
-/// Sums over terms: friction limits [N], their changes, and terms nearer than their minimum gap.
+/// Sums over terms: friction limits [N], their changes, and the number of those that lack some of their
+/// minimum gap.
 struct FrictionLimits {
     double total = 0.0, change = 0.0;
     int short_count = 0;

@@ -16,24 +16,26 @@ namespace toile::collision {
 /// not.
 struct ContactMultiplier {
     double shift = 0.0;     ///< [m]
-    double shortfall = 0.0; ///< [m] min_gap - gap at the last look
+    double shortfall = 0.0; ///< [m] min_gap - gap at the last look; 0 if there was none since an update
     double before = 0.0;    ///< [m] the same at the last update
     double gain = 1.0;      ///< [-]
 
     /// Part of a shortfall [-] of which an update that does little leaves more; growth and bound of the gain.
     static constexpr double kLeft = 0.5, kGrowth = 2.0, kMaxGain = 64.0;
+    /// Shortfall that is no reason to grow, and bound of the shift, relative to `most` [-].
+    static constexpr double kNoise = 0.25, kMaxShift = 200.0;
 
     /// @param most     bound of the shortfall of iterates that go astray [m]
     /// @param is_near  the minimum is
     TOILE_HD void update(double most, bool is_near)
     {
-        const bool did_little = before > 0.0 && shortfall > kLeft * before;
+        const bool did_little = shortfall > kNoise * most && before > 0.0 && shortfall > kLeft * before;
         if (shortfall < 0.0 || !is_near)
             gain = 1.0;
         else if (did_little && gain < kMaxGain)
             gain *= kGrowth;
         const double next = shift + gain * (shortfall < most ? shortfall : most);
-        shift = next > 0.0 ? next : 0.0;
+        shift = next > 0.0 ? (next < kMaxShift * most ? next : kMaxShift * most) : 0.0;
         before = shortfall;
         shortfall = 0.0;
     }
@@ -43,7 +45,7 @@ struct ContactMultiplier {
 struct ContactTerm {
     ContactPair pair;
     double offset = 0.0;        ///< [m] gap to keep between cloth and surface
-    double min_gap = 0.0;       ///< [m] that a step may not go below
+    double min_gap = 0.0;       ///< [m] below which it gets a multiplier
     ContactSpring spring;       ///< along the normal
     double friction = 0.0;      ///< [-] Coulomb coefficient
     Vec3 anchor = Vec3::Zero(); ///< [m] sticking position of the cloth point, in space at t1

@@ -37,8 +37,8 @@ struct KnownContacts {
     /// See ContactMemory::warm_start.
     TOILE_HD void warm_start(ContactTerm& term) const
     {
-        const ContactRecord key = ContactRecord::of(term.pair);
-        const std::uint64_t hash = hash_of(key);
+        WarmStart start{term};
+        const std::uint64_t hash = hash_of(start.key);
         int first = 0;
         for (int count = records.size(); count > 0;) {
             const int half = count / 2;
@@ -50,9 +50,8 @@ struct KnownContacts {
             }
         }
         for (int i = first; i < records.size() && hashes[i] == hash; ++i)
-            if (const ContactRecord& record = records[order[i]];
-                record.has_key_of(key) && record.warm_start(term))
-                return;
+            if (const ContactRecord& record = records[order[i]]; record.has_key_of(start.key))
+                start.consider(record);
     }
 };
 

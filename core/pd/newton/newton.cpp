@@ -24,8 +24,8 @@ constexpr double kNegligible = 0.03;
 
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
-/// raises the value, as where a body pulls it through other cloth, that happens kMaxSetbacks times at most,
-/// and the point with the lowest value is the result.
+/// raises the value, as where a body pulls it through other cloth, the minimisation ends after kMaxSetbacks,
+/// and the point with the lowest value since the objective last changed is the result.
 constexpr int kStall = 8, kMaxSetbacks = 15;
 
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
@@ -183,7 +183,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
             break;
         outcome.converged = false;
         if (has_changed) {
-            lowest = std::numeric_limits<double>::infinity();
+            lowest = kept_value = std::numeric_limits<double>::infinity();
             small = 0;
         }
         // Cloth may have been moved back by less than counts as a change: stiff terms feel that too.
