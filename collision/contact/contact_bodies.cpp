@@ -89,7 +89,7 @@ void ContactBodies::move(const StepStart& start, View<const NearestSurface> near
             return;
         if (fixed[v] != 0)
             way[v] = start.prediction[v] - base[v];
-        else if (let_through_.is_released(v))
+        else if (let_through_.goes_with_owner(v))
             way[v] = let_through_.owner_motion(v);
         else if (nearest[v].collider >= 0 || !is_known)
             way[v] = advected[v] - base[v];

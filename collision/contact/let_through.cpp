@@ -76,8 +76,7 @@ bool LetThrough::release(View<const int> vertices, bool is_last_resort)
 {
     std::vector<int> added;
     for (const int v : vertices)
-        if (owner_[v].collider >= 0 && released_[v] == 0 &&
-            (is_last_resort || bodies_.distance_to(owner_[v], x_[v] + owner_motion(v)) < room_)) {
+        if (owner_[v].collider >= 0 && released_[v] == 0) {
             released_[v] = kLetsOpposing;
             added.push_back(v);
         }

@@ -26,10 +26,9 @@ public:
     /// @param nearest  [vertices] surface nearest to each
     void begin_step(View<const Vec3> x, View<const NearestSurface> nearest);
 
-    /// Lets surfaces that oppose their owners pass through those of these vertices that are near their owner;
-    /// as a last resort through all, and all surfaces through those that are blocked once more. A patch most
-    /// of which has owners on one side takes them for all of it; one with owners on both lets all surfaces
-    /// pass. False if that changes nothing.
+    /// Lets surfaces that oppose their owners pass through these vertices. A patch most of which has owners
+    /// on one side takes them for all of it; one with owners on both lets all surfaces pass, as do vertices
+    /// that are blocked once more as a last resort. False if that changes nothing.
     bool release(View<const int> vertices, bool is_last_resort);
 
     /// Ends it for patches of cloth that no longer cross bodies.
@@ -54,6 +53,11 @@ public:
     View<const Vec3> owner_normal() const { return owner_normal_; }  ///< [vertices]
     /// [bodies] Unit normals at t1, evaluated at the first call after a motion.
     View<const Vec3> body_normal();
+    /// True for a released vertex that has no room beside its owner, with which it goes along.
+    bool goes_with_owner(int v) const
+    {
+        return is_released(v) && bodies_.distance_to(owner_[v], x_[v] + owner_motion(v)) < room_;
+    }
     /// Displacement in the step of the owner of a vertex, which has one [m].
     Vec3 owner_motion(int v) const { return bodies_.motion_of(owner_[v], x_[v]); }
     void forget();
