@@ -52,8 +52,8 @@ public:
     /// an unfinished minimisation reaches need not be looked at.
     virtual bool is_clear() const = 0;
 
-    /// Limits x where cloth would cross. Searches again from there if the correction is large or pressing
-    /// pairs have slid. True if there are new pairs.
+    /// Limits x where cloth would cross. Searches again from there if the correction is large, a pair stops
+    /// cloth for the first time in the step or pressing pairs have slid. True if there are new pairs.
     virtual bool advance(StepField x, const FindSupported& find_supported) = 0;
     bool has_limited() const { return has_limited_; } ///< x in the last advance() or limit_motion()
 

@@ -53,7 +53,7 @@ public:
     View<const Vec3> owner_normal() const { return owner_normal_; }  ///< [vertices]
     /// [bodies] Unit normals at t1, evaluated at the first call after a motion.
     View<const Vec3> body_normal();
-    /// True for a released vertex that has no room beside its owner, with which it goes along.
+    /// True for a released vertex near its owner, with which it goes along.
     bool goes_with_owner(int v) const
     {
         return is_released(v) && bodies_.distance_to(owner_[v], x_[v] + owner_motion(v)) < room_;
