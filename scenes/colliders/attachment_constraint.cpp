@@ -10,6 +10,9 @@ namespace toile::scenes {
 
 namespace {
 
+/// Stretch [m] of springs to an avatar under the load of the whole cloth.
+constexpr double kMaxStretch = 1e-3;
+
 int nearest_vertex(View<const Vec3> x, const Vec3& point)
 {
     int best = 0;
@@ -45,7 +48,7 @@ int index_of(const std::vector<Collider>& colliders, const std::string& name)
 } // namespace
 
 AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
-                                           const std::vector<Collider>& colliders, bool has_springs,
+                                           const std::vector<Collider>& colliders, std::optional<double> load,
                                            const std::string& location)
     : settings_(settings), location_(location), motion_(settings.keyframes, Vec3::Zero())
 {
@@ -56,8 +59,9 @@ AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, Vi
     if (settings.to == scene::kFixed)
         return;
     collider_ = index_of(colliders, settings.to);
-    if (!settings.exact && !settings.stiffness && has_springs)
-        settings_.stiffness = scene::kSkinStiffness;
+    if (!settings.exact && !settings.stiffness && load)
+        settings_.stiffness =
+            std::max(scene::kSkinStiffness, *load / (kMaxStretch * double(vertices_.size())));
 }
 
 void AttachmentConstraint::select(View<const Vec3> start, const std::vector<Collider>& colliders,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "scenes/colliders/collider.h"
@@ -12,12 +13,13 @@ namespace toile::scenes {
 class AttachmentConstraint {
 public:
     /// Selects vertices by their start positions, to be attached to the world or to a collider's surface.
-    /// @param has_springs  false: the method knows none, so that attachments are exact where not asked
-    /// otherwise
+    /// Springs to an avatar have 300 N/m a vertex by default, or as much as holds `load` within 1 mm.
+    /// @param load  [N] of the whole cloth; none: the method knows no springs, so that attachments are exact
+    /// where not asked otherwise
     /// @param location  named in errors, e.g. "tablecloth.json: attachments[0]"
     /// @throws InvalidInput if it selects no vertex or an index is out of range
     AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
-                         const std::vector<Collider>& colliders, bool has_springs,
+                         const std::vector<Collider>& colliders, std::optional<double> load,
                          const std::string& location);
 
     /// Attaches the vertices where they are. Those on an avatar are lifted so that neither they nor the edges

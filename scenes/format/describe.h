@@ -244,7 +244,8 @@ void describe(V& v, Attachment& a)
     v.field("keyframes", a.keyframes, "Moves the attached vertices; needs \"to\": \"fixed\".");
     v.field("release", a.release, kTime, "Time at which the attachment ends; absent: never.");
     v.field("stiffness", a.stiffness, kStiffness,
-            "Attach by a spring per vertex; absent: exactly to \"fixed\", by 300 N/m to an avatar.");
+            "Attach by a spring per vertex; absent: exactly to \"fixed\", to an avatar by 300 N/m, or more "
+            "where few vertices hold heavy cloth.");
     v.field("exact", a.exact,
             "Attach exactly to an avatar too. Cloth then stretches and folds as the skin does.");
 }

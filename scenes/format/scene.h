@@ -216,7 +216,7 @@ struct Attachment {
     std::vector<Keyframe> keyframes; ///< motion of the attached points; only with "fixed"
     std::optional<double> release;   ///< [s] end of the attachment; absent: never
     std::optional<double>
-        stiffness;      ///< [N/m] of a spring per vertex; absent: kSkinStiffness, or exact if fixed
+        stiffness;      ///< [N/m] of a spring per vertex; absent: kSkinStiffness at least, or exact if fixed
     bool exact = false; ///< no springs
 };
 

@@ -161,7 +161,7 @@ void ClothGroup::find_strained(double t_t1, StepReport& report) const
         if (report.max_strain <= limit.settings().limit + garment::kStrainMargin)
             continue;
         const View<const Vec3> x = part(body_->positions(), c);
-        const std::vector<unsigned char> attached = cloths_[c].attached(t_t1);
+        const std::vector<unsigned char> attached = cloths_[c].state().attached(t_t1);
         const garment::StrainLimit::Excess excess = limit.excess(x, garment::kStrainMargin, attached);
         const auto place = [&](int triangle) {
             const Triangle& t = cloths_[c].state().triangles[triangle];

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <numbers>
+#include <numeric>
 
 #include "core/compute/parallel.h"
 #include "garment/energy/air/cuda/loads.h"
@@ -22,6 +23,9 @@ namespace {
 /// Excess over the strain limit that is clamped after a step of Newton's method [-]. Below it the limit is an
 /// elastic energy; above it something has moved the cloth that is stronger, such as bodies that close on it.
 constexpr double kYielding = 0.045;
+
+/// Acceleration [m/s^2] at which springs still hold cloth on an avatar: three times that of gravity.
+constexpr double kMaxAcceleration = 30.0;
 
 /// Distance from an avatar [m] beyond which attached cloth is not on it.
 constexpr double kFar = 0.05;
@@ -75,17 +79,22 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     for (Vec3& p : state_.rest.positions)
         p += settings.translate;
     state_.positions = state_.rest.positions;
+    masses_ = rest_->vertex_areas();
+    for (double& mass : masses_)
+        mass *= state_.fabric.areal_density;
+    std::optional<double> load;
+    if (!replaces_minimiser(scene.solver.method))
+        load = kMaxAcceleration * std::accumulate(masses_.begin(), masses_.end(), 0.0);
     for (size_t i = 0; i < scene.attachments.size(); ++i)
         if (scene.attachments[i].cloth == settings.name) {
             const std::string location = scene.source.string() + ": attachments[" + std::to_string(i) + "]";
             require_method_supports(scene.solver.method, scene.attachments[i], location);
-            attachments_.emplace_back(scene.attachments[i], state_.positions, colliders,
-                                      !replaces_minimiser(scene.solver.method), location);
+            attachments_.emplace_back(scene.attachments[i], state_.positions, colliders, load, location);
+            ClothState::Attachment& shown = state_.attachments.emplace_back();
+            shown.vertices = attachments_.back().vertices();
+            shown.release = scene.attachments[i].release.value_or(shown.release);
         }
 
-    masses_ = rest_->vertex_areas();
-    for (double& mass : masses_)
-        mass *= state_.fabric.areal_density;
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
     garment::StrainLimit::Settings limit;
     limit.limit = state_.fabric.strain_limit;
@@ -193,16 +202,6 @@ std::vector<char> SceneCloth::fixed_in_world() const
     std::vector<char> attached(state_.positions.size(), 0);
     for (const AttachmentConstraint& attachment : attachments_)
         if (!attachment.stiffness() && !attachment.is_on_avatar())
-            for (const int v : attachment.vertices())
-                attached[v] = 1;
-    return attached;
-}
-
-std::vector<unsigned char> SceneCloth::attached(double t) const
-{
-    std::vector<unsigned char> attached(size_t(vertex_count()), 0);
-    for (const AttachmentConstraint& attachment : attachments_)
-        if (attachment.is_active_at(t))
             for (const int v : attachment.vertices())
                 attached[v] = 1;
     return attached;

@@ -55,9 +55,6 @@ public:
     /// [vertices] nonzero for those with an exact attachment to the world, now or later.
     std::vector<char> fixed_in_world() const;
 
-    /// [vertices] 1 for those with an attachment at time t [s].
-    std::vector<unsigned char> attached(double t) const;
-
     /// Attaches the attached vertices where they are, and warns of those that are far from their avatar.
     /// @param gap   [m] between avatars and the faces of cloth
     /// @param warn  may be empty

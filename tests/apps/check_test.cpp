@@ -132,6 +132,24 @@ TEST(Check, MeasuresStrain)
     EXPECT_EQ(found["first_bad_frame"], 1);
 }
 
+/// The same strain, of cloth that is attached as a whole, is what it is attached to that causes it.
+TEST(Check, ReportsStrainBetweenAttachedVerticesApart)
+{
+    const TemporaryFolder folder;
+    write_cache(folder, 2, [](int frame, std::vector<Vec3>& x) {
+        for (Vec3& p : x)
+            p.z() *= frame == 1 ? 1.25 : 1.0;
+    });
+    std::string scene = small_scene(2);
+    scene.insert(scene.rfind('}'), R"(, "attachments": [{"cloth": "sheet", "select": {"box":
+        {"lower": [-9, -9, -9], "upper": [9, 9, 9]}}}])");
+    folder.write("drop.json", scene);
+    const auto found = certificate(folder, 0);
+    EXPECT_NEAR(found["max_attached_strain"], 0.25, 1e-5);
+    EXPECT_EQ(found["max_attached_strain_frame"], 1);
+    EXPECT_EQ(found["max_strain"], 0.0);
+}
+
 TEST(Check, CountsNonFiniteNumbers)
 {
     const TemporaryFolder folder;

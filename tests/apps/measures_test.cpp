@@ -22,16 +22,35 @@ using namespace scenes;
 
 namespace {
 
+const std::vector<unsigned char> kFree(4, 0);
+
+TEST(StrainMeter, TellsTrianglesBetweenAttachedVerticesApart)
+{
+    const std::vector<Vec3> rest{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+    std::vector<Vec3> x = rest;
+    x[0].x() = -0.5; // of the first triangle only
+    x[3].y() = 1.25; // of the second only
+    const StrainMeter meter(rest, {Triangle(0, 1, 2), Triangle(1, 3, 2)});
+    const std::vector<unsigned char> first{1, 1, 1, 0}, second{0, 1, 1, 1};
+    const double of_first = meter.largest(x, second).of_free, of_second = meter.largest(x, first).of_free;
+    EXPECT_GT(of_first, 0.4);
+    EXPECT_LT(of_second, 0.4);
+    EXPECT_EQ(meter.largest(x, first).of_attached, of_first);
+    EXPECT_EQ(meter.largest(x, second).of_attached, of_second);
+    EXPECT_EQ(meter.largest(x, kFree).of_attached, -1.0);
+    EXPECT_EQ(meter.largest(x, kFree).of_free, of_first);
+}
+
 TEST(StrainMeter, IsZeroAtRestAndAfterARigidMotion)
 {
     const std::vector<Vec3> rest{{0, 0, 0}, {0.1, 0, 0}, {0.03, 0.02, 0.08}, {0.1, 0.1, 0.1}};
     const StrainMeter meter(rest, {Triangle(0, 1, 2), Triangle(1, 3, 2)});
-    EXPECT_NEAR(meter.largest(rest), 0.0, 1e-14);
+    EXPECT_NEAR(meter.largest(rest, kFree).of_free, 0.0, 1e-14);
     const Mat3 Q = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     std::vector<Vec3> moved = rest;
     for (Vec3& p : moved)
         p = Q * p + Vec3(1, 2, 3);
-    EXPECT_NEAR(meter.largest(moved), 0.0, 1e-13);
+    EXPECT_NEAR(meter.largest(moved, kFree).of_free, 0.0, 1e-13);
 }
 
 TEST(StrainMeter, AgreesWithTheSingularValuesOfRandomDeformations)
@@ -55,7 +74,7 @@ TEST(StrainMeter, AgreesWithTheSingularValuesOfRandomDeformations)
             for (int j = 0; j < 2; ++j)
                 F(i, j) = edges(i, 0) * inverse(0, j) + edges(i, 1) * inverse(1, j);
         const double sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(F).singularValues()[0];
-        const double measured = StrainMeter(rest, {Triangle(0, 1, 2)}).largest(x);
+        const double measured = StrainMeter(rest, {Triangle(0, 1, 2)}).largest(x, kFree).of_free;
         EXPECT_NEAR(measured, sigma - 1.0, 1e-10 * sigma);
     }
 }

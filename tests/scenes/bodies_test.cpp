@@ -251,6 +251,8 @@ TEST(Bodies, TellTheStrainOfWhatIsHeld)
     World world(scene);
     const StepReport report = run_to_end(world);
     EXPECT_GT(report.pulled.count, 5);
+    const std::vector<unsigned char> attached = world.cloths()[0].attached(0.1);
+    EXPECT_EQ(std::count(attached.begin(), attached.end(), 0), 0);
     EXPECT_NE(report.pulled.place.find("which is attached"), std::string::npos) << report.pulled.place;
     EXPECT_EQ(report.yielded.count, 0);
 }
@@ -276,6 +278,23 @@ TEST(Bodies, AttachBySpringsUnlessAskedToHoldExactly)
             nearest = std::min(nearest, (x - Vec3(0, 0.17, 0)).norm());
         EXPECT_LT(nearest, 0.01) << more << ": the middle has gone along";
     }
+}
+
+/// Two corners of a heavy cloth on a small ball: 300 N/m each would let it sag by 8 mm.
+TEST(Bodies, HoldHeavyClothByFewVertices)
+{
+    const Outcome outcome = run(R"({"toile": 1, "frames": 60, "avatars": [
+        {"name": "left", "sphere": {"radius": 0.02}, "translate": [-0.5, 1, 0]},
+        {"name": "right", "sphere": {"radius": 0.02}, "translate": [0.5, 1, 0]}],
+        "fabrics": {"heavy": {"base": "denim", "areal_density": 0.5}},
+        "cloths": [{"name": "c", "rectangle": {"size": [1, 1], "resolution": 0.1}, "rotate_deg": [90, 0, 0],
+        "translate": [0, 0.475, 0], "fabric": "heavy"}],
+        "attachments": [{"cloth": "c", "select": {"nearest": [[-0.5, 0.975, 0]]}, "to": "left"},
+                        {"cloth": "c", "select": {"nearest": [[0.5, 0.975, 0]]}, "to": "right"}]})");
+    double highest = 0.0;
+    for (const Vec3& x : outcome.x)
+        highest = std::max(highest, x.y());
+    EXPECT_NEAR(highest, 0.975, 1e-3);
 }
 
 } // namespace

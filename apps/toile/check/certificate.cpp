@@ -107,6 +107,10 @@ void Certificate::add(const FrameFindings& found)
         worst.strain = found.strain;
         worst_strain_frame = frame;
     }
+    if (found.attached_strain > worst.attached_strain) {
+        worst.attached_strain = found.attached_strain;
+        worst_attached_strain_frame = frame;
+    }
     worst.pinched_depth = std::max(worst.pinched_depth, found.pinched_depth);
     if (const std::string reason = reason_of(found, limits); !reason.empty() && holds()) {
         first_bad_frame = frame;
@@ -144,6 +148,8 @@ std::string to_json(const Certificate& certificate)
         {"max_penetration_frame", certificate.worst_penetration_frame},
         {"max_strain", certificate.worst.strain},
         {"max_strain_frame", certificate.worst_strain_frame},
+        {"max_attached_strain", certificate.worst.attached_strain},
+        {"max_attached_strain_frame", certificate.worst_attached_strain_frame},
         {"non_finite", certificate.non_finite},
         {"pinches",
          {{"frames", certificate.pinched_frames},
@@ -168,8 +174,14 @@ std::string summary_of(const Certificate& certificate)
                   "certificate holds for %d frames: no crossings, %.3g mm deep at most, strain %.3g %%",
                   certificate.frames, 1e3 * certificate.worst.penetration, 1e2 * certificate.worst.strain);
     std::string left_out;
+    if (certificate.worst.attached_strain > certificate.worst.strain) {
+        char pulled[64];
+        std::snprintf(pulled, sizeof pulled, ", %.3g %% between attached vertices",
+                      1e2 * certificate.worst.attached_strain);
+        left_out = pulled;
+    }
     if (certificate.pinched_frames > 0)
-        left_out =
+        left_out +=
             "; pinched between body parts in " + std::to_string(certificate.pinched_frames) + " frames";
     for (const auto& [avatar, bones] : certificate.excluded_bones)
         left_out += "; " + std::to_string(bones.size()) + (bones.size() == 1 ? " bone of " : " bones of ") +

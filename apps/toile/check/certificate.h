@@ -51,6 +51,7 @@ struct FrameFindings {
     double penetration = 0.0;             ///< [m] maximum depth
     double pinched_depth = 0.0;           ///< [m] maximum depth in pinches
     double strain = 0.0;                  ///< [-] maximum of all cloths
+    double attached_strain = 0.0;         ///< [-] of triangles with three attached vertices
     bool is_overstretched = false;        ///< a cloth exceeded its limit
 };
 
@@ -92,6 +93,7 @@ struct Certificate {
     int min_gap_frame = 0;
     int worst_penetration_frame = 0;
     int worst_strain_frame = 0;
+    int worst_attached_strain_frame = 0;
     int first_bad_frame = -1;
     std::string first_bad_reason;
 

@@ -44,7 +44,7 @@ public:
 private:
     void load(int frame);
     void pose_avatars(int frame, double time, FrameFindings& found);
-    void measure_each(FrameFindings& found);
+    void measure_each(double time, FrameFindings& found);
     void find_cloth_crossings(int frame, FrameFindings& found) const;
     void find_all_avatar_crossings(int frame, FrameFindings& found) const;
     FrameFindings::Side side(int triangle) const;
@@ -102,7 +102,7 @@ FrameFindings Examiner::examine(int frame, double time)
     load(frame);
     FrameFindings found;
     pose_avatars(frame, time, found);
-    measure_each(found);
+    measure_each(time, found);
     find_cloth_crossings(frame, found);
     find_all_avatar_crossings(frame, found);
     return found;
@@ -135,7 +135,7 @@ void Examiner::pose_avatars(int frame, double time, FrameFindings& found)
     }
 }
 
-void Examiner::measure_each(FrameFindings& found)
+void Examiner::measure_each(double time, FrameFindings& found)
 {
     for (MeasuredCloth& cloth : cloths_) {
         const int vertex_count = int(cloth.state.rest.positions.size());
@@ -148,9 +148,10 @@ void Examiner::measure_each(FrameFindings& found)
         found.pinched_depth = std::max(found.pinched_depth, depth.pinched);
         if (bad > 0)
             continue;
-        const double strain = cloth.strain.largest(x);
-        found.strain = std::max(found.strain, strain);
-        found.is_overstretched = found.is_overstretched || strain > cloth.strain_limit;
+        const StrainMeter::Largest strain = cloth.strain.largest(x, cloth.state.attached(time));
+        found.strain = std::max(found.strain, strain.of_free);
+        found.attached_strain = std::max(found.attached_strain, strain.of_attached);
+        found.is_overstretched = found.is_overstretched || strain.of_free > cloth.strain_limit;
     }
 }
 

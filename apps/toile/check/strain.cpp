@@ -33,17 +33,20 @@ StrainMeter::StrainMeter(View<const Vec3> rest, std::vector<Triangle> triangles)
     }
 }
 
-double StrainMeter::largest(View<const Vec3> x) const
+StrainMeter::Largest StrainMeter::largest(View<const Vec3> x, View<const unsigned char> attached) const
 {
-    double stretch = 0.0;
+    Largest largest;
     for (size_t k = 0; k < triangles_.size(); ++k) {
         const Triangle& t = triangles_[k];
         const Vec3 e1 = x[t[1]] - x[t[0]], e2 = x[t[2]] - x[t[0]];
         const Mat2& inverse = inverse_rest_[k];
-        stretch = std::fmax(stretch, largest_singular_value(inverse(0, 0) * e1 + inverse(1, 0) * e2,
-                                                            inverse(0, 1) * e1 + inverse(1, 1) * e2));
+        const double stretch = largest_singular_value(inverse(0, 0) * e1 + inverse(1, 0) * e2,
+                                                      inverse(0, 1) * e1 + inverse(1, 1) * e2);
+        const bool is_attached = attached[t[0]] != 0 && attached[t[1]] != 0 && attached[t[2]] != 0;
+        double& strain = is_attached ? largest.of_attached : largest.of_free;
+        strain = std::fmax(strain, stretch - 1.0);
     }
-    return stretch - 1.0;
+    return largest;
 }
 
 } // namespace toile::app

@@ -13,8 +13,14 @@ public:
     /// @param triangles  [triangles] each of positive area
     StrainMeter(View<const Vec3> rest, std::vector<Triangle> triangles);
 
-    /// Maximum principal stretch over all triangles minus one [-]; 0 for a mesh at rest, -1 for a point.
-    double largest(View<const Vec3> x) const;
+    /// Maximum principal stretch minus one [-]; 0 for a mesh at rest, -1 for a point or no triangle.
+    struct Largest {
+        double of_free = -1.0;
+        double of_attached = -1.0; ///< of triangles with three attached vertices
+    };
+
+    /// @param attached  [vertices] nonzero for attached ones
+    Largest largest(View<const Vec3> x, View<const unsigned char> attached) const;
 
 private:
     std::vector<Triangle> triangles_;
