@@ -1,6 +1,7 @@
 #include "core/mesh/triangle_mesh.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -46,6 +47,18 @@ Bounds bounds(View<const Vec3> points)
     for (const Vec3& point : points)
         box.extend(point);
     return box;
+}
+
+void require_in_range(View<const Vec3> points, const std::string& source)
+{
+    for (int v = 0; v < points.size(); ++v) {
+        const Vec3& p = points[v];
+        if (is_in_range(p))
+            continue;
+        char at[128];
+        std::snprintf(at, sizeof at, ": vertex %d is at (%.6g, %.6g, %.6g) m", v, p.x(), p.y(), p.z());
+        throw InvalidInput(source + at + "; coordinates must be finite and at most 100 km");
+    }
 }
 
 void require_usable(const TriangleMesh& mesh, const std::string& source)

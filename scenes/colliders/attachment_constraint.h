@@ -40,6 +40,7 @@ public:
     const std::vector<int>& vertices() const { return vertices_; }
     std::optional<double> stiffness() const { return settings_.stiffness; }
     bool is_on_avatar() const { return collider_ >= 0; }
+    bool is_at_rest() const { return collider_ < 0 && settings_.keyframes.empty(); }
     bool is_active_at(double t) const { return !settings_.release || t < *settings_.release; }
 
     /// True if the targets move at time t [s] or the vertices are released then: cloth must not sleep.

@@ -242,6 +242,8 @@ void describe(V& v, Attachment& a)
     v.field("to", a.to,
             "\"fixed\": attached to the world; or the name of the avatar whose surface moves them.");
     v.field("keyframes", a.keyframes, "Moves the attached vertices; needs \"to\": \"fixed\".");
+    v.field("pivot", a.pivot, kPosition,
+            "Point of the world about which keyframes turn; absent: the mean of the attached vertices.");
     v.field("release", a.release, kTime, "Time at which the attachment ends; absent: never.");
     v.field("stiffness", a.stiffness, kStiffness,
             "Attach by a spring per vertex; absent: exactly to \"fixed\", to an avatar by 300 N/m, or more "

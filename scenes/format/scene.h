@@ -26,7 +26,7 @@ enum class LengthUnit { Metre, Centimetre, Millimetre, Inch };
 /// Metres in one unit: 1, 0.01, 0.001 or 0.0254.
 double metres_per(LengthUnit unit);
 
-/// Placement of an object at a time. Translation and angles are linear between keyframes, constant outside.
+/// Placement of an object at a time; RigidMotion interpolates.
 struct Keyframe {
     double time = 0.0;             ///< [s] from sample 0
     Vec3 translate = Vec3::Zero(); ///< [m] added to the object's own translate
@@ -214,7 +214,8 @@ struct Attachment {
     Selection select;
     std::string to = kFixed;         ///< "fixed" or an avatar's name
     std::vector<Keyframe> keyframes; ///< motion of the attached points; only with "fixed"
-    std::optional<double> release;   ///< [s] end of the attachment; absent: never
+    std::optional<Vec3> pivot;     ///< [m] about which keyframes turn; absent: mean of the attached vertices
+    std::optional<double> release; ///< [s] end of the attachment; absent: never
     std::optional<double>
         stiffness;      ///< [N/m] of a spring per vertex; absent: kSkinStiffness at least, or exact if fixed
     bool exact = false; ///< no springs

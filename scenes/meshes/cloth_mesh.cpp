@@ -48,6 +48,7 @@ ObjMesh oriented_mesh(const scene::Cloth& cloth, int& flipped_faces)
     const Mat3 rotation = rotation_of(cloth.rotate_deg);
     for (Vec3& p : mesh.positions)
         p = rotation * (cloth.scale * scene::metres_per(cloth.unit) * p);
+    require_in_range(mesh.positions, source_of(cloth));
     return mesh;
 }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
+#include "core/base/error.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/air/cuda/loads.h"
 #include "garment/energy/air/loads_kernels.h"
@@ -47,6 +49,29 @@ std::shared_ptr<const garment::RestShape> rest_shape_of(std::vector<Vec3> unmove
     return std::make_shared<const garment::RestShape>(garment::rest_shape_of_surface(
         {is_flat ? std::move(own) : std::move(unmoved), triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(),
         settings.grain_deg * std::numbers::pi / 180.0, source));
+}
+
+/// Attachments that keep vertices where they are may share them.
+/// @throws InvalidInput for a vertex of two attachments that may part
+void require_one_owner(const std::vector<AttachmentConstraint>& attachments, const std::string& cloth)
+{
+    for (size_t b = 1; b < attachments.size(); ++b)
+        for (size_t a = 0; a < b; ++a) {
+            if (attachments[a].is_at_rest() && attachments[b].is_at_rest())
+                continue;
+            const std::vector<int>&first = attachments[a].vertices(), &second = attachments[b].vertices();
+            std::vector<int> shared;
+            std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
+                                  std::back_inserter(shared));
+            if (shared.empty())
+                continue;
+            throw InvalidInput(
+                attachments[b].location() + ": selects vertex " + std::to_string(shared[0]) + " of \"" +
+                cloth + "\"" +
+                (shared.size() == 1 ? "" : " and " + std::to_string(shared.size() - 1) + " more") +
+                ", which " + attachments[a].location() +
+                " holds already; a vertex can follow one of them only");
+        }
 }
 
 } // namespace
@@ -94,6 +119,7 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
             shown.vertices = attachments_.back().vertices();
             shown.release = scene.attachments[i].release.value_or(shown.release);
         }
+    require_one_owner(attachments_, settings.name);
 
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
     garment::StrainLimit::Settings limit;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/check/certify.h"
@@ -21,6 +22,7 @@ struct CheckOptions {
     std::filesystem::path output; ///< empty: next to the caches, and standard output
     std::string cloth;
     CertificateLimits limits;
+    std::optional<int> frames;
     bool quiet = false;
 };
 
@@ -90,7 +92,8 @@ int check(const CheckOptions& options)
     const bool is_folder = options.caches.size() == 1 && std::filesystem::is_directory(options.caches[0]);
     if (!options.cloth.empty() && (is_folder || options.caches.size() > 1))
         throw InvalidInput("--cloth: names the cloth of a single cache; name the caches after their cloths");
-    const scenes::Scene scene = scenes::read_scene(options.scene);
+    scenes::Scene scene = scenes::read_scene(options.scene);
+    scene.frames = options.frames.value_or(scene.frames);
     const scenes::World world(scene);
     const std::vector<std::filesystem::path> caches =
         is_folder ? caches_in(options.caches[0], scene) : options.caches;
@@ -128,6 +131,8 @@ Command add_check(CLI::App& parser)
     add.add_option("--strain-margin", options->limits.strain_margin,
                    "Accepted strain beyond the fabric's limit")
         ->capture_default_str();
+    add.add_option("--frames", options->frames, "Number of frames that the caches must have [the scene's]")
+        ->check(CLI::Range(1, 1000000));
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return check(*options); };
     return command;
