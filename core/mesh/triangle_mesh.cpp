@@ -11,23 +11,15 @@
 
 namespace toile {
 
-namespace {
-
-[[noreturn]] void refuse(const std::string& source, int triangle, const std::string& why)
+std::string defect_of(const TriangleMesh& mesh, int triangle)
 {
-    throw InvalidInput(source + ": triangle " + std::to_string(triangle) + " " + why);
-}
-
-void require_good_triangle(const TriangleMesh& mesh, int t, const std::string& source)
-{
-    const Triangle& corner = mesh.triangles[t];
+    const Triangle& corner = mesh.triangles[triangle];
     for (const int v : corner)
         if (v < 0 || v >= mesh.vertex_count())
-            refuse(source, t,
-                   "uses vertex " + std::to_string(v) + "; the mesh has vertices 0 to " +
-                       std::to_string(mesh.vertex_count() - 1));
+            return "uses vertex " + std::to_string(v) + "; the mesh has vertices 0 to " +
+                   std::to_string(mesh.vertex_count() - 1);
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
-        refuse(source, t, "uses a vertex twice; remove the triangle");
+        return "uses a vertex twice; remove the triangle";
 
     const Vec3& a = mesh.positions[corner[0]];
     const Vec3& b = mesh.positions[corner[1]];
@@ -35,11 +27,9 @@ void require_good_triangle(const TriangleMesh& mesh, int t, const std::string& s
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     const double doubled_area = (b - a).cross(c - a).norm();
     if (!(doubled_area > kMinHeightRatio * longest * longest))
-        refuse(source, t,
-               "has no area (height below 1e-6 of its longest edge); remove it or merge its vertices");
+        return "has no area (height below 1e-6 of its longest edge); remove it or merge its vertices";
+    return {};
 }
-
-} // namespace
 
 Bounds bounds(View<const Vec3> points)
 {
@@ -70,7 +60,8 @@ void require_usable(const TriangleMesh& mesh, const std::string& source)
             throw InvalidInput(source + ": vertex " + std::to_string(v) +
                                " is not finite; every coordinate must be a number");
     for (int t = 0; t < mesh.triangle_count(); ++t)
-        require_good_triangle(mesh, t, source);
+        if (const std::string defect = defect_of(mesh, t); !defect.empty())
+            throw InvalidInput(source + ": triangle " + std::to_string(t) + " " + defect);
 }
 
 std::vector<Vec3> vertex_normals(View<const Vec3> positions, View<const Triangle> triangles)

@@ -57,6 +57,9 @@ void require_in_range(View<const Vec3> points, const std::string& source);
 /// is below kMinHeightRatio of its longest edge.
 void require_usable(const TriangleMesh& mesh, const std::string& source);
 
+/// What require_usable() refuses of a triangle, with a remedy; empty for a good one.
+std::string defect_of(const TriangleMesh& mesh, int triangle);
+
 /// Min height of a triangle over its longest edge [-]. Thinner ones count as zero-area: the bending energy
 /// squares their rest shape twice, after which it has no direction left in double precision.
 inline constexpr double kMinHeightRatio = 1e-6;

@@ -60,7 +60,7 @@ AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, Vi
                                            const std::string& location)
     : settings_(settings), location_(location)
 {
-    select(start, colliders, location);
+    select(start, colliders);
     if (vertices_.empty())
         throw InvalidInput(location + ": selects no vertex of \"" + settings.cloth +
                            "\"; move the selection to where the cloth starts");
@@ -74,15 +74,9 @@ AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, Vi
             std::max(scene::kSkinStiffness, *load / (kMaxStretch * double(vertices_.size())));
 }
 
-void AttachmentConstraint::select(View<const Vec3> start, const std::vector<Collider>& colliders,
-                                  const std::string& location)
+void AttachmentConstraint::select(View<const Vec3> start, const std::vector<Collider>& colliders)
 {
     if (const auto* indices = std::get_if<std::vector<int>>(&settings_.select.by)) {
-        for (const int v : *indices)
-            if (v < 0 || v >= start.size())
-                throw InvalidInput(location + ": vertex " + std::to_string(v) + " is out of range; \"" +
-                                   settings_.cloth + "\" has vertices 0 to " +
-                                   std::to_string(start.size() - 1));
         vertices_ = *indices;
     } else if (const auto* points = std::get_if<std::vector<Vec3>>(&settings_.select.by)) {
         for (const Vec3& point : *points)

@@ -17,7 +17,7 @@ public:
     /// @param load  [N] of the whole cloth; none: the method knows no springs, so that attachments are exact
     /// where not asked otherwise
     /// @param location  named in errors, e.g. "tablecloth.json: attachments[0]"
-    /// @throws InvalidInput if it selects no vertex or an index is out of range
+    /// @throws InvalidInput if it selects no vertex
     AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
                          const std::vector<Collider>& colliders, std::optional<double> load,
                          const std::string& location);
@@ -53,7 +53,7 @@ public:
     Vec3 target(int k) const;
 
 private:
-    void select(View<const Vec3> start, const std::vector<Collider>& colliders, const std::string& location);
+    void select(View<const Vec3> start, const std::vector<Collider>& colliders);
     void tie_to_skin(const collision::MeshCollider& mesh);
     std::vector<double> clearances(const Collider& collider, View<const Vec3> x,
                                    View<const Triangle> triangles, double gap) const;

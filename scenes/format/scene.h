@@ -131,6 +131,7 @@ struct Cloth {
     std::string name;
     ClothShape shape;
     int subdivide = 0;                   ///< number of times that every triangle is split into four
+    bool weld = true;                    ///< join edges of the file that lie on each other
     LengthUnit unit = LengthUnit::Metre; ///< of the file
     double scale = 1.0;                  ///< [-]
     Vec3 translate = Vec3::Zero();       ///< [m]

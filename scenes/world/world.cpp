@@ -12,6 +12,7 @@
 #include "scenes/format/validate.h"
 #include "scenes/method/solver_choice.h"
 #include "scenes/world/cloth_group.h"
+#include "scenes/world/likely_unit.h"
 #include "scenes/world/start_pose.h"
 
 namespace toile::scenes {
@@ -208,6 +209,9 @@ World::World(const Scene& scene, const WorldOptions& options)
     }
     parts_->space = open_backend(options.backend, options.device, scene, options.warn);
     std::vector<SceneCloth> cloths = make_cloths(scene, parts_->colliders, options);
+    if (options.warn)
+        for (const std::string& warning : unit_warnings(scene, cloths, parts_->colliders))
+            options.warn(warning);
     if (options.backend == Backend::Auto)
         parts_->space = space_with_capacity(parts_->space, vertex_count(cloths), options.warn);
     parts_->groups = make_groups(scene, std::move(cloths), parts_->colliders, options, parts_->space.get());

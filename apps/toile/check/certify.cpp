@@ -77,7 +77,7 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
         const scenes::ClothState& cloth = *cached.cloth;
         const int vertex_count = int(cloth.rest.positions.size());
         exports::PointCache cache = exports::read_cache(cached.file);
-        require_same_points(cache, cached.file, cloth.name, vertex_count);
+        require_same_points(cache, cached.file, cloth.name, int(cloth.file_mesh().positions.size()));
         require_same_times(cache, cached.file, scene.fps);
         frame_count_ = cloths_.empty() ? cache.frame_count() : std::min(frame_count_, cache.frame_count());
         longest_ = std::max(longest_, cache.frame_count());
@@ -101,7 +101,7 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
 void Examiner::load(int frame)
 {
     for (const MeasuredCloth& cloth : cloths_) {
-        const std::vector<Vec3> positions = cloth.cache.frame(frame);
+        const std::vector<Vec3> positions = cloth.state.from_file(cloth.cache.frame(frame));
         std::copy(positions.begin(), positions.end(), x_.begin() + cloth.first_vertex);
     }
 }
@@ -221,9 +221,10 @@ std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector
     Examiner examiner(scene, cloths, limits);
     certificate.frames_left_out = examiner.longest() - examiner.frame_count();
     for (size_t i = 0; i < cloths.size(); ++i)
-        certificate.cloths.push_back(
-            {cloths[i].cloth->name, cloths[i].file, examiner.cloths()[i].strain_limit,
-             int(cloths[i].cloth->rest.positions.size()), int(cloths[i].cloth->rest.polygons.size())});
+        certificate.cloths.push_back({cloths[i].cloth->name, cloths[i].file,
+                                      examiner.cloths()[i].strain_limit,
+                                      int(cloths[i].cloth->file_mesh().positions.size()),
+                                      int(cloths[i].cloth->file_mesh().polygons.size())});
     for (const std::string& name : surface_names(scene))
         if (std::none_of(cloths.begin(), cloths.end(),
                          [&](const CachedCloth& cached) { return cached.cloth->name == name; }))

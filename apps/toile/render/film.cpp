@@ -62,7 +62,7 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
         const exports::PointCache cache = exports::read_cache(file);
         const int index = cloth_of_cache(scene, file, cloth);
         const scenes::ClothState& state = world.surfaces()[index];
-        require_same_points(cache, file, state.name, int(state.positions.size()));
+        require_same_points(cache, file, state.name, int(state.file_mesh().positions.size()));
         film.add_surface(index, state, cache, file);
     }
     return film;
@@ -92,6 +92,7 @@ void Film::add_surface(int index, const scenes::ClothState& state, std::optional
     const int solid = index - int(settings_.cloths.size());
     add_cloth(solid < 0 ? settings_.cloths[size_t(index)] : scene::Cloth{}, state.rest, state.triangles,
               state.positions, std::move(cache), file);
+    tracks_.back().cloth = state;
     if (solid >= 0)
         tracks_.back().mesh.material = body_material(settings_.solids[size_t(solid)].color);
 }
@@ -117,9 +118,9 @@ std::vector<Vec3> Film::positions(const Track& track, int frame) const
     if (!track.cache)
         return track.start;
     const int shown = std::min(frame, track.cache->frame_count() - 1);
-    std::vector<Vec3> x = track.cache->frame(shown);
+    const std::vector<Vec3> x = track.cache->frame(shown);
     require_in_range(x, track.file.string() + ": frame " + std::to_string(shown));
-    return x;
+    return track.cloth ? track.cloth->from_file(x) : x;
 }
 
 bool Film::is_shown(const scenes::SceneBody& body) const

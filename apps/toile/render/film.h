@@ -42,6 +42,7 @@ private:
     struct Track {
         std::optional<exports::PointCache> cache; ///< absent: `start` at all times
         std::filesystem::path file;               ///< of the cache
+        std::optional<scenes::ClothState> cloth;  ///< with a scene
         std::vector<Vec3> start;                  ///< [vertices] [m]
         preview::RenderMesh mesh;
     };

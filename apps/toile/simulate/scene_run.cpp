@@ -26,6 +26,7 @@ namespace {
 struct OpenCache {
     std::filesystem::path file;
     int cloth;
+    const scenes::ClothState* state; ///< of the world
     std::unique_ptr<exports::AsyncCacheWriter> writer;
 };
 
@@ -35,11 +36,12 @@ std::vector<OpenCache> open_caches(const scenes::Scene& scene, const scenes::Wor
     std::vector<OpenCache> caches;
     for (const scene::Export& entry : exports_of(scene)) {
         const int cloth = surface_index(scene, entry.cloth);
-        exports::CacheLayout layout = exports::cache_layout(world.surfaces()[cloth].rest, scene.frames);
+        const scenes::ClothState& state = world.surfaces()[cloth];
+        exports::CacheLayout layout = exports::cache_layout(state.file_mesh(), scene.frames);
         layout.fps = scene.fps;
         const std::filesystem::path file = folder / entry.file;
-        caches.push_back(
-            {file, cloth, std::make_unique<exports::AsyncCacheWriter>(make_cache_writer(file, layout))});
+        caches.push_back({file, cloth, &state,
+                          std::make_unique<exports::AsyncCacheWriter>(make_cache_writer(file, layout))});
     }
     return caches;
 }
@@ -48,13 +50,14 @@ void write_frame(const scenes::World& world, std::vector<OpenCache>& caches)
 {
     if (world.device() == nullptr) {
         for (OpenCache& cache : caches)
-            cache.writer->write(world.frame(), world.surfaces()[cache.cloth].positions);
+            cache.writer->write(world.frame(), cache.state->to_file(world.surfaces()[cache.cloth].positions));
         return;
     }
     const std::shared_ptr<const scenes::Snapshot> snapshot = world.snapshot();
     for (OpenCache& cache : caches)
-        cache.writer->write_later(world.frame(),
-                                  [snapshot, surface = cache.cloth] { return snapshot->positions(surface); });
+        cache.writer->write_later(world.frame(), [snapshot, state = cache.state, surface = cache.cloth] {
+            return state->to_file(snapshot->positions(surface));
+        });
 }
 
 /// Writes the start mesh next to a cache. PC2 and MDD store positions only. No mesh is written if an OBJ of
@@ -65,8 +68,8 @@ void write_start_mesh(const scenes::World& world, const OpenCache& cache,
     const std::filesystem::path file = std::filesystem::path(cache.file).replace_extension(".obj");
     if (std::any_of(caches.begin(), caches.end(), [&](const OpenCache& other) { return other.file == file; }))
         return;
-    ObjMesh mesh = world.surfaces()[cache.cloth].rest;
-    mesh.positions = world.surfaces()[cache.cloth].positions;
+    ObjMesh mesh = cache.state->file_mesh();
+    mesh.positions = cache.state->to_file(world.surfaces()[cache.cloth].positions);
     write_obj(file, mesh);
 }
 
