@@ -2,6 +2,8 @@
 
 #include <functional>
 
+#include "core/base/cancellation.h"
+
 namespace toile::collision {
 
 /// Reports how far a repair is, or a part of it.
@@ -19,8 +21,10 @@ public:
         return result;
     }
 
+    /// @throws Cancelled if the repair shall end (Cancellation)
     void update(double fraction) const
     {
+        Cancellation::check();
         if (report_)
             report_(begin_ + fraction * (end_ - begin_));
     }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
+#include "core/base/cancellation.h"
 #include "core/base/error.h"
 #include "core/compute/cuda/runtime/device.h"
 #include "core/compute/parallel.h"
@@ -45,7 +47,13 @@ struct World::Parts {
     std::atomic<bool> is_in_call = false;
     std::string failure; ///< why nothing can change it any more; empty: it can
 
-    explicit Parts(const Scene& of) : scene(of), control(step_control_of(of)) {}
+    Parts(const Scene& of, const WorldOptions& options)
+        : progress(options.progress), goes_on(options.goes_on), scene(of), control(step_control_of(of))
+    {
+    }
+
+    std::function<void(const std::string& task, double fraction)> progress; ///< see WorldOptions
+    std::function<bool()> goes_on;                                          ///< see WorldOptions
 
     Scene scene;
     StepControl control;
@@ -67,10 +75,12 @@ struct World::Parts {
 
     /// Takes steps of `ticks` altogether, the last of them ending at `end` [s]. Avatars do not move before
     /// time 0.
-    StepReport advance(int ticks, double end)
+    /// @param task  for progress
+    StepReport advance(int ticks, double end, const char* task)
     {
         const ThreadLimit threads(scene.solver.threads);
         const Stages::Activate recording(stages);
+        const Cancellation::Scope cancellation(goes_on);
         StepReport total;
         for (int done = 0; done < ticks;) {
             const auto time_after = [&](int more) { return end - (ticks - done - more) * control.tick(); };
@@ -83,6 +93,7 @@ struct World::Parts {
             const StepReport report = step(length * control.tick(), time_after(length));
             control.observe(report);
             done += length;
+            tell(task, double(done) / ticks);
             total.energy = 0.0;
             total.contacts = 0;
             total.merge(report);
@@ -95,6 +106,12 @@ struct World::Parts {
         return total;
     }
 
+    void tell(const char* task, double fraction) const
+    {
+        if (progress)
+            progress(task, fraction);
+    }
+
     /// Relaxes cloth that the repair of the start pose has strained beyond its limit, as long as the strain
     /// falls. Cloth that shares its group with solids does so in the first steps.
     StepReport relax_start()
@@ -102,6 +119,7 @@ struct World::Parts {
         constexpr int kMaxSteps = 60, kPatience = 5;
         constexpr double kProgress = 0.99;
         const double dt = control.first() * control.tick(), start = -settle_ticks() * control.tick();
+        const Cancellation::Scope cancellation(goes_on);
         StepReport total;
         for (ClothGroup& group : groups) {
             double min_strain = std::numeric_limits<double>::max();
@@ -116,8 +134,10 @@ struct World::Parts {
                 stalled = report.max_strain < kProgress * min_strain ? 0 : stalled + 1;
                 min_strain = std::min(min_strain, report.max_strain);
                 is_shown = false;
+                tell("relaxation of the start", (k + 1.0) / kMaxSteps);
             }
         }
+        tell("relaxation of the start", 1.0);
         show();
         return total;
     }
@@ -126,6 +146,7 @@ struct World::Parts {
     StepReport step(double dt, double t)
     {
         const StageScope stage("scenes/step");
+        Cancellation::check();
         for (Collider& collider : colliders)
             collider.advance_to(std::max(t, 0.0));
         StepReport report;
@@ -197,7 +218,7 @@ World::Parts& World::parts() const
 World::World(const Scene& scene, const WorldOptions& options)
 {
     require_valid(scene);
-    parts_ = std::make_unique<Parts>(scene);
+    parts_ = std::make_unique<Parts>(scene, options);
     require_methods(scene, options.baselines);
     if (options.warn)
         for (const std::string& warning : solver_warnings_of(scene))
@@ -218,7 +239,10 @@ World::World(const Scene& scene, const WorldOptions& options)
 
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);
-    parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders, options.repairing);
+    const Cancellation::Scope cancellation(parts_->goes_on);
+    parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders, [&](double fraction) {
+        parts_->tell("repair of the start pose", fraction);
+    });
     for (ClothGroup& group : parts_->groups)
         group.tie(scene.contact.gap, parts_->colliders, options.warn);
     for (const ClothGroup& group : parts_->groups)
@@ -282,7 +306,7 @@ StepReport World::settle()
             if (StepReport report = parts().relax_start(); report.status == StepReport::Status::NonFinite)
                 return report;
         }
-        return parts().advance(parts().settle_ticks(), 0.0);
+        return parts().advance(parts().settle_ticks(), 0.0, "settling");
     });
 }
 
@@ -292,7 +316,7 @@ StepReport World::advance_frame()
     return call.take([&] {
         ++parts().frame;
         return parts().advance(parts().control.ticks_of_sample(),
-                               parts().frame * parts().scene.frame_duration());
+                               parts().frame * parts().scene.frame_duration(), "steps of a frame");
     });
 }
 

@@ -29,8 +29,13 @@ struct WorldOptions {
     /// any of the building threads. Returning false ends the building call with Cancelled. May be empty.
     std::function<bool(const std::string& cloth, double fraction)> building = nullptr;
 
-    /// Called with the finished fraction [0, 1] of a repair of the start pose. May be empty.
-    std::function<void(double fraction)> repairing = nullptr;
+    /// Called with what is done and its finished fraction [0, 1]: repair and relaxation of the start pose,
+    /// settling, the steps of a sample. May be empty.
+    std::function<void(const std::string& task, double fraction)> progress = nullptr;
+
+    /// Asked often, on the calling thread: false ends the constructor, settle() or advance_frame() with
+    /// Cancelled. May be empty.
+    std::function<bool()> goes_on = nullptr;
 
     /// Receives problems that do not stop the run, e.g. a damaged cache file; may be empty.
     std::function<void(const std::string&)> warn = nullptr;

@@ -215,7 +215,7 @@ scenes::WorldOptions SceneRun::world_options(const RunSettings& settings)
         goes_on ? progress_.update("tables of cloth \"" + cloth + "\"", fraction) : progress_.stop();
         return goes_on;
     };
-    options.repairing = [this](double fraction) { progress_.update("repair of the start pose", fraction); };
+    options.progress = [this](const std::string& task, double fraction) { progress_.update(task, fraction); };
     options.warn = [this](const std::string& text) { progress_.warn(text); };
     return options;
 }
