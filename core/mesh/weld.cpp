@@ -41,8 +41,11 @@ public:
 private:
     std::array<int64_t, 3> cell(const Vec3& p) const
     {
-        return {int64_t(std::floor(p.x() / cell_size_)), int64_t(std::floor(p.y() / cell_size_)),
-                int64_t(std::floor(p.z() / cell_size_))};
+        constexpr double kFarthest = 1e18; // beyond it all share a cell
+        const auto index = [&](double x) {
+            return int64_t(std::floor(std::clamp(x / cell_size_, -kFarthest, kFarthest)));
+        };
+        return {index(p.x()), index(p.y()), index(p.z())};
     }
 
     /// Hash of the cell's coordinates; a collision only adds candidates.
