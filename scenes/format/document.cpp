@@ -39,6 +39,13 @@ std::string line_and_column(const std::string& text, size_t byte)
     return std::to_string(line) + ":" + std::to_string(column);
 }
 
+/// Control characters, which keys and names may contain, as spaces.
+std::string one_line(std::string text)
+{
+    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+    return text;
+}
+
 /// Data folder: the environment variable, else the folder chosen at build time.
 std::string data_folder()
 {
@@ -50,7 +57,7 @@ std::string data_folder()
 
 void Document::refuse(const std::string& key_path, const std::string& why) const
 {
-    throw InvalidInput(source_.string() + ": " + (key_path.empty() ? "" : key_path + ": ") + why);
+    throw InvalidInput(source_.string() + ": " + one_line((key_path.empty() ? "" : key_path + ": ") + why));
 }
 
 Json Document::parse(const std::string& text) const
