@@ -131,17 +131,16 @@ Elements GltfAccessors::read(const GltfValue& reference, const AccessorRule& rul
         type.refuse("it is used where glTF has only " + std::string(rule.type));
     const unsigned component_type = component_type_of(accessor, rule.component_types);
     const bool normalised = flag_of(accessor, "normalized") && component_type != kFloat;
-    const GltfValue count = accessor.at("count");
-    file_.spend(count, count.whole(1, std::numeric_limits<int>::max()));
 
     // Copy the elements from their view; without one they are zero.
+    const GltfValue count = accessor.at("count");
     Elements elements;
+    elements.count = int(count.whole(1, std::numeric_limits<int>::max()));
     elements.width = width_of(rule.type);
-    const size_t element_size = size_of(component_type) * size_t(elements.width);
     Range source;
     if (accessor.find("bufferView"))
-        source = range(accessor, count, element_size);
-    elements.count = int(count.whole(1, std::numeric_limits<int>::max()));
+        source = range(accessor, count, size_of(component_type) * size_t(elements.width));
+    file_.spend(count, std::uint64_t(elements.count));
     elements.values.resize(size_t(elements.count) * size_t(elements.width), 0.0);
     if (!source.bytes.empty())
         decode(component_type, normalised, source.bytes.data(), source.stride, elements.count, elements.width,

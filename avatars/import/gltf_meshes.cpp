@@ -128,12 +128,8 @@ std::vector<Bone> GltfMeshes::bones_of_skin(const GltfValue& skin)
     if (matrices.count < joints.size())
         reference->refuse("this accessor has " + std::to_string(matrices.count) + " matrices for " +
                           std::to_string(joints.size()) + " joints");
-    for (int i = 0; i < joints.size(); ++i) {
-        const Eigen::Map<const Eigen::Matrix4d> matrix(matrices[i]); // both by columns
-        if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-            reference->refuse("the fourth row of matrix " + std::to_string(i) + " must be 0, 0, 0, 1");
-        bones[size_t(i)].joint_from_mesh = matrix.topRows<3>();
-    }
+    for (int i = 0; i < joints.size(); ++i)
+        bones[size_t(i)].joint_from_mesh = affine_of(matrices[i], *reference);
     return bones;
 }
 

@@ -11,6 +11,9 @@ namespace {
 /// single precision stay below a hundredth of it.
 constexpr double kMaxShear = 1e-3;
 
+/// Deviation of a matrix's fourth row from 0, 0, 0, 1 that counts as rounding [-].
+constexpr double kMaxRowError = 1e-5;
+
 /// Parent of every node, -1 for roots. [nodes]
 std::vector<int> parents_of(const GltfValue& nodes)
 {
@@ -66,19 +69,15 @@ Mat3 rotation_of(const Mat3& A, const Vec3& scale)
 
 JointTransform decompose(const GltfValue& matrix)
 {
-    // glTF stores columns.
-    const std::vector<double> numbers = matrix.numbers(16);
-    const Eigen::Matrix4d M = Eigen::Map<const Eigen::Matrix4d>(numbers.data());
-    if (M.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-        matrix.refuse("its fourth row must be 0, 0, 0, 1");
-    const Mat3 A = M.topLeftCorner<3, 3>();
+    const Affine M = affine_of(matrix.numbers(16).data(), matrix);
+    const Mat3 A = M.leftCols<3>();
     Vec3 scale = A.colwise().stableNorm().transpose();
     if (A.determinant() < 0.0)
         scale.x() = -scale.x();
     const Mat3 R = rotation_of(A, scale);
     if (!((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff() < kMaxShear))
         matrix.refuse("it must be a translation, rotation and scale; this one shears");
-    return {M.topRightCorner<3, 1>(), Eigen::Quaterniond(R).normalized(), scale};
+    return {M.col(3), Eigen::Quaterniond(R).normalized(), scale};
 }
 
 JointTransform rest_of(const GltfValue& node)
@@ -130,7 +129,7 @@ NodeTree tree_of(const GltfFile& file, const std::vector<int>& parents)
 {
     const GltfValue nodes = file.list("nodes");
     NodeTree tree;
-    const bool has_scene = file.list("scenes").size() > 0;
+    const bool has_scene = file.list("scenes").size() > 0 || file.root().find("scene");
     tree.is_drawn.resize(parents.size(), has_scene ? 0 : 1);
     if (has_scene)
         tree.order = depth_first(nodes, roots_of_scene(file, parents));
@@ -156,6 +155,14 @@ NodeTree tree_of(const GltfFile& file, const std::vector<int>& parents)
 }
 
 } // namespace
+
+Affine affine_of(const double* columns, const GltfValue& place)
+{
+    const Eigen::Map<const Eigen::Matrix4d> matrix(columns); // by columns too
+    if (!((matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < kMaxRowError))
+        place.refuse("the fourth row of a matrix must be 0, 0, 0, 1");
+    return matrix.topRows<3>();
+}
 
 NodeTree add_joints(const GltfFile& file, Skeleton& skeleton)
 {

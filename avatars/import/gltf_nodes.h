@@ -20,4 +20,10 @@ struct NodeTree {
 ///         transform that is no translation, rotation and scale.
 NodeTree add_joints(const GltfFile& file, Skeleton& skeleton);
 
+/// Upper three rows of a glTF matrix.
+/// @param columns  16 numbers
+/// @param place    named in errors
+/// @throws InvalidInput for a fourth row other than 0, 0, 0, 1.
+Affine affine_of(const double* columns, const GltfValue& place);
+
 } // namespace toile::avatars
