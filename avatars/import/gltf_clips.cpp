@@ -196,10 +196,8 @@ void add_clips(GltfFile& file, GltfAccessors& accessors, const NodeTree& tree,
 {
     const GltfValue animations = file.list("animations");
     std::vector<std::string> names;
-    for (int a = 0; a < animations.size(); ++a) {
-        const std::optional<GltfValue> name = animations[a].find("name");
-        names.push_back(name && !name->text().empty() ? name->text() : "clip_" + std::to_string(a));
-    }
+    for (int a = 0; a < animations.size(); ++a)
+        names.push_back(animations[a].name_or("clip_" + std::to_string(a)));
     names = distinct_names(std::move(names));
     for (int a = 0; a < animations.size(); ++a)
         builder.add_clip(ClipReader(accessors, tree, shapes_of_node, names[size_t(a)]).read(animations[a]));

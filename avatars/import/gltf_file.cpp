@@ -182,7 +182,9 @@ Bytes GltfFile::buffer(int i)
         bytes.resize(size);
     } else {
         const std::filesystem::path other = file_.parent_path() / decode_path(*uri);
-        const std::string place = uri->place() + ": " + other.string();
+        if (std::error_code error; !std::filesystem::is_regular_file(other, error))
+            uri->refuse("no such file beside this one");
+        const std::string place = uri->place_and_value();
         require(size_of(other, place));
         bytes = read_start<std::vector<unsigned char>>(other, size, place);
     }

@@ -1,5 +1,7 @@
 #include "avatars/import/gltf_json.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -20,10 +22,9 @@ std::string as_written(const GltfValue::Json& json)
 
 } // namespace
 
-void GltfValue::refuse(const std::string& why) const
-{
-    throw InvalidInput(place() + " = " + as_written(*json_) + ": " + why);
-}
+std::string GltfValue::place_and_value() const { return place() + " = " + as_written(*json_); }
+
+void GltfValue::refuse(const std::string& why) const { throw InvalidInput(place_and_value() + ": " + why); }
 
 GltfValue GltfValue::at(const std::string& key) const
 {
@@ -105,6 +106,17 @@ const std::string& GltfValue::text() const
     if (!json_->is_string())
         refuse("must be a text");
     return json_->get_ref<const std::string&>();
+}
+
+std::string GltfValue::name_or(const std::string& otherwise) const
+{
+    const std::optional<GltfValue> name = find("name");
+    if (!name || name->text().empty())
+        return otherwise;
+    std::string line = name->text();
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char letter) { return std::iscntrl(letter) != 0; }, ' ');
+    return line;
 }
 
 std::vector<double> GltfValue::numbers() const

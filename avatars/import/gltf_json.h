@@ -23,6 +23,8 @@ public:
 
     /// "body.gltf: nodes[3].mesh"
     std::string place() const { return *source_ + ": " + place_; }
+    /// "body.gltf: nodes[3].mesh = 7", long texts cut.
+    std::string place_and_value() const;
     /// @param why  what is wrong, and what would be right
     [[noreturn]] void refuse(const std::string& why) const;
 
@@ -44,6 +46,8 @@ public:
     int index(int count, const std::string& of_what) const;
     bool flag() const;
     const std::string& text() const;
+    /// "name" of this object on one line; `otherwise` if it has none.
+    std::string name_or(const std::string& otherwise) const;
     std::vector<double> numbers() const;
     /// Array of exactly `count` numbers.
     std::vector<double> numbers(int count) const;

@@ -117,6 +117,7 @@ std::vector<Bone> GltfMeshes::bones_of_skin(const GltfValue& skin)
 {
     const GltfValue joints = skin.at("joints");
     std::vector<Bone> bones;
+    bones.reserve(size_t(joints.size()));
     for (int i = 0; i < joints.size(); ++i)
         bones.push_back({tree_.joint_of_node[size_t(joints[i].index(int(tree_.order.size()), "nodes"))],
                          identity_affine()});
@@ -166,18 +167,18 @@ void GltfMeshes::add_primitive(const GltfValue& primitive, const Binding& bindin
     all.insert(all.end(), triangles.begin(), triangles.end());
 }
 
-/// Accessors that the vertices come from.
-std::vector<int> GltfMeshes::sources_of(const GltfValue& primitive) const
+/// Accessors that the vertices come from, by attribute or target; -1 for a target without positions.
+std::map<std::string, int> GltfMeshes::sources_of(const GltfValue& primitive) const
 {
     const int accessor_count = file_.list("accessors").size();
     const GltfValue attributes = primitive.at("attributes"), targets = primitive.list("targets");
-    std::vector<int> sources;
+    std::map<std::string, int> sources;
     for (const std::string& key : attributes.keys())
         if (key == "POSITION" || key.starts_with("JOINTS_") || key.starts_with("WEIGHTS_"))
-            sources.push_back(attributes.at(key).index(accessor_count, "accessors"));
+            sources[key] = attributes.at(key).index(accessor_count, "accessors");
     for (int t = 0; t < targets.size(); ++t) {
         const std::optional<GltfValue> offset = targets[t].find("POSITION");
-        sources.push_back(offset ? offset->index(accessor_count, "accessors") : -1);
+        sources[numbered("targets_", t)] = offset ? offset->index(accessor_count, "accessors") : -1;
     }
     return sources;
 }
@@ -263,7 +264,8 @@ void GltfMeshes::add_shapes(const GltfValue& targets, const Binding& binding, co
         for (int v = 0; v < vertices.count; ++v) {
             const Eigen::Map<const Vec3> offset(offsets[v]);
             if (binding.first_shape < 0)
-                mesh.rest.positions[size_t(vertices.first + v)] += binding.weights[size_t(t)] * offset;
+                mesh.rest.positions[size_t(vertices.first) + size_t(v)] +=
+                    binding.weights[size_t(t)] * offset;
             else if (!offset.isZero(0.0))
                 kept[size_t(v)].push_back({binding.first_shape + t, offset});
         }

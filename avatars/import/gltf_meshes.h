@@ -2,6 +2,7 @@
 
 #include <map>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "avatars/import/gltf_accessors.h"
@@ -48,7 +49,7 @@ private:
         int count = 0;
     };
     /// By the accessors that the vertices come from: primitives of a node share vertices.
-    using KnownVertices = std::map<std::vector<int>, VertexRange>;
+    using KnownVertices = std::map<std::map<std::string, int>, VertexRange>;
 
     Binding bind(int node, const GltfValue& primitives);
     std::vector<double> default_weights(int node, int target_count) const;
@@ -56,7 +57,7 @@ private:
     void enter_space(const std::vector<Bone>& bones, Binding& binding);
 
     void add_primitive(const GltfValue& primitive, const Binding& binding, KnownVertices& known);
-    std::vector<int> sources_of(const GltfValue& primitive) const;
+    std::map<std::string, int> sources_of(const GltfValue& primitive) const;
     std::vector<int> corners_of(const GltfValue& primitive, const VertexRange& vertices);
     VertexRange add_vertices(const GltfValue& primitive, const Binding& binding);
     void add_influences(const GltfValue& attributes, const Binding& binding, int vertex_count);

@@ -117,10 +117,8 @@ std::vector<int> depth_first(const GltfValue& nodes, const std::vector<int>& roo
 std::vector<std::string> names_of(const GltfValue& nodes)
 {
     std::vector<std::string> names;
-    for (int i = 0; i < nodes.size(); ++i) {
-        const std::optional<GltfValue> name = nodes[i].find("name");
-        names.push_back(name && !name->text().empty() ? name->text() : "nodes_" + std::to_string(i));
-    }
+    for (int i = 0; i < nodes.size(); ++i)
+        names.push_back(nodes[i].name_or("nodes_" + std::to_string(i)));
     return distinct_names(std::move(names));
 }
 

@@ -70,8 +70,7 @@ struct GltfSample {
     {
         std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
         std::replace(name.begin(), name.end(), '/', '_');
-        const std::filesystem::path file =
-            std::filesystem::path(testing::TempDir()) / ("toile_" + name + ".gltf");
+        std::filesystem::path file = std::filesystem::path(testing::TempDir()) / ("toile_" + name + ".gltf");
         std::ofstream(file, std::ios::binary) << text;
         return file;
     }

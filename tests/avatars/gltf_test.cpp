@@ -126,6 +126,20 @@ TEST(Gltf, KeepsNodesOfOneNameApart)
     EXPECT_EQ(posed(avatar, {0, 0.6}), posed(original, {0, 0.6}));
 }
 
+TEST(Gltf, KeepsErrorsOnOneLineWhateverIsInTheFile)
+{
+    GltfSample sample = GltfSample::column();
+    for (const int node : {1, 2}) {
+        sample.json["nodes"][size_t(node)]["name"] = "two\nlines";
+        sample.json["nodes"][size_t(node)]["scale"] = {1e200, 1, 1};
+    }
+    EXPECT_NE(refusal(sample.saved()).find("joint 'two lines#2'"), std::string::npos);
+
+    const std::string long_name(5000, 'a');
+    sample.json["buffers"][0]["uri"] = long_name;
+    EXPECT_LT(refusal(sample.saved()).size(), 300u);
+}
+
 TEST(Gltf, ReachesBothClipsOfOneName)
 {
     GltfSample sample = GltfSample::column();
@@ -313,7 +327,8 @@ INSTANTIATE_TEST_SUITE_P(
                "buffers[0].uri = \"data:;base64,A*A=\": "},
         Mutant{"Remote", "/buffers/0/uri", "\"https://a/b\"",
                "buffers[0].uri = \"https://a/b\": 'https:' is not"},
-        Mutant{"NoFile", "/buffers/0/uri", "\"no%20file.bin\"", "buffers[0].uri: "},
+        Mutant{"NoFile", "/buffers/0/uri", "\"no%20file.bin\"",
+               "buffers[0].uri = \"no%20file.bin\": no such file beside this one"},
         Mutant{"NoType", "/accessors/0/type", "", "accessors[0].type is missing"},
         Mutant{"WrongType", "/accessors/0/type", "\"VEC2\"",
                "accessors[0].type = \"VEC2\": it is used where"},
