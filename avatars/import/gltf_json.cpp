@@ -88,9 +88,12 @@ std::uint64_t GltfValue::whole(std::uint64_t lower, std::uint64_t upper) const
 
 int GltfValue::index(int count, const std::string& of_what) const
 {
-    const double value = json_->is_number() ? json_->get<double>() : -1.0;
-    if (!(value >= 0.0 && value < count) || value != std::floor(value))
+    if (!json_->is_number() || json_->get<double>() != std::floor(json_->get<double>()))
         refuse("must be the index of one of " + std::to_string(count) + " " + of_what);
+    const double value = json_->get<double>();
+    if (!(value >= 0.0 && value < count))
+        refuse("index " + as_written(*json_) + " is out of bounds of " + std::to_string(count) + " " +
+               of_what);
     return int(value);
 }
 
