@@ -31,11 +31,11 @@ Interpolation interpolation_of(const GltfValue& sampler)
     return Interpolation::CubicSpline;
 }
 
-Vec3 to_value(const double* numbers, const Vec3&) { return Vec3(numbers[0], numbers[1], numbers[2]); }
-double to_value(const double* numbers, double) { return *numbers; }
-Eigen::Quaterniond to_value(const double* numbers, const Eigen::Quaterniond&)
+void assign(const double* numbers, Vec3& value) { value = {numbers[0], numbers[1], numbers[2]}; }
+void assign(const double* numbers, double& value) { value = *numbers; }
+void assign(const double* numbers, Eigen::Quaterniond& value)
 {
-    return Eigen::Quaterniond(numbers[3], numbers[0], numbers[1], numbers[2]);
+    value = {numbers[3], numbers[0], numbers[1], numbers[2]};
 }
 
 void normalise(Vec3&) {}
@@ -68,13 +68,18 @@ public:
     {
         Track<Value> track;
         track.interpolation = interpolation_;
+        track.keys.reserve(size_t(times_.count));
         for (int k = 0; k < times_.count; ++k) {
             // A key of a spline has the tangents of all tracks before their values, and after them.
             const int first = k * parts() * track_count_ + index;
-            const auto part = [&](int i) { return to_value(values_[first + i * track_count_], Value{}); };
-            if (interpolation_ == Interpolation::CubicSpline)
-                track.tangents.push_back({part(0), part(2)});
-            track.keys.push_back({*times_[k], part(interpolation_ == Interpolation::CubicSpline ? 1 : 0)});
+            Key<Value>& key = track.keys.emplace_back();
+            key.time = *times_[k];
+            assign(values_[first + parts() / 2 * track_count_], key.value);
+            if (interpolation_ == Interpolation::CubicSpline) {
+                Tangents<Value>& tangents = track.tangents.emplace_back();
+                assign(values_[first], tangents.in);
+                assign(values_[first + 2 * track_count_], tangents.out);
+            }
         }
         require_usable(track, place_);
         for (Key<Value>& key : track.keys)
