@@ -201,6 +201,7 @@ void add_clips(GltfFile& file, GltfAccessors& accessors, const NodeTree& tree,
 {
     const GltfValue animations = file.list("animations");
     std::vector<std::string> names;
+    names.reserve(size_t(animations.size()));
     for (int a = 0; a < animations.size(); ++a)
         names.push_back(animations[a].name_or("clip_" + std::to_string(a)));
     names = distinct_names(std::move(names));

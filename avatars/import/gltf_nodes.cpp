@@ -117,6 +117,7 @@ std::vector<int> depth_first(const GltfValue& nodes, const std::vector<int>& roo
 std::vector<std::string> names_of(const GltfValue& nodes)
 {
     std::vector<std::string> names;
+    names.reserve(size_t(nodes.size()));
     for (int i = 0; i < nodes.size(); ++i)
         names.push_back(nodes[i].name_or("nodes_" + std::to_string(i)));
     return distinct_names(std::move(names));
