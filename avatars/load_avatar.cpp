@@ -4,6 +4,7 @@
 #include <map>
 
 #include "avatars/import/assimp_import.h"
+#include "avatars/import/gltf_import.h"
 #include "avatars/model/skinned_avatar.h"
 #include "avatars/model/static_avatar.h"
 #include "core/base/error.h"
@@ -49,6 +50,8 @@ Affine metres_from_file(const AvatarSettings& settings)
 std::unique_ptr<Avatar> read_avatar(const AvatarSettings& settings)
 {
     const std::string source = settings.file.string();
+    if (!std::filesystem::is_regular_file(settings.file))
+        throw InvalidInput(source + ": no such file; give the path of a .gltf, .glb, .fbx or .obj body");
     const Affine to_metres = metres_from_file(settings);
     if (format_of(settings.file) == ".obj") {
         TriangleMesh mesh = read_obj(settings.file).triangulated();
@@ -56,7 +59,8 @@ std::unique_ptr<Avatar> read_avatar(const AvatarSettings& settings)
             throw InvalidInput(source + ": no triangles; an avatar needs a surface");
         return std::make_unique<StaticAvatar>(source, std::move(mesh), to_metres);
     }
-    RiggedModel model = import_rigged_model(settings.file);
+    RiggedModel model =
+        is_gltf(settings.file) ? import_gltf(settings.file) : import_rigged_model(settings.file);
     model.metres_from_file = to_metres;
     return std::make_unique<SkinnedAvatar>(source, std::move(model));
 }

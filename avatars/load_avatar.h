@@ -17,10 +17,11 @@ struct AvatarSettings {
     MannequinSettings mannequin;
 };
 
-/// Loads any kind of avatar: the mannequin, .obj (static, vertex order kept), .gltf/.glb and every other
-/// format of the importer (meshes of a file merged, texture seams welded).
-/// @throws InvalidInput in one line: file missing or unreadable, no triangles, a position that is not finite,
-///         a vertex without weight, a bone or animation channel without joint, an unknown unit or axis.
+/// Loads any kind of avatar: the mannequin, .obj (static, vertex order kept), glTF, and every format of
+/// assimp (meshes of a file merged, texture seams welded).
+/// @throws InvalidInput in one line: file missing or unreadable, no triangles, a position, key or matrix that
+///         is not finite, key times that descend, a vertex without weight, a bone or animation channel
+///         without joint, an unknown unit or axis.
 std::unique_ptr<Avatar> load_avatar(const AvatarSettings& settings);
 
 } // namespace toile::avatars

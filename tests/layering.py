@@ -117,7 +117,7 @@ OWNERS = {
     r"CGAL/": ["collision/check", "garment/pattern"],
     r"(libpng/)?png\.h": ["apps/preview"],
     r"boost/multiprecision/": [],  # comes with CGAL; rational numbers of the tests
-    r"nlohmann/": ["scenes/format", "apps"],
+    r"nlohmann/": ["avatars/import", "scenes/format", "apps"],
     r"CLI/": ["apps/toile", "research/bench"],
     r"benchmark/": ["research/benchmarks"],
     r"g(test|mock)/": [],

@@ -7,6 +7,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include "avatars/import/model_builder.h"
 #include "core/base/error.h"
 
 namespace toile::avatars {
@@ -30,19 +31,18 @@ Affine to_affine(const aiMatrix4x4& m)
 /// Builds a RiggedModel from one assimp scene.
 class SceneReader {
 public:
-    SceneReader(const aiScene& scene, std::string source) : scene_(scene), source_(std::move(source)) {}
+    SceneReader(const aiScene& scene, const std::string& source)
+        : scene_(scene), source_(source), builder_(source)
+    {
+    }
 
     RiggedModel read()
     {
         add_node(*scene_.mRootNode, -1);
         for (const auto& [mesh, joint] : instances_)
             add_mesh(*scene_.mMeshes[mesh], joint);
-        require_surface();
-        normalise_weights(model_.mesh, source_);
-        weld_seams(model_.mesh, kSeamDistance * bounds(model_.mesh.rest.positions).diagonal());
-        for (unsigned i = 0; i < scene_.mNumAnimations; ++i)
-            add_clip(*scene_.mAnimations[i], i);
-        return std::move(model_);
+        add_clips();
+        return builder_.finish();
     }
 
 private:
@@ -51,7 +51,7 @@ private:
         aiVector3D scale, translation;
         aiQuaternion rotation;
         node.mTransformation.Decompose(scale, rotation, translation);
-        const int joint = model_.skeleton.add(
+        const int joint = builder_.skeleton().add(
             {node.mName.C_Str(), parent, {to_vec3(translation), to_quaternion(rotation), to_vec3(scale)}});
         for (unsigned i = 0; i < node.mNumMeshes; ++i)
             instances_.emplace_back(node.mMeshes[i], joint);
@@ -62,7 +62,7 @@ private:
     /// Appends a mesh. Skinned meshes share space 0; a rigid mesh has a space for its node.
     void add_mesh(const aiMesh& mesh, int node_joint)
     {
-        SkinnedMesh& out = model_.mesh;
+        SkinnedMesh& out = builder_.mesh();
         const int first_vertex = out.rest.vertex_count();
         for (unsigned v = 0; v < mesh.mNumVertices; ++v)
             out.rest.positions.push_back(to_vec3(mesh.mVertices[v]));
@@ -78,9 +78,10 @@ private:
         std::vector<std::vector<Influence>> influences(mesh.mNumVertices);
         for (unsigned b = 0; b < mesh.mNumBones; ++b) {
             const aiBone& bone = *mesh.mBones[b];
-            const int index = add_bone(
-                {model_.skeleton.require(bone.mName.C_Str(), source_ + ": mesh '" + mesh.mName.C_Str() + "'"),
-                 to_affine(bone.mOffsetMatrix)});
+            const int index =
+                builder_.add_bone({builder_.skeleton().require(
+                                       bone.mName.C_Str(), source_ + ": mesh '" + mesh.mName.C_Str() + "'"),
+                                   to_affine(bone.mOffsetMatrix)});
             for (unsigned w = 0; w < bone.mNumWeights; ++w) {
                 const aiVertexWeight& part = bone.mWeights[w];
                 if (part.mVertexId >= mesh.mNumVertices)
@@ -91,7 +92,7 @@ private:
             }
         }
         if (!mesh.HasBones()) {
-            const int index = add_bone({node_joint, identity_affine()});
+            const int index = builder_.add_bone({node_joint, identity_affine()});
             std::fill(influences.begin(), influences.end(), std::vector<Influence>{{index, 1.0}});
         }
         for (const std::vector<Influence>& parts : influences) {
@@ -100,64 +101,51 @@ private:
         }
     }
 
-    /// Index of the bone. Equal bones (from several meshes of a skin) are stored once, so that their seams
-    /// weld.
-    int add_bone(const Bone& bone)
+    void add_clips()
     {
-        std::vector<Bone>& bones = model_.mesh.bones;
-        const auto known = std::find_if(bones.begin(), bones.end(), [&](const Bone& other) {
-            return other.joint == bone.joint && other.joint_from_mesh == bone.joint_from_mesh;
-        });
-        if (known != bones.end())
-            return int(known - bones.begin());
-        bones.push_back(bone);
-        return int(bones.size()) - 1;
+        std::vector<std::string> names;
+        for (unsigned i = 0; i < scene_.mNumAnimations; ++i) {
+            const aiString& name = scene_.mAnimations[i]->mName;
+            names.push_back(name.length > 0 ? name.C_Str() : "clip_" + std::to_string(i));
+        }
+        names = distinct_names(std::move(names));
+        for (unsigned i = 0; i < scene_.mNumAnimations; ++i)
+            add_clip(*scene_.mAnimations[i], names[i]);
     }
 
-    /// @throws InvalidInput for a file without surface, or with invalid indices or positions.
-    void require_surface() const
-    {
-        const TriangleMesh& surface = model_.mesh.rest;
-        if (surface.triangles.empty())
-            throw InvalidInput(source_ + ": no mesh with triangles; an avatar needs a surface");
-        for (int t = 0; t < surface.triangle_count(); ++t)
-            for (const int v : surface.triangles[t])
-                if (v < 0 || v >= surface.vertex_count())
-                    throw InvalidInput(source_ + ": triangle " + std::to_string(t) + " names vertex " +
-                                       std::to_string(v) + " of " + std::to_string(surface.vertex_count()));
-        for (int v = 0; v < surface.vertex_count(); ++v)
-            if (!surface.positions[v].allFinite())
-                throw InvalidInput(source_ + ": position of vertex " + std::to_string(v) + " is not finite");
-    }
-
-    void add_clip(const aiAnimation& animation, unsigned index)
+    void add_clip(const aiAnimation& animation, const std::string& name)
     {
         const double ticks_per_second = animation.mTicksPerSecond > 0.0 ? animation.mTicksPerSecond : 1.0;
         Clip clip;
-        clip.name = animation.mName.length > 0 ? animation.mName.C_Str() : "clip_" + std::to_string(index);
+        clip.name = name;
         for (unsigned c = 0; c < animation.mNumChannels; ++c) {
             const aiNodeAnim& channel = *animation.mChannels[c];
             JointTrack track;
-            track.joint =
-                model_.skeleton.require(channel.mNodeName.C_Str(), source_ + ": clip '" + clip.name + "'");
+            track.joint = builder_.skeleton().require(channel.mNodeName.C_Str(),
+                                                      source_ + ": clip '" + clip.name + "'");
             for (unsigned k = 0; k < channel.mNumPositionKeys; ++k)
-                track.translation.push_back({channel.mPositionKeys[k].mTime / ticks_per_second,
-                                             to_vec3(channel.mPositionKeys[k].mValue)});
+                track.translation.keys.push_back({channel.mPositionKeys[k].mTime / ticks_per_second,
+                                                  to_vec3(channel.mPositionKeys[k].mValue)});
             for (unsigned k = 0; k < channel.mNumRotationKeys; ++k)
-                track.rotation.push_back({channel.mRotationKeys[k].mTime / ticks_per_second,
-                                          to_quaternion(channel.mRotationKeys[k].mValue)});
+                track.rotation.keys.push_back({channel.mRotationKeys[k].mTime / ticks_per_second,
+                                               to_quaternion(channel.mRotationKeys[k].mValue)});
             for (unsigned k = 0; k < channel.mNumScalingKeys; ++k)
-                track.scale.push_back({channel.mScalingKeys[k].mTime / ticks_per_second,
-                                       to_vec3(channel.mScalingKeys[k].mValue)});
+                track.scale.keys.push_back({channel.mScalingKeys[k].mTime / ticks_per_second,
+                                            to_vec3(channel.mScalingKeys[k].mValue)});
+            const std::string place =
+                source_ + ": clip '" + name + "': joint '" + channel.mNodeName.C_Str() + "': ";
+            require_usable(track.translation, place + "translation");
+            require_usable(track.rotation, place + "rotation");
+            require_usable(track.scale, place + "scale");
             clip.tracks.push_back(std::move(track));
         }
         clip.duration = animation.mDuration / ticks_per_second;
-        model_.clips.push_back(std::move(clip));
+        builder_.add_clip(std::move(clip));
     }
 
     const aiScene& scene_;
     std::string source_;
-    RiggedModel model_;
+    ModelBuilder builder_;
     std::vector<std::pair<unsigned, int>> instances_; ///< mesh index, joint of its node
 };
 
@@ -165,9 +153,6 @@ private:
 
 RiggedModel import_rigged_model(const std::filesystem::path& file)
 {
-    if (!std::filesystem::is_regular_file(file))
-        throw InvalidInput(file.string() + ": no such file; give the path of a .gltf, .glb or .obj body");
-
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);

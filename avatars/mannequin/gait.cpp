@@ -130,7 +130,7 @@ Clip make_walk(const Skeleton& skeleton, double arm_angle_deg, double period, in
 {
     Clip clip{advance ? "walk" : "walk_in_place", cycles * period, {}};
     for (int j = 0; j < kMannequinJointCount; ++j)
-        clip.tracks.push_back({j, {}, {}, {}});
+        clip.tracks.push_back({j});
 
     // Compute the distance per cycle: two steps, each the distance between the feet when a heel lands.
     const WalkPose landing(skeleton, arm_angle_deg, 0.0);
@@ -143,10 +143,10 @@ Clip make_walk(const Skeleton& skeleton, double arm_angle_deg, double period, in
         const WalkPose pose(skeleton, arm_angle_deg, phase);
         const double distance = advance ? stride * key / kKeysPerCycle : 0.0;
         const double sway = 0.012 * std::sin(2.0 * kPi * phase); // over the standing leg
-        clip.tracks[kPelvis].translation.push_back(
+        clip.tracks[kPelvis].translation.keys.push_back(
             {time, pelvis_rest + Vec3(sway, -pose.floor_height(), distance)});
         for (int j = 0; j < kMannequinJointCount; ++j)
-            clip.tracks[j].rotation.push_back({time, pose.local(j).rotation});
+            clip.tracks[j].rotation.keys.push_back({time, pose.local(j).rotation});
     }
     return clip;
 }
@@ -154,11 +154,11 @@ Clip make_walk(const Skeleton& skeleton, double arm_angle_deg, double period, in
 Clip make_turn(double duration)
 {
     constexpr int kKeys = 72;
-    Clip clip{"turn", duration, {{kPelvis, {}, {}, {}}}};
+    Clip clip{"turn", duration, {{kPelvis}}};
     for (int key = 0; key <= kKeys; ++key) {
         const double u = double(key) / kKeys;
         const double gone = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
-        clip.tracks.front().rotation.push_back({u * duration, rotation(360.0 * gone, Vec3::UnitY())});
+        clip.tracks.front().rotation.keys.push_back({u * duration, rotation(360.0 * gone, Vec3::UnitY())});
     }
     return clip;
 }

@@ -62,15 +62,16 @@ public:
 
     /// Skin weights of the vertices: skin().posed(v, bones) is the position of vertex v.
     virtual SkinView skin() const = 0;
+    /// Number of maps that make a pose: one per bone, then one per blend shape.
     virtual int bone_count() const = 0;
 
     /// Computes the bones of a pose, in metres, Y up, transformed by `world_from_avatar`. Reuses scratch: one
     /// thread at a time.
-    /// @param bones  [bone_count()] out: world_from_mesh
+    /// @param bones  [bone_count()] out: world_from_mesh, then the blend shapes' maps, see SkinView::posed
     virtual void pose_bones(const PoseAt& at, const Affine& world_from_avatar, View<Affine> bones) = 0;
 
     /// Computes all vertices from the bones: one call of stage "avatars/skin".
-    /// @param bones  [bone_count()] world_from_mesh
+    /// @param bones  [bone_count()] from pose_bones()
     /// @param out    [vertices] [m]
     void skin_vertices(View<const Affine> bones, View<Vec3> out) const;
 

@@ -43,6 +43,17 @@ std::array<Vec3, 8> corners_of(const Bounds& box)
     return corners;
 }
 
+/// Longest displacement of a vertex by each blend shape of weight 1 [mesh units]. [shapes]
+std::vector<double> reaches_of_shapes(const SkinView& skin, int bone_count)
+{
+    if (skin.offsets.empty())
+        return {};
+    std::vector<double> reaches(static_cast<size_t>(bone_count - skin.first_shape), 0.0);
+    for (const ShapeOffset& part : skin.offsets)
+        reaches[part.shape] = std::max(reaches[part.shape], part.offset.norm());
+    return reaches;
+}
+
 /// Largest distance [m] between the images of a point of the box under two maps: both are affine, so a corner
 /// has it.
 double max_distance(const Bounds& box, const Affine& a, const Affine& b)
@@ -83,6 +94,7 @@ MovingAvatar::MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const 
         clip_ = avatar_->clip_index(motion_.clip);
 
     bone_boxes_ = boxes_of_bones(avatar_->skin(), avatar_->bone_count());
+    shape_reaches_ = reaches_of_shapes(avatar_->skin(), avatar_->bone_count());
     bones_t1_.resize(size_t(avatar_->bone_count()));
     show(at(0.0), root_transform);
     bones_t0_ = bones_t1_;
@@ -115,7 +127,8 @@ void MovingAvatar::advance_to(double t_t1, const Affine& root_transform)
         show(next, root_transform);
 }
 
-/// A vertex moves by a weighted mean of its bones' displacements.
+/// A vertex moves by a weighted mean of its bones' displacements of its shaped position r: (A - A') r + b -
+/// b', and by A' times the change of r.
 double MovingAvatar::max_motion_to(double t, const Affine& root_transform)
 {
     const PoseAt next = at(t);
@@ -126,10 +139,26 @@ double MovingAvatar::max_motion_to(double t, const Affine& root_transform)
     ahead_ = next;
     ahead_root_transform_ = root_transform;
     is_posed_ahead_ = true;
+
+    // Bound the shapes' displacement of a vertex, and its change [mesh units].
+    double shaped = 0.0, change = 0.0;
+    const size_t first_shape = bones_t1_.size() - shape_reaches_.size();
+    for (size_t s = 0; s < shape_reaches_.size(); ++s) {
+        const double weight_t1 = bones_t1_[first_shape + s](0, 0);
+        const double weight_ahead = bones_ahead_[first_shape + s](0, 0);
+        shaped += std::abs(weight_ahead) * shape_reaches_[s];
+        change += std::abs(weight_ahead - weight_t1) * shape_reaches_[s];
+    }
+
     double largest = 0.0;
-    for (size_t b = 0; b < bones_t1_.size(); ++b)
-        if (!bone_boxes_[b].empty())
-            largest = std::max(largest, max_distance(bone_boxes_[b], bones_t1_[b], bones_ahead_[b]));
+    for (size_t b = 0; b < first_shape; ++b)
+        if (!bone_boxes_[b].empty()) {
+            const Bounds reached{bone_boxes_[b].lower.array() - shaped,
+                                 bone_boxes_[b].upper.array() + shaped};
+            // The Frobenius norm bounds how far a map stretches.
+            largest = std::max(largest, max_distance(reached, bones_t1_[b], bones_ahead_[b]) +
+                                            change * bones_t1_[b].leftCols<3>().norm());
+        }
     return largest;
 }
 

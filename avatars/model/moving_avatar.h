@@ -39,7 +39,7 @@ public:
 
     const Avatar& avatar() const { return *avatar_; }
 
-    /// world_from_mesh at the step's start and end, for avatar().skin(). [bones]
+    /// Bones at the step's start and end, for avatar().skin(). [avatar().bone_count()]
     View<const Affine> bones_t0() const { return bones_t0_; }
     View<const Affine> bones_t1() const { return bones_t1_; }
 
@@ -64,6 +64,7 @@ private:
 
     // State of max_motion_to(). A step to the pose that it has looked at takes its bones.
     std::vector<Bounds> bone_boxes_; ///< [bones] around the rest positions of a bone's vertices; empty: unset
+    std::vector<double> shape_reaches_; ///< [shapes] longest displacement by a shape of weight 1
     std::vector<Affine> bones_ahead_;
     PoseAt ahead_;
     Affine ahead_root_transform_;

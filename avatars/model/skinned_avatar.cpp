@@ -70,7 +70,8 @@ std::vector<unsigned char> branch_of(const Skeleton& skeleton, int root)
 SkinnedAvatar::SkinnedAvatar(std::string source, RiggedModel model)
     : Avatar(std::move(source), model.mesh.rest.triangles, model.mesh.rest.vertex_count(),
              clip_names(model.clips)),
-      model_(std::move(model)), local_(model_.skeleton.rest_pose()), frames_(model_.skeleton.size())
+      model_(std::move(model)), local_(model_.skeleton.rest_pose()), frames_(model_.skeleton.size()),
+      shape_weights_(model_.mesh.shape_weights)
 {
     for (const Clip& clip : model_.clips)
         travel_of_clip_.push_back(root_travel(clip));
@@ -81,8 +82,8 @@ Vec3 SkinnedAvatar::root_travel(const Clip& clip) const
     // The root is the first joint in tree order that the clip translates at all.
     int root = -1;
     for (const JointTrack& track : clip.tracks) {
-        const bool moves =
-            track.translation.size() > 1 && track.translation.front().value != track.translation.back().value;
+        const std::vector<Key<Vec3>>& keys = track.translation.keys;
+        const bool moves = keys.size() > 1 && keys.front().value != keys.back().value;
         if (moves && (root < 0 || track.joint < root))
             root = track.joint;
     }
@@ -115,7 +116,7 @@ void SkinnedAvatar::pose_bones(const PoseAt& at, const Affine& world_from_avatar
             local_[j] = blend(local_[j], rest, at.bind_weight);
     }
 
-    // Compute joint frames in the world, then the bones that follow them.
+    // Compute joint frames in the world, then the bones that follow them, then the shapes.
     Affine world_from_file = compose(world_from_avatar, model_.metres_from_file);
     if (at.cycles != 0)
         world_from_file.col(3) +=
@@ -123,9 +124,23 @@ void SkinnedAvatar::pose_bones(const PoseAt& at, const Affine& world_from_avatar
     joint_frames(model_.skeleton, local_, frames_);
     for (Affine& frame : frames_)
         frame = compose(world_from_file, frame);
-    for (int b = 0; b < bone_count(); ++b) {
+    const int bone_count = int(model_.mesh.bones.size());
+    for (int b = 0; b < bone_count; ++b) {
         const Bone& bone = model_.mesh.bones[b];
         bones[b] = compose(frames_[bone.joint], bone.joint_from_mesh);
+    }
+    pose_shapes(at, bones.subview(bone_count, int(shape_weights_.size())));
+}
+
+void SkinnedAvatar::pose_shapes(const PoseAt& at, View<Affine> maps)
+{
+    const std::vector<double>& rest = model_.mesh.shape_weights;
+    if (at.clip >= 0)
+        sample_shapes(model_.clips[at.clip], rest, at.time, shape_weights_);
+    const double bind_weight = at.clip >= 0 ? at.bind_weight : 1.0;
+    for (int s = 0; s < maps.size(); ++s) {
+        const double weight = (1.0 - bind_weight) * shape_weights_[s] + bind_weight * rest[s];
+        maps[s] = weight * identity_affine();
     }
 }
 

@@ -58,15 +58,14 @@ std::vector<int> leaders(const SkinnedMesh& mesh, const std::vector<char>& joina
 {
     std::vector<int> leader(mesh.rest.vertex_count());
     std::iota(leader.begin(), leader.end(), 0);
-    const int spaces = 1 + *std::max_element(mesh.space_of_vertex.begin(), mesh.space_of_vertex.end());
-    for (int space = 0; space < spaces; ++space) {
+    std::map<int, std::vector<int>> vertices_of_space;
+    for (int v = 0; v < mesh.rest.vertex_count(); ++v)
+        if (joinable[v])
+            vertices_of_space[mesh.space_of_vertex[v]].push_back(v);
+    for (const auto& [space, vertex_of] : vertices_of_space) {
         TriangleMesh seam;
-        std::vector<int> vertex_of;
-        for (int v = 0; v < mesh.rest.vertex_count(); ++v)
-            if (joinable[v] && mesh.space_of_vertex[v] == space) {
-                seam.positions.push_back(mesh.rest.positions[v]);
-                vertex_of.push_back(v);
-            }
+        for (const int v : vertex_of)
+            seam.positions.push_back(mesh.rest.positions[v]);
         const Welded welded = weld(seam, distance);
         for (size_t i = 0; i < vertex_of.size(); ++i)
             leader[vertex_of[i]] = vertex_of[welded.source_of[welded.welded_of[i]]];
@@ -93,6 +92,22 @@ std::vector<Influence> mean_influences(const SkinnedMesh& mesh, const std::vecto
     return mean;
 }
 
+/// Gives every group of vertices the mean of its members' displacements by each shape.
+void join_offsets(const SkinnedMesh& mesh, const std::vector<std::vector<int>>& groups, SkinnedMesh& result)
+{
+    result.first_offset = {0};
+    for (const std::vector<int>& members : groups) {
+        std::map<int, Vec3> sum_of;
+        for (const int v : members)
+            for (int k = mesh.first_offset[v]; k < mesh.first_offset[v + 1]; ++k)
+                sum_of.try_emplace(mesh.offsets[k].shape, Vec3::Zero()).first->second +=
+                    mesh.offsets[k].offset;
+        for (const auto& [shape, sum] : sum_of)
+            result.offsets.push_back({shape, sum / double(members.size())});
+        result.first_offset.push_back(int(result.offsets.size()));
+    }
+}
+
 /// The mesh with every vertex replaced by its leader.
 SkinnedMesh joined(const SkinnedMesh& mesh, const std::vector<int>& leader)
 {
@@ -109,6 +124,7 @@ SkinnedMesh joined(const SkinnedMesh& mesh, const std::vector<int>& leader)
 
     SkinnedMesh result;
     result.bones = mesh.bones;
+    result.shape_weights = mesh.shape_weights;
     result.rest.triangles = renumbered(mesh.rest.triangles, new_of);
     for (const std::vector<int>& group : members) {
         const std::vector<Influence> mean = mean_influences(mesh, group);
@@ -117,6 +133,8 @@ SkinnedMesh joined(const SkinnedMesh& mesh, const std::vector<int>& leader)
         result.rest.positions.push_back(mesh.rest.positions[group.front()]);
         result.space_of_vertex.push_back(mesh.space_of_vertex[group.front()]);
     }
+    if (!mesh.offsets.empty())
+        join_offsets(mesh, members, result);
     return result;
 }
 

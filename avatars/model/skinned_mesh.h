@@ -15,7 +15,8 @@ struct Bone {
     Affine joint_from_mesh = identity_affine(); ///< the "inverse bind matrix"
 };
 
-/// A surface bound to joints. Positions are in mesh space, which has a meaning only through the bones.
+/// A surface bound to joints, with blend shapes. Positions are in mesh space, which has a meaning only
+/// through the bones.
 struct SkinnedMesh {
     TriangleMesh rest;                 ///< in mesh space, in the file's units
     std::vector<Bone> bones;           ///< any number per joint; each mesh of a file has its own bones
@@ -23,7 +24,14 @@ struct SkinnedMesh {
     std::vector<Influence> influences; ///< [first.back()] heaviest first
     std::vector<int> space_of_vertex;  ///< [vertices] vertices of different spaces are never welded
 
-    SkinView skin() const { return {rest.positions, first, influences}; } ///< borrowed
+    std::vector<double> shape_weights; ///< [shapes] in the bind pose
+    std::vector<int> first_offset;    ///< [vertices + 1] start of a vertex's offsets; empty if there are none
+    std::vector<ShapeOffset> offsets; ///< [first_offset.back()]
+
+    SkinView skin() const ///< borrowed
+    {
+        return {rest.positions, first, influences, first_offset, offsets, int(bones.size())};
+    }
 };
 
 /// Drops weights that are not positive and scales the others of each vertex to sum 1, heaviest first.
@@ -34,7 +42,7 @@ void normalise_weights(SkinnedMesh& mesh, const std::string& source);
 /// Welds coincident vertices that a file separates only for texture or normal seams, and drops triangles that
 /// lose a corner. Only border vertices are welded: coincident vertices inside a closed surface (lips,
 /// eyelids) are two sheets that touch. A weld that would give an edge more than two triangles is undone.
-/// Weights of welded vertices are averaged.
+/// Weights and offsets of welded vertices are averaged.
 /// @param distance  below which two positions are coincident [mesh units]
 void weld_seams(SkinnedMesh& mesh, double distance);
 

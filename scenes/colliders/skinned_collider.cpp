@@ -89,13 +89,17 @@ class SkinnedCollider::OnDevice final : public collision::DeviceMeshPoses {
 public:
     OnDevice(const CudaSpace& space, const SkinnedCollider& skinned)
         : space_(space), skinned_(skinned), rest_(space, "skinned/rest"), first_(space, "skinned/first"),
-          influences_(space, "skinned/influences"), bones_(space, "skinned/bones"),
+          influences_(space, "skinned/influences"), first_offset_(space, "skinned/first_offset"),
+          offsets_(space, "skinned/offsets"), bones_(space, "skinned/bones"),
           first_rim_(space, "skinned/first_rim"), rims_(space, "skinned/rims")
     {
         const avatars::SkinView skin = skinned.avatar_.avatar().skin();
         rest_.upload(skin.rest);
         first_.upload(skin.first);
         influences_.upload(skin.influences);
+        first_offset_.upload(skin.first_offset);
+        offsets_.upload(skin.offsets);
+        first_shape_ = skin.first_shape;
         if (!skinned.contact_)
             return;
         first_rim_.upload(skinned.contact_->lids().first);
@@ -111,7 +115,8 @@ private:
         TOILE_ASSERT(x.size() == skinned_.vertex_count());
         bones_.upload(bones);
         const int body = rest_.size();
-        launch(space_, avatars::SkinVertices{{rest_.view(), first_.view(), influences_.view()},
+        launch(space_, avatars::SkinVertices{{rest_.view(), first_.view(), influences_.view(),
+                                              first_offset_.view(), offsets_.view(), first_shape_},
                                              bones_.view(),
                                              x.subview(0, body)});
         if (skinned_.contact_)
@@ -125,6 +130,9 @@ private:
     DeviceArray<Vec3> rest_;                     ///< see SkinView
     DeviceArray<int> first_;                     ///< likewise
     DeviceArray<avatars::Influence> influences_; ///< likewise
+    DeviceArray<int> first_offset_;              ///< likewise
+    DeviceArray<avatars::ShapeOffset> offsets_;  ///< likewise
+    int first_shape_ = 0;                        ///< likewise
     DeviceArray<avatars::Affine> bones_;         ///< of one end of a step
     DeviceArray<int> first_rim_, rims_;          ///< see LidRims
 };

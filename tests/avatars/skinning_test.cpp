@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "avatars/import/assimp_import.h"
+#include "avatars/import/gltf_import.h"
 #include "core/base/error.h"
 #include "tests/avatars/column.h"
 
@@ -36,8 +36,9 @@ public:
 
 private:
     template <typename Value, typename Mix>
-    static Value value_at(const std::vector<Key<Value>>& keys, double time, const Value& rest, Mix mix)
+    static Value value_at(const Track<Value>& track, double time, const Value& rest, Mix mix)
     {
+        const std::vector<Key<Value>>& keys = track.keys;
         if (keys.empty())
             return rest;
         for (size_t i = 0; i + 1 < keys.size(); ++i)
@@ -103,22 +104,19 @@ std::pair<double, double> weight_sums(const SkinnedMesh& mesh)
 
 } // namespace
 
-TEST(Skinning, AgreesWithTheTextbookOnTheColumn)
-{
-    expect_like_textbook(import_rigged_model(column_file()), 1);
-}
+TEST(Skinning, AgreesWithTheTextbookOnTheColumn) { expect_like_textbook(import_gltf(column_file()), 1); }
 
 TEST(Skinning, AgreesWithTheTextbookOnAScannedBody)
 {
     const std::filesystem::path file = std::filesystem::path(TOILE_DATA_DIR) / "avatars/mh_woman.glb";
     if (!std::filesystem::exists(file))
         GTEST_SKIP() << "SKIPPED: TOILE_DATA_DIR has no avatars/mh_woman.glb";
-    expect_like_textbook(import_rigged_model(file), 97);
+    expect_like_textbook(import_gltf(file), 97);
 }
 
 TEST(Skinning, BoneRotationMovesItsRigidPart)
 {
-    RiggedModel model = import_rigged_model(column_file());
+    RiggedModel model = import_gltf(column_file());
     const std::vector<Vec3> rest = model.mesh.rest.positions;
     SkinnedAvatar avatar("column", std::move(model));
     const std::vector<Vec3> x = posed(avatar, {avatar.clip_index("bend"), 1.0});
@@ -137,7 +135,7 @@ TEST(Skinning, BoneRotationMovesItsRigidPart)
 
 TEST(Skinning, ScalesStoredWeightsToOne)
 {
-    const auto [min_sum, max_sum] = weight_sums(import_rigged_model(column_file()).mesh);
+    const auto [min_sum, max_sum] = weight_sums(import_gltf(column_file()).mesh);
     EXPECT_NEAR(min_sum, 1.0, 1e-14);
     EXPECT_NEAR(max_sum, 1.0, 1e-14);
 }

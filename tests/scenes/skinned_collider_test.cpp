@@ -25,6 +25,25 @@ scene::Avatar bending_column()
 
 std::vector<Vec3> copy_of(View<const Vec3> x) { return {x.begin(), x.end()}; }
 
+TEST(SkinnedCollider, GrowsWithTheBlendShapesOfItsFile)
+{
+    // Vertex 1 moves along X by half of the weight, which goes from 0.25 to 2 in a second.
+    scene::Avatar settings;
+    settings.name = "body";
+    settings.shape = std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/growing_tetrahedron.gltf";
+    settings.clip = "grow";
+    SkinnedCollider body(settings, identity_affine());
+    std::vector<Vec3> x(4);
+    body.pose_t1(x);
+    EXPECT_NEAR(x[1].x(), 1.125, 1e-12);
+    EXPECT_TRUE(body.advance_to(1.0, identity_affine()));
+    body.pose_t0(x);
+    EXPECT_NEAR(x[1].x(), 1.125, 1e-12);
+    body.pose_t1(x);
+    EXPECT_NEAR(x[1].x(), 2.0, 1e-12);
+    EXPECT_NEAR(body.vertex_t1(1).x(), 2.0, 1e-12);
+}
+
 TEST(SkinnedCollider, GivesSingleVerticesAndLidsLikeTheWholePose)
 {
     scene::Avatar settings = bending_column();
