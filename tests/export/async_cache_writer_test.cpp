@@ -95,7 +95,8 @@ public:
             throw DeviceError("disk full");
         written_.push_back(frame);
     }
-    void finish() override { written_.push_back(-1); }
+    std::filesystem::path complete() override { return {}; }
+    void publish() override { written_.push_back(-1); }
     std::filesystem::path partial() const override { return {}; }
 
 private:

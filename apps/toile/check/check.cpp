@@ -8,7 +8,11 @@
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/exports.h"
 #include "apps/toile/terminal/progress.h"
+#include "apps/toile/terminal/scene_inputs.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/file_plan.h"
+#include "export/folder_lock.h"
 #include "scenes/format/read_scene.h"
 
 namespace toile::app {
@@ -65,7 +69,7 @@ std::vector<CachedCloth> cloths_of(const std::vector<std::filesystem::path>& cac
             if (other.cloth == cloth)
                 throw InvalidInput(file.string() + ": is of the same cloth \"" + cloth->name + "\" as " +
                                    other.file.string() + "; give one cache of each cloth");
-        cloths.push_back({cloth, file});
+        cloths.push_back({cloth, file, file});
     }
     return cloths;
 }
@@ -80,7 +84,19 @@ std::filesystem::path certificate_path_of(const CheckOptions& options)
         return first / kCertificateName;
     if (options.caches.size() > 1)
         return first.parent_path() / kCertificateName;
-    return first.parent_path() / (first.stem().string() + "." + kCertificateName);
+    return certificate_beside(first);
+}
+
+/// Refuses a certificate that would replace a file that it is made from, or could not be written.
+void require_safe_output(const std::filesystem::path& file, const scenes::Scene& scene,
+                         const std::vector<std::filesystem::path>& caches)
+{
+    FilePlan plan;
+    add_inputs(plan, scene);
+    for (const std::filesystem::path& cache : caches)
+        plan.add_input(cache, "a cache to check");
+    plan.add_output(file, "the certificate");
+    require_writable(file);
 }
 
 int check(const CheckOptions& options)
@@ -91,9 +107,15 @@ int check(const CheckOptions& options)
     if (!options.cloth.empty() && (is_folder || options.caches.size() > 1))
         throw InvalidInput("--cloth: names the cloth of a single cache; name the caches after their cloths");
     const scenes::Scene scene = scenes::read_scene(options.scene);
-    const scenes::World world(scene);
     const std::vector<std::filesystem::path> caches =
         is_folder ? caches_in(options.caches[0], scene) : options.caches;
+    const std::filesystem::path output = certificate_path_of(options);
+    require_safe_output(output, scene, caches);
+    // A run must not replace the caches before their certificate lies beside them.
+    std::optional<exports::FolderLock> lock;
+    if (options.output.empty())
+        lock.emplace(output.parent_path());
+    const scenes::World world(scene);
     const std::vector<CachedCloth> cloths = cloths_of(caches, scene, world, options.cloth);
 
     std::optional<Progress> progress;
@@ -106,7 +128,8 @@ int check(const CheckOptions& options)
     progress.reset();
     if (options.output.empty())
         std::cout << to_json(certificate);
-    return conclude(certificate, certificate_path_of(options), RunLog(options.quiet));
+    write_atomically(output, to_json(certificate));
+    return conclude(certificate, output, RunLog(options.quiet));
 }
 
 } // namespace
