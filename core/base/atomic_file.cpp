@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/base/error.h"
@@ -51,13 +52,27 @@ int write_and_close(int descriptor, std::span<const std::string_view> pieces)
     throw DeviceError(file.string() + ": writing broke off (" + std::strerror(error) + ")");
 }
 
-/// A pipe without a reader is refused: opening it would wait for one.
+/// Opens a stream for writing: that of this process if it is one, whose position then advances; else anew. A
+/// pipe without a reader is refused, because opening it would wait for one. @return -1 if that fails
+int open_stream(const std::filesystem::path& stream)
+{
+    struct stat named {
+    }, own{};
+    ::stat(stream.c_str(), &named);
+    for (const int standard : {STDOUT_FILENO, STDERR_FILENO})
+        if (::fstat(standard, &own) == 0 && own.st_dev == named.st_dev && own.st_ino == named.st_ino)
+            return ::fcntl(standard, F_DUPFD_CLOEXEC, 0);
+    const int descriptor = ::open(stream.c_str(), O_WRONLY | O_APPEND | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor >= 0)
+        ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+    return descriptor;
+}
+
 void write_to_stream(const std::filesystem::path& stream, std::string_view content)
 {
-    const int descriptor = ::open(stream.c_str(), O_WRONLY | O_APPEND | O_NONBLOCK | O_CLOEXEC);
+    const int descriptor = open_stream(stream);
     if (descriptor < 0)
         throw DeviceError(stream.string() + ": can't be written (" + std::strerror(errno) + ")");
-    ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
     if (const int error = write_and_close(descriptor, std::span(&content, 1)); error != 0)
         broke_off(stream, error);
 }

@@ -99,7 +99,8 @@ void RunFiles::publish()
     };
     for (const std::filesystem::path& certificate : certificates_of(job_)) {
         std::error_code error;
-        std::filesystem::remove(certificate, error);
+        if (!std::filesystem::is_directory(certificate, error))
+            std::filesystem::remove(certificate, error);
         if (error)
             throw DeviceError(certificate.string() + ": is of an earlier run and can't be removed (" +
                               error.message() + "); the new caches keep their partial names");

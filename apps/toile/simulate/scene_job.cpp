@@ -4,11 +4,13 @@
 #include <map>
 #include <set>
 #include <string>
+#include <system_error>
 
 #include "apps/toile/check/certify.h"
 #include "apps/toile/terminal/exports.h"
 #include "apps/toile/terminal/scene_inputs.h"
 #include "core/base/atomic_file.h"
+#include "core/base/error.h"
 #include "core/base/file_plan.h"
 #include "export/cache_format.h"
 #include "export/folder_lock.h"
@@ -50,6 +52,14 @@ void add_cache(FilePlan& plan, const path& file, int frame_count, const std::str
     const path waiting = file.parent_path() / (sequence.stem() + ".partial") / file.filename();
     add_frames(plan, sequence, frame_count, role);
     add_frames(plan, exports::ObjSequence(waiting), frame_count, role + ", unfinished");
+}
+
+/// Refuses a name that can't be replaced by a file, or should not be.
+void require_regular(const path& file)
+{
+    std::error_code missing;
+    if (std::filesystem::is_directory(file, missing) || is_stream(file))
+        throw InvalidInput(file.string() + ": is no regular file; choose another folder or name");
 }
 
 void add_outputs(FilePlan& plan, const SceneJob& job)
@@ -125,8 +135,13 @@ void require_safe_outputs(const std::vector<SceneJob>& jobs)
             exports::FolderLock::require_free(folder);
             require_writable(exports::FolderLock::file_in(folder));
         }
-        for (const SurfaceFile& cache : caches_of(job))
+        for (const SurfaceFile& cache : caches_of(job)) {
+            require_regular(cache.file);
             require_writable(partial_beside(cache.file));
+        }
+        for (const SurfaceFile& mesh : start_meshes_of(job))
+            require_regular(mesh.file);
+        require_regular(job.folder / kCertificateName);
         if (!job.report.empty())
             require_writable(job.report);
     }

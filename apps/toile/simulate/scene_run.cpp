@@ -3,7 +3,6 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <new>
 #include <optional>
 #include <utility>
 
@@ -71,10 +70,8 @@ Outcome run_or_stop(scenes::World& world, const scenes::Scene& scene, RunFiles& 
         run_frames(world, scene, files, report, interrupt, log, outcome);
     } catch (const Cancelled&) {
         outcome.word = "interrupted";
-    } catch (const std::bad_alloc&) {
-        outcome = {"failed", "out of memory"};
     } catch (const std::exception& error) {
-        outcome = {"failed", error.what()};
+        outcome = {"failed", reason_of(error)};
     }
     return outcome;
 }
@@ -201,8 +198,8 @@ std::optional<Certificate> SceneRun::check(const RunFiles& files, const Interrup
     return certificate;
 }
 
-/// Moves everything that the run made to its final names: report and certificate last, so that they never lie
-/// beside caches that they do not describe. What can't be delivered does not keep back the rest.
+/// Moves everything that the run made to its final names: the certificate last, so that it never lies beside
+/// caches that it does not describe. What can't be delivered does not keep back the rest.
 int SceneRun::publish(RunFiles& files, const RunReport& report, const InterruptGuard& interrupt) const
 {
     // Have everything ready under partial names before the first file of an earlier run is replaced.
