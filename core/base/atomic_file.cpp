@@ -25,9 +25,26 @@ std::filesystem::path unique_partial(const std::filesystem::path& file)
     return file.string() + kPartial + std::to_string(::getpid()) + "-" + std::to_string(++count);
 }
 
-[[noreturn]] void refuse_to_write(const std::filesystem::path& file, const std::string& why)
+const char* remedy_of(int error)
 {
-    throw InvalidInput(file.string() + ": can't be written (" + why + "); choose a writable folder");
+    switch (error) {
+    case EMFILE:
+    case ENFILE:
+        return "raise the limit of open files (ulimit -n)";
+    case ENAMETOOLONG:
+        return "choose a shorter name";
+    case ENOSPC:
+    case EDQUOT:
+        return "make room on the disk";
+    default:
+        return "choose a writable folder";
+    }
+}
+
+[[noreturn]] void refuse_to_write(const std::filesystem::path& file, int error)
+{
+    throw InvalidInput(file.string() + ": can't be written (" + std::strerror(error) + "); " +
+                       remedy_of(error));
 }
 
 /// Writes everything and closes. @return 0 or errno
@@ -72,15 +89,31 @@ void write_to_stream(const std::filesystem::path& stream, std::string_view conte
 {
     const int descriptor = open_stream(stream);
     if (descriptor < 0)
-        throw DeviceError(stream.string() + ": can't be written (" + std::strerror(errno) + ")");
+        throw DeviceError(stream.string() + ": can't be written (" +
+                          (errno == ENXIO ? "no program reads this pipe" : std::strerror(errno)) + ")");
     if (const int error = write_and_close(descriptor, std::span(&content, 1)); error != 0)
         broke_off(stream, error);
 }
 
-/// Innermost folder above the file that exists.
-std::filesystem::path existing_folder_above(const std::filesystem::path& file)
+/// Creates and removes a file. @param named  what to name where that fails
+void probe(const std::filesystem::path& folder, const std::filesystem::path& name,
+           const std::filesystem::path& named)
 {
-    std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+    std::error_code missing;
+    if (!std::filesystem::is_directory(folder, missing))
+        throw InvalidInput(named.string() + ": " + folder.string() +
+                           " is no folder; choose a writable folder");
+    const std::filesystem::path file = folder / unique_partial(name);
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (descriptor < 0)
+        refuse_to_write(named, errno);
+    ::close(descriptor);
+    ::unlink(file.c_str());
+}
+
+/// The folder, or the innermost above it that exists.
+std::filesystem::path existing_above(std::filesystem::path folder)
+{
     std::error_code unreachable; // counts as missing
     while (folder.has_relative_path() && !std::filesystem::exists(folder, unreachable))
         folder = folder.parent_path();
@@ -129,19 +162,15 @@ void require_writable(const std::filesystem::path& file)
         throw InvalidInput(file.string() + ": is a folder; name a file");
     if (is_stream(file)) {
         if (::access(file.c_str(), W_OK) != 0)
-            refuse_to_write(file, std::strerror(errno));
+            refuse_to_write(file, errno);
         return;
     }
-    const std::filesystem::path folder = existing_folder_above(file);
-    if (!std::filesystem::is_directory(folder, error))
-        throw InvalidInput(file.string() + ": " + folder.string() +
-                           " is no folder; choose a writable folder");
-    const std::filesystem::path probe = folder / unique_partial(file.filename());
-    const int descriptor = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (descriptor < 0)
-        refuse_to_write(file, std::strerror(errno));
-    ::close(descriptor);
-    ::unlink(probe.c_str());
+    probe(existing_above(std::filesystem::absolute(file).parent_path()), file.filename(), file);
+}
+
+void require_writable_folder(const std::filesystem::path& folder)
+{
+    probe(existing_above(std::filesystem::absolute(folder / ".").parent_path()), "probe", folder);
 }
 
 StagedFile::StagedFile(std::filesystem::path file, std::filesystem::path partial,
@@ -156,7 +185,7 @@ StagedFile::StagedFile(std::filesystem::path file, std::filesystem::path partial
     create_parent_folder(file_);
     const int descriptor = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0)
-        refuse_to_write(file_, std::strerror(errno));
+        refuse_to_write(file_, errno);
     partial_ = std::move(partial);
     if (const int error = write_and_close(descriptor, pieces); error != 0) {
         ::unlink(partial_.c_str());

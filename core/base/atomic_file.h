@@ -19,6 +19,9 @@ std::filesystem::path partial_beside(const std::filesystem::path& file);
 /// @throws InvalidInput naming the reason: a folder has the name, or no folder can be written to.
 void require_writable(const std::filesystem::path& file);
 
+/// The same for a folder, which need not exist yet.
+void require_writable_folder(const std::filesystem::path& folder);
+
 /// Whether writing to the path must not replace it: a device, a pipe, a socket, or a name in /dev or /proc
 /// such as /dev/stdout, which may stand for a file.
 bool is_stream(const std::filesystem::path& path);

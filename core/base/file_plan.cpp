@@ -32,24 +32,38 @@ void FilePlan::add_input(const std::filesystem::path& file, const std::string& r
         uses_.try_emplace(identity.by_inode, Use{file, role, true});
 }
 
+void FilePlan::refuse(const Use& use, const Use& earlier)
+{
+    if (earlier.is_input)
+        throw InvalidInput(use.file.string() + ": " + use.role + " would replace " + earlier.file.string() +
+                           ", " + earlier.role + "; choose another folder or name");
+    throw InvalidInput(use.file.string() + ": " + use.role + " is in the way of " + earlier.file.string() +
+                       ", " + earlier.role + "; give each a name of its own");
+}
+
+/// Notes the folders that an output needs, unless those of its neighbours are noted already.
+void FilePlan::add_folders_above(const std::string& name, const Use& use)
+{
+    for (std::filesystem::path folder = std::filesystem::path(name).parent_path();
+         folder.has_relative_path() && folders_.try_emplace(folder.string(), use).second;
+         folder = folder.parent_path())
+        if (const auto file = uses_.find(folder.string()); file != uses_.end() && !file->second.is_input)
+            refuse(use, file->second);
+}
+
 void FilePlan::add_output(const std::filesystem::path& file, const std::string& role)
 {
     if (is_stream(file))
         return;
+    const Use use{file, role, false};
     const Identity identity = identity_of(file);
-    for (const std::string& key : {identity.by_name, identity.by_inode}) {
-        if (key.empty())
-            continue;
-        const auto [other, is_new] = uses_.try_emplace(key, Use{file, role, false});
-        if (is_new)
-            continue;
-        const Use& use = other->second;
-        if (use.is_input)
-            throw InvalidInput(file.string() + ": " + role + " would replace " + use.file.string() + ", " +
-                               use.role + "; choose another folder or name");
-        throw InvalidInput(file.string() + ": would be both " + use.role + " (" + use.file.string() +
-                           ") and " + role + "; give each a name of its own");
-    }
+    for (const std::string& key : {identity.by_name, identity.by_inode})
+        if (!key.empty())
+            if (const auto [earlier, is_new] = uses_.try_emplace(key, use); !is_new)
+                refuse(use, earlier->second);
+    if (const auto within = folders_.find(identity.by_name); within != folders_.end())
+        refuse(use, within->second);
+    add_folders_above(identity.by_name, use);
 }
 
 } // namespace toile

@@ -15,7 +15,7 @@ public:
     void add_input(const std::filesystem::path& file, const std::string& role);
 
     /// Streams (atomic_file.h) are no files and may be named twice.
-    /// @throws InvalidInput naming both if the file is an input or output added before.
+    /// @throws InvalidInput naming both if the file is an input or output added before, or is a folder of one
     void add_output(const std::filesystem::path& file, const std::string& role);
 
 private:
@@ -31,7 +31,11 @@ private:
 
     Identity identity_of(const std::filesystem::path& file);
 
-    std::map<std::string, Use> uses_; ///< by either identity
+    void add_folders_above(const std::string& name, const Use& use);
+    [[noreturn]] static void refuse(const Use& use, const Use& earlier);
+
+    std::map<std::string, Use> uses_;    ///< by either identity
+    std::map<std::string, Use> folders_; ///< that outputs lie in, at any depth
     std::map<std::filesystem::path, std::filesystem::path> canonical_folders_;
 };
 

@@ -57,7 +57,11 @@ protected:
         std::filesystem::create_directory_symlink("a", file("linked/b"));
         std::filesystem::create_symlink("s.json", file("link.json"));
         std::filesystem::create_hard_link(file("s.json"), file("twin.json"));
-        std::filesystem::create_directory(file("folder.json"));
+        std::filesystem::create_symlink("loop", file("loop"));
+        std::filesystem::create_symlink("nowhere", file("dangling"));
+        std::filesystem::create_directories(file("taken/mesh/sheet.partial.obj"));
+        std::filesystem::create_directories(file("taken/certificate/certificate.json"));
+        std::filesystem::create_directories(file("taken/cache/sheet.pc2"));
     }
 
     static std::string scene(const std::string& mesh, const std::string& keys = R"("description": "")",
@@ -106,7 +110,15 @@ const std::vector<Refused> kRefused{
     {{"simulate", "s.json", "-o", "out", "--report", "out/sheet.pc2"}, {"cache of", "report"}},
     {{"simulate", "s.json", "-o", "out", "--report", "out/sheet.partial.pc2"}, {"cache of", "report"}},
     {{"simulate", "s.json", "-o", "out", "--report", "out/sheet.obj"}, {"start mesh", "report"}},
+    {{"simulate", "s.json", "-o", "new", "--report", "new"}, {"report is in the way of", "new"}},
+    {{"simulate", "s.json", "-o", "new", "--report", "new/sheet.pc2/r"}, {"report is in the way of"}},
+    {{"simulate", "s.json", "-o", "new", "--report", "new/.toile.lock"}, {"the lock", "report"}},
     // What can't be written.
+    {{"simulate", "s.json", "-o", "loop/x"}, {"loop", "Too many levels of symbolic links"}},
+    {{"simulate", "s.json", "-o", "dangling"}, {"dangling", "can't be created"}},
+    {{"simulate", "s.json", "-o", "taken/mesh"}, {"sheet.partial.obj", "is a folder"}},
+    {{"simulate", "s.json", "-o", "taken/certificate"}, {"certificate.json", "is no regular file"}},
+    {{"simulate", "s.json", "-o", "taken/cache"}, {"sheet.pc2", "is no regular file"}},
     {{"simulate", "s.json", "--report", "/proc/run.json"}, {"/proc/run.json", "can't be written"}},
     {{"simulate", "s.json", "-o", "/proc/out"}, {"/proc/out", "can't be written"}},
     {{"simulate", "s.json", "--report", "new/"}, {"new/", "is a folder"}},

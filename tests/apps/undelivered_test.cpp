@@ -94,9 +94,9 @@ TEST_F(Undelivered, FilesBeyondALimitOfTheirSize)
 TEST_F(Undelivered, MemoryBeyondALimit)
 {
     temporary_.write("fine.json", R"({"toile": 1, "frames": 4, "cloths": [{"name": "sheet",
-        "rectangle": {"size": [0.6, 0.6], "resolution": 0.008}}]})");
+        "rectangle": {"size": [0.6, 0.6], "resolution": 0.01}}]})");
     int failed = 0;
-    for (const int mebibytes : {140, 170, 200, 230, 260}) {
+    for (const int mebibytes : {140, 170, 200}) {
         SCOPED_TRACE(mebibytes);
         std::filesystem::remove_all(file("out"));
         const Finished run = shell("ulimit -v " + std::to_string(1024 * mebibytes) +
@@ -124,13 +124,13 @@ TEST_F(Undelivered, FolderThatIsRemovedWhileTheRunWrites)
 
 TEST_F(Undelivered, SceneThatIsRemovedWhileTheRunWrites)
 {
-    temporary_.write("drop.json", small_scene(400, R"("solver": {"sleep": {"enabled": false}})"));
+    temporary_.write("drop.json", small_scene(100, R"("solver": {"sleep": {"enabled": false}})"));
     Running run({"simulate", "drop.json", "-o", "out", "--quiet"}, folder_);
     Running::wait_for_file(file("out/sheet.partial.pc2"));
     std::filesystem::remove(file("drop.json"));
     const Finished end = run.end(0);
     EXPECT_EQ(end.exit_code, 0) << end.errors;
-    EXPECT_EQ(read_cache(file("out/sheet.pc2")).frame_count(), 400);
+    EXPECT_EQ(read_cache(file("out/sheet.pc2")).frame_count(), 100);
 }
 
 } // namespace

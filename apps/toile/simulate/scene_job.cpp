@@ -30,15 +30,19 @@ void add_output_and_partial(FilePlan& plan, const path& file, const std::string&
     plan.add_output(partial_beside(file), role + ", unfinished");
 }
 
-/// Adds the frames of a sequence and those that an earlier, longer run left, which are removed.
-void add_frames(FilePlan& plan, const exports::ObjSequence& sequence, int frame_count,
-                const std::string& role)
+/// Adds the frames of a sequence, those that an earlier, longer run left, and those that a killed run left
+/// unfinished, which are removed.
+void add_frames(FilePlan& plan, const path& file, int frame_count, const std::string& role)
 {
+    const exports::ObjSequence sequence(file);
     for (int frame = 0; frame < frame_count; ++frame)
         plan.add_output(sequence.file(frame), role);
     for (const int number : sequence.existing())
         if (number >= frame_count)
             plan.add_output(sequence.file(number), role);
+    const exports::ObjSequence waiting(file.parent_path() / (sequence.stem() + ".partial") / file.filename());
+    for (const int number : waiting.existing())
+        plan.add_output(waiting.file(number), role + ", unfinished");
 }
 
 void add_cache(FilePlan& plan, const path& file, int frame_count, const std::string& role)
@@ -46,12 +50,8 @@ void add_cache(FilePlan& plan, const path& file, int frame_count, const std::str
     add_output_and_partial(plan, file, role);
     if (exports::cache_format(file) == exports::CacheFormat::Mdd)
         plan.add_output(file.string() + ".partial.pc2", role + ", unfinished");
-    if (!is_obj(file) || (frame_count == 1 && !exports::ObjSequence::has_digits_placeholder(file)))
-        return;
-    const exports::ObjSequence sequence(file);
-    const path waiting = file.parent_path() / (sequence.stem() + ".partial") / file.filename();
-    add_frames(plan, sequence, frame_count, role);
-    add_frames(plan, exports::ObjSequence(waiting), frame_count, role + ", unfinished");
+    if (is_obj(file) && (frame_count > 1 || exports::ObjSequence::has_digits_placeholder(file)))
+        add_frames(plan, file, frame_count, role);
 }
 
 /// Refuses a name that can't be replaced by a file, or should not be.
@@ -70,6 +70,8 @@ void add_outputs(FilePlan& plan, const SceneJob& job)
                   "the cache of \"" + names[size_t(cache.surface)] + "\"");
     for (const SurfaceFile& mesh : start_meshes_of(job))
         add_output_and_partial(plan, mesh.file, "the start mesh of \"" + names[size_t(mesh.surface)] + "\"");
+    for (const path& folder : output_folders_of(job))
+        plan.add_output(exports::FolderLock::file_in(folder), "the lock of the folder");
     for (const path& certificate : certificates_of(job))
         add_output_and_partial(plan, certificate, "the certificate");
     if (!job.report.empty())
@@ -104,11 +106,14 @@ std::vector<SurfaceFile> start_meshes_of(const SceneJob& job)
 
 std::vector<path> output_folders_of(const SceneJob& job)
 {
-    std::map<path, path> by_canonical{{std::filesystem::weakly_canonical(job.folder), job.folder}};
-    for (const SurfaceFile& cache : caches_of(job)) {
-        const path folder = cache.file.parent_path();
-        by_canonical.try_emplace(std::filesystem::weakly_canonical(folder), folder);
-    }
+    std::map<path, path> by_canonical;
+    const auto add = [&](const path& folder) {
+        // With a slash at the end, which a folder that exists does not keep otherwise.
+        by_canonical.try_emplace(std::filesystem::weakly_canonical(folder / ""), folder);
+    };
+    add(job.folder);
+    for (const SurfaceFile& cache : caches_of(job))
+        add(cache.file.parent_path());
     std::vector<path> folders;
     for (const auto& [canonical, folder] : by_canonical)
         folders.push_back(folder);
@@ -133,14 +138,16 @@ void require_safe_outputs(const std::vector<SceneJob>& jobs)
     for (const SceneJob& job : jobs) {
         for (const path& folder : output_folders_of(job)) {
             exports::FolderLock::require_free(folder);
-            require_writable(exports::FolderLock::file_in(folder));
+            require_writable_folder(folder);
         }
         for (const SurfaceFile& cache : caches_of(job)) {
             require_regular(cache.file);
             require_writable(partial_beside(cache.file));
         }
-        for (const SurfaceFile& mesh : start_meshes_of(job))
+        for (const SurfaceFile& mesh : start_meshes_of(job)) {
             require_regular(mesh.file);
+            require_writable(partial_beside(mesh.file));
+        }
         require_regular(job.folder / kCertificateName);
         if (!job.report.empty())
             require_writable(job.report);

@@ -62,6 +62,9 @@ int run_and_report(const RunLog& log, const std::function<int()>& work)
     } catch (const InvalidInput& error) {
         log.error(error.what());
         return kExitBadInput;
+    } catch (const std::filesystem::filesystem_error& error) {
+        log.error(error.path1().string() + ": " + error.code().message() + "; check the path");
+        return kExitBadInput;
     } catch (const std::exception& error) {
         log.error(reason_of(error));
     }

@@ -41,8 +41,18 @@ TEST_F(FilePlanTest, RefusesTwoNamesOfAnOutputThatDoesNotExist)
     FilePlan plan;
     plan.add_output(file("sub/new.pc2"), "the cache");
     EXPECT_THAT(refusal([&] { plan.add_output(file("door/new.pc2"), "the mesh"); }),
-                AllOf(HasSubstr("both the cache"), HasSubstr("sub/new.pc2"), HasSubstr("the mesh")));
+                AllOf(HasSubstr("the mesh is in the way of"), HasSubstr("sub/new.pc2, the cache")));
     EXPECT_EQ(refusal([&] { plan.add_output(file("sub/other.pc2"), "the mesh"); }), "");
+}
+
+TEST_F(FilePlanTest, RefusesAFileWhereAnotherNeedsAFolder)
+{
+    FilePlan plan;
+    plan.add_output(file("new/deep/a.pc2"), "the cache");
+    EXPECT_THAT(refusal([&] { plan.add_output(file("new"), "the report"); }),
+                HasSubstr("the report is in the way of"));
+    EXPECT_THAT(refusal([&] { plan.add_output(file("new/deep/a.pc2/b"), "the report"); }),
+                HasSubstr("the report is in the way of"));
 }
 
 TEST_F(FilePlanTest, AcceptsRepeatedInputsAndStreams)
