@@ -7,9 +7,9 @@
 
 #include <cholmod.h>
 
+#include "core/base/blas_memory.h"
 #include "core/base/error.h"
 #include "core/base/stages.h"
-#include "core/linear/blas_memory.h"
 
 /// Sets OpenBLAS's threads, if it is the installed BLAS. With many threads its small dense kernels ran 12
 /// times slower.

@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "apps/toile/terminal/command_line.h"
+#include "core/base/blas_memory.h"
 #include "core/compute/cuda/runtime/runtime.h"
-#include "core/linear/blas_memory.h"
 #include "research/bench/benchmark.h"
 #include "research/scenes/literature_methods.h"
 #include "scenes/format/field.h"

@@ -1,4 +1,4 @@
-#include "core/linear/blas_memory.h"
+#include "core/base/blas_memory.h"
 
 #include <cstddef>
 #include <cstdlib>
