@@ -115,6 +115,7 @@ std::vector<path> output_folders_of(const SceneJob& job)
     for (const SurfaceFile& cache : caches_of(job))
         add(cache.file.parent_path());
     std::vector<path> folders;
+    folders.reserve(by_canonical.size());
     for (const auto& [canonical, folder] : by_canonical)
         folders.push_back(folder);
     return folders;

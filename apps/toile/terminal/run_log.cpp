@@ -47,7 +47,7 @@ Progress RunLog::progress(const std::string& what, int total) const
 
 std::string reason_of(const std::exception& error)
 {
-    const std::string what = error.what();
+    std::string what = error.what();
     if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
         return "out of memory; use a coarser resolution or fewer cloths";
     if (what.ends_with(std::strerror(EAGAIN))) // from threads of the standard library and of TBB
