@@ -88,6 +88,9 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
 {
     while (true) {
         descriptor_ = open_lock(folder_, O_RDWR | O_CREAT);
+        const bool is_foreign = descriptor_ < 0 && errno == EACCES; // the file of another user
+        if (is_foreign)
+            descriptor_ = open_lock(folder_, O_RDONLY);
         if (descriptor_ < 0) {
             const std::string reason = std::strerror(errno);
             remove_created_folders();
@@ -97,7 +100,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
         if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
             refuse(folder_, descriptor_);
         // The holder may have removed the file between open() and flock(): then this lock keeps nobody out.
-        if (leads_to(file_in(folder_), descriptor_))
+        const bool is_held = leads_to(file_in(folder_), descriptor_);
+        if (is_held && (!is_foreign || ::unlink(file_in(folder_).c_str()) != 0))
             break;
         ::close(descriptor_);
     }

@@ -97,18 +97,21 @@ TEST_F(Undelivered, MemoryBeyondALimit)
         "rectangle": {"size": [0.6, 0.6], "resolution": 0.01}}]})");
     int failed = 0;
     for (const int mebibytes : {140, 170, 200}) {
-        SCOPED_TRACE(mebibytes);
-        std::filesystem::remove_all(file("out"));
-        const Finished run = shell("ulimit -v " + std::to_string(1024 * mebibytes) +
-                                   "; \"$TOILE\" simulate fine.json -o out --quiet --no-cache --no-check");
-        if (run.exit_code == 0) {
-            expect_whole_cache();
-            continue;
+        const std::string limit = "ulimit -v " + std::to_string(1024 * mebibytes) + "; \"$TOILE\" ";
+        if (shell(limit + "--version").exit_code != 0)
+            continue; // too little for its libraries on this machine
+        for (const char* command : {"simulate fine.json -o out --quiet --no-cache --no-check",
+                                    "render drop.json -o a.png --quiet"}) {
+            SCOPED_TRACE(limit + command);
+            std::filesystem::remove_all(file("out"));
+            const Finished run = shell(limit + command);
+            if (run.exit_code == 0)
+                continue;
+            ++failed;
+            expect_failure(run, "out of memory");
+            if (std::filesystem::exists(file("out/sheet.partial.pc2")))
+                EXPECT_GE(read_cache(file("out/sheet.partial.pc2")).frame_count(), 1);
         }
-        ++failed;
-        expect_failure(run, "out of memory");
-        if (std::filesystem::exists(file("out/sheet.partial.pc2")))
-            EXPECT_GE(read_cache(file("out/sheet.partial.pc2")).frame_count(), 1);
     }
     RecordProperty("out_of_memory", failed);
 }

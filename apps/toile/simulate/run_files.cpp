@@ -57,9 +57,10 @@ RunFiles::Partials RunFiles::close()
     Partials partials;
     for (Cache& cache : caches_) {
         const int written = cache.writer->close();
+        if (written == 0 || !std::filesystem::exists(cache.writer->partial()))
+            continue;
         partials.frame_count = std::max(partials.frame_count, written);
-        if (written > 0)
-            partials.files.push_back(cache.writer->partial());
+        partials.files.push_back(cache.writer->partial());
     }
     if (has_frames_ && partials.frame_count == 0)
         for (const StartMesh& mesh : meshes_) {

@@ -83,12 +83,12 @@ void explain_stop(int last_frame, const Outcome& outcome, RunFiles& files, const
     for (const std::filesystem::path& file : partials.files)
         log.file(file);
     const std::string reason = outcome.message.empty() ? "" : ": " + outcome.message;
-    if (partials.frame_count == 0)
+    const std::string count = partials.frame_count == 0 ? "no" : std::to_string(partials.frame_count);
+    if (last_frame == 0 && partials.frame_count == 0)
         log.error(outcome.word + " before the first frame" + reason + "; no frame was written");
     else
-        log.error(outcome.word + " at frame " + std::to_string(last_frame) + reason + "; " +
-                  std::to_string(partials.frame_count) +
-                  (partials.frame_count == 1 ? " frame is" : " frames are") + " in the partial caches");
+        log.error(outcome.word + " at frame " + std::to_string(last_frame) + reason + "; " + count +
+                  (partials.frame_count <= 1 ? " frame is" : " frames are") + " in the partial caches");
 }
 
 /// Reports an exception of the work after the last frame. @return whether there was none
