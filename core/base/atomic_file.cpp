@@ -18,13 +18,6 @@ namespace {
 
 constexpr const char* kPartial = ".partial-";
 
-/// Name that differs between the threads and processes of a machine.
-std::filesystem::path unique_partial(const std::filesystem::path& file)
-{
-    static std::atomic<long> count = 0;
-    return file.string() + kPartial + std::to_string(::getpid()) + "-" + std::to_string(++count);
-}
-
 const char* remedy_of(int error)
 {
     switch (error) {
@@ -135,6 +128,12 @@ void create_parent_folder(const std::filesystem::path& file)
 std::filesystem::path partial_beside(const std::filesystem::path& file)
 {
     return file.parent_path() / (file.stem().string() + ".partial" + file.extension().string());
+}
+
+std::filesystem::path unique_partial(const std::filesystem::path& file)
+{
+    static std::atomic<long> count = 0;
+    return file.string() + kPartial + std::to_string(::getpid()) + "-" + std::to_string(++count);
 }
 
 bool is_partial(const std::filesystem::path& file)

@@ -14,6 +14,9 @@ void create_parent_folder(const std::filesystem::path& file);
 /// Name of a file that is not finished yet: skirt.partial.obj for skirt.obj, run.partial for run.
 std::filesystem::path partial_beside(const std::filesystem::path& file);
 
+/// Name beside a file that no other thread or process of this machine gets.
+std::filesystem::path unique_partial(const std::filesystem::path& file);
+
 /// Refuses, before long work, a file that could not be written after it: by creating and removing a file in
 /// its folder, or in the innermost existing folder above.
 /// @throws InvalidInput naming the reason: a folder has the name, or no folder can be written to.
@@ -61,7 +64,7 @@ inline void write_atomically(const std::filesystem::path& file, std::string_view
     write_atomically(file, std::span(&content, 1));
 }
 
-/// True for temporary names that write_atomically() gives unfinished files.
+/// True for names of unique_partial().
 bool is_partial(const std::filesystem::path& file);
 
 } // namespace toile

@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
 #include "export/folder_lock.h"
+#include "export/obj_sequence.h"
 #include "scenes/format/read_scene.h"
 
 namespace toile::app {
@@ -31,10 +32,8 @@ struct CheckOptions {
 /// Whether a cache of this name exists, as a file or as numbered OBJ files.
 bool cache_exists(const std::filesystem::path& file)
 {
-    if (std::filesystem::exists(file))
-        return true;
-    const std::string first = file.stem().string() + "_0000.obj";
-    return file.extension() == ".obj" && std::filesystem::exists(file.parent_path() / first);
+    return std::filesystem::exists(file) ||
+           (file.extension() == ".obj" && !exports::ObjSequence(file).existing().empty());
 }
 
 /// Caches written by simulate into a folder, one per cloth; missing ones are omitted.
@@ -46,9 +45,10 @@ std::vector<std::filesystem::path> caches_in(const std::filesystem::path& folder
     for (const scene::Export& entry : exports_of(scene)) {
         const int cloth = surface_index(scene, entry.cloth);
         searched += (searched.empty() ? "" : ", ") + entry.file.string();
-        if (!cache_exists(folder / entry.file) || std::count(cloths.begin(), cloths.end(), cloth) > 0)
+        const std::filesystem::path file = folder / entry.file.lexically_normal();
+        if (!cache_exists(file) || std::count(cloths.begin(), cloths.end(), cloth) > 0)
             continue;
-        caches.push_back(folder / entry.file);
+        caches.push_back(file);
         cloths.push_back(cloth);
     }
     if (caches.empty())
@@ -106,6 +106,9 @@ int check(const CheckOptions& options)
     const bool is_folder = options.caches.size() == 1 && std::filesystem::is_directory(options.caches[0]);
     if (!options.cloth.empty() && (is_folder || options.caches.size() > 1))
         throw InvalidInput("--cloth: names the cloth of a single cache; name the caches after their cloths");
+    for (const std::filesystem::path& cache : options.caches)
+        if (!cache.has_extension() && !std::filesystem::exists(cache))
+            throw InvalidInput(cache.string() + ": no such folder; check the path");
     const scenes::Scene scene = scenes::read_scene(options.scene);
     const std::vector<std::filesystem::path> caches =
         is_folder ? caches_in(options.caches[0], scene) : options.caches;

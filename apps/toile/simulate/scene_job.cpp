@@ -84,7 +84,7 @@ std::vector<SurfaceFile> caches_of(const SceneJob& job)
 {
     std::vector<SurfaceFile> caches;
     for (const scene::Export& entry : exports_of(job.scene))
-        caches.push_back({job.folder / entry.file, surface_index(job.scene, entry.cloth)});
+        caches.push_back({job.folder / entry.file.lexically_normal(), surface_index(job.scene, entry.cloth)});
     return caches;
 }
 

@@ -100,13 +100,13 @@ bool succeeds(const RunLog& log, const std::function<void()>& work)
            }) == kExitOk;
 }
 
-/// Writes a file under its partial name. @return none after reporting a failure
-std::optional<StagedFile> stage(const std::filesystem::path& file, const std::string& content,
-                                const RunLog& log)
+/// Writes a file under a partial name. @return none after reporting a failure
+std::optional<StagedFile> stage(const std::filesystem::path& file, const std::filesystem::path& partial,
+                                const std::string& content, const RunLog& log)
 {
     std::optional<StagedFile> staged;
     const std::string_view piece = content;
-    succeeds(log, [&] { staged.emplace(file, partial_beside(file), std::span(&piece, 1)); });
+    succeeds(log, [&] { staged.emplace(file, partial, std::span(&piece, 1)); });
     return staged;
 }
 
@@ -202,14 +202,17 @@ std::optional<Certificate> SceneRun::check(const RunFiles& files, const Interrup
 /// caches that it does not describe. What can't be delivered does not keep back the rest.
 int SceneRun::publish(RunFiles& files, const RunReport& report, const InterruptGuard& interrupt) const
 {
-    // Have everything ready under partial names before the first file of an earlier run is replaced.
+    // Have everything ready under partial names before the first file of an earlier run is replaced. No lock
+    // keeps another run from naming the same report.
     const std::filesystem::path certificate_name = job_.folder / kCertificateName;
     std::optional<StagedFile> staged_report, staged_certificate;
     if (!job_.report.empty())
-        staged_report = stage(job_.report, report.to_json("complete", world_.stages()), log_);
+        staged_report = stage(job_.report, unique_partial(job_.report),
+                              report.to_json("complete", world_.stages()), log_);
     const std::optional<Certificate> certificate = no_check_ ? std::nullopt : check(files, interrupt);
     if (certificate)
-        staged_certificate = stage(certificate_name, to_json(*certificate), log_);
+        staged_certificate =
+            stage(certificate_name, partial_beside(certificate_name), to_json(*certificate), log_);
 
     if (!succeeds(log_, [&] { files.publish(); }))
         return kExitFailure;

@@ -41,26 +41,6 @@ void require_range(const char* option, const std::optional<int>& value, int lowe
                            "whole number from " + std::to_string(lower) + " to " + std::to_string(upper));
 }
 
-/// Existing part of a path: itself, or its innermost existing folder.
-std::filesystem::path nearest_existing(const std::filesystem::path& path)
-{
-    std::filesystem::path existing = std::filesystem::absolute(path);
-    while (!std::filesystem::exists(existing))
-        existing = existing.parent_path();
-    return existing;
-}
-
-/// Rejects a path below which the runs of several scenes could not create their folders.
-void require_folder(const char* option, const std::filesystem::path& path)
-{
-    if (path.empty())
-        return;
-    const std::filesystem::path existing = nearest_existing(path);
-    if (!std::filesystem::is_directory(existing))
-        throw InvalidInput(std::string(option) + ": " + path.string() + ": " + existing.string() +
-                           " is no folder; several scenes need one");
-}
-
 /// Numbers of the GPUs to run on, 0 by default; without a GPU on this machine the first number, unchecked.
 std::vector<int> devices_of(const SimulateOptions& options)
 {
@@ -105,8 +85,6 @@ SceneJob job_of(const SimulateOptions& options)
 std::vector<SceneJob> jobs_of(const SimulateOptions& options)
 {
     const std::filesystem::path output = options.output.empty() ? "out" : options.output;
-    require_folder("-o", output);
-    require_folder("--report", options.report);
     std::map<std::filesystem::path, std::filesystem::path> by_name;
     std::vector<SceneJob> jobs;
     for (const std::filesystem::path& file : options.scenes) {
