@@ -36,6 +36,19 @@ MddWriter::MddWriter(std::filesystem::path file, const CacheLayout& layout)
 std::filesystem::path MddWriter::complete()
 {
     const BinaryFile source(frames_.complete(), BinaryFile::Mode::Read);
+    try {
+        convert(source);
+    } catch (...) {
+        std::error_code missing;
+        std::filesystem::remove(converted_, missing);
+        throw;
+    }
+    return converted_;
+}
+
+/// Copies the frames in the other byte order.
+void MddWriter::convert(const BinaryFile& source) const
+{
     BinaryFile target(converted_, BinaryFile::Mode::Create);
     const std::string header = mdd_header(layout_);
     target.write_at(0, header);
@@ -49,7 +62,6 @@ std::filesystem::path MddWriter::complete()
         target.write_at(std::int64_t(header.size()) + offset, sample);
     }
     target.sync();
-    return converted_;
 }
 
 void MddWriter::publish()

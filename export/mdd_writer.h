@@ -24,6 +24,8 @@ public:
     std::filesystem::path partial() const override { return frames_.partial(); }
 
 private:
+    void convert(const BinaryFile& source) const;
+
     std::filesystem::path file_;
     CacheLayout layout_;
     std::filesystem::path converted_; ///< the MDD until publish()

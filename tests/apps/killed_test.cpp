@@ -172,6 +172,9 @@ TEST_F(Killed, ByASignalThatCanBeCaughtEndsAfterItsFrame)
         EXPECT_EQ(files_in("out"), old_);
         EXPECT_GE(read_cache(file("out/sheet.partial.pc2")).frame_count(), 1);
     }
+    run("old.json", "out");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file("out")), {}), 4)
+        << "a run that finishes leaves no partials";
 }
 
 } // namespace

@@ -11,10 +11,13 @@ using std::filesystem::path;
 
 std::string exports_scene(const std::string& exports, int frames = 3)
 {
-    return R"({"toile": 1, "frames": )" + std::to_string(frames) + R"(, "export": [)" + exports +
-           R"(], "cloths": [{"name": "c", "rectangle": {"size": [0.2, 0.2], "resolution": 0.1}},
-                            {"name": "d", "disc": {"radius": 0.1, "resolution": 0.1},
-                             "translate": [1, 0, 0]}]})";
+    std::string scene = R"({"toile": 1, "frames": )";
+    scene += std::to_string(frames);
+    scene += R"(, "export": [)" + exports;
+    scene += R"(], "cloths": [{"name": "c", "rectangle": {"size": [0.2, 0.2], "resolution": 0.1}},
+                              {"name": "d", "disc": {"radius": 0.1, "resolution": 0.1},
+                               "translate": [1, 0, 0]}]})";
+    return scene;
 }
 
 /// A scene whose cloth, avatar and solid are files, with a finished run of it in out/.
@@ -67,10 +70,11 @@ protected:
     static std::string scene(const std::string& mesh, const std::string& keys = R"("description": "")",
                              int frames = 3)
     {
-        return R"({"toile": 1, "frames": )" + std::to_string(frames) +
-               R"(, "cloths": [{"name": "sheet", "file": ")" + mesh + R"("}],
-                "avatars": [{"name": "body", "file": "body.obj"}], )" +
-               keys + "}";
+        std::string scene = R"({"toile": 1, "frames": )";
+        scene += std::to_string(frames);
+        scene += R"(, "cloths": [{"name": "sheet", "file": ")" + mesh;
+        scene += R"("}], "avatars": [{"name": "body", "file": "body.obj"}], )" + keys + "}";
+        return scene;
     }
 };
 

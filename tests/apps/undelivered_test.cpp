@@ -109,8 +109,9 @@ TEST_F(Undelivered, MemoryBeyondALimit)
                 continue;
             ++failed;
             expect_failure(run, "out of memory");
-            if (std::filesystem::exists(file("out/sheet.partial.pc2")))
+            if (std::filesystem::exists(file("out/sheet.partial.pc2"))) {
                 EXPECT_GE(read_cache(file("out/sheet.partial.pc2")).frame_count(), 1);
+            }
         }
     }
     RecordProperty("out_of_memory", failed);

@@ -1,6 +1,9 @@
 #include "export/cache_writer.h"
 
+#include <csignal>
+
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include "tests/export/export_fixtures.h"
 
@@ -153,6 +156,23 @@ TEST_F(CacheWriterTest, CompletesUnderAPartialNameThatCanBeRead)
         writer->publish();
         EXPECT_EQ(read_cache(file(name)).frame(0), frame_positions(0, 7)) << name;
     }
+}
+
+TEST_F(CacheWriterTest, KeepsTheFramesOfAnMddThatCannotBeCompleted)
+{
+    // The MDD is larger than its PC2 by the times of its frames, and the limit lies between.
+    const auto writer = make_cache_writer(file("a.mdd"), cache_layout(quad_mesh(), 100));
+    write_frames(*writer, 0, 100, 7);
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{32 + 100 * 7 * 12 + 50, before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    EXPECT_THROW(writer->complete(), DeviceError);
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    ::signal(SIGXFSZ, handler);
+    EXPECT_EQ(read_cache(writer->partial()).frame_count(), 100);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
 TEST_F(CacheWriterTest, NoticesThatItsPartialWasRemoved)

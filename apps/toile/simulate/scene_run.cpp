@@ -116,6 +116,15 @@ bool commit(std::optional<StagedFile>& staged, const RunLog& log)
     return staged && succeeds(log, [&] { staged->commit(); });
 }
 
+/// Also removes the report of an earlier run that did not finish.
+bool deliver_report(const std::filesystem::path& file, std::optional<StagedFile>& staged, const RunLog& log)
+{
+    std::error_code missing;
+    if (!is_stream(file))
+        std::filesystem::remove(partial_beside(file), missing);
+    return commit(staged, log);
+}
+
 } // namespace
 
 SceneRun::SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log)
@@ -218,7 +227,7 @@ int SceneRun::publish(RunFiles& files, const RunReport& report, const InterruptG
         return kExitFailure;
     for (const SurfaceFile& cache : caches_of(job_))
         log_.file(cache.file);
-    const bool is_reported = job_.report.empty() || commit(staged_report, log_);
+    const bool is_reported = job_.report.empty() || deliver_report(job_.report, staged_report, log_);
     if (no_check_)
         return is_reported ? kExitOk : kExitFailure;
     if (!commit(staged_certificate, log_))
