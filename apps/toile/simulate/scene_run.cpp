@@ -184,7 +184,7 @@ int SceneRun::run_into_caches(const InterruptGuard& interrupt)
             const std::filesystem::path file =
                 is_stream(job_.report) ? job_.report : partial_beside(job_.report);
             write_atomically(file, report.to_json(outcome.word, world_.stages()));
-            log_.file(file);
+            log_.result("the report of this run is " + file.string());
         });
     return kExitFailure;
 }
