@@ -68,6 +68,12 @@ if(TOILE_SANITIZE)
     target_link_options(toile_abi INTERFACE ${sanitizers})
 endif()
 
+# Parsers with libFuzzer: the preset "fuzz", for clang.
+option(TOILE_FUZZ "Instrument for libFuzzer (tests/fuzz)" OFF)
+if(TOILE_FUZZ)
+    add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-fsanitize=fuzzer-no-link>")
+endif()
+
 # Two classes of one name in one program: found where their modules are merged by link-time optimisation. Programs are
 # linked from the machine code that the objects hold too.
 option(TOILE_CHECK_ODR "Compile for the target odr" OFF)

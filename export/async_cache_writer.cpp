@@ -82,7 +82,7 @@ void AsyncCacheWriter::deliver_until_closed()
 std::exception_ptr AsyncCacheWriter::deliver(const Frame& frame)
 {
     try {
-        target_->write(frame.index, frame.late ? frame.late() : View<const Vec3>(frame.positions));
+        target_->write(frame.index, frame.late ? frame.late() : frame.positions);
     } catch (...) {
         return std::current_exception();
     }

@@ -26,10 +26,9 @@ public:
     /// Queues a copy. @throws the exception of an earlier failed write; nothing is written after that.
     void write(int frame, View<const Vec3> positions) override;
 
-    /// Returns a frame's positions [vertices] [m] when they are due for writing, or throws on failure. It
-    /// owns the data that it reads. It is called once, on the writer's thread, and destroyed when the frame
-    /// is written.
-    using LatePositions = std::function<View<const Vec3>()>;
+    /// Returns a frame's positions [vertices] [m] when they are due for writing, or throws on failure. It is
+    /// called once, on the writer's thread, and destroyed when the frame is written.
+    using LatePositions = std::function<std::vector<Vec3>()>;
 
     /// Queues positions that may not have arrived yet, without a copy. @throws as write()
     void write_later(int frame, LatePositions positions);

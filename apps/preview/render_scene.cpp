@@ -24,11 +24,11 @@ Material mannequin_material()
 std::vector<std::array<Vec2, 3>> corner_coordinates(const ObjMesh& mesh)
 {
     std::vector<std::array<Vec2, 3>> corners;
-    for (const std::vector<int>& uvs : mesh.polygon_uvs)
-        for (size_t k = 1; k + 1 < uvs.size(); ++k)
-            corners.push_back({mesh.texture_coordinates[size_t(uvs[0])],
-                               mesh.texture_coordinates[size_t(uvs[k])],
-                               mesh.texture_coordinates[size_t(uvs[k + 1])]});
+    for (int f = 0; f < int(mesh.polygon_uvs.size()); ++f)
+        for (const Triangle& corner : mesh.triangles_of(f)) {
+            const auto at = [&](int k) { return mesh.texture_coordinates[mesh.polygon_uvs[f][corner[k]]]; };
+            corners.push_back({at(0), at(1), at(2)});
+        }
     return corners;
 }
 

@@ -1,6 +1,7 @@
 #include "avatars/model/moving_avatar.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -32,19 +33,39 @@ std::vector<Bounds> boxes_of_bones(const SkinView& skin, int bone_count)
     return boxes;
 }
 
+/// Corners of a box around rest positions.
+std::array<Vec3, 8> corners_of(const Bounds& box)
+{
+    std::array<Vec3, 8> corners;
+    for (unsigned corner = 0; corner < 8; ++corner)
+        for (int axis = 0; axis < 3; ++axis)
+            corners[corner][axis] = ((corner >> axis) & 1) != 0 ? box.upper[axis] : box.lower[axis];
+    return corners;
+}
+
 /// Largest distance [m] between the images of a point of the box under two maps: both are affine, so a corner
 /// has it.
 double max_distance(const Bounds& box, const Affine& a, const Affine& b)
 {
     double largest = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        Vec3 p;
-        for (int axis = 0; axis < 3; ++axis)
-            p[axis] = ((corner >> axis) & 1) != 0 ? box.upper[axis] : box.lower[axis];
-        const Vec3 difference = (a.leftCols<3>() - b.leftCols<3>()) * p + a.col(3) - b.col(3);
-        largest = std::max(largest, difference.norm());
-    }
+    for (const Vec3& p : corners_of(box))
+        largest = std::max(largest, (apply(a, p) - apply(b, p)).norm());
     return largest;
+}
+
+/// @throws InvalidInput for a bone that moves its box out of range
+void require_in_range(View<const Affine> bones, const std::vector<Bounds>& boxes, double time,
+                      const std::string& source)
+{
+    for (int b = 0; b < bones.size(); ++b) {
+        if (boxes[size_t(b)].empty())
+            continue;
+        for (const Vec3& p : corners_of(boxes[size_t(b)]))
+            if (!is_in_range(apply(bones[b], p)))
+                throw InvalidInput(source + ": bone " + std::to_string(b) + " at " + std::to_string(time) +
+                                   " s moves its vertices out of range; coordinates must be finite and at " +
+                                   "most 100 km");
+    }
 }
 
 } // namespace
@@ -61,6 +82,7 @@ MovingAvatar::MovingAvatar(std::unique_ptr<Avatar> avatar, Motion motion, const 
     if (!motion_.clip.empty())
         clip_ = avatar_->clip_index(motion_.clip);
 
+    bone_boxes_ = boxes_of_bones(avatar_->skin(), avatar_->bone_count());
     bones_t1_.resize(size_t(avatar_->bone_count()));
     show(at(0.0), root_transform);
     bones_t0_ = bones_t1_;
@@ -78,6 +100,7 @@ void MovingAvatar::show(const PoseAt& at, const Affine& root_transform)
     else
         avatar_->pose_bones(at, compose(root_transform, world_from_avatar_), bones_t1_);
     is_posed_ahead_ = false;
+    require_in_range(bones_t1_, bone_boxes_, at.time, avatar_->source());
     shown_ = at;
     shown_root_transform_ = root_transform;
 }
@@ -98,8 +121,6 @@ double MovingAvatar::max_motion_to(double t, const Affine& root_transform)
     const PoseAt next = at(t);
     if (next == shown_ && root_transform == shown_root_transform_)
         return 0.0;
-    if (bone_boxes_.empty())
-        bone_boxes_ = boxes_of_bones(avatar_->skin(), avatar_->bone_count());
     bones_ahead_.resize(bones_t1_.size());
     avatar_->pose_bones(next, compose(root_transform, world_from_avatar_), bones_ahead_);
     ahead_ = next;

@@ -14,11 +14,11 @@ constexpr double kProbe = 2e-5;
 
 /// Accuracy of a triangle's depth in a solid [m], and the maximum number of halvings to reach it.
 constexpr double kDepthTolerance = 1e-7;
-constexpr int kMaxHalvings = 24;
+constexpr int kMaxHalvings = 64;
 
 /// Maximum of `known` and the depth of triangle (a, b, c). The signed distance of a convex solid is convex,
 /// so its gradient at the middle bounds the depth of the whole triangle. If the bound is inconclusive, the
-/// triangle is split in four.
+/// longest edge is halved: long triangles become round ones before their number grows.
 double deeper(const Shape& shape, const Eigen::Isometry3d& pose, const Vec3& a, const Vec3& b, const Vec3& c,
               double known, int halvings)
 {
@@ -29,11 +29,14 @@ double deeper(const Shape& shape, const Eigen::Isometry3d& pose, const Vec3& a, 
         std::min({at.normal.dot(a - middle), at.normal.dot(b - middle), at.normal.dot(c - middle)});
     if (-at.signed_distance - steepest <= known + kDepthTolerance || halvings == 0)
         return known;
-    const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-    known = deeper(shape, pose, ab, bc, ca, known, halvings - 1);
-    known = deeper(shape, pose, a, ab, ca, known, halvings - 1);
-    known = deeper(shape, pose, ab, b, bc, known, halvings - 1);
-    return deeper(shape, pose, ca, bc, c, known, halvings - 1);
+    const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+    if (bc > ab && bc >= ca)
+        return deeper(shape, pose, b, c, a, known, halvings);
+    if (ca > ab)
+        return deeper(shape, pose, c, a, b, known, halvings);
+    const Vec3 half = 0.5 * (a + b);
+    known = deeper(shape, pose, a, half, c, known, halvings - 1);
+    return deeper(shape, pose, half, b, c, known, halvings - 1);
 }
 
 } // namespace

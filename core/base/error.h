@@ -25,6 +25,13 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// Use that the library does not allow: an index that does not exist, a wrong number of elements, calls in a
+/// wrong order or at once. The object is as before.
+class InvalidUse : public std::logic_error {
+public:
+    using std::logic_error::logic_error;
+};
+
 /// Candidate closest to `word` by edit distance, for "did you mean" in error messages. Empty if every
 /// distance exceeds half of the word's length. The first of equally near candidates wins.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);

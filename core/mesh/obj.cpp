@@ -5,32 +5,45 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/mesh/polygon.h"
 
 namespace toile {
 
 namespace {
 
+/// Most corners of a face: its triangulation takes time by their square.
+constexpr size_t kMaxCorners = 10000;
+
+std::string text_of(const std::filesystem::path& file)
+{
+    if (std::filesystem::is_directory(file))
+        throw InvalidInput(file.string() + ": can't be read; give a file, not a folder");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream)
+        throw InvalidInput(file.string() + ": can't be opened; check the path and its permissions");
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 /// Reads one OBJ file line by line, keeping the line number for error messages.
 class ObjReader {
 public:
-    explicit ObjReader(const std::filesystem::path& file) : file_(file), stream_(file)
+    explicit ObjReader(const std::filesystem::path& file) : file_(file), text_(text_of(file)), left_(text_)
     {
-        if (!stream_)
-            throw InvalidInput(file.string() + ": can't be opened; check the path and its permissions");
+        constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+        if (left_.starts_with(kByteOrderMark))
+            left_.remove_prefix(kByteOrderMark.size());
     }
 
     ObjMesh read()
     {
-        std::string text;
-        while (std::getline(stream_, text)) {
-            ++line_;
-            rest_ = text;
+        while (next_line()) {
             const std::string_view keyword = next_word();
             if (keyword == "v")
                 mesh_.positions.push_back(Vec3{number(), number(), number()});
@@ -38,15 +51,45 @@ public:
                 mesh_.texture_coordinates.push_back(Vec2{number(), number()});
             else if (keyword == "f")
                 read_face();
+            else if (keyword == "l")
+                ++mesh_.line_elements;
         }
-        // A folder opens like a file and fails only at the first read.
-        if (stream_.bad())
-            throw InvalidInput(file_.string() + ": can't be read; give a file, not a folder");
         drop_incomplete_texture();
         return std::move(mesh_);
     }
 
 private:
+    /// Takes the next line, with those that a backslash at its end joins to it. Lines end with LF, CR or
+    /// both.
+    /// @return false at the end of the file
+    bool next_line()
+    {
+        if (left_.empty())
+            return false;
+        line_ += lines_taken_;
+        lines_taken_ = 0;
+        rest_ = take_line();
+        if (!rest_.ends_with('\\'))
+            return true;
+        joined_.clear();
+        while (rest_.ends_with('\\')) {
+            joined_.append(rest_.substr(0, rest_.size() - 1)) += ' ';
+            rest_ = take_line();
+        }
+        rest_ = joined_.append(rest_);
+        return true;
+    }
+
+    std::string_view take_line()
+    {
+        const size_t end = std::min(left_.find_first_of("\r\n"), left_.size());
+        const std::string_view line = left_.substr(0, end);
+        const bool is_both = left_.substr(end).starts_with("\r\n");
+        left_.remove_prefix(std::min(end + (is_both ? 2 : 1), left_.size()));
+        ++lines_taken_;
+        return line;
+    }
+
     [[noreturn]] void refuse(const std::string& why) const
     {
         throw InvalidInput(file_.string() + ":" + std::to_string(line_) + ": " + why);
@@ -99,12 +142,14 @@ private:
             if (const std::string_view uv = tail.substr(0, tail.find('/')); !uv.empty())
                 uvs.push_back(index(uv, mesh_.texture_coordinates.size(), "texture"));
         }
-        if (polygon.size() < 3)
-            refuse("the face has " + std::to_string(polygon.size()) + " corners; it needs at least 3");
+        if (polygon.size() < 3 || polygon.size() > kMaxCorners)
+            refuse("the face has " + std::to_string(polygon.size()) +
+                   " corners; it needs at least 3 and at most " + std::to_string(kMaxCorners));
         if (!uvs.empty() && uvs.size() != polygon.size())
             refuse("some corners of the face have a texture index and some have none; give all or none");
         mesh_.polygons.push_back(std::move(polygon));
         mesh_.polygon_uvs.push_back(std::move(uvs));
+        mesh_.polygon_lines.push_back(line_);
     }
 
     /// Drops texture indices unless every face has them.
@@ -118,9 +163,12 @@ private:
     }
 
     std::filesystem::path file_;
-    std::ifstream stream_;
-    std::string_view rest_;
-    int line_ = 0;
+    std::string text_;
+    std::string_view left_; ///< of text_, not taken yet
+    std::string joined_;    ///< a continued line
+    std::string_view rest_; ///< of the line
+    int line_ = 1;          ///< where it begins
+    int lines_taken_ = 0;   ///< of the file for it
     ObjMesh mesh_;
 };
 
@@ -130,10 +178,40 @@ TriangleMesh ObjMesh::triangulated() const
 {
     TriangleMesh mesh;
     mesh.positions = positions;
-    for (const std::vector<int>& polygon : polygons)
-        for (size_t k = 1; k + 1 < polygon.size(); ++k)
-            mesh.triangles.push_back(Triangle(polygon[0], polygon[k], polygon[k + 1]));
+    for (int f = 0; f < int(polygons.size()); ++f)
+        for (const Triangle& corner : triangles_of(f))
+            mesh.triangles.push_back(
+                Triangle(polygons[f][corner[0]], polygons[f][corner[1]], polygons[f][corner[2]]));
     return mesh;
+}
+
+std::vector<Triangle> ObjMesh::triangles_of(int polygon) const
+{
+    std::vector<Vec3> corners;
+    corners.reserve(polygons[polygon].size());
+    for (const int v : polygons[polygon])
+        corners.push_back(positions[v]);
+    return triangulate_polygon(corners);
+}
+
+void require_usable(const ObjMesh& mesh, const std::string& source)
+{
+    if (mesh.polygon_lines.empty()) {
+        require_usable(mesh.triangulated(), source);
+        return;
+    }
+    if (mesh.polygons.empty())
+        throw InvalidInput(source + ": the mesh has no triangle; a surface needs at least one face");
+    TriangleMesh one;
+    one.positions = mesh.positions;
+    for (int f = 0; f < int(mesh.polygons.size()); ++f)
+        for (const Triangle& corner : mesh.triangles_of(f)) {
+            const std::vector<int>& polygon = mesh.polygons[f];
+            one.triangles = {Triangle(polygon[corner[0]], polygon[corner[1]], polygon[corner[2]])};
+            if (const std::string defect = defect_of(one, 0); !defect.empty())
+                throw InvalidInput(source + ":" + std::to_string(mesh.polygon_lines[f]) + ": the face " +
+                                   (polygon.size() > 3 ? "has a triangle that " : "") + defect);
+        }
 }
 
 ObjMesh read_obj(const std::filesystem::path& file) { return ObjReader(file).read(); }

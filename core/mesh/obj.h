@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/compute/types.h"
@@ -16,15 +17,25 @@ struct ObjMesh {
     std::vector<std::vector<int>> polygons;    ///< vertex indices, 0-based
     std::vector<std::vector<int>> polygon_uvs; ///< texture indices per corner, or empty; parallel to polygons
 
-    /// Triangulates every polygon as a fan from its first corner.
+    // Of a file, for messages; empty or 0 for a mesh made otherwise.
+    std::vector<int> polygon_lines; ///< line of each polygon, counted from 1
+    int line_elements = 0;          ///< l lines, which are not read
+
+    /// Triangulates every polygon: triangulate_polygon().
     TriangleMesh triangulated() const;
+
+    /// Corner numbers of the triangles of a polygon.
+    std::vector<Triangle> triangles_of(int polygon) const;
 };
 
-/// Reads v, vt and f lines (negative indices too); ignores other lines of the format. Texture indices are
-/// kept only if every face has them.
+/// Reads v, vt and f lines (negative indices too), with any line ends, continued lines and a byte-order mark;
+/// ignores other lines of the format. Texture indices are kept only if every face has them.
 /// @throws InvalidInput naming file and line: missing file, a number that does not parse or is not finite, an
-///         index out of range, a face of fewer than three corners.
+///         index out of range, a face of fewer than three or more than 10 000 corners
 ObjMesh read_obj(const std::filesystem::path& file);
+
+/// As for triangles, naming the line of the face.
+void require_usable(const ObjMesh& mesh, const std::string& source);
 
 /// Writes positions with 9 significant digits and the polygons (with texture coordinates where present).
 /// The file appears complete or not at all.

@@ -1,6 +1,7 @@
 #include "core/mesh/triangle_mesh.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -10,23 +11,15 @@
 
 namespace toile {
 
-namespace {
-
-[[noreturn]] void refuse(const std::string& source, int triangle, const std::string& why)
+std::string defect_of(const TriangleMesh& mesh, int triangle)
 {
-    throw InvalidInput(source + ": triangle " + std::to_string(triangle) + " " + why);
-}
-
-void require_good_triangle(const TriangleMesh& mesh, int t, const std::string& source)
-{
-    const Triangle& corner = mesh.triangles[t];
+    const Triangle& corner = mesh.triangles[triangle];
     for (const int v : corner)
         if (v < 0 || v >= mesh.vertex_count())
-            refuse(source, t,
-                   "uses vertex " + std::to_string(v) + "; the mesh has vertices 0 to " +
-                       std::to_string(mesh.vertex_count() - 1));
+            return "uses vertex " + std::to_string(v) + "; the mesh has vertices 0 to " +
+                   std::to_string(mesh.vertex_count() - 1);
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
-        refuse(source, t, "uses a vertex twice; remove the triangle");
+        return "uses a vertex twice; remove the triangle";
 
     const Vec3& a = mesh.positions[corner[0]];
     const Vec3& b = mesh.positions[corner[1]];
@@ -34,11 +27,9 @@ void require_good_triangle(const TriangleMesh& mesh, int t, const std::string& s
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     const double doubled_area = (b - a).cross(c - a).norm();
     if (!(doubled_area > kMinHeightRatio * longest * longest))
-        refuse(source, t,
-               "has no area (height below 1e-6 of its longest edge); remove it or merge its vertices");
+        return "has no area (height below 1e-6 of its longest edge); remove it or merge its vertices";
+    return {};
 }
-
-} // namespace
 
 Bounds bounds(View<const Vec3> points)
 {
@@ -46,6 +37,18 @@ Bounds bounds(View<const Vec3> points)
     for (const Vec3& point : points)
         box.extend(point);
     return box;
+}
+
+void require_in_range(View<const Vec3> points, const std::string& source)
+{
+    for (int v = 0; v < points.size(); ++v) {
+        const Vec3& p = points[v];
+        if (is_in_range(p))
+            continue;
+        char at[128];
+        std::snprintf(at, sizeof at, ": vertex %d is at (%.6g, %.6g, %.6g) m", v, p.x(), p.y(), p.z());
+        throw InvalidInput(source + at + "; coordinates must be finite and at most 100 km");
+    }
 }
 
 void require_usable(const TriangleMesh& mesh, const std::string& source)
@@ -57,7 +60,8 @@ void require_usable(const TriangleMesh& mesh, const std::string& source)
             throw InvalidInput(source + ": vertex " + std::to_string(v) +
                                " is not finite; every coordinate must be a number");
     for (int t = 0; t < mesh.triangle_count(); ++t)
-        require_good_triangle(mesh, t, source);
+        if (const std::string defect = defect_of(mesh, t); !defect.empty())
+            throw InvalidInput(source + ": triangle " + std::to_string(t) + " " + defect);
 }
 
 std::vector<Vec3> vertex_normals(View<const Vec3> positions, View<const Triangle> triangles)

@@ -39,10 +39,26 @@ struct Bounds {
 };
 Bounds bounds(View<const Vec3> points);
 
+/// Distance [m] from the origin along an axis beyond which coordinates are out of range. Caches and rays are
+/// in single precision, which has steps of 8 mm there.
+inline constexpr double kFarthest = 1e5;
+
+/// True for coordinates that are finite and at most kFarthest.
+inline bool is_in_range(const Vec3& point)
+{
+    return point.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthest;
+}
+
+/// @throws InvalidInput naming `source` and the first point that is out of range
+void require_in_range(View<const Vec3> points, const std::string& source);
+
 /// Throws InvalidInput for a mesh that no solver can use, naming `source` and the first offending element: no
 /// triangle, an index out of range, a repeated corner, a position that is not finite, a triangle whose height
 /// is below kMinHeightRatio of its longest edge.
 void require_usable(const TriangleMesh& mesh, const std::string& source);
+
+/// What require_usable() refuses of a triangle, with a remedy; empty for a good one.
+std::string defect_of(const TriangleMesh& mesh, int triangle);
 
 /// Min height of a triangle over its longest edge [-]. Thinner ones count as zero-area: the bending energy
 /// squares their rest shape twice, after which it has no direction left in double precision.

@@ -117,7 +117,7 @@ std::vector<Piece> pieces_of(const std::vector<Face>& faces)
     return pieces;
 }
 
-/// Reverses a face from the same first corner, so that its fan of triangles stays the same.
+/// Reverses a face from the same first corner, so that a convex one is split as before.
 void flip(std::vector<int>& corners) { std::reverse(corners.begin() + 1, corners.end()); }
 void flip(Triangle& corners) { std::swap(corners[1], corners[2]); }
 

@@ -22,6 +22,14 @@ int nearest_vertex(View<const Vec3> x, const Vec3& point)
     return best;
 }
 
+Vec3 mean_of(View<const Vec3> x, const std::vector<int>& vertices)
+{
+    Vec3 sum = Vec3::Zero();
+    for (const int v : vertices)
+        sum += x[v];
+    return sum / double(vertices.size());
+}
+
 struct SkinPoint {
     Vec3 point, normal;
     double signed_distance;
@@ -50,29 +58,25 @@ int index_of(const std::vector<Collider>& colliders, const std::string& name)
 AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
                                            const std::vector<Collider>& colliders, std::optional<double> load,
                                            const std::string& location)
-    : settings_(settings), location_(location), motion_(settings.keyframes, Vec3::Zero())
+    : settings_(settings), location_(location)
 {
-    select(start, colliders, location);
+    select(start, colliders);
     if (vertices_.empty())
         throw InvalidInput(location + ": selects no vertex of \"" + settings.cloth +
                            "\"; move the selection to where the cloth starts");
-    if (settings.to == scene::kFixed)
+    if (settings.to == scene::kFixed) {
+        motion_ = RigidMotion(settings.keyframes, settings.pivot.value_or(mean_of(start, vertices_)));
         return;
+    }
     collider_ = index_of(colliders, settings.to);
     if (!settings.exact && !settings.stiffness && load)
         settings_.stiffness =
             std::max(scene::kSkinStiffness, *load / (kMaxStretch * double(vertices_.size())));
 }
 
-void AttachmentConstraint::select(View<const Vec3> start, const std::vector<Collider>& colliders,
-                                  const std::string& location)
+void AttachmentConstraint::select(View<const Vec3> start, const std::vector<Collider>& colliders)
 {
     if (const auto* indices = std::get_if<std::vector<int>>(&settings_.select.by)) {
-        for (const int v : *indices)
-            if (v < 0 || v >= start.size())
-                throw InvalidInput(location + ": vertex " + std::to_string(v) + " is out of range; \"" +
-                                   settings_.cloth + "\" has vertices 0 to " +
-                                   std::to_string(start.size() - 1));
         vertices_ = *indices;
     } else if (const auto* points = std::get_if<std::vector<Vec3>>(&settings_.select.by)) {
         for (const Vec3& point : *points)

@@ -17,7 +17,7 @@ public:
     /// @param load  [N] of the whole cloth; none: the method knows no springs, so that attachments are exact
     /// where not asked otherwise
     /// @param location  named in errors, e.g. "tablecloth.json: attachments[0]"
-    /// @throws InvalidInput if it selects no vertex or an index is out of range
+    /// @throws InvalidInput if it selects no vertex
     AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
                          const std::vector<Collider>& colliders, std::optional<double> load,
                          const std::string& location);
@@ -40,6 +40,7 @@ public:
     const std::vector<int>& vertices() const { return vertices_; }
     std::optional<double> stiffness() const { return settings_.stiffness; }
     bool is_on_avatar() const { return collider_ >= 0; }
+    bool is_at_rest() const { return collider_ < 0 && settings_.keyframes.empty(); }
     bool is_active_at(double t) const { return !settings_.release || t < *settings_.release; }
 
     /// True if the targets move at time t [s] or the vertices are released then: cloth must not sleep.
@@ -52,7 +53,7 @@ public:
     Vec3 target(int k) const;
 
 private:
-    void select(View<const Vec3> start, const std::vector<Collider>& colliders, const std::string& location);
+    void select(View<const Vec3> start, const std::vector<Collider>& colliders);
     void tie_to_skin(const collision::MeshCollider& mesh);
     std::vector<double> clearances(const Collider& collider, View<const Vec3> x,
                                    View<const Triangle> triangles, double gap) const;

@@ -228,6 +228,9 @@ void check_attachments(const Document& document, const scenes::Scene& scene)
                             "an avatar moves these vertices already; remove the " +
                                 std::string("keyframes or write \"to\": \"fixed\""));
         check_keyframes(document, key_path, attachment.keyframes);
+        if (attachment.pivot && attachment.keyframes.empty())
+            document.refuse(below(key_path, "pivot"),
+                            "nothing turns without keyframes; add some or remove it");
         if (attachment.exact && attachment.stiffness)
             document.refuse(below(key_path, "exact"),
                             "an exact attachment has no stiffness; remove one of the two keys");

@@ -147,6 +147,8 @@ void describe(V& v, Cloth& c)
         Alternative<Disc>{"disc", "Flat disc, horizontal, about the origin."},
         Alternative<Skirt>{"skirt", "Conical skirt about the Y axis, waist at y = 0, hanging down."});
     v.field("subdivide", c.subdivide, between(0, 4), "Number of times every triangle is split into four.");
+    v.field("weld", c.weld,
+            "Join edges of the file that lie on each other, as along texture seams; false keeps them apart.");
     v.field("unit", c.unit, "Length unit of the file.");
     v.field("scale", c.scale, above_zero(1e6), "Factor on the cloth's lengths, at rest too.");
     v.field("translate", c.translate, kPosition, "Moves the cloth, after scale and rotate_deg.");
@@ -242,6 +244,8 @@ void describe(V& v, Attachment& a)
     v.field("to", a.to,
             "\"fixed\": attached to the world; or the name of the avatar whose surface moves them.");
     v.field("keyframes", a.keyframes, "Moves the attached vertices; needs \"to\": \"fixed\".");
+    v.field("pivot", a.pivot, kPosition,
+            "Point of the world about which keyframes turn; absent: the mean of the attached vertices.");
     v.field("release", a.release, kTime, "Time at which the attachment ends; absent: never.");
     v.field("stiffness", a.stiffness, kStiffness,
             "Attach by a spring per vertex; absent: exactly to \"fixed\", to an avatar by 300 N/m, or more "

@@ -14,6 +14,10 @@ namespace toile::scene_format {
 
 namespace {
 
+/// Levels of nesting of a document. Functions that call themselves per level, such as as_written(), need a
+/// bound.
+constexpr int kMaxDepth = 64;
+
 /// Message of nlohmann without its "line 3, column 5: ".
 std::string fact_of(const Json::exception& error)
 {
@@ -54,7 +58,10 @@ Json Document::parse(const std::string& text) const
 {
     // One set of keys per open object detects a repeated key.
     std::vector<std::set<std::string>> open;
-    const auto check_event = [&](int, Json::parse_event_t event, Json& parsed) {
+    const auto check_event = [&](int depth, Json::parse_event_t event, Json& parsed) {
+        if (depth > kMaxDepth)
+            refuse("",
+                   "is nested deeper than " + std::to_string(kMaxDepth) + " levels; a scene has at most 6");
         if (event == Json::parse_event_t::object_start)
             open.emplace_back();
         else if (event == Json::parse_event_t::object_end)

@@ -1,7 +1,8 @@
 #include "scenes/format/read_scene.h"
 
+#include <array>
 #include <fstream>
-#include <iterator>
+#include <string>
 
 #include "core/base/error.h"
 #include "scenes/format/checks.h"
@@ -10,6 +11,9 @@
 namespace toile::scenes {
 
 namespace {
+
+/// [bytes] Scenes with the longest lists of vertices are smaller; devices such as /dev/zero never end.
+constexpr size_t kMaxFileSize = 64'000'000;
 
 /// Replaces the path of every file alternative by the path of the existing file.
 template <typename Object>
@@ -31,7 +35,15 @@ Scene read_scene(const std::filesystem::path& file)
     std::ifstream stream(file, std::ios::binary);
     if (!stream)
         throw InvalidInput(file.string() + ": can't be opened; check the path and its permissions");
-    return parse_scene({std::istreambuf_iterator<char>(stream), {}}, file);
+    std::string text;
+    std::array<char, 65536> block;
+    do {
+        stream.read(block.data(), block.size());
+        text.append(block.data(), size_t(stream.gcount()));
+        if (text.size() > kMaxFileSize)
+            throw InvalidInput(file.string() + ": is larger than 64 MB; name a scene file (.json)");
+    } while (stream);
+    return parse_scene(text, file);
 }
 
 Scene parse_scene(const std::string& text, const std::filesystem::path& source)

@@ -26,7 +26,7 @@ enum class LengthUnit { Metre, Centimetre, Millimetre, Inch };
 /// Metres in one unit: 1, 0.01, 0.001 or 0.0254.
 double metres_per(LengthUnit unit);
 
-/// Placement of an object at a time. Translation and angles are linear between keyframes, constant outside.
+/// Placement of an object at a time; RigidMotion interpolates.
 struct Keyframe {
     double time = 0.0;             ///< [s] from sample 0
     Vec3 translate = Vec3::Zero(); ///< [m] added to the object's own translate
@@ -131,6 +131,7 @@ struct Cloth {
     std::string name;
     ClothShape shape;
     int subdivide = 0;                   ///< number of times that every triangle is split into four
+    bool weld = true;                    ///< join edges of the file that lie on each other
     LengthUnit unit = LengthUnit::Metre; ///< of the file
     double scale = 1.0;                  ///< [-]
     Vec3 translate = Vec3::Zero();       ///< [m]
@@ -214,7 +215,8 @@ struct Attachment {
     Selection select;
     std::string to = kFixed;         ///< "fixed" or an avatar's name
     std::vector<Keyframe> keyframes; ///< motion of the attached points; only with "fixed"
-    std::optional<double> release;   ///< [s] end of the attachment; absent: never
+    std::optional<Vec3> pivot;     ///< [m] about which keyframes turn; absent: mean of the attached vertices
+    std::optional<double> release; ///< [s] end of the attachment; absent: never
     std::optional<double>
         stiffness;      ///< [N/m] of a spring per vertex; absent: kSkinStiffness at least, or exact if fixed
     bool exact = false; ///< no springs

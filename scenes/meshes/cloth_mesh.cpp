@@ -1,5 +1,8 @@
 #include "scenes/meshes/cloth_mesh.h"
 
+#include <numeric>
+
+#include "core/mesh/clean.h"
 #include "core/mesh/winding.h"
 #include "garment/pattern/shapes.h"
 #include "scenes/meshes/rigid_motion.h"
@@ -30,6 +33,66 @@ ObjMesh cut(const scene::Cloth& cloth)
     return read_obj(std::get<std::filesystem::path>(cloth.shape));
 }
 
+/// Distance at which two vertices of a file are one, over the diagonal of the mesh [-].
+constexpr double kSeamDistance = 1e-6;
+
+std::string counted(std::ptrdiff_t count, const char* one, const char* many)
+{
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+/// Joins seams and drops loose vertices. Cloth needs neither; caches need the file's vertices.
+void join_vertices(const scene::Cloth& cloth, ClothMesh& result)
+{
+    ObjMesh& mesh = result.mesh;
+    const int count = int(mesh.positions.size());
+    std::vector<int> stands(size_t(count), 0);
+    std::iota(stands.begin(), stands.end(), 0);
+    if (cloth.weld)
+        stands = stitch(mesh, kSeamDistance * bounds(mesh.positions).diagonal());
+    int joined = 0;
+    for (int v = 0; v < count; ++v)
+        joined += stands[v] != v ? 1 : 0;
+    if (joined > 0)
+        result.warnings.push_back("joined " + counted(joined, "vertex", "vertices") +
+                                  " along edges that lie on " + "others; \"weld\": false keeps them apart");
+    require_usable(mesh, source_of(cloth));
+    const std::vector<int> number = drop_loose_vertices(mesh);
+    if (int(mesh.positions.size()) == count)
+        return;
+
+    int last = 0, first_loose = -1, loose = 0;
+    for (int v = 0; v < count; ++v) {
+        const int own = number[stands[v]];
+        if (own < 0 && loose++ == 0)
+            first_loose = v;
+        last = own < 0 ? last : own;
+        result.vertex.push_back(last);
+    }
+    if (loose > 0)
+        result.warnings.push_back(counted(loose, "vertex has", "vertices have") + " no face, the first is " +
+                                  std::to_string(first_loose) + "; each goes along with the one before it");
+}
+
+/// Makes of a file's mesh one that can be simulated, and tells what was changed.
+void clean(const scene::Cloth& cloth, ClothMesh& result)
+{
+    ObjMesh& mesh = result.mesh;
+    const ObjMesh file = mesh;
+    if (mesh.line_elements > 0)
+        result.warnings.push_back("left out " + counted(mesh.line_elements, "l line", "l lines") +
+                                  "; panels are sewn only where their edges lie on each other");
+    if (const int count = drop_repeated_polygons(mesh); count > 0)
+        result.warnings.push_back("left out " + counted(count, "face", "faces") +
+                                  " with the corners of others: duplicates, or backs of two-sided faces");
+    join_vertices(cloth, result);
+    if (const int count = make_windings_agree(mesh); count > 0)
+        result.warnings.push_back("flipped " + counted(count, "face", "faces") +
+                                  " that were wound against their neighbours");
+    if (!result.vertex.empty())
+        result.file = file;
+}
+
 } // namespace
 
 std::string source_of(const scene::Cloth& cloth)
@@ -38,17 +101,28 @@ std::string source_of(const scene::Cloth& cloth)
     return file ? file->string() : "cloth \"" + cloth.name + "\"";
 }
 
-ObjMesh oriented_mesh(const scene::Cloth& cloth, int& flipped_faces)
+ClothMesh cloth_mesh(const scene::Cloth& cloth)
 {
-    ObjMesh mesh = cut(cloth);
-    flipped_faces = make_windings_agree(mesh);
-    require_usable(mesh.triangulated(), source_of(cloth));
-    if (cloth.subdivide > 0)
-        mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
+    ClothMesh result;
+    ObjMesh& mesh = result.mesh = cut(cloth);
     const Mat3 rotation = rotation_of(cloth.rotate_deg);
-    for (Vec3& p : mesh.positions)
-        p = rotation * (cloth.scale * scene::metres_per(cloth.unit) * p);
-    return mesh;
+    const auto place = [&](ObjMesh& placed) {
+        for (Vec3& p : placed.positions)
+            p = rotation * (cloth.scale * scene::metres_per(cloth.unit) * p);
+    };
+    if (std::holds_alternative<std::filesystem::path>(cloth.shape))
+        clean(cloth, result);
+    else
+        require_usable(mesh, source_of(cloth));
+    if (cloth.subdivide > 0) {
+        mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
+        result.file = {};
+        result.vertex.clear();
+    }
+    place(mesh);
+    place(result.file);
+    require_in_range(mesh.positions, source_of(cloth));
+    return result;
 }
 
 } // namespace toile::scenes

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/mesh/obj.h"
 #include "scenes/format/scene.h"
@@ -10,10 +11,17 @@ namespace toile::scenes {
 /// Name of the cloth's mesh in errors: its file, or cloth "name".
 std::string source_of(const scene::Cloth& cloth);
 
-/// Reads or cuts the cloth, subdivides, scales and rotates it. Translation is left to the caller: equal
-/// cloths at several positions then have bitwise equal rest shapes and share factors and tables.
-/// @param flipped_faces  out: faces whose winding was flipped to agree with their neighbours
-/// @throws InvalidInput for an unusable mesh
-ObjMesh oriented_mesh(const scene::Cloth& cloth, int& flipped_faces);
+/// Mesh of a cloth: scaled and rotated, but not translated. Equal cloths at several positions then have
+/// bitwise equal rest shapes and share factors and tables.
+struct ClothMesh {
+    ObjMesh mesh;                      ///< to simulate: seams joined, loose vertices dropped, windings agree
+    ObjMesh file;                      ///< as in the file; empty: `mesh` has its vertices
+    std::vector<int> vertex;           ///< [vertices of the file] vertex of `mesh` that each goes along with
+    std::vector<std::string> warnings; ///< what was changed, without the source
+};
+
+/// Reads or cuts the cloth.
+/// @throws InvalidInput for an unusable mesh, with the numbers of the file
+ClothMesh cloth_mesh(const scene::Cloth& cloth);
 
 } // namespace toile::scenes

@@ -218,8 +218,8 @@ std::string ClothGroup::place_of(int vertex) const
         ++cloth;
     char at[80];
     std::snprintf(at, sizeof at, " near (%.3f, %.3f, %.3f) m", x.x(), x.y(), x.z());
-    return "vertex " + std::to_string(vertex - first_[cloth]) + " of \"" + cloths_[cloth].state().name +
-           "\"" + at;
+    const int number = cloths_[cloth].state().file_vertex(vertex - first_[cloth]);
+    return "vertex " + std::to_string(number) + " of \"" + cloths_[cloth].state().name + "\"" + at;
 }
 
 /// Accelerations and tension on the CPU.

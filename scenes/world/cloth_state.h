@@ -14,9 +14,26 @@ struct ClothState {
     std::string name;
     std::vector<Vec3> positions; ///< [vertices] current [m]
     std::vector<Triangle> triangles;
-    ObjMesh rest;           ///< start placement, rest lengths, faces and texture coordinates as stored
+    ObjMesh rest;           ///< start placement, rest lengths, faces and texture coordinates as simulated
     garment::Fabric fabric; ///< of a solid: none, and a strain limit of 0
-    int flipped_faces = 0;  ///< faces of the file wound against their neighbours, corrected in `rest`
+
+    /// The mesh of the cloth's file where it has other vertices than the cloth: merged ones along its seams,
+    /// and loose ones. Caches are in its order, so that they play on it.
+    struct FileMesh {
+        ObjMesh mesh;            ///< start placement
+        std::vector<int> vertex; ///< [file vertices] the cloth's vertex that each goes along with
+    };
+    FileMesh file; ///< empty: that of `rest`
+
+    bool has_file_vertices() const { return !file.vertex.empty(); }
+    const ObjMesh& file_mesh() const { return has_file_vertices() ? file.mesh : rest; }
+
+    /// [file vertices] positions for those of the cloth [m].
+    std::vector<Vec3> to_file(View<const Vec3> x) const;
+    /// [vertices] positions of the cloth for those of file_mesh() [m].
+    std::vector<Vec3> from_file(View<const Vec3> x) const;
+    /// Number in the file of a vertex of the cloth.
+    int file_vertex(int vertex) const;
 
     struct Attachment {
         std::vector<int> vertices;
@@ -25,15 +42,7 @@ struct ClothState {
     std::vector<Attachment> attachments;
 
     /// [vertices] 1 for those that are attached at time t [s].
-    std::vector<unsigned char> attached(double t) const
-    {
-        std::vector<unsigned char> attached(rest.positions.size(), 0);
-        for (const Attachment& attachment : attachments)
-            if (t < attachment.release)
-                for (const int v : attachment.vertices)
-                    attached[v] = 1;
-        return attached;
-    }
+    std::vector<unsigned char> attached(double t) const;
 };
 
 } // namespace toile::scenes

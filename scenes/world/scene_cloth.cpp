@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
+#include "core/base/error.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/air/cuda/loads.h"
 #include "garment/energy/air/loads_kernels.h"
@@ -49,6 +51,44 @@ std::shared_ptr<const garment::RestShape> rest_shape_of(std::vector<Vec3> unmove
         settings.grain_deg * std::numbers::pi / 180.0, source));
 }
 
+/// The attachment with the cloth's numbers of vertices for those of the file.
+scene::Attachment in_cloth(scene::Attachment attachment, const ClothState& cloth, const std::string& location)
+{
+    auto* vertices = std::get_if<std::vector<int>>(&attachment.select.by);
+    const int count = int(cloth.file_mesh().positions.size());
+    for (size_t k = 0; vertices != nullptr && k < vertices->size(); ++k) {
+        int& v = (*vertices)[k];
+        if (v < 0 || v >= count)
+            throw InvalidInput(location + ": vertex " + std::to_string(v) + " is out of range; \"" +
+                               cloth.name + "\" has vertices 0 to " + std::to_string(count - 1));
+        v = cloth.has_file_vertices() ? cloth.file.vertex[size_t(v)] : v;
+    }
+    return attachment;
+}
+
+/// Attachments that keep vertices where they are may share them.
+/// @throws InvalidInput for a vertex of two attachments that may part
+void require_one_owner(const std::vector<AttachmentConstraint>& attachments, const ClothState& cloth)
+{
+    for (size_t b = 1; b < attachments.size(); ++b)
+        for (size_t a = 0; a < b; ++a) {
+            if (attachments[a].is_at_rest() && attachments[b].is_at_rest())
+                continue;
+            const std::vector<int>&first = attachments[a].vertices(), &second = attachments[b].vertices();
+            std::vector<int> shared;
+            std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
+                                  std::back_inserter(shared));
+            if (shared.empty())
+                continue;
+            throw InvalidInput(
+                attachments[b].location() + ": selects vertex " +
+                std::to_string(cloth.file_vertex(shared[0])) + " of \"" + cloth.name + "\"" +
+                (shared.size() == 1 ? "" : " and " + std::to_string(shared.size() - 1) + " more") +
+                ", which " + attachments[a].location() +
+                " holds already; a vertex can follow one of them only");
+        }
+}
+
 } // namespace
 
 garment::AirSettings air_of(const Scene& scene)
@@ -70,14 +110,17 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
 {
     state_.name = settings.name;
     state_.fabric = scenes::fabric_of(scene, settings);
-    state_.rest = oriented_mesh(settings, state_.flipped_faces);
-    if (state_.flipped_faces > 0 && options.warn)
-        options.warn(source_ + ": flipped " + std::to_string(state_.flipped_faces) +
-                     " faces that were wound against their neighbours");
+    ClothMesh mesh = cloth_mesh(settings);
+    for (const std::string& warning : mesh.warnings)
+        if (options.warn)
+            options.warn(source_ + ": " + warning);
+    state_.rest = std::move(mesh.mesh);
+    state_.file = {std::move(mesh.file), std::move(mesh.vertex)};
     state_.triangles = state_.rest.triangulated().triangles;
     rest_ = rest_shape_of(state_.rest.positions, state_.triangles, settings, source_);
-    for (Vec3& p : state_.rest.positions)
-        p += settings.translate;
+    for (ObjMesh* placed : {&state_.rest, &state_.file.mesh})
+        for (Vec3& p : placed->positions)
+            p += settings.translate;
     state_.positions = state_.rest.positions;
     masses_ = rest_->vertex_areas();
     for (double& mass : masses_)
@@ -89,11 +132,13 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
         if (scene.attachments[i].cloth == settings.name) {
             const std::string location = scene.source.string() + ": attachments[" + std::to_string(i) + "]";
             require_method_supports(scene.solver.method, scene.attachments[i], location);
-            attachments_.emplace_back(scene.attachments[i], state_.positions, colliders, load, location);
+            attachments_.emplace_back(in_cloth(scene.attachments[i], state_, location), state_.positions,
+                                      colliders, load, location);
             ClothState::Attachment& shown = state_.attachments.emplace_back();
             shown.vertices = attachments_.back().vertices();
             shown.release = scene.attachments[i].release.value_or(shown.release);
         }
+    require_one_owner(attachments_, state_);
 
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
     garment::StrainLimit::Settings limit;
@@ -217,8 +262,8 @@ void SceneCloth::tie(double gap, const std::vector<Collider>& colliders,
             continue;
         char distance[32];
         std::snprintf(distance, sizeof distance, "%.3g", 100.0 * far.distance);
-        warn(attachment.location() + ": vertex " + std::to_string(far.vertex) + " of \"" + state_.name +
-             "\" is attached to \"" + attachment.target_name() + "\" from " + distance +
+        warn(attachment.location() + ": vertex " + std::to_string(state_.file_vertex(far.vertex)) + " of \"" +
+             state_.name + "\" is attached to \"" + attachment.target_name() + "\" from " + distance +
              " cm away; move the selection to where the cloth lies on it");
     }
 }

@@ -17,7 +17,7 @@ namespace toile::scenes {
 class Snapshot {
 public:
     /// Positions of a surface, numbered as World::surfaces() [vertices] [m]. Waits for them.
-    /// @throws DeviceError if the GPU no longer responds
+    /// @throws DeviceError if the GPU no longer responds, InvalidUse for a surface that does not exist
     View<const Vec3> positions(int surface) const;
 
     /// Adds a surface. @param positions  copied

@@ -1,13 +1,18 @@
 #include "scenes/world/world.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include "core/base/error.h"
 #include "core/compute/cuda/runtime/device.h"
 #include "core/compute/parallel.h"
+#include "scenes/format/validate.h"
 #include "scenes/method/solver_choice.h"
 #include "scenes/world/cloth_group.h"
+#include "scenes/world/likely_unit.h"
 #include "scenes/world/start_pose.h"
 
 namespace toile::scenes {
@@ -37,6 +42,9 @@ void warn_of_turned(const Collider& collider, const std::function<void(const std
 } // namespace
 
 struct World::Parts {
+    std::atomic<bool> is_in_call = false;
+    std::string failure; ///< why nothing can change it any more; empty: it can
+
     explicit Parts(const Scene& of) : scene(of), control(step_control_of(of)) {}
 
     Scene scene;
@@ -146,8 +154,50 @@ struct World::Parts {
     }
 };
 
-World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make_unique<Parts>(scene))
+/// A call that changes a World, from its begin to its end.
+class World::Call {
+public:
+    /// @param name  of the function, for errors
+    /// @throws InvalidUse if another call runs, or the World has failed
+    Call(World& world, const std::string& name) : parts_(world.parts())
+    {
+        if (parts_.is_in_call.exchange(true))
+            throw InvalidUse(name + ": another call of this World is running; wait for it");
+        if (parts_.failure.empty())
+            return;
+        parts_.is_in_call = false;
+        throw InvalidUse(name + ": this World has failed (" + parts_.failure + "); make a new one");
+    }
+    ~Call() { parts_.is_in_call = false; }
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+
+    /// Result of `simulate`, which leaves a World that can go on only where it succeeds.
+    template <typename Simulate>
+    StepReport take(const Simulate& simulate)
+    {
+        parts_.failure = "a step was interrupted";
+        const StepReport report = simulate();
+        const bool has_failed = report.status == StepReport::Status::NonFinite;
+        parts_.failure = has_failed ? report.message : std::string();
+        return report;
+    }
+
+private:
+    Parts& parts_;
+};
+
+World::Parts& World::parts() const
 {
+    if (!parts_)
+        throw InvalidUse("this World was moved from; use the one that it was moved to");
+    return *parts_;
+}
+
+World::World(const Scene& scene, const WorldOptions& options)
+{
+    require_valid(scene);
+    parts_ = std::make_unique<Parts>(scene);
     require_methods(scene, options.baselines);
     if (options.warn)
         for (const std::string& warning : solver_warnings_of(scene))
@@ -159,6 +209,9 @@ World::World(const Scene& scene, const WorldOptions& options) : parts_(std::make
     }
     parts_->space = open_backend(options.backend, options.device, scene, options.warn);
     std::vector<SceneCloth> cloths = make_cloths(scene, parts_->colliders, options);
+    if (options.warn)
+        for (const std::string& warning : unit_warnings(scene, cloths, parts_->colliders))
+            options.warn(warning);
     if (options.backend == Backend::Auto)
         parts_->space = space_with_capacity(parts_->space, vertex_count(cloths), options.warn);
     parts_->groups = make_groups(scene, std::move(cloths), parts_->colliders, options, parts_->space.get());
@@ -183,71 +236,91 @@ World& World::operator=(World&&) noexcept = default;
 
 void World::place(int cloth, View<const Vec3> positions)
 {
+    const Call call(*this, "World::place");
+    const std::string name = "World::place(" + std::to_string(cloth) + ")";
+    const std::vector<scene::Cloth>& cloths = parts().scene.cloths;
+    if (cloth < 0 || cloth >= int(cloths.size()))
+        throw InvalidUse(name + ": the scene has " + std::to_string(cloths.size()) + " cloths");
+    if (const size_t expected = parts().states[cloth].positions.size(); positions.size() != int(expected))
+        throw InvalidUse(name + ": has " + std::to_string(positions.size()) + " positions, but \"" +
+                         cloths[cloth].name + "\" has " + std::to_string(expected) + " vertices");
+    require_in_range(positions, name);
+
     int member = cloth;
-    for (ClothGroup& group : parts_->groups) {
+    for (ClothGroup& group : parts().groups) {
         if (member < int(group.cloths().size())) {
             group.place(member, positions);
             break;
         }
         member -= int(group.cloths().size());
     }
-    parts_->is_shown = false;
-    parts_->show();
+    parts().is_shown = false;
+    parts().show();
 }
 
 void World::prepare()
 {
-    const ThreadLimit threads(parts_->scene.solver.threads);
-    const Stages::Activate recording(parts_->stages);
-    const StepControl& control = parts_->control;
+    const Call call(*this, "World::prepare");
+    const ThreadLimit threads(parts().scene.solver.threads);
+    const Stages::Activate recording(parts().stages);
+    const StepControl& control = parts().control;
     const double dt = control.first() * control.tick();
-    const double first_end = dt - parts_->settle_ticks() * control.tick();
-    for (ClothGroup& group : parts_->groups)
+    const double first_end = dt - parts().settle_ticks() * control.tick();
+    for (ClothGroup& group : parts().groups)
         group.prepare(dt, first_end);
 }
 
 StepReport World::settle()
 {
-    if (parts_->start.was_repaired) {
-        const ThreadLimit threads(parts_->scene.solver.threads);
-        const Stages::Activate recording(parts_->stages);
-        if (StepReport report = parts_->relax_start(); report.status == StepReport::Status::NonFinite)
-            return report;
-    }
-    return parts_->advance(parts_->settle_ticks(), 0.0);
+    Call call(*this, "World::settle");
+    if (parts().frame > 0)
+        throw InvalidUse("World::settle: sample 0 is past");
+    return call.take([&] {
+        if (parts().start.was_repaired) {
+            const ThreadLimit threads(parts().scene.solver.threads);
+            const Stages::Activate recording(parts().stages);
+            if (StepReport report = parts().relax_start(); report.status == StepReport::Status::NonFinite)
+                return report;
+        }
+        return parts().advance(parts().settle_ticks(), 0.0);
+    });
 }
 
 StepReport World::advance_frame()
 {
-    ++parts_->frame;
-    return parts_->advance(parts_->control.ticks_of_sample(), parts_->frame * parts_->scene.frame_duration());
+    Call call(*this, "World::advance_frame");
+    return call.take([&] {
+        ++parts().frame;
+        return parts().advance(parts().control.ticks_of_sample(),
+                               parts().frame * parts().scene.frame_duration());
+    });
 }
 
-int World::frame() const { return parts_->frame; }
-int World::frame_count() const { return parts_->scene.frames; }
+int World::frame() const { return parts().frame; }
+int World::frame_count() const { return parts().scene.frames; }
 View<const ClothState> World::surfaces() const
 {
-    const Stages::Activate recording(parts_->stages);
-    parts_->show();
-    return parts_->states;
+    const Stages::Activate recording(parts().stages);
+    parts().show();
+    return parts().states;
 }
 View<const ClothState> World::cloths() const
 {
-    return surfaces().subview(0, int(parts_->scene.cloths.size()));
+    return surfaces().subview(0, int(parts().scene.cloths.size()));
 }
 std::shared_ptr<const Snapshot> World::snapshot() const
 {
     auto snapshot = std::make_shared<Snapshot>();
-    for (const ClothGroup& group : parts_->groups)
+    for (const ClothGroup& group : parts().groups)
         group.add_cloths_to(*snapshot);
-    for (const ClothGroup& group : parts_->groups)
+    for (const ClothGroup& group : parts().groups)
         if (const SceneSolids* solids = group.solids())
             for (int i = 0; i < solids->count(); ++i)
                 snapshot->add(solids->positions(i));
     return snapshot;
 }
-const collision::StartReport& World::start() const { return parts_->start; }
-const CudaDevice* World::device() const { return parts_->space ? &parts_->space->device() : nullptr; }
-const Stages& World::stages() const { return parts_->stages; }
+const collision::StartReport& World::start() const { return parts().start; }
+const CudaDevice* World::device() const { return parts().space ? &parts().space->device() : nullptr; }
+const Stages& World::stages() const { return parts().stages; }
 
 } // namespace toile::scenes

@@ -21,11 +21,17 @@ namespace toile::scenes {
 ///
 /// Sample k belongs to time k / fps. StepControl divides samples into time steps; stages that the scene does
 /// not need are never entered (stages() shows it).
+///
+/// Calls throw InvalidUse on a World that was moved from; those that are not const also while another one
+/// runs, on another thread or below it in a callback. A World that has failed (settle() and advance_frame()
+/// threw, or reported a status NonFinite) keeps its last sample; what would change it throws InvalidUse with
+/// the reason.
 class World {
 public:
     /// Loads and places everything, and repairs a start pose with cloth inside avatars or through cloth
     /// (docs/theory/start_repair.md). Nothing is simulated or factored yet.
-    /// @throws InvalidInput for unusable files, materials and selections; also as open_backend().
+    /// @throws InvalidInput for unusable files, materials and selections, and as require_valid() and
+    ///         open_backend()
     explicit World(const Scene& scene, const WorldOptions& options = {});
     ~World();
     World(World&&) noexcept;
@@ -33,6 +39,8 @@ public:
 
     /// Moves the vertices of a cloth to new positions, however far from its rest shape; velocities are kept.
     /// @param positions  [vertices] of that cloth [m]
+    /// @throws InvalidUse for a cloth that does not exist or another number of vertices; InvalidInput for
+    ///         coordinates that are not is_in_range()
     void place(int cloth, View<const Vec3> positions);
 
     /// Prepares the global solvers, which the first step would otherwise do: factors, and the tables of
@@ -43,8 +51,8 @@ public:
     void prepare();
 
     /// Simulates Scene::settle seconds with every avatar in its first pose. Before, cloth that the repair of
-    /// the start pose has strained beyond its limit relaxes: stage "scenes/relax_start". Call before sample 0
-    /// is taken.
+    /// the start pose has strained beyond its limit relaxes: stage "scenes/relax_start".
+    /// @throws InvalidUse after advance_frame()
     StepReport settle();
 
     /// Simulates up to the next sample.
@@ -76,6 +84,9 @@ public:
 
 private:
     struct Parts;
+    class Call;
+    Parts& parts() const;
+
     std::unique_ptr<Parts> parts_;
 };
 

@@ -54,6 +54,15 @@ void fill(const TemporaryFolder& folder)
     folder.write("body.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "disc": {}}],
                                   "avatars": [{"name": "b", "mannequin": {}, "clip": "wolk"}]})");
     folder.write("text.xyz", "?");
+    folder.write("deep.json",
+                 R"({"toile": 1, "frames": )" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
+    folder.write("huge.obj", "v 0 1e150 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    folder.write("huge.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "sheet", "disc": {}}],
+                                  "avatars": [{"name": "b", "file": "huge.obj"}]})");
+    write_cloth(folder, "wide", "v 0 1e18 0\nv 1e18 0 0\nv 0 0 1e18\nf 1 2 3\n");
+    std::string infinite = bytes_of(folder.path() / "sheet.pc2");
+    infinite.replace(infinite.size() - 4, 4, std::string("\x00\x00\x80\x7f", 4));
+    folder.write("infinite.pc2", infinite);
     std::filesystem::create_directory(folder.path() / "bare");
     folder.write("file", "not a folder");
     std::filesystem::create_directory(folder.path() / "other");
@@ -95,10 +104,18 @@ const std::vector<BadRun> kBadRuns{
     {{"simulate", "mesh.json"}, {"mesh.obj:2", "'zero'", "decimal number"}},
     {{"simulate", "nan.json"}, {"nan.obj:2", "'nan'", "decimal number"}},
     {{"simulate", "empty.json"}, {"empty.obj", "no triangle", "at least one face"}},
-    {{"simulate", "flat.json"}, {"flat.obj: triangle 0", "no area", "remove it or merge"}},
+    {{"simulate", "flat.json"}, {"flat.obj:4: the face", "no area", "remove it or merge"}},
     {{"simulate", "fan.json"}, {"fan.obj: edge (0, 1)", "non-manifold", "split the surface"}},
     {{"simulate", "bone.json"}, {"bone.gltf", "index 9 is out of bounds"}},
     {{"simulate", "weightless.json"}, {"weightless.json: fabrics.ghost.areal_density: 0", "above 0"}},
+    {{"simulate", "deep.json"}, {"deep.json: is nested deeper than 64 levels"}},
+    {{"simulate", "/dev/zero"}, {"/dev/zero", "larger than 64 MB"}},
+    {{"simulate", "huge.json"}, {"huge.obj: bone 0", "out of range", "100 km"}},
+    {{"check", "sheet.pc2", "--scene", "huge.json"}, {"huge.obj: bone 0", "out of range", "100 km"}},
+    {{"render", "huge.json", "-o", "a.png"}, {"huge.obj: bone 0", "out of range", "100 km"}},
+    {{"simulate", "wide.json"}, {"wide.obj: vertex 0 is at (0, 1e+18, 0) m", "100 km"}},
+    {{"render", "infinite.pc2", "--scene", "good.json", "--cloth", "sheet", "-o", "a.png"},
+     {"infinite.pc2: frame 2: vertex", "inf", "finite"}},
     {{"simulate", "missing.json"}, {"missing.json: cloths[0].file", "none.obj", "relative to"}},
     {{"simulate", "body.json"}, {"wolk", "walk"}},
     {{"render", "sheet.pc2"}, {"sheet.pc2", "without faces", "--scene"}},

@@ -166,10 +166,12 @@ TEST(Certificate, CoversTheFramesThatAllCachesHave)
                   .exit_code,
               0);
     std::filesystem::rename(folder.path() / "short/upper.pc2", folder.path() / "upper.pc2");
-    EXPECT_EQ(run_toile({"check", ".", "--scene", "two.json", "--quiet"}, folder.path()).exit_code, 0);
+    EXPECT_EQ(run_toile({"check", ".", "--scene", "two.json", "--quiet"}, folder.path()).exit_code, 1);
     const Json found = json_in(folder, "certificate.json");
     EXPECT_EQ(found["frames"], 2);
+    EXPECT_EQ(found["frames_expected"], 3);
     EXPECT_EQ(found["frames_left_out"], 1);
+    EXPECT_TRUE(found["first_bad_frame"].is_null());
 }
 
 TEST(Simulate, ChecksItsOutputAtTheEnd)

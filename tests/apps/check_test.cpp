@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -26,6 +28,7 @@ void write_cache(const TemporaryFolder& folder, int frames, const Change& change
 {
     folder.write("drop.json", small_scene(1));
     ASSERT_EQ(run_toile({"simulate", "drop.json", "-o", ".", "--quiet"}, folder.path()).exit_code, 0);
+    folder.write("drop.json", small_scene(frames));
     const std::vector<Vec3> start = read_cache(folder.path() / "sheet.pc2").frame(0);
     CacheLayout layout;
     layout.vertex_count = int(start.size());
@@ -55,7 +58,7 @@ TEST(Check, CertifiesClothAtRestAboveABall)
     EXPECT_EQ(found["frames"], 3);
     EXPECT_EQ(found["max_penetration_m"], 0.0);
     EXPECT_NEAR(found["max_strain"], 0.0, 1e-5);
-    EXPECT_EQ(found["non_finite"], 0);
+    EXPECT_EQ(found["out_of_range"], 0);
     EXPECT_TRUE(found["first_bad_frame"].is_null());
 }
 
@@ -170,8 +173,71 @@ TEST(Check, CountsNonFiniteNumbers)
             x[5].x() = std::nan("");
     });
     const auto found = certificate(folder, 1);
-    EXPECT_EQ(found["non_finite"], 2);
+    EXPECT_EQ(found["out_of_range"], 2);
     EXPECT_EQ(found["first_bad_frame"], 2);
+}
+
+TEST(Check, DoesNotHoldForFramesThatAreMissing)
+{
+    for (const int frames : {0, 1, 59}) {
+        const TemporaryFolder folder;
+        write_cache(folder, std::max(frames, 1), [](int, std::vector<Vec3>&) {});
+        if (frames == 0) {
+            const std::string header = bytes_of(folder.path() / "changed.pc2").substr(0, 28);
+            folder.write("changed.pc2", header + std::string(4, '\0'));
+        }
+        folder.write("drop.json", small_scene(60));
+        const auto found = certificate(folder, 1);
+        EXPECT_EQ(found["holds"], false);
+        EXPECT_EQ(found["frames"], frames);
+        EXPECT_EQ(found["frames_expected"], 60);
+        const std::string number = std::to_string(frames);
+        const Finished run =
+            run_toile({"check", "changed.pc2", "--scene", "drop.json", "--frames", number}, folder.path());
+        EXPECT_EQ(run.exit_code, frames == 0 ? 2 : 0) << run.errors;
+    }
+}
+
+/// The time to measure the depth of a triangle in a solid must not grow with its size.
+TEST(Check, EndsForVerticesFarAway)
+{
+    for (const double far : {9e4, 1e7, 1e30, std::numeric_limits<double>::infinity()}) {
+        const TemporaryFolder folder;
+        write_cache(folder, 3, [&](int frame, std::vector<Vec3>& x) {
+            if (frame == 1)
+                x[40].x() = far;
+        });
+        const auto found = certificate(folder, 1);
+        EXPECT_EQ(found["first_bad_frame"], 1);
+        EXPECT_EQ(found["out_of_range"], far > 1e5 ? 1 : 0);
+    }
+}
+
+/// A cache in centimetres is caught by its strain; in kilometres, or collapsed, by its area.
+TEST(Check, DoesNotHoldForClothThatHasShrunk)
+{
+    const TemporaryFolder folder;
+    write_cache(folder, 2, [](int frame, std::vector<Vec3>& x) {
+        for (Vec3& p : x)
+            p.x() *= frame == 1 ? 0.4 : 1.0;
+    });
+    const auto found = certificate(folder, 1);
+    EXPECT_NEAR(found["min_area_ratio"], 0.4, 1e-5);
+    EXPECT_EQ(found["min_area_ratio_frame"], 1);
+    EXPECT_EQ(found["first_bad_frame"], 1);
+    EXPECT_EQ(found["cloth_cloth_crossings"], 0);
+}
+
+TEST(Check, RefusesCachesOfAnotherRate)
+{
+    const TemporaryFolder folder;
+    folder.write("drop.json", small_scene(3, R"("export": [{"file": "sheet.mdd", "cloth": "sheet"}])"));
+    ASSERT_EQ(run_toile({"simulate", "drop.json", "-o", ".", "--quiet"}, folder.path()).exit_code, 0);
+    folder.write("drop.json", small_scene(3, R"("fps": 60)"));
+    const Finished run = run_toile({"check", "sheet.mdd", "--scene", "drop.json"}, folder.path());
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_NE(run.errors.find("sheet.mdd: has 30 frames a second, but the scene has 60"), std::string::npos)
+        << run.errors;
 }
 
 } // namespace

@@ -1,6 +1,8 @@
 #include "apps/toile/check/cache_cloth.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "apps/toile/terminal/exports.h"
 #include "core/base/error.h"
@@ -56,6 +58,21 @@ void require_same_points(const exports::PointCache& cache, const std::filesystem
         throw InvalidInput(file.string() + ": has " + std::to_string(cache.vertex_count()) +
                            " points, but the cloth \"" + cloth + "\" has " + std::to_string(vertex_count) +
                            "; give the scene that the cache was made from");
+}
+
+void require_same_times(const exports::PointCache& cache, const std::filesystem::path& file, double fps)
+{
+    char text[160];
+    if (cache.fps() && std::abs(*cache.fps() - fps) > 1e-3 * fps) {
+        std::snprintf(text, sizeof text, ": has %.6g frames a second, but the scene has %.6g", *cache.fps(),
+                      fps);
+        throw InvalidInput(file.string() + text + "; give the scene that the cache was made from");
+    }
+    if (std::abs(cache.start_frame()) > 1e-3) {
+        std::snprintf(text, sizeof text, ": begins at frame %.6g, but the scene at frame 0",
+                      cache.start_frame());
+        throw InvalidInput(file.string() + text + "; give all frames from the first on");
+    }
 }
 
 } // namespace toile::app

@@ -18,4 +18,8 @@ int cloth_of_cache(const scenes::Scene& scene, const std::filesystem::path& cach
 void require_same_points(const exports::PointCache& cache, const std::filesystem::path& file,
                          const std::string& cloth, int vertex_count);
 
+/// @throws InvalidInput unless the cache, where it knows its times, has one frame for each of the scene from
+/// the first on.
+void require_same_times(const exports::PointCache& cache, const std::filesystem::path& file, double fps);
+
 } // namespace toile::app

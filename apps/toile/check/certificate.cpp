@@ -18,8 +18,8 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
     std::string reason;
     const auto add = [&](const std::string& text) { reason += (reason.empty() ? "" : ", ") + text; };
     char text[160];
-    if (found.non_finite > 0)
-        add(std::to_string(found.non_finite) + " vertices are not finite");
+    if (found.out_of_range > 0)
+        add(std::to_string(found.out_of_range) + " vertices are not finite, or farther than 100 km away");
     if (found.cloth_cloth_crossings > 0)
         add(std::to_string(found.cloth_cloth_crossings) + " cloth-cloth crossings");
     if (found.cloth_avatar_crossings > 0)
@@ -39,6 +39,10 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
     }
     if (found.penetration > limits.penetration) {
         std::snprintf(text, sizeof text, "%.3g mm deep in an avatar", 1e3 * found.penetration);
+        add(text);
+    }
+    if (found.area < kSmallestArea) {
+        std::snprintf(text, sizeof text, "%.3g %% of the area at rest", 1e2 * found.area);
         add(text);
     }
     if (found.is_overstretched) {
@@ -79,7 +83,7 @@ Json json_or_null(const std::optional<T>& value)
 void Certificate::add(const FrameFindings& found)
 {
     const int frame = frames++;
-    non_finite += found.non_finite;
+    out_of_range += found.out_of_range;
     cloth_cloth_crossings += found.cloth_cloth_crossings;
     cloth_avatar_crossings += found.cloth_avatar_crossings;
     pinched_crossings += found.pinched_crossings;
@@ -111,8 +115,12 @@ void Certificate::add(const FrameFindings& found)
         worst.attached_strain = found.attached_strain;
         worst_attached_strain_frame = frame;
     }
+    if (found.area < worst.area) {
+        worst.area = found.area;
+        smallest_area_frame = frame;
+    }
     worst.pinched_depth = std::max(worst.pinched_depth, found.pinched_depth);
-    if (const std::string reason = reason_of(found, limits); !reason.empty() && holds()) {
+    if (const std::string reason = reason_of(found, limits); !reason.empty() && first_bad_frame < 0) {
         first_bad_frame = frame;
         first_bad_reason = reason;
     }
@@ -122,7 +130,10 @@ std::string to_json(const Certificate& certificate)
 {
     Json cloths = Json::array(), strain_limits = Json::object();
     for (const Certificate::Cloth& cloth : certificate.cloths) {
-        cloths.push_back({{"name", cloth.name}, {"cache", cloth.cache.string()}});
+        cloths.push_back({{"name", cloth.name},
+                          {"cache", cloth.cache.string()},
+                          {"vertices", cloth.vertices},
+                          {"faces", cloth.faces}});
         strain_limits[cloth.name] = cloth.strain_limit;
     }
     const bool has_crossing = certificate.first_crossing.has_value();
@@ -135,8 +146,12 @@ std::string to_json(const Certificate& certificate)
         {"avatar_bones_left_out", certificate.excluded_bones},
         {"holds", certificate.holds()},
         {"frames", certificate.frames},
+        {"frames_expected", certificate.frames_expected},
         {"frames_left_out", certificate.frames_left_out},
-        {"first_bad_frame", certificate.holds() ? Json(nullptr) : Json(certificate.first_bad_frame)},
+        {"last_time_s",
+         certificate.frames > 0 ? Json((certificate.frames - 1) / certificate.fps) : Json(nullptr)},
+        {"first_bad_frame",
+         certificate.first_bad_frame < 0 ? Json(nullptr) : Json(certificate.first_bad_frame)},
         {"cloth_cloth_crossings", certificate.cloth_cloth_crossings},
         {"cloth_avatar_crossings", certificate.cloth_avatar_crossings},
         {"first_crossing", has_crossing ? json_of(*certificate.first_crossing) : Json(nullptr)},
@@ -150,7 +165,9 @@ std::string to_json(const Certificate& certificate)
         {"max_strain_frame", certificate.worst_strain_frame},
         {"max_attached_strain", certificate.worst.attached_strain},
         {"max_attached_strain_frame", certificate.worst_attached_strain_frame},
-        {"non_finite", certificate.non_finite},
+        {"min_area_ratio", certificate.worst.area},
+        {"min_area_ratio_frame", certificate.smallest_area_frame},
+        {"out_of_range", certificate.out_of_range},
         {"pinches",
          {{"frames", certificate.pinched_frames},
           {"crossings", certificate.pinched_crossings},
@@ -166,9 +183,16 @@ std::string to_json(const Certificate& certificate)
 
 std::string summary_of(const Certificate& certificate)
 {
-    if (!certificate.holds())
-        return "the certificate does not hold; first bad frame " +
-               std::to_string(certificate.first_bad_frame) + ": " + certificate.first_bad_reason;
+    if (!certificate.holds()) {
+        std::string why;
+        if (certificate.frames != certificate.frames_expected)
+            why = "; " + std::to_string(certificate.frames) + " frames of the scene's " +
+                  std::to_string(certificate.frames_expected);
+        if (certificate.first_bad_frame >= 0)
+            why += "; first bad frame " + std::to_string(certificate.first_bad_frame) + ": " +
+                   certificate.first_bad_reason;
+        return "the certificate does not hold" + why;
+    }
     char text[160];
     std::snprintf(text, sizeof text,
                   "certificate holds for %d frames: no crossings, %.3g mm deep at most, strain %.3g %%",

@@ -16,7 +16,11 @@ struct CertificateLimits {
     double strain_margin = 0.05; ///< [-] strain beyond the fabric's limit
 };
 
-/// Findings of one frame, all cloths together.
+/// Smallest area of cloth relative to its area at rest [-]: cloth folds rather than shrinks, so a cache of
+/// less belongs to another scene, or is in another unit.
+inline constexpr double kSmallestArea = 0.5;
+
+/// Findings of one frame, all cloths together. A frame with coordinates out of range has no others.
 struct FrameFindings {
     /// One of two triangles that cross.
     struct Side {
@@ -38,7 +42,7 @@ struct FrameFindings {
         Vec3 point; ///< [m]
     };
 
-    int non_finite = 0; ///< vertices
+    int out_of_range = 0; ///< vertices that are not is_in_range()
     int cloth_cloth_crossings = 0;
     int cloth_avatar_crossings = 0;       ///< outside of pinches (AvatarCrossings)
     int pinched_crossings = 0;            ///< in pinches
@@ -53,6 +57,7 @@ struct FrameFindings {
     double strain = 0.0;                  ///< [-] maximum of all cloths
     double attached_strain = 0.0;         ///< [-] of triangles with three attached vertices
     bool is_overstretched = false;        ///< a cloth exceeded its limit
+    double area = 1.0; ///< [-] smallest area of a cloth relative to that at rest, at most 1
 };
 
 /// Maximum distance at which gaps of cloth to cloth are measured [m]: several thicknesses of thick cloth.
@@ -65,6 +70,7 @@ struct Certificate {
         std::string name;
         std::filesystem::path cache;
         double strain_limit; ///< [-] of the fabric, the margin included
+        int vertices, faces; ///< faces as in the mesh's file
     };
 
     std::filesystem::path scene;
@@ -77,8 +83,10 @@ struct Certificate {
     std::map<std::string, std::vector<std::string>> excluded_bones;
 
     int frames = 0;
+    int frames_expected = 0; ///< of the scene
+    double fps = 0.0;        ///< of the scene
     int frames_left_out = 0; ///< frames of the longest cache that a shorter one lacks
-    int non_finite = 0;
+    int out_of_range = 0;
     long cloth_cloth_crossings = 0; ///< pairs of triangles, summed over frames, as the other count
     long cloth_avatar_crossings = 0;
     long pinched_crossings = 0;
@@ -89,15 +97,16 @@ struct Certificate {
     long passages = 0;
     std::optional<FrameFindings::PassageSite> first_passage;
     std::optional<double> min_gap; ///< [m] 0 where cloth crosses cloth
-    FrameFindings worst;           ///< maximum depths and strain of any frame
+    FrameFindings worst;           ///< maximum depths and strain, minimum area of any frame
     int min_gap_frame = 0;
     int worst_penetration_frame = 0;
     int worst_strain_frame = 0;
     int worst_attached_strain_frame = 0;
+    int smallest_area_frame = 0;
     int first_bad_frame = -1;
     std::string first_bad_reason;
 
-    bool holds() const { return first_bad_frame < 0; }
+    bool holds() const { return first_bad_frame < 0 && frames == frames_expected; }
 
     /// Adds the findings of the next frame.
     void add(const FrameFindings& found);

@@ -17,11 +17,20 @@ namespace toile::app {
 
 namespace {
 
+double area_of(View<const Vec3> x, View<const Triangle> triangles)
+{
+    double twice = 0.0;
+    for (const Triangle& t : triangles)
+        twice += (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).norm();
+    return 0.5 * twice;
+}
+
 /// A cloth with its strain meter and samples.
 struct MeasuredCloth {
     const scenes::ClothState& state;
     exports::PointCache cache;
     StrainMeter strain;
+    double rest_area; ///< [m^2]
     collision::ClothSamples samples;
     double strain_limit;                                   ///< [-] the margin included
     int first_vertex, first_triangle;                      ///< in the arrays of all cloths
@@ -67,12 +76,14 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
         const scenes::ClothState& cloth = *cached.cloth;
         const int vertex_count = int(cloth.rest.positions.size());
         exports::PointCache cache = exports::read_cache(cached.source);
-        require_same_points(cache, cached.file, cloth.name, vertex_count);
+        require_same_points(cache, cached.file, cloth.name, int(cloth.file_mesh().positions.size()));
+        require_same_times(cache, cached.file, scene.fps);
         frame_count_ = cloths_.empty() ? cache.frame_count() : std::min(frame_count_, cache.frame_count());
         longest_ = std::max(longest_, cache.frame_count());
         cloths_.push_back({cloth,
                            std::move(cache),
                            StrainMeter(cloth.rest.positions, cloth.triangles),
+                           area_of(cloth.rest.positions, cloth.triangles),
                            collision::ClothSamples(cloth.triangles, vertex_count),
                            cloth.fabric.strain_limit + limits.strain_margin,
                            int(rest.size()),
@@ -89,7 +100,7 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
 void Examiner::load(int frame)
 {
     for (const MeasuredCloth& cloth : cloths_) {
-        const std::vector<Vec3> positions = cloth.cache.frame(frame);
+        const std::vector<Vec3> positions = cloth.state.from_file(cloth.cache.frame(frame));
         std::copy(positions.begin(), positions.end(), x_.begin() + cloth.first_vertex);
     }
 }
@@ -100,6 +111,9 @@ FrameFindings Examiner::examine(int frame, double time)
     x_.resize(last_x_.size());
     load(frame);
     FrameFindings found;
+    found.out_of_range = int(std::count_if(x_.begin(), x_.end(), std::not_fn(is_in_range)));
+    if (found.out_of_range > 0)
+        return found;
     pose_avatars(frame, time, found);
     measure_each(time, found);
     find_cloth_crossings(frame, found);
@@ -110,11 +124,8 @@ FrameFindings Examiner::examine(int frame, double time)
 /// Poses the avatars, and finds cloth that passed through them.
 void Examiner::pose_avatars(int frame, double time, FrameFindings& found)
 {
-    const auto are_finite = [](const std::vector<Vec3>& x) {
-        return std::all_of(x.begin(), x.end(), [](const Vec3& p) { return p.allFinite(); });
-    };
     std::vector<collision::ClothFrames> frames;
-    if (frame > 0 && are_finite(last_x_) && are_finite(x_))
+    if (frame > 0 && std::all_of(last_x_.begin(), last_x_.end(), is_in_range))
         for (const MeasuredCloth& cloth : cloths_) {
             const int count = int(cloth.state.rest.positions.size());
             frames.emplace_back(cloth.samples, View<const Vec3>(last_x_).subview(cloth.first_vertex, count),
@@ -139,17 +150,14 @@ void Examiner::measure_each(double time, FrameFindings& found)
     for (MeasuredCloth& cloth : cloths_) {
         const int vertex_count = int(cloth.state.rest.positions.size());
         const View<const Vec3> x(x_.data() + cloth.first_vertex, vertex_count);
-        const auto bad = std::count_if(x.begin(), x.end(), [](const Vec3& p) { return !p.allFinite(); });
-        found.non_finite += int(bad);
         const ScenePenetration::Depth depth =
             avatars_.measure(x, cloth.state.triangles, cloth.samples, cloth.sides);
         found.penetration = std::max(found.penetration, depth.deepest);
         found.pinched_depth = std::max(found.pinched_depth, depth.pinched);
-        if (bad > 0)
-            continue;
         const StrainMeter::Largest strain = cloth.strain.largest(x, cloth.state.attached(time));
         found.strain = std::max(found.strain, strain.of_free);
         found.attached_strain = std::max(found.attached_strain, strain.of_attached);
+        found.area = std::min(found.area, area_of(x, cloth.state.triangles) / cloth.rest_area);
         found.is_overstretched = found.is_overstretched || strain.of_free > cloth.strain_limit;
     }
 }
@@ -207,11 +215,15 @@ std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector
     certificate.scene = scene.source;
     certificate.solver = scene_format::word_of(scene.solver.method);
     certificate.limits = limits;
+    certificate.frames_expected = scene.frames;
+    certificate.fps = scene.fps;
     Examiner examiner(scene, cloths, limits);
     certificate.frames_left_out = examiner.longest() - examiner.frame_count();
     for (size_t i = 0; i < cloths.size(); ++i)
-        certificate.cloths.push_back(
-            {cloths[i].cloth->name, cloths[i].file, examiner.cloths()[i].strain_limit});
+        certificate.cloths.push_back({cloths[i].cloth->name, cloths[i].file,
+                                      examiner.cloths()[i].strain_limit,
+                                      int(cloths[i].cloth->file_mesh().positions.size()),
+                                      int(cloths[i].cloth->file_mesh().polygons.size())});
     for (const std::string& name : surface_names(scene))
         if (std::none_of(cloths.begin(), cloths.end(),
                          [&](const CachedCloth& cached) { return cached.cloth->name == name; }))

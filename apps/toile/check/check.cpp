@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/check/certify.h"
@@ -26,6 +27,7 @@ struct CheckOptions {
     std::filesystem::path output; ///< empty: next to the caches, and standard output
     std::string cloth;
     CertificateLimits limits;
+    std::optional<int> frames;
     bool quiet = false;
 };
 
@@ -109,7 +111,8 @@ int check(const CheckOptions& options)
     for (const std::filesystem::path& cache : options.caches)
         if (!cache.has_extension() && !std::filesystem::exists(cache))
             throw InvalidInput(cache.string() + ": no such folder; check the path");
-    const scenes::Scene scene = scenes::read_scene(options.scene);
+    scenes::Scene scene = scenes::read_scene(options.scene);
+    scene.frames = options.frames.value_or(scene.frames);
     const std::vector<std::filesystem::path> caches =
         is_folder ? caches_in(options.caches[0], scene) : options.caches;
     const std::filesystem::path output = certificate_path_of(options);
@@ -154,6 +157,8 @@ Command add_check(CLI::App& parser)
     add.add_option("--strain-margin", options->limits.strain_margin,
                    "Accepted strain beyond the fabric's limit")
         ->capture_default_str();
+    add.add_option("--frames", options->frames, "Number of frames that the caches must have [the scene's]")
+        ->check(CLI::Range(1, 1000000));
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return check(*options); };
     return command;

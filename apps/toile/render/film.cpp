@@ -47,7 +47,7 @@ Film Film::of_scene(const scenes::Scene& scene)
     film.frame_count_ = 1;
     const scenes::World world(scene);
     for (int i = 0; i < world.surfaces().size(); ++i)
-        film.add_surface(i, world.surfaces()[i], std::nullopt);
+        film.add_surface(i, world.surfaces()[i], std::nullopt, {});
     return film;
 }
 
@@ -62,8 +62,8 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
         const exports::PointCache cache = exports::read_cache(file);
         const int index = cloth_of_cache(scene, file, cloth);
         const scenes::ClothState& state = world.surfaces()[index];
-        require_same_points(cache, file, state.name, int(state.positions.size()));
-        film.add_surface(index, state, cache);
+        require_same_points(cache, file, state.name, int(state.file_mesh().positions.size()));
+        film.add_surface(index, state, cache, file);
     }
     return film;
 }
@@ -80,26 +80,29 @@ Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches)
                                "was made from");
         film.settings_.fps = cache.fps().value_or(film.settings_.fps);
         film.add_cloth({}, *cache.mesh(), cache.mesh()->triangulated().triangles, cache.mesh()->positions,
-                       cache);
+                       cache, file);
     }
     return film;
 }
 
 /// @param index  in World::surfaces()
-void Film::add_surface(int index, const scenes::ClothState& state, std::optional<exports::PointCache> cache)
+void Film::add_surface(int index, const scenes::ClothState& state, std::optional<exports::PointCache> cache,
+                       const std::filesystem::path& file)
 {
     const int solid = index - int(settings_.cloths.size());
     add_cloth(solid < 0 ? settings_.cloths[size_t(index)] : scene::Cloth{}, state.rest, state.triangles,
-              state.positions, std::move(cache));
+              state.positions, std::move(cache), file);
+    tracks_.back().cloth = state;
     if (solid >= 0)
         tracks_.back().mesh.material = body_material(settings_.solids[size_t(solid)].color);
 }
 
 void Film::add_cloth(const scene::Cloth& settings, const ObjMesh& rest,
                      const std::vector<Triangle>& triangles, const std::vector<Vec3>& start,
-                     std::optional<exports::PointCache> cache)
+                     std::optional<exports::PointCache> cache, const std::filesystem::path& file)
 {
     Track track;
+    track.file = file;
     if (cache)
         frame_count_ = std::max(frame_count_, cache->frame_count());
     track.cache = std::move(cache);
@@ -112,7 +115,12 @@ void Film::add_cloth(const scene::Cloth& settings, const ObjMesh& rest,
 
 std::vector<Vec3> Film::positions(const Track& track, int frame) const
 {
-    return track.cache ? track.cache->frame(std::min(frame, track.cache->frame_count() - 1)) : track.start;
+    if (!track.cache)
+        return track.start;
+    const int shown = std::min(frame, track.cache->frame_count() - 1);
+    const std::vector<Vec3> x = track.cache->frame(shown);
+    require_in_range(x, track.file.string() + ": frame " + std::to_string(shown));
+    return track.cloth ? track.cloth->from_file(x) : x;
 }
 
 bool Film::is_shown(const scenes::SceneBody& body) const
@@ -132,8 +140,7 @@ Bounds Film::bounds_of(int frame)
     Bounds box;
     for (const Track& track : tracks_)
         for (const Vec3& p : positions(track, frame))
-            if (p.allFinite())
-                box.extend(p);
+            box.extend(p);
     show_bodies(frame);
     for (const scenes::SceneBody& body : bodies_)
         if (!std::holds_alternative<scene::Plane>(body.settings().shape))

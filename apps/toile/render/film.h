@@ -41,13 +41,17 @@ public:
 private:
     struct Track {
         std::optional<exports::PointCache> cache; ///< absent: `start` at all times
+        std::filesystem::path file;               ///< of the cache
+        std::optional<scenes::ClothState> cloth;  ///< with a scene
         std::vector<Vec3> start;                  ///< [vertices] [m]
         preview::RenderMesh mesh;
     };
 
-    void add_surface(int index, const scenes::ClothState& state, std::optional<exports::PointCache> cache);
+    void add_surface(int index, const scenes::ClothState& state, std::optional<exports::PointCache> cache,
+                     const std::filesystem::path& file);
     void add_cloth(const scene::Cloth& settings, const ObjMesh& rest, const std::vector<Triangle>& triangles,
-                   const std::vector<Vec3>& start, std::optional<exports::PointCache> cache);
+                   const std::vector<Vec3>& start, std::optional<exports::PointCache> cache,
+                   const std::filesystem::path& file);
     std::vector<Vec3> positions(const Track& track, int frame) const;
     bool is_shown(const scenes::SceneBody& body) const;
     void show_bodies(int frame);

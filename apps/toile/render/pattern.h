@@ -12,7 +12,7 @@ Vec3 linear_color(const Vec3& srgb);
 /// Applies the cloth's pattern to a mesh of a picture, in metres of the cloth. It uses the file's texture
 /// coordinates, the plane of a flat cut, or the surface of a skirt; other cloth stays plain.
 /// @param rest       the unstretched cloth, placed as it starts [m]
-/// @param triangles  [triangles] fans of rest's polygons
+/// @param triangles  [triangles] of rest's polygons
 void apply_pattern(const scene::Cloth& cloth, const ObjMesh& rest, const std::vector<Triangle>& triangles,
                    preview::RenderMesh& mesh);
 

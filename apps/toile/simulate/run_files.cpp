@@ -16,15 +16,18 @@ RunFiles::RunFiles(const SceneJob& job, const scenes::World& world) : job_(job)
     for (const std::filesystem::path& folder : output_folders_of(job))
         locks_.emplace_back(folder);
     for (const SurfaceFile& cache : caches_of(job)) {
-        exports::CacheLayout layout =
-            exports::cache_layout(world.surfaces()[cache.surface].rest, job.scene.frames);
+        const scenes::ClothState& state = world.surfaces()[cache.surface];
+        exports::CacheLayout layout = exports::cache_layout(state.file_mesh(), job.scene.frames);
         layout.fps = job.scene.fps;
-        caches_.push_back(
-            {cache, std::make_unique<exports::AsyncCacheWriter>(make_cache_writer(cache.file, layout)), {}});
+        caches_.push_back({cache,
+                           &state,
+                           std::make_unique<exports::AsyncCacheWriter>(make_cache_writer(cache.file, layout)),
+                           {}});
     }
     for (const SurfaceFile& mesh : start_meshes_of(job)) {
-        meshes_.push_back({mesh.file, world.surfaces()[mesh.surface].rest});
-        meshes_.back().mesh.positions = world.surfaces()[mesh.surface].positions;
+        const scenes::ClothState& state = world.surfaces()[mesh.surface];
+        meshes_.push_back({mesh.file, state.file_mesh()});
+        meshes_.back().mesh.positions = state.to_file(state.positions);
     }
 }
 
@@ -42,14 +45,16 @@ void RunFiles::write_frame(const scenes::World& world)
         write_start_meshes();
     if (world.device() == nullptr) {
         for (Cache& cache : caches_)
-            cache.writer->write(world.frame(), world.surfaces()[cache.target.surface].positions);
+            cache.writer->write(world.frame(),
+                                cache.state->to_file(world.surfaces()[cache.target.surface].positions));
         return;
     }
     const std::shared_ptr<const scenes::Snapshot> snapshot = world.snapshot();
     for (Cache& cache : caches_)
-        cache.writer->write_later(world.frame(), [snapshot, surface = cache.target.surface] {
-            return snapshot->positions(surface);
-        });
+        cache.writer->write_later(world.frame(),
+                                  [snapshot, state = cache.state, surface = cache.target.surface] {
+                                      return state->to_file(snapshot->positions(surface));
+                                  });
 }
 
 RunFiles::Partials RunFiles::close()

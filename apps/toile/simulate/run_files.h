@@ -45,6 +45,7 @@ public:
 private:
     struct Cache {
         SurfaceFile target;
+        const scenes::ClothState* state; ///< of the world
         std::unique_ptr<exports::AsyncCacheWriter> writer;
         std::filesystem::path complete; ///< partial name of the complete cache
     };

@@ -71,7 +71,7 @@ TEST(ReadObj, KeepsOrderQuadsAndTexture)
     EXPECT_EQ(mesh.texture_coordinates[0], Vec2(0, 0.25));
     EXPECT_EQ(mesh.polygons, (Polygons{{0, 1, 2, 3}, {4, 0, 2}}));
     EXPECT_EQ(mesh.polygon_uvs, (Polygons{{0, 1, 2, 0}, {2, 0, 1}}));
-    EXPECT_EQ(mesh.triangulated().triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {4, 0, 2}}));
+    EXPECT_EQ(mesh.triangulated().triangles, (std::vector<Triangle>{{1, 2, 3}, {0, 1, 3}, {4, 0, 2}}));
 }
 
 TEST(ReadObj, CountsNegativeIndicesFromTheLineTheyStandOn)
@@ -107,10 +107,45 @@ TEST(ReadObj, NamesTheLineOfEachMistake)
               "4: vertex index '2.5' is out of range; 3 are defined above this line");
     EXPECT_EQ(refusal(v + "f 1/1 2/1 3/1\n"),
               "4: texture index '1' is out of range; 0 are defined above this line");
-    EXPECT_EQ(refusal(v + "f 1 2\n"), "4: the face has 2 corners; it needs at least 3");
-    EXPECT_EQ(refusal(v + "f\n"), "4: the face has 0 corners; it needs at least 3");
+    EXPECT_EQ(refusal(v + "f 1 2\n"), "4: the face has 2 corners; it needs at least 3 and at most 10000");
+    EXPECT_EQ(refusal(v + "f\n"), "4: the face has 0 corners; it needs at least 3 and at most 10000");
     EXPECT_EQ(refusal(v + "vt 0 0\nf 1/1 2 3/1\n"),
               "5: some corners of the face have a texture index and some have none; give all or none");
+}
+
+/// Lines as Maya, classic Macs and Windows editors write them.
+TEST(ReadObj, ReadsAnyLineEndsContinuationsAndAByteOrderMark)
+{
+    const ObjMesh plain = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\n");
+    const std::vector<std::string> texts{
+        "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3",
+        "v 0 0 0\rv 1 0 0\rv 0 1 0\rl 1 2\rf 1 2 3\r",
+        "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nl 1 \\\r\n2\r\nf 1 2 3\r\n",
+        "v 0 \\\n0 \\\n0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2\\\n3\\",
+    };
+    for (const std::string& text : texts) {
+        const ObjMesh mesh = read_text(text);
+        EXPECT_EQ(mesh.positions, plain.positions) << text;
+        EXPECT_EQ(mesh.polygons, plain.polygons) << text;
+        EXPECT_EQ(mesh.line_elements, 1) << text;
+    }
+    EXPECT_EQ(plain.polygon_lines, std::vector<int>{5});
+    EXPECT_EQ(read_text(texts[3]).polygon_lines, std::vector<int>{7});
+    EXPECT_EQ(refusal("v 0 0\\\n 0\nv 1 x 0\n").substr(0, 2), "3:");
+}
+
+TEST(ReadObj, NamesTheLineOfAnUnusableFace)
+{
+    ObjMesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\n\nf 1 2 4\n");
+    EXPECT_EQ(message_of([&] { require_usable(mesh, "a.obj"); }).substr(0, 28),
+              "a.obj:7: the face has no are");
+    mesh = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 2\n");
+    EXPECT_EQ(message_of([&] { require_usable(mesh, "a.obj"); }).substr(0, 31),
+              "a.obj:4: the face has a triangl");
+    std::string wide = kThreeVertices + "f";
+    for (int k = 0; k < 10001; ++k)
+        wide += " 1";
+    EXPECT_NE(refusal(wide).find("at most 10000"), std::string::npos);
 }
 
 TEST(ReadObj, NamesAFileThatIsMissingOrAFolder)

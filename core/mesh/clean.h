@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "core/mesh/obj.h"
+
+namespace toile {
+
+/// Drops polygons that have the corners of an earlier one, in any order: duplicates, and the backs of
+/// two-sided faces.
+/// @return number of dropped polygons
+int drop_repeated_polygons(ObjMesh& mesh);
+
+/// Joins border edges that lie on each other, as along texture seams and between the faces of flat-shaded
+/// meshes: the polygons there get the lower of each two vertices. Edges stay apart where three or more meet,
+/// and between polygons that lie on each other with all corners: those are layers.
+/// @param distance  [m] at which two points are one
+/// @return [vertices] vertex that stands for each: itself, or a lower one
+std::vector<int> stitch(ObjMesh& mesh, double distance);
+
+/// Drops vertices without a polygon; the others keep their order.
+/// @return [vertices before] new number; for a dropped one -1
+std::vector<int> drop_loose_vertices(ObjMesh& mesh);
+
+} // namespace toile

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "scenes/format/scene.h"
+
+namespace toile::scenes {
+
+/// Checks a scene made or changed in code as strictly as one read from a file. Files that it names must exist
+/// but are not opened.
+/// @throws InvalidInput in one line, as read_scene(): numbers that are out of range or not finite, unknown
+///         enumerators, contradictory settings, names that do not exist
+void require_valid(const Scene& scene);
+
+} // namespace toile::scenes

@@ -1,0 +1,23 @@
+#include "core/base/error.h"
+#include "core/mesh/clean.h"
+#include "core/mesh/topology.h"
+#include "core/mesh/winding.h"
+#include "tests/fuzz/input_file.h"
+
+/// OBJ meshes, with all that is done to those of cloth before it is simulated.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    static const toile::test::InputFile file(".obj");
+    try {
+        toile::ObjMesh mesh = toile::read_obj(file.write(data, size));
+        toile::drop_repeated_polygons(mesh);
+        toile::stitch(mesh, 1e-9);
+        toile::make_windings_agree(mesh);
+        toile::require_usable(mesh, "mesh.obj");
+        toile::drop_loose_vertices(mesh);
+        const toile::TriangleMesh triangles = mesh.triangulated();
+        toile::build_topology(triangles.triangles, triangles.vertex_count(), "mesh.obj");
+    } catch (const toile::InvalidInput&) {
+    }
+    return 0;
+}

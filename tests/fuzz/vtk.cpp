@@ -1,0 +1,14 @@
+#include "core/base/error.h"
+#include "core/mesh/vtk.h"
+#include "tests/fuzz/input_file.h"
+
+/// Tetrahedra of solids.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    static const toile::test::InputFile file(".vtk");
+    try {
+        toile::boundary_surface(toile::read_vtk_tets(file.write(data, size)));
+    } catch (const toile::InvalidInput&) {
+    }
+    return 0;
+}

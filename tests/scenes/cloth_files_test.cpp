@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/world/world.h"
+#include "tests/support/temporary_folder.h"
+
+/// Cloth from meshes as people have them.
+namespace toile::test {
+
+using namespace scenes;
+
+namespace {
+
+/// OBJ of a sheet of 0.4 m above a ball, in `n` x `n` squares.
+/// @param is_shared  false: four vertices for each square
+/// @param loose      vertices before those of the sheet
+std::string sheet(int n, bool is_shared, double scale = 1.0, int loose = 0)
+{
+    std::string text;
+    for (int v = 0; v < loose; ++v)
+        text += "v 7 7 7\n";
+    const auto vertex = [&](int i, int k) {
+        text += "v " + std::to_string(scale * (0.4 * i / n - 0.2)) + " 0 " +
+                std::to_string(scale * (0.4 * k / n - 0.2)) + "\n";
+    };
+    for (int i = 0; i <= n && is_shared; ++i)
+        for (int k = 0; k <= n; ++k)
+            vertex(i, k);
+    for (int i = 0; i < n && !is_shared; ++i)
+        for (int k = 0; k < n; ++k)
+            for (const auto& [di, dk] : {std::pair{0, 0}, {0, 1}, {1, 1}, {1, 0}})
+                vertex(i + di, k + dk);
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const int corner = loose + 1 + (is_shared ? i * (n + 1) + k : 4 * (i * n + k)), row = n + 1;
+            const auto face = [&](int a, int b, int c, int d) {
+                text += "f " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + " " +
+                        std::to_string(d) + "\n";
+            };
+            is_shared ? face(corner, corner + 1, corner + 1 + row, corner + row)
+                      : face(corner, corner + 1, corner + 2, corner + 3);
+        }
+    return text;
+}
+
+class ClothFiles : public testing::Test {
+protected:
+    World world_of(const std::string& obj, const std::string& more = "", const std::string& top = "")
+    {
+        folder_.write("cloth.obj", obj);
+        WorldOptions options;
+        options.warn = [this](const std::string& text) { warnings_ += text + "\n"; };
+        return World(parse_scene(R"({"toile": 1, "frames": 12, "avatars": [{"name": "ball", "sphere":
+            {"radius": 0.15}}], "cloths": [{"name": "c", "file": "cloth.obj", "translate": [0, 0.16, 0])" +
+                                     more + "}]" + top + "}",
+                                 folder_.path() / "scene.json"),
+                     options);
+    }
+
+    bool says(const std::string& part) const { return warnings_.find(part) != std::string::npos; }
+
+    TemporaryFolder folder_;
+    std::string warnings_;
+};
+
+void finish(World& world)
+{
+    while (world.frame() + 1 < world.frame_count())
+        EXPECT_EQ(world.advance_frame().status, StepReport::Status::Converged);
+}
+
+TEST_F(ClothFiles, VerticesOfTheirOwnForEveryFaceBecomeOneSheet)
+{
+    World shared = world_of(sheet(8, true)), apart = world_of(sheet(8, false));
+    EXPECT_TRUE(says("cloth.obj: joined 175 vertices along edges that lie on others")) << warnings_;
+    for (int k = 0; k < 4; ++k) {
+        shared.advance_frame();
+        apart.advance_frame();
+    }
+    const ClothState &a = shared.cloths()[0], &b = apart.cloths()[0];
+    EXPECT_EQ(b.positions.size(), 81u);
+    // The cache is in the order of the file: its four corners of a square are where those of the sheet are.
+    const std::vector<Vec3> cache = b.to_file(b.positions);
+    ASSERT_EQ(cache.size(), 256u);
+    EXPECT_NEAR((cache[0] - a.positions[0]).norm(), 0.0, 5e-3);
+    EXPECT_EQ(cache[3], cache[32]) << "the corner (1, 0)";
+    EXPECT_EQ(b.from_file(cache), b.positions);
+
+    warnings_.clear();
+    World kept = world_of(sheet(8, false), R"(, "weld": false)");
+    EXPECT_EQ(kept.cloths()[0].positions.size(), 256u);
+    EXPECT_EQ(warnings_, "");
+}
+
+TEST_F(ClothFiles, LooseVerticesGoAlong)
+{
+    World clean = world_of(sheet(4, true));
+    World loose = world_of(sheet(4, true, 1.0, 2) + "v 3 3 3\n");
+    EXPECT_TRUE(says("cloth.obj: 3 vertices have no face, the first is 0;")) << warnings_;
+    finish(clean);
+    finish(loose);
+    const ClothState &a = clean.cloths()[0], &b = loose.cloths()[0];
+    EXPECT_EQ(b.positions, a.positions);
+    const std::vector<Vec3> cache = b.to_file(b.positions);
+    ASSERT_EQ(cache.size(), 28u);
+    EXPECT_EQ(cache[2], a.positions[0]);
+    EXPECT_EQ(cache[27], a.positions[24] + Vec3(3, 3, 3) - Vec3(0.2, 0, 0.2));
+}
+
+TEST_F(ClothFiles, AttachmentsAndMessagesHaveTheNumbersOfTheFile)
+{
+    const std::string obj = sheet(4, false);
+    const auto hold = [](int v) {
+        return R"(, "attachments": [{"cloth": "c", "select": {"vertices": [)" + std::to_string(v) + "]}}]";
+    };
+    World world = world_of(obj, "", hold(63));
+    const Vec3 held = world.cloths()[0].file_mesh().positions[63];
+    finish(world);
+    const ClothState& cloth = world.cloths()[0];
+    EXPECT_NEAR((cloth.to_file(cloth.positions)[63] - held).norm(), 0.0, 1e-9);
+    EXPECT_THROW(world_of(obj, "", hold(64)), InvalidInput);
+}
+
+TEST_F(ClothFiles, RepeatedFacesAndLinesAreLeftOut)
+{
+    std::string obj = sheet(4, true);
+    const std::string faces = obj.substr(obj.find("f "));
+    World world = world_of(obj + "f 7 2 1 6\n" + faces + "l 1 2 3\n");
+    EXPECT_TRUE(says("left out 17 faces with the corners of others")) << warnings_;
+    EXPECT_TRUE(says("left out 1 l line;")) << warnings_;
+    EXPECT_EQ(world.cloths()[0].triangles.size(), 32u);
+    finish(world);
+}
+
+TEST_F(ClothFiles, AForgottenUnitIsSuggested)
+{
+    world_of(sheet(4, true, 100.0));
+    EXPECT_TRUE(says("is 56.6 m long; if its lengths are in cm, write \"unit\": \"cm\"")) << warnings_;
+    warnings_.clear();
+    world_of(sheet(4, true, 1000.0));
+    EXPECT_TRUE(says("\"unit\": \"mm\"")) << warnings_;
+    warnings_.clear();
+    world_of(sheet(4, true, 100.0), R"(, "unit": "cm")");
+    world_of(sheet(4, true));
+    EXPECT_EQ(warnings_, "");
+}
+
+} // namespace
+} // namespace toile::test
