@@ -46,11 +46,11 @@ void AsyncCacheWriter::enqueue(Frame frame)
     changed_.notify_all();
 }
 
-void AsyncCacheWriter::finish()
+std::filesystem::path AsyncCacheWriter::complete()
 {
     close();
     rethrow_error();
-    target_->finish();
+    return target_->complete();
 }
 
 void AsyncCacheWriter::deliver_until_closed()

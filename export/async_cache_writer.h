@@ -33,8 +33,9 @@ public:
     /// Queues positions that may not have arrived yet, without a copy. @throws as write()
     void write_later(int frame, LatePositions positions);
 
-    /// Waits for the queue and finishes the target. @throws its exception, or that of an earlier write.
-    void finish() override;
+    /// Waits for the queue and completes the target. @throws its exception, or that of an earlier write.
+    std::filesystem::path complete() override;
+    void publish() override { target_->publish(); }
 
     /// Waits for the queue; nothing can be written afterwards. @return frames that the target has
     int close();

@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -41,21 +40,13 @@ BinaryFile::BinaryFile(const std::filesystem::path& file, Mode mode) : path_(fil
 {
     if (mode == Mode::Create)
         create_parent_folder(file);
-    const int flags = mode == Mode::Read ? O_RDONLY : mode == Mode::Create ? O_RDWR | O_CREAT : O_RDWR;
+    const int flags = mode == Mode::Read     ? O_RDONLY
+                      : mode == Mode::Create ? O_RDWR | O_CREAT | O_TRUNC
+                                             : O_RDWR;
     descriptor_ = ::open(file.c_str(), flags | O_CLOEXEC, 0666);
     if (descriptor_ < 0)
         throw InvalidInput(file.string() + ": can't be opened (" + std::strerror(errno) + "); " +
                            remedy(mode));
-    if (mode == Mode::Read)
-        return;
-
-    // Truncate after locking: a second run must not destroy the file that the first is writing.
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-        ::close(descriptor_);
-        throw InvalidInput(file.string() + ": another run is writing it; wait for it or choose another name");
-    }
-    if (mode == Mode::Create)
-        resize(0);
 }
 
 BinaryFile::~BinaryFile() { ::close(descriptor_); }
@@ -107,13 +98,28 @@ void BinaryFile::sync()
         broke_off(path_, "writing");
 }
 
+void BinaryFile::require_in_place() const
+{
+    if (!leads_to(path_, descriptor_))
+        throw DeviceError(path_.string() + ": was removed or replaced while it was being written");
+}
+
+bool leads_to(const std::filesystem::path& path, int descriptor)
+{
+    struct stat opened {
+    }, named{};
+    return ::fstat(descriptor, &opened) == 0 && ::stat(path.c_str(), &named) == 0 &&
+           opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
 void move_into_place(const std::filesystem::path& complete, const std::filesystem::path& file)
 {
     std::error_code error;
     std::filesystem::rename(complete, file, error);
     if (error)
         throw DeviceError(complete.string() + ": can't be renamed to " + file.string() + " (" +
-                          error.message() + "); it is complete, rename it by hand");
+                          error.message() + ")" +
+                          (std::filesystem::exists(complete) ? "; it is complete, rename it by hand" : ""));
 }
 
 } // namespace toile::exports

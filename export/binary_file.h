@@ -16,7 +16,7 @@ public:
         Continue, ///< must exist; content kept
     };
 
-    /// @throws InvalidInput if the file can't be opened, or is open for writing in another process.
+    /// @throws InvalidInput if the file can't be opened.
     BinaryFile(const std::filesystem::path& file, Mode mode);
     ~BinaryFile();
     BinaryFile(const BinaryFile&) = delete;
@@ -32,10 +32,16 @@ public:
     void resize(std::int64_t size);
     void sync();
 
+    /// @throws DeviceError if the path does not lead to this file any more
+    void require_in_place() const;
+
 private:
     std::filesystem::path path_;
     int descriptor_ = -1;
 };
+
+/// Whether a path leads to an open file.
+bool leads_to(const std::filesystem::path& path, int descriptor);
 
 /// Renames a completed file to its final name, replacing an existing file.
 /// @throws DeviceError naming both if the system refuses.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "export/cache_format.h"
 #include "export/mdd_writer.h"
@@ -29,6 +30,8 @@ void require_sane(const path& file, const CacheLayout& layout)
                std::to_string(layout.frame_count) + "; frames to keep must be 0 up to that count");
     if (std::filesystem::is_directory(file))
         refuse("is a folder; choose another name for the cache");
+    if (is_stream(file))
+        refuse("is no regular file; choose another name for the cache");
 }
 
 void require_faces(const path& file, const CacheLayout& layout)
@@ -48,13 +51,11 @@ void require_faces(const path& file, const CacheLayout& layout)
 
 std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& layout)
 {
-    const path folder = file.parent_path();
     switch (cache_format(file)) {
     case CacheFormat::Pc2:
-        return std::make_unique<Pc2Writer>(file, folder / (file.stem().string() + ".partial.pc2"), layout);
+        return std::make_unique<Pc2Writer>(file, partial_beside(file), layout);
     case CacheFormat::Mdd:
-        return std::make_unique<MddWriter>(file, folder / (file.filename().string() + ".partial.pc2"),
-                                           layout);
+        return std::make_unique<MddWriter>(file, layout);
     case CacheFormat::Obj:
         break;
     }

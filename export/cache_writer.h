@@ -25,9 +25,13 @@ CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count);
 
 /// Takes a simulation's frames in order and creates a point cache in vertex order.
 ///
-/// Until finish() everything goes into a partial beside the cache (skirt.partial.pc2 for skirt.pc2). A cache
-/// of the same name from an earlier run stays unchanged. A killed run leaves a partial that is readable up to
-/// its last completed frame. Destruction without finish() keeps the partial.
+/// Until publish() everything goes into a partial beside the cache (skirt.partial.pc2 for skirt.pc2). A cache
+/// of the same name from an earlier run stays unchanged, and so does its partial until the first frame. A
+/// killed run leaves a partial that is readable up to its last completed frame. Destruction without publish()
+/// keeps the partial.
+///
+/// Nothing keeps a second writer of the same cache out: hold a FolderLock (folder_lock.h) where there may be
+/// one.
 class CacheWriter {
 public:
     virtual ~CacheWriter() = default;
@@ -38,11 +42,23 @@ public:
     /// refuses.
     virtual void write(int frame, View<const Vec3> positions) = 0;
 
-    /// Moves the cache to its final name.
-    /// @throws InvalidInput if frames are missing; the message names the partial, which is kept.
-    virtual void finish() = 0;
+    /// Completes the partial: every byte of the cache is on the disk.
+    /// @return the complete cache under its partial name, for read_cache()
+    /// @throws InvalidInput if frames are missing; the message names the partial, which is kept. DeviceError
+    ///         if the disk refuses.
+    virtual std::filesystem::path complete() = 0;
 
-    /// Location of the frames until finish(): a file, or a folder for an OBJ sequence.
+    /// Moves the complete cache to its final name.
+    /// @throws DeviceError if the system refuses
+    virtual void publish() = 0;
+
+    void finish()
+    {
+        complete();
+        publish();
+    }
+
+    /// Location of the frames until complete(): a file, or a folder for an OBJ sequence.
     virtual std::filesystem::path partial() const = 0;
 
 protected:

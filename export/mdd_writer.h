@@ -11,20 +11,24 @@ namespace toile::exports {
 /// floats.
 ///
 /// The times precede the first frame, so an unfinished MDD can't be valid for fewer frames than planned. The
-/// frames are therefore stored in a PC2, and finish() copies them; both formats store the same floats.
+/// frames are therefore stored in a PC2 (skirt.mdd.partial.pc2), and complete() copies them into
+/// skirt.partial.mdd; both formats store the same floats.
 class MddWriter final : public CacheWriter {
 public:
     /// @throws InvalidInput as make_cache_writer().
-    MddWriter(std::filesystem::path file, const std::filesystem::path& partial, const CacheLayout& layout);
+    MddWriter(std::filesystem::path file, const CacheLayout& layout);
 
     void write(int frame, View<const Vec3> positions) override { frames_.write(frame, positions); }
-    void finish() override;
+    std::filesystem::path complete() override;
+    void publish() override;
     std::filesystem::path partial() const override { return frames_.partial(); }
 
 private:
+    void convert(const BinaryFile& source) const;
+
     std::filesystem::path file_;
     CacheLayout layout_;
-    std::filesystem::path complete_; ///< finished PC2, source of the copy
+    std::filesystem::path converted_; ///< the MDD until publish()
     Pc2Writer frames_;
 };
 

@@ -36,13 +36,6 @@ std::filesystem::path ObjSequence::file(int number) const
 
 std::string ObjSequence::stem() const { return prefix_.substr(0, prefix_.find_last_not_of("_.-") + 1); }
 
-ObjSequence ObjSequence::in(const std::filesystem::path& folder) const
-{
-    ObjSequence moved = *this;
-    moved.folder_ = folder;
-    return moved;
-}
-
 std::optional<int> ObjSequence::number_of(const std::string& file_name) const
 {
     if (!file_name.starts_with(prefix_) || !file_name.ends_with(suffix_) ||

@@ -18,8 +18,6 @@ public:
     std::filesystem::path file(int number) const;
     /// File name without the digits and their separator: skirt for skirt_####.obj.
     std::string stem() const;
-    /// Sequence of equal file names in another folder.
-    ObjSequence in(const std::filesystem::path& folder) const;
     /// Number in a file name of this sequence, or nothing for a foreign name.
     std::optional<int> number_of(const std::string& file_name) const;
     /// Numbers of the files that exist, ascending.

@@ -15,7 +15,8 @@ public:
     ObjWriter(std::filesystem::path file, const CacheLayout& layout);
 
     void write(int frame, View<const Vec3> positions) override;
-    void finish() override;
+    std::filesystem::path complete() override;
+    void publish() override;
     std::filesystem::path partial() const override { return partial_; }
 
 private:
@@ -26,7 +27,7 @@ private:
 };
 
 /// Writes every frame as an OBJ, numbered from the layout's start frame. The frames are stored in a folder
-/// skirt.partial/. finish() moves them out and removes frames of an earlier, longer run that would continue
+/// skirt.partial/. publish() moves them out and removes frames of an earlier, longer run that would continue
 /// the sequence.
 class ObjSequenceWriter final : public CacheWriter {
 public:
@@ -34,19 +35,23 @@ public:
     ObjSequenceWriter(const std::filesystem::path& pattern, const CacheLayout& layout);
 
     void write(int frame, View<const Vec3> positions) override;
-    void finish() override;
+    std::filesystem::path complete() override;
+    void publish() override;
     std::filesystem::path partial() const override { return folder_; }
 
 private:
     int number(int frame) const { return first_number_ + frame; }
-    void keep_earlier_frames(int frames);
+    void require_earlier_frames(int frames) const;
+    void remove_other_frames();
 
     ObjSequence sequence_;
     std::filesystem::path folder_;
-    ObjSequence waiting_;
+    std::filesystem::path waiting_pattern_;
+    ObjSequence waiting_; ///< in folder_
     FrameOrder order_;
     int first_number_;
     int frame_count_;
+    int resume_at_;
     ObjMesh mesh_;
 };
 

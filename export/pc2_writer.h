@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "export/binary_file.h"
 #include "export/cache_writer.h"
@@ -19,24 +21,27 @@ inline constexpr int kPc2SampleCountAt = 28;
 /// Appends frames to a PC2 whose header counts completed frames only, so that it is valid at any moment.
 class Pc2Writer final : public CacheWriter {
 public:
-    /// @param file     the cache, which finish() creates or replaces
+    /// @param file     the cache, which publish() creates or replaces
     /// @param partial  file for the frames until then
     /// @throws InvalidInput as make_cache_writer().
     Pc2Writer(std::filesystem::path file, const std::filesystem::path& partial, const CacheLayout& layout);
 
     void write(int frame, View<const Vec3> positions) override;
-    void finish() override;
-    std::filesystem::path partial() const override { return stream_.path(); }
+    std::filesystem::path complete() override;
+    void publish() override;
+    std::filesystem::path partial() const override { return partial_; }
 
 private:
-    void write_header(const CacheLayout& layout);
+    void create(std::string_view first_sample);
     void keep_earlier_frames(const CacheLayout& layout);
     void set_sample_count(int samples);
 
     std::filesystem::path file_;
+    std::filesystem::path partial_;
     FrameOrder order_;
-    BinaryFile stream_;
-    std::string sample_; ///< one frame in file byte order, a member to avoid allocation
+    std::string header_;               ///< of a cache with one frame
+    std::optional<BinaryFile> stream_; ///< the partial; empty before the first frame
+    std::string sample_;               ///< one frame in file byte order, a member to avoid allocation
 };
 
 } // namespace toile::exports

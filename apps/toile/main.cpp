@@ -1,4 +1,5 @@
 #include "apps/toile/terminal/command_line.h"
+#include "core/base/blas_memory.h"
 #include "core/compute/cuda/runtime/runtime.h"
 
 namespace {
@@ -14,6 +15,7 @@ std::vector<toile::app::Command> add_commands(CLI::App& parser)
 
 int main(int argc, char** argv)
 {
+    toile::leave_out_blas_threads(argv);
     toile::cuda::load_kernels_eagerly();
     return toile::app::run_command_line(
         argc, argv, {"toile", "Simulates cloth and garments on animated bodies.", add_commands});

@@ -108,6 +108,7 @@ int RayScene::add(View<const Vec3> positions, View<const Triangle> triangles)
     auto* indices =
         static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                        3 * sizeof(unsigned), size_t(triangles.size())));
+    require_embree_success();
     for (const Triangle& corner : triangles)
         for (const int v : corner)
             *indices++ = unsigned(v);
@@ -129,7 +130,11 @@ void RayScene::update(int mesh, View<const Vec3> positions)
     rtcCommitGeometry(geometry);
 }
 
-void RayScene::commit() { rtcCommitScene(trees_->scene); }
+void RayScene::commit()
+{
+    rtcCommitScene(trees_->scene);
+    require_embree_success();
+}
 
 std::optional<RayHit> RayScene::closest_hit(const Vec3& origin, const Vec3& direction, double t_max) const
 {

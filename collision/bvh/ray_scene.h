@@ -32,6 +32,7 @@ public:
     /// @param positions  [vertices x 3] [m]
     /// @param triangles  [triangles x 3] indices into positions
     /// @return 0, 1, 2, ... in order of calls
+    /// @throws std::bad_alloc if Embree lacks memory, here and in commit()
     int add(View<const Vec3> positions, View<const Triangle> triangles);
 
     /// Moves a mesh to new positions [vertices x 3] [m]: the tree keeps its topology and is refitted. O(n).

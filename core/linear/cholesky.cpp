@@ -1,11 +1,13 @@
 #include "core/linear/cholesky.h"
 
 #include <cmath>
+#include <new>
 #include <stdexcept>
 #include <string>
 
 #include <cholmod.h>
 
+#include "core/base/blas_memory.h"
 #include "core/base/error.h"
 #include "core/base/stages.h"
 
@@ -121,6 +123,8 @@ Cholesky::Cholesky(const SparseMatrix& A) : cholmod_(std::make_unique<Cholmod>()
     const StageScope stage("linear/analyse");
     cholmod_sparse view = as_cholmod(A);
     cholmod_->factor = cholmod_analyze(&view, &cholmod_->common);
+    if (cholmod_->common.status == CHOLMOD_OUT_OF_MEMORY)
+        throw std::bad_alloc();
     refactor(A);
 }
 
@@ -132,6 +136,7 @@ void Cholesky::refactor(const SparseMatrix& A)
 {
     const StageScope stage("linear/factor");
     cholmod_sparse view = as_cholmod(A);
+    require_blas_buffer();
     cholmod_factorize(&view, cholmod_->factor, &cholmod_->common);
     const auto refuse = [&](size_t pivot) {
         const int row = static_cast<const int*>(cholmod_->factor->Perm)[pivot];
@@ -140,6 +145,8 @@ void Cholesky::refactor(const SparseMatrix& A)
     };
     if (cholmod_->common.status == CHOLMOD_NOT_POSDEF)
         refuse(cholmod_->factor->minor);
+    if (cholmod_->common.status == CHOLMOD_OUT_OF_MEMORY)
+        throw std::bad_alloc();
     if (cholmod_->common.status != CHOLMOD_OK)
         throw std::runtime_error("CHOLMOD could not factor a matrix of " + std::to_string(A.rows()) +
                                  " rows (status " + std::to_string(cholmod_->common.status) + ")");

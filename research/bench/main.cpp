@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "apps/toile/terminal/command_line.h"
+#include "core/base/blas_memory.h"
 #include "core/compute/cuda/runtime/runtime.h"
 #include "research/bench/benchmark.h"
 #include "research/scenes/literature_methods.h"
@@ -114,6 +115,7 @@ std::vector<app::Command> add_commands(CLI::App& parser)
 
 int main(int argc, char** argv)
 {
+    toile::leave_out_blas_threads(argv);
     toile::cuda::load_kernels_eagerly();
     return toile::app::run_command_line(argc, argv,
                                         {"toile-bench",

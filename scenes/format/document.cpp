@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <set>
+#include <system_error>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -101,10 +102,15 @@ std::filesystem::path Document::existing_file(const std::string& text, const std
         refuse(key_path, as_written(text) + " names an unknown variable; only " + kVariable + " is known");
 
     const std::filesystem::path file = source_.parent_path() / expanded;
-    if (!std::filesystem::is_regular_file(file))
-        refuse(key_path, "the file " + as_written(file.lexically_normal().string()) +
-                             " does not exist; paths are " + "relative to the scene's folder");
-    return file.lexically_normal();
+    const std::filesystem::path normal = file.lexically_normal();
+    std::error_code unreachable;
+    if (!std::filesystem::exists(file, unreachable))
+        refuse(key_path, "the file " + as_written(normal.string()) + " does not exist; paths are " +
+                             "relative to the scene's folder");
+    if (!std::filesystem::is_regular_file(file, unreachable))
+        refuse(key_path, as_written(normal.string()) + " is a folder, pipe or device; name a file");
+    // Behind a symbolic link, ".." leads elsewhere than its text says.
+    return std::filesystem::equivalent(file, normal, unreachable) ? normal : file;
 }
 
 std::string as_written(const Json& value)

@@ -62,6 +62,18 @@ TEST(Check, CertifiesClothAtRestAboveABall)
     EXPECT_TRUE(found["first_bad_frame"].is_null());
 }
 
+TEST(Check, FindsSequencesInAFolder)
+{
+    for (const char* name : {"sheet.obj", "sheet_####.obj", "f##.obj", "a/../f.obj"}) {
+        const TemporaryFolder folder;
+        folder.write("s.json", small_scene(2, R"("export": [{"file": ")" + std::string(name) + R"("}])"));
+        EXPECT_EQ(run_toile({"simulate", "s.json", "-o", "out", "--quiet"}, folder.path()).exit_code, 0);
+        const Finished run =
+            run_toile({"check", "out", "--scene", "s.json", "-o", "c.json", "--quiet"}, folder.path());
+        EXPECT_EQ(run.exit_code, 0) << name << run.errors;
+    }
+}
+
 TEST(Check, MeasuresDepthInsideTheBall)
 {
     // Lowered by 0.08 m to y = 0.17: the middle lies 0.03 m inside the ball of radius 0.2.

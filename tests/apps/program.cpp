@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <signal.h>
@@ -70,16 +71,41 @@ Finished run_toile(const std::vector<std::string>& arguments, const std::filesys
     return run_program(TOILE_PROGRAM, arguments, folder);
 }
 
+Finished run_shell(const std::string& script, const std::filesystem::path& folder)
+{
+    return run_program("/bin/sh", {"-c", "TOILE=" TOILE_PROGRAM "\n" + script}, folder);
+}
+
+Running::Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder)
+    : process_(start(TOILE_PROGRAM, arguments, folder, streams_.path()))
+{
+}
+
+Running::~Running()
+{
+    if (process_ > 0)
+        end(SIGKILL);
+}
+
+void Running::wait_for_file(const std::filesystem::path& file)
+{
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!std::filesystem::exists(file) && std::chrono::steady_clock::now() < give_up)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+}
+
+Finished Running::end(int signal)
+{
+    ::kill(process_, signal);
+    return wait_for(std::exchange(process_, 0), streams_.path());
+}
+
 Finished run_and_interrupt(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                            const std::filesystem::path& file)
 {
-    const TemporaryFolder streams;
-    const pid_t process = start(TOILE_PROGRAM, arguments, folder, streams.path());
-    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (!std::filesystem::exists(file) && std::chrono::steady_clock::now() < give_up)
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    ::kill(process, SIGINT);
-    return wait_for(process, streams.path());
+    Running run(arguments, folder);
+    Running::wait_for_file(file);
+    return run.end(SIGINT);
 }
 
 std::string small_scene(int frames, const std::string& more_keys)

@@ -50,7 +50,7 @@ TEST_F(AsyncCacheWriterTest, RequestsLatePositionsOnTheWriterThread)
     for (int frame = 0; frame < 9; ++frame) {
         const auto positions = std::make_shared<const std::vector<Vec3>>(frame_positions(frame, 7));
         given.push_back(positions);
-        later.write_later(frame, [&, positions, caller = std::this_thread::get_id()]() -> View<const Vec3> {
+        later.write_later(frame, [&, positions, caller = std::this_thread::get_id()]() -> std::vector<Vec3> {
             ++asked;
             asked_here += std::this_thread::get_id() == caller;
             return *positions;
@@ -68,7 +68,7 @@ TEST_F(AsyncCacheWriterTest, RethrowsErrorsOfLatePositions)
 {
     AsyncCacheWriter writer(make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 9)), 2);
     writer.write(0, frame_positions(0, 7));
-    writer.write_later(1, []() -> View<const Vec3> { throw DeviceError("the GPU is gone"); });
+    writer.write_later(1, []() -> std::vector<Vec3> { throw DeviceError("the GPU is gone"); });
     EXPECT_THROW(writer.finish(), DeviceError);
     EXPECT_EQ(writer.close(), 1);
     EXPECT_EQ(read_cache(file("a.partial.pc2")).frame_count(), 1);
@@ -95,7 +95,8 @@ public:
             throw DeviceError("disk full");
         written_.push_back(frame);
     }
-    void finish() override { written_.push_back(-1); }
+    std::filesystem::path complete() override { return {}; }
+    void publish() override { written_.push_back(-1); }
     std::filesystem::path partial() const override { return {}; }
 
 private:

@@ -1,6 +1,9 @@
 #include "export/cache_writer.h"
 
+#include <csignal>
+
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include "tests/export/export_fixtures.h"
 
@@ -125,13 +128,59 @@ TEST_F(CacheWriterTest, RefusesLayoutsThatMakeNoCache)
     EXPECT_TRUE(std::filesystem::is_empty(folder_)) << "a refused layout leaves nothing behind";
 }
 
-TEST_F(CacheWriterTest, RefusesASecondRunIntoTheSameCache)
+TEST_F(CacheWriterTest, KeepsThePartialOfAKilledRunUntilTheFirstFrame)
 {
-    const auto first = make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 2));
-    first->write(0, frame_positions(0, 7));
-    EXPECT_THAT(refusal([&] { make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 2)); }),
-                HasSubstr("another run is writing it"));
-    EXPECT_EQ(read_cache(first->partial()).frame_count(), 1);
+    const CacheLayout layout = cache_layout(quad_mesh(), 4);
+    for (const char* name : {"a.pc2", "a.mdd", "a_####.obj"}) {
+        std::filesystem::path partial;
+        {
+            const auto killed = make_cache_writer(file(name), layout);
+            write_frames(*killed, 0, 3, 7);
+            partial = name[1] == '_' ? killed->partial() / name : killed->partial();
+        }
+        const auto next = make_cache_writer(file(name), layout);
+        EXPECT_EQ(read_cache(partial).frame_count(), 3) << name;
+        next->write(0, frame_positions(0, 7));
+        EXPECT_EQ(read_cache(partial).frame_count(), 1) << name;
+    }
+}
+
+TEST_F(CacheWriterTest, CompletesUnderAPartialNameThatCanBeRead)
+{
+    for (const std::string name : {"a.pc2", "a.mdd", "a.obj"}) {
+        write_bytes(file(name), "precious");
+        const auto writer = make_cache_writer(file(name), cache_layout(quad_mesh(), 1));
+        write_frames(*writer, 0, 1, 7);
+        EXPECT_EQ(read_cache(writer->complete()).frame(0), frame_positions(0, 7)) << name;
+        EXPECT_EQ(bytes_of(file(name)), "precious") << name;
+        writer->publish();
+        EXPECT_EQ(read_cache(file(name)).frame(0), frame_positions(0, 7)) << name;
+    }
+}
+
+TEST_F(CacheWriterTest, KeepsTheFramesOfAnMddThatCannotBeCompleted)
+{
+    // The MDD is larger than its PC2 by the times of its frames, and the limit lies between.
+    const auto writer = make_cache_writer(file("a.mdd"), cache_layout(quad_mesh(), 100));
+    write_frames(*writer, 0, 100, 7);
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{32 + 100 * 7 * 12 + 50, before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    EXPECT_THROW(writer->complete(), DeviceError);
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    ::signal(SIGXFSZ, handler);
+    EXPECT_EQ(read_cache(writer->partial()).frame_count(), 100);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(CacheWriterTest, NoticesThatItsPartialWasRemoved)
+{
+    const auto writer = make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 3));
+    write_frames(*writer, 0, 1, 7);
+    std::filesystem::remove(writer->partial());
+    EXPECT_THROW(write_frames(*writer, 1, 2, 7), DeviceError);
 }
 
 TEST_F(CacheWriterTest, KeepsQuadsAndTextureCoordinatesInObj)

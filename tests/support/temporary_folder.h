@@ -43,12 +43,13 @@ public:
         return path_ / name;
     }
 
-    /// Name and content of every file below.
+    /// Name and content of every file below; empty for what is no regular file.
     std::map<std::string, std::string> snapshot() const
     {
         std::map<std::string, std::string> files;
+        std::error_code unreadable; // links that lead nowhere
         for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
-            files[entry.path().string()] = entry.is_regular_file() ? bytes_of(entry.path()) : "";
+            files[entry.path().string()] = entry.is_regular_file(unreadable) ? bytes_of(entry.path()) : "";
         return files;
     }
 

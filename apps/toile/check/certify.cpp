@@ -10,7 +10,6 @@
 #include "apps/toile/terminal/exports.h"
 #include "collision/check/find_crossings.h"
 #include "collision/check/gap_meter.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "scenes/format/field.h"
 
@@ -76,7 +75,7 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
     for (const CachedCloth& cached : cloths) {
         const scenes::ClothState& cloth = *cached.cloth;
         const int vertex_count = int(cloth.rest.positions.size());
-        exports::PointCache cache = exports::read_cache(cached.file);
+        exports::PointCache cache = exports::read_cache(cached.source);
         require_same_points(cache, cached.file, cloth.name, int(cloth.file_mesh().positions.size()));
         require_same_times(cache, cached.file, scene.fps);
         frame_count_ = cloths_.empty() ? cache.frame_count() : std::min(frame_count_, cache.frame_count());
@@ -244,12 +243,16 @@ std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector
 
 int conclude(const Certificate& certificate, const std::filesystem::path& file, const RunLog& log)
 {
-    write_atomically(file, to_json(certificate));
     if (!certificate.holds())
         log.error(summary_of(certificate) + "; see " + file.string());
     else
         log.result(summary_of(certificate));
     return certificate.holds() ? kExitOk : kExitFailure;
+}
+
+std::filesystem::path certificate_beside(const std::filesystem::path& cache)
+{
+    return cache.parent_path() / (cache.stem().string() + "." + kCertificateName);
 }
 
 } // namespace toile::app

@@ -15,7 +15,8 @@ namespace toile::app {
 /// A cloth of a scene and the cache to be certified.
 struct CachedCloth {
     const scenes::ClothState* cloth; ///< mesh, rest shape and fabric; its positions are ignored
-    std::filesystem::path file;
+    std::filesystem::path file;      ///< named by the certificate
+    std::filesystem::path source;    ///< where its frames are read: the same, or a partial name
 };
 
 /// Measures every frame that all caches have, cloths together, without any code of the solver.
@@ -27,12 +28,15 @@ std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector
                                    const CertificateLimits& limits,
                                    const std::function<bool(int done, int all)>& goes_on);
 
-/// Writes the certificate and its summary to stderr; a quiet log omits the summary of one that holds.
+/// Writes the summary to stderr; a quiet log omits that of a certificate that holds.
+/// @param file  where the certificate is
 /// @return kExitOk or kExitFailure
-/// @throws InvalidInput or DeviceError as write_atomically().
 int conclude(const Certificate& certificate, const std::filesystem::path& file, const RunLog& log);
 
 /// File name of a certificate of several caches, in their folder.
 inline constexpr const char* kCertificateName = "certificate.json";
+
+/// Certificate of a single cache: skirt.certificate.json beside skirt.pc2.
+std::filesystem::path certificate_beside(const std::filesystem::path& cache);
 
 } // namespace toile::app

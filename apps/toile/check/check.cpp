@@ -9,7 +9,12 @@
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/exports.h"
 #include "apps/toile/terminal/progress.h"
+#include "apps/toile/terminal/scene_inputs.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/file_plan.h"
+#include "export/folder_lock.h"
+#include "export/obj_sequence.h"
 #include "scenes/format/read_scene.h"
 
 namespace toile::app {
@@ -29,10 +34,8 @@ struct CheckOptions {
 /// Whether a cache of this name exists, as a file or as numbered OBJ files.
 bool cache_exists(const std::filesystem::path& file)
 {
-    if (std::filesystem::exists(file))
-        return true;
-    const std::string first = file.stem().string() + "_0000.obj";
-    return file.extension() == ".obj" && std::filesystem::exists(file.parent_path() / first);
+    return std::filesystem::exists(file) ||
+           (file.extension() == ".obj" && !exports::ObjSequence(file).existing().empty());
 }
 
 /// Caches written by simulate into a folder, one per cloth; missing ones are omitted.
@@ -44,9 +47,10 @@ std::vector<std::filesystem::path> caches_in(const std::filesystem::path& folder
     for (const scene::Export& entry : exports_of(scene)) {
         const int cloth = surface_index(scene, entry.cloth);
         searched += (searched.empty() ? "" : ", ") + entry.file.string();
-        if (!cache_exists(folder / entry.file) || std::count(cloths.begin(), cloths.end(), cloth) > 0)
+        const std::filesystem::path file = folder / entry.file.lexically_normal();
+        if (!cache_exists(file) || std::count(cloths.begin(), cloths.end(), cloth) > 0)
             continue;
-        caches.push_back(folder / entry.file);
+        caches.push_back(file);
         cloths.push_back(cloth);
     }
     if (caches.empty())
@@ -67,7 +71,7 @@ std::vector<CachedCloth> cloths_of(const std::vector<std::filesystem::path>& cac
             if (other.cloth == cloth)
                 throw InvalidInput(file.string() + ": is of the same cloth \"" + cloth->name + "\" as " +
                                    other.file.string() + "; give one cache of each cloth");
-        cloths.push_back({cloth, file});
+        cloths.push_back({cloth, file, file});
     }
     return cloths;
 }
@@ -82,7 +86,19 @@ std::filesystem::path certificate_path_of(const CheckOptions& options)
         return first / kCertificateName;
     if (options.caches.size() > 1)
         return first.parent_path() / kCertificateName;
-    return first.parent_path() / (first.stem().string() + "." + kCertificateName);
+    return certificate_beside(first);
+}
+
+/// Refuses a certificate that would replace a file that it is made from, or could not be written.
+void require_safe_output(const std::filesystem::path& file, const scenes::Scene& scene,
+                         const std::vector<std::filesystem::path>& caches)
+{
+    FilePlan plan;
+    add_inputs(plan, scene);
+    for (const std::filesystem::path& cache : caches)
+        plan.add_input(cache, "a cache to check");
+    plan.add_output(file, "the certificate");
+    require_writable(file);
 }
 
 int check(const CheckOptions& options)
@@ -92,11 +108,20 @@ int check(const CheckOptions& options)
     const bool is_folder = options.caches.size() == 1 && std::filesystem::is_directory(options.caches[0]);
     if (!options.cloth.empty() && (is_folder || options.caches.size() > 1))
         throw InvalidInput("--cloth: names the cloth of a single cache; name the caches after their cloths");
+    for (const std::filesystem::path& cache : options.caches)
+        if (!cache.has_extension() && !std::filesystem::exists(cache))
+            throw InvalidInput(cache.string() + ": no such folder; check the path");
     scenes::Scene scene = scenes::read_scene(options.scene);
     scene.frames = options.frames.value_or(scene.frames);
-    const scenes::World world(scene);
     const std::vector<std::filesystem::path> caches =
         is_folder ? caches_in(options.caches[0], scene) : options.caches;
+    const std::filesystem::path output = certificate_path_of(options);
+    require_safe_output(output, scene, caches);
+    // A run must not replace the caches before their certificate lies beside them.
+    std::optional<exports::FolderLock> lock;
+    if (options.output.empty())
+        lock.emplace(output.parent_path());
+    const scenes::World world(scene);
     const std::vector<CachedCloth> cloths = cloths_of(caches, scene, world, options.cloth);
 
     std::optional<Progress> progress;
@@ -109,7 +134,8 @@ int check(const CheckOptions& options)
     progress.reset();
     if (options.output.empty())
         std::cout << to_json(certificate);
-    return conclude(certificate, certificate_path_of(options), RunLog(options.quiet));
+    write_atomically(output, to_json(certificate));
+    return conclude(certificate, output, RunLog(options.quiet));
 }
 
 } // namespace

@@ -8,7 +8,10 @@
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/progress.h"
+#include "apps/toile/terminal/scene_inputs.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/file_plan.h"
 #include "scenes/format/read_scene.h"
 
 namespace toile::app {
@@ -85,15 +88,41 @@ void write_video(Film& film, const std::vector<int>& frames, const std::filesyst
     video.finish();
 }
 
+/// Numbered picture of a folder.
+std::filesystem::path picture_file(const std::filesystem::path& folder, int frame)
+{
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%04d.png", frame);
+    return folder / name;
+}
+
 void write_folder(Film& film, const std::vector<int>& frames, const std::filesystem::path& folder, bool quiet)
 {
     Progress progress("picture", int(frames.size()), quiet);
     for (size_t i = 0; i < frames.size(); ++i) {
-        char name[32];
-        std::snprintf(name, sizeof name, "frame_%04d.png", frames[i]);
-        write_png(folder / name, film.picture(frames[i]));
+        write_png(picture_file(folder, frames[i]), film.picture(frames[i]));
         progress.update(int(i) + 1);
     }
+}
+
+/// Refuses pictures that would replace a file that they are made from, or could not be written.
+void require_safe_output(const RenderOptions& options, const std::filesystem::path& output,
+                         const std::vector<int>& frames)
+{
+    FilePlan plan;
+    for (const std::filesystem::path& input : options.inputs)
+        plan.add_input(input, "an input");
+    const bool is_scene = options.inputs[0].extension() == ".json";
+    if (is_scene || !options.scene.empty())
+        add_inputs(plan, scenes::read_scene(is_scene ? options.inputs[0] : options.scene));
+    if (!output.extension().empty()) {
+        plan.add_output(output, "the picture");
+        require_writable(output);
+        return;
+    }
+    for (const int frame : frames)
+        plan.add_output(picture_file(output, frame), "a picture");
+    require_writable(picture_file(output, frames[0]));
 }
 
 int render(const RenderOptions& options)
@@ -119,6 +148,7 @@ int render(const RenderOptions& options)
                            std::to_string(frames.size()) +
                            "; add --sheet COLUMNS, or write to .mp4 or a folder");
 
+    require_safe_output(options, output, frames);
     film.choose(frames);
     if (is_picture)
         write_png(output, film.picture(frames[0]));

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/toile/simulate/start_text.h"
-#include "core/base/atomic_file.h"
 #include "core/base/process_usage.h"
 #include "core/compute/cuda/runtime/runtime.h"
 #include "scenes/format/field.h"
@@ -96,8 +95,7 @@ RunReport::RunReport(const scenes::Scene& scene, int vertex_count, collision::St
 {
 }
 
-void RunReport::write(const std::filesystem::path& file, const std::string& outcome,
-                      const Stages& stages) const
+std::string RunReport::to_json(const std::string& outcome, const Stages& stages) const
 {
     Json json = {{"scene", scene_.source.string()},
                  {"name", scene_.name},
@@ -120,7 +118,7 @@ void RunReport::write(const std::filesystem::path& file, const std::string& outc
     for (const auto& [name, entry] : stages.entries())
         stage_table[name] = {
             {"calls", entry.calls}, {"seconds", entry.seconds}, {"own_seconds", entry.self_seconds}};
-    write_atomically(file, json.dump(2) + "\n");
+    return json.dump(2) + "\n";
 }
 
 } // namespace toile::app

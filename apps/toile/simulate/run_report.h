@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,10 +28,9 @@ public:
         frames_.push_back({frame, report, seconds});
     }
 
-    /// Writes the report as JSON.
+    /// The report as JSON.
     /// @param outcome  "complete", "interrupted" or "failed"
-    /// @throws InvalidInput or DeviceError as write_atomically().
-    void write(const std::filesystem::path& file, const std::string& outcome, const Stages& stages) const;
+    std::string to_json(const std::string& outcome, const Stages& stages) const;
 
 private:
     struct Frame {

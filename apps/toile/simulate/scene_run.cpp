@@ -1,77 +1,22 @@
 #include "apps/toile/simulate/scene_run.h"
 
-#include <algorithm>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "apps/toile/check/certify.h"
-#include "apps/toile/simulate/run_report.h"
 #include "apps/toile/simulate/start_text.h"
 #include "apps/toile/simulate/unmet.h"
 #include "apps/toile/terminal/command_line.h"
-#include "apps/toile/terminal/exports.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
-#include "core/mesh/obj.h"
 #include "core/quadrature/tables/table_store.h"
-#include "export/async_cache_writer.h"
 
 namespace toile::app {
 
 namespace {
-
-/// A cache being written and the cloth or solid that it stores.
-struct OpenCache {
-    std::filesystem::path file;
-    int cloth;
-    const scenes::ClothState* state; ///< of the world
-    std::unique_ptr<exports::AsyncCacheWriter> writer;
-};
-
-std::vector<OpenCache> open_caches(const scenes::Scene& scene, const scenes::World& world,
-                                   const std::filesystem::path& folder)
-{
-    std::vector<OpenCache> caches;
-    for (const scene::Export& entry : exports_of(scene)) {
-        const int cloth = surface_index(scene, entry.cloth);
-        const scenes::ClothState& state = world.surfaces()[cloth];
-        exports::CacheLayout layout = exports::cache_layout(state.file_mesh(), scene.frames);
-        layout.fps = scene.fps;
-        const std::filesystem::path file = folder / entry.file;
-        caches.push_back({file, cloth, &state,
-                          std::make_unique<exports::AsyncCacheWriter>(make_cache_writer(file, layout))});
-    }
-    return caches;
-}
-
-void write_frame(const scenes::World& world, std::vector<OpenCache>& caches)
-{
-    if (world.device() == nullptr) {
-        for (OpenCache& cache : caches)
-            cache.writer->write(world.frame(), cache.state->to_file(world.surfaces()[cache.cloth].positions));
-        return;
-    }
-    const std::shared_ptr<const scenes::Snapshot> snapshot = world.snapshot();
-    for (OpenCache& cache : caches)
-        cache.writer->write_later(world.frame(), [snapshot, state = cache.state, surface = cache.cloth] {
-            return state->to_file(snapshot->positions(surface));
-        });
-}
-
-/// Writes the start mesh next to a cache. PC2 and MDD store positions only. No mesh is written if an OBJ of
-/// that name is among the caches.
-void write_start_mesh(const scenes::World& world, const OpenCache& cache,
-                      const std::vector<OpenCache>& caches)
-{
-    const std::filesystem::path file = std::filesystem::path(cache.file).replace_extension(".obj");
-    if (std::any_of(caches.begin(), caches.end(), [&](const OpenCache& other) { return other.file == file; }))
-        return;
-    ObjMesh mesh = cache.state->file_mesh();
-    mesh.positions = cache.state->to_file(world.surfaces()[cache.cloth].positions);
-    write_obj(file, mesh);
-}
 
 std::string note_of(const StepReport& report)
 {
@@ -87,13 +32,13 @@ struct Outcome {
 
 /// Settles and simulates to the last frame, to an interrupt, or to a failure.
 /// @throws Cancelled if interrupted while tables are built, DeviceError if GPU or disk fail
-void run_frames(scenes::World& world, const scenes::Scene& scene, std::vector<OpenCache>& caches,
-                RunReport& report, const InterruptGuard& interrupt, const RunLog& log, Outcome& outcome)
+void run_frames(scenes::World& world, const scenes::Scene& scene, RunFiles& files, RunReport& report,
+                const InterruptGuard& interrupt, const RunLog& log, Outcome& outcome)
 {
     world.settle();
     Unmet unmet(log);
     Progress progress = log.progress("frame", scene.frames);
-    write_frame(world, caches);
+    files.write_frame(world);
     progress.update(1);
     while (world.frame() + 1 < scene.frames) {
         if (interrupt.requested()) {
@@ -110,86 +55,74 @@ void run_frames(scenes::World& world, const scenes::Scene& scene, std::vector<Op
             outcome.message = step.message;
             return;
         }
-        write_frame(world, caches);
+        files.write_frame(world);
         progress.update(world.frame() + 1, note_of(step));
     }
+    files.complete();
     unmet.sum_up(scene.frames);
 }
 
-Outcome run_or_stop(scenes::World& world, const scenes::Scene& scene, std::vector<OpenCache>& caches,
-                    RunReport& report, const InterruptGuard& interrupt, const RunLog& log)
+Outcome run_or_stop(scenes::World& world, const scenes::Scene& scene, RunFiles& files, RunReport& report,
+                    const InterruptGuard& interrupt, const RunLog& log)
 {
     Outcome outcome;
     try {
-        run_frames(world, scene, caches, report, interrupt, log, outcome);
+        run_frames(world, scene, files, report, interrupt, log, outcome);
     } catch (const Cancelled&) {
         outcome.word = "interrupted";
-    } catch (const DeviceError& error) {
-        outcome.word = "failed";
-        outcome.message = error.what();
+    } catch (const std::exception& error) {
+        outcome = {"failed", reason_of(error)};
     }
     return outcome;
 }
 
-/// Reports the frame at which a run stopped early and lists the partial caches; deletes those without a
-/// frame. They lack positions that a failed GPU did not send.
-void explain_stop(int last_frame, const Outcome& outcome, std::vector<OpenCache>& caches, const RunLog& log)
+/// Reports the frame at which a run stopped early and lists the partial caches.
+void explain_stop(int last_frame, const Outcome& outcome, RunFiles& files, const RunLog& log)
 {
-    int max_written = 0;
-    for (OpenCache& cache : caches) {
-        const int written = cache.writer->close();
-        const std::filesystem::path partial = cache.writer->partial();
-        cache.writer.reset();
-        max_written = std::max(max_written, written);
-        std::error_code gone_already;
-        if (written == 0)
-            std::filesystem::remove_all(partial, gone_already);
-        else
-            log.file(partial);
-    }
+    const RunFiles::Partials partials = files.close();
+    for (const std::filesystem::path& file : partials.files)
+        log.file(file);
     const std::string reason = outcome.message.empty() ? "" : ": " + outcome.message;
-    if (max_written == 0)
+    const std::string count = partials.frame_count == 0 ? "no" : std::to_string(partials.frame_count);
+    if (last_frame == 0 && partials.frame_count == 0)
         log.error(outcome.word + " before the first frame" + reason + "; no frame was written");
     else
-        log.error(outcome.word + " at frame " + std::to_string(last_frame) + reason + "; " +
-                  std::to_string(max_written) + (max_written == 1 ? " frame is" : " frames are") +
-                  " in the partial caches");
+        log.error(outcome.word + " at frame " + std::to_string(last_frame) + reason + "; " + count +
+                  (partials.frame_count <= 1 ? " frame is" : " frames are") + " in the partial caches");
 }
 
-/// Complete caches on disk with their cloths, one per cloth.
-std::vector<CachedCloth> cloths_to_check(const scenes::World& world, const std::vector<OpenCache>& caches)
+/// Reports an exception of the work after the last frame. @return whether there was none
+bool succeeds(const RunLog& log, const std::function<void()>& work)
 {
-    std::vector<CachedCloth> cloths;
-    for (const OpenCache& cache : caches) {
-        const scenes::ClothState* cloth = &world.surfaces()[cache.cloth];
-        if (std::none_of(cloths.begin(), cloths.end(),
-                         [&](const CachedCloth& other) { return other.cloth == cloth; }))
-            cloths.push_back({cloth, cache.file});
-    }
-    return cloths;
+    return run_and_report(log, [&] {
+               work();
+               return kExitOk;
+           }) == kExitOk;
 }
 
-/// Certifies the caches on disk.
-int check_caches(const scenes::World& world, const scenes::Scene& scene, const std::vector<OpenCache>& caches,
-                 const std::filesystem::path& folder, const InterruptGuard& interrupt, const RunLog& log)
+/// Writes a file under a partial name. @return none after reporting a failure
+std::optional<StagedFile> stage(const std::filesystem::path& file, const std::filesystem::path& partial,
+                                const std::string& content, const RunLog& log)
 {
-    const ThreadLimit threads(scene.solver.threads);
-    std::optional<Certificate> certificate;
-    {
-        Progress progress = log.progress("check", scene.frames);
-        certificate = certify(scene, cloths_to_check(world, caches), {}, [&](int done, int) {
-            progress.update(done);
-            return !interrupt.requested();
-        });
-    }
-    if (!certificate) {
-        log.error("interrupted while checking; the caches are complete, toile check " + folder.string() +
-                  " --scene " + scene.source.string() + " certifies them");
-        return kExitFailure;
-    }
-    const std::filesystem::path file = folder / kCertificateName;
-    log.file(file);
-    return conclude(*certificate, file, log);
+    std::optional<StagedFile> staged;
+    const std::string_view piece = content;
+    succeeds(log, [&] { staged.emplace(file, partial, std::span(&piece, 1)); });
+    return staged;
+}
+
+/// @return false if there is none, or after reporting a failure
+bool commit(std::optional<StagedFile>& staged, const RunLog& log)
+{
+    return staged && succeeds(log, [&] { staged->commit(); });
+}
+
+/// Also removes the report of an earlier run that did not finish.
+bool deliver_report(const std::filesystem::path& file, std::optional<StagedFile>& staged, const RunLog& log)
+{
+    std::error_code missing;
+    if (!is_stream(file))
+        std::filesystem::remove(partial_beside(file), missing);
+    return commit(staged, log);
 }
 
 } // namespace
@@ -236,31 +169,72 @@ int SceneRun::run(const InterruptGuard& interrupt)
 
 int SceneRun::run_into_caches(const InterruptGuard& interrupt)
 {
-    std::vector<OpenCache> caches = open_caches(job_.scene, world_, job_.folder);
-
+    RunFiles files(job_, world_);
     int vertex_count = 0;
     for (const auto& cloth : world_.surfaces())
         vertex_count += int(cloth.positions.size());
     RunReport report(job_.scene, vertex_count, world_.start(), world_.device());
-    for (const OpenCache& cache : caches)
-        write_start_mesh(world_, cache, caches);
 
-    const Outcome outcome = run_or_stop(world_, job_.scene, caches, report, interrupt, log_);
-    const bool is_complete = outcome.word == "complete";
-    if (!is_complete)
-        explain_stop(world_.frame(), outcome, caches, log_);
+    const Outcome outcome = run_or_stop(world_, job_.scene, files, report, interrupt, log_);
+    if (outcome.word == "complete")
+        return publish(files, report, interrupt);
+    explain_stop(world_.frame(), outcome, files, log_);
     if (!job_.report.empty())
-        report.write(job_.report, outcome.word, world_.stages());
-    if (!is_complete)
+        succeeds(log_, [&] {
+            const std::filesystem::path file =
+                is_stream(job_.report) ? job_.report : partial_beside(job_.report);
+            write_atomically(file, report.to_json(outcome.word, world_.stages()));
+            log_.result("the report of this run is " + file.string());
+        });
+    return kExitFailure;
+}
+
+/// Certifies the complete caches. @return none after reporting an interrupt or a failure
+std::optional<Certificate> SceneRun::check(const RunFiles& files, const InterruptGuard& interrupt) const
+{
+    std::optional<Certificate> certificate;
+    const bool was_able = succeeds(log_, [&] {
+        const ThreadLimit threads(job_.scene.solver.threads);
+        Progress progress = log_.progress("check", job_.scene.frames);
+        certificate = certify(job_.scene, files.cloths_to_check(world_), {}, [&](int done, int) {
+            progress.update(done);
+            return !interrupt.requested();
+        });
+    });
+    if (was_able && !certificate)
+        log_.error("interrupted while checking; the caches are complete, toile check " +
+                   job_.folder.string() + " --scene " + job_.scene.source.string() + " certifies them");
+    return certificate;
+}
+
+/// Moves everything that the run made to its final names: the certificate last, so that it never lies beside
+/// caches that it does not describe. What can't be delivered does not keep back the rest.
+int SceneRun::publish(RunFiles& files, const RunReport& report, const InterruptGuard& interrupt) const
+{
+    // Have everything ready under partial names before the first file of an earlier run is replaced. No lock
+    // keeps another run from naming the same report.
+    const std::filesystem::path certificate_name = job_.folder / kCertificateName;
+    std::optional<StagedFile> staged_report, staged_certificate;
+    if (!job_.report.empty())
+        staged_report = stage(job_.report, unique_partial(job_.report),
+                              report.to_json("complete", world_.stages()), log_);
+    const std::optional<Certificate> certificate = no_check_ ? std::nullopt : check(files, interrupt);
+    if (certificate)
+        staged_certificate =
+            stage(certificate_name, partial_beside(certificate_name), to_json(*certificate), log_);
+
+    if (!succeeds(log_, [&] { files.publish(); }))
         return kExitFailure;
-    for (OpenCache& cache : caches) {
-        cache.writer->finish();
+    for (const SurfaceFile& cache : caches_of(job_))
         log_.file(cache.file);
-    }
-    // A certificate of an earlier run does not apply to these caches.
-    std::error_code ignored;
-    std::filesystem::remove(job_.folder / kCertificateName, ignored);
-    return no_check_ ? int(kExitOk) : check_caches(world_, job_.scene, caches, job_.folder, interrupt, log_);
+    const bool is_reported = job_.report.empty() || deliver_report(job_.report, staged_report, log_);
+    if (no_check_)
+        return is_reported ? kExitOk : kExitFailure;
+    if (!commit(staged_certificate, log_))
+        return kExitFailure;
+    log_.file(certificate_name);
+    const int code = conclude(*certificate, certificate_name, log_);
+    return is_reported ? code : int(kExitFailure);
 }
 
 } // namespace toile::app

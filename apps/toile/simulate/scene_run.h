@@ -1,20 +1,17 @@
 #pragma once
 
-#include <filesystem>
+#include <optional>
 
+#include "apps/toile/check/certificate.h"
+#include "apps/toile/simulate/run_files.h"
+#include "apps/toile/simulate/run_report.h"
+#include "apps/toile/simulate/scene_job.h"
 #include "apps/toile/simulate/setup_progress.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
 #include "scenes/world/world.h"
 
 namespace toile::app {
-
-/// A scene and its output paths.
-struct SceneJob {
-    scenes::Scene scene;
-    std::filesystem::path folder; ///< of caches and certificate
-    std::filesystem::path report; ///< empty: none
-};
 
 /// Settings shared by all scenes of a run.
 struct RunSettings {
@@ -37,12 +34,14 @@ public:
     /// Prepares, simulates, writes and checks.
     /// @return kExitOk; kExitFailure after reporting a failure, an interrupt, or a certificate that does not
     ///         hold
-    /// @throws InvalidInput or DeviceError if files can't be written or the GPU fails
+    /// @throws InvalidInput if a folder is locked or can't be written; nothing was written then
     int run(const InterruptGuard& interrupt);
 
 private:
     scenes::WorldOptions world_options(const RunSettings& settings);
     int run_into_caches(const InterruptGuard& interrupt);
+    std::optional<Certificate> check(const RunFiles& files, const InterruptGuard& interrupt) const;
+    int publish(RunFiles& files, const RunReport& report, const InterruptGuard& interrupt) const;
 
     const SceneJob& job_;
     bool no_check_;

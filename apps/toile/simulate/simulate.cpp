@@ -41,38 +41,6 @@ void require_range(const char* option, const std::optional<int>& value, int lowe
                            "whole number from " + std::to_string(lower) + " to " + std::to_string(upper));
 }
 
-/// Existing part of a path: itself, or its innermost existing folder.
-std::filesystem::path nearest_existing(const std::filesystem::path& path)
-{
-    std::filesystem::path existing = std::filesystem::absolute(path);
-    while (!std::filesystem::exists(existing))
-        existing = existing.parent_path();
-    return existing;
-}
-
-/// Rejects, before the run, a report path that could not be written after it.
-void require_writable(const std::filesystem::path& report)
-{
-    if (report.empty())
-        return;
-    if (std::filesystem::is_directory(report))
-        throw InvalidInput(report.string() + ": is a folder; name a file for the report");
-    const std::filesystem::path folder = nearest_existing(std::filesystem::absolute(report).parent_path());
-    if (!std::filesystem::is_directory(folder))
-        throw InvalidInput(report.string() + ": " + folder.string() + " is no folder; choose another path");
-}
-
-/// Rejects a path below which the runs of several scenes could not create their folders.
-void require_folder(const char* option, const std::filesystem::path& path)
-{
-    if (path.empty())
-        return;
-    const std::filesystem::path existing = nearest_existing(path);
-    if (!std::filesystem::is_directory(existing))
-        throw InvalidInput(std::string(option) + ": " + path.string() + ": " + existing.string() +
-                           " is no folder; several scenes need one");
-}
-
 /// Numbers of the GPUs to run on, 0 by default; without a GPU on this machine the first number, unchecked.
 std::vector<int> devices_of(const SimulateOptions& options)
 {
@@ -107,7 +75,6 @@ scenes::Scene scene_with_options(const std::filesystem::path& file, const Simula
 /// Job of a single scene: options give its folder and report file.
 SceneJob job_of(const SimulateOptions& options)
 {
-    require_writable(options.report);
     scenes::Scene scene = scene_with_options(options.scenes.front(), options);
     const std::filesystem::path folder =
         options.output.empty() ? std::filesystem::path("out") / scene.source.stem() : options.output;
@@ -118,8 +85,6 @@ SceneJob job_of(const SimulateOptions& options)
 std::vector<SceneJob> jobs_of(const SimulateOptions& options)
 {
     const std::filesystem::path output = options.output.empty() ? "out" : options.output;
-    require_folder("-o", output);
-    require_folder("--report", options.report);
     std::map<std::filesystem::path, std::filesystem::path> by_name;
     std::vector<SceneJob> jobs;
     for (const std::filesystem::path& file : options.scenes) {
@@ -151,9 +116,11 @@ int simulate(const SimulateOptions& options, const scenes::BaselineMethods* base
     const std::vector<int> devices = devices_of(options);
     const RunSettings settings{kBackends.at(options.backend), devices.front(), options.no_cache,
                                options.no_check, baselines};
-    if (options.scenes.size() == 1)
-        return simulate_one(job_of(options), settings, options.quiet);
-    return run_scenes(jobs_of(options), settings, devices, options.quiet);
+    const bool is_single = options.scenes.size() == 1;
+    const std::vector<SceneJob> jobs = is_single ? std::vector{job_of(options)} : jobs_of(options);
+    require_safe_outputs(jobs);
+    return is_single ? simulate_one(jobs.front(), settings, options.quiet)
+                     : run_scenes(jobs, settings, devices, options.quiet);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/run_log.h"
+#include "apps/toile/terminal/standard_streams.h"
 #include "apps/toile/terminal/version.h"
 #include "core/base/error.h"
 
@@ -76,7 +77,13 @@ int parse_and_run(int argc, char** argv, const Program& program)
 
 int run_command_line(int argc, char** argv, const Program& program)
 {
-    return run_and_report(RunLog(false), [&] { return parse_and_run(argc, argv, program); });
+    secure_standard_streams();
+    const RunLog log(false);
+    const int code = run_and_report(log, [&] { return parse_and_run(argc, argv, program); });
+    if (flush_standard_output())
+        return code;
+    log.error("standard output can't be written: its disk is full or its reader has ended");
+    return code == kExitOk ? int(kExitFailure) : code;
 }
 
 } // namespace toile::app

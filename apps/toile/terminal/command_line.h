@@ -21,7 +21,8 @@ struct Program {
     std::vector<Command> (*add_commands)(CLI::App& parser) = nullptr;
 };
 
-/// Parses the arguments, runs the subcommand and turns exceptions into an exit code and one line on stderr.
+/// Parses the arguments, runs the subcommand and turns exceptions, and results that standard output did not
+/// take, into an exit code and one line on stderr.
 int run_command_line(int argc, char** argv, const Program& program);
 
 } // namespace toile::app

@@ -1,9 +1,6 @@
 #include "apps/toile/terminal/interrupt.h"
 
 #include <atomic>
-#include <csignal>
-
-#include <signal.h>
 
 namespace toile::app {
 
@@ -23,14 +20,17 @@ InterruptGuard::InterruptGuard()
     struct sigaction action = {};
     action.sa_handler = remember_interrupt;
     action.sa_flags = int(SA_RESETHAND); // the second signal has the default action
-    ::sigaction(SIGINT, &action, nullptr);
-    ::sigaction(SIGTERM, &action, nullptr);
+    for (size_t i = 0; i < kSignals.size(); ++i) {
+        ::sigaction(kSignals[i], nullptr, &previous_[i]);
+        if (previous_[i].sa_handler != SIG_IGN)
+            ::sigaction(kSignals[i], &action, nullptr);
+    }
 }
 
 InterruptGuard::~InterruptGuard()
 {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+    for (size_t i = 0; i < kSignals.size(); ++i)
+        ::sigaction(kSignals[i], &previous_[i], nullptr);
 }
 
 bool InterruptGuard::requested() const { return interrupted; }

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <array>
+
+#include <signal.h>
+
 namespace toile::app {
 
-/// Scope in which the first Ctrl-C (SIGINT) or SIGTERM only sets a flag, so that a frame can be finished. The
-/// second one ends the program as usual.
+/// Scope in which the first Ctrl-C (SIGINT), SIGTERM or SIGHUP only sets a flag, so that a frame can be
+/// finished. The second one ends the program as usual. Signals that the caller ignores (nohup) stay ignored.
 class InterruptGuard {
 public:
     InterruptGuard();
@@ -12,6 +16,10 @@ public:
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
     bool requested() const;
+
+private:
+    static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+    std::array<struct sigaction, kSignals.size()> previous_{};
 };
 
 } // namespace toile::app

@@ -1,7 +1,10 @@
 #include "apps/toile/terminal/run_log.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <iostream>
+#include <new>
 #include <utility>
 
 #include "apps/toile/terminal/command_line.h"
@@ -42,6 +45,16 @@ Progress RunLog::progress(const std::string& what, int total) const
     return {prefix_ + what, total, quiet_, use_};
 }
 
+std::string reason_of(const std::exception& error)
+{
+    std::string what = error.what();
+    if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
+        return "out of memory; use a coarser resolution or fewer cloths";
+    if (what.ends_with(std::strerror(EAGAIN))) // from threads of the standard library and of TBB
+        return "out of memory or threads (" + what + "); raise ulimit -v or -u, or use fewer --threads";
+    return what;
+}
+
 int run_and_report(const RunLog& log, const std::function<int()>& work)
 {
     try {
@@ -49,10 +62,11 @@ int run_and_report(const RunLog& log, const std::function<int()>& work)
     } catch (const InvalidInput& error) {
         log.error(error.what());
         return kExitBadInput;
-    } catch (const std::bad_alloc&) {
-        log.error("out of memory; use a coarser resolution or fewer cloths");
+    } catch (const std::filesystem::filesystem_error& error) {
+        log.error(error.path1().string() + ": " + error.code().message() + "; check the path");
+        return kExitBadInput;
     } catch (const std::exception& error) {
-        log.error(error.what());
+        log.error(reason_of(error));
     }
     return kExitFailure;
 }

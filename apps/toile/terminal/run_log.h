@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -36,6 +37,9 @@ private:
     std::string scene_, prefix_;
     Stderr use_;
 };
+
+/// What an exception means to the user; "out of memory ..." where memory or threads are exhausted.
+std::string reason_of(const std::exception& error);
 
 /// Runs work(), which returns an exit code, and reports an exception as one line of error and another code.
 int run_and_report(const RunLog& log, const std::function<int()>& work);

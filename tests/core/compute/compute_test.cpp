@@ -348,7 +348,7 @@ TEST(WriteAtomically, LeavesTheOldFileWhenTheDiskIsFull)
         const FileSizeLimit limit(4096);
         message = message_of<DeviceError>([&] { write_atomically(file, std::string(100000, 'x')); });
     }
-    EXPECT_EQ(message, file.string() + ": writing broke off; is the disk full?");
+    EXPECT_EQ(message, file.string() + ": writing broke off (File too large)");
     EXPECT_EQ(content_of(file), "old");
     EXPECT_EQ(folder.file_count(), 1);
 }

@@ -8,6 +8,7 @@
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "scenes/format/read_scene.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -53,6 +54,25 @@ TEST(SceneFiles, FindsPathsRelativeToTheSceneAndInTheDataFolder)
 
     const ScopedVariable data("TOILE_DATA_DIR", (kSource / "assets").string());
     EXPECT_EQ(complaint_about("${TOILE_DATA_DIR}/round_table.obj"), "accepted");
+}
+
+TEST(SceneFiles, FollowsLinksBeforeDotDot)
+{
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "far/deep");
+    std::filesystem::create_directory_symlink("far/deep", folder.path() / "door");
+    folder.write("far/m.obj", "far");
+    folder.write("m.obj", "near");
+    std::filesystem::create_directory(folder.path() / "d.obj");
+    const auto file_of = [&](const std::string& file) {
+        const Scene scene =
+            parse_scene(R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "file": ")" + file + R"("}]})",
+                        folder.path() / "s.json");
+        return bytes_of(std::get<std::filesystem::path>(scene.cloths[0].shape));
+    };
+    EXPECT_EQ(file_of("door/../m.obj"), "far");
+    EXPECT_EQ(file_of("far/../m.obj"), "near");
+    EXPECT_NE(refusal([&] { file_of("d.obj"); }).find("is a folder, pipe or device"), std::string::npos);
 }
 
 TEST(SceneFiles, NamesTheMissingFileOrFolder)

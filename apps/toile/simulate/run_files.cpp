@@ -1,0 +1,122 @@
+#include "apps/toile/simulate/run_files.h"
+
+#include <algorithm>
+#include <functional>
+#include <system_error>
+#include <utility>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "export/binary_file.h"
+
+namespace toile::app {
+
+RunFiles::RunFiles(const SceneJob& job, const scenes::World& world) : job_(job)
+{
+    for (const std::filesystem::path& folder : output_folders_of(job))
+        locks_.emplace_back(folder);
+    for (const SurfaceFile& cache : caches_of(job)) {
+        const scenes::ClothState& state = world.surfaces()[cache.surface];
+        exports::CacheLayout layout = exports::cache_layout(state.file_mesh(), job.scene.frames);
+        layout.fps = job.scene.fps;
+        caches_.push_back({cache,
+                           &state,
+                           std::make_unique<exports::AsyncCacheWriter>(make_cache_writer(cache.file, layout)),
+                           {}});
+    }
+    for (const SurfaceFile& mesh : start_meshes_of(job)) {
+        const scenes::ClothState& state = world.surfaces()[mesh.surface];
+        meshes_.push_back({mesh.file, state.file_mesh()});
+        meshes_.back().mesh.positions = state.to_file(state.positions);
+    }
+}
+
+void RunFiles::write_start_meshes()
+{
+    for (StartMesh& mesh : meshes_) {
+        write_obj(partial_beside(mesh.file), mesh.mesh);
+        mesh.mesh = {};
+    }
+}
+
+void RunFiles::write_frame(const scenes::World& world)
+{
+    if (!std::exchange(has_frames_, true))
+        write_start_meshes();
+    if (world.device() == nullptr) {
+        for (Cache& cache : caches_)
+            cache.writer->write(world.frame(),
+                                cache.state->to_file(world.surfaces()[cache.target.surface].positions));
+        return;
+    }
+    const std::shared_ptr<const scenes::Snapshot> snapshot = world.snapshot();
+    for (Cache& cache : caches_)
+        cache.writer->write_later(world.frame(),
+                                  [snapshot, state = cache.state, surface = cache.target.surface] {
+                                      return state->to_file(snapshot->positions(surface));
+                                  });
+}
+
+RunFiles::Partials RunFiles::close()
+{
+    Partials partials;
+    for (Cache& cache : caches_) {
+        const int written = cache.writer->close();
+        if (written == 0 || !std::filesystem::exists(cache.writer->partial()))
+            continue;
+        partials.frame_count = std::max(partials.frame_count, written);
+        partials.files.push_back(cache.writer->partial());
+    }
+    if (has_frames_ && partials.frame_count == 0)
+        for (const StartMesh& mesh : meshes_) {
+            std::error_code missing;
+            std::filesystem::remove(partial_beside(mesh.file), missing);
+        }
+    return partials;
+}
+
+void RunFiles::complete()
+{
+    for (Cache& cache : caches_)
+        cache.complete = cache.writer->complete();
+}
+
+std::vector<CachedCloth> RunFiles::cloths_to_check(const scenes::World& world) const
+{
+    std::vector<CachedCloth> cloths;
+    for (const Cache& cache : caches_) {
+        const scenes::ClothState* cloth = &world.surfaces()[cache.target.surface];
+        if (std::none_of(cloths.begin(), cloths.end(),
+                         [&](const CachedCloth& other) { return other.cloth == cloth; }))
+            cloths.push_back({cloth, cache.target.file, cache.complete});
+    }
+    return cloths;
+}
+
+void RunFiles::publish()
+{
+    std::exception_ptr first_error;
+    const auto attempt = [&](const std::function<void()>& move) {
+        try {
+            move();
+        } catch (const std::exception&) {
+            first_error = first_error ? first_error : std::current_exception();
+        }
+    };
+    for (const std::filesystem::path& certificate : certificates_of(job_)) {
+        std::error_code error;
+        if (!std::filesystem::is_directory(certificate, error))
+            std::filesystem::remove(certificate, error);
+        if (error)
+            throw DeviceError(certificate.string() + ": is of an earlier run and can't be removed (" +
+                              error.message() + "); the new caches keep their partial names");
+    }
+    for (const StartMesh& mesh : meshes_)
+        attempt([&] { exports::move_into_place(partial_beside(mesh.file), mesh.file); });
+    for (Cache& cache : caches_)
+        attempt([&] { cache.writer->publish(); });
+    if (first_error)
+        std::rethrow_exception(first_error);
+}
+
+} // namespace toile::app

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "apps/toile/check/certify.h"
+#include "apps/toile/simulate/scene_job.h"
+#include "core/mesh/obj.h"
+#include "export/async_cache_writer.h"
+#include "export/folder_lock.h"
+#include "scenes/world/world.h"
+
+namespace toile::app {
+
+/// Caches and start meshes of a run. Until publish() they have partial names, so those of an earlier run
+/// stay; other runs are kept out of the folders. Nothing is written before the first frame.
+class RunFiles {
+public:
+    /// Takes the start meshes from the world's current positions.
+    /// @param job  outlives this
+    /// @throws InvalidInput if a folder is locked or a cache can't be written
+    RunFiles(const SceneJob& job, const scenes::World& world);
+
+    /// Appends the world's current positions to every cache. @throws as CacheWriter::write()
+    void write_frame(const scenes::World& world);
+
+    /// Ends a run that stops early.
+    struct Partials {
+        int frame_count = 0; ///< of the longest cache; a failed GPU does not send every frame to all
+        std::vector<std::filesystem::path> files;
+    };
+    Partials close();
+
+    /// Completes every cache under its partial name. @throws as CacheWriter::complete()
+    void complete();
+
+    /// Complete caches with their cloths, one per cloth.
+    std::vector<CachedCloth> cloths_to_check(const scenes::World& world) const;
+
+    /// Removes certificates of earlier caches, then moves meshes and caches to their final names. What can't
+    /// be moved is kept under its partial name.
+    /// @throws DeviceError naming the first file that could not be moved or removed
+    void publish();
+
+private:
+    struct Cache {
+        SurfaceFile target;
+        const scenes::ClothState* state; ///< of the world
+        std::unique_ptr<exports::AsyncCacheWriter> writer;
+        std::filesystem::path complete; ///< partial name of the complete cache
+    };
+    struct StartMesh {
+        std::filesystem::path file;
+        ObjMesh mesh; ///< released when it is written
+    };
+
+    void write_start_meshes();
+
+    const SceneJob& job_;
+    std::vector<exports::FolderLock> locks_; ///< before the caches: released after them
+    std::vector<Cache> caches_;
+    std::vector<StartMesh> meshes_;
+    bool has_frames_ = false;
+};
+
+} // namespace toile::app
