@@ -3,7 +3,7 @@
 
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
-#include "scenes/format/schema.h"
+#include "scenes/format/schema/schema.h"
 
 namespace toile::app {
 

@@ -1,5 +1,5 @@
 #include "scenes/format/field.h"
-#include "scenes/format/schema.h"
+#include "scenes/format/schema/schema.h"
 
 #include <gtest/gtest.h>
 

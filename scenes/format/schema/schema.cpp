@@ -1,6 +1,6 @@
-#include "scenes/format/schema.h"
+#include "scenes/format/schema/schema.h"
 
-#include "scenes/format/schema_writer.h"
+#include "scenes/format/schema/schema_writer.h"
 
 namespace toile::scene_format {
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenes/format/schema.h"
+#include "scenes/format/schema/schema.h"
 
 namespace toile::scenes {
 
