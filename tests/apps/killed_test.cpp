@@ -158,6 +158,24 @@ TEST_F(Killed, AtTenMomentsLeavesTheEarlierRunAndAReadablePartial)
     RecordProperty("readable_partials", partials);
 }
 
+/// Neither the end of ten minutes of settling nor that of a frame of a thousand steps is waited for.
+TEST_F(Killed, ByASignalWithinALongStageEndsAtOnce)
+{
+    const std::pair<const char*, const char*> cases[] = {
+        {R"("settle": 600, "solver": {"substeps": 1000, "sleep": {"enabled": false}})", "before the first frame"},
+        {R"("solver": {"substeps": 1000, "velocity_tolerance": 1e-6, "sleep": {"enabled": false}})",
+         "1 frame is in the partial caches"}};
+    for (const auto& [keys, says] : cases) {
+        temporary_.write("s.json", small_scene(1000000, keys));
+        Running run(arguments("s.json", "out"), folder_);
+        Running::wait_for_file(file("out/sheet.partial.pc2"));
+        const Finished end = run.end(SIGINT);
+        EXPECT_EQ(end.exit_code, 1);
+        EXPECT_NE(end.errors.find("interrupted"), std::string::npos) << end.errors;
+        EXPECT_NE(end.errors.find(says), std::string::npos) << end.errors;
+    }
+}
+
 TEST_F(Killed, ByASignalThatCanBeCaughtEndsAfterItsFrame)
 {
     temporary_.write("s.json", small_scene(1000000));

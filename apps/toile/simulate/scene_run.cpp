@@ -24,60 +24,11 @@ std::string note_of(const StepReport& report)
            " contacts";
 }
 
-/// End of a run.
-struct Outcome {
-    std::string word = "complete"; ///< or "interrupted", "failed"
-    std::string message;           ///< reason of a failure
-};
-
-/// Settles and simulates to the last frame, to an interrupt, or to a failure.
-/// @throws Cancelled if interrupted while tables are built, DeviceError if GPU or disk fail
-void run_frames(scenes::World& world, const scenes::Scene& scene, RunFiles& files, RunReport& report,
-                const InterruptGuard& interrupt, const RunLog& log, Outcome& outcome)
-{
-    world.settle();
-    Unmet unmet(log);
-    Progress progress = log.progress("frame", scene.frames);
-    files.write_frame(world);
-    progress.update(1);
-    while (world.frame() + 1 < scene.frames) {
-        if (interrupt.requested()) {
-            outcome.word = "interrupted";
-            return;
-        }
-        const auto start = std::chrono::steady_clock::now();
-        const StepReport step = world.advance_frame();
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-        report.add_frame(world.frame(), step, seconds.count());
-        unmet.add(world.frame(), step);
-        if (step.status == StepReport::Status::NonFinite) {
-            outcome.word = "failed";
-            outcome.message = step.message;
-            return;
-        }
-        files.write_frame(world);
-        progress.update(world.frame() + 1, note_of(step));
-    }
-    files.complete();
-    unmet.sum_up(scene.frames);
-}
-
-Outcome run_or_stop(scenes::World& world, const scenes::Scene& scene, RunFiles& files, RunReport& report,
-                    const InterruptGuard& interrupt, const RunLog& log)
-{
-    Outcome outcome;
-    try {
-        run_frames(world, scene, files, report, interrupt, log, outcome);
-    } catch (const Cancelled&) {
-        outcome.word = "interrupted";
-    } catch (const std::exception& error) {
-        outcome = {"failed", reason_of(error)};
-    }
-    return outcome;
-}
+/// Time of a frame [s] after which the progress tells how much of it is done.
+constexpr double kLongFrame = 2.0;
 
 /// Reports the frame at which a run stopped early and lists the partial caches.
-void explain_stop(int last_frame, const Outcome& outcome, RunFiles& files, const RunLog& log)
+void explain_stop(int last_frame, const SceneRun::Outcome& outcome, RunFiles& files, const RunLog& log)
 {
     const RunFiles::Partials partials = files.close();
     for (const std::filesystem::path& file : partials.files)
@@ -148,9 +99,21 @@ scenes::WorldOptions SceneRun::world_options(const RunSettings& settings)
         goes_on ? progress_.update("tables of cloth \"" + cloth + "\"", fraction) : progress_.stop();
         return goes_on;
     };
-    options.progress = [this](const std::string& task, double fraction) { progress_.update(task, fraction); };
+    options.progress = [this](const std::string& task, double fraction) { tell(task, fraction); };
+    options.goes_on = [this] { return interrupt_ == nullptr || !interrupt_->requested(); };
     options.warn = [this](const std::string& text) { progress_.warn(text); };
     return options;
+}
+
+void SceneRun::tell(const std::string& task, double fraction)
+{
+    if (!frames_) {
+        progress_.update(task, fraction);
+        return;
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - frame_start_;
+    if (seconds.count() > kLongFrame)
+        frames_->update(world_.frame(), std::to_string(int(100.0 * fraction)) + " % of the next");
 }
 
 int SceneRun::run(const InterruptGuard& interrupt)
@@ -175,7 +138,7 @@ int SceneRun::run_into_caches(const InterruptGuard& interrupt)
         vertex_count += int(cloth.positions.size());
     RunReport report(job_.scene, vertex_count, world_.start(), world_.device());
 
-    const Outcome outcome = run_or_stop(world_, job_.scene, files, report, interrupt, log_);
+    const Outcome outcome = run_or_stop(files, report);
     if (outcome.word == "complete")
         return publish(files, report, interrupt);
     explain_stop(world_.frame(), outcome, files, log_);
@@ -187,6 +150,46 @@ int SceneRun::run_into_caches(const InterruptGuard& interrupt)
             log_.result("the report of this run is " + file.string());
         });
     return kExitFailure;
+}
+
+/// Settles and simulates to the last frame or to a failure.
+/// @throws Cancelled at an interrupt, DeviceError if GPU or disk fail
+SceneRun::Outcome SceneRun::run_frames(RunFiles& files, RunReport& report)
+{
+    world_.settle();
+    Unmet unmet(log_);
+    const int count = job_.scene.frames;
+    frames_ = std::unique_ptr<Progress>(new Progress(log_.progress("frame", count)));
+    files.write_frame(world_);
+    frames_->update(1);
+    while (world_.frame() + 1 < count) {
+        frame_start_ = std::chrono::steady_clock::now();
+        const StepReport step = world_.advance_frame();
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - frame_start_;
+        report.add_frame(world_.frame(), step, seconds.count());
+        unmet.add(world_.frame(), step);
+        if (step.status == StepReport::Status::NonFinite)
+            return {"failed", step.message};
+        files.write_frame(world_);
+        frames_->update(world_.frame() + 1, note_of(step));
+    }
+    files.complete();
+    unmet.sum_up(count);
+    return {};
+}
+
+SceneRun::Outcome SceneRun::run_or_stop(RunFiles& files, RunReport& report)
+{
+    Outcome outcome;
+    try {
+        outcome = run_frames(files, report);
+    } catch (const Cancelled&) {
+        outcome.word = "interrupted";
+    } catch (const std::exception& error) {
+        outcome = {"failed", reason_of(error)};
+    }
+    frames_.reset();
+    return outcome;
 }
 
 /// Certifies the complete caches. @return none after reporting an interrupt or a failure

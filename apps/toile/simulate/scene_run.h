@@ -37,9 +37,18 @@ public:
     /// @throws InvalidInput if a folder is locked or can't be written; nothing was written then
     int run(const InterruptGuard& interrupt);
 
+    /// End of the frames.
+    struct Outcome {
+        std::string word = "complete"; ///< or "interrupted", "failed"
+        std::string message;           ///< reason of a failure
+    };
+
 private:
     scenes::WorldOptions world_options(const RunSettings& settings);
+    void tell(const std::string& task, double fraction);
     int run_into_caches(const InterruptGuard& interrupt);
+    Outcome run_frames(RunFiles& files, RunReport& report);
+    Outcome run_or_stop(RunFiles& files, RunReport& report);
     std::optional<Certificate> check(const RunFiles& files, const InterruptGuard& interrupt) const;
     int publish(RunFiles& files, const RunReport& report, const InterruptGuard& interrupt) const;
 
@@ -47,7 +56,9 @@ private:
     bool no_check_;
     RunLog log_;
     SetupProgress progress_;
-    const InterruptGuard* interrupt_ = nullptr; ///< argument of run(); read only while tables are built
+    const InterruptGuard* interrupt_ = nullptr; ///< argument of run(); null while the scene loads
+    std::unique_ptr<Progress> frames_;          ///< null before the first frame and after the last
+    std::chrono::steady_clock::time_point frame_start_;
     scenes::World world_;
 };
 
