@@ -1,6 +1,6 @@
 # make demo, make test: everything from a fresh clone. The build itself is CMake's (CMakePresets.json).
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench sanitize build install format lint clean packages lint-packages
+.PHONY: help demo test bench sanitize fuzz build install format lint clean packages lint-packages fuzz-packages
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -12,8 +12,9 @@ ARCHITECTURES := $(if $(CARD),native,90-real)
 # The demo runs on the CPU unless a GPU is here. GPU=1: kernels are compiled all the same.
 DEMO_CUDA := $(if $(filter-out 0,$(GPU)),ON,$(if $(CARD),AUTO,OFF))
 
+FUZZ_TARGETS := $(addprefix fuzz_,cache gltf obj scene vtk)
 # What ships; research and the tests of GPUs would double the time.
-SANITIZED_TESTS := $(addprefix test_,core quadrature2d garment collision avatars export scenes preview)
+SANITIZED_TESTS := $(addprefix test_,core quadrature2d garment collision avatars export scenes preview) $(FUZZ_TARGETS)
 
 configure = cmake --preset $(1) --log-level=WARNING --no-warn-unused-cli -DCMAKE_CUDA_ARCHITECTURES=$(ARCHITECTURES) $(2)
 
@@ -38,6 +39,11 @@ sanitize: packages ## Debug build with sanitizers: both demos, and the tests tha
 	@cmake --build --preset sanitize --target odr toile $(SANITIZED_TESTS) -j $(JOBS)
 	@cmake/setup/sanitize.sh build build-sanitize $(JOBS)
 
+fuzz: packages fuzz-packages ## Run every parser under libFuzzer for FUZZ_SECONDS (60), built by clang
+	@$(call configure,fuzz,)
+	@cmake --build --preset fuzz --target $(FUZZ_TARGETS) -j $(JOBS)
+	@cmake/setup/fuzz.sh build-fuzz/bin $(FUZZ_TARGETS)
+
 build: packages ## Build everything into build/
 	@$(call configure,default,-DTOILE_CUDA=AUTO)
 	@cmake --build --preset default -j $(JOBS)
@@ -55,10 +61,13 @@ lint: packages lint-packages ## Check format and clang-tidy on what changed (LIN
 	@cmake/setup/lint.sh build
 
 clean: ## Remove the builds; out/ stays
-	rm -rf build build-debug build-sanitize
+	rm -rf build build-debug build-sanitize build-fuzz
 
 packages:
 	@cmake/setup/install_packages.sh build
 
 lint-packages:
 	@cmake/setup/install_packages.sh lint
+
+fuzz-packages:
+	@cmake/setup/install_packages.sh fuzz

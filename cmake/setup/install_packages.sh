@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # install_packages.sh GROUP...   installs the Debian or Ubuntu packages of the groups that are missing
 #
-# Groups: build (compile and test), lint (format and static checks).
+# Groups: build (compile and test), lint (format and static checks), fuzz (clang with libFuzzer).
 # Asks before it installs. ASSUME_YES=1 or CI=true: installs without asking. SKIP_PACKAGES=1: does nothing,
 # for machines whose packages come from elsewhere.
 set -euo pipefail
@@ -26,6 +26,7 @@ BUILD=(
     libgtest-dev
 )
 LINT=(clang-format:clang-format clang-tidy:clang-tidy git:git)
+FUZZ=(clang:clang++ libclang-rt-14-dev)
 OPTIONAL=("ffmpeg:the demo also writes MP4 films" "ccache:rebuilds take seconds")
 
 CMAKE_NEEDED=3.25
@@ -48,7 +49,8 @@ collect_wanted() { # group...
         case $group in
         build) wanted+=("${BUILD[@]}") ;;
         lint) wanted+=("${LINT[@]}") ;;
-        *) fail "unknown package group '$group'; the groups are build and lint" ;;
+        fuzz) wanted+=("${FUZZ[@]}") ;;
+        *) fail "unknown package group '$group'; the groups are build, lint and fuzz" ;;
         esac
     done
 }
