@@ -24,7 +24,7 @@ install(FILES toile.h DESTINATION "${headers_dir}")
 install(DIRECTORY core quadrature2d garment collision avatars export scenes DESTINATION "${headers_dir}"
     FILES_MATCHING PATTERN "*.h" PATTERN "*.cuh"
     REGEX "avatars/import/gltf_(accessors|clips|file|json|meshes|nodes|uri)\\.h$" EXCLUDE
-    REGEX "scenes/format/(checks|document|names|reader|schema_writer)\\.h$" EXCLUDE
+    REGEX "scenes/format/(schema/)?(checks|document|names|range_check|reader|schema_writer)\\.h$" EXCLUDE
     REGEX "(avatars/model/cuda|scenes/(benchmarks|contact|data|demo))$" EXCLUDE)
 
 # What find_package(toile) reads; the recipes find what the static libraries link.

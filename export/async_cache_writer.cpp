@@ -82,7 +82,10 @@ void AsyncCacheWriter::deliver_until_closed()
 std::exception_ptr AsyncCacheWriter::deliver(const Frame& frame)
 {
     try {
-        target_->write(frame.index, frame.late ? frame.late() : frame.positions);
+        if (frame.late)
+            target_->write(frame.index, frame.late());
+        else
+            target_->write(frame.index, frame.positions);
     } catch (...) {
         return std::current_exception();
     }

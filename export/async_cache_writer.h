@@ -20,7 +20,7 @@ public:
     /// @param queue_limit  maximum frames in memory (1 or more); write() waits while all are in use
     explicit AsyncCacheWriter(std::unique_ptr<CacheWriter> target, int queue_limit = 4);
 
-    /// Delivers queued frames to the partial. Errors are lost here; finish() reports them.
+    /// Delivers queued frames to the partial. Errors are lost here; complete() reports them.
     ~AsyncCacheWriter() override;
 
     /// Queues a copy. @throws the exception of an earlier failed write; nothing is written after that.

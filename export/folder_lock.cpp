@@ -32,6 +32,12 @@ std::string own_name()
     return "process " + std::to_string(::getpid()) + " on host " + host.data() + " since " + time.data();
 }
 
+/// The folder from the root, without a dot at its end.
+std::filesystem::path from_root(const std::filesystem::path& folder)
+{
+    return std::filesystem::absolute(folder / ".").parent_path();
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& folder, int descriptor)
 {
     const int reason = errno;
@@ -51,7 +57,7 @@ std::filesystem::path create_folders(const std::filesystem::path& folder)
 {
     std::error_code error;
     std::filesystem::path first_missing;
-    for (std::filesystem::path at = std::filesystem::absolute(folder / ".").parent_path();
+    for (std::filesystem::path at = from_root(folder);
          !std::filesystem::exists(at, error) && at.has_relative_path(); at = at.parent_path())
         first_missing = at;
     std::filesystem::create_directories(folder, error);
@@ -84,7 +90,8 @@ void FolderLock::require_free(const std::filesystem::path& folder)
 }
 
 FolderLock::FolderLock(const std::filesystem::path& folder)
-    : folder_(folder.empty() ? "." : folder), first_created_(create_folders(folder_))
+    : folder_(folder.empty() ? "." : folder), from_root_(from_root(folder_)),
+      first_created_(create_folders(folder_))
 {
     while (true) {
         descriptor_ = open_lock(folder_, O_RDWR | O_CREAT);
@@ -111,8 +118,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
 }
 
 FolderLock::FolderLock(FolderLock&& other) noexcept
-    : folder_(std::move(other.folder_)), first_created_(std::move(other.first_created_)),
-      descriptor_(std::exchange(other.descriptor_, -1))
+    : folder_(std::move(other.folder_)), from_root_(std::move(other.from_root_)),
+      first_created_(std::move(other.first_created_)), descriptor_(std::exchange(other.descriptor_, -1))
 {
 }
 
@@ -130,7 +137,7 @@ void FolderLock::remove_created_folders()
 {
     if (first_created_.empty())
         return;
-    std::filesystem::path at = std::filesystem::absolute(folder_ / ".").parent_path();
+    std::filesystem::path at = from_root_;
     while (::rmdir(at.c_str()) == 0 && at != first_created_)
         at = at.parent_path();
 }

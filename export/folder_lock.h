@@ -27,6 +27,7 @@ private:
     void remove_created_folders();
 
     std::filesystem::path folder_;
+    std::filesystem::path from_root_;     ///< the same, which stays valid where the working folder is removed
     std::filesystem::path first_created_; ///< outermost folder that was missing; empty: none was
     int descriptor_ = -1;
 };

@@ -15,13 +15,17 @@ constexpr double kFlat = 1e-6;
 /// Ears at least this much as high, over their longest side, as the best are as good.
 constexpr double kAsGood = 0.5;
 
+/// Relative difference that is no reason to choose: the lowest corner then wins, however the polygon lies
+/// [-].
+constexpr double kTie = 1e-9;
+
 /// Twice the area, positive for a left turn.
 double turn(const Vec2& a, const Vec2& b, const Vec2& c)
 {
     return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-/// Corners in the plane of the polygon, counter-clockwise. The normal is Newell's.
+/// Corners in the plane of the polygon, counter-clockwise. The normal is the mean one, by area.
 std::vector<Vec2> in_plane(View<const Vec3> corners)
 {
     const int n = corners.size();
@@ -99,8 +103,8 @@ private:
         double shortest = 1e300;
         for (int i = 0; i < int(ring_.size()); ++i) {
             const Ear& ear = ears_[size_t(at(i))];
-            if (ear.blocker < 0 && highest > 0.0 && ear.height >= kAsGood * highest &&
-                ear.diagonal < shortest) {
+            if (ear.blocker < 0 && highest > 0.0 && ear.height >= (1.0 - kTie) * kAsGood * highest &&
+                ear.diagonal < (1.0 - kTie) * shortest) {
                 best = i;
                 shortest = ear.diagonal;
             }

@@ -43,7 +43,8 @@ std::string line_and_column(const std::string& text, size_t byte)
 /// Control characters, which keys and names may contain, as spaces.
 std::string one_line(std::string text)
 {
-    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
     return text;
 }
 

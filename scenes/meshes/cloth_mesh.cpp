@@ -41,6 +41,16 @@ std::string counted(std::ptrdiff_t count, const char* one, const char* many)
     return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
+/// Of the box around all polygons: loose vertices may lie anywhere.
+double diagonal_of(const ObjMesh& mesh)
+{
+    Bounds box;
+    for (const std::vector<int>& polygon : mesh.polygons)
+        for (const int v : polygon)
+            box.extend(mesh.positions[v]);
+    return box.diagonal();
+}
+
 /// Joins seams and drops loose vertices. Cloth needs neither; caches need the file's vertices.
 void join_vertices(const scene::Cloth& cloth, ClothMesh& result)
 {
@@ -49,7 +59,7 @@ void join_vertices(const scene::Cloth& cloth, ClothMesh& result)
     std::vector<int> stands(size_t(count), 0);
     std::iota(stands.begin(), stands.end(), 0);
     if (cloth.weld)
-        stands = stitch(mesh, kSeamDistance * bounds(mesh.positions).diagonal());
+        stands = stitch(mesh, kSeamDistance * diagonal_of(mesh));
     int joined = 0;
     for (int v = 0; v < count; ++v)
         joined += stands[v] != v ? 1 : 0;
@@ -61,17 +71,21 @@ void join_vertices(const scene::Cloth& cloth, ClothMesh& result)
     if (int(mesh.positions.size()) == count)
         return;
 
-    int last = 0, first_loose = -1, loose = 0;
+    FileNumbers& numbers = result.numbers;
+    int last = 0;
     for (int v = 0; v < count; ++v) {
         const int own = number[stands[v]];
-        if (own < 0 && loose++ == 0)
-            first_loose = v;
+        if (own < 0)
+            numbers.loose.push_back(v);
+        else if (own == int(numbers.file_vertex.size()))
+            numbers.file_vertex.push_back(v);
         last = own < 0 ? last : own;
-        result.vertex.push_back(last);
+        numbers.vertex.push_back(last);
     }
-    if (loose > 0)
-        result.warnings.push_back(counted(loose, "vertex has", "vertices have") + " no face, the first is " +
-                                  std::to_string(first_loose) + "; each goes along with the one before it");
+    if (const std::vector<int>& loose = numbers.loose; !loose.empty())
+        result.warnings.push_back(counted(std::ptrdiff_t(loose.size()), "vertex has", "vertices have") +
+                                  " no face, the first is " + std::to_string(loose.front()) +
+                                  "; each goes along with the one before it");
 }
 
 /// Makes of a file's mesh one that can be simulated, and tells what was changed.
@@ -89,7 +103,7 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
     if (const int count = make_windings_agree(mesh); count > 0)
         result.warnings.push_back("flipped " + counted(count, "face", "faces") +
                                   " that were wound against their neighbours");
-    if (!result.vertex.empty())
+    if (!result.numbers.vertex.empty() && cloth.subdivide == 0)
         result.file = file;
 }
 
@@ -116,12 +130,11 @@ ClothMesh cloth_mesh(const scene::Cloth& cloth)
         require_usable(mesh, source_of(cloth));
     if (cloth.subdivide > 0) {
         mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
-        result.file = {};
-        result.vertex.clear();
     }
     place(mesh);
     place(result.file);
     require_in_range(mesh.positions, source_of(cloth));
+    require_in_range(result.file.positions, source_of(cloth));
     return result;
 }
 

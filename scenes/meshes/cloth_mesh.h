@@ -5,6 +5,7 @@
 
 #include "core/mesh/obj.h"
 #include "scenes/format/scene.h"
+#include "scenes/meshes/file_numbers.h"
 
 namespace toile::scenes {
 
@@ -14,9 +15,9 @@ std::string source_of(const scene::Cloth& cloth);
 /// Mesh of a cloth: scaled and rotated, but not translated. Equal cloths at several positions then have
 /// bitwise equal rest shapes and share factors and tables.
 struct ClothMesh {
-    ObjMesh mesh;                      ///< to simulate: seams joined, loose vertices dropped, windings agree
-    ObjMesh file;                      ///< as in the file; empty: `mesh` has its vertices
-    std::vector<int> vertex;           ///< [vertices of the file] vertex of `mesh` that each goes along with
+    ObjMesh mesh;        ///< to simulate: seams joined, loose vertices dropped, windings agree
+    FileNumbers numbers; ///< empty: the file's vertices are the first of `mesh`
+    ObjMesh file;        ///< as in the file; empty without numbers, and where `mesh` is subdivided
     std::vector<std::string> warnings; ///< what was changed, without the source
 };
 

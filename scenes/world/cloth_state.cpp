@@ -1,38 +1,34 @@
 #include "scenes/world/cloth_state.h"
 
-#include <algorithm>
-
 namespace toile::scenes {
 
 std::vector<Vec3> ClothState::to_file(View<const Vec3> x) const
 {
-    if (!has_file_vertices())
+    if (!has_file_order())
         return {x.begin(), x.end()};
     std::vector<Vec3> out;
-    out.reserve(file.vertex.size());
-    for (size_t v = 0; v < file.vertex.size(); ++v) {
-        const int own = file.vertex[v];
-        out.push_back(x[own] + (file.mesh.positions[v] - rest.positions[own]));
+    out.reserve(numbers.vertex.size());
+    for (size_t v = 0; v < numbers.vertex.size(); ++v) {
+        const int own = numbers.vertex[v];
+        out.push_back(x[own] + (file.positions[v] - rest.positions[own]));
     }
     return out;
 }
 
 std::vector<Vec3> ClothState::from_file(View<const Vec3> x) const
 {
-    if (!has_file_vertices())
+    if (!has_file_order())
         return {x.begin(), x.end()};
-    std::vector<Vec3> out(rest.positions.size());
-    for (int v = x.size() - 1; v >= 0; --v) // the first of several last
-        if (file.mesh.positions[v] == rest.positions[file.vertex[v]])
-            out[file.vertex[v]] = x[v];
+    std::vector<Vec3> out;
+    out.reserve(rest.positions.size());
+    for (const int v : numbers.file_vertex)
+        out.push_back(x[v]);
     return out;
 }
 
 int ClothState::file_vertex(int vertex) const
 {
-    if (!has_file_vertices())
-        return vertex;
-    return int(std::find(file.vertex.begin(), file.vertex.end(), vertex) - file.vertex.begin());
+    return vertex < int(numbers.file_vertex.size()) ? numbers.file_vertex[size_t(vertex)] : vertex;
 }
 
 std::vector<unsigned char> ClothState::attached(double t) const

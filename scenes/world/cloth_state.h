@@ -6,6 +6,7 @@
 
 #include "core/mesh/obj.h"
 #include "garment/fabric/fabric.h"
+#include "scenes/meshes/file_numbers.h"
 
 namespace toile::scenes {
 
@@ -17,16 +18,12 @@ struct ClothState {
     ObjMesh rest;           ///< start placement, rest lengths, faces and texture coordinates as simulated
     garment::Fabric fabric; ///< of a solid: none, and a strain limit of 0
 
-    /// The mesh of the cloth's file where it has other vertices than the cloth: merged ones along its seams,
-    /// and loose ones. Caches are in its order, so that they play on it.
-    struct FileMesh {
-        ObjMesh mesh;            ///< start placement
-        std::vector<int> vertex; ///< [file vertices] the cloth's vertex that each goes along with
-    };
-    FileMesh file; ///< empty: that of `rest`
+    FileNumbers numbers; ///< of the file's vertices; empty: those of `rest` come first, in its order
+    ObjMesh file;        ///< the file's mesh in the start placement; empty: `rest` has its vertices and more
 
-    bool has_file_vertices() const { return !file.vertex.empty(); }
-    const ObjMesh& file_mesh() const { return has_file_vertices() ? file.mesh : rest; }
+    /// Caches are in its order, so that they play on it.
+    const ObjMesh& file_mesh() const { return has_file_order() ? file : rest; }
+    bool has_file_order() const { return !file.positions.empty(); }
 
     /// [file vertices] positions for those of the cloth [m].
     std::vector<Vec3> to_file(View<const Vec3> x) const;

@@ -55,13 +55,18 @@ std::shared_ptr<const garment::RestShape> rest_shape_of(std::vector<Vec3> unmove
 scene::Attachment in_cloth(scene::Attachment attachment, const ClothState& cloth, const std::string& location)
 {
     auto* vertices = std::get_if<std::vector<int>>(&attachment.select.by);
-    const int count = int(cloth.file_mesh().positions.size());
-    for (size_t k = 0; vertices != nullptr && k < vertices->size(); ++k) {
-        int& v = (*vertices)[k];
+    if (vertices == nullptr)
+        return attachment;
+    const FileNumbers& numbers = cloth.numbers;
+    const int count = int(numbers.vertex.empty() ? cloth.rest.positions.size() : numbers.vertex.size());
+    for (int& v : *vertices) {
         if (v < 0 || v >= count)
             throw InvalidInput(location + ": vertex " + std::to_string(v) + " is out of range; \"" +
                                cloth.name + "\" has vertices 0 to " + std::to_string(count - 1));
-        v = cloth.has_file_vertices() ? cloth.file.vertex[size_t(v)] : v;
+        if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), v))
+            throw InvalidInput(location + ": vertex " + std::to_string(v) + " of \"" + cloth.name +
+                               "\" has no face; attach vertices of the surface");
+        v = numbers.vertex.empty() ? v : numbers.vertex[size_t(v)];
     }
     return attachment;
 }
@@ -115,10 +120,11 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
         if (options.warn)
             options.warn(source_ + ": " + warning);
     state_.rest = std::move(mesh.mesh);
-    state_.file = {std::move(mesh.file), std::move(mesh.vertex)};
+    state_.numbers = std::move(mesh.numbers);
+    state_.file = std::move(mesh.file);
     state_.triangles = state_.rest.triangulated().triangles;
     rest_ = rest_shape_of(state_.rest.positions, state_.triangles, settings, source_);
-    for (ObjMesh* placed : {&state_.rest, &state_.file.mesh})
+    for (ObjMesh* placed : {&state_.rest, &state_.file})
         for (Vec3& p : placed->positions)
             p += settings.translate;
     state_.positions = state_.rest.positions;

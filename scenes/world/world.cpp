@@ -197,8 +197,13 @@ public:
     template <typename Simulate>
     StepReport take(const Simulate& simulate)
     {
-        parts_.failure = "a step was interrupted";
-        const StepReport report = simulate();
+        StepReport report;
+        try {
+            report = simulate();
+        } catch (const std::exception& error) {
+            parts_.failure = error.what();
+            throw;
+        }
         const bool has_failed = report.status == StepReport::Status::NonFinite;
         parts_.failure = has_failed ? report.message : std::string();
         return report;
@@ -314,9 +319,11 @@ StepReport World::advance_frame()
 {
     Call call(*this, "World::advance_frame");
     return call.take([&] {
-        ++parts().frame;
-        return parts().advance(parts().control.ticks_of_sample(),
-                               parts().frame * parts().scene.frame_duration(), "steps of a frame");
+        const int next = parts().frame + 1;
+        const StepReport report = parts().advance(parts().control.ticks_of_sample(),
+                                                  next * parts().scene.frame_duration(), "steps of a frame");
+        parts().frame = next;
+        return report;
     });
 }
 

@@ -23,9 +23,9 @@ namespace toile::scenes {
 /// not need are never entered (stages() shows it).
 ///
 /// Calls throw InvalidUse on a World that was moved from; those that are not const also while another one
-/// runs, on another thread or below it in a callback. A World that has failed (settle() and advance_frame()
-/// threw, or reported a status NonFinite) keeps its last sample; what would change it throws InvalidUse with
-/// the reason.
+/// runs, on another thread or below it in a callback. A World that has failed (settle() or advance_frame()
+/// threw, or reported a status NonFinite) may be in the middle of a sample; what would change it throws
+/// InvalidUse with the reason.
 class World {
 public:
     /// Loads and places everything, and repairs a start pose with cloth inside avatars or through cloth

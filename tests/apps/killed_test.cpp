@@ -162,7 +162,8 @@ TEST_F(Killed, AtTenMomentsLeavesTheEarlierRunAndAReadablePartial)
 TEST_F(Killed, ByASignalWithinALongStageEndsAtOnce)
 {
     const std::pair<const char*, const char*> cases[] = {
-        {R"("settle": 600, "solver": {"substeps": 1000, "sleep": {"enabled": false}})", "before the first frame"},
+        {R"("settle": 600, "solver": {"substeps": 1000, "sleep": {"enabled": false}})",
+         "before the first frame"},
         {R"("solver": {"substeps": 1000, "velocity_tolerance": 1e-6, "sleep": {"enabled": false}})",
          "1 frame is in the partial caches"}};
     for (const auto& [keys, says] : cases) {

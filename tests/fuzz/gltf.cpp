@@ -14,7 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::unique_ptr<avatars::Avatar> avatar = avatars::load_avatar(settings);
         std::vector<Vec3> x(std::size_t(avatar->vertex_count()));
         for (int clip = 0; clip < int(avatar->clips().size()); ++clip)
-            avatar->pose({clip, 0.5 * avatar->clips()[std::size_t(clip)].duration}, avatars::identity_affine(), x);
+            avatar->pose({clip, 0.5 * avatar->clips()[std::size_t(clip)].duration},
+                         avatars::identity_affine(), x);
     } catch (const InvalidInput&) {
     }
     return 0;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-/// Runs a fuzz target without libFuzzer: replay FOLDER MUTANTS. Every file of the folder, and so many random changes
-/// of each, the same in every run.
+/// Runs a fuzz target without libFuzzer: replay FOLDER MUTANTS. Every file of the folder, and so many random
+/// changes of each, the same in every run.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
@@ -23,7 +23,7 @@ std::string contents_of(const std::filesystem::path& file)
 /// One to four changes: a byte, a piece cut out or doubled, an end cut off, or a word that parsers trip over.
 std::string mutant_of(std::string text, std::mt19937& random)
 {
-    static const std::vector<std::string> kWords{"-1",  "0",    "1e999", "nan",  "4294967296", "2147483647",
+    static const std::vector<std::string> kWords{"-1",   "0",    "1e999", "nan",  "4294967296", "2147483647",
                                                  "\"\"", "null", "[]",    "{}",   "\\",         "\xff\xfe",
                                                  "[[[[", "1e38", "-0.0",  "\n\n", "true",       "1e-320"};
     const auto below = [&](std::size_t bound) {
@@ -31,7 +31,8 @@ std::string mutant_of(std::string text, std::mt19937& random)
     };
     const std::size_t changes = 1 + below(4);
     for (std::size_t k = 0; k < changes && !text.empty(); ++k) {
-        const std::size_t at = below(text.size()), length = 1 + below(std::min<std::size_t>(64, text.size() - at));
+        const std::size_t at = below(text.size()),
+                          length = 1 + below(std::min<std::size_t>(64, text.size() - at));
         switch (below(5)) {
         case 0:
             text[at] = char(below(256));

@@ -1,5 +1,5 @@
-#include "core/base/error.h"
 #include "core/mesh/vtk.h"
+#include "core/base/error.h"
 #include "tests/fuzz/input_file.h"
 
 /// Tetrahedra of solids.

@@ -105,6 +105,7 @@ TEST_F(ClothFiles, LooseVerticesGoAlong)
     const std::vector<Vec3> cache = b.to_file(b.positions);
     ASSERT_EQ(cache.size(), 28u);
     EXPECT_EQ(cache[2], a.positions[0]);
+    EXPECT_THROW(world_of(sheet(4, true) + "v 1e9 0 0\n"), InvalidInput);
     EXPECT_EQ(cache[27], a.positions[24] + Vec3(3, 3, 3) - Vec3(0.2, 0, 0.2));
 }
 
@@ -120,6 +121,11 @@ TEST_F(ClothFiles, AttachmentsAndMessagesHaveTheNumbersOfTheFile)
     const ClothState& cloth = world.cloths()[0];
     EXPECT_NEAR((cloth.to_file(cloth.positions)[63] - held).norm(), 0.0, 1e-9);
     EXPECT_THROW(world_of(obj, "", hold(64)), InvalidInput);
+    World fine = world_of(obj, R"(, "subdivide": 1)", hold(63));
+    const std::vector<unsigned char> attached = fine.cloths()[0].attached(0.0);
+    const auto at = std::find(attached.begin(), attached.end(), 1) - attached.begin();
+    EXPECT_NEAR((fine.cloths()[0].positions[size_t(at)] - held).norm(), 0.0, 1e-9);
+    EXPECT_THROW(world_of("v 7 7 7\n" + obj, "", hold(0)), InvalidInput) << "it has no face";
 }
 
 TEST_F(ClothFiles, RepeatedFacesAndLinesAreLeftOut)

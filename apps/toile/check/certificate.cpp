@@ -20,6 +20,8 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
     char text[160];
     if (found.out_of_range > 0)
         add(std::to_string(found.out_of_range) + " vertices are not finite, or farther than 100 km away");
+    if (found.torn > 0)
+        add(std::to_string(found.torn) + " vertices have left the ones that they are joined to");
     if (found.cloth_cloth_crossings > 0)
         add(std::to_string(found.cloth_cloth_crossings) + " cloth-cloth crossings");
     if (found.cloth_avatar_crossings > 0)

@@ -42,6 +42,7 @@ struct FrameFindings {
         Vec3 point; ///< [m]
     };
 
+    int torn = 0;         ///< vertices of the file that have left the one that they are joined to
     int out_of_range = 0; ///< vertices that are not is_in_range()
     int cloth_cloth_crossings = 0;
     int cloth_avatar_crossings = 0;       ///< outside of pinches (AvatarCrossings)

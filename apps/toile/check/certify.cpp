@@ -17,6 +17,9 @@ namespace toile::app {
 
 namespace {
 
+/// Distance [m] by which joined vertices of a cache may differ. Single precision has such steps at 1 km.
+constexpr double kTear = 1e-4;
+
 double area_of(View<const Vec3> x, View<const Triangle> triangles)
 {
     double twice = 0.0;
@@ -50,7 +53,7 @@ public:
     FrameFindings examine(int frame, double time);
 
 private:
-    void load(int frame);
+    void load(int frame, FrameFindings& found);
     void pose_avatars(int frame, double time, FrameFindings& found);
     void measure_each(double time, FrameFindings& found);
     void find_cloth_crossings(int frame, FrameFindings& found) const;
@@ -97,11 +100,16 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
     x_.resize(rest.size());
 }
 
-void Examiner::load(int frame)
+void Examiner::load(int frame, FrameFindings& found)
 {
     for (const MeasuredCloth& cloth : cloths_) {
-        const std::vector<Vec3> positions = cloth.state.from_file(cloth.cache.frame(frame));
+        const std::vector<Vec3> stored = cloth.cache.frame(frame);
+        const std::vector<Vec3> positions = cloth.state.from_file(stored);
         std::copy(positions.begin(), positions.end(), x_.begin() + cloth.first_vertex);
+        found.out_of_range += int(std::count_if(stored.begin(), stored.end(), std::not_fn(is_in_range)));
+        const std::vector<Vec3> expected = cloth.state.to_file(positions);
+        for (size_t v = 0; v < stored.size(); ++v)
+            found.torn += (stored[v] - expected[v]).norm() > kTear ? 1 : 0;
     }
 }
 
@@ -109,9 +117,8 @@ FrameFindings Examiner::examine(int frame, double time)
 {
     std::swap(last_x_, x_);
     x_.resize(last_x_.size());
-    load(frame);
     FrameFindings found;
-    found.out_of_range = int(std::count_if(x_.begin(), x_.end(), std::not_fn(is_in_range)));
+    load(frame, found);
     if (found.out_of_range > 0)
         return found;
     pose_avatars(frame, time, found);

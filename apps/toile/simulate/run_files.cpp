@@ -62,7 +62,8 @@ RunFiles::Partials RunFiles::close()
     Partials partials;
     for (Cache& cache : caches_) {
         const int written = cache.writer->close();
-        if (written == 0 || !std::filesystem::exists(cache.writer->partial()))
+        std::error_code missing;
+        if (written == 0 || !std::filesystem::exists(cache.writer->partial(), missing))
             continue;
         partials.frame_count = std::max(partials.frame_count, written);
         partials.files.push_back(cache.writer->partial());

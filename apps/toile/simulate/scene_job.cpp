@@ -123,7 +123,9 @@ std::vector<path> output_folders_of(const SceneJob& job)
 
 std::vector<path> certificates_of(const SceneJob& job)
 {
-    std::set<path> certificates{job.folder / kCertificateName};
+    std::set<path> certificates;
+    for (const path& folder : output_folders_of(job))
+        certificates.insert(folder / kCertificateName);
     for (const SurfaceFile& cache : caches_of(job))
         certificates.insert(certificate_beside(cache.file));
     return {certificates.begin(), certificates.end()};

@@ -113,7 +113,7 @@ void SceneRun::tell(const std::string& task, double fraction)
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - frame_start_;
     if (seconds.count() > kLongFrame)
-        frames_->update(world_.frame(), std::to_string(int(100.0 * fraction)) + " % of the next");
+        frames_->update(world_.frame() + 1, std::to_string(int(100.0 * fraction)) + " % of the next");
 }
 
 int SceneRun::run(const InterruptGuard& interrupt)
@@ -156,7 +156,8 @@ int SceneRun::run_into_caches(const InterruptGuard& interrupt)
 /// @throws Cancelled at an interrupt, DeviceError if GPU or disk fail
 SceneRun::Outcome SceneRun::run_frames(RunFiles& files, RunReport& report)
 {
-    world_.settle();
+    if (const StepReport settled = world_.settle(); settled.status == StepReport::Status::NonFinite)
+        return {"failed", settled.message};
     Unmet unmet(log_);
     const int count = job_.scene.frames;
     frames_ = std::unique_ptr<Progress>(new Progress(log_.progress("frame", count)));
@@ -206,7 +207,8 @@ std::optional<Certificate> SceneRun::check(const RunFiles& files, const Interrup
     });
     if (was_able && !certificate)
         log_.error("interrupted while checking; the caches are complete, toile check " +
-                   job_.folder.string() + " --scene " + job_.scene.source.string() + " certifies them");
+                   job_.folder.string() + " --scene " + job_.scene.source.string() + " --frames " +
+                   std::to_string(job_.scene.frames) + " certifies them");
     return certificate;
 }
 
