@@ -202,6 +202,10 @@ void require_usable(const ObjMesh& mesh, const std::string& source)
     }
     if (mesh.polygons.empty())
         throw InvalidInput(source + ": the mesh has no triangle; a surface needs at least one face");
+    const auto refuse = [&](int polygon, const std::string& defect) {
+        throw InvalidInput(source + ":" + std::to_string(mesh.polygon_lines[polygon]) + ": the face " +
+                           (mesh.polygons[polygon].size() > 3 ? "has a triangle that " : "") + defect);
+    };
     TriangleMesh one;
     one.positions = mesh.positions;
     for (int f = 0; f < int(mesh.polygons.size()); ++f)
@@ -209,8 +213,7 @@ void require_usable(const ObjMesh& mesh, const std::string& source)
             const std::vector<int>& polygon = mesh.polygons[f];
             one.triangles = {Triangle(polygon[corner[0]], polygon[corner[1]], polygon[corner[2]])};
             if (const std::string defect = defect_of(one, 0); !defect.empty())
-                throw InvalidInput(source + ":" + std::to_string(mesh.polygon_lines[f]) + ": the face " +
-                                   (polygon.size() > 3 ? "has a triangle that " : "") + defect);
+                refuse(f, defect);
         }
 }
 

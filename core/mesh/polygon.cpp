@@ -115,7 +115,7 @@ private:
     Triangle cut(int i)
     {
         const int corner = at(i);
-        const Triangle triangle(at(i - 1), corner, at(i + 1));
+        Triangle triangle(at(i - 1), corner, at(i + 1));
         ring_.erase(ring_.begin() + i);
         look_at(i - 1);
         look_at(i);

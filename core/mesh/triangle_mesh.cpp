@@ -55,13 +55,15 @@ void require_usable(const TriangleMesh& mesh, const std::string& source)
 {
     if (mesh.triangles.empty())
         throw InvalidInput(source + ": the mesh has no triangle; a surface needs at least one face");
+    const auto refuse = [&](const char* what, int number, const std::string& why) {
+        throw InvalidInput(source + ": " + what + " " + std::to_string(number) + " " + why);
+    };
     for (int v = 0; v < mesh.vertex_count(); ++v)
         if (!mesh.positions[v].allFinite())
-            throw InvalidInput(source + ": vertex " + std::to_string(v) +
-                               " is not finite; every coordinate must be a number");
+            refuse("vertex", v, "is not finite; every coordinate must be a number");
     for (int t = 0; t < mesh.triangle_count(); ++t)
         if (const std::string defect = defect_of(mesh, t); !defect.empty())
-            throw InvalidInput(source + ": triangle " + std::to_string(t) + " " + defect);
+            refuse("triangle", t, defect);
 }
 
 std::vector<Vec3> vertex_normals(View<const Vec3> positions, View<const Triangle> triangles)

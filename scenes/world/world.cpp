@@ -320,8 +320,8 @@ StepReport World::advance_frame()
     Call call(*this, "World::advance_frame");
     return call.take([&] {
         const int next = parts().frame + 1;
-        const StepReport report = parts().advance(parts().control.ticks_of_sample(),
-                                                  next * parts().scene.frame_duration(), "steps of a frame");
+        StepReport report = parts().advance(parts().control.ticks_of_sample(),
+                                            next * parts().scene.frame_duration(), "steps of a frame");
         parts().frame = next;
         return report;
     });

@@ -76,8 +76,10 @@ void append_table(const OrderedJson& schema, const std::string& key_path, std::s
         const std::string value = must                         ? "required"
                                   : member.contains("default") ? "`" + member["default"].dump() + "`"
                                                                : "";
-        text += "| `" + key + "` | " + type_text(member) + " | " + range_text(member) + " | " + value +
-                " | " + member["description"].get<std::string>() + " |\n";
+        for (const std::string& cell : {"`" + key + "`", type_text(member), range_text(member), value,
+                                        member["description"].get<std::string>()})
+            text.append("| ").append(cell).append(" ");
+        text += "|\n";
     }
     for (const auto& [key, member] : schema["properties"].items())
         append_children(member, path_below(key_path, key), text);

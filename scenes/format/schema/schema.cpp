@@ -24,7 +24,7 @@ OrderedJson SchemaWriter::schema() const
     return schema;
 }
 
-void SchemaWriter::add(const char* key, OrderedJson schema, const std::string& help)
+void SchemaWriter::add(const char* key, const OrderedJson& schema, const std::string& help)
 {
     // The description comes first, for human readers.
     OrderedJson described = {{"description", help}};

@@ -154,7 +154,7 @@ private:
         return *range.unit == '\0' ? help : std::string(help) + " [" + range.unit + "]";
     }
 
-    void add(const char* key, OrderedJson schema, const std::string& help);
+    void add(const char* key, const OrderedJson& schema, const std::string& help);
 
     OrderedJson properties_ = OrderedJson::object();
     OrderedJson required_ = OrderedJson::array();

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -52,9 +53,8 @@ TEST(TriangulatePolygon, SplitsConcaveQuadsInside)
 {
     for (int first = 0; first < 4; ++first) {
         const std::vector<Vec3> dart{{0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}};
-        std::vector<Vec3> corners;
-        for (int k = 0; k < 4; ++k)
-            corners.push_back(dart[(first + k) % 4]);
+        std::vector<Vec3> corners = dart;
+        std::rotate(corners.begin(), corners.begin() + first, corners.end());
         const Areas areas = areas_of(corners, Vec3::UnitZ());
         EXPECT_GT(areas.smallest, 0.0);
         EXPECT_NEAR(areas.sum, 1.0, 1e-12);
