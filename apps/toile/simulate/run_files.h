@@ -49,6 +49,15 @@ private:
         std::unique_ptr<exports::AsyncCacheWriter> writer;
         std::filesystem::path complete; ///< partial name of the complete cache
     };
+    /// Outer folders first. Those inside others are released before, so that folders that were made can go.
+    struct Locks {
+        std::vector<exports::FolderLock> all;
+        ~Locks()
+        {
+            while (!all.empty())
+                all.pop_back();
+        }
+    };
     struct StartMesh {
         std::filesystem::path file;
         ObjMesh mesh; ///< released when it is written
@@ -57,7 +66,7 @@ private:
     void write_start_meshes();
 
     const SceneJob& job_;
-    std::vector<exports::FolderLock> locks_; ///< before the caches: released after them
+    Locks locks_; ///< before the caches: released after them
     std::vector<Cache> caches_;
     std::vector<StartMesh> meshes_;
     bool has_frames_ = false;
