@@ -10,7 +10,7 @@
 namespace toile::avatars {
 
 /// A value in the JSON of a glTF file, and its place there. Readers throw InvalidInput where the value is not
-/// what glTF has at that place: "body.gltf: nodes[3].mesh = 7: there are 2 meshes, the last is 1".
+/// what glTF has at that place: "body.gltf: nodes[3].mesh = 7: index 7 is out of bounds of 2 meshes".
 /// Borrows the file's name and JSON.
 class GltfValue {
 public:

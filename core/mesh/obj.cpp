@@ -187,6 +187,8 @@ TriangleMesh ObjMesh::triangulated() const
 
 std::vector<Triangle> ObjMesh::triangles_of(int polygon) const
 {
+    if (polygons[polygon].size() == 3)
+        return {Triangle(0, 1, 2)};
     std::vector<Vec3> corners;
     corners.reserve(polygons[polygon].size());
     for (const int v : polygons[polygon])

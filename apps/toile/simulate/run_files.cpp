@@ -44,9 +44,13 @@ void RunFiles::write_frame(const scenes::World& world)
     if (!std::exchange(has_frames_, true))
         write_start_meshes();
     if (world.device() == nullptr) {
-        for (Cache& cache : caches_)
-            cache.writer->write(world.frame(),
-                                cache.state->to_file(world.surfaces()[cache.target.surface].positions));
+        for (Cache& cache : caches_) {
+            const std::vector<Vec3>& x = world.surfaces()[cache.target.surface].positions;
+            if (cache.state->has_file_order())
+                cache.writer->write(world.frame(), cache.state->to_file(x));
+            else
+                cache.writer->write(world.frame(), x);
+        }
         return;
     }
     const std::shared_ptr<const scenes::Snapshot> snapshot = world.snapshot();

@@ -127,10 +127,10 @@ int SceneRun::run(const InterruptGuard& interrupt)
         log_.error("interrupted before the first frame; nothing was written");
         return kExitFailure;
     }
-    return run_into_caches(interrupt);
+    return run_into_caches();
 }
 
-int SceneRun::run_into_caches(const InterruptGuard& interrupt)
+int SceneRun::run_into_caches()
 {
     RunFiles files(job_, world_);
     int vertex_count = 0;
@@ -140,7 +140,7 @@ int SceneRun::run_into_caches(const InterruptGuard& interrupt)
 
     const Outcome outcome = run_or_stop(files, report);
     if (outcome.word == "complete")
-        return publish(files, report, interrupt);
+        return publish(files, report);
     explain_stop(world_.frame(), outcome, files, log_);
     if (!job_.report.empty())
         succeeds(log_, [&] {
@@ -194,7 +194,7 @@ SceneRun::Outcome SceneRun::run_or_stop(RunFiles& files, RunReport& report)
 }
 
 /// Certifies the complete caches. @return none after reporting an interrupt or a failure
-std::optional<Certificate> SceneRun::check(const RunFiles& files, const InterruptGuard& interrupt) const
+std::optional<Certificate> SceneRun::check(const RunFiles& files) const
 {
     std::optional<Certificate> certificate;
     const bool was_able = succeeds(log_, [&] {
@@ -202,7 +202,7 @@ std::optional<Certificate> SceneRun::check(const RunFiles& files, const Interrup
         Progress progress = log_.progress("check", job_.scene.frames);
         certificate = certify(job_.scene, files.cloths_to_check(world_), {}, [&](int done, int) {
             progress.update(done);
-            return !interrupt.requested();
+            return !interrupt_->requested();
         });
     });
     if (was_able && !certificate)
@@ -214,7 +214,7 @@ std::optional<Certificate> SceneRun::check(const RunFiles& files, const Interrup
 
 /// Moves everything that the run made to its final names: the certificate last, so that it never lies beside
 /// caches that it does not describe. What can't be delivered does not keep back the rest.
-int SceneRun::publish(RunFiles& files, const RunReport& report, const InterruptGuard& interrupt) const
+int SceneRun::publish(RunFiles& files, const RunReport& report) const
 {
     // Have everything ready under partial names before the first file of an earlier run is replaced. No lock
     // keeps another run from naming the same report.
@@ -223,7 +223,7 @@ int SceneRun::publish(RunFiles& files, const RunReport& report, const InterruptG
     if (!job_.report.empty())
         staged_report = stage(job_.report, unique_partial(job_.report),
                               report.to_json("complete", world_.stages()), log_);
-    const std::optional<Certificate> certificate = no_check_ ? std::nullopt : check(files, interrupt);
+    const std::optional<Certificate> certificate = no_check_ ? std::nullopt : check(files);
     if (certificate)
         staged_certificate =
             stage(certificate_name, partial_beside(certificate_name), to_json(*certificate), log_);

@@ -46,11 +46,11 @@ public:
 private:
     scenes::WorldOptions world_options(const RunSettings& settings);
     void tell(const std::string& task, double fraction);
-    int run_into_caches(const InterruptGuard& interrupt);
+    int run_into_caches();
     Outcome run_frames(RunFiles& files, RunReport& report);
     Outcome run_or_stop(RunFiles& files, RunReport& report);
-    std::optional<Certificate> check(const RunFiles& files, const InterruptGuard& interrupt) const;
-    int publish(RunFiles& files, const RunReport& report, const InterruptGuard& interrupt) const;
+    std::optional<Certificate> check(const RunFiles& files) const;
+    int publish(RunFiles& files, const RunReport& report) const;
 
     const SceneJob& job_;
     bool no_check_;
