@@ -290,10 +290,10 @@ void describe(V& v, Sleep& s)
 template <typename V>
 void describe(V& v, Solver& s)
 {
-    v.field(
-        "substeps", s.substeps, between(1, 1000),
-        "Time steps from one sample to the next. Absent: chosen by what moves, between 1/60 and 1/960 s; 4 "
-        "for previews, with another minimiser than newton, with a named method, and with solids.");
+    v.field("substeps", s.substeps, between(1, 1000),
+            "Time steps from one sample to the next. Absent: chosen by what moves, between 1/60 and 1/960 s "
+            "(1/3840 s in a storm); 4 "
+            "for previews, with another minimiser than newton, with a named method, and with solids.");
     v.field("step_error", s.step_error, above_zero(0.1, "m"),
             "Error that a time step chosen by what moves may add, RMS over the vertices. Absent: 0.0001 for "
             "standard, 0.00003 for final.");

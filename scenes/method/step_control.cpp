@@ -13,6 +13,11 @@ namespace {
 /// with the third power of its length, and a margin keeps the two from alternating.
 constexpr double kSmall = 0.1;
 
+/// Shortest step [ticks], and error relative to the allowed one [-] from which on there are shorter ones:
+/// cloth in a storm moves by whole edges in the shortest.
+constexpr int kShortest = 4;
+constexpr double kGross = 10.0;
+
 /// Longest step over the first one [-], which is of first order.
 constexpr int kFirst = 4;
 
@@ -37,7 +42,7 @@ int StepControl::choose(int begin, const std::function<double(int ticks)>& motio
         return 1;
     const int most = chosen_ == 0 ? length_ : std::min(length_, 2 * chosen_);
     chosen_ = most;
-    while (begin % chosen_ != 0 || (chosen_ > 1 && motion(chosen_) > 1.0))
+    while (begin % chosen_ != 0 || (chosen_ > kShortest && motion(chosen_) > 1.0))
         chosen_ /= 2;
     return chosen_;
 }
@@ -46,8 +51,9 @@ void StepControl::observe(const StepReport& step)
 {
     if (error_ == 0.0)
         return;
+    const int shortest = step.step_error > kGross * error_ ? 1 : std::min(kShortest, chosen_);
     if (step.step_error > error_)
-        length_ = std::max(1, chosen_ / 2);
+        length_ = std::max(shortest, chosen_ / 2);
     else if (step.step_error < kSmall * error_)
         length_ = std::min(longest_, std::max(length_, 2 * chosen_));
 }

@@ -13,9 +13,10 @@ namespace toile::scenes {
 /// tenth of that, and shortened where bodies are fast.
 class StepControl {
 public:
-    /// Longest and shortest step by what moves [s]. A sample is divided evenly, so both are upper bounds.
+    /// Longest step by what moves [s]. A sample is divided evenly, so it is an upper bound.
     static constexpr double kLongest = 1.0 / 60.0;
-    static constexpr int kTicksOfLongest = 16;
+    /// A sixteenth of the longest step is the shortest, or one tick where its error is far too large.
+    static constexpr int kTicksOfLongest = 64;
 
     static StepControl fixed(double sample_duration, int steps);
 

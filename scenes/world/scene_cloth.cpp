@@ -190,9 +190,11 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     if (outer == OuterMethod::Newton) {
         strain_limit_ = std::make_unique<garment::StrainLimit>(
             rest_, garment::StrainLimit::Settings{fabric.strain_limit, kYielding}, source_);
-        // That of cloth of even width, as long as the diagonal, which hangs by a whole edge.
+        // That of cloth of even width, as long as the diagonal, which hangs by a whole edge across the wind.
         const Bounds box = bounds(state_.rest.positions);
-        const double load = fabric.areal_density * gravity_.norm() * (box.upper - box.lower).norm();
+        const double pressure =
+            fabric.areal_density * gravity_.norm() + air_->pressure(wind_.velocity.norm());
+        const double load = pressure * (box.upper - box.lower).norm();
         tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, load);
     }
     tension_ = std::make_shared<garment::StretchTension>(rest_, tension);

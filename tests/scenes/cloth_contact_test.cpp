@@ -189,4 +189,26 @@ TEST(ClothContact, HasTheSameBitsForEveryThreadCount)
 }
 
 } // namespace
+/// A sheet that is wrung until its borders are a quarter too short has no pose that keeps all. Its steps give
+/// up soon: cloth is not moved back over and over, in longer steps.
+TEST(ClothContact, SheetWrungTooFarCostsFewIterations)
+{
+    World world = world_of(R"({"toile": 1, "frames": 15, "gravity": [0, 0, 0],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [1, 0.5], "resolution": 0.1}}],
+        "attachments": [
+            {"cloth": "sheet", "select": {"box": {"lower": [-0.51, -1, -1], "upper": [-0.49, 1, 1]}},
+             "keyframes": [{"time": 0}, {"time": 0.75, "rotate_deg": [-720, 0, 0], "translate": [0.1, 0, 0]}]},
+            {"cloth": "sheet", "select": {"box": {"lower": [0.49, -1, -1], "upper": [0.51, 1, 1]}},
+             "keyframes": [{"time": 0}, {"time": 0.75, "rotate_deg": [720, 0, 0], "translate": [-0.1, 0, 0]}]}]})");
+    for (int frame = 1; frame < 15; ++frame) {
+        const StepReport report = world.advance_frame();
+        EXPECT_EQ(crossing_count(world), 0) << "frame " << frame;
+        if (frame < 12)
+            continue;
+        EXPECT_NE(report.status, StepReport::Status::Converged) << "it cannot";
+        EXPECT_LE(report.iterations, 8 * report.steps)
+            << "frame " << frame << "; 16 without Newton::Patience";
+    }
+}
+
 } // namespace toile::test

@@ -54,15 +54,27 @@ TEST(StepControl, LengthensStepsOfLittleError)
     StepControl control = StepControl::by_motion(1.0 / 30.0, 1e-4);
     EXPECT_EQ(control.ticks_of_sample(), 2 * StepControl::kTicksOfLongest);
     EXPECT_DOUBLE_EQ(control.tick() * StepControl::kTicksOfLongest, StepControl::kLongest);
-    EXPECT_EQ(steps_of_sample(control, 1e-6), (std::vector<int>{4, 4, 8, 16}));
-    EXPECT_EQ(steps_of_sample(control, 1e-6), (std::vector<int>{16, 16}));
+    EXPECT_EQ(steps_of_sample(control, 1e-6), (std::vector<int>{16, 16, 32, 64}));
+    EXPECT_EQ(steps_of_sample(control, 1e-6), (std::vector<int>{64, 64}));
 }
 
 TEST(StepControl, HalvesStepsOfTooMuchErrorAtOnce)
 {
     StepControl control = StepControl::by_motion(1.0 / 60.0, 1e-4);
-    EXPECT_EQ(steps_of_sample(control, 2e-4), (std::vector<int>{4, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}));
-    EXPECT_EQ(steps_of_sample(control, 5e-5), std::vector<int>(16, 1)) << "neither too much nor little";
+    EXPECT_EQ(steps_of_sample(control, 2e-4), (std::vector<int>{16, 8, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4}));
+    EXPECT_EQ(steps_of_sample(control, 5e-5), std::vector<int>(16, 4)) << "neither too much nor little";
+}
+
+TEST(StepControl, TakesStepsOfATickWhereTheErrorIsGross)
+{
+    StepControl control = StepControl::by_motion(1.0 / 60.0, 1e-4);
+    std::vector<int> lengths = steps_of_sample(control, 2e-3);
+    lengths.resize(6);
+    EXPECT_EQ(lengths, (std::vector<int>{16, 8, 4, 2, 1, 1}));
+    EXPECT_EQ(steps_of_sample(control, 2e-4), std::vector<int>(64, 1)) << "still too much";
+    lengths = steps_of_sample(control, 1e-6);
+    lengths.resize(5);
+    EXPECT_EQ(lengths, (std::vector<int>{1, 1, 2, 4, 8}));
 }
 
 TEST(StepControl, NoStepIsLongerThanASixtiethOfASecond)
@@ -79,10 +91,10 @@ TEST(StepControl, ShortensStepsWhereBodiesAreFast)
     StepControl control = StepControl::by_motion(1.0 / 60.0, 1e-4);
     control.choose(0, kStill);
     control.observe(with_error(0.0));
-    EXPECT_EQ(control.choose(8, [](int ticks) { return 0.3 * ticks; }), 2);
+    EXPECT_EQ(control.choose(32, [](int ticks) { return 0.07 * ticks; }), 8);
     control.observe(with_error(5e-5));
-    EXPECT_EQ(control.choose(10, kStill), 2) << "begins at a multiple of its length";
-    EXPECT_EQ(control.choose(12, kStill), 4);
+    EXPECT_EQ(control.choose(40, kStill), 8) << "begins at a multiple of its length";
+    EXPECT_EQ(control.choose(48, kStill), 16);
 }
 
 TEST(StepControl, IsChosenByTheScene)

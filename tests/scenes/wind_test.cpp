@@ -89,6 +89,21 @@ TEST(Air, LetsAFlatSheetFallAtItsTerminalSpeed)
     }
 }
 
+TEST(Wind, OfAStormStretchesSilkLittle)
+{
+    World world(parse_scene(R"({"toile": 1, "frames": 5, "wind": {"velocity": [30, 0, 0], "turbulence": 1},
+        "cloths": [{"name": "flag", "fabric": "silk", "rectangle": {"size": [0.9, 0.6], "resolution": 0.05},
+            "rotate_deg": [90, 0, 0]}],
+        "attachments": [{"cloth": "flag", "select": {"box": {"lower": [-0.46, -1, -1], "upper": [-0.44, 1, 1]}}}]})",
+                            "flag.json"));
+    const double limit = world.cloths()[0].fabric.strain_limit;
+    while (world.frame() < 4) {
+        const StepReport report = world.advance_frame();
+        EXPECT_LE(report.max_strain, limit + 0.05) << "frame " << world.frame();
+        EXPECT_LE(report.iterations, 16 * report.steps) << "frame " << world.frame();
+    }
+}
+
 /// Force of a wind of 5 m/s on a silk sheet of 20 cm x 20 cm that soft springs attach across it [N].
 double force_on_pinned_sheet(int substeps)
 {

@@ -124,6 +124,7 @@ private:
     PinnedArray<Vec3> fixed_targets_on_host_;
     // State of the integrator: see MotionView.
     Bdf2 scheme_;
+    Newton::Patience patience_;
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     DeviceArray<Vec3> x_previous_, v_previous_;
     DeviceArray<unsigned char> restart_, touched_, touches_;

@@ -25,9 +25,9 @@ constexpr double kNegligible = 0.03;
 
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
-/// raises the value, as where a body pulls it through other cloth, the minimisation ends after kMaxSetbacks,
-/// and the point with the lowest value since the objective last changed is the result.
-constexpr int kStall = 8, kMaxSetbacks = 15;
+/// raises the value, as where a body pulls it through other cloth, the minimisation ends after a few such
+/// setbacks, and the point with the lowest value since the objective last changed is the result.
+constexpr int kStall = 8;
 
 /// Tolerance of touching cloth [m/s] by the speed that external forces add in a step. In small steps that is
 /// below any fixed tolerance: cloth that should begin to slide would stay where it is, step after step. The
@@ -169,7 +169,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
             space.keep();
             kept_value = outcome.value;
         }
-        if (since_lowest > kStall || setbacks > kMaxSetbacks)
+        if (since_lowest > kStall || setbacks > settings.max_setbacks)
             break;
 
         double step = 0.0;
@@ -196,7 +196,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
         outcome.value = space.evaluate();
         setbacks += has_moved && outcome.value > before ? 1 : 0;
     }
-    if (setbacks > kMaxSetbacks) {
+    if (setbacks > settings.max_setbacks) {
         space.restore();
         outcome.value = space.evaluate();
     }

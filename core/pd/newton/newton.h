@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 
 #include "core/pd/energy/active_set_energy.h"
@@ -15,6 +16,22 @@ namespace toile {
 /// speeds, so an accuracy does not depend on the step length: after a time T the trajectory is within about
 /// 2 T tolerance of the converged one.
 struct Newton {
+    /// Number of setbacks that a minimisation may have: times that its result was moved back, because it
+    /// would cross, to a higher value. Where nothing can give way, no number is enough, so it halves with
+    /// every step that ends unfinished.
+    class Patience {
+    public:
+        int setbacks() const { return setbacks_; }
+        void observe(bool converged)
+        {
+            setbacks_ = converged ? std::min(2 * setbacks_, kMost) : std::max(setbacks_ / 2, kLeast);
+        }
+
+    private:
+        static constexpr int kLeast = 3, kMost = 15;
+        int setbacks_ = kMost;
+    };
+
     struct Settings {
         /// [m/s] Newton's method stops when the whole Newton step d, not the part that the line search
         /// accepts, is slower: RMS |d| / h < tolerance.
@@ -22,6 +39,7 @@ struct Newton {
         int max_iterations = 100;
         double dt = 0.0;                    ///< h [s]
         bool begins_by_local_global = true; ///< while nothing touches
+        int max_setbacks = 15;              ///< Patience::setbacks
     };
 
     /// Looks for contact at the current point between Newton steps. May move it and change the objective.

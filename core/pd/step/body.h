@@ -75,6 +75,7 @@ private:
 
     // State of the integrator: see MotionView.
     Bdf2 scheme_;
+    Newton::Patience patience_;
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     std::vector<Vec3> x_previous_, v_previous_;
     std::vector<unsigned char> restart_, touched_, touches_;

@@ -52,8 +52,8 @@ void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimi
     if (active)
         revise = [&](MinimiserProgress at) { return active->revise(space.end_positions(), at); };
     const double tolerance = (is_calm ? StepLimits::kCalm : 1.0) * limits.speed_tolerance;
-    const Newton::Settings settings{tolerance, limits.max_iterations, input.dt,
-                                    limits.begins_by_local_global};
+    const Newton::Settings settings{tolerance, limits.max_iterations, input.dt, limits.begins_by_local_global,
+                                    limits.max_setbacks};
     add(report, space.minimise_by_newton(settings, revise, is_calm));
 }
 

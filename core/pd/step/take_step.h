@@ -14,6 +14,7 @@ struct StepLimits {
     double speed_tolerance = 0.0;
     static constexpr double kCalm = 3.0; ///< factor for calm cloth [-]
     bool begins_by_local_global = true;  ///< Newton::Settings
+    int max_setbacks = 15;               ///< Newton::Settings
 };
 
 /// Maximum number of corrections at the end of a step, if keep_apart() moves cloth far in each. A walking

@@ -27,6 +27,12 @@ public:
     /// True if the air can act at all; otherwise callers skip the stage.
     bool is_active() const { return settings_.is_active(); }
 
+    /// Pressure on cloth at rest across a wind of that speed [m/s], in Pa.
+    double pressure(double wind_speed) const
+    {
+        return 0.5 * settings_.density * settings_.normal * wind_speed * wind_speed;
+    }
+
     /// Adds the acceleration over a step of dt [s] to acceleration [vertices] [m/s^2].
     /// @param wind   mean velocity of the air [m/s]
     /// @param gusts  [vertices] deviation from it (see gusts.h) [m/s]; empty in steady wind

@@ -86,6 +86,23 @@ private:
     std::vector<Vec3> x_, v_;
 };
 
+TEST(Patience, HalvesWhileStepsEndUnfinishedAndReturns)
+{
+    Newton::Patience patience;
+    const auto after = [&](bool converged) {
+        patience.observe(converged);
+        return patience.setbacks();
+    };
+    EXPECT_EQ(patience.setbacks(), 15);
+    EXPECT_EQ(after(true), 15);
+    EXPECT_EQ(after(false), 7);
+    EXPECT_EQ(after(false), 3);
+    EXPECT_EQ(after(false), 3);
+    EXPECT_EQ(after(true), 6);
+    EXPECT_EQ(after(true), 12);
+    EXPECT_EQ(after(true), 15);
+}
+
 } // namespace
 
 TEST(TakeStep, AsksForNothingThatTheSceneDoesNotHave)
