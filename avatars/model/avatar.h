@@ -60,6 +60,9 @@ public:
     virtual std::vector<unsigned char> faces_on_bones(const std::vector<std::string>& bones,
                                                       const std::string& user) const;
 
+    /// Name of the bone with the largest skin weight at a vertex; empty for a body without bones.
+    virtual std::string bone_at(int /*vertex*/) const { return {}; }
+
     /// Skin weights of the vertices: skin().posed(v, bones) is the position of vertex v.
     virtual SkinView skin() const = 0;
     /// Number of maps that make a pose: one per bone, then one per blend shape.

@@ -161,4 +161,14 @@ std::vector<unsigned char> SkinnedAvatar::faces_on_bones(const std::vector<std::
     return marked;
 }
 
+std::string SkinnedAvatar::bone_at(int vertex) const
+{
+    const SkinView skin = model_.mesh.skin();
+    const Influence* first = skin.influences.data() + skin.first[vertex];
+    const Influence* last = skin.influences.data() + skin.first[vertex + 1];
+    const Influence* heaviest = std::max_element(
+        first, last, [](const Influence& a, const Influence& b) { return a.weight < b.weight; });
+    return heaviest == last ? "" : model_.skeleton.joints()[model_.mesh.bones[heaviest->bone].joint].name;
+}
+
 } // namespace toile::avatars

@@ -30,6 +30,7 @@ public:
 
     std::vector<unsigned char> faces_on_bones(const std::vector<std::string>& bones,
                                               const std::string& user) const override;
+    std::string bone_at(int vertex) const override;
 
     const RiggedModel& model() const { return model_; }
 

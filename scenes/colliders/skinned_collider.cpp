@@ -76,6 +76,21 @@ void SkinnedCollider::pose(View<const avatars::Affine> bones, View<Vec3> x) cons
         contact_->place_lids(x);
 }
 
+int SkinnedCollider::nearest_vertex(const Vec3& x, double max_distance) const
+{
+    const avatars::SkinView skin = avatar_.avatar().skin();
+    int nearest = -1;
+    double min_square = max_distance * max_distance;
+    for (int v = 0; v < body_vertex_count(); ++v) {
+        const double square = (skin.posed(v, avatar_.bones_t1()) - x).squaredNorm();
+        if (square < min_square) {
+            min_square = square;
+            nearest = v;
+        }
+    }
+    return nearest;
+}
+
 Vec3 SkinnedCollider::vertex_t1(int v) const
 {
     const avatars::SkinView skin = avatar_.avatar().skin();

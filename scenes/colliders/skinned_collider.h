@@ -49,6 +49,10 @@ public:
         return contact_ ? contact_->face_of(contact_triangle) : contact_triangle;
     }
 
+    /// Vertex of the whole body that is nearest to x at t1, within max_distance [m]; -1 if there is none.
+    /// O(vertices).
+    int nearest_vertex(const Vec3& x, double max_distance) const;
+
     /// A vertex of the contact surface at t1 [m].
     Vec3 vertex_t1(int v) const;
 

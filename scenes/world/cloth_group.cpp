@@ -26,6 +26,22 @@ constexpr double kSleepSizeFraction = 0.002;
 /// longer than cloth moves.
 constexpr double kMaxSpeedRatio = 100.0;
 
+/// By what bone of a body x is, for messages; empty if there is none within 10 cm.
+std::string nearest_bone(const Vec3& x, const std::vector<Collider>& colliders)
+{
+    double min_distance = 0.1; // [m]
+    std::string bone;
+    for (const Collider& collider : colliders) {
+        const std::shared_ptr<const SkinnedCollider> skinned = collider.body().skinned();
+        const int nearest = skinned ? skinned->nearest_vertex(x, min_distance) : -1;
+        if (nearest < 0 || skinned->avatar().bone_at(nearest).empty())
+            continue;
+        min_distance = (skinned->vertex_t1(nearest) - x).norm();
+        bone = ", by \"" + skinned->avatar().bone_at(nearest) + "\" of \"" + collider.name() + "\"";
+    }
+    return bone;
+}
+
 } // namespace
 
 std::vector<Vec3> ClothGroup::start_positions() const
@@ -120,26 +136,26 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     // A solver whose every direction was refused leaves the cloth where it is: that is not rest.
     report.unfinished = report.status == StepReport::Status::IterationLimit ? 1 : 0;
     const bool is_stuck = report.unfinished > 0 && report.iterations == 0;
-    judge(report, t_t1);
+    judge(t_t1, colliders, report);
     watch_rest(is_stuck, dt);
     return report;
 }
 
 /// Completes the status: what has yielded, and where. Copies positions from a GPU only where something has,
 /// or may have: exactly held vertices.
-void ClothGroup::judge(StepReport& report, double t_t1)
+void ClothGroup::judge(double t_t1, const std::vector<Collider>& colliders, StepReport& report)
 {
     const auto raise = [&](StepReport::Status status) { report.status = std::max(report.status, status); };
     if (contact_ && contact_->bodies()) {
         report.pinched.count = contact_->let_through_count();
         if (report.pinched.count > 0) {
-            report.pinched.place = place_of(contact_->first_let_through());
+            report.pinched.place = place_of(contact_->first_let_through(), colliders);
             raise(StepReport::Status::Pinched);
         }
         report.stuck.count = crossing_bodies_ + contact_->stuck_count();
         if (report.stuck.count > 0) {
             report.stuck.place =
-                place_of(contact_->stuck_count() > 0 ? contact_->first_stuck() : first_crossing_);
+                place_of(contact_->stuck_count() > 0 ? contact_->first_stuck() : first_crossing_, colliders);
             raise(StepReport::Status::Stuck);
         }
         if (has_jump_) {
@@ -147,14 +163,14 @@ void ClothGroup::judge(StepReport& report, double t_t1)
             raise(StepReport::Status::Stuck);
         }
     }
-    find_strained(t_t1, report);
-    find_displaced(report);
+    find_strained(t_t1, colliders, report);
+    find_displaced(colliders, report);
     if (report.yielded.count > 0 || report.displaced.count > 0)
         raise(StepReport::Status::Yielded);
 }
 
 /// Finds the triangles beyond their limit, given the largest strain of any.
-void ClothGroup::find_strained(double t_t1, StepReport& report) const
+void ClothGroup::find_strained(double t_t1, const std::vector<Collider>& colliders, StepReport& report) const
 {
     for (int c = 0; c < int(cloths_.size()); ++c) {
         const garment::StrainLimit& limit = cloths_[c].strain_limit();
@@ -166,8 +182,8 @@ void ClothGroup::find_strained(double t_t1, StepReport& report) const
         const auto place = [&](int triangle) {
             const Triangle& t = cloths_[c].state().triangles[triangle];
             const auto held = std::find_if(t.begin(), t.end(), [&](int v) { return attached[v] != 0; });
-            return held == t.end() ? place_of(first_[c] + t[0])
-                                   : place_of(first_[c] + *held) + ", which is attached";
+            return held == t.end() ? place_of(first_[c] + t[0], colliders)
+                                   : place_of(first_[c] + *held, colliders) + ", which is attached";
         };
         if (excess.count > 0)
             report.yielded.merge({excess.count, place(excess.triangle)});
@@ -177,7 +193,7 @@ void ClothGroup::find_strained(double t_t1, StepReport& report) const
 }
 
 /// Finds exactly held vertices that are off their targets.
-void ClothGroup::find_displaced(StepReport& report) const
+void ClothGroup::find_displaced(const std::vector<Collider>& colliders, StepReport& report) const
 {
     constexpr double kTolerated = 1e-4; // [m]
     const bool any_held = std::find(fixed_.begin(), fixed_.end(), 1) != fixed_.end();
@@ -187,7 +203,7 @@ void ClothGroup::find_displaced(StepReport& report) const
     for (int v = 0; v < first_.back(); ++v)
         if (fixed_[v] != 0 && (x[v] - targets_[v]).norm() > kTolerated) {
             if (report.displaced.count++ == 0)
-                report.displaced.place = place_of(v);
+                report.displaced.place = place_of(v, colliders);
         }
 }
 
@@ -195,7 +211,7 @@ bool ClothGroup::is_strained() const
 {
     StepReport report;
     report.max_strain = std::numeric_limits<double>::max();
-    find_strained(0.0, report);
+    find_strained(0.0, {}, report);
     return report.yielded.count > 0;
 }
 
@@ -209,8 +225,8 @@ StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>
     return report;
 }
 
-/// Vertex 12 of "skirt" near (0.100, 0.900, 0.020) m.
-std::string ClothGroup::place_of(int vertex) const
+/// Vertex 12 of "skirt" near (0.100, 0.900, 0.020) m, by "hips" of "woman".
+std::string ClothGroup::place_of(int vertex, const std::vector<Collider>& colliders) const
 {
     const Vec3& x = body_->positions()[vertex];
     int cloth = 0;
@@ -219,7 +235,8 @@ std::string ClothGroup::place_of(int vertex) const
     char at[80];
     std::snprintf(at, sizeof at, " near (%.3f, %.3f, %.3f) m", x.x(), x.y(), x.z());
     const int number = cloths_[cloth].state().file_vertex(vertex - first_[cloth]);
-    return "vertex " + std::to_string(number) + " of \"" + cloths_[cloth].state().name + "\"" + at;
+    return "vertex " + std::to_string(number) + " of \"" + cloths_[cloth].state().name + "\"" + at +
+           nearest_bone(x, colliders);
 }
 
 /// Accelerations and tension on the CPU.

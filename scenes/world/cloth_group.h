@@ -89,10 +89,10 @@ private:
     std::vector<unsigned char> mark_inside(const collision::BodySurfaces& bodies, View<const Vec3> x) const;
     int solid_of(int triangle) const;
     std::string names() const;
-    void judge(StepReport& report, double t_t1);
-    void find_strained(double t_t1, StepReport& report) const;
-    void find_displaced(StepReport& report) const;
-    std::string place_of(int vertex) const;
+    void judge(double t_t1, const std::vector<Collider>& colliders, StepReport& report);
+    void find_strained(double t_t1, const std::vector<Collider>& colliders, StepReport& report) const;
+    void find_displaced(const std::vector<Collider>& colliders, StepReport& report) const;
+    std::string place_of(int vertex, const std::vector<Collider>& colliders) const;
     void watch_rest(bool is_stuck, double dt);
     bool has_moved(View<const Vec3> from, View<const Vec3> to) const;
     bool is_asleep(double t_t1, const std::vector<Collider>& colliders);

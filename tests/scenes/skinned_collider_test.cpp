@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
+#include <string>
 
 #include "core/base/stages.h"
 #include "scenes/colliders/collider.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/world/world.h"
 
 namespace toile::test {
 
@@ -55,6 +59,41 @@ TEST(SkinnedCollider, GivesSingleVerticesAndLidsLikeTheWholePose)
     skinned.pose_t1(x);
     for (int v = 0; v < skinned.vertex_count(); ++v)
         EXPECT_LT((skinned.vertex_t1(v) - x[size_t(v)]).norm(), 1e-15) << v;
+}
+
+TEST(SkinnedCollider, FindsTheBoneNearAPoint)
+{
+    SkinnedCollider column(bending_column(), identity_affine());
+    EXPECT_TRUE(column.advance_to(0.5, identity_affine()));
+    std::set<std::string> bones;
+    for (int v = 0; v < column.body_vertex_count(); ++v) {
+        const Vec3 beside = column.vertex_t1(v) + Vec3(0.001, 0.001, 0.001);
+        EXPECT_EQ(column.nearest_vertex(beside, 0.01), v);
+        bones.insert(column.avatar().bone_at(v));
+    }
+    EXPECT_EQ(bones, (std::set<std::string>{"base", "tip"}));
+    EXPECT_EQ(column.nearest_vertex({0.0, 5.0, 0.0}, 0.1), -1);
+}
+
+/// A strap that is stretched between attachments beside the column's tip.
+TEST(SkinnedCollider, IsNamedWithItsBoneWhereClothYields)
+{
+    const std::string file =
+        (std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf").string();
+    World world(parse_scene(R"({"toile": 1, "frames": 2, "gravity": [0, 0, 0],
+        "avatars": [{"name": "column", "file": ")" +
+                                file + R"(", "clip": "bend"}],
+        "cloths": [{"name": "strap", "rectangle": {"size": [0.16, 0.1], "resolution": 0.04},
+            "translate": [0, 1.05, 0]}],
+        "attachments": [{"cloth": "strap", "select": {"box": {"lower": [-0.09, 0, -1], "upper": [-0.07, 2, 1]}}},
+            {"cloth": "strap", "select": {"box": {"lower": [0.07, 0, -1], "upper": [0.09, 2, 1]}},
+             "keyframes": [{"time": 0}, {"time": 0.03, "translate": [0.1, 0, 0]}]}]})",
+                            "strap.json"));
+    const StepReport report = world.advance_frame();
+    ASSERT_GT(report.yielded.count, 0);
+    EXPECT_NE(report.yielded.place.find("\"strap\""), std::string::npos) << report.yielded.place;
+    EXPECT_NE(report.yielded.place.find(", by \"tip\" of \"column\""), std::string::npos)
+        << report.yielded.place;
 }
 
 TEST(SkinnedCollider, IsSkinnedOnDemand)
