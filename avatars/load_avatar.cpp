@@ -1,6 +1,5 @@
 #include "avatars/load_avatar.h"
 
-#include <cctype>
 #include <map>
 
 #include "avatars/import/assimp_import.h"
@@ -8,26 +7,18 @@
 #include "avatars/model/skinned_avatar.h"
 #include "avatars/model/static_avatar.h"
 #include "core/base/error.h"
+#include "core/base/extension.h"
 #include "core/mesh/obj.h"
 
 namespace toile::avatars {
 
 namespace {
 
-/// Extension of the file in lower case, with its dot.
-std::string format_of(const std::filesystem::path& file)
-{
-    std::string extension = file.extension().string();
-    for (char& letter : extension)
-        letter = char(std::tolower(static_cast<unsigned char>(letter)));
-    return extension;
-}
-
 double metres_per_unit(const AvatarSettings& settings)
 {
     static const std::map<std::string, double> kUnits{
         {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
-    const std::string by_format = format_of(settings.file) == ".fbx" ? "cm" : "m";
+    const std::string by_format = lower_case_extension(settings.file) == ".fbx" ? "cm" : "m";
     const auto unit = kUnits.find(settings.unit.empty() ? by_format : settings.unit);
     if (unit == kUnits.end())
         throw InvalidInput(settings.file.string() + ": unknown unit '" + settings.unit +
@@ -53,7 +44,7 @@ std::unique_ptr<Avatar> read_avatar(const AvatarSettings& settings)
     if (!std::filesystem::is_regular_file(settings.file))
         throw InvalidInput(source + ": no such file; give the path of a .gltf, .glb, .fbx or .obj body");
     const Affine to_metres = metres_from_file(settings);
-    if (format_of(settings.file) == ".obj") {
+    if (lower_case_extension(settings.file) == ".obj") {
         TriangleMesh mesh = read_obj(settings.file).triangulated();
         if (mesh.triangles.empty())
             throw InvalidInput(source + ": no triangles; an avatar needs a surface");

@@ -7,8 +7,10 @@
 #include "apps/toile/terminal/commands.h"
 #include "avatars/load_avatar.h"
 #include "core/base/error.h"
+#include "core/base/extension.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
+#include "core/mesh/vtk.h"
 #include "export/point_cache.h"
 #include "scenes/format/read_scene.h"
 
@@ -71,6 +73,17 @@ void print_obj(const std::filesystem::path& file)
     print_extent("extent", mesh.positions);
 }
 
+void print_tets(const std::filesystem::path& file)
+{
+    const TetMesh mesh = read_vtk_tets(file);
+    const TriangleMesh surface = boundary_surface(mesh);
+    print("vertices", mesh.positions.size());
+    print("tetrahedra", mesh.tets.size());
+    print("vertices of the surface", surface.vertex_count());
+    print("triangles of the surface", surface.triangle_count());
+    print_extent("extent", surface.positions);
+}
+
 void print_avatar(const std::filesystem::path& file)
 {
     avatars::AvatarSettings settings;
@@ -119,14 +132,14 @@ void print_scene(const std::filesystem::path& file)
 int info(const std::filesystem::path& file)
 {
     static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
-        {".obj", print_obj},   {".glb", print_avatar}, {".gltf", print_avatar}, {".fbx", print_avatar},
-        {".pc2", print_cache}, {".mdd", print_cache},  {".json", print_scene}};
+        {".obj", print_obj},    {".vtk", print_tets},  {".glb", print_avatar}, {".gltf", print_avatar},
+        {".fbx", print_avatar}, {".pc2", print_cache}, {".mdd", print_cache},  {".json", print_scene}};
     if (!std::filesystem::is_regular_file(file))
         throw InvalidInput(file.string() + ": can't be found; name a file");
-    const auto printer = kPrinters.find(file.extension().string());
+    const auto printer = kPrinters.find(lower_case_extension(file));
     if (printer == kPrinters.end())
         throw InvalidInput(file.string() +
-                           ": is of an unknown format; known are .obj, .glb, .gltf, .fbx, .pc2, .mdd " +
+                           ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .pc2, .mdd " +
                            "and .json (scene)");
     printer->second(file);
     return kExitOk;

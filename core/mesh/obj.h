@@ -28,6 +28,9 @@ struct ObjMesh {
     std::vector<Triangle> triangles_of(int polygon) const;
 };
 
+/// The same surface as polygons of three corners.
+ObjMesh faces_of(const TriangleMesh& mesh);
+
 /// Reads v, vt and f lines (negative indices too), with any line ends, continued lines and a byte-order mark;
 /// ignores other lines of the format. Texture indices are kept only if every face has them.
 /// @throws InvalidInput naming file and line: missing file, a number that does not parse or is not finite, an

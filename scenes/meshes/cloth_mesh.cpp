@@ -11,15 +11,6 @@ namespace toile::scenes {
 
 namespace {
 
-ObjMesh faces_of(const TriangleMesh& mesh)
-{
-    ObjMesh faces;
-    faces.positions = mesh.positions;
-    for (const Triangle& t : mesh.triangles)
-        faces.polygons.push_back({t[0], t[1], t[2]});
-    return faces;
-}
-
 /// Mesh of the cloth in its local frame, before placement.
 ObjMesh cut(const scene::Cloth& cloth)
 {
@@ -128,9 +119,8 @@ ClothMesh cloth_mesh(const scene::Cloth& cloth)
         clean(cloth, result);
     else
         require_usable(mesh, source_of(cloth));
-    if (cloth.subdivide > 0) {
+    if (cloth.subdivide > 0)
         mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
-    }
     place(mesh);
     place(result.file);
     require_in_range(mesh.positions, source_of(cloth));
