@@ -13,6 +13,7 @@
 #include "core/mesh/vtk.h"
 #include "export/point_cache.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/meshes/cloth_mesh.h"
 
 namespace toile::app {
 
@@ -53,6 +54,24 @@ int count_pieces(const TriangleMesh& mesh)
     return pieces;
 }
 
+/// What a scene would make of the file.
+void print_as_cloth(const std::filesystem::path& file)
+{
+    scene::Cloth cloth;
+    cloth.shape = file;
+    try {
+        const scenes::ClothMesh made = scenes::cloth_mesh(cloth);
+        for (const std::string& warning : made.warnings)
+            print("as cloth", warning);
+        const Topology topology = build_branching_topology(made.mesh.triangulated(), file.string());
+        const auto borders = std::count_if(topology.edges.begin(), topology.edges.end(),
+                                           [](const Edge& edge) { return edge.is_border(); });
+        print("border edges", std::to_string(borders) + (borders == 0 ? " (closed)" : " (open)"));
+    } catch (const InvalidInput& error) {
+        print("not usable as cloth", error.what());
+    }
+}
+
 void print_obj(const std::filesystem::path& file)
 {
     const ObjMesh obj = read_obj(file);
@@ -62,14 +81,7 @@ void print_obj(const std::filesystem::path& file)
     print("triangles", mesh.triangle_count());
     print("texture coordinates", obj.polygon_uvs.empty() ? "no" : "yes");
     print("pieces", count_pieces(mesh));
-    try {
-        const Topology topology = build_topology(mesh.triangles, mesh.vertex_count(), file.string());
-        const auto borders = std::count_if(topology.edges.begin(), topology.edges.end(),
-                                           [](const Edge& edge) { return edge.is_border(); });
-        print("border edges", std::to_string(borders) + (borders == 0 ? " (closed)" : " (open)"));
-    } catch (const InvalidInput& error) {
-        print("not usable as cloth", error.what());
-    }
+    print_as_cloth(file);
     print_extent("extent", mesh.positions);
 }
 
