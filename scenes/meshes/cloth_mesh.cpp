@@ -103,6 +103,7 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
     if (const int count = drop_repeated_polygons(mesh); count > 0)
         result.warnings.push_back("left out " + counted(count, "face", "faces") +
                                   " with the corners of others: duplicates, or backs of two-sided faces");
+    const int branching_in_file = branching_edges(mesh);
     const bool is_welded = join_vertices(cloth, result);
     if (const int count = make_windings_agree(mesh); count > 0)
         result.warnings.push_back("flipped " + counted(count, "face", "faces") +
@@ -111,7 +112,8 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
     if (const int count = branching_edges(mesh); count > 0)
         result.warnings.push_back(counted(count, "edge is", "edges are") +
                                   " shared by more than two faces: the two that continue each other bend " +
-                                  "there as one, the others are hinged on them");
+                                  "there as one, the others are hinged on them" +
+                                  (branching_in_file < count ? "; \"weld\": false keeps seams apart" : ""));
     if (const auto polygons = one_sided_polygons(mesh))
         throw InvalidInput(
             source_of(cloth) + ": the faces in lines " + line_of(mesh, (*polygons)[0]) + " and " +

@@ -154,6 +154,21 @@ TEST_F(ClothFiles, MayBeSewnOntoThemselves)
     EXPECT_LT(x[81].y(), x[31].y() + 0.01) << "it falls over, about its seam";
 }
 
+/// Three panels end at one edge, which stays open; seams beside it join all their vertices there.
+TEST_F(ClothFiles, SeamsMayMakeAnEdgeOfThreeFaces)
+{
+    const std::string a = "v 0 0 0\nv .1 0 0\nv .2 0 0\nv -.1 0 0\nv .05 0 .1\n"
+                          "f 1 2 5\nf 2 3 5\nf 4 1 5\n";
+    const std::string b = "v 0 0 0\nv .1 0 0\nv .2 0 0\nv -.1 0 0\nv .05 .1 0\n"
+                          "v -.1 -.05 0\nv -.1 -.05 .1\nv .2 -.05 0\nv .2 -.05 .1\n"
+                          "f 6 7 10\nf 7 8 10\nf 9 6 10\nf 6 11 12\nf 7 13 14\n";
+    const std::string c = "v 0 0 0\nv .1 0 0\nv -.1 -.05 0\nv .2 -.05 0\nv .05 -.1 0\n"
+                          "f 15 16 19\nf 15 17 19\nf 16 18 19\n";
+    world_of(a + b + c, "", R"(, "contact": {"repair_start": false})");
+    EXPECT_TRUE(says("1 edge is shared by more than two faces")) << warnings_;
+    EXPECT_TRUE(says("\"weld\": false keeps seams apart")) << warnings_;
+}
+
 TEST_F(ClothFiles, FacesOfOneSideOnlyAreNamedByTheirLines)
 {
     std::string strip;
