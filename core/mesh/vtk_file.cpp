@@ -114,7 +114,7 @@ std::string VtkFile::dataset()
 std::string VtkFile::section()
 {
     for (;;) {
-        const std::string name = word();
+        std::string name = word();
         if (name == "metadata")
             skip_metadata();
         else if (name == "field")

@@ -130,6 +130,7 @@ int check(const CheckOptions& options)
         lock.emplace(output.parent_path());
     const scenes::World world(scene);
     std::vector<CachedCloth> cloths;
+    cloths.reserve(caches.size());
     for (const ClothCache& cache : caches)
         cloths.push_back({&world.surfaces()[cache.cloth], cache.file, cache.file});
 

@@ -43,7 +43,7 @@ std::string loop_for_ever()
 TEST(ChildProcess, ReturnsWhatTheWorkReturns)
 {
     EXPECT_EQ(in_child_process([] { return std::string(); }, kBounds), "");
-    const std::string large(3'000'000, '\0'); // more than a pipe holds
+    std::string large(3'000'000, '\0'); // more than a pipe holds
     EXPECT_EQ(in_child_process([&] { return large; }, kBounds), large);
 }
 
@@ -96,6 +96,7 @@ TEST(ChildProcess, RunsBesideThreadsThatAllocate)
 {
     std::atomic<bool> ended = false;
     std::vector<std::thread> threads;
+    threads.reserve(4);
     for (int i = 0; i < 4; ++i)
         threads.emplace_back([&] {
             while (!ended)
