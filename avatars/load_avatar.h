@@ -17,6 +17,9 @@ struct AvatarSettings {
     MannequinSettings mannequin;
 };
 
+/// True for a format in centimetres, unless another unit is given: FBX.
+bool is_in_centimetres(const std::filesystem::path& file);
+
 /// Loads any kind of avatar: the mannequin, .obj (static, vertex order kept), glTF, and every format of
 /// assimp (meshes of a file merged, texture seams welded).
 /// @throws InvalidInput in one line: file missing or unreadable, no triangles, a position, key or matrix that

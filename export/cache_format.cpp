@@ -3,12 +3,13 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/extension.h"
 
 namespace toile::exports {
 
 CacheFormat cache_format(const std::filesystem::path& file)
 {
-    const std::string extension = file.extension().string();
+    const std::string extension = lower_case_extension(file);
     if (extension == ".pc2")
         return CacheFormat::Pc2;
     if (extension == ".mdd")

@@ -34,6 +34,11 @@ std::filesystem::path ObjSequence::file(int number) const
     return folder_ / (prefix_ + digits + suffix_);
 }
 
+std::filesystem::path ObjSequence::pattern() const
+{
+    return folder_ / (prefix_ + std::string(size_t(digits_), '#') + suffix_);
+}
+
 std::string ObjSequence::stem() const { return prefix_.substr(0, prefix_.find_last_not_of("_.-") + 1); }
 
 std::optional<int> ObjSequence::number_of(const std::string& file_name) const

@@ -16,6 +16,8 @@ public:
     explicit ObjSequence(const std::filesystem::path& pattern);
 
     std::filesystem::path file(int number) const;
+    /// Path with one # for each digit, which names this sequence and no file.
+    std::filesystem::path pattern() const;
     /// File name without the digits and their separator: skirt for skirt_####.obj.
     std::string stem() const;
     /// Number in a file name of this sequence, or nothing for a foreign name.

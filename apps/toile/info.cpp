@@ -7,10 +7,13 @@
 #include "apps/toile/terminal/commands.h"
 #include "avatars/load_avatar.h"
 #include "core/base/error.h"
+#include "core/base/extension.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
+#include "core/mesh/vtk.h"
 #include "export/point_cache.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/meshes/cloth_mesh.h"
 
 namespace toile::app {
 
@@ -51,6 +54,24 @@ int count_pieces(const TriangleMesh& mesh)
     return pieces;
 }
 
+/// What a scene would make of the file.
+void print_as_cloth(const std::filesystem::path& file)
+{
+    scene::Cloth cloth;
+    cloth.shape = file;
+    try {
+        const scenes::ClothMesh made = scenes::cloth_mesh(cloth);
+        for (const std::string& warning : made.warnings)
+            print("as cloth", warning);
+        const Topology topology = build_branching_topology(made.mesh.triangulated(), file.string());
+        const auto borders = std::count_if(topology.edges.begin(), topology.edges.end(),
+                                           [](const Edge& edge) { return edge.is_border(); });
+        print("border edges", std::to_string(borders) + (borders == 0 ? " (closed)" : " (open)"));
+    } catch (const InvalidInput& error) {
+        print("not usable as cloth", error.what());
+    }
+}
+
 void print_obj(const std::filesystem::path& file)
 {
     const ObjMesh obj = read_obj(file);
@@ -60,15 +81,19 @@ void print_obj(const std::filesystem::path& file)
     print("triangles", mesh.triangle_count());
     print("texture coordinates", obj.polygon_uvs.empty() ? "no" : "yes");
     print("pieces", count_pieces(mesh));
-    try {
-        const Topology topology = build_topology(mesh.triangles, mesh.vertex_count(), file.string());
-        const auto borders = std::count_if(topology.edges.begin(), topology.edges.end(),
-                                           [](const Edge& edge) { return edge.is_border(); });
-        print("border edges", std::to_string(borders) + (borders == 0 ? " (closed)" : " (open)"));
-    } catch (const InvalidInput& error) {
-        print("not usable as cloth", error.what());
-    }
+    print_as_cloth(file);
     print_extent("extent", mesh.positions);
+}
+
+void print_tets(const std::filesystem::path& file)
+{
+    const TetMesh mesh = read_vtk_tets(file);
+    const TriangleMesh surface = boundary_surface(mesh);
+    print("vertices", mesh.positions.size());
+    print("tetrahedra", mesh.tets.size());
+    print("vertices of the surface", surface.vertex_count());
+    print("triangles of the surface", surface.triangle_count());
+    print_extent("extent", surface.positions);
 }
 
 void print_avatar(const std::filesystem::path& file)
@@ -119,14 +144,14 @@ void print_scene(const std::filesystem::path& file)
 int info(const std::filesystem::path& file)
 {
     static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
-        {".obj", print_obj},   {".glb", print_avatar}, {".gltf", print_avatar}, {".fbx", print_avatar},
-        {".pc2", print_cache}, {".mdd", print_cache},  {".json", print_scene}};
+        {".obj", print_obj},    {".vtk", print_tets},  {".glb", print_avatar}, {".gltf", print_avatar},
+        {".fbx", print_avatar}, {".pc2", print_cache}, {".mdd", print_cache},  {".json", print_scene}};
     if (!std::filesystem::is_regular_file(file))
         throw InvalidInput(file.string() + ": can't be found; name a file");
-    const auto printer = kPrinters.find(file.extension().string());
+    const auto printer = kPrinters.find(lower_case_extension(file));
     if (printer == kPrinters.end())
         throw InvalidInput(file.string() +
-                           ": is of an unknown format; known are .obj, .glb, .gltf, .fbx, .pc2, .mdd " +
+                           ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .pc2, .mdd " +
                            "and .json (scene)");
     printer->second(file);
     return kExitOk;

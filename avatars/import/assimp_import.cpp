@@ -1,13 +1,19 @@
 #include "avatars/import/assimp_import.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <new>
 
+#include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include "avatars/import/model_builder.h"
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 
 namespace toile::avatars {
@@ -79,8 +85,7 @@ private:
         for (unsigned b = 0; b < mesh.mNumBones; ++b) {
             const aiBone& bone = *mesh.mBones[b];
             const int index =
-                builder_.add_bone({builder_.skeleton().require(
-                                       bone.mName.C_Str(), source_ + ": mesh '" + mesh.mName.C_Str() + "'"),
+                builder_.add_bone({builder_.skeleton().require(bone.mName.C_Str(), source_ + ": a mesh"),
                                    to_affine(bone.mOffsetMatrix)});
             for (unsigned w = 0; w < bone.mNumWeights; ++w) {
                 const aiVertexWeight& part = bone.mWeights[w];
@@ -149,9 +154,37 @@ private:
     std::vector<std::pair<unsigned, int>> instances_; ///< mesh index, joint of its node
 };
 
-} // namespace
+/// Name of assimp's own format, which keeps every number.
+constexpr const char* kOwnFormat = "assbin";
 
-RiggedModel import_rigged_model(const std::filesystem::path& file)
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reason)
+{
+    throw InvalidInput(file.string() + ": can't be read as a model (" + reason + ")");
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const Assimp::Importer& importer)
+{
+    try {
+        if (importer.GetException())
+            std::rethrow_exception(importer.GetException());
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception&) { // assimp's own, which GetErrorString() tells
+    }
+    std::string reason = importer.GetErrorString();
+    std::replace(reason.begin(), reason.end(), '\n', ' ');
+    refuse(file, reason);
+}
+
+/// Bounds that whole files stay far below: 10 MB are read within a second, in a tenth of the memory.
+ChildBounds bounds_for(const std::filesystem::path& file)
+{
+    const std::uintmax_t megabytes = std::filesystem::file_size(file) >> 20;
+    return {std::chrono::seconds(20 + 2 * megabytes), (1000 + 100 * megabytes) << 20};
+}
+
+/// Content of a file in assimp's own format.
+std::string in_own_format(const std::filesystem::path& file)
 {
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -159,11 +192,39 @@ RiggedModel import_rigged_model(const std::filesystem::path& file)
     // Pivots as extra nodes would tip an FBX body onto its side once a motion file without them drives it.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
-    if (!scene || !scene->mRootNode) {
-        std::string reason = importer.GetErrorString();
-        std::replace(reason.begin(), reason.end(), '\n', ' ');
-        throw InvalidInput(file.string() + ": can't be read as a model (" + reason + ")");
+    if (!scene || !scene->mRootNode)
+        refuse(file, importer);
+    Assimp::Exporter exporter;
+    const aiExportDataBlob* content = exporter.ExportToBlob(scene, kOwnFormat);
+    if (!content)
+        refuse(file, exporter.GetErrorString());
+    return {static_cast<const char*>(content->data), content->size};
+}
+
+/// Reads the file in a child process: assimp's readers crash, loop and fill the memory for some damaged
+/// files.
+/// @param importer  owns the result
+const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& file)
+{
+    std::string content;
+    try {
+        content = in_child_process([&] { return in_own_format(file); }, bounds_for(file));
+    } catch (const ChildStopped& stop) {
+        throw InvalidInput(file.string() + ": can't be read: assimp's reader " + stop.what() +
+                           "; export the model again, best as .glb");
     }
+    const aiScene* scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, kOwnFormat);
+    if (!scene)
+        refuse(file, importer);
+    return scene;
+}
+
+} // namespace
+
+RiggedModel import_rigged_model(const std::filesystem::path& file)
+{
+    Assimp::Importer importer;
+    const aiScene* scene = read_scene(importer, file);
     return SceneReader(*scene, file.string()).read();
 }
 

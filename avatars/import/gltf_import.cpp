@@ -1,23 +1,21 @@
 #include "avatars/import/gltf_import.h"
 
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <new>
 #include <string_view>
 
 #include "avatars/import/gltf_clips.h"
 #include "avatars/import/gltf_meshes.h"
+#include "avatars/import/gltf_uri.h"
 #include "core/base/error.h"
+#include "core/base/extension.h"
 
 namespace toile::avatars {
 
 bool is_gltf(const std::filesystem::path& file)
 {
-    std::string extension = file.extension().string();
-    for (char& letter : extension)
-        letter = char(std::tolower(static_cast<unsigned char>(letter)));
-    if (extension == ".gltf" || extension == ".glb")
+    if (const std::string extension = lower_case_extension(file); extension == ".gltf" || extension == ".glb")
         return true;
     static constexpr std::string_view kMagic = "glTF";
     std::array<char, kMagic.size()> start{};
@@ -39,6 +37,21 @@ RiggedModel import_gltf(const std::filesystem::path& file)
     } catch (const std::bad_alloc&) {
         throw InvalidInput(file.string() + ": needs more memory than there is; the file is too large");
     }
+}
+
+std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& file)
+{
+    std::vector<std::filesystem::path> files;
+    const GltfFile gltf(file);
+    for (const char* key : {"buffers", "images"})
+        for (int i = 0; i < gltf.list(key).size(); ++i) {
+            try {
+                if (const auto uri = gltf.list(key)[i].find("uri"); uri && !is_data_uri(uri->text()))
+                    files.push_back(file.parent_path() / decode_path(*uri));
+            } catch (const InvalidInput&) { // refused by import_gltf() where it matters
+            }
+        }
+    return files;
 }
 
 } // namespace toile::avatars

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "avatars/model/skinned_avatar.h"
 
@@ -16,5 +17,9 @@ bool is_gltf(const std::filesystem::path& file);
 /// lists, strips and fans, KHR_mesh_quantization. Left out: points, lines, materials, images, cameras.
 /// @throws InvalidInput in one line, naming the file and the place in its JSON, see load_avatar().
 RiggedModel import_gltf(const std::filesystem::path& file);
+
+/// Files that a glTF file names: buffers and images.
+/// @throws InvalidInput as import_gltf() if the JSON can't be read
+std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& file);
 
 } // namespace toile::avatars

@@ -31,7 +31,7 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
     std::string best;
     size_t best_distance = word.size() / 2 + 1;
     for (const std::string& candidate : candidates) {
-        const size_t distance = edit_distance(word, candidate);
+        const size_t distance = candidate.starts_with(word) ? 1 : edit_distance(word, candidate);
         if (distance < best_distance) {
             best_distance = distance;
             best = candidate;

@@ -32,8 +32,9 @@ public:
     using std::logic_error::logic_error;
 };
 
-/// Candidate closest to `word` by edit distance, for "did you mean" in error messages. Empty if every
-/// distance exceeds half of the word's length. The first of equally near candidates wins.
+/// Candidate closest to `word` by edit distance, for "did you mean" in error messages; one that begins with
+/// it is at distance 1. Empty if every distance exceeds half of the word's length. The first of equally near
+/// candidates wins.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
 
 } // namespace toile

@@ -118,6 +118,30 @@ int drop_repeated_polygons(ObjMesh& mesh)
     });
 }
 
+int drop_repeated_corners(ObjMesh& mesh)
+{
+    int changed = 0;
+    for (size_t f = 0; f < mesh.polygons.size(); ++f) {
+        std::vector<int>& polygon = mesh.polygons[f];
+        const std::vector<int> before = polygon;
+        size_t kept = 0;
+        for (size_t k = 0; k < before.size(); ++k) {
+            if (before[k] == before[(k + 1) % before.size()])
+                continue;
+            polygon[kept] = before[k];
+            if (!mesh.polygon_uvs.empty() && !mesh.polygon_uvs[f].empty())
+                mesh.polygon_uvs[f][kept] = mesh.polygon_uvs[f][k];
+            ++kept;
+        }
+        polygon.resize(kept);
+        if (!mesh.polygon_uvs.empty() && !mesh.polygon_uvs[f].empty())
+            mesh.polygon_uvs[f].resize(kept);
+        changed += kept < before.size() ? 1 : 0;
+    }
+    drop_polygons(mesh, [](const std::vector<int>& polygon) { return polygon.size() < 3; });
+    return changed;
+}
+
 std::vector<int> stitch(ObjMesh& mesh, double distance)
 {
     const std::vector<int> point_of = weld({mesh.positions, {}}, distance).welded_of;

@@ -11,6 +11,11 @@ namespace toile {
 /// @return number of dropped polygons
 int drop_repeated_polygons(ObjMesh& mesh);
 
+/// Removes corners that repeat the one before, and polygons that keep fewer than three: triangles that were
+/// stored as quadrilaterals.
+/// @return number of changed polygons
+int drop_repeated_corners(ObjMesh& mesh);
+
 /// Joins border edges that lie on each other, as along texture seams and between the faces of flat-shaded
 /// meshes: the polygons there get the lower of each two vertices. Edges stay apart where three or more meet,
 /// and between polygons that lie on each other with all corners: those are layers.

@@ -1,17 +1,18 @@
 #include "core/mesh/obj.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/mesh/polygon.h"
 
 namespace toile {
@@ -45,15 +46,21 @@ public:
     {
         while (next_line()) {
             const std::string_view keyword = next_word();
-            if (keyword == "v")
+            if (keyword == "v") {
                 mesh_.positions.push_back(Vec3{number(), number(), number()});
-            else if (keyword == "vt")
-                mesh_.texture_coordinates.push_back(Vec2{number(), number()});
-            else if (keyword == "f")
+            } else if (keyword == "vt") {
+                const double u = number();
+                mesh_.texture_coordinates.push_back(Vec2{u, is_line_read() ? 0.0 : number()});
+            } else if (keyword == "f" || keyword == "fo") { // fo: a face in files of the first versions
                 read_face();
-            else if (keyword == "l")
+            } else if (keyword == "l") {
                 ++mesh_.line_elements;
+            } else if (keyword == "curv" || keyword == "curv2" || keyword == "surf") {
+                ++mesh_.free_form_elements;
+            }
         }
+        if (mesh_.positions.empty())
+            refuse_content();
         drop_incomplete_texture();
         return std::move(mesh_);
     }
@@ -68,16 +75,27 @@ private:
             return false;
         line_ += lines_taken_;
         lines_taken_ = 0;
-        rest_ = take_line();
+        rest_ = take_statement();
         if (!rest_.ends_with('\\'))
             return true;
         joined_.clear();
         while (rest_.ends_with('\\')) {
             joined_.append(rest_.substr(0, rest_.size() - 1)) += ' ';
-            rest_ = take_line();
+            rest_ = take_statement();
         }
         rest_ = joined_.append(rest_);
         return true;
+    }
+
+    /// A line without its comment, which may end in a backslash of its own: # C:\models\.
+    std::string_view take_statement()
+    {
+        const std::string_view line = take_line();
+        size_t comment = line.find('#');
+        while (comment != std::string_view::npos && comment > 0 && line[comment - 1] != ' ' &&
+               line[comment - 1] != '\t')
+            comment = line.find('#', comment + 1); // part of a word
+        return line.substr(0, comment);
     }
 
     std::string_view take_line()
@@ -95,6 +113,18 @@ private:
         throw InvalidInput(file_.string() + ":" + std::to_string(line_) + ": " + why);
     }
 
+    /// Refuses a file without vertices.
+    [[noreturn]] void refuse_content() const
+    {
+        const bool is_text = text_.find('\0') == std::string::npos;
+        throw InvalidInput(file_.string() + ": is no OBJ: " +
+                           (is_text ? "no line begins with v; it has \"v x y z\" for each vertex, then " +
+                                          std::string("\"f 1 2 3\" for each face")
+                                    : "it is binary or in UTF-16; an OBJ is plain text"));
+    }
+
+    bool is_line_read() const { return rest_.find_first_not_of(" \t\r") == std::string_view::npos; }
+
     std::string_view next_word()
     {
         const size_t begin = rest_.find_first_not_of(" \t\r");
@@ -108,25 +138,27 @@ private:
 
     double number()
     {
+        if (is_line_read())
+            refuse("the line ends too soon; a vertex has x, y and z, a texture coordinate u and v");
         const std::string_view word = next_word();
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value))
-            refuse("'" + std::string(word) + "' is not a finite number; write a decimal number");
-        return value;
+        const std::optional<double> value = number_in(word);
+        if (!value)
+            refuse("'" + std::string(word) + "' is not a finite number; write a decimal number: -0.25, 3e-4");
+        return *value;
     }
 
     /// A 1-based or negative (counted from the end) OBJ index, as 0-based.
     int index(std::string_view word, size_t count, const char* what)
     {
-        int value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        const int resolved = value < 0 ? int(count) + value : value - 1;
-        if (error != std::errc{} || end != word.data() + word.size() || resolved < 0 ||
-            resolved >= int(count))
-            refuse(std::string(what) + " index '" + std::string(word) + "' is out of range; " +
-                   std::to_string(count) + " are defined above this line");
-        return resolved;
+        const std::optional<std::int64_t> value = whole_number_in(word);
+        if (!value)
+            refuse("'" + std::string(word) + "' is no " + what + " index; a corner is v, v/vt, v//vn or " +
+                   "v/vt/vn in whole numbers");
+        const std::int64_t resolved = *value < 0 ? std::int64_t(count) + *value : *value - 1;
+        if (resolved < 0 || resolved >= std::int64_t(count))
+            refuse(std::string(what) + " index " + std::to_string(*value) + " is out of range; " +
+                   std::to_string(count) + " are defined above this line, numbered from 1");
+        return int(resolved);
     }
 
     void read_face()
@@ -144,7 +176,8 @@ private:
         }
         if (polygon.size() < 3 || polygon.size() > kMaxCorners)
             refuse("the face has " + std::to_string(polygon.size()) +
-                   " corners; it needs at least 3 and at most " + std::to_string(kMaxCorners));
+                   (polygon.size() == 1 ? " corner" : " corners") + "; it needs at least 3 and at most " +
+                   std::to_string(kMaxCorners));
         if (!uvs.empty() && uvs.size() != polygon.size())
             refuse("some corners of the face have a texture index and some have none; give all or none");
         mesh_.polygons.push_back(std::move(polygon));
@@ -196,14 +229,24 @@ std::vector<Triangle> ObjMesh::triangles_of(int polygon) const
     return triangulate_polygon(corners);
 }
 
+ObjMesh faces_of(const TriangleMesh& mesh)
+{
+    ObjMesh faces;
+    faces.positions = mesh.positions;
+    for (const Triangle& t : mesh.triangles)
+        faces.polygons.push_back({t[0], t[1], t[2]});
+    return faces;
+}
+
 void require_usable(const ObjMesh& mesh, const std::string& source)
 {
+    if (mesh.polygons.empty())
+        throw InvalidInput(source + ": the mesh has no triangle; a surface needs at least one face" +
+                           (mesh.free_form_elements > 0 ? ", its curved surfaces as polygons" : ""));
     if (mesh.polygon_lines.empty()) {
         require_usable(mesh.triangulated(), source);
         return;
     }
-    if (mesh.polygons.empty())
-        throw InvalidInput(source + ": the mesh has no triangle; a surface needs at least one face");
     const auto refuse = [&](int polygon, const std::string& defect) {
         throw InvalidInput(source + ":" + std::to_string(mesh.polygon_lines[polygon]) + ": the face " +
                            (mesh.polygons[polygon].size() > 3 ? "has a triangle that " : "") + defect);
@@ -243,11 +286,7 @@ void write_obj(const std::filesystem::path& file, const ObjMesh& mesh)
 
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh)
 {
-    ObjMesh obj;
-    obj.positions = mesh.positions;
-    for (const Triangle& t : mesh.triangles)
-        obj.polygons.push_back({t[0], t[1], t[2]});
-    write_obj(file, obj);
+    write_obj(file, faces_of(mesh));
 }
 
 } // namespace toile

@@ -20,6 +20,7 @@ struct ObjMesh {
     // Of a file, for messages; empty or 0 for a mesh made otherwise.
     std::vector<int> polygon_lines; ///< line of each polygon, counted from 1
     int line_elements = 0;          ///< l lines, which are not read
+    int free_form_elements = 0;     ///< curves and curved surfaces, which are not read
 
     /// Triangulates every polygon: triangulate_polygon().
     TriangleMesh triangulated() const;
@@ -28,9 +29,13 @@ struct ObjMesh {
     std::vector<Triangle> triangles_of(int polygon) const;
 };
 
-/// Reads v, vt and f lines (negative indices too), with any line ends, continued lines and a byte-order mark;
-/// ignores other lines of the format. Texture indices are kept only if every face has them.
-/// @throws InvalidInput naming file and line: missing file, a number that does not parse or is not finite, an
+/// The same surface as polygons of three corners.
+ObjMesh faces_of(const TriangleMesh& mesh);
+
+/// Reads v, vt and f lines (negative indices too), with any line ends, comments, continued lines and a
+/// byte-order mark; ignores other lines of the format. Texture indices are kept only if every face has them.
+/// @throws InvalidInput naming file and line: missing file, one without vertices, a number that does not
+/// parse or is not finite, an
 ///         index out of range, a face of fewer than three or more than 10 000 corners
 ObjMesh read_obj(const std::filesystem::path& file);
 

@@ -62,41 +62,87 @@ Incidence corners_of_vertices(View<const Triangle> triangles, int vertex_count)
     return incidence;
 }
 
-Topology build_topology(View<const Triangle> triangles, int vertex_count, const std::string& source)
+namespace {
+
+[[noreturn]] void refuse_directions(const std::string& source, const HalfEdge& a, const HalfEdge& b)
+{
+    throw InvalidInput(source + ": triangles " + std::to_string(a.triangle) + " and " +
+                       std::to_string(b.triangle) + " run " + edge_name(a) +
+                       " in the same direction; flip one of them so that windings agree");
+}
+
+/// @param pair_at_branch  moves two of three or more half edges, which continue each other, to the front
+template <typename PairAtBranch>
+Topology build(View<const Triangle> triangles, int vertex_count, const std::string& source,
+               const PairAtBranch& pair_at_branch)
 {
     Topology topology;
     topology.corners_of_vertex = corners_of_vertices(triangles, vertex_count);
     topology.triangle_edge.resize(triangles.size());
-
-    const std::vector<HalfEdge> halves = sorted_half_edges(triangles);
-    for (size_t begin = 0; begin < halves.size();) {
-        size_t end = begin + 1;
-        while (end < halves.size() && halves[end].low == halves[begin].low &&
-               halves[end].high == halves[begin].high)
-            ++end;
-        const HalfEdge& first = halves[begin];
-        if (end - begin > 2)
-            throw InvalidInput(source + ": " + edge_name(first) +
-                               " is non-manifold: " + std::to_string(end - begin) +
-                               " triangles share it, at most 2 may; split the surface there");
-        if (end - begin == 2 && first.ascending == halves[begin + 1].ascending)
-            throw InvalidInput(source + ": triangles " + std::to_string(first.triangle) + " and " +
-                               std::to_string(halves[begin + 1].triangle) + " run " + edge_name(first) +
-                               " in the same direction; flip one of them so that windings agree");
-
+    const auto add_edge = [&](auto begin, auto end) {
         Edge edge;
-        edge.vertex = {triangles[first.triangle][first.corner],
-                       triangles[first.triangle][(first.corner + 1) % 3]};
-        for (size_t side = begin; side < end; ++side) {
-            const HalfEdge& half = halves[side];
-            edge.triangle[side - begin] = half.triangle;
-            edge.opposite[side - begin] = triangles[half.triangle][(half.corner + 2) % 3];
-            topology.triangle_edge[half.triangle][half.corner] = int(topology.edges.size());
+        edge.vertex = {triangles[begin->triangle][begin->corner],
+                       triangles[begin->triangle][(begin->corner + 1) % 3]};
+        for (auto half = begin; half != end; ++half) {
+            edge.triangle[half - begin] = half->triangle;
+            edge.opposite[half - begin] = triangles[half->triangle][(half->corner + 2) % 3];
+            topology.triangle_edge[half->triangle][half->corner] = int(topology.edges.size());
         }
         topology.edges.push_back(edge);
+    };
+
+    std::vector<HalfEdge> halves = sorted_half_edges(triangles);
+    for (auto begin = halves.begin(); begin != halves.end();) {
+        auto end = begin + 1;
+        while (end != halves.end() && end->low == begin->low && end->high == begin->high)
+            ++end;
+        if (end - begin > 2)
+            pair_at_branch(begin, end);
+        const auto first_alone = end - begin > 2 ? begin + 2 : end;
+        if (first_alone - begin == 2 && begin->ascending == (begin + 1)->ascending)
+            refuse_directions(source, *begin, *(begin + 1));
+        add_edge(begin, first_alone);
+        for (auto half = first_alone; half != end; ++half)
+            add_edge(half, half + 1);
         begin = end;
     }
     return topology;
+}
+
+} // namespace
+
+Topology build_topology(View<const Triangle> triangles, int vertex_count, const std::string& source)
+{
+    return build(triangles, vertex_count, source, [&](auto begin, auto end) {
+        throw InvalidInput(source + ": " + edge_name(*begin) +
+                           " is non-manifold: " + std::to_string(end - begin) +
+                           " triangles share it, at most 2 may; split the surface there");
+    });
+}
+
+Topology build_branching_topology(const TriangleMesh& mesh, const std::string& source)
+{
+    // Direction from the edge into the triangle, perpendicular to the edge.
+    const auto inward = [&](const HalfEdge& half) {
+        const Vec3& low = mesh.positions[half.low];
+        const Vec3 along = (mesh.positions[half.high] - low).normalized();
+        const Vec3 side = mesh.positions[mesh.triangles[half.triangle][(half.corner + 2) % 3]] - low;
+        return Vec3((side - side.dot(along) * along).normalized());
+    };
+    return build(mesh.triangles, mesh.vertex_count(), source, [&](auto begin, auto end) {
+        double flattest = 2.0;
+        auto first = begin, second = begin + 1;
+        for (auto a = begin; a != end; ++a)
+            for (auto b = a + 1; b != end; ++b)
+                if (const double cosine = inward(*a).dot(inward(*b));
+                    a->ascending != b->ascending && cosine < flattest) {
+                    flattest = cosine;
+                    first = a;
+                    second = b;
+                }
+        std::iter_swap(begin, first);
+        std::iter_swap(begin + 1, second);
+    });
 }
 
 } // namespace toile

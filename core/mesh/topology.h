@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/compute/types.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace toile {
 
@@ -49,6 +50,12 @@ struct Topology {
 /// @throws InvalidInput naming the first edge with more than two triangles, or with two that run along it in
 ///         the same direction (flipped winding).
 Topology build_topology(View<const Triangle> triangles, int vertex_count, const std::string& source);
+
+/// The same for surfaces that are sewn onto each other, as pockets are. Where three or more triangles share
+/// an edge, the two that continue each other most straightly are those of the edge; each of the others has a
+/// border edge of its own there, with the same vertices.
+/// @throws InvalidInput for two that run along an edge in the same direction, where they can't be paired
+Topology build_branching_topology(const TriangleMesh& mesh, const std::string& source);
 
 /// Corners (3 * triangle + corner) per vertex, ascending: for gathering per-corner values.
 Incidence corners_of_vertices(View<const Triangle> triangles, int vertex_count);

@@ -1,134 +1,139 @@
 #include "core/mesh/vtk.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
-#include <string_view>
 
 #include <Eigen/Geometry>
 
 #include "core/base/error.h"
+#include "core/mesh/vtk_file.h"
 
 namespace toile {
 
 namespace {
 
-/// Cell type VTK_TETRA.
-constexpr int kTetrahedron = 10;
+/// Cell type VTK_TETRA, and the last of the linear types without a volume: points, lines, triangles, quads.
+constexpr std::int64_t kTetrahedron = 10, kLastFlatType = 9;
 
-/// Reads a legacy VTK file word by word, keeping the line for error messages.
-class VtkReader {
+//        d
+//       /|\        faces seen from outside, (b - a) x (c - a) . (d - a) > 0:
+//      a-+-c       (a, c, b), (a, b, d), (b, c, d), (a, d, c)
+//       \|/
+//        b
+constexpr int kFaces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+
+Triangle face_of(const std::array<int, 4>& tet, int face)
+{
+    const auto& corner = kFaces[face];
+    return {tet[corner[0]], tet[corner[1]], tet[corner[2]]};
+}
+
+/// Corners in ascending order, for matching.
+std::array<int, 3> key_of(const Triangle& face)
+{
+    std::array<int, 3> key{face[0], face[1], face[2]};
+    std::sort(key.begin(), key.end());
+    return key;
+}
+
+/// Cells as lists of points: those of cell i are points[first[i] .. first[i + 1]).
+struct Cells {
+    std::vector<std::int64_t> first, points;
+
+    std::int64_t count() const { return std::int64_t(first.size()) - 1; }
+};
+
+/// Reads an unstructured grid.
+class TetReader {
 public:
-    explicit VtkReader(const std::filesystem::path& file) : file_(file)
-    {
-        std::ifstream stream(file, std::ios::binary);
-        if (!stream)
-            throw InvalidInput(file.string() + ": can't be opened; check the path and its permissions");
-        text_.assign(std::istreambuf_iterator<char>(stream), {});
-    }
+    explicit TetReader(const std::filesystem::path& path) : source_(path.string()), file_(path) {}
 
     TetMesh read()
     {
-        if (line().rfind("# vtk DataFile", 0) != 0)
-            refuse("not a legacy VTK file; its first line begins with '# vtk DataFile'");
-        line(); // title
-        expect("ASCII");
-        expect("DATASET");
-        expect("UNSTRUCTURED_GRID");
-        expect("POINTS");
-        const int points = count();
-        word(); // number type
-        for (int i = 0; i < points; ++i)
-            mesh_.positions.push_back(Vec3{number(), number(), number()});
-        expect("CELLS");
-        const int cells = count();
-        count(); // numbers in the list
-        for (int i = 0; i < cells; ++i)
-            read_cell(i);
-        expect("CELL_TYPES");
-        if (count() != cells)
-            refuse("the number of cell types is not that of the cells, " + std::to_string(cells));
-        for (int i = 0; i < cells; ++i)
-            if (const int type = whole(); type != kTetrahedron)
-                refuse("cell " + std::to_string(i) + " has type " + std::to_string(type) +
-                       "; only linear tetrahedra (10) are read");
-        if (cells == 0)
-            refuse("no cells; give tetrahedra");
+        if (const std::string found = file_.dataset(); found != "unstructured_grid")
+            file_.refuse("'" + found + "' is a data set without tetrahedra; give an UNSTRUCTURED_GRID of " +
+                         "tetrahedra, or a closed surface as .obj");
+        require_section("points");
+        const std::int64_t count = file_.count();
+        const std::vector<double> x = file_.numbers(3 * count, file_.word());
+        for (size_t i = 0; i + 2 < x.size(); i += 3)
+            mesh_.positions.push_back(Vec3(x[i], x[i + 1], x[i + 2]));
+        require_section("cells");
+        const Cells cells = read_cells();
+        require_section("cell_types");
+        if (file_.count() != cells.count())
+            file_.refuse("the number of cell types is not that of the cells, " +
+                         std::to_string(cells.count()));
+        const std::vector<std::int64_t> types = file_.whole_numbers(cells.count(), "int");
+        for (std::int64_t i = 0; i < cells.count(); ++i)
+            add_cell(i, types[size_t(i)], cells);
+        if (mesh_.tets.empty())
+            refuse("none of the " + std::to_string(cells.count()) +
+                   " cells is a tetrahedron (10); a surface is read as .obj");
+        require_faces_of_two();
         return std::move(mesh_);
     }
 
 private:
-    [[noreturn]] void refuse(const std::string& why) const
+    void require_section(const std::string& name)
     {
-        const auto line = 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(at_), '\n');
-        throw InvalidInput(file_.string() + ":" + std::to_string(line) + ": " + why);
+        if (const std::string found = file_.section(); found != name)
+            file_.refuse((found.empty() ? "the end of the file" : "'" + found.substr(0, 40) + "'") +
+                         " where " + name + " should stand");
     }
 
-    std::string_view line()
+    /// "CELLS n size", each cell as its number of points and the points; since version 5.1 "CELLS n + 1 size"
+    /// with two arrays.
+    Cells read_cells()
     {
-        const size_t begin = at_;
-        const size_t end = std::min(text_.find('\n', begin), text_.size());
-        at_ = std::min(end + 1, text_.size());
-        return std::string_view(text_).substr(begin, end - begin);
+        const std::int64_t rows = file_.count(), size = file_.count();
+        Cells cells;
+        if (file_.is_next("offsets")) {
+            file_.expect("OFFSETS");
+            cells.first = file_.whole_numbers(rows, file_.word());
+            require_section("connectivity");
+            cells.points = file_.whole_numbers(size, file_.word());
+        } else {
+            const std::vector<std::int64_t> list = file_.whole_numbers(size, "int");
+            size_t at = 0;
+            for (cells.first = {0}; cells.count() < rows;
+                 cells.first.push_back(std::int64_t(cells.points.size()))) {
+                const std::int64_t corners = at < list.size() ? list[at++] : -1;
+                if (corners < 0 || corners > std::int64_t(list.size() - at))
+                    file_.refuse("the list of cells ends in cell " + std::to_string(cells.count()) + " of " +
+                                 std::to_string(rows));
+                cells.points.insert(cells.points.end(), list.begin() + std::ptrdiff_t(at),
+                                    list.begin() + std::ptrdiff_t(at) + corners);
+                at += size_t(corners);
+            }
+        }
+        if (cells.first.empty() || cells.first.front() != 0 ||
+            cells.first.back() != std::int64_t(cells.points.size()) ||
+            !std::is_sorted(cells.first.begin(), cells.first.end()))
+            file_.refuse("the offsets of the cells do not ascend from 0 to " +
+                         std::to_string(cells.points.size()));
+        return cells;
     }
 
-    std::string_view word()
+    void add_cell(std::int64_t i, std::int64_t type, const Cells& cells)
     {
-        constexpr const char* kBlank = " \t\r\n";
-        at_ = std::min(text_.find_first_not_of(kBlank, at_), text_.size());
-        const size_t begin = at_;
-        at_ = std::min(text_.find_first_of(kBlank, begin), text_.size());
-        return std::string_view(text_).substr(begin, at_ - begin);
-    }
-
-    void expect(const std::string& keyword)
-    {
-        if (const std::string found(word()); found != keyword)
-            refuse("'" + found + "' where " + keyword +
-                   " should stand; only unstructured grids in ASCII are read");
-    }
-
-    template <typename T>
-    T parsed(const char* what)
-    {
-        const std::string_view found = word();
-        T value{};
-        const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
-        if (error != std::errc{} || end != found.data() + found.size())
-            refuse("'" + std::string(found) + "' is not " + what);
-        return value;
-    }
-    int whole() { return parsed<int>("a whole number"); }
-    double number()
-    {
-        const double value = parsed<double>("a number");
-        if (!std::isfinite(value))
-            refuse("a coordinate is not finite");
-        return value;
-    }
-    int count()
-    {
-        const int value = whole();
-        if (value < 0)
-            refuse(std::to_string(value) + " is not a count");
-        return value;
-    }
-
-    void read_cell(int cell)
-    {
-        const std::string name = "cell " + std::to_string(cell);
-        if (const int corners = whole(); corners != 4)
+        const std::string name = "cell " + std::to_string(i);
+        if (type >= 1 && type <= kLastFlatType)
+            return; // the boundary, which mesh generators write beside the volume
+        if (type != kTetrahedron)
+            refuse(name + " has type " + std::to_string(type) + "; only linear tetrahedra (10) are read");
+        const std::int64_t begin = cells.first[size_t(i)], corners = cells.first[size_t(i) + 1] - begin;
+        if (corners != 4)
             refuse(name + " has " + std::to_string(corners) + " corners; a tetrahedron has 4");
         std::array<int, 4> tet{};
-        for (int& v : tet) {
-            v = whole();
-            if (v < 0 || v >= int(mesh_.positions.size()))
+        for (int k = 0; k < 4; ++k) {
+            const std::int64_t v = cells.points[size_t(begin + k)];
+            if (v < 0 || v >= std::int64_t(mesh_.positions.size()))
                 refuse(name + " uses point " + std::to_string(v) + "; the points are 0 to " +
-                       std::to_string(int(mesh_.positions.size()) - 1));
+                       std::to_string(std::int64_t(mesh_.positions.size()) - 1));
+            tet[k] = int(v);
         }
         const Vec3& a = mesh_.positions[tet[0]];
         const double volume =
@@ -138,36 +143,45 @@ private:
         if (volume < 0.0)
             std::swap(tet[2], tet[3]);
         mesh_.tets.push_back(tet);
+        cell_of_tet_.push_back(i);
     }
 
-    std::filesystem::path file_;
-    std::string text_;
-    size_t at_ = 0;
+    /// Refuses tetrahedra that lie in each other: those on one side of a face.
+    void require_faces_of_two() const
+    {
+        std::map<std::array<int, 3>, std::int64_t> seen_ascending, seen_descending;
+        for (size_t t = 0; t < mesh_.tets.size(); ++t)
+            for (int f = 0; f < 4; ++f) {
+                const Triangle face = face_of(mesh_.tets[t], f);
+                const std::array<int, 3> key = key_of(face);
+                const auto first = std::find(face.begin(), face.end(), key[0]) - face.begin();
+                auto& seen = face[(first + 1) % 3] == key[1] ? seen_ascending : seen_descending;
+                if (const auto [other, is_new] = seen.try_emplace(key, cell_of_tet_[t]); !is_new)
+                    refuse("cells " + std::to_string(other->second) + " and " +
+                           std::to_string(cell_of_tet_[t]) + " lie on the same side of a face that they " +
+                           "share; remove one of them");
+            }
+    }
+
+    [[noreturn]] void refuse(const std::string& why) const { throw InvalidInput(source_ + ": " + why); }
+
+    std::string source_;
+    VtkFile file_;
     TetMesh mesh_;
+    std::vector<std::int64_t> cell_of_tet_;
 };
 
 } // namespace
 
-TetMesh read_vtk_tets(const std::filesystem::path& file) { return VtkReader(file).read(); }
+TetMesh read_vtk_tets(const std::filesystem::path& file) { return TetReader(file).read(); }
 
-//        d
-//       /|\        faces seen from outside, (b - a) x (c - a) . (d - a) > 0:
-//      a-+-c       (a, c, b), (a, b, d), (b, c, d), (a, d, c)
-//       \|/
-//        b
 TriangleMesh boundary_surface(const TetMesh& mesh)
 {
-    constexpr int kFaces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-    std::map<std::array<int, 3>, int> uses; // sorted corners
-    const auto key_of = [](const Triangle& face) {
-        std::array<int, 3> key{face[0], face[1], face[2]};
-        std::sort(key.begin(), key.end());
-        return key;
-    };
+    std::map<std::array<int, 3>, int> uses; // by key_of()
     std::vector<Triangle> faces;
     for (const std::array<int, 4>& tet : mesh.tets)
-        for (const auto& corner : kFaces) {
-            faces.emplace_back(tet[corner[0]], tet[corner[1]], tet[corner[2]]);
+        for (int f = 0; f < 4; ++f) {
+            faces.push_back(face_of(tet, f));
             ++uses[key_of(faces.back())];
         }
 

@@ -14,10 +14,11 @@ struct TetMesh {
     std::vector<std::array<int, 4>> tets; ///< [tets] positively oriented: (b - a) x (c - a) . (d - a) > 0
 };
 
-/// Reads an unstructured grid of linear tetrahedra in the legacy VTK format, ASCII. Corners of tetrahedra
-/// with negative volume are swapped.
-/// @throws InvalidInput naming file and line: missing file, another data set or binary, a number that does
-///         not parse, an index out of range, a cell that is not a tetrahedron or is flat.
+/// Reads an unstructured grid of linear tetrahedra in the legacy VTK format, ASCII or binary, of any version.
+/// Corners of tetrahedra with negative volume are swapped; points, lines and faces among the cells are left
+/// out.
+/// @throws InvalidInput naming file and line: missing file, another data set, a number that does not parse or
+///         is not finite, an index out of range, a cell of another type or flat, cells that overlap.
 TetMesh read_vtk_tets(const std::filesystem::path& file);
 
 /// Triangles that belong to only one tetrahedron, counter-clockwise seen from outside. Their vertices keep

@@ -1,6 +1,7 @@
 #include "core/mesh/winding.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -48,18 +49,26 @@ std::vector<Side> sorted_sides(const std::vector<Face>& faces)
     return sides;
 }
 
-template <typename Face>
-std::vector<std::vector<Neighbour>> neighbours_of(const std::vector<Face>& faces)
+using Sides = std::vector<Side>::iterator;
+
+/// Joins nothing where three or more faces share an edge.
+constexpr auto kNoPair = [](Sides, Sides) { return false; };
+
+/// @param pair_at_branch  of three or more sides of one edge, moves two that continue each other to the
+/// front;
+///                        false if there are none
+template <typename Face, typename PairAtBranch>
+std::vector<std::vector<Neighbour>> neighbours_of(const std::vector<Face>& faces,
+                                                  const PairAtBranch& pair_at_branch)
 {
     std::vector<std::vector<Neighbour>> neighbours(faces.size());
-    const std::vector<Side> sides = sorted_sides(faces);
-    for (size_t begin = 0; begin < sides.size();) {
-        size_t end = begin + 1;
-        while (end < sides.size() && sides[end].low == sides[begin].low &&
-               sides[end].high == sides[begin].high)
+    std::vector<Side> sides = sorted_sides(faces);
+    for (auto begin = sides.begin(); begin != sides.end();) {
+        auto end = begin + 1;
+        while (end != sides.end() && end->low == begin->low && end->high == begin->high)
             ++end;
-        if (end - begin == 2) {
-            const Side &a = sides[begin], &b = sides[begin + 1];
+        if (end - begin == 2 || (end - begin > 2 && pair_at_branch(begin, end))) {
+            const Side &a = *begin, &b = *(begin + 1);
             const bool agrees = a.ascending != b.ascending;
             neighbours[a.face].push_back({b.face, agrees});
             neighbours[b.face].push_back({a.face, agrees});
@@ -67,6 +76,34 @@ std::vector<std::vector<Neighbour>> neighbours_of(const std::vector<Face>& faces
         begin = end;
     }
     return neighbours;
+}
+
+/// Direction from an edge into a polygon, perpendicular to the edge.
+Vec3 inward(const ObjMesh& mesh, const Side& side)
+{
+    const Vec3& low = mesh.positions[side.low];
+    Vec3 mean = Vec3::Zero();
+    for (const int v : mesh.polygons[side.face])
+        mean += (mesh.positions[v] - low) / double(mesh.polygons[side.face].size());
+    const Vec3 along = (mesh.positions[side.high] - low).normalized();
+    return (mean - mean.dot(along) * along).normalized();
+}
+
+/// Moves the two that continue each other most straightly to the front.
+bool pair_flattest(const ObjMesh& mesh, Sides begin, Sides end)
+{
+    double flattest = 2.0;
+    Sides first = begin, second = begin + 1;
+    for (Sides a = begin; a != end; ++a)
+        for (Sides b = a + 1; b != end; ++b)
+            if (const double cosine = inward(mesh, *a).dot(inward(mesh, *b)); cosine < flattest) {
+                flattest = cosine;
+                first = a;
+                second = b;
+            }
+    std::iter_swap(begin, first);
+    std::iter_swap(begin + 1, second);
+    return true;
 }
 
 /// Piece that contains `first`; marks in `flipped` its faces that disagree with `first`.
@@ -94,9 +131,9 @@ struct Piece {
 };
 
 template <typename Face>
-std::vector<Piece> pieces_of(const std::vector<Face>& faces)
+std::vector<Piece> pieces_of(const std::vector<Face>& faces,
+                             const std::vector<std::vector<Neighbour>>& neighbours)
 {
-    const std::vector<std::vector<Neighbour>> neighbours = neighbours_of(faces);
     std::vector<char> visited(faces.size(), 0), flipped(faces.size(), 0);
     std::vector<Piece> pieces;
     for (size_t f = 0; f < faces.size(); ++f) {
@@ -116,6 +153,32 @@ std::vector<Piece> pieces_of(const std::vector<Face>& faces)
     }
     return pieces;
 }
+
+} // namespace
+
+int branching_edges(const ObjMesh& mesh)
+{
+    const std::vector<Side> sides = sorted_sides(mesh.polygons);
+    const auto is_same = [&](size_t a, size_t b) {
+        return sides[a].low == sides[b].low && sides[a].high == sides[b].high;
+    };
+    int count = 0;
+    for (size_t i = 2; i < sides.size(); ++i) // the third of each edge
+        count += is_same(i - 2, i) && (i == 2 || !is_same(i - 3, i)) ? 1 : 0;
+    return count;
+}
+
+std::optional<std::array<int, 2>> one_sided_polygons(const ObjMesh& mesh)
+{
+    const std::vector<std::vector<Neighbour>> neighbours = neighbours_of(mesh.polygons, kNoPair);
+    for (size_t f = 0; f < neighbours.size(); ++f)
+        for (const Neighbour& neighbour : neighbours[f])
+            if (!neighbour.agrees)
+                return std::array<int, 2>{int(f), neighbour.face};
+    return std::nullopt;
+}
+
+namespace {
 
 /// Reverses a face from the same first corner, so that a convex one is split as before.
 void flip(std::vector<int>& corners) { std::reverse(corners.begin() + 1, corners.end()); }
@@ -171,7 +234,8 @@ bool encloses(const TriangleMesh& mesh, const Solid& solid, const Vec3& p)
 int make_windings_agree(ObjMesh& mesh)
 {
     int count = 0;
-    for (const Piece& piece : pieces_of(mesh.polygons))
+    const auto flattest = [&](Sides begin, Sides end) { return pair_flattest(mesh, begin, end); };
+    for (const Piece& piece : pieces_of(mesh.polygons, neighbours_of(mesh.polygons, flattest)))
         for (const int face : piece.differing) {
             flip(mesh.polygons[face]);
             if (!mesh.polygon_uvs.empty())
@@ -183,7 +247,7 @@ int make_windings_agree(ObjMesh& mesh)
 
 int face_outwards(TriangleMesh& mesh)
 {
-    const std::vector<Piece> pieces = pieces_of(mesh.triangles);
+    const std::vector<Piece> pieces = pieces_of(mesh.triangles, neighbours_of(mesh.triangles, kNoPair));
     const std::vector<Triangle> before = mesh.triangles;
     std::vector<Solid> solids;
     for (const Piece& piece : pieces) {

@@ -29,9 +29,9 @@ Vec3 warp_direction(const Vec3& normal, const Vec3& grain)
 constexpr double kMaxAspect = 20.0;
 
 /// Completes a shape that has triangles and edges with areas and topology.
-RestShape complete(RestShape shape, int vertex_count, const std::string& source)
+RestShape complete(RestShape shape, Topology topology)
 {
-    shape.topology = build_topology(shape.triangles, vertex_count, source);
+    shape.topology = std::move(topology);
     shape.edges_inv.reserve(shape.edges.size());
     shape.areas.reserve(shape.edges.size());
     for (const Mat2& edges : shape.edges) {
@@ -76,7 +76,7 @@ RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<T
         edges << uv[t[1]] - uv[t[0]], uv[t[2]] - uv[t[0]];
         shape.edges.push_back(edges);
     }
-    return complete(std::move(shape), int(uv.size()), source);
+    return complete(std::move(shape), build_topology(triangles, int(uv.size()), source));
 }
 
 RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, double rotation,
@@ -96,7 +96,7 @@ RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, dou
         edges << u.dot(e1), u.dot(e2), v.dot(e1), v.dot(e2);
         shape.edges.push_back(edges);
     }
-    return complete(std::move(shape), mesh.vertex_count(), source);
+    return complete(std::move(shape), build_branching_topology(mesh, source));
 }
 
 } // namespace toile::garment

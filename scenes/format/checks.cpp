@@ -1,13 +1,12 @@
 #include "scenes/format/checks.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/extension.h"
 #include "garment/fabric/fabric.h"
 #include "scenes/format/field.h"
 #include "scenes/format/names.h"
@@ -37,10 +36,7 @@ void check_keyframes(const Document& document, const std::string& key_path,
 void check_extension(const Document& document, const std::string& key_path, const std::filesystem::path& file,
                      const std::vector<std::string>& known)
 {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    if (!contains(known, extension))
+    if (!contains(known, lower_case_extension(file)))
         document.refuse(key_path, as_written(file.string()) + " is of an unknown format; use " +
                                       enumerate(known, "or"));
 }

@@ -171,7 +171,7 @@ void describe(V& v, Solid& s)
     v.required("name", s.name, "Name, for friction pairs, messages and the cache's file.");
     v.one_of(s.shape,
              Alternative<std::filesystem::path>{
-                 "file", "Closed surface (.obj) or tetrahedra (.vtk, legacy ASCII), filled with matter."},
+                 "file", "Closed surface (.obj) or tetrahedra (.vtk, legacy), filled with matter."},
              Alternative<Sphere>{"sphere", "Sphere."}, Alternative<Capsule>{"capsule", "Capsule along Y."},
              Alternative<Box>{"box", "Box with edges along the axes."});
     v.field("unit", s.unit, "Length unit of the file.");

@@ -21,10 +21,12 @@ constexpr int kMaxDepth = 64;
 /// Message of nlohmann without its "line 3, column 5: ".
 std::string fact_of(const Json::exception& error)
 {
-    const std::string what = error.what();
+    std::string what = error.what();
     const size_t column = what.find("column ");
     const size_t colon = column == std::string::npos ? std::string::npos : what.find(": ", column);
     const size_t after_id = what.find("] ");
+    std::replace_if(
+        what.begin(), what.end(), [](unsigned char c) { return c >= 0x80; }, '?');
     if (colon != std::string::npos)
         return what.substr(colon + 2);
     return after_id == std::string::npos ? what : what.substr(after_id + 2);
@@ -46,6 +48,31 @@ std::string one_line(std::string text)
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
     return text;
+}
+
+/// Advice for a file that does not exist.
+std::string remedy_for(const std::string& path)
+{
+    if (path.find('\\') != std::string::npos)
+        return "write / between folders, also for Windows";
+    if (path.starts_with('~') || path.find('$') != std::string::npos)
+        return "~ and variables are not expanded, except ${TOILE_DATA_DIR}";
+    return "paths are relative to the scene's folder";
+}
+
+/// Why text that is often taken for JSON is none; empty for other text.
+/// @param at  position of the character where reading ended
+std::string habit_in(const std::string& text, size_t at)
+{
+    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+        return "it is in UTF-16; save it in UTF-8";
+    if (at < text.size() && text[at] == '/')
+        return "JSON has no comments; remove them, or write a \"description\"";
+    const size_t before = at == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", at - 1);
+    if (at < text.size() && (text[at] == '}' || text[at] == ']') && before != std::string::npos &&
+        text[before] == ',')
+        return std::string("a comma stands before ") + text[at] + "; remove it";
+    return "";
 }
 
 /// Data folder: the environment variable, else the folder chosen at build time.
@@ -81,8 +108,9 @@ Json Document::parse(const std::string& text) const
     try {
         return Json::parse(text, check_event);
     } catch (const Json::parse_error& error) {
+        const std::string habit = habit_in(text, error.byte > 0 ? error.byte - 1 : 0);
         throw InvalidInput(source_.string() + ":" + line_and_column(text, error.byte) +
-                           ": not valid JSON: " + fact_of(error));
+                           ": not valid JSON: " + (habit.empty() ? fact_of(error) : habit));
     } catch (const Json::exception& error) {
         refuse("", "not valid JSON: " + fact_of(error));
     }
@@ -106,8 +134,8 @@ std::filesystem::path Document::existing_file(const std::string& text, const std
     const std::filesystem::path normal = file.lexically_normal();
     std::error_code unreachable;
     if (!std::filesystem::exists(file, unreachable))
-        refuse(key_path, "the file " + as_written(normal.string()) + " does not exist; paths are " +
-                             "relative to the scene's folder");
+        refuse(key_path,
+               "the file " + as_written(normal.string()) + " does not exist; " + remedy_for(expanded));
     if (!std::filesystem::is_regular_file(file, unreachable))
         refuse(key_path, as_written(normal.string()) + " is a folder, pipe or device; name a file");
     // Behind a symbolic link, ".." leads elsewhere than its text says.

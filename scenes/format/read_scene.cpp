@@ -49,7 +49,9 @@ Scene read_scene(const std::filesystem::path& file)
 Scene parse_scene(const std::string& text, const std::filesystem::path& source)
 {
     const scene_format::Document document(source);
-    const scene_format::Json json = document.parse(text);
+    scene_format::Json json = document.parse(text);
+    if (json.is_object())
+        json.erase("$schema"); // for editors, which complete and check by it
 
     Scene scene;
     scene_format::require_object(document, json, "", scene_format::keys_of<Scene>());

@@ -107,7 +107,7 @@ void require_object(const Document& document, const Json& json, const std::strin
         if (std::find(keys.begin(), keys.end(), key) != keys.end())
             continue;
         const std::string near = did_you_mean(key, keys);
-        document.refuse(below(key_path, key),
+        document.refuse(below(key_path, key.empty() ? "\"\"" : key),
                         "unknown key" + (near.empty() ? "; known are " + enumerate(keys, "and") : near));
     }
 }

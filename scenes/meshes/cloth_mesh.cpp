@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "core/base/error.h"
 #include "core/mesh/clean.h"
 #include "core/mesh/winding.h"
 #include "garment/pattern/shapes.h"
@@ -10,15 +11,6 @@
 namespace toile::scenes {
 
 namespace {
-
-ObjMesh faces_of(const TriangleMesh& mesh)
-{
-    ObjMesh faces;
-    faces.positions = mesh.positions;
-    for (const Triangle& t : mesh.triangles)
-        faces.polygons.push_back({t[0], t[1], t[2]});
-    return faces;
-}
 
 /// Mesh of the cloth in its local frame, before placement.
 ObjMesh cut(const scene::Cloth& cloth)
@@ -52,7 +44,8 @@ double diagonal_of(const ObjMesh& mesh)
 }
 
 /// Joins seams and drops loose vertices. Cloth needs neither; caches need the file's vertices.
-void join_vertices(const scene::Cloth& cloth, ClothMesh& result)
+/// @return true if any were joined
+bool join_vertices(const scene::Cloth& cloth, ClothMesh& result)
 {
     ObjMesh& mesh = result.mesh;
     const int count = int(mesh.positions.size());
@@ -69,7 +62,7 @@ void join_vertices(const scene::Cloth& cloth, ClothMesh& result)
     require_usable(mesh, source_of(cloth));
     const std::vector<int> number = drop_loose_vertices(mesh);
     if (int(mesh.positions.size()) == count)
-        return;
+        return joined > 0;
 
     FileNumbers& numbers = result.numbers;
     int last = 0;
@@ -86,7 +79,10 @@ void join_vertices(const scene::Cloth& cloth, ClothMesh& result)
         result.warnings.push_back(counted(std::ptrdiff_t(loose.size()), "vertex has", "vertices have") +
                                   " no face, the first is " + std::to_string(loose.front()) +
                                   "; each goes along with the one before it");
+    return joined > 0;
 }
+
+std::string line_of(const ObjMesh& mesh, int polygon) { return std::to_string(mesh.polygon_lines[polygon]); }
 
 /// Makes of a file's mesh one that can be simulated, and tells what was changed.
 void clean(const scene::Cloth& cloth, ClothMesh& result)
@@ -96,13 +92,34 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
     if (mesh.line_elements > 0)
         result.warnings.push_back("left out " + counted(mesh.line_elements, "l line", "l lines") +
                                   "; panels are sewn only where their edges lie on each other");
+    if (mesh.free_form_elements > 0)
+        result.warnings.push_back(
+            "left out " +
+            counted(mesh.free_form_elements, "curve or curved surface", "curves and curved surfaces") +
+            "; only polygons are read");
+    if (const int count = drop_repeated_corners(mesh); count > 0)
+        result.warnings.push_back("left out corners of " + counted(count, "face", "faces") +
+                                  " that repeat the one before");
     if (const int count = drop_repeated_polygons(mesh); count > 0)
         result.warnings.push_back("left out " + counted(count, "face", "faces") +
                                   " with the corners of others: duplicates, or backs of two-sided faces");
-    join_vertices(cloth, result);
+    const int branching_in_file = branching_edges(mesh);
+    const bool is_welded = join_vertices(cloth, result);
     if (const int count = make_windings_agree(mesh); count > 0)
         result.warnings.push_back("flipped " + counted(count, "face", "faces") +
-                                  " that were wound against their neighbours");
+                                  (count == 1 ? " that was" : " that were") +
+                                  " wound against the neighbours");
+    if (const int count = branching_edges(mesh); count > 0)
+        result.warnings.push_back(counted(count, "edge is", "edges are") +
+                                  " shared by more than two faces: the two that continue each other bend " +
+                                  "there as one, the others are hinged on them" +
+                                  (branching_in_file < count ? "; \"weld\": false keeps seams apart" : ""));
+    if (const auto polygons = one_sided_polygons(mesh))
+        throw InvalidInput(
+            source_of(cloth) + ": the faces in lines " + line_of(mesh, (*polygons)[0]) + " and " +
+            line_of(mesh, (*polygons)[1]) +
+            " can't be wound alike: the surface has one side only, as a Moebius strip" +
+            (is_welded ? "; cut it, or keep its seams apart with \"weld\": false" : "; cut it"));
     if (!result.numbers.vertex.empty() && cloth.subdivide == 0)
         result.file = file;
 }
@@ -128,9 +145,8 @@ ClothMesh cloth_mesh(const scene::Cloth& cloth)
         clean(cloth, result);
     else
         require_usable(mesh, source_of(cloth));
-    if (cloth.subdivide > 0) {
+    if (cloth.subdivide > 0)
         mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
-    }
     place(mesh);
     place(result.file);
     require_in_range(mesh.positions, source_of(cloth));

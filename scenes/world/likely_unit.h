@@ -8,8 +8,8 @@
 
 namespace toile::scenes {
 
-/// Warnings about cloth of files whose size does not fit the bodies of the scene, or cloth at all, with the
-/// unit that would fit.
+/// Warnings about cloths, avatars and solids of files whose size does not fit the bodies of the scene, or
+/// what they are at all, with the unit that would fit.
 /// @return one line each
 std::vector<std::string> unit_warnings(const Scene& scene, const std::vector<SceneCloth>& cloths,
                                        const std::vector<Collider>& colliders);

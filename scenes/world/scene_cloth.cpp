@@ -71,6 +71,27 @@ scene::Attachment in_cloth(scene::Attachment attachment, const ClothState& cloth
     return attachment;
 }
 
+/// Warns of points that select the vertex nearest to them from farther away than the cloth is large: they are
+/// likely in another unit.
+void warn_of_far_points(const scene::Attachment& attachment, const ClothState& cloth,
+                        const std::string& location, const std::function<void(const std::string&)>& warn)
+{
+    const auto* points = std::get_if<std::vector<Vec3>>(&attachment.select.by);
+    if (points == nullptr || !warn)
+        return;
+    const Bounds box = bounds(cloth.positions);
+    for (size_t i = 0; i < points->size(); ++i) {
+        const Vec3 inside = (*points)[i].cwiseMax(box.lower).cwiseMin(box.upper);
+        const double distance = ((*points)[i] - inside).norm();
+        if (distance <= box.diagonal())
+            continue;
+        char text[100];
+        std::snprintf(text, sizeof text, ".select.nearest[%zu]: is %.3g m away from ", i, distance);
+        warn(location + text + "\"" + cloth.name +
+             "\"; coordinates are in metres, at the start of the scene");
+    }
+}
+
 /// Attachments that keep vertices where they are may share them.
 /// @throws InvalidInput for a vertex of two attachments that may part
 void require_one_owner(const std::vector<AttachmentConstraint>& attachments, const ClothState& cloth)
@@ -140,6 +161,7 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
             require_method_supports(scene.solver.method, scene.attachments[i], location);
             attachments_.emplace_back(in_cloth(scene.attachments[i], state_, location), state_.positions,
                                       colliders, load, location);
+            warn_of_far_points(scene.attachments[i], state_, location, options.warn);
             ClothState::Attachment& shown = state_.attachments.emplace_back();
             shown.vertices = attachments_.back().vertices();
             shown.release = scene.attachments[i].release.value_or(shown.release);

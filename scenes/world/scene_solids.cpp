@@ -1,7 +1,6 @@
 #include "scenes/world/scene_solids.h"
 
-#include <algorithm>
-
+#include "core/base/extension.h"
 #include "core/mesh/vtk.h"
 #include "core/mesh/weld.h"
 #include "scenes/meshes/rigid_motion.h"
@@ -33,19 +32,8 @@ TriangleMesh surface_of(const scene::Solid& solid)
     const auto* file = std::get_if<std::filesystem::path>(&solid.shape);
     if (!file)
         return weld(shape_mesh(shape_of(solid.shape), 0.0), 0.0).mesh; // welds the corners of a box
-    std::string extension = file->extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return extension == ".vtk" ? boundary_surface(read_vtk_tets(*file)) : read_obj(*file).triangulated();
-}
-
-ObjMesh faces_of(const TriangleMesh& mesh)
-{
-    ObjMesh faces;
-    faces.positions = mesh.positions;
-    for (const Triangle& t : mesh.triangles)
-        faces.polygons.push_back({t[0], t[1], t[2]});
-    return faces;
+    return lower_case_extension(*file) == ".vtk" ? boundary_surface(read_vtk_tets(*file))
+                                                 : read_obj(*file).triangulated();
 }
 
 } // namespace

@@ -44,7 +44,14 @@ void fill(const TemporaryFolder& folder)
     write_cloth(folder, "nan", "v 0 0 0\nv 1 nan 0\n");
     write_cloth(folder, "empty", "v 0 0 0\n");
     write_cloth(folder, "flat", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    write_cloth(folder, "fan", "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nv 0 -1 0\nf 1 2 3\nf 2 1 4\nf 1 2 5\n");
+    write_cloth(folder, "archive", std::string("PK\x03\x04\0\0", 6));
+    folder.write("points.fbx", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                               "property float z\nend_header\n0 0 0\n");
+    folder.write("points.json", R"({"toile": 1, "frames": 3, "cloths": [{"name": "a", "disc": {}}],
+                                    "avatars": [{"name": "b", "file": "points.fbx"}]})");
+    folder.write("tets.vtk", "# vtk DataFile Version 2.0\nt\nASCII\nDATASET POLYDATA\n");
+    folder.write("tets.json", R"({"toile": 1, "frames": 3, "cloths": [],
+                                  "solids": [{"name": "b", "file": "tets.vtk"}]})");
     write_body_without_bone(folder);
     folder.write("weightless.json", small_scene(3, R"("fabrics": {"ghost": {"areal_density": 0}})"));
     folder.write("missing.json",
@@ -105,7 +112,9 @@ const std::vector<BadRun> kBadRuns{
     {{"simulate", "nan.json"}, {"nan.obj:2", "'nan'", "decimal number"}},
     {{"simulate", "empty.json"}, {"empty.obj", "no triangle", "at least one face"}},
     {{"simulate", "flat.json"}, {"flat.obj:4: the face", "no area", "remove it or merge"}},
-    {{"simulate", "fan.json"}, {"fan.obj: edge (0, 1)", "non-manifold", "split the surface"}},
+    {{"simulate", "archive.json"}, {"archive.obj: is no OBJ", "binary"}},
+    {{"simulate", "points.json"}, {"points.fbx: can't be read"}},
+    {{"simulate", "tets.json"}, {"tets.vtk:4", "'polydata'", "UNSTRUCTURED_GRID"}},
     {{"simulate", "bone.json"}, {"bone.gltf", "index 9 is out of bounds"}},
     {{"simulate", "weightless.json"}, {"weightless.json: fabrics.ghost.areal_density: 0", "above 0"}},
     {{"simulate", "deep.json"}, {"deep.json: is nested deeper than 64 levels"}},
@@ -137,6 +146,7 @@ const std::vector<BadRun> kBadRuns{
     {{"check", ".", "--scene", "good.json", "--cloth", "sheet"}, {"--cloth", "single cache"}},
     {{"info", "none.obj"}, {"none.obj", "can't be found"}},
     {{"info", "text.xyz"}, {"text.xyz", "known are"}},
+    {{"info", "archive.obj"}, {"archive.obj: is no OBJ", "binary"}},
     {{"info", "mesh.obj"}, {"mesh.obj:2", "decimal number"}},
 };
 

@@ -40,7 +40,8 @@ protected:
             "avatars": [{"name": "b", "file": "b.gltf"}]})");
         const path column = path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf";
         temporary_.write("b.gltf", R"({"images": [{"uri": "my%20skin.png"}], )" + bytes_of(column).substr(1));
-        temporary_.write("c.gltf", R"({"buffers": [{"byteLength": 4, "uri": "c.bin"}]})");
+        temporary_.write("c.gltf",
+                         R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": "c.bin"}]})");
         temporary_.write("c.json", R"({"toile": 1, "frames": 1, "cloths": [{"name": "q", "disc": {}}],
                                        "avatars": [{"name": "b", "file": "c.gltf"}]})");
         temporary_.write("c.bin", "abcd");
@@ -49,6 +50,8 @@ protected:
                                                         {"file": "c.mdd", "cloth": "d"})"));
         temporary_.write("sequences.json", exports_scene(R"({"file": "s.obj", "cloth": "c"},
                                                            {"file": "s_####.obj", "cloth": "d"})"));
+        temporary_.write("sequence_and_mesh.json", exports_scene(R"({"file": "c.obj", "cloth": "c"},
+                                                                   {"file": "c.pc2", "cloth": "d"})"));
         temporary_.write("mesh_and_obj.json", exports_scene(R"({"file": "c.pc2", "cloth": "c"},
                                                               {"file": "c.obj", "cloth": "d"})",
                                                             1));
@@ -65,6 +68,8 @@ protected:
         std::filesystem::create_directories(file("taken/mesh/sheet.partial.obj"));
         std::filesystem::create_directories(file("taken/certificate/certificate.json"));
         std::filesystem::create_directories(file("taken/cache/sheet.pc2"));
+        std::filesystem::create_directories(file("taken/frame/c_0001.obj"));
+        std::filesystem::create_directories(file("taken/pictures/frame_0002.png"));
     }
 
     static std::string scene(const std::string& mesh, const std::string& keys = R"("description": "")",
@@ -123,6 +128,10 @@ const std::vector<Refused> kRefused{
     {{"simulate", "s.json", "-o", "taken/mesh"}, {"sheet.partial.obj", "is a folder"}},
     {{"simulate", "s.json", "-o", "taken/certificate"}, {"certificate.json", "is no regular file"}},
     {{"simulate", "s.json", "-o", "taken/cache"}, {"sheet.pc2", "is no regular file"}},
+    {{"simulate", "sequence_and_mesh.json", "-o", "taken/frame"}, {"c_0001.obj", "is no regular file"}},
+    {{"simulate", "sequence_and_mesh.json", "-o", "x", "--report", "x/c.partial"}, {"c.partial", "way of"}},
+    {{"render", "out/sheet.pc2", "--scene", "s.json", "-o", "taken/pictures"},
+     {"frame_0002.png", "is a folder"}},
     {{"simulate", "s.json", "--report", "/proc/run.json"}, {"/proc/run.json", "can't be written"}},
     {{"simulate", "s.json", "-o", "/proc/out"}, {"/proc/out", "can't be written"}},
     {{"simulate", "s.json", "--report", "new/"}, {"new/", "is a folder"}},
@@ -174,6 +183,15 @@ TEST_F(Outputs, ReplaceALinkAndKeepWhatItPointsTo)
     EXPECT_EQ(run_toile({"simulate", "s.json", "-o", "out", "--quiet"}, folder_).exit_code, 0);
     EXPECT_EQ(bytes_of(file("other.pc2")), "precious");
     EXPECT_FALSE(std::filesystem::is_symlink(file("out/sheet.pc2")));
+}
+
+/// The frames of c.obj are c_0000.obj and so on; c.obj itself is the start mesh of the other cloth.
+TEST_F(Outputs, ASequenceLeavesItsBareNameFree)
+{
+    const Finished run = run_toile({"simulate", "sequence_and_mesh.json", "-o", "q", "--quiet"}, folder_);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    const Finished check = run_toile({"check", "q", "--scene", "sequence_and_mesh.json", "--quiet"}, folder_);
+    EXPECT_EQ(check.exit_code, 0) << check.errors;
 }
 
 TEST_F(Outputs, OfTwoRunsDoNotMeet)

@@ -191,6 +191,17 @@ TEST(Info, DescribesEveryKindOfFile)
     says("sheet.pc2", "frames: 2");
     says("sheet.obj", "pieces: 1");
     says("sheet.obj", "(open)");
+    folder.write("SHEET.OBJ", bytes_of(folder.path() / "sheet.obj"));
+    says("SHEET.OBJ", "pieces: 1");
+    folder.write("two_sided.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n");
+    says("two_sided.obj", "as cloth: left out 1 face with the corners of others");
+    says("two_sided.obj", "border edges: 3 (open)");
+    folder.write("points.obj", "v 0 0 0\n");
+    says("points.obj", "not usable as cloth: points.obj: the mesh has no triangle");
+    folder.write("tet.vtk",
+                 "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+                 "0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
+    says("tet.vtk", "triangles of the surface: 4");
 }
 
 TEST(Schema, PrintsJsonAndTables)

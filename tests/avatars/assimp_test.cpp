@@ -13,8 +13,8 @@ using namespace avatars;
 
 namespace {
 
-/// A Collada file: one triangle whose node moves along X, with the given key times and values.
-std::string collada(const std::string& times, const std::string& values)
+/// A Collada file: one triangle whose node moves along X, with the given key times, values and corners.
+std::string collada(const std::string& times, const std::string& values, const std::string& corners = "0 1 2")
 {
     return R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
@@ -24,7 +24,8 @@ std::string collada(const std::string& times, const std::string& values)
 <accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
 <param name="Z" type="float"/></accessor></technique_common></source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>)" +
+           corners + R"(</p></triangles>
 </mesh></geometry></library_geometries>
 <library_animations><animation id="a">
 <source id="t"><float_array id="ta" count="2">)" +
@@ -42,19 +43,19 @@ std::string collada(const std::string& times, const std::string& values)
 </COLLADA>)";
 }
 
-RiggedModel import(const std::string& content)
+RiggedModel import(const std::string& content, const std::string& extension = ".dae")
 {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     const std::filesystem::path file =
-        std::filesystem::path(testing::TempDir()) / ("toile_" + std::string(test->name()) + ".dae");
+        std::filesystem::path(testing::TempDir()) / ("toile_" + std::string(test->name()) + extension);
     std::ofstream(file) << content;
     return import_rigged_model(file);
 }
 
-std::string refusal(const std::string& content)
+std::string refusal(const std::string& content, const std::string& extension = ".dae")
 {
     try {
-        import(content);
+        import(content, extension);
         return "";
     } catch (const InvalidInput& error) {
         return error.what();
@@ -79,6 +80,27 @@ TEST(AssimpImport, RefusesKeysThatAreNotFinite)
     const std::string message = refusal(collada("0 2", "0 0 0 nan 0 0"));
     EXPECT_NE(message.find("joint 'n': "), std::string::npos) << message;
     EXPECT_NE(message.find("has a value that is not finite"), std::string::npos) << message;
+}
+
+/// Files for which assimp 5.2 stops at an assert of its own, dies of an access out of bounds or fills the
+/// memory.
+TEST(AssimpImport, SurvivesItsReaders)
+{
+    const std::string points = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                               "property float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    const std::string fan =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 4294967295\nproperty list uchar int vertex_indices\n"
+        "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (const auto& [content, extension] :
+         std::vector<std::pair<std::string, std::string>>{{collada("0 2", "0 0 0 3 0 0", "0 1 9"), ".dae"},
+                                                          {points, ".ply"},
+                                                          {fan, ".ply"},
+                                                          {"no archive", ".3mf"}}) {
+        const std::string message = refusal(content, extension);
+        EXPECT_NE(message.find("SurvivesItsReaders" + extension + ": can't be read"), std::string::npos)
+            << message;
+    }
 }
 
 } // namespace toile::test

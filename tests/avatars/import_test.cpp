@@ -170,6 +170,18 @@ TEST(Import, RefusesBadFilesInOneLine)
                 {"toile_loose.gltf", "vertex 7 has no bone weight"});
 }
 
+TEST(Import, RefusesAnObjWithoutASurface)
+{
+    for (const auto& [obj, says] : std::vector<std::pair<std::string, std::string>>{
+             {"v 0 0 0\n", "no triangles"},
+             {"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 1 1 2\n", "no triangle has an area"}}) {
+        AvatarSettings settings;
+        settings.file = std::filesystem::path(testing::TempDir()) / "toile_no_surface.obj";
+        std::ofstream(settings.file) << obj;
+        expect_line(refusal(settings), {"toile_no_surface.obj", says, "an avatar needs a surface"});
+    }
+}
+
 TEST(Import, NamesTheNearestClipAndListsAll)
 {
     try {

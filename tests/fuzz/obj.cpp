@@ -10,13 +10,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const toile::test::InputFile file(".obj");
     try {
         toile::ObjMesh mesh = toile::read_obj(file.write(data, size));
+        toile::drop_repeated_corners(mesh);
         toile::drop_repeated_polygons(mesh);
         toile::stitch(mesh, 1e-9);
         toile::make_windings_agree(mesh);
         toile::require_usable(mesh, "mesh.obj");
         toile::drop_loose_vertices(mesh);
-        const toile::TriangleMesh triangles = mesh.triangulated();
-        toile::build_topology(triangles.triangles, triangles.vertex_count(), "mesh.obj");
+        toile::branching_edges(mesh);
+        toile::one_sided_polygons(mesh);
+        toile::build_branching_topology(mesh.triangulated(), "mesh.obj");
     } catch (const toile::InvalidInput&) {
     }
     return 0;

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "core/base/error.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world.h"
@@ -137,6 +140,98 @@ TEST_F(ClothFiles, RepeatedFacesAndLinesAreLeftOut)
     EXPECT_TRUE(says("left out 1 l line;")) << warnings_;
     EXPECT_EQ(world.cloths()[0].triangles.size(), 32u);
     finish(world);
+}
+
+/// A flap on a seam in the middle of the sheet, as pockets have: three faces share its edge.
+TEST_F(ClothFiles, MayBeSewnOntoThemselves)
+{
+    World flap = world_of(sheet(8, true) + "v -0.05 0.035 0.035\nv 0 0.035 0.035\nf 32 41 83 82\n");
+    EXPECT_TRUE(says("1 edge is shared by more than two faces")) << warnings_;
+    finish(flap);
+    const std::vector<Vec3>& x = flap.cloths()[0].positions;
+    EXPECT_NEAR((x[81] - x[31]).norm(), 0.05, 3e-3);
+    EXPECT_NEAR((x[82] - x[40]).norm(), 0.05, 3e-3);
+    EXPECT_LT(x[81].y(), x[31].y() + 0.01) << "it falls over, about its seam";
+}
+
+/// Three panels end at one edge, which stays open; seams beside it join all their vertices there.
+TEST_F(ClothFiles, SeamsMayMakeAnEdgeOfThreeFaces)
+{
+    const std::string a = "v 0 0 0\nv .1 0 0\nv .2 0 0\nv -.1 0 0\nv .05 0 .1\n"
+                          "f 1 2 5\nf 2 3 5\nf 4 1 5\n";
+    const std::string b = "v 0 0 0\nv .1 0 0\nv .2 0 0\nv -.1 0 0\nv .05 .1 0\n"
+                          "v -.1 -.05 0\nv -.1 -.05 .1\nv .2 -.05 0\nv .2 -.05 .1\n"
+                          "f 6 7 10\nf 7 8 10\nf 9 6 10\nf 6 11 12\nf 7 13 14\n";
+    const std::string c = "v 0 0 0\nv .1 0 0\nv -.1 -.05 0\nv .2 -.05 0\nv .05 -.1 0\n"
+                          "f 15 16 19\nf 15 17 19\nf 16 18 19\n";
+    world_of(a + b + c, "", R"(, "contact": {"repair_start": false})");
+    EXPECT_TRUE(says("1 edge is shared by more than two faces")) << warnings_;
+    EXPECT_TRUE(says("\"weld\": false keeps seams apart")) << warnings_;
+}
+
+TEST_F(ClothFiles, FacesOfOneSideOnlyAreNamedByTheirLines)
+{
+    std::string strip;
+    for (int i = 0; i < 12; ++i)
+        for (const double s : {-0.05, 0.05}) {
+            const double angle = std::numbers::pi * i / 6.0, r = 0.3 + s * std::cos(0.5 * angle);
+            strip += "v " + std::to_string(r * std::cos(angle)) + " " +
+                     std::to_string(s * std::sin(0.5 * angle)) + " " + std::to_string(r * std::sin(angle)) +
+                     "\n";
+        }
+    for (int i = 1; i < 23; i += 2)
+        strip += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 3) + " " +
+                 std::to_string(i + 2) + "\n";
+    try {
+        world_of(strip + "f 23 24 1 2\n");
+        ADD_FAILURE();
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("cloth.obj: the faces in lines "), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("one side only, as a Moebius strip; cut it"),
+                  std::string::npos);
+    }
+}
+
+TEST_F(ClothFiles, CurvesAndRepeatedCornersAreLeftOut)
+{
+    World world = world_of(sheet(4, true) + "v 0.3 0 0\nf 25 26 26 24\nf 1 1 2\ncurv 0 1 1 2\n");
+    EXPECT_TRUE(says("left out 1 curve or curved surface; only polygons are read")) << warnings_;
+    EXPECT_TRUE(says("left out corners of 2 faces that repeat the one before")) << warnings_;
+    EXPECT_EQ(world.cloths()[0].triangles.size(), 33u);
+}
+
+TEST_F(ClothFiles, PointsFarFromTheClothAreWarnedOf)
+{
+    const auto nearest = [](const std::string& x) {
+        return R"(, "attachments": [{"cloth": "c", "select": {"nearest": [[0, 0.1, 0], [)" + x + "]]}}]";
+    };
+    world_of(sheet(4, true), "", nearest("20, 16, 20"));
+    EXPECT_TRUE(says("attachments[0].select.nearest[1]: is 32.2 m away from \"c\"")) << warnings_;
+    warnings_.clear();
+    world_of(sheet(4, true), "", nearest("0.3, 0.2, 0"));
+    EXPECT_EQ(warnings_, "");
+}
+
+TEST_F(ClothFiles, AForgottenUnitOfABodyIsSuggested)
+{
+    const auto body = [&](const std::string& size, const std::string& more) {
+        folder_.write("body.obj", "v 0 -2 0\nv " + size +
+                                      " -2 0\nv 0 -3 0\nv 0 -2 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
+        folder_.write("scene.json",
+                      R"({"toile": 1, "frames": 1, "cloths": [{"name": "c", "disc": {}}], )" + more + "}");
+        WorldOptions options;
+        options.warn = [this](const std::string& text) { warnings_ += text + "\n"; };
+        World(read_scene(folder_.path() / "scene.json"), options);
+    };
+    body("170", R"("avatars": [{"name": "b", "file": "body.obj"}])");
+    EXPECT_TRUE(says("body.obj: is 170 m long; if its lengths are in cm, write \"unit\": \"cm\""))
+        << warnings_;
+    warnings_.clear();
+    body("170", R"("solids": [{"name": "b", "file": "body.obj"}])");
+    EXPECT_TRUE(says("body.obj: is 170 m long; if its lengths are in cm")) << warnings_;
+    warnings_.clear();
+    body("30", R"("avatars": [{"name": "b", "file": "body.obj"}])");
+    EXPECT_EQ(warnings_, "") << "a floor";
 }
 
 TEST_F(ClothFiles, AForgottenUnitIsSuggested)

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "apps/toile/terminal/exports.h"
 #include "core/base/error.h"
+#include "core/base/extension.h"
+#include "export/obj_sequence.h"
 
 namespace toile::app {
 
@@ -14,8 +17,13 @@ namespace {
 /// Name of a cloth: skirt for skirt.pc2, for the unfinished skirt.partial.pc2, and for skirt_####.obj.
 std::string name_of(const std::filesystem::path& cache)
 {
-    const std::string file = cache.filename().string();
-    return file.substr(0, file.find_first_of(".#"));
+    if (exports::ObjSequence::has_digits_placeholder(cache))
+        return exports::ObjSequence(cache).stem();
+    static const std::set<std::string> kEndings{".pc2", ".mdd", ".obj", ".partial"};
+    std::filesystem::path name = cache.filename();
+    while (kEndings.contains(lower_case_extension(name)))
+        name = name.stem();
+    return name.string();
 }
 
 } // namespace
@@ -40,6 +48,9 @@ int cloth_of_cache(const scenes::Scene& scene, const std::filesystem::path& cach
         throw InvalidInput("--cloth: " + scene.source.string() + " has no cloth \"" + named + "\"; " +
                            (near.empty() ? "it has " + list : "did you mean \"" + near + "\"?"));
     }
+    for (const scene::Export& entry : scene.exports)
+        if (entry.file.filename() == cache.filename())
+            return std::max(0, index_of(entry.cloth));
     for (const scene::Export& entry : scene.exports)
         if (name_of(entry.file) == name_of(cache))
             return std::max(0, index_of(entry.cloth));

@@ -12,6 +12,7 @@
 #include "apps/toile/terminal/scene_inputs.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "export/folder_lock.h"
 #include "export/obj_sequence.h"
@@ -38,20 +39,26 @@ bool cache_exists(const std::filesystem::path& file)
            (file.extension() == ".obj" && !exports::ObjSequence(file).existing().empty());
 }
 
+/// A cache and the index of its cloth in World::surfaces().
+struct ClothCache {
+    std::filesystem::path file;
+    int cloth;
+};
+
 /// Caches written by simulate into a folder, one per cloth; missing ones are omitted.
-std::vector<std::filesystem::path> caches_in(const std::filesystem::path& folder, const scenes::Scene& scene)
+std::vector<ClothCache> caches_in(const std::filesystem::path& folder, const scenes::Scene& scene)
 {
-    std::vector<std::filesystem::path> caches;
-    std::vector<int> cloths;
+    std::vector<ClothCache> caches;
     std::string searched;
     for (const scene::Export& entry : exports_of(scene)) {
         const int cloth = surface_index(scene, entry.cloth);
         searched += (searched.empty() ? "" : ", ") + entry.file.string();
-        const std::filesystem::path file = folder / entry.file.lexically_normal();
-        if (!cache_exists(file) || std::count(cloths.begin(), cloths.end(), cloth) > 0)
-            continue;
-        caches.push_back(file);
-        cloths.push_back(cloth);
+        std::filesystem::path file = folder / entry.file.lexically_normal();
+        if (scene.frames > 1 && lower_case_extension(file) == ".obj")
+            file = exports::ObjSequence(file).pattern(); // skirt.obj may be the start mesh beside skirt.pc2
+        if (cache_exists(file) && std::none_of(caches.begin(), caches.end(),
+                                               [&](const ClothCache& other) { return other.cloth == cloth; }))
+            caches.push_back({file, cloth});
     }
     if (caches.empty())
         throw InvalidInput(folder.string() + ": has no cache of " + scene.source.string() + "; looked for " +
@@ -60,20 +67,20 @@ std::vector<std::filesystem::path> caches_in(const std::filesystem::path& folder
 }
 
 /// Pairs each cache with its cloth.
-std::vector<CachedCloth> cloths_of(const std::vector<std::filesystem::path>& caches,
-                                   const scenes::Scene& scene, const scenes::World& world,
-                                   const std::string& named)
+std::vector<ClothCache> named_caches(const std::vector<std::filesystem::path>& files,
+                                     const scenes::Scene& scene, const std::string& named)
 {
-    std::vector<CachedCloth> cloths;
-    for (const std::filesystem::path& file : caches) {
-        const scenes::ClothState* cloth = &world.surfaces()[cloth_of_cache(scene, file, named)];
-        for (const CachedCloth& other : cloths)
+    std::vector<ClothCache> caches;
+    for (const std::filesystem::path& file : files) {
+        const int cloth = cloth_of_cache(scene, file, named);
+        for (const ClothCache& other : caches)
             if (other.cloth == cloth)
-                throw InvalidInput(file.string() + ": is of the same cloth \"" + cloth->name + "\" as " +
-                                   other.file.string() + "; give one cache of each cloth");
-        cloths.push_back({cloth, file, file});
+                throw InvalidInput(file.string() + ": is of the same cloth \"" +
+                                   surface_names(scene)[size_t(cloth)] + "\" as " + other.file.string() +
+                                   "; give one cache of each cloth");
+        caches.push_back({file, cloth});
     }
-    return cloths;
+    return caches;
 }
 
 /// Path next to the caches: NAME.certificate.json for one, certificate.json for several or a folder.
@@ -91,12 +98,12 @@ std::filesystem::path certificate_path_of(const CheckOptions& options)
 
 /// Refuses a certificate that would replace a file that it is made from, or could not be written.
 void require_safe_output(const std::filesystem::path& file, const scenes::Scene& scene,
-                         const std::vector<std::filesystem::path>& caches)
+                         const std::vector<ClothCache>& caches)
 {
     FilePlan plan;
     add_inputs(plan, scene);
-    for (const std::filesystem::path& cache : caches)
-        plan.add_input(cache, "a cache to check");
+    for (const ClothCache& cache : caches)
+        plan.add_input(cache.file, "a cache to check");
     plan.add_output(file, "the certificate");
     require_writable(file);
 }
@@ -113,8 +120,8 @@ int check(const CheckOptions& options)
             throw InvalidInput(cache.string() + ": no such folder; check the path");
     scenes::Scene scene = scenes::read_scene(options.scene);
     scene.frames = options.frames.value_or(scene.frames);
-    const std::vector<std::filesystem::path> caches =
-        is_folder ? caches_in(options.caches[0], scene) : options.caches;
+    const std::vector<ClothCache> caches =
+        is_folder ? caches_in(options.caches[0], scene) : named_caches(options.caches, scene, options.cloth);
     const std::filesystem::path output = certificate_path_of(options);
     require_safe_output(output, scene, caches);
     // A run must not replace the caches before their certificate lies beside them.
@@ -122,7 +129,10 @@ int check(const CheckOptions& options)
     if (options.output.empty())
         lock.emplace(output.parent_path());
     const scenes::World world(scene);
-    const std::vector<CachedCloth> cloths = cloths_of(caches, scene, world, options.cloth);
+    std::vector<CachedCloth> cloths;
+    cloths.reserve(caches.size());
+    for (const ClothCache& cache : caches)
+        cloths.push_back({&world.surfaces()[cache.cloth], cache.file, cache.file});
 
     std::optional<Progress> progress;
     const Certificate certificate = *certify(scene, cloths, options.limits, [&](int done, int all) {

@@ -11,6 +11,7 @@
 #include "apps/toile/terminal/scene_inputs.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "scenes/format/read_scene.h"
 
@@ -31,9 +32,11 @@ struct RenderOptions {
     bool quiet = false;
 };
 
+bool is_scene(const std::filesystem::path& input) { return lower_case_extension(input) == ".json"; }
+
 Film open_film(const RenderOptions& options)
 {
-    if (options.inputs[0].extension() == ".json") {
+    if (is_scene(options.inputs[0])) {
         if (options.inputs.size() > 1)
             throw InvalidInput(
                 options.inputs[1].string() +
@@ -100,7 +103,13 @@ void write_folder(Film& film, const std::vector<int>& frames, const std::filesys
 {
     Progress progress("picture", int(frames.size()), quiet);
     for (size_t i = 0; i < frames.size(); ++i) {
-        write_png(picture_file(folder, frames[i]), film.picture(frames[i]));
+        try {
+            write_png(picture_file(folder, frames[i]), film.picture(frames[i]));
+        } catch (const InvalidInput& error) { // at first, nothing is written yet
+            if (i > 0)
+                throw DeviceError(error.what() + std::string("; the pictures before are written"));
+            throw;
+        }
         progress.update(int(i) + 1);
     }
 }
@@ -112,17 +121,17 @@ void require_safe_output(const RenderOptions& options, const std::filesystem::pa
     FilePlan plan;
     for (const std::filesystem::path& input : options.inputs)
         plan.add_input(input, "an input");
-    const bool is_scene = options.inputs[0].extension() == ".json";
-    if (is_scene || !options.scene.empty())
-        add_inputs(plan, scenes::read_scene(is_scene ? options.inputs[0] : options.scene));
+    if (is_scene(options.inputs[0]) || !options.scene.empty())
+        add_inputs(plan, scenes::read_scene(is_scene(options.inputs[0]) ? options.inputs[0] : options.scene));
     if (!output.extension().empty()) {
         plan.add_output(output, "the picture");
         require_writable(output);
         return;
     }
-    for (const int frame : frames)
+    for (const int frame : frames) {
         plan.add_output(picture_file(output, frame), "a picture");
-    require_writable(picture_file(output, frames[0]));
+        require_writable(picture_file(output, frame));
+    }
 }
 
 int render(const RenderOptions& options)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -30,28 +31,40 @@ void add_output_and_partial(FilePlan& plan, const path& file, const std::string&
     plan.add_output(partial_beside(file), role + ", unfinished");
 }
 
-/// Adds the frames of a sequence, those that an earlier, longer run left, and those that a killed run left
-/// unfinished, which are removed.
-void add_frames(FilePlan& plan, const path& file, int frame_count, const std::string& role)
+/// Frames of a cache, finished and unfinished, if it is a sequence of OBJ files.
+struct SequenceFiles {
+    exports::ObjSequence finished, unfinished;
+};
+std::optional<SequenceFiles> sequence_of(const path& cache, int frame_count)
 {
-    const exports::ObjSequence sequence(file);
+    if (!is_obj(cache) || (frame_count == 1 && !exports::ObjSequence::has_digits_placeholder(cache)))
+        return std::nullopt;
+    const exports::ObjSequence finished(cache);
+    return SequenceFiles{finished, exports::ObjSequence(cache.parent_path() / (finished.stem() + ".partial") /
+                                                        cache.filename())};
+}
+
+/// Adds the frames of a sequence, and those of an earlier run, which are removed.
+void add_frames(FilePlan& plan, const exports::ObjSequence& sequence, int frame_count,
+                const std::string& role)
+{
     for (int frame = 0; frame < frame_count; ++frame)
         plan.add_output(sequence.file(frame), role);
     for (const int number : sequence.existing())
         if (number >= frame_count)
             plan.add_output(sequence.file(number), role);
-    const exports::ObjSequence waiting(file.parent_path() / (sequence.stem() + ".partial") / file.filename());
-    for (const int number : waiting.existing())
-        plan.add_output(waiting.file(number), role + ", unfinished");
 }
 
 void add_cache(FilePlan& plan, const path& file, int frame_count, const std::string& role)
 {
+    if (const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count)) {
+        add_frames(plan, sequence->finished, frame_count, role);
+        add_frames(plan, sequence->unfinished, frame_count, role + ", unfinished");
+        return;
+    }
     add_output_and_partial(plan, file, role);
     if (exports::cache_format(file) == exports::CacheFormat::Mdd)
         plan.add_output(file.string() + ".partial.pc2", role + ", unfinished");
-    if (is_obj(file) && (frame_count > 1 || exports::ObjSequence::has_digits_placeholder(file)))
-        add_frames(plan, file, frame_count, role);
 }
 
 /// Refuses a name that can't be replaced by a file, or should not be.
@@ -60,6 +73,21 @@ void require_regular(const path& file)
     std::error_code missing;
     if (std::filesystem::is_directory(file, missing) || is_stream(file))
         throw InvalidInput(file.string() + ": is no regular file; choose another folder or name");
+}
+
+void require_writable_cache(const path& file, int frame_count)
+{
+    const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count);
+    if (!sequence) {
+        require_regular(file);
+        require_writable(partial_beside(file));
+        return;
+    }
+    for (int frame = 0; frame < frame_count; ++frame) {
+        require_regular(sequence->finished.file(frame));
+        require_regular(sequence->unfinished.file(frame));
+    }
+    require_writable(sequence->unfinished.file(0));
 }
 
 void add_outputs(FilePlan& plan, const SceneJob& job)
@@ -143,10 +171,8 @@ void require_safe_outputs(const std::vector<SceneJob>& jobs)
             exports::FolderLock::require_free(folder);
             require_writable_folder(folder);
         }
-        for (const SurfaceFile& cache : caches_of(job)) {
-            require_regular(cache.file);
-            require_writable(partial_beside(cache.file));
-        }
+        for (const SurfaceFile& cache : caches_of(job))
+            require_writable_cache(cache.file, job.scene.frames);
         for (const SurfaceFile& mesh : start_meshes_of(job)) {
             require_regular(mesh.file);
             require_writable(partial_beside(mesh.file));

@@ -43,6 +43,7 @@ std::string scene_schema()
         {"title", "Toile scene"},
         {"description", "A scene to simulate. SI units, Y up, paths relative to the file."}};
     schema.update(scene_format::object_schema(Scene()));
+    schema["properties"]["$schema"] = {{"description", "This schema, for editors."}, {"type", "string"}};
     return schema.dump(2) + "\n";
 }
 

@@ -24,6 +24,18 @@ ObjMesh loose_squares(int n)
     return mesh;
 }
 
+/// Triangles as quadrilaterals, as game engines store them.
+TEST(RepeatedCorners, AreLeftOutWithTheirTexture)
+{
+    ObjMesh mesh;
+    mesh.positions.resize(4, Vec3::Zero());
+    mesh.polygons = {{0, 1, 2, 2}, {0, 1, 2, 0}, {0, 1, 1}, {0, 1, 2, 3}, {3, 3, 3}};
+    mesh.polygon_uvs = {{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10}, {11, 12, 13, 14}, {15, 16, 17}};
+    EXPECT_EQ(drop_repeated_corners(mesh), 4);
+    EXPECT_EQ(mesh.polygons, (Polygons{{0, 1, 2}, {0, 1, 2}, {0, 1, 2, 3}}));
+    EXPECT_EQ(mesh.polygon_uvs, (Polygons{{0, 1, 3}, {4, 5, 6}, {11, 12, 13, 14}}));
+}
+
 TEST(Stitch, MakesFlatShadedFacesOneSurface)
 {
     ObjMesh mesh = loose_squares(5);

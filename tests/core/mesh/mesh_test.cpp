@@ -109,6 +109,27 @@ TEST(Topology, RefusesThreeTrianglesOnAnEdge)
               "there");
 }
 
+/// A page upright on the seam between two that lie flat, in every order of the three.
+TEST(Topology, KeepsTheFlattestPairWhereSurfacesBranch)
+{
+    TriangleMesh book = two_triangles();
+    book.positions.push_back(Vec3(0.5, 1, 0));
+    book.triangles.push_back(Triangle(0, 1, 4));
+    for (int turn = 0; turn < 3; ++turn) {
+        std::rotate(book.triangles.begin(), book.triangles.begin() + 1, book.triangles.end());
+        const Topology topology = build_branching_topology(book, "book.obj");
+        ASSERT_EQ(topology.edges.size(), 8u);
+        for (int t = 0; t < 3; ++t) {
+            const Edge& edge = topology.edges[topology.triangle_edge[t][0]];
+            EXPECT_EQ(edge.is_border(), book.triangles[t][2] == 4);
+            EXPECT_TRUE(edge.triangle[0] == t || edge.triangle[1] == t);
+        }
+    }
+    book.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+    EXPECT_NE(message_of([&] { build_branching_topology(book, "book.obj"); }).find("in the same direction"),
+              std::string::npos);
+}
+
 TEST(Topology, RefusesAFlippedTriangle)
 {
     const std::vector<Triangle> flipped{{0, 1, 2}, {0, 1, 3}};

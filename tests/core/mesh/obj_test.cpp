@@ -91,22 +91,25 @@ TEST(ReadObj, DropsTextureThatSomeFacesLack)
 
 TEST(ReadObj, NamesTheLineOfEachMistake)
 {
-    EXPECT_EQ(refusal("v 0 0 0\nv 0 x 0\n"), "2: 'x' is not a finite number; write a decimal number");
-    EXPECT_EQ(refusal("v 0 0\n"), "1: '' is not a finite number; write a decimal number");
-    EXPECT_EQ(refusal("v 0 0 1,5\n"), "1: '1,5' is not a finite number; write a decimal number");
-    EXPECT_EQ(refusal("\nv nan 0 0\n"), "2: 'nan' is not a finite number; write a decimal number");
-    EXPECT_EQ(refusal("v 1e999 0 0\n"), "1: '1e999' is not a finite number; write a decimal number");
-    EXPECT_EQ(refusal("vt 0\n"), "1: '' is not a finite number; write a decimal number");
+    const std::string number = "' is not a finite number; write a decimal number: -0.25, 3e-4";
+    for (const char* word : {"x", "1,5", "nan", "inf", "1e999", "0x1p-1", "6.0D-01", "1.#QNAN", "+-1", "+"})
+        EXPECT_EQ(refusal("v 0 0 0\nv 0 0 " + std::string(word) + "\n"), "2: '" + (word + number));
+    const std::string ends =
+        ": the line ends too soon; a vertex has x, y and z, a texture coordinate u and v";
+    EXPECT_EQ(refusal("\nv 0 0\n"), "2" + ends);
+    EXPECT_EQ(refusal("vt\n"), "1" + ends);
 
     const std::string& v = kThreeVertices;
-    EXPECT_EQ(refusal(v + "f 1 2 4\n"), "4: vertex index '4' is out of range; 3 are defined above this line");
-    EXPECT_EQ(refusal(v + "f 0 1 2\n"), "4: vertex index '0' is out of range; 3 are defined above this line");
-    EXPECT_EQ(refusal(v + "f 1 2 -4\n"),
-              "4: vertex index '-4' is out of range; 3 are defined above this line");
-    EXPECT_EQ(refusal(v + "f 1 2 2.5\n"),
-              "4: vertex index '2.5' is out of range; 3 are defined above this line");
+    const std::string defined = " is out of range; 3 are defined above this line, numbered from 1";
+    for (const char* index : {"4", "0", "-4", "99999999999", "-9223372036854775808"})
+        EXPECT_EQ(refusal(v + "f 1 2 " + index + "\n"), std::string("4: vertex index ") + index + defined);
+    const std::string corner = "is no vertex index; a corner is v, v/vt, v//vn or v/vt/vn in whole numbers";
+    for (const char* word : {"2.5", "2,", "x", "/"})
+        EXPECT_EQ(refusal(v + "f 1 2 " + word + "\n"),
+                  "4: '" + std::string(word == std::string("/") ? "" : word) + "' " + corner);
     EXPECT_EQ(refusal(v + "f 1/1 2/1 3/1\n"),
-              "4: texture index '1' is out of range; 0 are defined above this line");
+              "4: texture index 1 is out of range; 0 are defined above this line, numbered from 1");
+    EXPECT_EQ(refusal(v + "f 1\n"), "4: the face has 1 corner; it needs at least 3 and at most 10000");
     EXPECT_EQ(refusal(v + "f 1 2\n"), "4: the face has 2 corners; it needs at least 3 and at most 10000");
     EXPECT_EQ(refusal(v + "f\n"), "4: the face has 0 corners; it needs at least 3 and at most 10000");
     EXPECT_EQ(refusal(v + "vt 0 0\nf 1/1 2 3/1\n"),
@@ -132,6 +135,38 @@ TEST(ReadObj, ReadsAnyLineEndsContinuationsAndAByteOrderMark)
     EXPECT_EQ(plain.polygon_lines, std::vector<int>{5});
     EXPECT_EQ(read_text(texts[3]).polygon_lines, std::vector<int>{7});
     EXPECT_EQ(refusal("v 0 0\\\n 0\nv 1 x 0\n").substr(0, 2), "3:");
+}
+
+/// Numbers as other programs write them, and what else a line may have.
+TEST(ReadObj, ReadsTheDialectsOfOtherPrograms)
+{
+    const ObjMesh plain = read_text(kThreeVertices + "vt 0.5 0\nf 1/1 2/1 3/1\n");
+    const std::vector<std::string> texts{
+        "v +0.0 0 1e-400\nv +1.0e+00 0 0\nv 0. 1. -0\nvt 0.5 0\nf +1/1 2/1 3/1\n",
+        "# C:\\models\\\nv 0 0 0 # first\nv 1 0 0\t# second\nv 0 1 0\nvt .5\nf 1/1 2/1 3/1 # face\n",
+        "#MRGB ff\nv 0 0 0 0.1 0.2 0.3\nv 1 0 0 1.0\nv 0 1 0 x\nvt 0.5 0 0\nfo 1/1/9 2/1/9 3/1/9\n",
+        "mg 0\nlod 1\ns off\ng a b\nusemtl \"my cloth\"\n" + kThreeVertices + "vt 0.5\nf 1/1 2/1 3/1\np 1\n",
+    };
+    for (const std::string& text : texts) {
+        const ObjMesh mesh = read_text(text);
+        EXPECT_EQ(mesh.positions, plain.positions) << text;
+        EXPECT_EQ(mesh.texture_coordinates, plain.texture_coordinates) << text;
+        EXPECT_EQ(mesh.polygons, plain.polygons) << text;
+        EXPECT_EQ(mesh.polygon_uvs, plain.polygon_uvs) << text;
+    }
+    EXPECT_EQ(read_text(kThreeVertices + "cstype bezier\nsurf 0 1 0 1 1 2 3\ncurv 0 1 1 2\nend\n")
+                  .free_form_elements,
+              2);
+}
+
+TEST(ReadObj, NamesOtherKindsOfFiles)
+{
+    const std::string utf16("\xff\xfev\0 \0", 6), binary("\x1f\x8b\x08\0\0", 5);
+    for (const std::string& text : {utf16, binary})
+        EXPECT_NE(refusal(text).find("is no OBJ: it is binary or in UTF-16"), std::string::npos);
+    for (const char* text :
+         {"", "ply\nformat ascii 1.0\n", "solid a\nfacet normal 0 0 1\n", "<html>", "V 0 0 0\n"})
+        EXPECT_NE(refusal(text).find("is no OBJ: no line begins with v"), std::string::npos) << text;
 }
 
 TEST(ReadObj, NamesTheLineOfAnUnusableFace)

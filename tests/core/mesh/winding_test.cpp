@@ -61,12 +61,32 @@ TEST(MakeWindingsAgree, FlipsTheMinorityOfEachPiece)
     EXPECT_NE(mesh.polygons[9], right.polygons[9]);
 }
 
+/// Pages of a book, all wound alike: the two that lie flat are made to agree.
+TEST(MakeWindingsAgree, GoesOnAcrossSeamsOfSewnParts)
+{
+    ObjMesh book;
+    book.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}, {0, 0, 1}, {0, 1, 0}};
+    book.polygons = {{0, 1, 4}, {0, 1, 2}, {0, 1, 3}};
+    EXPECT_EQ(branching_edges(book), 1);
+    EXPECT_EQ(branching_edges(strip(4)), 0);
+    EXPECT_EQ(make_windings_agree(book), 1);
+    EXPECT_NE(book.polygons[1][1], book.polygons[2][1]);
+    EXPECT_FALSE(one_sided_polygons(book));
+    const Topology topology = build_branching_topology(book.triangulated(), "book");
+    EXPECT_EQ(topology.triangle_edge[1][0] == topology.triangle_edge[2][0] ||
+                  topology.triangle_edge[1][0] == topology.triangle_edge[2][2] ||
+                  topology.triangle_edge[1][2] == topology.triangle_edge[2][0],
+              true);
+}
+
 TEST(MakeWindingsAgree, LeavesAMoebiusStripToTheTopologyCheck)
 {
     ObjMesh mesh = strip(5);
     mesh.polygons[4] = {8, 1, 0, 9};
     make_windings_agree(mesh);
     EXPECT_NE(complaint_about(mesh).find("in the same direction"), std::string::npos);
+    EXPECT_TRUE(one_sided_polygons(mesh));
+    EXPECT_FALSE(one_sided_polygons(strip(5)));
 }
 
 TEST(MakeWindingsAgree, RepairsARealGarment)

@@ -53,7 +53,41 @@ TEST(SceneErrors, GiveLineAndColumnOfASyntaxError)
              "expected '[', '{', or a literal"},
         {R"({"toile": 1, "toile": 1})",
          R"(bad.json: the key "toile" is given twice in one object; keep one of them)"},
+        {"// a scene\n{}",
+         R"(bad.json:1:1: not valid JSON: JSON has no comments; remove them, or write a "description")"},
+        {"{/* a scene */}",
+         R"(bad.json:1:2: not valid JSON: JSON has no comments; remove them, or write a "description")"},
+        {"{\"toile\": 1,\n}", "bad.json:2:1: not valid JSON: a comma stands before }; remove it"},
+        {R"({"cloths": [1, ]})", "bad.json:1:16: not valid JSON: a comma stands before ]; remove it"},
+        {std::string("\xff\xfe{\0}\0", 6), "bad.json:1:1: not valid JSON: it is in UTF-16; save it in UTF-8"},
+        {"{\"\xff\": 1}",
+         "bad.json:1:3: not valid JSON: syntax error while parsing object key - invalid string: "
+         "ill-formed UTF-8 byte; last read: '\"?'; expected string literal"},
     });
+}
+
+/// Paths as shells, Windows and browsers have them.
+TEST(SceneErrors, SayHowPathsAreWritten)
+{
+    const auto file = [](const std::string& path) {
+        return R"({"toile": 1, "frames": 1, "cloths": [{"name": "c", "file": ")" + path + "\"}]}";
+    };
+    const std::string variables = "~ and variables are not expanded, except ${TOILE_DATA_DIR}";
+    for (const auto& [path, remedy] : std::vector<std::pair<std::string, std::string>>{
+             {"none.obj", "paths are relative to the scene's folder"},
+             {"~/none.obj", variables},
+             {"$HOME/none.obj", variables},
+             {R"(a b\\none.obj)", "write / between folders, also for Windows"},
+             {R"(C:\\none.obj)", "write / between folders, also for Windows"}})
+        expect_complaints(
+            {{file(path), "bad.json: cloths[0].file: the file \"" + path + "\" does not exist; " + remedy}});
+}
+
+/// Editors complete and check by it.
+TEST(SceneErrors, AllowTheNameOfTheSchema)
+{
+    EXPECT_EQ(complaint(scene_with(R"("$schema": "toile.schema.json")")), "accepted");
+    EXPECT_NE(complaint(scene_with("", R"("$schema": "toile.schema.json")")), "accepted");
 }
 
 TEST(SceneErrors, NameTheNearestKnownKey)

@@ -1,0 +1,42 @@
+#include "core/base/number.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+namespace toile {
+
+namespace {
+
+/// The word without a plus sign, which std::from_chars() does not know.
+std::string_view without_plus(std::string_view word)
+{
+    return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
+}
+
+} // namespace
+
+std::optional<double> number_in(std::string_view word)
+{
+    word = without_plus(word);
+    const char* const last = word.data() + word.size();
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), last, value);
+    if (end != last || error == std::errc::invalid_argument)
+        return std::nullopt;
+    if (error == std::errc::result_out_of_range) // too large or too small
+        value = std::strtod(std::string(word).c_str(), nullptr);
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::int64_t> whole_number_in(std::string_view word)
+{
+    word = without_plus(word);
+    const char* const last = word.data() + word.size();
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), last, value);
+    return end == last && error == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+} // namespace toile

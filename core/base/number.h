@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace toile {
+
+/// Decimal number that the whole word is, with or without a sign; 0 where double precision has no number as
+/// small. Nothing for other words, and for infinite values.
+std::optional<double> number_in(std::string_view word);
+
+/// The same for whole numbers.
+std::optional<std::int64_t> whole_number_in(std::string_view word);
+
+} // namespace toile
