@@ -224,6 +224,7 @@ World::World(const Scene& scene, const WorldOptions& options)
 {
     require_valid(scene);
     parts_ = std::make_unique<Parts>(scene, options);
+    const Cancellation::Scope cancellation(parts_->goes_on);
     require_methods(scene, options.baselines);
     if (options.warn)
         for (const std::string& warning : solver_warnings_of(scene))
@@ -244,7 +245,6 @@ World::World(const Scene& scene, const WorldOptions& options)
 
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);
-    const Cancellation::Scope cancellation(parts_->goes_on);
     parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders, [&](double fraction) {
         parts_->tell("repair of the start pose", fraction);
     });
