@@ -71,7 +71,9 @@ MAY_INCLUDE |= {
     "scenes/meshes": BELOW_SCENES + ["scenes/format"],
     "scenes/colliders": BELOW_SCENES + ["scenes/format", "scenes/meshes"],
     "scenes/method": BELOW_SCENES + ["scenes/format"],
-    "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders", "scenes/method"],
+    "scenes/surfaces": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders"],
+    "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders", "scenes/method",
+                                    "scenes/surfaces"],
 }
 BELOW_APPS = BELOW_SCENES + ["scenes", "export"]
 MAY_INCLUDE |= {

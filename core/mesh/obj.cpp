@@ -221,6 +221,15 @@ void require_usable(const ObjMesh& mesh, const std::string& source)
 
 ObjMesh read_obj(const std::filesystem::path& file) { return ObjReader(file).read(); }
 
+ObjMesh faces_of(const TriangleMesh& mesh)
+{
+    ObjMesh faces;
+    faces.positions = mesh.positions;
+    for (const Triangle& t : mesh.triangles)
+        faces.polygons.push_back({t[0], t[1], t[2]});
+    return faces;
+}
+
 void write_obj(const std::filesystem::path& file, const ObjMesh& mesh)
 {
     std::string text;
@@ -243,11 +252,7 @@ void write_obj(const std::filesystem::path& file, const ObjMesh& mesh)
 
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh)
 {
-    ObjMesh obj;
-    obj.positions = mesh.positions;
-    for (const Triangle& t : mesh.triangles)
-        obj.polygons.push_back({t[0], t[1], t[2]});
-    write_obj(file, obj);
+    write_obj(file, faces_of(mesh));
 }
 
 } // namespace toile

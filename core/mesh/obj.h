@@ -34,6 +34,9 @@ struct ObjMesh {
 ///         index out of range, a face of fewer than three or more than 10 000 corners
 ObjMesh read_obj(const std::filesystem::path& file);
 
+/// The mesh with one polygon for each triangle.
+ObjMesh faces_of(const TriangleMesh& mesh);
+
 /// As for triangles, naming the line of the face.
 void require_usable(const ObjMesh& mesh, const std::string& source);
 

@@ -11,15 +11,6 @@ namespace toile::scenes {
 
 namespace {
 
-ObjMesh faces_of(const TriangleMesh& mesh)
-{
-    ObjMesh faces;
-    faces.positions = mesh.positions;
-    for (const Triangle& t : mesh.triangles)
-        faces.polygons.push_back({t[0], t[1], t[2]});
-    return faces;
-}
-
 /// Mesh of the cloth in its local frame, before placement.
 ObjMesh cut(const scene::Cloth& cloth)
 {

@@ -8,7 +8,8 @@
 #include "apps/toile/check/certificate.h"
 #include "apps/toile/terminal/run_log.h"
 #include "export/point_cache.h"
-#include "scenes/world/world.h"
+#include "scenes/format/scene.h"
+#include "scenes/surfaces/cloth_state.h"
 
 namespace toile::app {
 

@@ -16,6 +16,7 @@
 #include "export/folder_lock.h"
 #include "export/obj_sequence.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/surfaces/load_cloth.h"
 
 namespace toile::app {
 
@@ -61,12 +62,12 @@ std::vector<std::filesystem::path> caches_in(const std::filesystem::path& folder
 
 /// Pairs each cache with its cloth.
 std::vector<CachedCloth> cloths_of(const std::vector<std::filesystem::path>& caches,
-                                   const scenes::Scene& scene, const scenes::World& world,
-                                   const std::string& named)
+                                   const scenes::Scene& scene,
+                                   const std::vector<scenes::ClothState>& surfaces, const std::string& named)
 {
     std::vector<CachedCloth> cloths;
     for (const std::filesystem::path& file : caches) {
-        const scenes::ClothState* cloth = &world.surfaces()[cloth_of_cache(scene, file, named)];
+        const scenes::ClothState* cloth = &surfaces[size_t(cloth_of_cache(scene, file, named))];
         for (const CachedCloth& other : cloths)
             if (other.cloth == cloth)
                 throw InvalidInput(file.string() + ": is of the same cloth \"" + cloth->name + "\" as " +
@@ -121,8 +122,8 @@ int check(const CheckOptions& options)
     std::optional<exports::FolderLock> lock;
     if (options.output.empty())
         lock.emplace(output.parent_path());
-    const scenes::World world(scene);
-    const std::vector<CachedCloth> cloths = cloths_of(caches, scene, world, options.cloth);
+    const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene);
+    const std::vector<CachedCloth> cloths = cloths_of(caches, scene, surfaces, options.cloth);
 
     std::optional<Progress> progress;
     const Certificate certificate = *certify(scene, cloths, options.limits, [&](int done, int all) {

@@ -10,7 +10,7 @@
 #include "export/point_cache.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/format/scene.h"
-#include "scenes/world/world.h"
+#include "scenes/surfaces/cloth_state.h"
 
 namespace toile::app {
 
