@@ -130,7 +130,7 @@ SHOWN_TO_ALL = r"(tbb|oneapi|experimental)/"
 # The C++ library, C, and POSIX or processor headers.
 SYSTEM_HEADER = re.compile(
     r"[a-z_]+$|(assert|errno|fcntl|float|glob|limits|math|poll|pthread|pwd|sched|signal|spawn|std\w+|string"
-    r"|strings|malloc|time|unistd|immintrin|xmmintrin|x86intrin)\.h$|sys/\w+\.h$")
+    r"|strings|malloc|time|unistd|immintrin|xmmintrin|x86intrin)\.h$|(linux|sys)/\w+\.h$")
 
 CODE = (".h", ".cpp", ".cu", ".cuh", ".py", ".cmake", ".sh", ".txt")
 CXX = (".h", ".cpp", ".cu", ".cuh")
