@@ -12,6 +12,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/long_work.h"
 #include "core/mesh/polygon.h"
 
 namespace toile {
@@ -43,7 +44,10 @@ public:
 
     ObjMesh read()
     {
-        while (next_line()) {
+        constexpr int kLinesBetweenUpdates = 10'000;
+        for (int count = 0; next_line(); ++count) {
+            if (count % kLinesBetweenUpdates == 0)
+                LongWork::update(1.0 - double(left_.size()) / double(text_.size()));
             const std::string_view keyword = next_word();
             if (keyword == "v")
                 mesh_.positions.push_back(Vec3{number(), number(), number()});

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/base/long_work.h"
 #include "scenes/colliders/select_vertices.h"
 #include "scenes/format/scene_fabric.h"
 #include "scenes/meshes/cloth_mesh.h"
@@ -114,8 +115,11 @@ std::vector<ClothState> load_surfaces(const Scene& scene)
         if (is_selected_near(scene, avatar.name))
             colliders.emplace_back(avatar, scene.contact.friction);
     std::vector<ClothState> surfaces;
-    for (const scene::Cloth& cloth : scene.cloths)
+    for (const scene::Cloth& cloth : scene.cloths) {
+        const LongWork::Part part = LongWork::item(surfaces.size(), scene.cloths.size());
         surfaces.push_back(load_cloth(scene, cloth, colliders, {}).state);
+        LongWork::update(1.0);
+    }
     for (const scene::Solid& solid : scene.solids)
         surfaces.push_back(load_solid(solid));
     return surfaces;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -8,11 +9,13 @@
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/exports.h"
-#include "apps/toile/terminal/progress.h"
 #include "apps/toile/terminal/scene_inputs.h"
+#include "apps/toile/terminal/setup_progress.h"
 #include "core/base/atomic_file.h"
+#include "core/base/cancellation.h"
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
+#include "core/base/long_work.h"
 #include "export/folder_lock.h"
 #include "export/obj_sequence.h"
 #include "scenes/format/read_scene.h"
@@ -102,6 +105,17 @@ void require_safe_output(const std::filesystem::path& file, const scenes::Scene&
     require_writable(file);
 }
 
+std::vector<scenes::ClothState> load_surfaces(const scenes::Scene& scene, const RunLog& log,
+                                              const InterruptGuard& interrupt)
+{
+    const std::function<bool()> goes_on = [&] { return !interrupt.requested(); };
+    const Cancellation::Scope cancellation(goes_on);
+    SetupProgress progress(log.quiet());
+    const LongWork::Scope loading(
+        [&](const LongWork::Progress& now) { progress.update("loading the cloths", now.fraction); });
+    return scenes::load_surfaces(scene);
+}
+
 int check(const CheckOptions& options)
 {
     if (!(options.limits.penetration >= 0.0) || !(options.limits.strain_margin >= 0.0))
@@ -122,21 +136,17 @@ int check(const CheckOptions& options)
     std::optional<exports::FolderLock> lock;
     if (options.output.empty())
         lock.emplace(output.parent_path());
-    const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene);
+    const InterruptGuard interrupt;
+    const RunLog log(options.quiet);
+    const std::vector<scenes::ClothState> surfaces = load_surfaces(scene, log, interrupt);
     const std::vector<CachedCloth> cloths = cloths_of(caches, scene, surfaces, options.cloth);
-
-    std::optional<Progress> progress;
-    const Certificate certificate = *certify(scene, cloths, options.limits, [&](int done, int all) {
-        if (!progress)
-            progress.emplace("check", all, options.quiet);
-        progress->update(done);
-        return true;
-    });
-    progress.reset();
+    const std::optional<Certificate> certificate = certify(scene, cloths, options.limits, log, interrupt);
+    if (!certificate)
+        throw Cancelled("interrupted");
     if (options.output.empty())
-        std::cout << to_json(certificate);
-    write_atomically(output, to_json(certificate));
-    return conclude(certificate, output, RunLog(options.quiet));
+        std::cout << to_json(*certificate);
+    write_atomically(output, to_json(*certificate));
+    return conclude(*certificate, output, log);
 }
 
 } // namespace
