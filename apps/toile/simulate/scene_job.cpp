@@ -55,11 +55,12 @@ void add_cache(FilePlan& plan, const path& file, int frame_count, const std::str
 }
 
 /// Refuses a name that can't be replaced by a file, or should not be.
-void require_regular(const path& file)
+void require_replaceable(const path& file)
 {
     std::error_code missing;
     if (std::filesystem::is_directory(file, missing) || is_stream(file))
         throw InvalidInput(file.string() + ": is no regular file; choose another folder or name");
+    require_writable(file);
 }
 
 void add_outputs(FilePlan& plan, const SceneJob& job)
@@ -144,14 +145,15 @@ void require_safe_outputs(const std::vector<SceneJob>& jobs)
             require_writable_folder(folder);
         }
         for (const SurfaceFile& cache : caches_of(job)) {
-            require_regular(cache.file);
+            require_replaceable(cache.file);
             require_writable(partial_beside(cache.file));
         }
         for (const SurfaceFile& mesh : start_meshes_of(job)) {
-            require_regular(mesh.file);
+            require_replaceable(mesh.file);
             require_writable(partial_beside(mesh.file));
         }
-        require_regular(job.folder / kCertificateName);
+        for (const path& certificate : certificates_of(job))
+            require_replaceable(certificate);
         if (!job.report.empty())
             require_writable(job.report);
     }
