@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "collision/ccd/ccd_query.h"
 #include "collision/ccd/safe_motion.h"
@@ -81,7 +82,7 @@ struct KnownTrajectories {
     TOILE_HD void widen(int v, const Vec3& displacement, double deviation, double slack) const
     {
         motion[v] = displacement;
-        radius[v] = std::max(slack, std::min(kDeviationMargin * deviation, kMaxDeviationMargin));
+        radius[v] = std::max(slack, std::fmin(kDeviationMargin * deviation, kMaxDeviationMargin));
     }
 };
 

@@ -41,13 +41,13 @@ std::vector<Vec3> smoothed(const std::vector<Vec3>& points, int reach)
 
 } // namespace
 
-Film Film::of_scene(const scenes::Scene& scene)
+Film Film::of_scene(const scenes::Scene& scene, const scenes::WorldOptions& options)
 {
     Film film;
     film.settings_ = scene;
     film.bodies_ = make_bodies(scene);
     film.frame_count_ = 1;
-    const scenes::World world(scene);
+    const scenes::World world(scene, options);
     for (int i = 0; i < world.surfaces().size(); ++i)
         film.add_surface(i, world.surfaces()[i], std::nullopt, {});
     return film;

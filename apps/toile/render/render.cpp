@@ -9,9 +9,11 @@
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/progress.h"
 #include "apps/toile/terminal/scene_inputs.h"
+#include "apps/toile/terminal/setup_progress.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
+#include "core/base/long_work.h"
 #include "scenes/format/read_scene.h"
 
 namespace toile::app {
@@ -33,13 +35,18 @@ struct RenderOptions {
 
 Film open_film(const RenderOptions& options)
 {
+    SetupProgress progress(options.quiet);
+    const LongWork::Scope loading(
+        [&](const LongWork::Progress& now) { progress.update("loading", now.fraction); });
     if (options.inputs[0].extension() == ".json") {
         if (options.inputs.size() > 1)
             throw InvalidInput(
                 options.inputs[1].string() +
                 ": can't be rendered together with a scene; write toile render CACHE --scene " +
                 options.inputs[0].string());
-        return Film::of_scene(scenes::read_scene(options.inputs[0]));
+        scenes::WorldOptions world;
+        world.progress = [&](const std::string& task, double fraction) { progress.update(task, fraction); };
+        return Film::of_scene(scenes::read_scene(options.inputs[0]), world);
     }
     if (!options.cloth.empty() && options.inputs.size() > 1)
         throw InvalidInput("--cloth: names one cloth, but there are " +
