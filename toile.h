@@ -4,7 +4,7 @@
 #include "core/pd/step/step_report.h"
 #include "export/cache_writer.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world/cloth_state.h"
+#include "scenes/surfaces/cloth_state.h"
 #include "scenes/world/world.h"
 #include "scenes/world/world_options.h"
 

@@ -82,8 +82,8 @@ CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count)
     CacheLayout layout;
     layout.vertex_count = mesh.vertex_count();
     layout.frame_count = frame_count;
-    for (const Triangle& t : mesh.triangles)
-        layout.faces.polygons.push_back({t[0], t[1], t[2]});
+    layout.faces = faces_of(mesh);
+    layout.faces.positions.clear();
     return layout;
 }
 

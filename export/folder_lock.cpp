@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <ctime>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -38,15 +40,24 @@ std::filesystem::path from_root(const std::filesystem::path& folder)
     return std::filesystem::absolute(folder / ".").parent_path();
 }
 
+/// Takes an exclusive lock. Probes of other runs (require_free) hold it for a moment, which is waited for.
+/// @return 0 or errno
+int lock(int descriptor)
+{
+    constexpr int kTries = 20;
+    for (int tried = 0; ::flock(descriptor, LOCK_EX | LOCK_NB) != 0; ++tried) {
+        if (errno != EWOULDBLOCK || tried == kTries)
+            return errno;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return 0;
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& folder, int descriptor)
 {
-    const int reason = errno;
     std::array<char, 512> holder{};
     const bool is_known = ::pread(descriptor, holder.data(), holder.size() - 1, 0) > 0;
     ::close(descriptor);
-    if (reason != EWOULDBLOCK)
-        throw InvalidInput(folder.string() + ": can't be locked (" + std::strerror(reason) +
-                           "); choose a folder on another file system");
     throw InvalidInput(folder.string() + ": another run is writing there" +
                        (is_known ? ", " + std::string(holder.data()) : "") +
                        "; wait for it or choose another folder");
@@ -89,7 +100,8 @@ void FolderLock::require_free(const std::filesystem::path& folder)
     ::close(descriptor);
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder)
+FolderLock::FolderLock(const std::filesystem::path& folder,
+                       const std::function<void(const std::string&)>& warn)
     : folder_(folder.empty() ? "." : folder), from_root_(from_root(folder_)),
       first_created_(create_folders(folder_))
 {
@@ -104,8 +116,14 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
             throw InvalidInput(folder_.string() + ": can't be written (" + reason +
                                "); choose a writable folder");
         }
-        if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+        if (const int error = lock(descriptor_); error == EWOULDBLOCK) {
             refuse(folder_, descriptor_);
+        } else if (error != 0) {
+            if (warn)
+                warn(folder_.string() + ": this file system has no locks (" + std::strerror(error) +
+                     "); a second run into this folder would not be noticed");
+            break;
+        }
         // The holder may have removed the file between open() and flock(): then this lock keeps nobody out.
         const bool is_held = leads_to(file_in(folder_), descriptor_);
         if (is_held && (!is_foreign || ::unlink(file_in(folder_).c_str()) != 0))

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 
 namespace toile::exports {
 
@@ -10,8 +12,10 @@ namespace toile::exports {
 class FolderLock {
 public:
     /// Creates the folder if it is missing.
+    /// @param warn  told that the file system has no locks, so that other runs are not kept out; may be empty
     /// @throws InvalidInput if another run holds the lock, naming it, or the folder can't be written to
-    explicit FolderLock(const std::filesystem::path& folder);
+    explicit FolderLock(const std::filesystem::path& folder,
+                        const std::function<void(const std::string&)>& warn = {});
     /// Removes the file, and folders that the constructor created if they are empty.
     ~FolderLock();
     FolderLock(FolderLock&& other) noexcept;

@@ -71,7 +71,9 @@ MAY_INCLUDE |= {
     "scenes/meshes": BELOW_SCENES + ["scenes/format"],
     "scenes/colliders": BELOW_SCENES + ["scenes/format", "scenes/meshes"],
     "scenes/method": BELOW_SCENES + ["scenes/format"],
-    "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders", "scenes/method"],
+    "scenes/surfaces": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders"],
+    "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders", "scenes/method",
+                                    "scenes/surfaces"],
 }
 BELOW_APPS = BELOW_SCENES + ["scenes", "export"]
 MAY_INCLUDE |= {
@@ -128,7 +130,7 @@ SHOWN_TO_ALL = r"(tbb|oneapi|experimental)/"
 # The C++ library, C, and POSIX or processor headers.
 SYSTEM_HEADER = re.compile(
     r"[a-z_]+$|(assert|errno|fcntl|float|glob|limits|math|poll|pthread|pwd|sched|signal|spawn|std\w+|string"
-    r"|strings|malloc|time|unistd|immintrin|xmmintrin|x86intrin)\.h$|sys/\w+\.h$")
+    r"|strings|malloc|time|unistd|immintrin|xmmintrin|x86intrin)\.h$|(linux|sys)/\w+\.h$")
 
 CODE = (".h", ".cpp", ".cu", ".cuh", ".py", ".cmake", ".sh", ".txt")
 CXX = (".h", ".cpp", ".cu", ".cuh")

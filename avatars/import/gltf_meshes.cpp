@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/long_work.h"
 
 namespace toile::avatars {
 
@@ -61,15 +62,19 @@ std::map<int, ShapeRange> GltfMeshes::read()
 {
     const GltfValue nodes = file_.list("nodes"), meshes = file_.list("meshes");
     std::map<int, ShapeRange> shapes_of_node;
-    for (const int node : tree_.order) {
+    for (size_t done = 0; done < tree_.order.size(); ++done) {
+        const LongWork::Part part = LongWork::item(done, tree_.order.size());
+        const int node = tree_.order[done];
         const std::optional<GltfValue> mesh = nodes[node].find("mesh");
         if (!mesh || tree_.is_drawn[size_t(node)] == 0)
             continue;
         const GltfValue primitives = meshes[mesh->index(meshes.size(), "meshes")].at("primitives");
         const Binding binding = bind(node, primitives);
         KnownVertices known;
-        for (int p = 0; p < primitives.size(); ++p)
+        for (int p = 0; p < primitives.size(); ++p) {
+            LongWork::update(double(p) / primitives.size());
             add_primitive(primitives[p], binding, known);
+        }
         if (binding.first_shape >= 0)
             shapes_of_node[node] = {binding.first_shape, int(binding.weights.size())};
     }

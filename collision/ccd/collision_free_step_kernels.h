@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "collision/ccd/ccd_query.h"
 #include "collision/ccd/safe_motion.h"
@@ -13,6 +14,10 @@ namespace toile::collision {
 
 /// Further deviation of a vertex, relative to its deviation so far [-], before pairs are searched for again.
 inline constexpr double kDeviationMargin = 0.5;
+
+/// Largest such deviation [m]. Pairs grow by the cube of it: cloth that a jump has pulled through a room
+/// would have millions of them.
+inline constexpr double kMaxDeviationMargin = 0.01;
 
 /// Minimum gap of a pair.
 struct MinGap {
@@ -72,11 +77,12 @@ struct KnownTrajectories {
     }
 
     /// Recentres the sphere of v at a displacement, before a search makes the lists complete for it. The
-    /// radius is kDeviationMargin of its deviation from the requested displacement, and at least the slack.
+    /// radius is kDeviationMargin of its deviation from the requested displacement, at most
+    /// kMaxDeviationMargin, and at least the slack.
     TOILE_HD void widen(int v, const Vec3& displacement, double deviation, double slack) const
     {
         motion[v] = displacement;
-        radius[v] = std::max(slack, kDeviationMargin * deviation);
+        radius[v] = std::max(slack, std::fmin(kDeviationMargin * deviation, kMaxDeviationMargin));
     }
 };
 

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/base/cancellation.h"
 #include "core/compute/parallel.h"
 
 namespace toile::collision {
@@ -103,6 +104,7 @@ double TrajectoryLimiter::finish(View<Vec3> x) const
 /// Passes changed trajectories to the query. Deflected vertices are likely to be deflected again.
 void TrajectoryLimiter::update_query()
 {
+    Cancellation::check();
     changes_.clear();
     for (const int v : stale_.items())
         changes_.push_back({v, motion_[v],

@@ -10,6 +10,7 @@
 #include "collision/check/find_crossings.h"
 #include "collision/repair/layers.h"
 #include "collision/repair/untangle_cloth.h"
+#include "core/base/cancellation.h"
 
 namespace toile::collision {
 
@@ -45,6 +46,7 @@ public:
     Faults(const JoinedCloths& cloths, const std::vector<ContactCollider>& bodies,
            const BodyClearing& clearing, View<const Vec3> x)
     {
+        Cancellation::check();
         for (const InsideSample& sample : clearing.inside(x, kTouchDepth)) {
             StartDefect defect = defect_of(cloths, sample.vertex);
             defect.position = sample.point;
@@ -52,6 +54,7 @@ public:
             defect.other = sample.proximity.body;
             add({StartDefect::Kind::InsideBody, sample.proximity.body, sample.vertex, {}}, defect);
         }
+        Cancellation::check();
         std::set<std::pair<int, int>> known; // a triangle crosses many of a body's
         for (const SurfaceCrossing& crossing : clearing.crossings(x)) {
             const Triangle& t = cloths.triangles[crossing.triangle];
@@ -63,6 +66,7 @@ public:
             if (known.emplace(crossing.triangle, crossing.body).second)
                 add({defect.kind, crossing.body, {t[0], t[1], t[2]}, {}}, defect);
         }
+        Cancellation::check();
         for (const UnderLayer& under : find_under_layers(cloths, bodies, x)) {
             StartDefect defect = defect_of(cloths, {under.vertex, -1, -1});
             defect.kind = StartDefect::Kind::UnderLayer;
@@ -71,6 +75,7 @@ public:
             defect.other = cloths.cloth[under.lower];
             add({defect.kind, defect.cloth, {}, {}}, defect);
         }
+        Cancellation::check();
         for (const Crossing& crossing : find_crossings(cloths.triangles, x)) {
             const Triangle &a = cloths.triangles[crossing.a], &b = cloths.triangles[crossing.b];
             StartDefect defect = defect_of(cloths, {a[0], a[1], a[2]});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/cancellation.h"
+
 namespace toile::collision {
 
 namespace {
@@ -39,6 +41,7 @@ ShapeKeeper::ShapeKeeper(const JoinedCloths& cloths) : cloths_(cloths)
 void ShapeKeeper::relax(View<Vec3> x, int sweeps) const
 {
     for (int sweep = 0; sweep < sweeps; ++sweep) {
+        Cancellation::check();
         for (const Distance& bend : bends_)
             project(bend, x);
         for (const Distance& length : lengths_)

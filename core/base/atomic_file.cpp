@@ -88,6 +88,17 @@ void write_to_stream(const std::filesystem::path& stream, std::string_view conte
         broke_off(stream, error);
 }
 
+/// Whether the file is one of another user that only its owner may replace: in a sticky folder such as /tmp.
+bool is_kept_by_its_owner(const std::filesystem::path& file)
+{
+    struct stat own {
+    }, folder{};
+    const uid_t user = ::geteuid();
+    return user != 0 && ::lstat(file.c_str(), &own) == 0 &&
+           ::stat((file.parent_path() / ".").c_str(), &folder) == 0 && (folder.st_mode & S_ISVTX) != 0 &&
+           own.st_uid != user && folder.st_uid != user;
+}
+
 /// Creates and removes a file. @param named  what to name where that fails
 void probe(const std::filesystem::path& folder, const std::filesystem::path& name,
            const std::filesystem::path& named)
@@ -164,6 +175,9 @@ void require_writable(const std::filesystem::path& file)
             refuse_to_write(file, errno);
         return;
     }
+    if (is_kept_by_its_owner(file))
+        throw InvalidInput(file.string() +
+                           ": is of another user, who alone can replace it; choose another folder");
     probe(existing_above(std::filesystem::absolute(file).parent_path()), file.filename(), file);
 }
 

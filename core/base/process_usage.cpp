@@ -1,5 +1,9 @@
 #include "core/base/process_usage.h"
 
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
 #include <sys/resource.h>
 
 namespace toile {
@@ -15,9 +19,16 @@ struct rusage usage_so_far()
 
 } // namespace
 
+/// ru_maxrss would be that of the program which started this one, if it was larger.
 long peak_memory()
 {
-    return usage_so_far().ru_maxrss * 1024; // Linux counts kibibytes
+    static constexpr const char* kPeak = "VmHWM:";
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with(kPeak))
+            return 1024 *
+                   std::strtol(line.c_str() + std::string(kPeak).size(), nullptr, 10); // from kibibytes
+    return usage_so_far().ru_maxrss * 1024;
 }
 
 double user_seconds()

@@ -1,17 +1,20 @@
 #include "core/mesh/obj.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/long_work.h"
 #include "core/base/number.h"
 #include "core/mesh/polygon.h"
 
@@ -44,7 +47,10 @@ public:
 
     ObjMesh read()
     {
-        while (next_line()) {
+        constexpr int kLinesBetweenUpdates = 10'000;
+        for (int count = 0; next_line(); ++count) {
+            if (count % kLinesBetweenUpdates == 0)
+                LongWork::update(1.0 - double(left_.size()) / double(text_.size()));
             const std::string_view keyword = next_word();
             if (keyword == "v") {
                 mesh_.positions.push_back(Vec3{number(), number(), number()});
@@ -262,16 +268,32 @@ void require_usable(const ObjMesh& mesh, const std::string& source)
         }
 }
 
+namespace {
+
+/// Appends numbers with 9 significant digits, whatever the locale.
+void append_line(std::string& text, const char* keyword, std::span<const double> numbers)
+{
+    text += keyword;
+    for (const double number : numbers) {
+        std::array<char, 32> digits;
+        const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), number,
+                                                std::chars_format::general, 9);
+        (text += ' ').append(digits.data(), end);
+    }
+    text += '\n';
+}
+
+} // namespace
+
 ObjMesh read_obj(const std::filesystem::path& file) { return ObjReader(file).read(); }
 
 void write_obj(const std::filesystem::path& file, const ObjMesh& mesh)
 {
     std::string text;
-    char line[128];
     for (const Vec3& p : mesh.positions)
-        text.append(line, std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", p.x(), p.y(), p.z()));
+        append_line(text, "v", {p.data(), 3});
     for (const Vec2& t : mesh.texture_coordinates)
-        text.append(line, std::snprintf(line, sizeof line, "vt %.9g %.9g\n", t.x(), t.y()));
+        append_line(text, "vt", {t.data(), 2});
     for (size_t f = 0; f < mesh.polygons.size(); ++f) {
         text += 'f';
         for (size_t k = 0; k < mesh.polygons[f].size(); ++k) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/compute/parallel.h"
 
 namespace toile::scenes {
@@ -13,15 +12,6 @@ namespace {
 /// Stretch [m] of springs to an avatar under the load of the whole cloth.
 constexpr double kMaxStretch = 1e-3;
 
-int nearest_vertex(View<const Vec3> x, const Vec3& point)
-{
-    int best = 0;
-    for (int v = 1; v < x.size(); ++v)
-        if ((x[v] - point).squaredNorm() < (x[best] - point).squaredNorm())
-            best = v;
-    return best;
-}
-
 Vec3 mean_of(View<const Vec3> x, const std::vector<int>& vertices)
 {
     Vec3 sum = Vec3::Zero();
@@ -30,40 +20,13 @@ Vec3 mean_of(View<const Vec3> x, const std::vector<int>& vertices)
     return sum / double(vertices.size());
 }
 
-struct SkinPoint {
-    Vec3 point, normal;
-    double signed_distance;
-};
-
-SkinPoint nearest_skin(const Collider& collider, const Vec3& x)
-{
-    const collision::ContactCollider contact_collider = collider.contact_collider();
-    if (contact_collider.shape) {
-        const collision::ShapePoint at = contact_collider.shape->closest(x);
-        return {at.point, at.normal, at.signed_distance};
-    }
-    const collision::SurfacePoint at = *contact_collider.mesh->surface().closest(x);
-    return {at.point, at.normal, at.signed_distance};
-}
-
-int index_of(const std::vector<Collider>& colliders, const std::string& name)
-{
-    const auto found = std::find_if(colliders.begin(), colliders.end(),
-                                    [&](const Collider& collider) { return collider.name() == name; });
-    return found == colliders.end() ? -1 : int(found - colliders.begin());
-}
-
 } // namespace
 
-AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
-                                           const std::vector<Collider>& colliders, std::optional<double> load,
-                                           const std::string& location)
-    : settings_(settings), location_(location)
+AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, std::vector<int> vertices,
+                                           View<const Vec3> start, const std::vector<Collider>& colliders,
+                                           std::optional<double> load, const std::string& location)
+    : settings_(settings), location_(location), vertices_(std::move(vertices))
 {
-    select(start, colliders);
-    if (vertices_.empty())
-        throw InvalidInput(location + ": selects no vertex of \"" + settings.cloth +
-                           "\"; move the selection to where the cloth starts");
     if (settings.to == scene::kFixed) {
         motion_ = RigidMotion(settings.keyframes, settings.pivot.value_or(mean_of(start, vertices_)));
         return;
@@ -72,29 +35,6 @@ AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, Vi
     if (!settings.exact && !settings.stiffness && load)
         settings_.stiffness =
             std::max(scene::kSkinStiffness, *load / (kMaxStretch * double(vertices_.size())));
-}
-
-void AttachmentConstraint::select(View<const Vec3> start, const std::vector<Collider>& colliders)
-{
-    if (const auto* indices = std::get_if<std::vector<int>>(&settings_.select.by)) {
-        vertices_ = *indices;
-    } else if (const auto* points = std::get_if<std::vector<Vec3>>(&settings_.select.by)) {
-        for (const Vec3& point : *points)
-            vertices_.push_back(nearest_vertex(start, point));
-    } else if (const auto* box = std::get_if<scene::SelectBox>(&settings_.select.by)) {
-        for (int v = 0; v < start.size(); ++v)
-            if ((start[v].array() >= box->lower.array()).all() &&
-                (start[v].array() <= box->upper.array()).all())
-                vertices_.push_back(v);
-    } else {
-        const auto& near = std::get<scene::SelectNearAvatar>(settings_.select.by);
-        const Collider& collider = colliders[index_of(colliders, near.avatar)];
-        for (int v = 0; v < start.size(); ++v)
-            if (nearest_skin(collider, start[v]).signed_distance <= near.distance)
-                vertices_.push_back(v);
-    }
-    std::sort(vertices_.begin(), vertices_.end());
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
 }
 
 void AttachmentConstraint::tie(View<const Vec3> x, View<const Triangle> triangles, double gap,
@@ -110,7 +50,7 @@ void AttachmentConstraint::tie(View<const Vec3> x, View<const Triangle> triangle
     const std::vector<double> clearance = clearances(collider, x, triangles, gap);
     farthest_ = {};
     for (size_t k = 0; k < start_.size(); ++k) {
-        const SkinPoint skin = nearest_skin(collider, start_[k]);
+        const Collider::SurfacePoint skin = collider.closest(start_[k]);
         if (skin.signed_distance > farthest_.distance)
             farthest_ = {vertices_[k], skin.signed_distance};
         if (skin.signed_distance < clearance[k])
@@ -129,7 +69,7 @@ std::vector<double> AttachmentConstraint::clearances(const Collider& collider, V
     std::vector<Vec3> normal;
     for (size_t k = 0; k < vertices_.size(); ++k) {
         number[vertices_[k]] = int(k);
-        normal.push_back(nearest_skin(collider, x[vertices_[k]]).normal);
+        normal.push_back(collider.closest(x[vertices_[k]]).normal);
     }
     std::vector<double> clearance(vertices_.size(), gap);
     for (const Triangle& t : triangles)

@@ -12,13 +12,14 @@ namespace toile::scenes {
 /// An attachment of a running scene: its vertices and their targets over time.
 class AttachmentConstraint {
 public:
-    /// Selects vertices by their start positions, to be attached to the world or to a collider's surface.
-    /// Springs to an avatar have 300 N/m a vertex by default, or as much as holds `load` within 1 mm.
+    /// Attaches vertices to the world or to a collider's surface. Springs to an avatar have 300 N/m a vertex
+    /// by default, or as much as holds `load` within 1 mm.
+    /// @param vertices  of the cloth, ascending
+    /// @param start     [vertices of the cloth] [m]
     /// @param load  [N] of the whole cloth; none: the method knows no springs, so that attachments are exact
     /// where not asked otherwise
     /// @param location  named in errors, e.g. "tablecloth.json: attachments[0]"
-    /// @throws InvalidInput if it selects no vertex
-    AttachmentConstraint(const scene::Attachment& settings, View<const Vec3> start,
+    AttachmentConstraint(const scene::Attachment& settings, std::vector<int> vertices, View<const Vec3> start,
                          const std::vector<Collider>& colliders, std::optional<double> load,
                          const std::string& location);
 
@@ -53,7 +54,6 @@ public:
     Vec3 target(int k) const;
 
 private:
-    void select(View<const Vec3> start, const std::vector<Collider>& colliders);
     void tie_to_skin(const collision::MeshCollider& mesh);
     std::vector<double> clearances(const Collider& collider, View<const Vec3> x,
                                    View<const Triangle> triangles, double gap) const;

@@ -1,5 +1,7 @@
 #include "scenes/colliders/collider.h"
 
+#include <algorithm>
+
 #include "collision/geometry/shape_surface.h"
 #include "core/base/stages.h"
 
@@ -40,6 +42,16 @@ void Collider::advance_to(double t_t1)
         mesh_collider_->follow_poses(moved_);
 }
 
+Collider::SurfacePoint Collider::closest(const Vec3& x) const
+{
+    if (shape_collider_) {
+        const collision::ShapePoint at = shape_collider_->closest(x);
+        return {at.point, at.normal, at.signed_distance};
+    }
+    const collision::SurfacePoint at = *mesh_collider_->surface().closest(x);
+    return {at.point, at.normal, at.signed_distance};
+}
+
 /// Sides of the box from one pose to its present one.
 MovingMesh Collider::sides(const Eigen::Isometry3d& pose_t0) const
 {
@@ -49,6 +61,13 @@ MovingMesh Collider::sides(const Eigen::Isometry3d& pose_t0) const
         mesh.x_t1[i] = body_.pose() * box_.positions[i];
     }
     return mesh;
+}
+
+int index_of(const std::vector<Collider>& colliders, const std::string& name)
+{
+    const auto found = std::find_if(colliders.begin(), colliders.end(),
+                                    [&](const Collider& collider) { return collider.name() == name; });
+    return found == colliders.end() ? -1 : int(found - colliders.begin());
 }
 
 } // namespace toile::scenes

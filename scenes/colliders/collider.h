@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "collision/body/colliders.h"
 #include "collision/contact/contact.h"
@@ -35,6 +37,13 @@ public:
     } ///< [-] default, for cloths and solids without a coefficient for it
     const BodyMotion& body() const { return body_; }
 
+    /// Point of the surface nearest to x at the end of the current step.
+    struct SurfacePoint {
+        Vec3 point, normal;
+        double signed_distance; ///< [m] from the surface to x, negative inside
+    };
+    SurfacePoint closest(const Vec3& x) const;
+
 private:
     MovingMesh sides(const Eigen::Isometry3d& pose_t0) const;
 
@@ -45,5 +54,8 @@ private:
     std::unique_ptr<collision::MeshCollider> mesh_collider_;
     std::unique_ptr<collision::ShapeCollider> shape_collider_;
 };
+
+/// Index of the collider of this name, -1 if there is none.
+int index_of(const std::vector<Collider>& colliders, const std::string& name);
 
 } // namespace toile::scenes

@@ -1,5 +1,6 @@
 #include "scenes/colliders/scene_body.h"
 
+#include "core/base/long_work.h"
 #include "scenes/meshes/shape_mesh.h"
 
 namespace toile::scenes {
@@ -46,8 +47,11 @@ std::vector<SceneBody> make_bodies(const Scene& scene)
 {
     std::vector<SceneBody> bodies;
     bodies.reserve(scene.avatars.size());
-    for (const scene::Avatar& avatar : scene.avatars)
+    for (const scene::Avatar& avatar : scene.avatars) {
+        const LongWork::Part part = LongWork::item(bodies.size(), scene.avatars.size());
         bodies.emplace_back(avatar);
+        LongWork::update(1.0);
+    }
     return bodies;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "collision/check/find_crossings.h"
+#include "core/base/long_work.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/air/cuda/loads.h"
 #include "scenes/world/contact_setup.h"
@@ -447,8 +448,11 @@ std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collid
                                     const WorldOptions& options)
 {
     std::vector<SceneCloth> cloths;
-    for (const scene::Cloth& cloth : scene.cloths)
+    for (const scene::Cloth& cloth : scene.cloths) {
+        const LongWork::Part part = LongWork::item(cloths.size(), scene.cloths.size());
         cloths.emplace_back(scene, cloth, colliders, options);
+        LongWork::update(1.0);
+    }
     return cloths;
 }
 

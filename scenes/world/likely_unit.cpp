@@ -7,7 +7,7 @@
 
 #include "avatars/load_avatar.h"
 #include "scenes/format/field.h"
-#include "scenes/world/scene_solids.h"
+#include "scenes/surfaces/load_solid.h"
 
 namespace toile::scenes {
 
@@ -108,7 +108,7 @@ std::vector<std::string> unit_warnings(const Scene& scene, const std::vector<Sce
             add(file->string(), size_of(colliders[i]), unit_of(scene.avatars[i], *file), kBody, kPerson, "");
     for (const scene::Solid& solid : scene.solids)
         if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
-            add(file->string(), bounds(solid_mesh(solid).positions).diagonal(), solid.unit, kBody, kPerson,
+            add(file->string(), bounds(load_solid(solid).positions).diagonal(), solid.unit, kBody, kPerson,
                 "");
     return warnings;
 }

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <iterator>
-#include <numbers>
 #include <numeric>
 
 #include "core/base/error.h"
@@ -13,10 +12,9 @@
 #include "garment/energy/air/loads_kernels.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
-#include "scenes/format/scene_fabric.h"
 #include "scenes/meshes/cloth_mesh.h"
-#include "scenes/meshes/rigid_motion.h"
 #include "scenes/method/solver_choice.h"
+#include "scenes/surfaces/load_cloth.h"
 
 namespace toile::scenes {
 
@@ -31,66 +29,6 @@ constexpr double kMaxAcceleration = 30.0;
 
 /// Distance from an avatar [m] beyond which attached cloth is not on it.
 constexpr double kFar = 0.05;
-
-/// The warp of flat cloth is the X axis of its own frame, however it is placed. That of a garment is the
-/// vertical in which it stands.
-/// @param unmoved  [vertices] positions before the cloth's translation [m]
-std::shared_ptr<const garment::RestShape> rest_shape_of(std::vector<Vec3> unmoved,
-                                                        const std::vector<Triangle>& triangles,
-                                                        const scene::Cloth& settings,
-                                                        const std::string& source)
-{
-    const Mat3 back = rotation_of(settings.rotate_deg).transpose();
-    std::vector<Vec3> own = unmoved;
-    for (Vec3& p : own)
-        p = back * p;
-    const Bounds box = bounds(own);
-    const bool is_flat = box.upper.y() - box.lower.y() < 1e-9 * (1.0 + (box.upper - box.lower).norm());
-    return std::make_shared<const garment::RestShape>(garment::rest_shape_of_surface(
-        {is_flat ? std::move(own) : std::move(unmoved), triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(),
-        settings.grain_deg * std::numbers::pi / 180.0, source));
-}
-
-/// The attachment with the cloth's numbers of vertices for those of the file.
-scene::Attachment in_cloth(scene::Attachment attachment, const ClothState& cloth, const std::string& location)
-{
-    auto* vertices = std::get_if<std::vector<int>>(&attachment.select.by);
-    if (vertices == nullptr)
-        return attachment;
-    const FileNumbers& numbers = cloth.numbers;
-    const int count = int(numbers.vertex.empty() ? cloth.rest.positions.size() : numbers.vertex.size());
-    for (int& v : *vertices) {
-        if (v < 0 || v >= count)
-            throw InvalidInput(location + ": vertex " + std::to_string(v) + " is out of range; \"" +
-                               cloth.name + "\" has vertices 0 to " + std::to_string(count - 1));
-        if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), v))
-            throw InvalidInput(location + ": vertex " + std::to_string(v) + " of \"" + cloth.name +
-                               "\" has no face; attach vertices of the surface");
-        v = numbers.vertex.empty() ? v : numbers.vertex[size_t(v)];
-    }
-    return attachment;
-}
-
-/// Warns of points that select the vertex nearest to them from farther away than the cloth is large: they are
-/// likely in another unit.
-void warn_of_far_points(const scene::Attachment& attachment, const ClothState& cloth,
-                        const std::string& location, const std::function<void(const std::string&)>& warn)
-{
-    const auto* points = std::get_if<std::vector<Vec3>>(&attachment.select.by);
-    if (points == nullptr || !warn)
-        return;
-    const Bounds box = bounds(cloth.positions);
-    for (size_t i = 0; i < points->size(); ++i) {
-        const Vec3 inside = (*points)[i].cwiseMax(box.lower).cwiseMin(box.upper);
-        const double distance = ((*points)[i] - inside).norm();
-        if (distance <= box.diagonal())
-            continue;
-        char text[100];
-        std::snprintf(text, sizeof text, ".select.nearest[%zu]: is %.3g m away from ", i, distance);
-        warn(location + text + "\"" + cloth.name +
-             "\"; coordinates are in metres, at the start of the scene");
-    }
-}
 
 /// Attachments that keep vertices where they are may share them.
 /// @throws InvalidInput for a vertex of two attachments that may part
@@ -134,44 +72,36 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
                        const std::vector<Collider>& colliders, const WorldOptions& options)
     : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind), gusts_(gusts_of(scene.wind))
 {
-    state_.name = settings.name;
-    state_.fabric = scenes::fabric_of(scene, settings);
-    ClothMesh mesh = cloth_mesh(settings);
-    for (const std::string& warning : mesh.warnings)
-        if (options.warn)
-            options.warn(source_ + ": " + warning);
-    state_.rest = std::move(mesh.mesh);
-    state_.numbers = std::move(mesh.numbers);
-    state_.file = std::move(mesh.file);
-    state_.triangles = state_.rest.triangulated().triangles;
-    rest_ = rest_shape_of(state_.rest.positions, state_.triangles, settings, source_);
-    for (ObjMesh* placed : {&state_.rest, &state_.file})
-        for (Vec3& p : placed->positions)
-            p += settings.translate;
-    state_.positions = state_.rest.positions;
+    LoadedCloth loaded = load_cloth(scene, settings, colliders, options.warn);
+    state_ = std::move(loaded.state);
+    rest_ = std::move(loaded.rest);
     masses_ = rest_->vertex_areas();
     for (double& mass : masses_)
         mass *= state_.fabric.areal_density;
-    std::optional<double> load;
-    if (!replaces_minimiser(scene.solver.method))
-        load = kMaxAcceleration * std::accumulate(masses_.begin(), masses_.end(), 0.0);
-    for (size_t i = 0; i < scene.attachments.size(); ++i)
-        if (scene.attachments[i].cloth == settings.name) {
-            const std::string location = scene.source.string() + ": attachments[" + std::to_string(i) + "]";
-            require_method_supports(scene.solver.method, scene.attachments[i], location);
-            attachments_.emplace_back(in_cloth(scene.attachments[i], state_, location), state_.positions,
-                                      colliders, load, location);
-            warn_of_far_points(scene.attachments[i], state_, location, options.warn);
-            ClothState::Attachment& shown = state_.attachments.emplace_back();
-            shown.vertices = attachments_.back().vertices();
-            shown.release = scene.attachments[i].release.value_or(shown.release);
-        }
-    require_one_owner(attachments_, state_);
+    add_attachments(scene, colliders);
 
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
     garment::StrainLimit::Settings limit;
     limit.limit = state_.fabric.strain_limit;
     strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, limit, source_);
+}
+
+void SceneCloth::add_attachments(const Scene& scene, const std::vector<Collider>& colliders)
+{
+    std::optional<double> load;
+    if (!replaces_minimiser(scene.solver.method))
+        load = kMaxAcceleration * std::accumulate(masses_.begin(), masses_.end(), 0.0);
+    auto selected = state_.attachments.begin();
+    for (size_t i = 0; i < scene.attachments.size(); ++i) {
+        const scene::Attachment& attachment = scene.attachments[i];
+        if (attachment.cloth != state_.name)
+            continue;
+        const std::string location = attachment_location(scene, i);
+        require_method_supports(scene.solver.method, attachment, location);
+        attachments_.emplace_back(attachment, (selected++)->vertices, state_.positions, colliders, load,
+                                  location);
+    }
+    require_one_owner(attachments_, state_);
 }
 
 /// Membrane, bending, and the internal friction of both. Implicit Euler's own losses hide that friction, and

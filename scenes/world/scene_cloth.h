@@ -13,7 +13,7 @@
 #include "garment/energy/springs.h"
 #include "garment/energy/strain_limit/strain_limit.h"
 #include "scenes/colliders/attachment_constraint.h"
-#include "scenes/world/cloth_state.h"
+#include "scenes/surfaces/cloth_state.h"
 #include "scenes/world/world_options.h"
 
 namespace toile::garment {
@@ -87,6 +87,7 @@ public:
     const garment::StrainLimit& strain_limit() const { return *strain_limit_; }
 
 private:
+    void add_attachments(const Scene& scene, const std::vector<Collider>& colliders);
     void add_elasticity(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
     void add_springs(std::vector<std::shared_ptr<Energy>>& energies);
 

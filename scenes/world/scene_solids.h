@@ -7,10 +7,6 @@
 
 namespace toile::scenes {
 
-/// Surface of a solid at its start placement, closed and oriented outward.
-/// @throws InvalidInput for an unusable mesh
-TriangleMesh solid_mesh(const scene::Solid& solid);
-
 /// The rigid bodies of a running scene. Their ClothGroup moves them.
 class SceneSolids {
 public:

@@ -9,6 +9,7 @@
 
 #include "core/base/cancellation.h"
 #include "core/base/error.h"
+#include "core/base/long_work.h"
 #include "core/compute/cuda/runtime/device.h"
 #include "core/compute/parallel.h"
 #include "scenes/format/validate.h"
@@ -73,10 +74,17 @@ struct World::Parts {
         return longest * int(std::ceil(scene.settle / (longest * control.tick()) - 1e-9));
     }
 
+    /// Time within several steps.
+    struct Moment {
+        int step;        ///< from 1
+        int iteration;   ///< from 1; 0: the step has ended
+        double fraction; ///< of all steps that have ended [0, 1]
+    };
+
     /// Takes steps of `ticks` altogether, the last of them ending at `end` [s]. Avatars do not move before
     /// time 0.
-    /// @param task  for progress
-    StepReport advance(int ticks, double end, const char* task)
+    /// @param tell  told the time of each step and iteration
+    StepReport advance(int ticks, double end, const std::function<void(const Moment&)>& tell)
     {
         const ThreadLimit threads(scene.solver.threads);
         const Stages::Activate recording(stages);
@@ -90,10 +98,13 @@ struct World::Parts {
                     largest = std::max(largest, collider.motion_to(std::max(time_after(more), 0.0)));
                 return largest;
             });
+            const LongWork::Scope work([&](const LongWork::Progress& progress) {
+                tell({total.steps + 1, progress.iteration, double(done) / ticks});
+            });
             const StepReport report = step(length * control.tick(), time_after(length));
             control.observe(report);
             done += length;
-            tell(task, double(done) / ticks);
+            tell({total.steps + 1, 0, double(done) / ticks});
             total.energy = 0.0;
             total.contacts = 0;
             total.merge(report);
@@ -106,10 +117,53 @@ struct World::Parts {
         return total;
     }
 
-    void tell(const char* task, double fraction) const
+    void tell(const std::string& task, double fraction) const
     {
         if (progress)
             progress(task, fraction);
+    }
+
+    void tell_within_frame(const Moment& moment) const
+    {
+        const std::string task =
+            moment.iteration == 0
+                ? "steps of a frame"
+                : "step " + std::to_string(moment.step) + ", iteration " + std::to_string(moment.iteration);
+        tell(task, moment.fraction);
+    }
+
+    /// Makes avatars, cloths and what moves them.
+    void load(const WorldOptions& options)
+    {
+        constexpr double kAvatars = 0.5, kCloths = 0.9; // parts of the work
+        const LongWork::Scope work(
+            [this](const LongWork::Progress& progress) { tell("loading", progress.fraction); });
+        load_avatars(options, kAvatars);
+        space = open_backend(options.backend, options.device, scene, options.warn);
+        std::vector<SceneCloth> cloths;
+        {
+            const LongWork::Part part(kAvatars, kCloths);
+            cloths = make_cloths(scene, colliders, options);
+        }
+        if (options.warn)
+            for (const std::string& warning : unit_warnings(scene, cloths, colliders))
+                options.warn(warning);
+        if (options.backend == Backend::Auto)
+            space = space_with_capacity(space, vertex_count(cloths), options.warn);
+        groups = make_groups(scene, std::move(cloths), colliders, options, space.get());
+        LongWork::update(1.0);
+    }
+
+    void load_avatars(const WorldOptions& options, double end)
+    {
+        const LongWork::Part all(0.0, end);
+        for (const scene::Avatar& avatar : scene.avatars) {
+            const LongWork::Part part = LongWork::item(colliders.size(), scene.avatars.size());
+            LongWork::update(0.0);
+            colliders.emplace_back(avatar, scene.contact.friction);
+            if (options.warn)
+                warn_of_turned(colliders.back(), options.warn);
+        }
     }
 
     /// Relaxes cloth that the repair of the start pose has strained beyond its limit, as long as the strain
@@ -224,27 +278,14 @@ World::World(const Scene& scene, const WorldOptions& options)
 {
     require_valid(scene);
     parts_ = std::make_unique<Parts>(scene, options);
-    const Cancellation::Scope cancellation(parts_->goes_on);
     require_methods(scene, options.baselines);
     if (options.warn)
         for (const std::string& warning : solver_warnings_of(scene))
             options.warn(warning);
-    for (const scene::Avatar& avatar : scene.avatars) {
-        parts_->colliders.emplace_back(avatar, scene.contact.friction);
-        if (options.warn)
-            warn_of_turned(parts_->colliders.back(), options.warn);
-    }
-    parts_->space = open_backend(options.backend, options.device, scene, options.warn);
-    std::vector<SceneCloth> cloths = make_cloths(scene, parts_->colliders, options);
-    if (options.warn)
-        for (const std::string& warning : unit_warnings(scene, cloths, parts_->colliders))
-            options.warn(warning);
-    if (options.backend == Backend::Auto)
-        parts_->space = space_with_capacity(parts_->space, vertex_count(cloths), options.warn);
-    parts_->groups = make_groups(scene, std::move(cloths), parts_->colliders, options, parts_->space.get());
-
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);
+    const Cancellation::Scope cancellation(parts_->goes_on);
+    parts_->load(options);
     parts_->start = repair_start_pose(scene, parts_->groups, parts_->colliders, [&](double fraction) {
         parts_->tell("repair of the start pose", fraction);
     });
@@ -295,8 +336,16 @@ void World::prepare()
     const StepControl& control = parts().control;
     const double dt = control.first() * control.tick();
     const double first_end = dt - parts().settle_ticks() * control.tick();
-    for (ClothGroup& group : parts().groups)
-        group.prepare(dt, first_end);
+    const Cancellation::Scope cancellation(parts().goes_on);
+    const LongWork::Scope work([this](const LongWork::Progress& progress) {
+        parts().tell("preparation of the solvers", progress.fraction);
+    });
+    LongWork::update(0.0);
+    for (size_t i = 0; i < parts().groups.size(); ++i) {
+        const LongWork::Part part = LongWork::item(i, parts().groups.size());
+        parts().groups[i].prepare(dt, first_end);
+        LongWork::update(1.0);
+    }
 }
 
 StepReport World::settle()
@@ -311,7 +360,9 @@ StepReport World::settle()
             if (StepReport report = parts().relax_start(); report.status == StepReport::Status::NonFinite)
                 return report;
         }
-        return parts().advance(parts().settle_ticks(), 0.0, "settling");
+        return parts().advance(parts().settle_ticks(), 0.0, [this](const Parts::Moment& moment) {
+            parts().tell("settling", moment.fraction);
+        });
     });
 }
 
@@ -320,8 +371,9 @@ StepReport World::advance_frame()
     Call call(*this, "World::advance_frame");
     return call.take([&] {
         const int next = parts().frame + 1;
-        StepReport report = parts().advance(parts().control.ticks_of_sample(),
-                                            next * parts().scene.frame_duration(), "steps of a frame");
+        StepReport report =
+            parts().advance(parts().control.ticks_of_sample(), next * parts().scene.frame_duration(),
+                            [this](const Parts::Moment& moment) { parts().tell_within_frame(moment); });
         parts().frame = next;
         return report;
     });

@@ -6,7 +6,7 @@
 #include "core/base/stages.h"
 #include "core/pd/step/step_report.h"
 #include "scenes/format/scene.h"
-#include "scenes/world/cloth_state.h"
+#include "scenes/surfaces/cloth_state.h"
 #include "scenes/world/snapshot.h"
 #include "scenes/world/world_options.h"
 

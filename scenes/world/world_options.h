@@ -29,12 +29,12 @@ struct WorldOptions {
     /// any of the building threads. Returning false ends the building call with Cancelled. May be empty.
     std::function<bool(const std::string& cloth, double fraction)> building = nullptr;
 
-    /// Called with what is done and its finished fraction [0, 1]: repair and relaxation of the start pose,
-    /// settling, the steps of a sample. May be empty.
+    /// Called with what is done and its finished fraction [0, 1]: loading, repair and relaxation of the start
+    /// pose, preparation, settling, the steps of a sample ("step 3, iteration 41" within one). May be empty.
     std::function<void(const std::string& task, double fraction)> progress = nullptr;
 
-    /// Asked often, on the calling thread: false ends the constructor, settle() or advance_frame() with
-    /// Cancelled. May be empty.
+    /// Asked often, on the calling thread: false ends the constructor, prepare(), settle() or advance_frame()
+    /// with Cancelled. May be empty.
     std::function<bool()> goes_on = nullptr;
 
     /// Receives problems that do not stop the run, e.g. a damaged cache file; may be empty.

@@ -3,7 +3,10 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include "apps/toile/terminal/interrupt.h"
+#include "export/cache_writer.h"
 #include "export/point_cache.h"
 #include "tests/apps/kill_points.h"
 #include "tests/apps/program.h"
@@ -175,6 +178,41 @@ TEST_F(Killed, ByASignalWithinALongStageEndsAtOnce)
         EXPECT_NE(end.errors.find("interrupted"), std::string::npos) << end.errors;
         EXPECT_NE(end.errors.find(says), std::string::npos) << end.errors;
     }
+}
+
+TEST(InterruptGuard, AsksForTheEndAtTheFirstSignalAndEndsAtTheSecond)
+{
+    EXPECT_EXIT(
+        {
+            const app::InterruptGuard guard;
+            ::raise(SIGINT);
+            if (guard.requested())
+                ::raise(SIGINT);
+            ::_exit(0);
+        },
+        testing::KilledBySignal(SIGINT), "");
+}
+
+/// The end of a check of 50 000 frames is not waited for.
+TEST_F(Killed, ByASignalBeforeAnythingIsWrittenLeavesNothing)
+{
+    temporary_.write("long.json", small_scene(50000));
+    std::filesystem::create_directory(file("long"));
+    const PointCache cache = read_cache(file("new/sheet.pc2"));
+    CacheLayout layout;
+    layout.vertex_count = cache.vertex_count();
+    layout.frame_count = 50000;
+    const auto writer = make_cache_writer(file("long/sheet.pc2"), layout);
+    for (int frame = 0; frame < layout.frame_count; ++frame)
+        writer->write(frame, cache.frame(0));
+    writer->finish();
+    Running check({"check", "long", "--scene", "long.json"}, folder_);
+    Running::wait_for_file(file("long/.toile.lock"));
+    const Finished end = check.end(SIGINT);
+    EXPECT_EQ(end.exit_code, 1);
+    EXPECT_EQ(end.error_lines(), 1) << end.errors;
+    EXPECT_NE(end.errors.find("interrupted; nothing was written"), std::string::npos) << end.errors;
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file("long")), {}), 1);
 }
 
 TEST_F(Killed, ByASignalThatCanBeCaughtEndsAfterItsFrame)

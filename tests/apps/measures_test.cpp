@@ -9,8 +9,8 @@
 
 #include "apps/toile/check/strain.h"
 #include "apps/toile/render/frame_range.h"
-#include "apps/toile/simulate/setup_progress.h"
 #include "apps/toile/terminal/progress.h"
+#include "apps/toile/terminal/setup_progress.h"
 #include "core/base/error.h"
 #include "scenes/meshes/shape_mesh.h"
 

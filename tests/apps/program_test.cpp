@@ -146,6 +146,23 @@ TEST(Simulate, KeepsAReadableCacheWhenInterrupted)
     EXPECT_GE(read_cache(partial).frame_count(), 1);
 }
 
+/// On a terminal, within seconds.
+TEST(Simulate, TellsWhereALongFrameIs)
+{
+    const TemporaryFolder folder;
+    folder.write("long.json",
+                 R"({"toile": 1, "frames": 2, "solver": {"substeps": 1000, "velocity_tolerance": 1e-6,
+        "sleep": {"enabled": false}}, "cloths": [{"name": "sheet", "rectangle": {"size": [0.4, 0.4],
+        "resolution": 0.01}}], "attachments": [{"cloth": "sheet", "select": {"vertices": [0]}}]})");
+    if (run_shell("script -qec true /dev/null", folder.path()).exit_code != 0)
+        GTEST_SKIP() << "no program `script` here, which makes a terminal";
+    const Finished run =
+        run_shell("timeout 6 script -qec \"'$TOILE' simulate long.json -o out\" /dev/null", folder.path());
+    EXPECT_TRUE(
+        std::regex_search(run.output, std::regex(R"(frame 1/2 .*the next: \d+ %, step \d+, iteration \d)")))
+        << run.output;
+}
+
 TEST(Render, TakesAPictureASheetAndAFolder)
 {
     const TemporaryFolder folder;

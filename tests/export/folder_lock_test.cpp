@@ -1,10 +1,19 @@
 #include "export/folder_lock.h"
 
+#include <cerrno>
 #include <csignal>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
+#include <iterator>
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -84,6 +93,63 @@ TEST_F(FolderLockTest, IsHeldByOneProcessAtATime)
         int status = 0;
         ::waitpid(process, &status, 0);
         EXPECT_EQ(status, 0);
+    }
+}
+
+/// Without waiting for them, one run in three was refused.
+TEST_F(FolderLockTest, IsNotRefusedForTheProbesOfOthers)
+{
+    const FolderLock makes_the_file(folder_ / "other");
+    write_bytes(FolderLock::file_in(folder_), "");
+    const pid_t prober = ::fork();
+    if (prober == 0)
+        while (true)
+            try {
+                FolderLock::require_free(folder_);
+            } catch (const InvalidInput&) { // locked by the parent
+            }
+    for (int k = 0; k < 300; ++k)
+        EXPECT_EQ(refusal([&] { const FolderLock lock(folder_); }), "");
+    ::kill(prober, SIGKILL);
+    ::waitpid(prober, nullptr, 0);
+}
+
+/// Makes flock() fail in this process, as it does on file systems without locks.
+bool forbid_locks(int error)
+{
+    struct sock_filter code[] = {
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_flock, 0, 1),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | uint32_t(error)),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+    };
+    const struct sock_fprog program = {std::size(code), code};
+    return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+           ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+TEST_F(FolderLockTest, WarnsOnFileSystemsWithoutLocks)
+{
+    constexpr int kNoFilters = 77;
+    for (const int error : {ENOLCK, ENOSYS, EOPNOTSUPP}) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            if (!forbid_locks(error))
+                ::_exit(kNoFilters);
+            std::string warning;
+            {
+                const FolderLock lock(file("out"), [&](const std::string& text) { warning += text; });
+                FolderLock::require_free(file("out"));
+            }
+            const bool says = warning.find("would not be noticed") != std::string::npos;
+            ::_exit(says && !std::filesystem::exists(file("out")) ? 0 : 1);
+        }
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        ASSERT_TRUE(WIFEXITED(status));
+        if (WEXITSTATUS(status) == kNoFilters)
+            GTEST_SKIP() << "system calls can't be made to fail here";
+        EXPECT_EQ(WEXITSTATUS(status), 0) << std::strerror(error);
     }
 }
 

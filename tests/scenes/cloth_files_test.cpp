@@ -1,3 +1,7 @@
+#include <clocale>
+#include <cstdlib>
+#include <locale>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -245,6 +249,51 @@ TEST_F(ClothFiles, AForgottenUnitIsSuggested)
     world_of(sheet(4, true, 100.0), R"(, "unit": "cm")");
     world_of(sheet(4, true));
     EXPECT_EQ(warnings_, "");
+}
+
+/// A locale with a decimal comma until the end of a test, made where the machine has the sources of one.
+class DecimalComma {
+public:
+    DecimalComma()
+    {
+        const std::string name = "de_DE.UTF-8", file = (folder_.path() / name).string();
+        if (std::system(("localedef -i de_DE -f UTF-8 " + file + " > /dev/null 2>&1").c_str()) != 0)
+            return;
+        ::setenv("LOCPATH", folder_.path().c_str(), 1);
+        if (std::setlocale(LC_ALL, name.c_str()) != nullptr)
+            previous_ = std::locale::global(std::locale(name));
+    }
+    ~DecimalComma()
+    {
+        std::locale::global(previous_);
+        std::setlocale(LC_ALL, "C");
+        ::unsetenv("LOCPATH");
+    }
+    bool is_set() const { return *std::localeconv()->decimal_point == ','; }
+
+private:
+    TemporaryFolder folder_;
+    std::locale previous_;
+};
+
+/// Programs that show windows set the locale of their user.
+TEST_F(ClothFiles, AreReadAndWrittenAlikeInEveryLocale)
+{
+    const std::string obj = sheet(4, true);
+    const auto write = [&](const std::string& name) {
+        const World world = world_of(obj, R"(, "fabric": "cotton")");
+        const ClothState& cloth = world.cloths()[0];
+        write_obj(folder_.path() / name,
+                  ObjMesh{.positions = cloth.positions, .polygons = cloth.rest.polygons});
+        return bytes_of(folder_.path() / name);
+    };
+    const std::string expected = write("c.obj");
+    EXPECT_NE(expected.find("v -0.1 0.16 "), std::string::npos) << expected;
+    const DecimalComma german;
+    if (!german.is_set())
+        GTEST_SKIP() << "no locale with a decimal comma can be made here";
+    EXPECT_EQ(write("de.obj"), expected);
+    EXPECT_EQ(read_obj(folder_.path() / "de.obj").positions, read_obj(folder_.path() / "c.obj").positions);
 }
 
 } // namespace

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "export/point_cache.h"
-#include "scenes/world/world.h"
+#include "scenes/format/scene.h"
 
 namespace toile::app {
 

@@ -180,7 +180,8 @@ std::string to_json(const Certificate& certificate)
          {{"penetration_m", certificate.limits.penetration},
           {"strain", strain_limits},
           {"gap_reach_m", kGapReach}}}};
-    return json.dump(2) + "\n";
+    // Names of files may have bytes that are not UTF-8.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string summary_of(const Certificate& certificate)

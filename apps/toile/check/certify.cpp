@@ -1,6 +1,7 @@
 #include "apps/toile/check/certify.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "apps/toile/check/avatar_crossings.h"
 #include "apps/toile/check/cache_cloth.h"
@@ -8,9 +9,12 @@
 #include "apps/toile/check/strain.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/exports.h"
+#include "apps/toile/terminal/setup_progress.h"
 #include "collision/check/find_crossings.h"
 #include "collision/check/gap_meter.h"
+#include "core/base/cancellation.h"
 #include "core/base/error.h"
+#include "core/base/long_work.h"
 #include "scenes/format/field.h"
 
 namespace toile::app {
@@ -124,9 +128,13 @@ FrameFindings Examiner::examine(int frame, double time)
     if (found.out_of_range > 0)
         return found;
     pose_avatars(frame, time, found);
+    Cancellation::check();
     measure_each(time, found);
+    Cancellation::check();
     find_cloth_crossings(frame, found);
+    Cancellation::check();
     find_all_avatar_crossings(frame, found);
+    Cancellation::check();
     return found;
 }
 
@@ -214,11 +222,16 @@ FrameFindings::Side Examiner::side(int triangle) const
     return {cloths_[k].state.name, triangle - cloths_[k].first_triangle};
 }
 
-} // namespace
+Examiner load_examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
+                       const CertificateLimits& limits, const RunLog& log)
+{
+    SetupProgress progress(log.quiet(), log.scene(), log.use());
+    const LongWork::Scope loading(
+        [&](const LongWork::Progress& now) { progress.update("loading for the check", now.fraction); });
+    return {scene, cloths, limits};
+}
 
-std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
-                                   const CertificateLimits& limits,
-                                   const std::function<bool(int done, int all)>& goes_on)
+Certificate blank_certificate(const scenes::Scene& scene, const CertificateLimits& limits)
 {
     Certificate certificate;
     certificate.scene = scene.source;
@@ -226,7 +239,16 @@ std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector
     certificate.limits = limits;
     certificate.frames_expected = scene.frames;
     certificate.fps = scene.fps;
-    Examiner examiner(scene, cloths, limits);
+    for (const scene::Avatar& avatar : scene.avatars)
+        if (!avatar.exclude_bones.empty())
+            certificate.excluded_bones[avatar.name] = avatar.exclude_bones;
+    return certificate;
+}
+
+/// States what is examined and what is left out.
+void describe(Certificate& certificate, const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
+              const Examiner& examiner)
+{
     certificate.frames_left_out = examiner.longest() - examiner.frame_count();
     for (size_t i = 0; i < cloths.size(); ++i)
         certificate.cloths.push_back({cloths[i].cloth->name, cloths[i].file,
@@ -237,15 +259,27 @@ std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector
         if (std::none_of(cloths.begin(), cloths.end(),
                          [&](const CachedCloth& cached) { return cached.cloth->name == name; }))
             certificate.left_out.push_back(name);
+}
 
-    for (const scene::Avatar& avatar : scene.avatars)
-        if (!avatar.exclude_bones.empty())
-            certificate.excluded_bones[avatar.name] = avatar.exclude_bones;
+} // namespace
 
-    for (int frame = 0; frame < examiner.frame_count(); ++frame) {
-        certificate.add(examiner.examine(frame, frame * scene.frame_duration()));
-        if (!goes_on(frame + 1, examiner.frame_count()))
-            return std::nullopt;
+std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
+                                   const CertificateLimits& limits, const RunLog& log,
+                                   const InterruptGuard& interrupt)
+{
+    const std::function<bool()> goes_on = [&] { return !interrupt.requested(); };
+    const Cancellation::Scope cancellation(goes_on);
+    Certificate certificate = blank_certificate(scene, limits);
+    try {
+        Examiner examiner = load_examiner(scene, cloths, limits, log);
+        describe(certificate, scene, cloths, examiner);
+        Progress progress = log.progress("check", examiner.frame_count());
+        for (int frame = 0; frame < examiner.frame_count(); ++frame) {
+            certificate.add(examiner.examine(frame, frame * scene.frame_duration()));
+            progress.update(frame + 1);
+        }
+    } catch (const Cancelled&) {
+        return std::nullopt;
     }
     return certificate;
 }

@@ -1,14 +1,15 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "apps/toile/check/certificate.h"
+#include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
 #include "export/point_cache.h"
-#include "scenes/world/world.h"
+#include "scenes/format/scene.h"
+#include "scenes/surfaces/cloth_state.h"
 
 namespace toile::app {
 
@@ -20,13 +21,14 @@ struct CachedCloth {
 };
 
 /// Measures every frame that all caches have, cloths together, without any code of the solver.
-/// @param cloths   of the scene, each once
-/// @param goes_on  called with the numbers of finished and of all frames; false stops
-/// @return none if stopped
+/// @param cloths     of the scene, each once
+/// @param log        receives the progress
+/// @param interrupt  ends it
+/// @return none if interrupted
 /// @throws InvalidInput for unreadable caches, caches of another cloth, and unreadable avatars.
 std::optional<Certificate> certify(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
-                                   const CertificateLimits& limits,
-                                   const std::function<bool(int done, int all)>& goes_on);
+                                   const CertificateLimits& limits, const RunLog& log,
+                                   const InterruptGuard& interrupt);
 
 /// Writes the summary to stderr; a quiet log omits that of a certificate that holds.
 /// @param file  where the certificate is

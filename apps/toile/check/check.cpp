@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -8,15 +9,18 @@
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/exports.h"
-#include "apps/toile/terminal/progress.h"
 #include "apps/toile/terminal/scene_inputs.h"
+#include "apps/toile/terminal/setup_progress.h"
 #include "core/base/atomic_file.h"
+#include "core/base/cancellation.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
 #include "core/base/file_plan.h"
+#include "core/base/long_work.h"
 #include "export/folder_lock.h"
 #include "export/obj_sequence.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/surfaces/load_cloth.h"
 
 namespace toile::app {
 
@@ -108,6 +112,17 @@ void require_safe_output(const std::filesystem::path& file, const scenes::Scene&
     require_writable(file);
 }
 
+std::vector<scenes::ClothState> load_surfaces(const scenes::Scene& scene, const RunLog& log,
+                                              const InterruptGuard& interrupt)
+{
+    const std::function<bool()> goes_on = [&] { return !interrupt.requested(); };
+    const Cancellation::Scope cancellation(goes_on);
+    SetupProgress progress(log.quiet());
+    const LongWork::Scope loading(
+        [&](const LongWork::Progress& now) { progress.update("loading the cloths", now.fraction); });
+    return scenes::load_surfaces(scene);
+}
+
 int check(const CheckOptions& options)
 {
     if (!(options.limits.penetration >= 0.0) || !(options.limits.strain_margin >= 0.0))
@@ -128,24 +143,20 @@ int check(const CheckOptions& options)
     std::optional<exports::FolderLock> lock;
     if (options.output.empty())
         lock.emplace(output.parent_path());
-    const scenes::World world(scene);
+    const InterruptGuard interrupt;
+    const RunLog log(options.quiet);
+    const std::vector<scenes::ClothState> surfaces = load_surfaces(scene, log, interrupt);
     std::vector<CachedCloth> cloths;
     cloths.reserve(caches.size());
     for (const ClothCache& cache : caches)
-        cloths.push_back({&world.surfaces()[cache.cloth], cache.file, cache.file});
-
-    std::optional<Progress> progress;
-    const Certificate certificate = *certify(scene, cloths, options.limits, [&](int done, int all) {
-        if (!progress)
-            progress.emplace("check", all, options.quiet);
-        progress->update(done);
-        return true;
-    });
-    progress.reset();
+        cloths.push_back({&surfaces[size_t(cache.cloth)], cache.file, cache.file});
+    const std::optional<Certificate> certificate = certify(scene, cloths, options.limits, log, interrupt);
+    if (!certificate)
+        throw Cancelled("interrupted");
     if (options.output.empty())
-        std::cout << to_json(certificate);
-    write_atomically(output, to_json(certificate));
-    return conclude(certificate, output, RunLog(options.quiet));
+        std::cout << to_json(*certificate);
+    write_atomically(output, to_json(*certificate));
+    return conclude(*certificate, output, log);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/long_work.h"
 #include "core/compute/parallel.h"
 #include "scenes/world/contact_setup.h"
 
@@ -23,15 +24,24 @@ double deepest_in(const scenes::SceneBody& solid, View<const Vec3> x, View<const
 
 } // namespace
 
-ScenePenetration::ScenePenetration(const scenes::Scene& scene) : bodies_(make_bodies(scene))
+ScenePenetration::ScenePenetration(const scenes::Scene& scene)
 {
+    constexpr double kBodies = 0.5; // part of the work
+    {
+        const LongWork::Part part(0.0, kBodies);
+        bodies_ = make_bodies(scene);
+    }
+    const LongWork::Part part(kBodies, 1.0);
     collision::PenetrationMeter::Settings settings;
     settings.room = scenes::room_for_cloth(scene);
-    for (const scenes::SceneBody& body : bodies_)
+    for (const scenes::SceneBody& body : bodies_) {
+        LongWork::update(double(meters_.size()) / double(bodies_.size()));
         meters_.push_back(body.shape() != nullptr ? nullptr
                                                   : std::make_unique<collision::PenetrationMeter>(
                                                         body.contact_surface().triangles,
                                                         body.contact_surface().positions, settings));
+    }
+    LongWork::update(1.0);
 }
 
 std::vector<AvatarPassage> ScenePenetration::advance_to(double t,

@@ -6,6 +6,8 @@
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/render/pattern.h"
 #include "core/base/error.h"
+#include "scenes/surfaces/load_cloth.h"
+#include "scenes/world/world.h"
 
 namespace toile::app {
 
@@ -39,13 +41,13 @@ std::vector<Vec3> smoothed(const std::vector<Vec3>& points, int reach)
 
 } // namespace
 
-Film Film::of_scene(const scenes::Scene& scene)
+Film Film::of_scene(const scenes::Scene& scene, const scenes::WorldOptions& options)
 {
     Film film;
     film.settings_ = scene;
     film.bodies_ = make_bodies(scene);
     film.frame_count_ = 1;
-    const scenes::World world(scene);
+    const scenes::World world(scene, options);
     for (int i = 0; i < world.surfaces().size(); ++i)
         film.add_surface(i, world.surfaces()[i], std::nullopt, {});
     return film;
@@ -57,11 +59,11 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
     Film film;
     film.settings_ = scene;
     film.bodies_ = make_bodies(scene);
-    const scenes::World world(scene);
+    const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene);
     for (const std::filesystem::path& file : caches) {
         const exports::PointCache cache = exports::read_cache(file);
         const int index = cloth_of_cache(scene, file, cloth);
-        const scenes::ClothState& state = world.surfaces()[index];
+        const scenes::ClothState& state = surfaces[size_t(index)];
         require_same_points(cache, file, state.name, int(state.file_mesh().positions.size()));
         film.add_surface(index, state, cache, file);
     }

@@ -10,7 +10,8 @@
 #include "export/point_cache.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/format/scene.h"
-#include "scenes/world/world.h"
+#include "scenes/surfaces/cloth_state.h"
+#include "scenes/world/world_options.h"
 
 namespace toile::app {
 
@@ -19,7 +20,7 @@ namespace toile::app {
 class Film {
 public:
     /// The start state of a scene.
-    static Film of_scene(const scenes::Scene& scene);
+    static Film of_scene(const scenes::Scene& scene, const scenes::WorldOptions& options);
     /// Caches of a scene's cloths and solids among its avatars; surfaces without a cache are omitted.
     /// @param cloth  cloth of a single cache; empty: from its name
     static Film of_caches(const scenes::Scene& scene, const std::vector<std::filesystem::path>& caches,

@@ -9,10 +9,12 @@
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/progress.h"
 #include "apps/toile/terminal/scene_inputs.h"
+#include "apps/toile/terminal/setup_progress.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
 #include "core/base/file_plan.h"
+#include "core/base/long_work.h"
 #include "scenes/format/read_scene.h"
 
 namespace toile::app {
@@ -36,13 +38,18 @@ bool is_scene(const std::filesystem::path& input) { return lower_case_extension(
 
 Film open_film(const RenderOptions& options)
 {
+    SetupProgress progress(options.quiet);
+    const LongWork::Scope loading(
+        [&](const LongWork::Progress& now) { progress.update("loading", now.fraction); });
     if (is_scene(options.inputs[0])) {
         if (options.inputs.size() > 1)
             throw InvalidInput(
                 options.inputs[1].string() +
                 ": can't be rendered together with a scene; write toile render CACHE --scene " +
                 options.inputs[0].string());
-        return Film::of_scene(scenes::read_scene(options.inputs[0]));
+        scenes::WorldOptions world;
+        world.progress = [&](const std::string& task, double fraction) { progress.update(task, fraction); };
+        return Film::of_scene(scenes::read_scene(options.inputs[0]), world);
     }
     if (!options.cloth.empty() && options.inputs.size() > 1)
         throw InvalidInput("--cloth: names one cloth, but there are " +

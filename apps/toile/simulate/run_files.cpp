@@ -11,10 +11,10 @@
 
 namespace toile::app {
 
-RunFiles::RunFiles(const SceneJob& job, const scenes::World& world) : job_(job)
+RunFiles::RunFiles(const SceneJob& job, const scenes::World& world, const RunLog& log) : job_(job)
 {
     for (const std::filesystem::path& folder : output_folders_of(job))
-        locks_.all.emplace_back(folder);
+        locks_.all.emplace_back(folder, [&](const std::string& text) { log.note("warning: " + text); });
     for (const SurfaceFile& cache : caches_of(job)) {
         const scenes::ClothState& state = world.surfaces()[cache.surface];
         exports::CacheLayout layout = exports::cache_layout(state.file_mesh(), job.scene.frames);

@@ -5,6 +5,7 @@
 
 #include "apps/toile/check/certify.h"
 #include "apps/toile/simulate/scene_job.h"
+#include "apps/toile/terminal/run_log.h"
 #include "core/mesh/obj.h"
 #include "export/async_cache_writer.h"
 #include "export/folder_lock.h"
@@ -19,7 +20,7 @@ public:
     /// Takes the start meshes from the world's current positions.
     /// @param job  outlives this
     /// @throws InvalidInput if a folder is locked or a cache can't be written
-    RunFiles(const SceneJob& job, const scenes::World& world);
+    RunFiles(const SceneJob& job, const scenes::World& world, const RunLog& log);
 
     /// Appends the world's current positions to every cache. @throws as CacheWriter::write()
     void write_frame(const scenes::World& world);

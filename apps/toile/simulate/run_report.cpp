@@ -118,7 +118,8 @@ std::string RunReport::to_json(const std::string& outcome, const Stages& stages)
     for (const auto& [name, entry] : stages.entries())
         stage_table[name] = {
             {"calls", entry.calls}, {"seconds", entry.seconds}, {"own_seconds", entry.self_seconds}};
-    return json.dump(2) + "\n";
+    // Names of files may have bytes that are not UTF-8.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 } // namespace toile::app

@@ -68,24 +68,25 @@ void add_cache(FilePlan& plan, const path& file, int frame_count, const std::str
 }
 
 /// Refuses a name that can't be replaced by a file, or should not be.
-void require_regular(const path& file)
+void require_replaceable(const path& file)
 {
     std::error_code missing;
     if (std::filesystem::is_directory(file, missing) || is_stream(file))
         throw InvalidInput(file.string() + ": is no regular file; choose another folder or name");
+    require_writable(file);
 }
 
 void require_writable_cache(const path& file, int frame_count)
 {
     const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count);
     if (!sequence) {
-        require_regular(file);
+        require_replaceable(file);
         require_writable(partial_beside(file));
         return;
     }
     for (int frame = 0; frame < frame_count; ++frame) {
-        require_regular(sequence->finished.file(frame));
-        require_regular(sequence->unfinished.file(frame));
+        require_replaceable(sequence->finished.file(frame));
+        require_replaceable(sequence->unfinished.file(frame));
     }
     require_writable(sequence->unfinished.file(0));
 }
@@ -174,10 +175,11 @@ void require_safe_outputs(const std::vector<SceneJob>& jobs)
         for (const SurfaceFile& cache : caches_of(job))
             require_writable_cache(cache.file, job.scene.frames);
         for (const SurfaceFile& mesh : start_meshes_of(job)) {
-            require_regular(mesh.file);
+            require_replaceable(mesh.file);
             require_writable(partial_beside(mesh.file));
         }
-        require_regular(job.folder / kCertificateName);
+        for (const path& certificate : certificates_of(job))
+            require_replaceable(certificate);
         if (!job.report.empty())
             require_writable(job.report);
     }

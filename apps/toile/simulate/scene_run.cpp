@@ -78,12 +78,15 @@ bool deliver_report(const std::filesystem::path& file, std::optional<StagedFile>
 
 } // namespace
 
-SceneRun::SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log)
+SceneRun::SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log,
+                   const InterruptGuard* interrupt)
     : job_(job), no_check_(settings.no_check), log_(std::move(log)),
-      progress_(log_.quiet(), log_.scene(), log_.use()), world_(job.scene, world_options(settings))
+      progress_(log_.quiet(), log_.scene(), log_.use()), interrupt_(interrupt),
+      world_(job.scene, world_options(settings))
 {
     if (const std::string text = start_text(world_.start(), job.scene); !text.empty())
         log_.note(text);
+    world_.prepare();
 }
 
 scenes::WorldOptions SceneRun::world_options(const RunSettings& settings)
@@ -95,7 +98,7 @@ scenes::WorldOptions SceneRun::world_options(const RunSettings& settings)
     if (settings.no_cache)
         options.tables = std::make_shared<TableStore>();
     options.building = [this](const std::string& cloth, double fraction) {
-        const bool goes_on = !interrupt_->requested();
+        const bool goes_on = interrupt_ == nullptr || !interrupt_->requested();
         goes_on ? progress_.update("tables of cloth \"" + cloth + "\"", fraction) : progress_.stop();
         return goes_on;
     };
@@ -113,26 +116,14 @@ void SceneRun::tell(const std::string& task, double fraction)
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - frame_start_;
     if (seconds.count() > kLongFrame)
-        frames_->update(world_.frame() + 1, std::to_string(int(100.0 * fraction)) + " % of the next");
+        frames_->update(world_.frame() + 1,
+                        "the next: " + std::to_string(int(100.0 * fraction)) + " %, " + task);
 }
 
 int SceneRun::run(const InterruptGuard& interrupt)
 {
     interrupt_ = &interrupt;
-    try {
-        if (interrupt.requested())
-            throw Cancelled("interrupted while the scene was loaded");
-        world_.prepare();
-    } catch (const Cancelled&) {
-        log_.error("interrupted before the first frame; nothing was written");
-        return kExitFailure;
-    }
-    return run_into_caches();
-}
-
-int SceneRun::run_into_caches()
-{
-    RunFiles files(job_, world_);
+    RunFiles files(job_, world_, log_);
     int vertex_count = 0;
     for (const auto& cloth : world_.surfaces())
         vertex_count += int(cloth.positions.size());
@@ -199,11 +190,7 @@ std::optional<Certificate> SceneRun::check(const RunFiles& files) const
     std::optional<Certificate> certificate;
     const bool was_able = succeeds(log_, [&] {
         const ThreadLimit threads(job_.scene.solver.threads);
-        Progress progress = log_.progress("check", job_.scene.frames);
-        certificate = certify(job_.scene, files.cloths_to_check(world_), {}, [&](int done, int) {
-            progress.update(done);
-            return !interrupt_->requested();
-        });
+        certificate = certify(job_.scene, files.cloths_to_check(world_), {}, log_, *interrupt_);
     });
     if (was_able && !certificate)
         log_.error("interrupted while checking; the caches are complete, toile check " +

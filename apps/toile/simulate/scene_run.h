@@ -6,9 +6,9 @@
 #include "apps/toile/simulate/run_files.h"
 #include "apps/toile/simulate/run_report.h"
 #include "apps/toile/simulate/scene_job.h"
-#include "apps/toile/simulate/setup_progress.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
+#include "apps/toile/terminal/setup_progress.h"
 #include "scenes/world/world.h"
 
 namespace toile::app {
@@ -26,12 +26,13 @@ struct RunSettings {
 /// One scene of `toile simulate`, from its files to its caches, report and certificate. Used by one thread.
 class SceneRun {
 public:
-    /// Loads and places everything.
-    /// @param job  outlives the run
-    /// @throws as World's constructor
-    SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log);
+    /// Loads, places and prepares everything.
+    /// @param job        outlives the run
+    /// @param interrupt  ends that; null: signals end the program, which has nothing to lose yet
+    /// @throws Cancelled, and as World's constructor
+    SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log, const InterruptGuard* interrupt);
 
-    /// Prepares, simulates, writes and checks.
+    /// Simulates, writes and checks.
     /// @return kExitOk; kExitFailure after reporting a failure, an interrupt, or a certificate that does not
     ///         hold
     /// @throws InvalidInput if a folder is locked or can't be written; nothing was written then
@@ -46,7 +47,6 @@ public:
 private:
     scenes::WorldOptions world_options(const RunSettings& settings);
     void tell(const std::string& task, double fraction);
-    int run_into_caches();
     Outcome run_frames(RunFiles& files, RunReport& report);
     Outcome run_or_stop(RunFiles& files, RunReport& report);
     std::optional<Certificate> check(const RunFiles& files) const;
@@ -56,8 +56,8 @@ private:
     bool no_check_;
     RunLog log_;
     SetupProgress progress_;
-    const InterruptGuard* interrupt_ = nullptr; ///< argument of run(); null while the scene loads
-    std::unique_ptr<Progress> frames_;          ///< null before the first frame and after the last
+    const InterruptGuard* interrupt_;  ///< null: none
+    std::unique_ptr<Progress> frames_; ///< null before the first frame and after the last
     std::chrono::steady_clock::time_point frame_start_;
     scenes::World world_;
 };

@@ -25,7 +25,7 @@ int run_scenes(const std::vector<SceneJob>& jobs, const RunSettings& settings,
         device_settings.device = device;
         const RunLog log = log_of(scene);
         return run_and_report(log, [&] {
-                   return SceneRun(jobs[scene], device_settings, log).run(interrupt);
+                   return SceneRun(jobs[scene], device_settings, log, &interrupt).run(interrupt);
                }) == kExitOk;
     };
     calls.is_responding = [&](int device) {

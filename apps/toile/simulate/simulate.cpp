@@ -104,7 +104,7 @@ std::vector<SceneJob> jobs_of(const SimulateOptions& options)
 /// left half-written.
 int simulate_one(const SceneJob& job, const RunSettings& settings, bool quiet)
 {
-    SceneRun run(job, settings, RunLog(quiet));
+    SceneRun run(job, settings, RunLog(quiet), nullptr);
     const InterruptGuard interrupt;
     return run.run(interrupt);
 }

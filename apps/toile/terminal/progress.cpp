@@ -10,8 +10,9 @@ namespace toile::app {
 
 namespace {
 
-/// Minimum time between lines of a log file, except the last.
+/// Minimum times between lines of a log file, and between updates of a terminal's line, except the last.
 constexpr std::chrono::seconds kLogInterval(10);
+constexpr std::chrono::milliseconds kTerminalInterval(100);
 
 } // namespace
 
@@ -30,7 +31,8 @@ Progress::~Progress()
 void Progress::update(int done, const std::string& note)
 {
     const Clock::time_point now = Clock::now();
-    const bool due = rewrites_ || done == total_ || now - last_line_ >= kLogInterval;
+    const Clock::duration interval = rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval;
+    const bool due = done == total_ || now - last_line_ >= interval;
     if (quiet_ || !due)
         return;
     last_line_ = now;

@@ -59,6 +59,8 @@ int run_and_report(const RunLog& log, const std::function<int()>& work)
 {
     try {
         return work();
+    } catch (const Cancelled&) {
+        log.error("interrupted; nothing was written");
     } catch (const InvalidInput& error) {
         log.error(error.what());
         return kExitBadInput;

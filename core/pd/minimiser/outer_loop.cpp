@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/cancellation.h"
+#include "core/base/long_work.h"
 #include "core/linear/field.h"
 #include "core/pd/minimiser/backtrack.h"
 #include "core/pd/minimiser/recent_values.h"
@@ -25,7 +25,7 @@ OuterLoop::Outcome OuterLoop::minimise(Objective& objective, View<Vec3> x, const
     RecentValues recent;
     recent.begin(outcome.value);
     while (std::isfinite(outcome.value) && outcome.iterations < settings.max_iterations) {
-        Cancellation::check();
+        LongWork::iterate(outcome.iterations + 1);
         find_direction(objective, {x, gradient_, trial_gradient_}, direction_);
         outcome.displacement = max_norm(direction_);
         outcome.converged = outcome.displacement <= settings.tolerance &&

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/cancellation.h"
+#include "core/base/long_work.h"
 #include "core/base/stages.h"
 #include "core/pd/minimiser/line_search.h"
 
@@ -162,7 +162,7 @@ OuterLoop::Outcome Newton::minimise(NewtonSpace& space, const Settings& of_scene
     double lowest = std::numeric_limits<double>::infinity(), kept_value = lowest;
     int since_lowest = 0, small = 0, setbacks = 0;
     for (int look = 0; std::isfinite(outcome.value) && look < settings.max_iterations; ++look) {
-        Cancellation::check();
+        LongWork::iterate(look + 1);
         since_lowest = outcome.value < lowest ? 0 : since_lowest + 1;
         lowest = std::min(lowest, outcome.value);
         if (look > 0 && outcome.value < kept_value) {

@@ -44,15 +44,19 @@ TEST(Interruption, EveryLongStageTellsHowFarItIs)
 {
     Told told;
     World world(sunk_sheet(), told.options());
+    EXPECT_EQ(told.tasks["loading"], 1.0);
     EXPECT_EQ(told.tasks["repair of the start pose"], 1.0);
     const int in_repair = told.asked;
-    EXPECT_GT(in_repair, 3);
+    EXPECT_GT(in_repair, 5);
+    world.prepare();
+    EXPECT_EQ(told.tasks["preparation of the solvers"], 1.0);
     world.settle();
     EXPECT_EQ(told.tasks["settling"], 1.0);
     const int in_settling = told.asked;
     EXPECT_GT(in_settling, in_repair + 12) << "more than once a step";
     world.advance_frame();
     EXPECT_EQ(told.tasks["steps of a frame"], 1.0);
+    EXPECT_EQ(told.tasks.count("step 1, iteration 2"), 1u);
     EXPECT_GT(told.asked, in_settling + 2) << "more than once in one step";
 }
 
@@ -66,10 +70,17 @@ TEST(Interruption, EndsEveryStageAtOnce)
     undisturbed.advance_frame();
     const std::vector<Vec3> sample = undisturbed.cloths()[0].positions;
 
+    for (int allowed = 0; allowed < in_repair; ++allowed) {
+        Told told;
+        told.allowed = allowed;
+        EXPECT_THROW(World(sunk_sheet(), told.options()), Cancelled);
+        EXPECT_EQ(told.asked, allowed + 1);
+    }
+
     Told told;
-    told.allowed = in_repair / 2;
-    EXPECT_THROW(World(sunk_sheet(), told.options()), Cancelled);
-    EXPECT_EQ(told.asked, in_repair / 2 + 1);
+    told.allowed = in_repair;
+    World unprepared(sunk_sheet(), told.options());
+    EXPECT_THROW(unprepared.prepare(), Cancelled);
 
     told = {};
     told.allowed = (in_repair + in_settling) / 2;

@@ -9,8 +9,8 @@
 namespace toile::app {
 
 /// Reports long work before the first frame on stderr, like Progress: one line rewritten on a terminal,
-/// occasional lines in a log file, nothing if quiet or below half a second. Calls may come from several
-/// threads.
+/// occasional lines in a log file, nothing if quiet. Work of less than half a second leaves no line. Calls
+/// may come from several threads.
 class SetupProgress {
 public:
     /// @param scene  prefix of every text; empty for a single scene
@@ -33,6 +33,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void end_line();
+    void erase_line();
     void print(const std::string& text);
 
     std::mutex mutex_;

@@ -1,4 +1,4 @@
-#include "apps/toile/simulate/setup_progress.h"
+#include "apps/toile/terminal/setup_progress.h"
 
 #include <cmath>
 #include <cstdio>
@@ -9,8 +9,11 @@ namespace toile::app {
 
 namespace {
 
-/// Times below this are not reported.
+/// Work that takes less leaves no line.
 constexpr std::chrono::milliseconds kSilence(500);
+
+/// Finished fraction from which the remaining time is told.
+constexpr double kMinFraction = 0.01;
 
 /// Intervals between two lines of a log file, and between two updates of a terminal's line.
 constexpr std::chrono::seconds kLogInterval(10);
@@ -35,7 +38,7 @@ void SetupProgress::update(const std::string& task, double fraction)
         task_ = task;
         first_fraction_ = fraction;
         start_ = now;
-        last_line_ = now + kSilence - (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
+        last_line_ = rewrites_ ? now - kTerminalInterval : now + kSilence - kLogInterval;
     }
     const bool is_finished = fraction >= 1.0;
     const double seconds = std::chrono::duration<double>(now - start_).count();
@@ -45,13 +48,13 @@ void SetupProgress::update(const std::string& task, double fraction)
         std::string text = prefix_ + task + ": " + std::to_string(int(100.0 * fraction)) + " %";
         if (is_finished)
             text += ", done in " + duration_text(seconds);
-        else if (fraction > first_fraction_)
+        else if (fraction > first_fraction_ + kMinFraction)
             text += ", " + duration_text(seconds * (1.0 - fraction) / (fraction - first_fraction_)) + " left";
         print(text);
     }
     if (is_finished) {
         is_working_ = false;
-        end_line();
+        now - start_ < kSilence ? erase_line() : end_line();
     }
 }
 
@@ -73,6 +76,13 @@ void SetupProgress::end_line()
 {
     if (line_open_)
         std::fputc('\n', stderr);
+    line_open_ = false;
+}
+
+void SetupProgress::erase_line()
+{
+    if (line_open_)
+        std::fputs("\r\033[K", stderr);
     line_open_ = false;
 }
 

@@ -1,4 +1,4 @@
-#include "scenes/world/cloth_state.h"
+#include "scenes/surfaces/cloth_state.h"
 
 namespace toile::scenes {
 

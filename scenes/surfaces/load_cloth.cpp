@@ -1,0 +1,152 @@
+#include "scenes/surfaces/load_cloth.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/base/long_work.h"
+#include "scenes/colliders/select_vertices.h"
+#include "scenes/format/scene_fabric.h"
+#include "scenes/meshes/cloth_mesh.h"
+#include "scenes/meshes/rigid_motion.h"
+#include "scenes/surfaces/load_solid.h"
+
+namespace toile::scenes {
+
+namespace {
+
+/// The warp of flat cloth is the X axis of its own frame, however it is placed. That of a garment is the
+/// vertical in which it stands.
+/// @param unmoved  [vertices] positions before the cloth's translation [m]
+std::shared_ptr<const garment::RestShape>
+rest_shape_of(std::vector<Vec3> unmoved, const std::vector<Triangle>& triangles, const scene::Cloth& settings)
+{
+    const Mat3 back = rotation_of(settings.rotate_deg).transpose();
+    std::vector<Vec3> own = unmoved;
+    for (Vec3& p : own)
+        p = back * p;
+    const Bounds box = bounds(own);
+    const bool is_flat = box.upper.y() - box.lower.y() < 1e-9 * (1.0 + (box.upper - box.lower).norm());
+    return std::make_shared<const garment::RestShape>(garment::rest_shape_of_surface(
+        {is_flat ? std::move(own) : std::move(unmoved), triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(),
+        settings.grain_deg * std::numbers::pi / 180.0, source_of(settings)));
+}
+
+/// The selection with the cloth's numbers of vertices for those of the file.
+scene::Selection in_cloth(scene::Selection select, const ClothState& cloth, const std::string& location)
+{
+    auto* vertices = std::get_if<std::vector<int>>(&select.by);
+    if (vertices == nullptr)
+        return select;
+    const FileNumbers& numbers = cloth.numbers;
+    const int count = int(numbers.vertex.empty() ? cloth.rest.positions.size() : numbers.vertex.size());
+    for (int& v : *vertices) {
+        if (v < 0 || v >= count)
+            throw InvalidInput(location + ": vertex " + std::to_string(v) + " is out of range; \"" +
+                               cloth.name + "\" has vertices 0 to " + std::to_string(count - 1));
+        if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), v))
+            throw InvalidInput(location + ": vertex " + std::to_string(v) + " of \"" + cloth.name +
+                               "\" has no face; attach vertices of the surface");
+        v = numbers.vertex.empty() ? v : numbers.vertex[size_t(v)];
+    }
+    return select;
+}
+
+/// Warns of points that select the vertex nearest to them from farther away than the cloth is large: they are
+/// likely in another unit.
+void warn_of_far_points(const scene::Attachment& attachment, const ClothState& cloth,
+                        const std::string& location, const std::function<void(const std::string&)>& warn)
+{
+    const auto* points = std::get_if<std::vector<Vec3>>(&attachment.select.by);
+    if (points == nullptr || !warn)
+        return;
+    const Bounds box = bounds(cloth.positions);
+    for (size_t i = 0; i < points->size(); ++i) {
+        const Vec3 inside = (*points)[i].cwiseMax(box.lower).cwiseMin(box.upper);
+        const double distance = ((*points)[i] - inside).norm();
+        if (distance <= box.diagonal())
+            continue;
+        char text[100];
+        std::snprintf(text, sizeof text, ".select.nearest[%zu]: is %.3g m away from ", i, distance);
+        warn(location + text + "\"" + cloth.name +
+             "\"; coordinates are in metres, at the start of the scene");
+    }
+}
+
+ClothState::Attachment load_attachment(const scene::Attachment& attachment, const ClothState& cloth,
+                                       const std::vector<Collider>& colliders, const std::string& location)
+{
+    ClothState::Attachment loaded;
+    loaded.vertices =
+        select_vertices(in_cloth(attachment.select, cloth, location), cloth.positions, colliders);
+    loaded.release = attachment.release.value_or(loaded.release);
+    if (loaded.vertices.empty())
+        throw InvalidInput(location + ": selects no vertex of \"" + cloth.name +
+                           "\"; move the selection to where the cloth starts");
+    return loaded;
+}
+
+bool is_selected_near(const Scene& scene, const std::string& avatar)
+{
+    return std::any_of(scene.attachments.begin(), scene.attachments.end(), [&](const auto& attachment) {
+        const auto* near = std::get_if<scene::SelectNearAvatar>(&attachment.select.by);
+        return near != nullptr && near->avatar == avatar;
+    });
+}
+
+} // namespace
+
+LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
+                       const std::vector<Collider>& colliders,
+                       const std::function<void(const std::string&)>& warn)
+{
+    LoadedCloth loaded;
+    ClothState& state = loaded.state;
+    state.name = settings.name;
+    state.fabric = fabric_of(scene, settings);
+    ClothMesh mesh = cloth_mesh(settings);
+    for (const std::string& warning : mesh.warnings)
+        if (warn)
+            warn(source_of(settings) + ": " + warning);
+    state.rest = std::move(mesh.mesh);
+    state.numbers = std::move(mesh.numbers);
+    state.file = std::move(mesh.file);
+    state.triangles = state.rest.triangulated().triangles;
+    loaded.rest = rest_shape_of(state.rest.positions, state.triangles, settings);
+    for (ObjMesh* placed : {&state.rest, &state.file})
+        for (Vec3& p : placed->positions)
+            p += settings.translate;
+    state.positions = state.rest.positions;
+    for (size_t i = 0; i < scene.attachments.size(); ++i)
+        if (scene.attachments[i].cloth == settings.name) {
+            const std::string location = attachment_location(scene, i);
+            state.attachments.push_back(load_attachment(scene.attachments[i], state, colliders, location));
+            warn_of_far_points(scene.attachments[i], state, location, warn);
+        }
+    return loaded;
+}
+
+std::string attachment_location(const Scene& scene, size_t attachment)
+{
+    return scene.source.string() + ": attachments[" + std::to_string(attachment) + "]";
+}
+
+std::vector<ClothState> load_surfaces(const Scene& scene)
+{
+    std::vector<Collider> colliders;
+    for (const scene::Avatar& avatar : scene.avatars)
+        if (is_selected_near(scene, avatar.name))
+            colliders.emplace_back(avatar, scene.contact.friction);
+    std::vector<ClothState> surfaces;
+    for (const scene::Cloth& cloth : scene.cloths) {
+        const LongWork::Part part = LongWork::item(surfaces.size(), scene.cloths.size());
+        surfaces.push_back(load_cloth(scene, cloth, colliders, {}).state);
+        LongWork::update(1.0);
+    }
+    for (const scene::Solid& solid : scene.solids)
+        surfaces.push_back(load_solid(solid));
+    return surfaces;
+}
+
+} // namespace toile::scenes
