@@ -53,6 +53,11 @@ int lock(int descriptor)
     return 0;
 }
 
+bool means_no_locks(int error)
+{
+    return error == ENOLCK || error == ENOSYS || error == EOPNOTSUPP || error == EINVAL;
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& folder, int descriptor)
 {
     std::array<char, 512> holder{};
@@ -119,6 +124,12 @@ FolderLock::FolderLock(const std::filesystem::path& folder,
         if (const int error = lock(descriptor_); error == EWOULDBLOCK) {
             refuse(folder_, descriptor_);
         } else if (error != 0) {
+            if (!means_no_locks(error)) {
+                ::close(descriptor_);
+                remove_created_folders();
+                throw InvalidInput(folder_.string() + ": can't be locked (" + std::strerror(error) +
+                                   "); choose another folder");
+            }
             if (warn)
                 warn(folder_.string() + ": this file system has no locks (" + std::strerror(error) +
                      "); a second run into this folder would not be noticed");

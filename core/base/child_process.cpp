@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <mutex>
 #include <new>
 
 #include <fcntl.h>
@@ -22,8 +23,9 @@ namespace toile {
 
 namespace {
 
-/// Exit codes of the child; the pipe carries the result or the refusal.
-enum Outcome { kDone, kRefused, kOutOfMemory };
+/// Exit codes of the child, unlike those of a library that ends it; the pipe carries the result or the
+/// refusal.
+enum Outcome { kDone = 90, kRefused, kOutOfMemory };
 
 /// Between two questions whether the work shall go on [ms].
 constexpr int kPollInterval = 50;
@@ -99,11 +101,15 @@ class Child {
 public:
     Child(const std::function<std::string()>& work, const ChildBounds& bounds)
     {
+        // Another child that inherits the writing end would keep this one's pipe open.
+        static std::mutex one_at_a_time;
+        const std::scoped_lock lock(one_at_a_time);
         std::array<int, 2> pipe{};
         require(::pipe2(pipe.data(), O_CLOEXEC) == 0, "pipe");
         const pid_t parent = ::getpid();
         process_ = ::fork();
         if (process_ == 0) {
+            ::close(pipe[0]);
             confine(bounds, parent);
             do_work(work, pipe[1]);
         }
@@ -175,9 +181,12 @@ std::string in_child_process(const std::function<std::string()>& work, const Chi
     if (WIFSIGNALED(status))
         throw ChildStopped("stopped with " + name_of(WTERMSIG(status)));
     if (WEXITSTATUS(status) == kOutOfMemory)
-        throw ChildStopped("needs more than " + std::to_string(bounds.memory >> 20) + " MB");
+        throw ChildStopped("needs more memory than it may take, at most " +
+                           std::to_string(bounds.memory >> 20) + " MB");
     if (WEXITSTATUS(status) == kRefused)
         throw InvalidInput(text);
+    if (WEXITSTATUS(status) != kDone)
+        throw ChildStopped("ended early with exit code " + std::to_string(WEXITSTATUS(status)));
     return text;
 }
 

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <string>
 
+#include <locale.h>
+
 namespace toile {
 
 namespace {
@@ -13,6 +15,14 @@ namespace {
 std::string_view without_plus(std::string_view word)
 {
     return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
+}
+
+/// Infinity or 0, for a word that std::from_chars() finds out of range. In the C locale: in others the
+/// decimal point may be a comma.
+double magnitude_beyond_range(std::string_view word)
+{
+    static const ::locale_t c_locale = ::newlocale(LC_ALL_MASK, "C", nullptr);
+    return ::strtod_l(std::string(word).c_str(), nullptr, c_locale);
 }
 
 } // namespace
@@ -26,7 +36,7 @@ std::optional<double> number_in(std::string_view word)
     if (end != last || error == std::errc::invalid_argument)
         return std::nullopt;
     if (error == std::errc::result_out_of_range) // too large or too small
-        value = std::strtod(std::string(word).c_str(), nullptr);
+        value = magnitude_beyond_range(word);
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 

@@ -35,8 +35,8 @@ ObjMesh faces_of(const TriangleMesh& mesh);
 /// Reads v, vt and f lines (negative indices too), with any line ends, comments, continued lines and a
 /// byte-order mark; ignores other lines of the format. Texture indices are kept only if every face has them.
 /// @throws InvalidInput naming file and line: missing file, one without vertices, a number that does not
-/// parse or is not finite, an
-///         index out of range, a face of fewer than three or more than 10 000 corners
+///         parse or is not finite, an index out of range, a face of fewer than three or more than 10 000
+///         corners
 ObjMesh read_obj(const std::filesystem::path& file);
 
 /// As for triangles, naming the line of the face.

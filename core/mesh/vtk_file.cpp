@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -186,8 +187,14 @@ std::vector<Number> VtkFile::binary_values(std::int64_t count)
                std::to_string(available));
     std::vector<Number> result;
     result.reserve(size_t(count));
-    for (; count > 0; --count, at_ += sizeof(Stored))
-        result.push_back(Number(from_big_endian<Stored>(text_.data() + at_)));
+    for (std::int64_t i = 0; i < count; ++i, at_ += sizeof(Stored)) {
+        const Stored value = from_big_endian<Stored>(text_.data() + at_);
+        if constexpr (std::is_floating_point_v<Stored>)
+            if (!std::isfinite(value))
+                refuse("number " + std::to_string(i + 1) + " of the " + std::to_string(count) +
+                       " announced is not finite");
+        result.push_back(Number(value));
+    }
     return result;
 }
 

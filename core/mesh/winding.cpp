@@ -54,9 +54,8 @@ using Sides = std::vector<Side>::iterator;
 /// Joins nothing where three or more faces share an edge.
 constexpr auto kNoPair = [](Sides, Sides) { return false; };
 
-/// @param pair_at_branch  of three or more sides of one edge, moves two that continue each other to the
-/// front;
-///                        false if there are none
+/// @param pair_at_branch  moves the two of three or more sides of an edge that continue each other to the
+///                        front; false if none do
 template <typename Face, typename PairAtBranch>
 std::vector<std::vector<Neighbour>> neighbours_of(const std::vector<Face>& faces,
                                                   const PairAtBranch& pair_at_branch)
@@ -89,7 +88,7 @@ Vec3 inward(const ObjMesh& mesh, const Side& side)
     return (mean - mean.dot(along) * along).normalized();
 }
 
-/// Moves the two that continue each other most straightly to the front.
+/// Moves the two that continue each other most straightly to the front. Always true: there are two.
 bool pair_flattest(const ObjMesh& mesh, Sides begin, Sides end)
 {
     double flattest = 2.0;

@@ -43,6 +43,12 @@ void SceneBody::place()
         surface_.positions.assign(collidable.begin(), collidable.begin() + skinned.body_vertex_count());
 }
 
+std::string SceneBody::bone_of(int face) const
+{
+    const std::shared_ptr<const SkinnedCollider> skinned = motion_.skinned();
+    return skinned && face >= 0 ? skinned->avatar().bone_at(skinned->triangles()[size_t(face)][0]) : "";
+}
+
 std::vector<SceneBody> make_bodies(const Scene& scene)
 {
     std::vector<SceneBody> bodies;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scenes/colliders/body_motion.h"
@@ -36,6 +37,10 @@ public:
     {
         return is_all_collidable() ? contact_triangle : motion_.skinned()->face_of(contact_triangle);
     }
+
+    /// Name of the bone that the first corner of a face of surface() follows; empty for -1 and for bodies
+    /// without bones.
+    std::string bone_of(int face) const;
 
 private:
     bool is_all_collidable() const { return !motion_.skinned() || motion_.skinned()->is_all_collidable(); }

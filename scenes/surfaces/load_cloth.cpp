@@ -134,18 +134,24 @@ std::string attachment_location(const Scene& scene, size_t attachment)
 
 std::vector<ClothState> load_surfaces(const Scene& scene)
 {
+    const std::size_t count = scene.avatars.size() + scene.cloths.size() + scene.solids.size();
+    std::size_t loaded = 0;
     std::vector<Collider> colliders;
-    for (const scene::Avatar& avatar : scene.avatars)
+    for (const scene::Avatar& avatar : scene.avatars) {
+        const LongWork::Part part = LongWork::item(loaded++, count);
         if (is_selected_near(scene, avatar.name))
             colliders.emplace_back(avatar, scene.contact.friction);
+    }
     std::vector<ClothState> surfaces;
     for (const scene::Cloth& cloth : scene.cloths) {
-        const LongWork::Part part = LongWork::item(surfaces.size(), scene.cloths.size());
+        const LongWork::Part part = LongWork::item(loaded++, count);
         surfaces.push_back(load_cloth(scene, cloth, colliders, {}).state);
-        LongWork::update(1.0);
     }
-    for (const scene::Solid& solid : scene.solids)
+    for (const scene::Solid& solid : scene.solids) {
+        const LongWork::Part part = LongWork::item(loaded++, count);
         surfaces.push_back(load_solid(solid));
+    }
+    LongWork::update(1.0);
     return surfaces;
 }
 

@@ -90,16 +90,17 @@ struct World::Parts {
         const Stages::Activate recording(stages);
         const Cancellation::Scope cancellation(goes_on);
         StepReport total;
-        for (int done = 0; done < ticks;) {
+        int done = 0;
+        const LongWork::Scope work([&](const LongWork::Progress& progress) {
+            tell({total.steps + 1, progress.iteration, double(done) / ticks});
+        });
+        while (done < ticks) {
             const auto time_after = [&](int more) { return end - (ticks - done - more) * control.tick(); };
             const int length = control.choose(done, [&](int more) {
                 double largest = 0.0;
                 for (Collider& collider : colliders)
                     largest = std::max(largest, collider.motion_to(std::max(time_after(more), 0.0)));
                 return largest;
-            });
-            const LongWork::Scope work([&](const LongWork::Progress& progress) {
-                tell({total.steps + 1, progress.iteration, double(done) / ticks});
             });
             const StepReport report = step(length * control.tick(), time_after(length));
             control.observe(report);
@@ -125,6 +126,8 @@ struct World::Parts {
 
     void tell_within_frame(const Moment& moment) const
     {
+        if (!progress)
+            return;
         const std::string task =
             moment.iteration == 0
                 ? "steps of a frame"
@@ -150,6 +153,7 @@ struct World::Parts {
                 options.warn(warning);
         if (options.backend == Backend::Auto)
             space = space_with_capacity(space, vertex_count(cloths), options.warn);
+        const LongWork::Part part(kCloths, 1.0);
         groups = make_groups(scene, std::move(cloths), colliders, options, space.get());
         LongWork::update(1.0);
     }

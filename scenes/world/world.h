@@ -46,8 +46,9 @@ public:
     /// Prepares the global solvers, which the first step would otherwise do: factors, and the tables of
     /// quadrature, seconds for 10 000 vertices. A step prepares again if attachments are released during the
     /// run.
-    /// @throws Cancelled if WorldOptions::building returns false. settle() and advance_frame() throw it too;
-    ///         the sample in progress is then lost.
+    /// @throws Cancelled if WorldOptions::building or goes_on returns false. settle() and advance_frame()
+    /// throw
+    ///         it too; the sample in progress is then lost.
     void prepare();
 
     /// Simulates Scene::settle seconds with every avatar in its first pose. Before, cloth that the repair of

@@ -137,6 +137,30 @@ TEST(Certificate, FindsClothCrossingAnotherCloth)
     EXPECT_EQ(alone["cloths_left_out"], Json({"lower"}));
 }
 
+TEST(Certificate, NamesTheBoneThatClothCrosses)
+{
+    const TemporaryFolder folder;
+    const std::filesystem::path column =
+        std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf";
+    folder.write("column.json", R"({"toile": 1, "frames": 2, "gravity": [0, 0, 0],
+        "avatars": [{"name": "column", "file": ")" +
+                                    column.string() + R"("}],
+        "cloths": [{"name": "sheet", "rectangle": {"size": [0.4, 0.4], "resolution": 0.1},
+            "translate": [0, 1.95, 0]}]})");
+    ASSERT_EQ(run_toile({"simulate", "column.json", "-o", "out", "--no-check"}, folder.path()).exit_code, 0);
+    rewrite(folder.path() / "out/sheet.pc2", [](int frame, std::vector<Vec3>& x) {
+        for (Vec3& p : x)
+            p.y() -= 1.9 * frame;
+    });
+    const Finished run =
+        run_toile({"check", "out/sheet.pc2", "--scene", "column.json", "--quiet"}, folder.path());
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.errors.find("by \"base\" of \"column\""), std::string::npos) << run.errors;
+    const Json found = json_in(folder, "out/sheet.certificate.json");
+    EXPECT_EQ(found["first_crossing"]["b"]["bone"], "base");
+    EXPECT_FALSE(found["first_crossing"]["a"].contains("bone"));
+}
+
 TEST(Certificate, FindsClothThatAFastBodyHasGoneThrough)
 {
     const TemporaryFolder folder;

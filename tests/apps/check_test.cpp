@@ -64,7 +64,7 @@ TEST(Check, CertifiesClothAtRestAboveABall)
 
 TEST(Check, FindsSequencesInAFolder)
 {
-    for (const char* name : {"sheet.obj", "sheet_####.obj", "f##.obj", "a/../f.obj"}) {
+    for (const char* name : {"sheet.obj", "SHEET.OBJ", "sheet_####.obj", "f##.obj", "a/../f.obj"}) {
         const TemporaryFolder folder;
         folder.write("s.json", small_scene(2, R"("export": [{"file": ")" + std::string(name) + R"("}])"));
         EXPECT_EQ(run_toile({"simulate", "s.json", "-o", "out", "--quiet"}, folder.path()).exit_code, 0);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world.h"
 #include "tests/support/temporary_folder.h"
@@ -294,6 +295,9 @@ TEST_F(ClothFiles, AreReadAndWrittenAlikeInEveryLocale)
         GTEST_SKIP() << "no locale with a decimal comma can be made here";
     EXPECT_EQ(write("de.obj"), expected);
     EXPECT_EQ(read_obj(folder_.path() / "de.obj").positions, read_obj(folder_.path() / "c.obj").positions);
+    EXPECT_EQ(number_in("1.5"), 1.5);
+    EXPECT_EQ(number_in("1.5e-400"), 0.0);
+    EXPECT_EQ(number_in("1.5e400"), std::nullopt);
 }
 
 } // namespace

@@ -29,7 +29,8 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
     if (found.crossing) {
         const Vec3& p = found.crossing->point;
         std::snprintf(text, sizeof text, "the first near (%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
-        add(text);
+        const FrameFindings::Side& body = found.crossing->b;
+        add(text + (body.bone.empty() ? "" : ", by \"" + body.bone + "\" of \"" + body.name + "\""));
     }
     if (found.passage) {
         const Vec3& p = found.passage->point;
@@ -57,7 +58,10 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
 Json json_of(const FrameFindings::CrossingSite& site)
 {
     const auto side = [](const FrameFindings::Side& of) {
-        return Json{{"name", of.name}, {"triangle", of.triangle}};
+        Json json{{"name", of.name}, {"triangle", of.triangle}};
+        if (!of.bone.empty())
+            json["bone"] = of.bone;
+        return json;
     };
     return {{"frame", site.frame},
             {"a", side(site.a)},

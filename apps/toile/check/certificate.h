@@ -24,8 +24,9 @@ inline constexpr double kSmallestArea = 0.5;
 struct FrameFindings {
     /// One of two triangles that cross.
     struct Side {
-        std::string name; ///< of the cloth or avatar
-        int triangle;     ///< -1: a lid over excluded faces of an avatar
+        std::string name;      ///< of the cloth or avatar
+        int triangle;          ///< -1: a lid over excluded faces of an avatar
+        std::string bone = {}; ///< of an avatar; empty: it has none there
     };
     struct CrossingSite {
         int frame;

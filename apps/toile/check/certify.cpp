@@ -210,7 +210,8 @@ void Examiner::find_all_avatar_crossings(int frame, FrameFindings& found) const
 FrameFindings::Side Examiner::avatar_side(int body, int contact_triangle) const
 {
     const scenes::SceneBody& avatar = avatars_.bodies()[size_t(body)];
-    return {avatar.settings().name, avatar.face_of(contact_triangle)};
+    const int face = avatar.face_of(contact_triangle);
+    return {avatar.settings().name, face, avatar.bone_of(face)};
 }
 
 /// Cloth that owns a triangle of triangles_.

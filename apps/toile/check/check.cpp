@@ -40,7 +40,7 @@ struct CheckOptions {
 bool cache_exists(const std::filesystem::path& file)
 {
     return std::filesystem::exists(file) ||
-           (file.extension() == ".obj" && !exports::ObjSequence(file).existing().empty());
+           (lower_case_extension(file) == ".obj" && !exports::ObjSequence(file).existing().empty());
 }
 
 /// A cache and the index of its cloth in World::surfaces().
@@ -139,12 +139,12 @@ int check(const CheckOptions& options)
         is_folder ? caches_in(options.caches[0], scene) : named_caches(options.caches, scene, options.cloth);
     const std::filesystem::path output = certificate_path_of(options);
     require_safe_output(output, scene, caches);
+    const InterruptGuard interrupt;
+    const RunLog log(options.quiet);
     // A run must not replace the caches before their certificate lies beside them.
     std::optional<exports::FolderLock> lock;
     if (options.output.empty())
-        lock.emplace(output.parent_path());
-    const InterruptGuard interrupt;
-    const RunLog log(options.quiet);
+        lock.emplace(output.parent_path(), [&](const std::string& text) { log.note("warning: " + text); });
     const std::vector<scenes::ClothState> surfaces = load_surfaces(scene, log, interrupt);
     std::vector<CachedCloth> cloths;
     cloths.reserve(caches.size());

@@ -6,6 +6,7 @@
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/render/pattern.h"
 #include "core/base/error.h"
+#include "core/base/long_work.h"
 #include "scenes/surfaces/load_cloth.h"
 #include "scenes/world/world.h"
 
@@ -39,13 +40,22 @@ std::vector<Vec3> smoothed(const std::vector<Vec3>& points, int reach)
     return means;
 }
 
+/// Part of the loading that is that of avatars [-].
+constexpr double kOfBodies = 0.5;
+
+std::vector<scenes::SceneBody> load_bodies(const scenes::Scene& scene)
+{
+    const LongWork::Part part(0.0, kOfBodies);
+    return scenes::make_bodies(scene);
+}
+
 } // namespace
 
 Film Film::of_scene(const scenes::Scene& scene, const scenes::WorldOptions& options)
 {
     Film film;
     film.settings_ = scene;
-    film.bodies_ = make_bodies(scene);
+    film.bodies_ = load_bodies(scene);
     film.frame_count_ = 1;
     const scenes::World world(scene, options);
     for (int i = 0; i < world.surfaces().size(); ++i)
@@ -58,7 +68,8 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
 {
     Film film;
     film.settings_ = scene;
-    film.bodies_ = make_bodies(scene);
+    film.bodies_ = load_bodies(scene);
+    const LongWork::Part part(kOfBodies, 1.0);
     const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene);
     for (const std::filesystem::path& file : caches) {
         const exports::PointCache cache = exports::read_cache(file);

@@ -146,7 +146,7 @@ int render(const RenderOptions& options)
     const std::filesystem::path output =
         options.output.empty() ? std::filesystem::path(options.inputs[0].stem().string() + ".png")
                                : options.output;
-    const std::string extension = output.extension().string();
+    const std::string extension = lower_case_extension(output);
     if (!extension.empty() && extension != ".png" && extension != ".mp4")
         throw InvalidInput(output.string() +
                            ": pictures are .png or .mp4; a name without extension is a folder");

@@ -88,7 +88,6 @@ void require_writable_cache(const path& file, int frame_count)
         require_replaceable(sequence->finished.file(frame));
         require_replaceable(sequence->unfinished.file(frame));
     }
-    require_writable(sequence->unfinished.file(0));
 }
 
 void add_outputs(FilePlan& plan, const SceneJob& job)

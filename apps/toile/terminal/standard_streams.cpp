@@ -16,6 +16,8 @@ void secure_standard_streams()
             ::open("/dev/null", O_RDWR); // the lowest free number is that of the stream
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGCHLD,
+                SIG_DFL); // whoever started the program may have ignored it: no child could be waited for
 }
 
 bool flush_standard_output() { return bool(std::cout << std::flush); }

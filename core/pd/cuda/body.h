@@ -122,9 +122,9 @@ private:
     std::vector<int> fixed_vertices_on_host_;
     DeviceArray<Vec3> fixed_targets_; ///< [fixed vertices]
     PinnedArray<Vec3> fixed_targets_on_host_;
+    Newton::Patience patience_;
     // State of the integrator: see MotionView.
     Bdf2 scheme_;
-    Newton::Patience patience_;
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     DeviceArray<Vec3> x_previous_, v_previous_;
     DeviceArray<unsigned char> restart_, touched_, touches_;

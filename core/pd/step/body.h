@@ -68,6 +68,7 @@ private:
     Settings settings_;
     std::unique_ptr<OuterLoop> outer_; ///< null: Newton's method
     std::optional<HostNewton> newton_;
+    Newton::Patience patience_;
     double dt_ = 0.0;                        ///< of the current step [s]
     std::optional<StepObjective> objective_; ///< of the current step
     ActiveSetEnergy* active_ = nullptr;      ///< likewise; may be null
@@ -75,7 +76,6 @@ private:
 
     // State of the integrator: see MotionView.
     Bdf2 scheme_;
-    Newton::Patience patience_;
     double previous_dt_ = 0.0; ///< [s] 0: there was no step before
     std::vector<Vec3> x_previous_, v_previous_;
     std::vector<unsigned char> restart_, touched_, touches_;

@@ -47,6 +47,29 @@ TEST(ChildProcess, ReturnsWhatTheWorkReturns)
     EXPECT_EQ(in_child_process([&] { return large; }, kBounds), large);
 }
 
+TEST(ChildProcess, TellsAnExitOfALibraryFromAResult)
+{
+    for (const int code : {0, 1, 3})
+        EXPECT_EQ(stop_of([&]() -> std::string { ::_exit(code); }),
+                  "ended early with exit code " + std::to_string(code));
+}
+
+/// A child that another thread starts meanwhile keeps no pipe of this one open.
+TEST(ChildProcess, EndsBesideALongerOne)
+{
+    std::atomic<bool> goes_on = true;
+    std::thread others([&] {
+        while (goes_on)
+            stop_of(loop_for_ever, {20ms, kBounds.memory});
+    });
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 30; ++i)
+        EXPECT_EQ(in_child_process([] { return std::string("done"); }, kBounds), "done");
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 15s);
+    goes_on = false;
+    others.join();
+}
+
 TEST(ChildProcess, PassesARefusalOn)
 {
     const auto refuse = []() -> std::string { throw InvalidInput("file.fbx: no"); };
@@ -68,7 +91,8 @@ TEST(ChildProcess, NamesTheSignalThatEndsIt)
 TEST(ChildProcess, EndsAtItsBounds)
 {
     EXPECT_EQ(stop_of(loop_for_ever, {1s, kBounds.memory}), "took more than 1 s");
-    EXPECT_EQ(stop_of([] { return std::string(std::size_t(512) << 20, ' '); }), "needs more than 256 MB");
+    EXPECT_EQ(stop_of([] { return std::string(std::size_t(512) << 20, ' '); }),
+              "needs more memory than it may take, at most 256 MB");
 }
 
 /// Messages of asserts would come before the one line of an error; handlers of crashes are the program's own.

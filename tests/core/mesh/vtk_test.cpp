@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -154,6 +155,16 @@ TEST_F(VtkTest, ReadsEveryVersion)
         EXPECT_EQ(mesh.positions, plain.positions) << other;
         EXPECT_EQ(mesh.tets, plain.tets) << other;
     }
+}
+
+TEST_F(VtkTest, RefusesBinaryNumbersThatAreNotFinite)
+{
+    const std::string text =
+        "# vtk DataFile Version 2.0\ntitle\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n" +
+        big_endian({0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, std::nanf(""), 0.f, 0.f, 0.f, 1.f}) + "\nCELLS 1 5\n" +
+        big_endian({4, 0, 1, 2, 3}) + "\nCELL_TYPES 1\n" + big_endian({10}) + "\n";
+    EXPECT_NE(refusal(text).find("number 8 of the 12 announced is not finite"), std::string::npos)
+        << refusal(text);
 }
 
 } // namespace
