@@ -1,11 +1,10 @@
 #include "core/base/number.h"
 
 #include <charconv>
+#include <clocale>
 #include <cmath>
 #include <cstdlib>
 #include <string>
-
-#include <locale.h>
 
 namespace toile {
 
