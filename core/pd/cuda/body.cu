@@ -109,7 +109,7 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
                             View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     const StageScope stage("pd/device_step");
-    const StepReport report =
+    StepReport report =
         take_step(*this, {dt, acceleration, fixed, targets, active, projection},
                   {settings_.max_iterations, settings_.max_passes, newton_ ? settings_.speed_tolerance : 0.0,
                    settings_.begins_by_local_global, patience_.setbacks()});
