@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <functional>
 
 #include "core/pd/energy/active_set_energy.h"
@@ -17,19 +16,16 @@ namespace toile {
 /// 2 T tolerance of the converged one.
 struct Newton {
     /// Number of setbacks that a minimisation may have: times that its result was moved back, because it
-    /// would cross, to a higher value. Where nothing can give way, no number is enough, so it halves with
-    /// every step that ends unfinished.
+    /// would cross, to a higher value. Where nothing can give way, no number is enough: after kTries steps in
+    /// succession that ended unfinished there are few, but in every kTries-th step.
     class Patience {
     public:
-        int setbacks() const { return setbacks_; }
-        void observe(bool converged)
-        {
-            setbacks_ = converged ? std::min(2 * setbacks_, kMost) : std::max(setbacks_ / 2, kLeast);
-        }
+        int setbacks() const { return unfinished_ < kTries || unfinished_ % kTries == 0 ? kMost : kLeast; }
+        void observe(bool converged) { unfinished_ = converged ? 0 : unfinished_ + 1; }
 
     private:
-        static constexpr int kLeast = 3, kMost = 15;
-        int setbacks_ = kMost;
+        static constexpr int kLeast = 3, kMost = 15, kTries = 8;
+        int unfinished_ = 0; ///< last steps
     };
 
     struct Settings {
