@@ -109,12 +109,10 @@ StepReport DeviceBody::step(double dt, View<const Vec3> acceleration, const std:
                             View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
     const StageScope stage("pd/device_step");
-    StepReport report =
-        take_step(*this, {dt, acceleration, fixed, targets, active, projection},
-                  {settings_.max_iterations, settings_.max_passes, newton_ ? settings_.speed_tolerance : 0.0,
-                   settings_.begins_by_local_global, patience_.setbacks()});
-    patience_.observe(report.status == StepReport::Status::Converged);
-    return report;
+    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
+                     {settings_.max_iterations, settings_.max_passes,
+                      newton_ ? settings_.speed_tolerance : 0.0, settings_.begins_by_local_global},
+                     patience_);
 }
 
 void DeviceBody::begin(const StepInput& input)

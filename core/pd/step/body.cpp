@@ -25,12 +25,10 @@ Body::Body(std::vector<Vec3> positions, std::unique_ptr<System> system, Settings
 StepReport Body::step(double dt, View<const Vec3> acceleration, const std::vector<unsigned char>& fixed,
                       View<const Vec3> targets, ActiveSetEnergy* active, StepProjection* projection)
 {
-    StepReport report =
-        take_step(*this, {dt, acceleration, fixed, targets, active, projection},
-                  {settings_.max_iterations, settings_.max_passes, newton_ ? settings_.speed_tolerance : 0.0,
-                   settings_.begins_by_local_global, patience_.setbacks()});
-    patience_.observe(report.status == StepReport::Status::Converged);
-    return report;
+    return take_step(*this, {dt, acceleration, fixed, targets, active, projection},
+                     {settings_.max_iterations, settings_.max_passes,
+                      newton_ ? settings_.speed_tolerance : 0.0, settings_.begins_by_local_global},
+                     patience_);
 }
 
 void Body::prepare(double dt, const std::vector<unsigned char>& fixed)

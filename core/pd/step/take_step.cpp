@@ -43,7 +43,7 @@ void minimise(StepSpace& space, ActiveSetEnergy* active, const StepLimits& limit
 }
 
 void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimits& limits,
-                        StepReport& report)
+                        Newton::Patience& patience, StepReport& report)
 {
     const StageScope stage("pd/minimise");
     ActiveSetEnergy* const active = input.active;
@@ -53,8 +53,9 @@ void minimise_by_newton(StepSpace& space, const StepInput& input, const StepLimi
         revise = [&](MinimiserProgress at) { return active->revise(space.end_positions(), at); };
     const double tolerance = (is_calm ? StepLimits::kCalm : 1.0) * limits.speed_tolerance;
     const Newton::Settings settings{tolerance, limits.max_iterations, input.dt, limits.begins_by_local_global,
-                                    limits.max_setbacks};
+                                    patience.setbacks()};
     add(report, space.minimise_by_newton(settings, revise, is_calm));
+    patience.observe(report.status == StepReport::Status::Converged);
 }
 
 /// Keeps apart what must not cross. Where the minimiser's result does not stand, satisfies contact and limits
@@ -85,7 +86,8 @@ void correct(StepSpace& space, const StepInput& input, bool stands)
 
 } // namespace
 
-StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits& limits)
+StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits& limits,
+                     Newton::Patience& patience)
 {
     StepReport report;
     report.steps = 1;
@@ -96,7 +98,7 @@ StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits&
         input.active->make_feasible(space.end_positions());
     }
     if (limits.speed_tolerance > 0.0)
-        minimise_by_newton(space, input, limits, report);
+        minimise_by_newton(space, input, limits, patience, report);
     else
         minimise(space, input.active, limits, report);
     if (report.status == StepReport::Status::NonFinite)

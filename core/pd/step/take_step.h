@@ -14,7 +14,6 @@ struct StepLimits {
     double speed_tolerance = 0.0;
     static constexpr double kCalm = 3.0; ///< factor for calm cloth [-]
     bool begins_by_local_global = true;  ///< Newton::Settings
-    int max_setbacks = 15;               ///< Newton::Settings
 };
 
 /// Maximum number of corrections at the end of a step, if keep_apart() moves cloth far in each. A walking
@@ -23,6 +22,8 @@ inline constexpr int kMaxCorrections = 8;
 
 /// Advances a body by one step: prediction, minimisations with a search for contact after each, and the
 /// corrections of what they do not guarantee. A step whose energy is not finite leaves the body unchanged.
-StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits& limits);
+/// @param patience  of the body, from step to step
+StepReport take_step(StepSpace& space, const StepInput& input, const StepLimits& limits,
+                     Newton::Patience& patience);
 
 } // namespace toile

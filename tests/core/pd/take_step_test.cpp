@@ -78,8 +78,10 @@ public:
     StepReport step(bool in_contact, bool is_limited)
     {
         const std::vector<unsigned char> fixed;
-        return take_step(
-            *this, {0.1, {}, fixed, {}, in_contact ? this : nullptr, is_limited ? this : nullptr}, {50, 3});
+        Newton::Patience patience;
+        return take_step(*this,
+                         {0.1, {}, fixed, {}, in_contact ? this : nullptr, is_limited ? this : nullptr},
+                         {50, 3}, patience);
     }
 
 private:
@@ -127,14 +129,15 @@ TEST(TakeStep, LooksForContactInsideOneMinimisationByNewton)
     NotedStep step;
     const std::vector<unsigned char> fixed;
     StepLimits limits;
+    Newton::Patience patience;
     limits.speed_tolerance = 0.01;
-    StepReport report = take_step(step, {0.1, {}, fixed, {}, &step, nullptr}, limits);
+    StepReport report = take_step(step, {0.1, {}, fixed, {}, &step, nullptr}, limits, patience);
     EXPECT_THAT(step.calls, ElementsAre("begin", "find contact", "restart touching", "newton", "revise",
                                         "finish", "clear", "keep apart", "end contact", "end"));
     EXPECT_EQ(report.speed, 0.01);
 
     step.calls.clear();
-    report = take_step(step, {0.1, {}, fixed, {}, nullptr, nullptr}, limits);
+    report = take_step(step, {0.1, {}, fixed, {}, nullptr, nullptr}, limits, patience);
     EXPECT_THAT(step.calls, ElementsAre("begin", "calm newton", "finish", "end"));
     EXPECT_EQ(report.speed, StepLimits::kCalm * 0.01);
 }
