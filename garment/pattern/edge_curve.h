@@ -1,0 +1,27 @@
+#pragma once
+
+#include "garment/pattern/pattern.h"
+
+namespace toile::garment {
+
+/// Edge of a panel as a curve over its arc length.
+class EdgeCurve {
+public:
+    /// @throws InvalidInput for an arc whose radius is too small for its ends.
+    EdgeCurve(const Panel& panel, int edge);
+
+    /// [m] to 1e-6 of itself
+    double length() const { return lengths_.back(); }
+
+    /// Point at a fraction of the arc length from the start; exact at 0 and 1. [m] in the panel's plane
+    Vec2 at(double fraction) const;
+
+private:
+    std::vector<Vec2> points_;    ///< [samples] along the curve
+    std::vector<double> lengths_; ///< [samples] from the start [m]
+};
+
+/// Signed area of a panel [m^2]: positive if its loop runs counter-clockwise in its own plane.
+double signed_area(const Panel& panel);
+
+} // namespace toile::garment

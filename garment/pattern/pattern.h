@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/compute/types.h"
+
+/// Sewing pattern: flat panels with curved edges, the seams between them, and where each panel starts.
+namespace toile::garment {
+
+/// Bezier curve of degree 1 + number of control points: none is a straight edge.
+struct Bezier {
+    std::vector<Vec2> controls; ///< [0..2] in the panel's plane [m]
+};
+
+/// Arc of a circle. Of the two arcs through both ends that turn the same way, `large` chooses the longer.
+struct CircularArc {
+    double radius = 0.0; ///< [m] at least half the distance of the ends
+    bool large = false;  ///< over 180 degrees
+    bool counter_clockwise =
+        false; ///< direction of travel about the centre; then a short arc is to the right
+};
+
+/// Side of a panel, from one corner to another.
+struct PanelEdge {
+    int start = 0; ///< index into Panel::corners
+    int end = 0;   ///< index into Panel::corners
+    std::variant<Bezier, CircularArc> curve;
+    std::string label; ///< meaning of the edge, such as lower_interface; empty for most
+};
+
+/// Piece of cloth, cut along its edges.
+struct Panel {
+    std::string name;
+    std::vector<Vec2> corners;    ///< [m] in the panel's plane, x right, y up
+    std::vector<PanelEdge> edges; ///< one closed loop: each ends where the next starts
+    std::string label;            ///< part of the body that it covers, such as body, arm, leg; may be empty
+
+    /// World from panel: where the panel starts, flat, before it is sewn. The normal of its loop, counter-
+    /// clockwise, points away from the body.
+    Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();
+};
+
+/// Part of a panel's edge, by arc length. from > to runs against the edge.
+struct EdgePart {
+    int panel = 0;     ///< index into Pattern::panels
+    int edge = 0;      ///< index into Panel::edges
+    double from = 0.0; ///< [-] fraction of the edge's length at which the part starts
+    double to = 1.0;   ///< [-] at which it ends
+};
+
+/// Two chains of edges that are sewn to each other, point by point in proportion to arc length: the start of
+/// `a` meets the start of `b`.
+struct Seam {
+    std::vector<EdgePart> a; ///< consecutive parts
+    std::vector<EdgePart> b;
+    std::string name; ///< for messages: how the file calls it
+};
+
+struct Pattern {
+    std::string source; ///< file, for messages
+    std::vector<Panel> panels;
+    std::vector<Seam> seams;
+};
+
+} // namespace toile::garment
