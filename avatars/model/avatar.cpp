@@ -31,9 +31,9 @@ std::vector<unsigned char> Avatar::faces_on_bones(const std::vector<std::string>
     return std::vector<unsigned char>(triangles_.size(), 0);
 }
 
-void Avatar::skin_vertices(View<const Affine> bones, View<Vec3> out) const
+void Avatar::skin_vertices(const SkinView& skin, View<const Affine> bones, View<Vec3> out)
 {
-    parallel_for(kCpu, "avatars/skin", vertex_count_, SkinVertices{skin(), bones, out});
+    parallel_for(kCpu, "avatars/skin", skin.rest.size(), SkinVertices{skin, bones, out});
 }
 
 void Avatar::pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out)

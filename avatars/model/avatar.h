@@ -76,7 +76,9 @@ public:
     /// Computes all vertices from the bones: one call of stage "avatars/skin".
     /// @param bones  [bone_count()] from pose_bones()
     /// @param out    [vertices] [m]
-    void skin_vertices(View<const Affine> bones, View<Vec3> out) const;
+    void skin_vertices(View<const Affine> bones, View<Vec3> out) const { skin_vertices(skin(), bones, out); }
+    /// Likewise, of the avatar's skin with insets.
+    static void skin_vertices(const SkinView& skin, View<const Affine> bones, View<Vec3> out);
 
     /// Computes the vertex positions of a pose: pose_bones() and skin_vertices().
     /// @param out  [vertices] [m]

@@ -105,6 +105,13 @@ PoseAt MovingAvatar::at(double t) const
     return pose_at(motion_, clip_, clip_ < 0 ? 0.0 : avatar_->clips()[clip_].duration, t);
 }
 
+PoseAt MovingAvatar::shape_at(double t) const
+{
+    PoseAt shape = at(t);
+    shape.cycles = 0;
+    return shape;
+}
+
 void MovingAvatar::show(const PoseAt& at, const Affine& root_transform)
 {
     if (is_posed_ahead_ && at == ahead_ && root_transform == ahead_root_transform_)

@@ -39,6 +39,14 @@ public:
 
     const Avatar& avatar() const { return *avatar_; }
 
+    /// Pose at simulation time t [s], without its root transform and the travel of full cycles.
+    PoseAt shape_at(double t) const;
+    /// Computes the bones of such a pose. @param bones  [avatar().bone_count()] out
+    void pose_bones(const PoseAt& at, View<Affine> bones) const
+    {
+        avatar_->pose_bones(at, world_from_avatar_, bones);
+    }
+
     /// Bones at the step's start and end, for avatar().skin(). [avatar().bone_count()]
     View<const Affine> bones_t0() const { return bones_t0_; }
     View<const Affine> bones_t1() const { return bones_t1_; }

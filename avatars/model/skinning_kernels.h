@@ -28,10 +28,14 @@ struct SkinView {
     View<const int> first_offset{};    ///< [vertices + 1] start of a vertex's offsets
     View<const ShapeOffset> offsets{}; ///< [first_offset.back()] empty: a surface without blend shapes
     int first_shape = 0;               ///< index among the bones of the map of shape 0
+    View<const Vec3> inward{};         ///< [vertices] direction into the body, in mesh space
+    View<const double> insets{}; ///< [vertices] distance that a vertex is moved inwards [m]; may be empty
 
     /// Linear blend skinning: a vertex moves by the weighted mean of its bones' maps, after the blend shapes.
     ///
     ///   x_v = sum_k  w_vk (A_k (r_v + sum_s m_s d_vs) + b_k)        [Magnenat-Thalmann et al. 1988]
+    ///
+    /// An inset vertex then moves along the blended direction inwards, sum_k w_vk A_k d_v.
     ///
     /// Bones rotated far apart shrink the joint between them ("candy wrapper"). Dual quaternions are the
     /// known remedy, and would be a second function of this form.
@@ -51,7 +55,19 @@ struct SkinView {
             const Vec3 moved = bone.leftCols<3>() * shaped + bone.col(3);
             sum += influences[k].weight * moved;
         }
-        return sum;
+        return insets.empty() || insets[v] == 0.0 ? sum : Vec3(sum + insets[v] * posed_inward(v, bones));
+    }
+
+    /// Unit direction into the body at a vertex of a pose, in the world.
+    TOILE_HD Vec3 posed_inward(int v, View<const Eigen::Matrix<double, 3, 4>> bones) const
+    {
+        Vec3 sum(0.0, 0.0, 0.0);
+        for (int k = first[v]; k < first[v + 1]; ++k) {
+            const Vec3 turned = bones[influences[k].bone].leftCols<3>() * inward[v];
+            sum += influences[k].weight * turned;
+        }
+        const double length = sum.norm();
+        return length > 0.0 ? Vec3(sum / length) : sum;
     }
 };
 

@@ -6,12 +6,13 @@
 #include "avatars/model/contact_surface.h"
 #include "avatars/model/moving_avatar.h"
 #include "collision/body/mesh_poses.h"
+#include "scenes/colliders/skin_insets.h"
 #include "scenes/format/scene.h"
 
 namespace toile::scenes {
 
 /// An avatar of a scene with bones, advanced from step to step. The poses are of its contact surface: all
-/// faces but those of excluded bones (ContactSurface).
+/// faces but those of excluded bones (ContactSurface), and apart where they touched (SkinInsets).
 class SkinnedCollider final : public collision::MeshPoses {
 public:
     /// Loads the avatar and poses it at t = 0.
@@ -27,10 +28,7 @@ public:
     bool advance_to(double t_t1, const avatars::Affine& root_transform);
 
     /// See MovingAvatar.
-    double max_motion_to(double t, const avatars::Affine& root_transform)
-    {
-        return avatar_.max_motion_to(t, root_transform);
-    }
+    double max_motion_to(double t, const avatars::Affine& root_transform);
 
     // The whole body.
     const std::vector<Triangle>& triangles() const { return avatar_.avatar().triangles(); }
@@ -58,16 +56,20 @@ public:
 
     /// Vertices of the contact surface: the body's, then the centres of the lids.
     int vertex_count() const override { return contact_ ? contact_->vertex_count() : body_vertex_count(); }
-    void pose_t0(View<Vec3> x) const override { pose(avatar_.bones_t0(), x); }
-    void pose_t1(View<Vec3> x) const override { pose(avatar_.bones_t1(), x); }
+    void pose_t0(View<Vec3> x) const override { pose(avatar_.bones_t0(), insets_t0_, x); }
+    void pose_t1(View<Vec3> x) const override { pose(avatar_.bones_t1(), insets_t1_, x); }
     std::unique_ptr<collision::DeviceMeshPoses> on_device(const CudaSpace& space) const override;
 
 private:
     class OnDevice;
-    void pose(View<const avatars::Affine> bones, View<Vec3> x) const;
+    std::vector<Triangle> faces_for_contact() const;
+    avatars::SkinView skin(View<const double> insets) const;
+    void pose(View<const avatars::Affine> bones, View<const double> insets, View<Vec3> x) const;
 
     avatars::MovingAvatar avatar_;
     std::optional<avatars::ContactSurface> contact_; ///< none: the whole body
+    std::optional<SkinInsets> insets_;               ///< if skin is separated from skin
+    std::vector<double> insets_t0_, insets_t1_;      ///< [body vertices] in the current step [m]
 };
 
 } // namespace toile::scenes

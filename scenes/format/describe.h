@@ -105,6 +105,9 @@ void describe(V& v, Avatar& a)
     v.field("start", a.start, kTime, "Time in the clip at which playback begins.");
     v.field("preroll", a.preroll, "Start of the avatar from a standstill into its clip.");
     v.field("keyframes", a.keyframes, "Moves a shape or a body without animation.");
+    v.field("self_contact", a.self_contact,
+            "\"separate\" moves skin inwards, by up to 2 cm, where a clip brings it on or into other skin of "
+            "the body, so that cloth fits between; \"keep\" leaves it as it is.");
     v.field(
         "exclude_bones", a.exclude_bones,
         "Cloth passes through the faces that follow these bones or bones below them; pictures show them.");

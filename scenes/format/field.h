@@ -55,6 +55,12 @@ template <typename E>
 struct Words;
 
 template <>
+struct Words<SelfContact> {
+    static constexpr std::array<std::pair<const char*, SelfContact>, 2> kAll{
+        {{"separate", SelfContact::Separate}, {"keep", SelfContact::Keep}}};
+};
+
+template <>
 struct Words<LengthUnit> {
     static constexpr std::array<std::pair<const char*, LengthUnit>, 4> kAll{{{"m", LengthUnit::Metre},
                                                                              {"cm", LengthUnit::Centimetre},

@@ -82,6 +82,9 @@ struct Preroll {
 using AvatarShape = std::variant<std::filesystem::path, Mannequin, Plane, Sphere, Capsule, Box>;
 
 /// A body that cloth collides with.
+/// What is done about skin that touches other skin of the same avatar: moved apart, or nothing.
+enum class SelfContact { Separate, Keep };
+
 struct Avatar {
     std::string name;
     AvatarShape shape;
@@ -96,6 +99,7 @@ struct Avatar {
     double start = 0.0;           ///< [s] of the clip at sample 0
     Preroll preroll;
     std::vector<Keyframe> keyframes;
+    SelfContact self_contact = SelfContact::Separate;
     std::vector<std::string> exclude_bones; ///< faces that follow these do not collide
     std::optional<double> friction;         ///< [-] Coulomb coefficient; absent: Contact::friction
     Vec3 color = Vec3(0.78, 0.72, 0.66);    ///< [-] sRGB
