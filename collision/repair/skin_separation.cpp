@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <queue>
 
 #include "collision/bvh/cell_grid.h"
@@ -81,6 +82,7 @@ struct SkinSeparation::Pose {
 struct SkinSeparation::Facing {
     bool is_near = false; ///< nearer than at rest
     double lacking = 0.0; ///< half the room that lacks in between [m]
+    int triangle = -1;    ///< of the other skin
 };
 
 SkinSeparation::SkinSeparation(std::vector<Triangle> triangles, std::vector<Vec3> rest, double clearance)
@@ -120,27 +122,34 @@ std::vector<double> SkinSeparation::insets(View<const Vec3> x, View<const Vec3> 
     return std::move(pose.inset);
 }
 
-/// Insets only shrink what lacks room, so each pass looks at the vertices that lacked some in the last one.
+/// Both sides of what lacks room give way: fine skin, such as a finger's, may find coarse skin that does not
+/// find it. Insets only shrink what lacks room, so each pass looks at vertices that lacked some in the last.
 void SkinSeparation::make_room(Pose& pose)
 {
     std::vector<int> watched(rest_.size());
-    for (size_t v = 0; v < watched.size(); ++v)
-        watched[v] = int(v);
-    std::vector<double> wanted(rest_.size());
+    std::iota(watched.begin(), watched.end(), 0);
+    std::vector<Facing> facing(rest_.size());
     for (int pass = 0; pass < kRoomPasses && !watched.empty(); ++pass) {
         rays_.update(0, pose.moved);
         rays_.commit();
         const std::vector<Vec3> normals = vertex_normals(pose.moved, triangles_);
-        std::fill(wanted.begin(), wanted.end(), 0.0);
-        parallel_for(kCpu, "collision/skin_room", int(watched.size()), [&](int i) {
-            const int v = watched[i];
-            const Facing facing = facing_at(pose, v, normals[v]);
-            if (facing.is_near)
+        parallel_for(kCpu, "collision/skin_room", int(watched.size()),
+                     [&](int i) { facing[watched[i]] = facing_at(pose, watched[i], normals[watched[i]]); });
+
+        std::vector<double> wanted(rest_.size());
+        const auto want = [&](int v, double lacking) {
+            wanted[v] = std::max(wanted[v], pose.inset[v] + lacking);
+        };
+        for (const int v : watched) {
+            if (facing[v].is_near)
                 pose.faces_skin[v] = 1;
-            if (facing.lacking > kTolerance)
-                wanted[v] = pose.inset[v] + facing.lacking;
-        });
-        std::erase_if(watched, [&](int v) { return wanted[v] == 0.0; });
+            if (facing[v].lacking <= kTolerance)
+                continue;
+            want(v, facing[v].lacking);
+            for (const int corner : triangles_[facing[v].triangle])
+                want(corner, facing[v].lacking);
+        }
+        std::erase_if(watched, [&](int v) { return facing[v].lacking <= kTolerance; });
         if (!raise(pose, wanted))
             return;
     }
@@ -151,7 +160,8 @@ SkinSeparation::Facing SkinSeparation::facing_at(const Pose& pose, int v, const 
     if (normal.isZero() || max_inset_[v] == 0.0)
         return {};
     const Facing before = facing_at(pose, v, normal, false), behind = facing_at(pose, v, normal, true);
-    return {before.is_near || behind.is_near, std::max(before.lacking, behind.lacking)};
+    const Facing& worse = behind.lacking > before.lacking ? behind : before;
+    return {before.is_near || behind.is_near, worse.lacking, worse.triangle};
 }
 
 SkinSeparation::Facing SkinSeparation::facing_at(const Pose& pose, int v, const Vec3& normal,
@@ -178,7 +188,7 @@ SkinSeparation::Facing SkinSeparation::facing_at(const Pose& pose, int v, const 
     if (is_overlap && rest_distance < 2.0 * hit->t + kClose)
         return {};
     const double kept = kRestShare * rest_distance, distance = is_overlap ? -hit->t : hit->t;
-    return {distance < kept, 0.5 * (std::min(clearance_, kept) - distance)};
+    return {distance < kept, 0.5 * (std::min(clearance_, kept) - distance), hit->triangle};
 }
 
 /// Skin that crosses gives way a little at a time, until none crosses or all has given what it can.
