@@ -74,7 +74,7 @@ TEST(SceneErrors, SayHowPathsAreWritten)
     };
     const std::string variables = "~ and variables are not expanded, except ${TOILE_DATA_DIR}";
     for (const auto& [path, remedy] : std::vector<std::pair<std::string, std::string>>{
-             {"none.obj", "paths are relative to the scene's folder"},
+             {"none.obj", "paths are relative to the folder of the file that names them"},
              {"~/none.obj", variables},
              {"$HOME/none.obj", variables},
              {R"(a b\\none.obj)", "write / between folders, also for Windows"},
