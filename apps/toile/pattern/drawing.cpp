@@ -22,22 +22,33 @@ namespace {
 constexpr double kMargin = 34.0;     // about panels
 constexpr double kHeader = 58.0;     // above them
 constexpr double kFooterLine = 16.0; // of a twisted seam
-constexpr double kSeamWidth = 5.0;   // stroke of a sewn edge
+constexpr double kSeamWidth = 6.0;   // stroke of a sewn edge
 constexpr double kBadgeRadius = 7.5; // of a seam's number
 constexpr double kBadgeInset = 12.0; // of it from its edge
+constexpr double kShort = 20.0;      // length of a sewn edge whose number would lie on its neighbours
+constexpr double kShortInset = 26.0; // of that number
 constexpr double kLabelOffset = 8.0; // of an edge's index from its edge
-constexpr double kArrow = 4.5;       // of a seam's direction
+constexpr double kArrow = 6.5;       // of a seam's direction
+constexpr double kRatioRoom = 70.0;  // length of a sewn edge that has room for its gather
+constexpr double kStrip = 45.0;      // radius of the largest circle in a strip
+
+/// Gathers from this ratio on are written at the longer side.
+constexpr double kShownRatio = 1.05;
+
+/// Width of a letter over its height, in the mean.
+constexpr double kLetter = 0.6;
 
 constexpr const char* kInk = "#2b2b33";
 constexpr const char* kQuiet = "#7a7a86";
 constexpr const char* kAlarm = "#d0021b";
 
-/// Colour of a seam: the hues of neighbours in the list are far apart.
+/// Colour of a seam: the hues of neighbours in the list are far apart, and two lightnesses tell apart hues
+/// that come close to each other again. Yellow to cyan are darker, for the white numbers on them.
 std::string colour_of(int seam)
 {
     const double hue = std::fmod(205.0 + seam * 137.508, 360.0);
-    // Two lightnesses tell apart hues that come close to each other again.
-    return "hsl(" + svg::number(hue) + ",70%," + (seam % 2 == 0 ? "42%" : "55%") + ")";
+    const double lightness = hue > 40.0 && hue < 190.0 ? 0.31 : 0.41;
+    return svg::colour(hue, 0.7, lightness + (seam % 2 == 0 ? 0.0 : 0.09));
 }
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -171,28 +182,35 @@ private:
         return points;
     }
 
-    /// Name, area and grain, in the largest circle within the panel.
+    /// Name, area and grain, in a large circle within the panel. Strips have no room for the area.
     void panel_text(int p)
     {
-        const Circle room = largest_circle(polygon(p));
+        const Circle room = large_circle(polygon(p));
         const std::string& name = panel(p).name;
-        const double letter = 0.6; // width of a letter over its height
-        const double size = std::clamp(1.7 * room.radius / (letter * double(name.size())), 5.0, 17.0);
+        const bool is_strip = room.radius < kStrip;
+        const double width = is_strip ? 500.0 * report_.panels[size_t(p)].box.sizes().x() : 1.7 * room.radius;
+        const double size =
+            std::clamp(std::min(width / (kLetter * double(name.size())), 0.3 * room.radius), 5.0, 17.0);
         text_ += svg::text(room.centre, name, {size, kInk, "middle", true});
-        const std::string facts = short_text(1e4 * report_.panels[size_t(p)].area) + " cm²" +
+        if (is_strip) {
+            const Vec2 beside(0.5 * kLetter * double(name.size()) * size + 10.0, 0.0);
+            grain(p, room.centre - beside, 0.9 * room.radius);
+            return;
+        }
+        const std::string facts = std::to_string(std::lround(1e4 * report_.panels[size_t(p)].area)) + " cm²" +
                                   (panel(p).fabric.empty() ? "" : ", " + panel(p).fabric);
         text_ += svg::text(room.centre + Vec2(0.0, 1.15 * size), facts, {0.75 * size, kQuiet});
-        grain(p, room.centre - Vec2(0.0, 0.8 * size), std::min(0.8 * room.radius - 0.8 * size, 120.0));
+        const double length = std::min(0.8 * room.radius - 0.8 * size, 120.0);
+        grain(p, room.centre - Vec2(0.0, 0.8 * size + 0.5 * length), length);
     }
 
-    /// Arrow along the warp, from a point upwards.
-    void grain(int p, const Vec2& from, double length)
+    /// Arrow along the warp.
+    void grain(int p, const Vec2& middle, double length)
     {
         if (length < 10.0)
             return;
         const double angle = panel(p).grain_deg * std::numbers::pi / 180.0;
         const Vec2 along(-std::sin(angle), -std::cos(angle));
-        const Vec2 middle = from - Vec2(0.0, 0.5 * length);
         const Vec2 tip = middle + 0.5 * length * along;
         const Vec2 tail = middle - 0.5 * length * along;
         text_ += svg::line(tail, tip, kQuiet, 1.0);
@@ -211,7 +229,7 @@ private:
 
     // --- edges ---
 
-    /// Index and label outside an edge, along it.
+    /// Index and label outside an edge, along it. A label that is too long for its edge is left to the list.
     void edge_text(int p, int e)
     {
         const EdgeCurve curve(panel(p), e);
@@ -219,10 +237,15 @@ private:
         double turn = std::atan2(along.y(), along.x()) * 180.0 / std::numbers::pi;
         if (turn > 90.0 || turn <= -90.0)
             turn += turn > 0.0 ? -180.0 : 180.0;
+        std::string text = std::to_string(e);
         const std::string& label = panel(p).edges[size_t(e)].label;
-        text_ += svg::text(at(p, curve, 0.5) + kLabelOffset * outward(p, curve, 0.5),
-                           std::to_string(e) + (label.empty() ? "" : "  " + label),
-                           {8.0, kQuiet, "middle", false, !label.empty(), turn});
+        const double room =
+            0.9 * 1000.0 * curve.length() / (kLetter * double(text.size() + 2 + label.size()));
+        const bool fits = !label.empty() && room > 4.0;
+        if (fits)
+            text += "  " + label;
+        text_ += svg::text(at(p, curve, 0.5) + kLabelOffset * outward(p, curve, 0.5), text,
+                           {fits ? std::min(8.0, room) : 8.0, kQuiet, "middle", false, fits, turn});
     }
 
     // --- seams ---
@@ -260,19 +283,40 @@ private:
     /// Numbers, and arrows along the direction of sewing.
     void seam_badges(int seam)
     {
+        const garment::SeamMeasure& measure = report_.seams[size_t(seam)].measure;
+        const std::vector<EdgePart>& longer = measure.length_a >= measure.length_b
+                                                  ? report_.pattern.seams[size_t(seam)].a
+                                                  : report_.pattern.seams[size_t(seam)].b;
         for_each_part(seam, [&](const EdgePart& part, const EdgeCurve& curve) {
             const double length = 1000.0 * std::abs(part.to - part.from) * curve.length();
-            const double sign = part.to > part.from ? 1.0 : -1.0;
-            for (const double share : {0.25, 0.75}) {
-                const double fraction = part.from + share * (part.to - part.from);
-                const Vec2 along = sign * direction(part.panel, curve, fraction);
-                if (length > 30.0)
-                    arrowhead(at(part.panel, curve, fraction) + 0.5 * kArrow * along, along, kArrow,
-                              "#ffffff");
-            }
+            if (length > 30.0)
+                seam_arrows(part, curve);
             const double middle = 0.5 * (part.from + part.to);
-            badge(at(part.panel, curve, middle) - kBadgeInset * outward(part.panel, curve, middle), seam);
+            const double inset = length < kShort ? kShortInset : kBadgeInset;
+            const Vec2 centre = at(part.panel, curve, middle) - inset * outward(part.panel, curve, middle);
+            badge(centre, seam);
+            const bool is_longer = &part >= longer.data() && &part < longer.data() + longer.size();
+            if (is_longer && measure.ratio() >= kShownRatio && length > kRatioRoom)
+                ratio_text(centre, measure.ratio(), outward(part.panel, curve, middle), seam_colour(seam));
         });
+    }
+
+    /// Gather beside a badge, on the side that is further in.
+    void ratio_text(const Vec2& badge, double ratio, const Vec2& outward, const std::string& colour)
+    {
+        const bool leftwards = outward.x() > 0.3;
+        text_ += svg::text(badge + Vec2((leftwards ? -1.4 : 1.4) * kBadgeRadius, 0.0),
+                           "× " + short_text(ratio), {9.0, colour, leftwards ? "end" : "start", true});
+    }
+
+    void seam_arrows(const EdgePart& part, const EdgeCurve& curve)
+    {
+        const double sign = part.to > part.from ? 1.0 : -1.0;
+        for (const double share : {0.25, 0.75}) {
+            const double fraction = part.from + share * (part.to - part.from);
+            const Vec2 along = sign * direction(part.panel, curve, fraction);
+            arrowhead(at(part.panel, curve, fraction) + 0.5 * kArrow * along, along, kArrow, "#ffffff");
+        }
     }
 
     void badge(const Vec2& centre, int seam)
@@ -315,21 +359,27 @@ private:
         return inside ? nearest : -nearest;
     }
 
-    /// Largest circle within a polygon, among centres on a grid.
-    static Circle largest_circle(const std::vector<Vec2>& polygon)
+    /// Large circle within a polygon, among centres on a grid: the one nearest to the middle of those that
+    /// have almost the largest radius.
+    static Circle large_circle(const std::vector<Vec2>& polygon)
     {
         constexpr int kCells = 40;
+        constexpr double kAlmost = 0.9;
         Eigen::AlignedBox2d box;
         for (const Vec2& p : polygon)
             box.extend(p);
-        Circle best{box.center(), 0.0};
+        std::vector<Circle> circles{{box.center(), 0.0}}; // for strips that the grid misses
+        double largest = 0.0;
         for (int i = 1; i < kCells; ++i)
             for (int j = 1; j < kCells; ++j) {
                 const Vec2 centre = box.min() + box.sizes().cwiseProduct(Vec2(i, j)) / kCells;
-                if (const double radius = distance_to(polygon, centre); radius > best.radius)
-                    best = {centre, radius};
+                circles.push_back({centre, distance_to(polygon, centre)});
+                largest = std::max(largest, circles.back().radius);
             }
-        return best;
+        std::erase_if(circles, [&](const Circle& circle) { return circle.radius < kAlmost * largest; });
+        return *std::min_element(circles.begin(), circles.end(), [&](const Circle& a, const Circle& b) {
+            return (a.centre - box.center()).norm() < (b.centre - box.center()).norm();
+        });
     }
 
     const PatternReport& report_;

@@ -18,9 +18,9 @@ struct Layout {
     }
 };
 
-/// Rows of panels, the highest first, in a sheet that is somewhat wider than high.
+/// Panels from the highest to the lowest, each as far up as it fits, on a sheet somewhat wider than high.
 /// @param margin  [mm] about every panel, for text
-/// @param header  [mm] of room above the first row
+/// @param header  [mm] of room above them
 Layout lay_out(const std::vector<PanelFacts>& panels, double margin, double header);
 
 } // namespace toile::app

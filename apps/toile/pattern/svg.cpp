@@ -1,5 +1,6 @@
 #include "apps/toile/pattern/svg.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -15,6 +16,20 @@ std::string number(double value)
 }
 
 std::string point(const Vec2& p) { return number(p.x()) + "," + number(p.y()); }
+
+std::string colour(double hue_deg, double saturation, double lightness)
+{
+    std::string text = "#";
+    for (const double offset : {0.0, 8.0, 4.0}) {
+        const double k = std::fmod(offset + hue_deg / 30.0, 12.0);
+        const double share = std::max(-1.0, std::min({k - 3.0, 9.0 - k, 1.0}));
+        const double value = lightness - saturation * std::min(lightness, 1.0 - lightness) * share;
+        const auto byte = int(std::lround(255.0 * value));
+        for (const int digit : {byte / 16, byte % 16})
+            text += "0123456789abcdef"[digit];
+    }
+    return text;
+}
 
 std::string escaped(const std::string& text)
 {

@@ -13,6 +13,9 @@ std::string number(double value);
 /// "12.5,3"
 std::string point(const Vec2& p);
 
+/// "#rrggbb" of a hue in degrees, a saturation and a lightness.
+std::string colour(double hue_deg, double saturation, double lightness);
+
 /// Text with characters that have a meaning in XML replaced.
 std::string escaped(const std::string& text);
 
