@@ -8,8 +8,8 @@
 namespace toile::garment {
 namespace {
 
-/// Points at which the sides are compared.
-constexpr int kSamples = 33;
+/// Points at which the sides are compared: the middles of as many parts of equal length.
+constexpr int kSamples = 32;
 
 /// [m] Shorter seams are too small beside the distance of the panels to tell how they are meant.
 constexpr double kMinCompared = 0.03;
@@ -24,7 +24,7 @@ Points sample(const SeamSide& side)
 {
     Points points;
     for (int i = 0; i < kSamples; ++i)
-        points.col(i) = side.at(double(i) / (kSamples - 1));
+        points.col(i) = side.at((i + 0.5) / kSamples);
     return points;
 }
 
