@@ -43,4 +43,4 @@ toile_write_third_party()
 install(FILES README.md CHANGELOG.md LICENSE NOTICE "${PROJECT_BINARY_DIR}/THIRD_PARTY.txt"
     DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY cmake/licences docs DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(FILES docs/reference/toile.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/toile")
+install(FILES docs/reference/toile.schema.json docs/reference/toile_garment.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/toile")

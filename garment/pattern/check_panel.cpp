@@ -19,6 +19,9 @@ constexpr double kTouching = 1e-6;
 /// [-] Area over squared perimeter of the thinnest panel: 1 m long and 0.4 mm wide.
 constexpr double kMinAreaRatio = 1e-4;
 
+/// More edges are a polyline where a curve is meant; the search for crossings would take minutes.
+constexpr int kMaxEdges = 1000;
+
 /// Chords of a curved edge in the search for crossings. With 64, a half circle of 1 m is off by 0.3 mm.
 constexpr int kChords = 64;
 
@@ -48,6 +51,9 @@ void require_loop(const Panel& panel, const PanelErrors& errors)
     if (count < 2)
         errors.refuse("has " + std::to_string(count) + (count == 1 ? " edge" : " edges") +
                       "; a loop needs three, or two of which one is curved");
+    if (count > kMaxEdges)
+        errors.refuse("has " + std::to_string(count) + " edges, at most " + std::to_string(kMaxEdges) +
+                      " may be; write curves in place of short lines");
     std::vector<int> visits(panel.corners.size(), 0);
     for (int i = 0; i < count; ++i) {
         const PanelEdge& edge = panel.edges[size_t(i)];

@@ -310,5 +310,19 @@ TEST_F(GarmentFile, NamesMistakesAboutItsPatterns)
               "index");
 }
 
+/// The example of the guide.
+TEST(GarmentExample, IsSewnToOneTubeWithoutTwists)
+{
+    const Pattern skirt =
+        read_pattern(std::filesystem::path(TOILE_SOURCE_DIR) / "assets/a_line_skirt.garment.json");
+    EXPECT_EQ(skirt.panels.size(), 3u);
+    EXPECT_EQ(skirt.panels[0].name, "front");
+    ASSERT_EQ(skirt.seams.size(), 4u);
+    EXPECT_NEAR(measure_seam(skirt, skirt.seams[3]).ratio(), 1.05, 0.005);
+    for (const Seam& seam : skirt.seams)
+        EXPECT_FALSE(measure_seam(skirt, seam).crossed) << seam.name;
+    EXPECT_TRUE(sewn_sides(skirt).one_sided.empty());
+}
+
 } // namespace
 } // namespace toile::test
