@@ -30,7 +30,10 @@ Scene read_scene(const std::filesystem::path& file)
 Scene parse_scene(const std::string& text, const std::filesystem::path& source)
 {
     const scene_format::Document document(source);
-    auto scene = scene_format::read_described<Scene>(document, document.parse(text));
+    scene_format::Json json = document.parse(text);
+    if (json.is_object() && (json.contains("toile_garment") || json.contains("pattern")))
+        document.refuse("", "is a sewing pattern, not a scene; look at it with toile pattern show");
+    auto scene = scene_format::read_described<Scene>(document, std::move(json));
     scene.source = source;
     if (scene.name.empty())
         scene.name = source.stem().string();

@@ -13,7 +13,7 @@ using garment::Panel;
 using garment::Pattern;
 using garment::Seam;
 
-/// [m] Distance of a copy from the one before it.
+/// [m] Distance of a copy from the one before it on its side of the body.
 constexpr double kApart = 0.01;
 
 Vec2 mirrored(const Vec2& point) { return {-point.x(), point.y()}; }
@@ -74,7 +74,7 @@ Vec3 outward(const Panel& panel)
 Panel copy_of(const Panel& panel, int k, const Cut& cut)
 {
     Panel copy = panel;
-    copy.placement.pretranslate(kApart * k * outward(panel));
+    copy.placement.pretranslate(kApart * (cut.mirror ? k / 2 : k) * outward(panel));
     if (cut.mirror && k % 2 == 1)
         copy = mirror_image(copy);
     copy.name = name_of_copy(panel.name, k);

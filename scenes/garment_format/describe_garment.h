@@ -62,9 +62,10 @@ void describe(V& v, PanelSettings& p)
             "Target edge length of the mesh; absent: the garment's.");
     v.field("grain_deg", p.grain_deg, scene_format::kAngle,
             "Warp from the panel's vertical, counter-clockwise in the drawing.");
-    v.field("copies", p.copies, between(1, 16),
-            "Number of panels cut from this one: NAME, NAME_2, NAME_3 and so on, each 1 cm further outside. "
-            "Stitches between panels with as many copies are repeated.");
+    v.field(
+        "copies", p.copies, between(1, 16),
+        "Number of panels cut from this one: NAME, NAME_2, NAME_3 and so on, each 1 cm outside of the one "
+        "before it on its side of the body. Stitches between panels with as many copies are repeated.");
     v.field("mirror", p.mirror,
             "NAME_2, NAME_4 and so on are mirror images, on the other side of the body (x to -x); left and "
             "right change places in their labels. Their edges count backwards: 0 is the last.");

@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include <Eigen/Geometry>
+
 #include <nlohmann/json.hpp>
 
 #include "core/compute/types.h"

@@ -92,6 +92,7 @@ Packing best_packing(const std::vector<Vec2>& cells, double top)
 Layout lay_out(const std::vector<PanelFacts>& panels, double margin, double header)
 {
     std::vector<Vec2> cells; // [panels] with margins [mm]
+    cells.reserve(panels.size());
     for (const PanelFacts& panel : panels)
         cells.emplace_back(1000.0 * panel.box.sizes() + Vec2::Constant(2.0 * margin));
     const Packing packing = best_packing(cells, header);

@@ -66,6 +66,14 @@ TEST(SceneErrors, GiveLineAndColumnOfASyntaxError)
     });
 }
 
+TEST(SceneErrors, TellPatternsFromScenes)
+{
+    const std::string message =
+        "bad.json: is a sewing pattern, not a scene; look at it with toile pattern show";
+    expect_complaints(
+        {{R"({"toile_garment": 1, "patterns": []})", message}, {R"({"pattern": {}})", message}});
+}
+
 /// Paths as shells, Windows and browsers have them.
 TEST(SceneErrors, SayHowPathsAreWritten)
 {
