@@ -67,6 +67,8 @@ void require_loop(const Panel& panel, const PanelErrors& errors)
             errors.refuse(i, "starts at vertex " + std::to_string(edge.start) +
                                  ", where the loop was before; cut the panel in two there");
     }
+    if (const auto unused = std::find(visits.begin(), visits.end(), 0); unused != visits.end())
+        errors.refuse("its vertex " + std::to_string(unused - visits.begin()) + " is on no edge; remove it");
 }
 
 /// Complains about edges without length and arcs without room, before they become curves.

@@ -51,6 +51,9 @@ TEST(CheckPanel, RefusesOpenLoops)
     EXPECT_EQ(panel_complaint(open),
               "p.json: panel \"front\", edge 2: ends at vertex 2, but edge 3 starts at "
               "vertex 3; the edges of a panel must form one closed loop");
+    Panel stray = rectangle("front", 0.3, 0.5);
+    stray.corners.emplace_back(9.0, 9.0);
+    EXPECT_EQ(panel_complaint(stray), "p.json: panel \"front\": its vertex 4 is on no edge; remove it");
     Panel traced = polygon("traced", std::vector<Vec2>(1001, Vec2(0.1, 0.1)));
     EXPECT_EQ(refusal([&] { require_cuttable(traced, "p.json"); }),
               "p.json: panel \"traced\": has 1001 edges, at most 1000 may be; write curves in place of short "
