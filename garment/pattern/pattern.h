@@ -41,8 +41,7 @@ enum class BodySegment { Torso, Neck, LeftArm, RightArm, LeftLeg, RightLeg };
 struct BodyPlacement {
     BodySegment at = BodySegment::Torso;
     double angle_deg = 0.0; ///< of its middle about the segment's axis: 0 in front, 90 at the body's left
-    double height =
-        0.5; ///< [-] of its middle: 0 at the segment's end at hand, foot or crotch, 1 at the other
+    double height = 0.5;    ///< [-] of its middle: 0 at hand, foot, crotch or collarbone, 1 at the other end
     double distance = 0.03; ///< [m] from the skin
     bool wrap = true;       ///< bent onto the cylinder; otherwise flat
 };

@@ -202,6 +202,8 @@ TEST_F(GarmentFile, MirrorsCopiesThroughTheBodysPlane)
     EXPECT_EQ(seam.name, "pattern.stitches[0] of copy 2");
     EXPECT_EQ(pattern.panels[size_t(seam.a[0].panel)].name, "sleeve_2");
     EXPECT_EQ(seam.a[0].edge, 3);
+    EXPECT_EQ(seam.a[0].from, 1.0) << "runs where the original does";
+    EXPECT_EQ(seam.b[0].from, 0.0);
     EXPECT_EQ(pattern.panels[size_t(seam.b[0].panel)].name, "cuff_2");
     EXPECT_NEAR(measure_seam(pattern, seam).gap, measure_seam(pattern, pattern.seams[0]).gap, 1e-9);
     const SewnSides sides = sewn_sides(pattern);
