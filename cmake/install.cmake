@@ -10,7 +10,8 @@ install(TARGETS toile RUNTIME)
 install(TARGETS toile-bench RUNTIME OPTIONAL)
 
 # The libraries below toile::toile; each is toile::<name>, as in this build.
-set(libraries core quadrature2d garment collision collision_check collision_repair avatars export scene_format scenes)
+set(libraries core quadrature2d garment collision collision_check collision_repair avatars export scene_format
+    garment_format scenes)
 foreach(name IN LISTS libraries ITEMS abi)
     set_property(TARGET toile_${name} PROPERTY EXPORT_NAME ${name})
 endforeach()
@@ -25,6 +26,7 @@ install(DIRECTORY core quadrature2d garment collision avatars export scenes DEST
     FILES_MATCHING PATTERN "*.h" PATTERN "*.cuh"
     REGEX "avatars/import/gltf_(accessors|clips|file|json|meshes|nodes|uri)\\.h$" EXCLUDE
     REGEX "scenes/format/(schema/)?(checks|document|names|range_check|reader|schema_writer)\\.h$" EXCLUDE
+    REGEX "scenes/garment_format/(assemble|edge_name|panel_json)\\.h$" EXCLUDE
     REGEX "(avatars/model/cuda|scenes/(benchmarks|contact|data|demo))$" EXCLUDE)
 
 # What find_package(toile) reads; the recipes find what the static libraries link.
@@ -41,4 +43,4 @@ toile_write_third_party()
 install(FILES README.md CHANGELOG.md LICENSE NOTICE "${PROJECT_BINARY_DIR}/THIRD_PARTY.txt"
     DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY cmake/licences docs DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(FILES docs/reference/toile.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/toile")
+install(FILES docs/reference/toile.schema.json docs/reference/toile_garment.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/toile")

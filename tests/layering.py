@@ -68,6 +68,7 @@ MAY_INCLUDE = {
 BELOW_SCENES = CORE + ["quadrature2d", "volume", "collision", "avatars", "garment"]
 MAY_INCLUDE |= {
     "scenes/format": BELOW_SCENES,
+    "scenes/garment_format": BELOW_SCENES + ["scenes/format"],
     "scenes/meshes": BELOW_SCENES + ["scenes/format"],
     "scenes/colliders": BELOW_SCENES + ["scenes/format", "scenes/meshes"],
     "scenes/method": BELOW_SCENES + ["scenes/format"],
@@ -83,6 +84,7 @@ MAY_INCLUDE |= {
     "apps/toile/check": BELOW_APPS + ["apps/toile/terminal"],
     "apps/toile/render": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/preview"],
     "apps/toile/simulate": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check"],
+    "apps/toile/pattern": BELOW_APPS + ["apps/toile/terminal"],
     "apps/toile": BELOW_APPS + ["apps/toile/terminal"],
     "python": BELOW_APPS,
     # Nothing that ships includes research.
@@ -98,7 +100,7 @@ MAY_INCLUDE |= {
 }
 
 # Modules of CMake whose name is not their folder.
-FOLDER_OF_MODULE = {"scene_format": "scenes/format", "preview": "apps/preview", "app": "apps/toile",
+FOLDER_OF_MODULE = {"scene_format": "scenes/format", "garment_format": "scenes/garment_format", "preview": "apps/preview", "app": "apps/toile",
                     "benchmarks": "research/benchmarks", "quadrature_figures": "research/benchmarks/quadrature",
                     "collision_check": "collision/check", "collision_repair": "collision/repair"}
 
@@ -119,7 +121,7 @@ OWNERS = {
     r"CGAL/": ["collision/check", "garment/pattern"],
     r"(libpng/)?png\.h": ["apps/preview"],
     r"boost/multiprecision/": [],  # comes with CGAL; rational numbers of the tests
-    r"nlohmann/": ["avatars/import", "scenes/format", "apps"],
+    r"nlohmann/": ["avatars/import", "scenes/format", "scenes/garment_format", "apps"],
     r"CLI/": ["apps/toile", "research/bench"],
     r"benchmark/": ["research/benchmarks"],
     r"g(test|mock)/": [],

@@ -1,5 +1,6 @@
 #include "core/base/number.h"
 
+#include <array>
 #include <charconv>
 #include <clocale>
 #include <cmath>
@@ -46,6 +47,14 @@ std::optional<std::int64_t> whole_number_in(std::string_view word)
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(word.data(), last, value);
     return end == last && error == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+std::string short_text(double value)
+{
+    std::array<char, 32> text{};
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 3);
+    return {text.data(), end.ptr};
 }
 
 } // namespace toile

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace toile {
@@ -12,5 +13,8 @@ std::optional<double> number_in(std::string_view word);
 
 /// The same for whole numbers.
 std::optional<std::int64_t> whole_number_in(std::string_view word);
+
+/// Three digits of a number, for messages: 0.0123, 12.3, 1.23e+04. In the C locale always.
+std::string short_text(double value);
 
 } // namespace toile

@@ -58,6 +58,12 @@ std::vector<Vec2> sample(const Vec2& start, const Vec2& end, const CircularArc& 
 
 } // namespace
 
+bool is_straight(const PanelEdge& edge)
+{
+    const auto* bezier = std::get_if<Bezier>(&edge.curve);
+    return bezier != nullptr && bezier->controls.empty();
+}
+
 EdgeCurve::EdgeCurve(const Panel& panel, int edge)
 {
     const PanelEdge& side = panel.edges[edge];
@@ -97,9 +103,7 @@ double signed_area(const Panel& panel)
     for (size_t e = 0; e < panel.edges.size(); ++e) {
         const EdgeCurve curve(panel, int(e));
         // Straight edges have one chord; curved ones are walked.
-        const bool straight = std::holds_alternative<Bezier>(panel.edges[e].curve) &&
-                              std::get<Bezier>(panel.edges[e].curve).controls.empty();
-        const int chords = straight ? 1 : kChords;
+        const int chords = is_straight(panel.edges[e]) ? 1 : kChords;
         Vec2 from = curve.at(0.0);
         for (int i = 1; i <= chords; ++i) {
             const Vec2 to = curve.at(double(i) / chords);

@@ -4,6 +4,8 @@
 
 namespace toile::garment {
 
+bool is_straight(const PanelEdge& edge);
+
 /// Edge of a panel as a curve over its arc length.
 class EdgeCurve {
 public:

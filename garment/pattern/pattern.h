@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -33,6 +34,18 @@ struct PanelEdge {
     std::string label; ///< meaning of the edge, such as lower_interface; empty for most
 };
 
+/// Part of the body that panels are laid around.
+enum class BodySegment { Torso, Neck, LeftArm, RightArm, LeftLeg, RightLeg };
+
+/// Start of a panel on the cylinder around a segment of the body, in place of Panel::placement.
+struct BodyPlacement {
+    BodySegment at = BodySegment::Torso;
+    double angle_deg = 0.0; ///< of its middle about the segment's axis: 0 in front, 90 at the body's left
+    double height = 0.5;    ///< [-] of its middle: 0 at hand, foot, crotch or collarbone, 1 at the other end
+    double distance = 0.03; ///< [m] from the skin
+    bool wrap = true;       ///< bent onto the cylinder; otherwise flat
+};
+
 /// Piece of cloth, cut along its edges.
 struct Panel {
     std::string name;
@@ -43,6 +56,12 @@ struct Panel {
     /// World from panel: where the panel starts, flat, before it is sewn. The normal of its loop, counter-
     /// clockwise, points away from the body.
     Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();
+    std::optional<BodyPlacement> place; ///< absent: by `placement`
+
+    std::string fabric;                ///< name of a preset; empty: the garment's
+    std::optional<double> edge_length; ///< [m] of the mesh's edges; absent: the garment's
+    double grain_deg = 0.0;            ///< warp from the panel's y axis, counter-clockwise in its own plane
+    int layer = 0;                     ///< higher is further outside where panels lie on each other
 };
 
 /// Part of a panel's edge, by arc length. from > to runs against the edge.
@@ -58,13 +77,18 @@ struct EdgePart {
 struct Seam {
     std::vector<EdgePart> a; ///< consecutive parts
     std::vector<EdgePart> b;
-    std::string name; ///< for messages: how the file calls it
+    std::string name;      ///< for messages: how the file calls it
+    std::string flip;      ///< for messages: the change of the file that joins the other ends
+    double fold_deg = 0.0; ///< fold along the seam at rest, outer sides towards each other; 0: flat
+    int order = 0;         ///< lower ones are sewn first
 };
 
 struct Pattern {
     std::string source; ///< file, for messages
+    std::string description;
     std::vector<Panel> panels;
     std::vector<Seam> seams;
+    std::vector<std::filesystem::path> files; ///< that it was read from
 };
 
 } // namespace toile::garment

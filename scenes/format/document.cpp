@@ -1,7 +1,9 @@
 #include "scenes/format/document.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <fstream>
 #include <set>
 #include <system_error>
 #include <vector>
@@ -17,6 +19,9 @@ namespace {
 /// Levels of nesting of a document. Functions that call themselves per level, such as as_written(), need a
 /// bound.
 constexpr int kMaxDepth = 64;
+
+/// [bytes] Scenes with the longest lists of vertices are smaller; devices such as /dev/zero never end.
+constexpr size_t kMaxFileSize = 64'000'000;
 
 /// Message of nlohmann without its "line 3, column 5: ".
 std::string fact_of(const Json::exception& error)
@@ -57,7 +62,7 @@ std::string remedy_for(const std::string& path)
         return "write / between folders, also for Windows";
     if (path.starts_with('~') || path.find('$') != std::string::npos)
         return "~ and variables are not expanded, except ${TOILE_DATA_DIR}";
-    return "paths are relative to the scene's folder";
+    return "paths are relative to the folder of the file that names them";
 }
 
 /// Why text that is often taken for JSON is none; empty for other text.
@@ -83,6 +88,24 @@ std::string data_folder()
 }
 
 } // namespace
+
+std::string read_document(const std::filesystem::path& file, const std::string& kind)
+{
+    if (std::filesystem::is_directory(file))
+        throw InvalidInput(file.string() + ": is a folder; name a " + kind + " (.json)");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream)
+        throw InvalidInput(file.string() + ": can't be opened; check the path and its permissions");
+    std::string text;
+    std::array<char, 65536> block;
+    do {
+        stream.read(block.data(), block.size());
+        text.append(block.data(), size_t(stream.gcount()));
+        if (text.size() > kMaxFileSize)
+            throw InvalidInput(file.string() + ": is larger than 64 MB; name a " + kind + " (.json)");
+    } while (stream);
+    return text;
+}
 
 void Document::refuse(const std::string& key_path, const std::string& why) const
 {

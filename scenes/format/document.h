@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-/// Text of a scene file and key paths within it, for error messages.
+/// Text of a scene or garment file and key paths within it, for error messages.
 namespace toile::scene_format {
 
 using Json = nlohmann::json;
@@ -34,6 +34,11 @@ public:
 private:
     std::filesystem::path source_;
 };
+
+/// Text of a document.
+/// @param kind  "scene file" or another, for messages
+/// @throws InvalidInput if the file can't be opened, is a folder, or larger than any document
+std::string read_document(const std::filesystem::path& file, const std::string& kind);
 
 /// A value as written in the file, on one line and cut after a few words, for error messages.
 std::string as_written(const Json& value);

@@ -19,8 +19,7 @@ void require_known(const Document& document, const std::string& key_path, const 
     if (contains(names, name))
         return;
     const std::string near = did_you_mean(name, names);
-    const std::string known =
-        names.empty() ? "; the scene has none" : "; known are " + enumerate(names, "and");
+    const std::string known = names.empty() ? "; there is none" : "; known are " + enumerate(names, "and");
     document.refuse(key_path, "no " + kind + " is named " + as_written(name) + (near.empty() ? known : near));
 }
 

@@ -159,4 +159,19 @@ private:
     std::string key_path_;
 };
 
+/// The object that a whole document describes. Its key $schema, by which editors complete and check, is
+/// ignored.
+/// @param json  Document::parse()
+template <typename T>
+T read_described(const Document& document, Json json)
+{
+    if (json.is_object())
+        json.erase("$schema");
+    T object;
+    require_object(document, json, "", keys_of<T>());
+    Reader reader(document, json, "");
+    describe(reader, object);
+    return object;
+}
+
 } // namespace toile::scene_format

@@ -12,14 +12,17 @@ namespace toile::app {
 
 namespace {
 
-/// Rejects unknown options. CLI11 would report a misspelt one together with its value and without a remedy.
-void require_known_options(int argc, char** argv, const CLI::App& command, const std::string& program)
+/// Rejects unknown options from the `first` word on. CLI11 would report a misspelt one together with its
+/// value and without a remedy.
+/// @param words  that call the command: toile pattern show
+void require_known_options(int argc, char** argv, int first, const CLI::App& command,
+                           const std::string& words)
 {
     std::vector<std::string> names;
     for (const CLI::Option* option : command.get_options())
         for (const std::string& name : option->get_lnames())
             names.push_back("--" + name);
-    for (int i = 2; i < argc; ++i) {
+    for (int i = first; i < argc; ++i) {
         const std::string word(argv[i]);
         const std::string name = word.substr(0, word.find('='));
         if (name.rfind("--", 0) != 0 || name == "--" ||
@@ -27,29 +30,34 @@ void require_known_options(int argc, char** argv, const CLI::App& command, const
             continue;
         const std::string near = nearest_word(name, names);
         throw InvalidInput("unknown option " + name + "; " +
-                           (near.empty() ? "run " + program + " " + command.get_name() + " --help"
-                                         : "did you mean " + near + "?"));
+                           (near.empty() ? "run " + words + " --help" : "did you mean " + near + "?"));
     }
 }
 
-/// Rejects unknown subcommands, which CLI11 would report as an "unexpected argument".
-void require_known_words(int argc, char** argv, const std::vector<Command>& commands,
-                         const std::string& program)
+/// Rejects unknown subcommands of `parser` in word `at`, which CLI11 would report as an "unexpected
+/// argument", and what does not belong to known ones.
+void require_known_words(int argc, char** argv, int at, const CLI::App& parser, const std::string& words)
 {
-    if (argc < 2 || argv[1][0] == '-')
+    const std::vector<const CLI::App*> commands =
+        parser.get_subcommands([](const CLI::App*) { return true; });
+    if (commands.empty()) {
+        require_known_options(argc, argv, at, parser, words);
+        return;
+    }
+    if (argc <= at || argv[at][0] == '-')
         return;
     std::vector<std::string> names;
     std::string list;
-    for (const Command& command : commands) {
-        names.push_back(command.options->get_name());
+    for (const CLI::App* command : commands) {
+        if (command->get_name() == argv[at]) {
+            require_known_words(argc, argv, at + 1, *command, words + " " + command->get_name());
+            return;
+        }
+        names.push_back(command->get_name());
         list += (list.empty() ? "" : ", ") + names.back();
     }
-    if (const auto at = std::find(names.begin(), names.end(), argv[1]); at != names.end()) {
-        require_known_options(argc, argv, *commands[size_t(at - names.begin())].options, program);
-        return;
-    }
-    const std::string near = nearest_word(argv[1], names);
-    throw InvalidInput(std::string("unknown command \"") + argv[1] + "\"; " +
+    const std::string near = nearest_word(argv[at], names);
+    throw InvalidInput(std::string("unknown command \"") + argv[at] + "\"; " +
                        (near.empty() ? "known are " + list : "did you mean \"" + near + "\"?"));
 }
 
@@ -59,7 +67,7 @@ int parse_and_run(int argc, char** argv, const Program& program)
     parser.set_version_flag("--version", version_text(program.name));
     parser.require_subcommand(1);
     const std::vector<Command> commands = program.add_commands(parser);
-    require_known_words(argc, argv, commands, program.name);
+    require_known_words(argc, argv, 1, parser, program.name);
     try {
         parser.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

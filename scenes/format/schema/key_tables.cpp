@@ -1,10 +1,10 @@
+#include "scenes/format/schema/key_tables.h"
+
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
-#include "scenes/format/schema/schema.h"
-
-namespace toile::scenes {
+namespace toile::scene_format {
 
 namespace {
 
@@ -87,14 +87,14 @@ void append_table(const OrderedJson& schema, const std::string& key_path, std::s
 
 } // namespace
 
-std::string scene_key_tables()
+std::string key_tables(const std::string& schema, const std::string& heading, const std::string& command)
 {
-    std::string text =
-        "# Keys of a scene file\n\nMade by `toile schema --tables` from the description that the "
-        "reader uses. Lengths are in metres, times in seconds\nunless a range says otherwise; "
-        "`[]` stands for the entries of a list, `*` for a name.\n";
-    append_table(OrderedJson::parse(scene_schema()), "", text);
+    std::string text = "# " + heading + "\n\nMade by `" + command +
+                       "` from the description that the "
+                       "reader uses. Lengths are in metres, times in seconds\nunless a range says otherwise; "
+                       "`[]` stands for the entries of a list, `*` for a name.\n";
+    append_table(OrderedJson::parse(schema), "", text);
     return text;
 }
 
-} // namespace toile::scenes
+} // namespace toile::scene_format

@@ -1,5 +1,6 @@
 #include "scenes/format/schema/schema.h"
 
+#include "scenes/format/schema/key_tables.h"
 #include "scenes/format/schema/schema_writer.h"
 
 namespace toile::scene_format {
@@ -38,13 +39,13 @@ namespace toile::scenes {
 
 std::string scene_schema()
 {
-    scene_format::OrderedJson schema = {
-        {"$schema", "https://json-schema.org/draft/2020-12/schema"},
-        {"title", "Toile scene"},
-        {"description", "A scene to simulate. SI units, Y up, paths relative to the file."}};
-    schema.update(scene_format::object_schema(Scene()));
-    schema["properties"]["$schema"] = {{"description", "This schema, for editors."}, {"type", "string"}};
-    return schema.dump(2) + "\n";
+    return scene_format::document_schema(Scene(), "Toile scene",
+                                         "A scene to simulate. SI units, Y up, paths relative to the file.");
+}
+
+std::string scene_key_tables()
+{
+    return scene_format::key_tables(scene_schema(), "Keys of a scene file", "toile schema --tables");
 }
 
 } // namespace toile::scenes

@@ -170,4 +170,16 @@ OrderedJson object_schema(const T& defaults)
     return writer.schema();
 }
 
+/// JSON Schema (draft 2020-12) of the files that T describes, as text ending in a newline.
+template <typename T>
+std::string document_schema(const T& defaults, const char* title, const char* description)
+{
+    OrderedJson schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                          {"title", title},
+                          {"description", description}};
+    schema.update(object_schema(defaults));
+    schema["properties"]["$schema"] = {{"description", "This schema, for editors."}, {"type", "string"}};
+    return schema.dump(2) + "\n";
+}
+
 } // namespace toile::scene_format

@@ -66,6 +66,14 @@ TEST(SceneErrors, GiveLineAndColumnOfASyntaxError)
     });
 }
 
+TEST(SceneErrors, TellPatternsFromScenes)
+{
+    const std::string message =
+        "bad.json: is a sewing pattern, not a scene; look at it with toile pattern show";
+    expect_complaints(
+        {{R"({"toile_garment": 1, "patterns": []})", message}, {R"({"pattern": {}})", message}});
+}
+
 /// Paths as shells, Windows and browsers have them.
 TEST(SceneErrors, SayHowPathsAreWritten)
 {
@@ -74,7 +82,7 @@ TEST(SceneErrors, SayHowPathsAreWritten)
     };
     const std::string variables = "~ and variables are not expanded, except ${TOILE_DATA_DIR}";
     for (const auto& [path, remedy] : std::vector<std::pair<std::string, std::string>>{
-             {"none.obj", "paths are relative to the scene's folder"},
+             {"none.obj", "paths are relative to the folder of the file that names them"},
              {"~/none.obj", variables},
              {"$HOME/none.obj", variables},
              {R"(a b\\none.obj)", "write / between folders, also for Windows"},

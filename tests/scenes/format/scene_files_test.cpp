@@ -80,7 +80,7 @@ TEST(SceneFiles, NamesTheMissingFileOrFolder)
     const std::string scene = (kSource / "scenes/demo/test.json").string();
     EXPECT_EQ(complaint_about("../../assets/square_table.obj"),
               scene + ": cloths[0].file: the file \"" + (kSource / "assets/square_table.obj").string() +
-                  "\" does not exist; paths are relative to the scene's folder");
+                  "\" does not exist; paths are relative to the folder of the file that names them");
     EXPECT_EQ(
         complaint_about("${HOME}/a.obj"),
         scene +

@@ -1,0 +1,102 @@
+#pragma once
+
+#include "scenes/format/field.h"
+#include "scenes/garment_format/garment_file.h"
+
+namespace toile::scene_format {
+
+template <>
+struct Words<garment_format::SeamJoin> {
+    static constexpr std::array<std::pair<const char*, garment_format::SeamJoin>, 2> kAll{
+        {{"start-end", garment_format::SeamJoin::StartEnd},
+         {"start-start", garment_format::SeamJoin::StartStart}}};
+};
+
+template <>
+struct Words<garment::BodySegment> {
+    static constexpr std::array<std::pair<const char*, garment::BodySegment>, 6> kAll{
+        {{"torso", garment::BodySegment::Torso},
+         {"neck", garment::BodySegment::Neck},
+         {"left_arm", garment::BodySegment::LeftArm},
+         {"right_arm", garment::BodySegment::RightArm},
+         {"left_leg", garment::BodySegment::LeftLeg},
+         {"right_leg", garment::BodySegment::RightLeg}}};
+};
+
+} // namespace toile::scene_format
+
+namespace toile::garment {
+
+template <typename V>
+void describe(V& v, BodyPlacement& p)
+{
+    using scene_format::between;
+    v.required("at", p.at, "Part of the body, seen by its wearer.");
+    v.field("angle_deg", p.angle_deg, scene_format::kAngle,
+            "Position of the panel's middle about the part: 0 in front, 90 at the body's left, 180 behind.");
+    v.field("height", p.height, between(0.0, 1.0),
+            "Position of the panel's middle along the part: 0 at hand, foot, crotch or the neck's base, 1 at "
+            "the other end.");
+    v.field("distance", p.distance, between(0.0, 1.0, "m"), "From the skin.");
+    v.field("wrap", p.wrap, "Bend the panel about the part; otherwise it starts flat.");
+}
+
+} // namespace toile::garment
+
+/// Single description of the garment file (see scenes/format/describe.h).
+namespace toile::garment_format {
+
+template <typename V>
+void describe(V& v, PatternFile& p)
+{
+    v.required("file", p.file, "Panel JSON of GarmentCode or of the garment pattern generator.");
+    v.field("unit", p.unit, "Length unit of the file; absent: what its units_in_meter says.");
+}
+
+template <typename V>
+void describe(V& v, PanelSettings& p)
+{
+    using scene_format::between;
+    v.field("fabric", p.fabric, "Name of a preset; absent: the garment's.");
+    v.field("edge", p.edge, scene_format::kResolution,
+            "Target edge length of the mesh; absent: the garment's.");
+    v.field("grain_deg", p.grain_deg, scene_format::kAngle,
+            "Warp from the panel's vertical, counter-clockwise in the drawing.");
+    v.field(
+        "copies", p.copies, between(1, 16),
+        "Number of panels cut from this one: NAME, NAME_2, NAME_3 and so on, each 1 cm outside of the one "
+        "before it on its side of the body. Stitches between panels with as many copies are repeated.");
+    v.field("mirror", p.mirror,
+            "NAME_2, NAME_4 and so on are mirror images, on the other side of the body (x to -x); left and "
+            "right change places in their labels. Their edges count backwards: 0 is the last.");
+    v.field("place", p.place, "Where it starts on the body; absent: where the pattern puts it.");
+    v.field("layer", p.layer, between(-100, 100),
+            "Order of panels that lie on each other; higher is further outside.");
+}
+
+template <typename V>
+void describe(V& v, SeamEntry& s)
+{
+    using scene_format::between;
+    v.required("a", s.a,
+               "Edges of one side, in order: PANEL.EDGE, where EDGE is an index or a label, or a part by "
+               "arc length, PANEL.EDGE[0.2:0.6]; [1:0] runs backwards.");
+    v.required("b", s.b, "Edges of the other side.");
+    v.field("join", s.join, "Whether the start of a meets the end of b, or its start.");
+    v.field("fold_deg", s.fold_deg, between(-180.0, 180.0, "degrees"),
+            "Fold along the seam at rest, outer sides towards each other; 0: flat.");
+    v.field("order", s.order, between(0, 1000), "Seams with a lower number are sewn first.");
+}
+
+template <typename V>
+void describe(V& v, GarmentFile& g)
+{
+    v.version("toile_garment", 1, "Version of the format.");
+    v.field("description", g.description, "What the garment is.");
+    v.required("patterns", g.patterns, "Files of panels and the stitches between them; at least one.");
+    v.field("panels", g.panels, "Settings of panels, by name.");
+    v.field("seams", g.seams,
+            "Seams besides the patterns' stitches. One between the same two edges replaces the stitch.");
+}
+
+} // namespace toile::garment_format

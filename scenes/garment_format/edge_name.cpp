@@ -1,0 +1,114 @@
+#include "scenes/garment_format/edge_name.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/number.h"
+#include "scenes/format/names.h"
+
+namespace toile::garment_format {
+namespace {
+
+using scene_format::as_written;
+using scene_format::Document;
+
+/// A name taken apart.
+struct EdgeName {
+    std::string panel;
+    std::string edge;
+    double from = 0.0;
+    double to = 1.0;
+};
+
+[[noreturn]] void refuse_form(const Document& document, const std::string& key_path, const std::string& name)
+{
+    document.refuse(key_path, as_written(name) +
+                                  " names no edge; write PANEL.EDGE, with an index or a label, "
+                                  "or PANEL.EDGE[0.2:0.6]");
+}
+
+/// @param range  "[0.2:0.6]"
+void parse_range(const Document& document, const std::string& key_path, const std::string& name,
+                 const std::string& range, EdgeName& parts)
+{
+    const size_t colon = range.find(':');
+    if (range.back() != ']' || colon == std::string::npos)
+        refuse_form(document, key_path, name);
+    const std::optional<double> from = number_in(range.substr(1, colon - 1));
+    const std::optional<double> to = number_in(range.substr(colon + 1, range.size() - colon - 2));
+    if (!from || !to)
+        refuse_form(document, key_path, name);
+    if (std::min(*from, *to) < 0.0 || std::max(*from, *to) > 1.0 || *from == *to)
+        document.refuse(key_path, as_written(name) +
+                                      " is no part of an edge; give two different fractions of "
+                                      "its length, from 0 to 1");
+    parts.from = *from;
+    parts.to = *to;
+}
+
+EdgeName parse(const Document& document, const std::string& key_path, const std::string& name)
+{
+    const size_t bracket = name.find('[');
+    const std::string edge = name.substr(0, bracket);
+    const size_t dot = edge.rfind('.');
+    if (dot == std::string::npos || dot == 0 || dot + 1 == edge.size())
+        refuse_form(document, key_path, name);
+    EdgeName parts{edge.substr(0, dot), edge.substr(dot + 1)};
+    if (bracket != std::string::npos)
+        parse_range(document, key_path, name, name.substr(bracket), parts);
+    return parts;
+}
+
+/// Index of the edge with a label.
+int labelled_edge(const Document& document, const std::string& key_path, const EdgeName& name,
+                  const garment::Panel& panel)
+{
+    std::vector<std::string> indices;
+    std::vector<std::string> labels;
+    for (size_t e = 0; e < panel.edges.size(); ++e) {
+        if (panel.edges[e].label == name.edge)
+            indices.push_back(std::to_string(e));
+        if (!panel.edges[e].label.empty())
+            labels.push_back(panel.edges[e].label);
+    }
+    if (indices.size() > 1)
+        document.refuse(key_path, as_written(name.edge) + " is the label of edges " +
+                                      scene_format::enumerate(indices, "and") + " of panel " +
+                                      as_written(name.panel) + "; name one by its index");
+    if (indices.empty()) {
+        const std::string near = scene_format::did_you_mean(name.edge, labels);
+        document.refuse(
+            key_path,
+            "panel " + as_written(name.panel) + " has no edge " + as_written(name.edge) +
+                (near.empty() ? "; its edges are 0 to " + std::to_string(panel.edges.size() - 1) : near));
+    }
+    return std::stoi(indices[0]);
+}
+
+int edge_of(const Document& document, const std::string& key_path, const EdgeName& name,
+            const garment::Panel& panel)
+{
+    const std::optional<std::int64_t> index = whole_number_in(name.edge);
+    if (!index)
+        return labelled_edge(document, key_path, name, panel);
+    if (*index < 0 || *index >= std::int64_t(panel.edges.size()))
+        document.refuse(key_path, "panel " + as_written(name.panel) + " has no edge " + name.edge +
+                                      "; its edges are 0 to " + std::to_string(panel.edges.size() - 1));
+    return int(*index);
+}
+
+} // namespace
+
+garment::EdgePart edge_part_of(const Document& document, const std::string& key_path, const std::string& name,
+                               const garment::Pattern& pattern)
+{
+    const EdgeName parts = parse(document, key_path, name);
+    const std::vector<std::string> panels = scene_format::names_of(pattern.panels);
+    scene_format::require_known(document, key_path, "panel", parts.panel, panels);
+    const auto panel = int(std::find(panels.begin(), panels.end(), parts.panel) - panels.begin());
+    const int edge = edge_of(document, key_path, parts, pattern.panels[size_t(panel)]);
+    return {panel, edge, parts.from, parts.to};
+}
+
+} // namespace toile::garment_format

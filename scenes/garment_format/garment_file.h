@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "garment/pattern/pattern.h"
+#include "scenes/format/scene.h"
+
+/// Contents of a garment file: plain values, as written. The meaning of each key is stated once, in
+/// describe_garment.h; the reader, the JSON Schema and docs/reference/garment_keys.md are made from it.
+namespace toile::garment_format {
+
+/// A file of panels.
+struct PatternFile {
+    std::filesystem::path file;
+    std::optional<scene::LengthUnit> unit; ///< absent: what the file says
+};
+
+/// How a panel is cut and where it starts.
+struct PanelSettings {
+    std::optional<std::string> fabric; ///< name of a preset
+    std::optional<double> edge;        ///< [m] of the mesh's edges
+    double grain_deg = 0.0;
+    int copies = 1;
+    bool mirror = false; ///< every second copy is a mirror image
+    std::optional<garment::BodyPlacement> place;
+    int layer = 0;
+};
+
+/// Ends of a seam's sides that meet.
+enum class SeamJoin { StartEnd, StartStart };
+
+/// A seam as written: its sides name edges or parts of them.
+struct SeamEntry {
+    std::vector<std::string> a;
+    std::vector<std::string> b;
+    SeamJoin join = SeamJoin::StartEnd;
+    double fold_deg = 0.0;
+    int order = 0;
+};
+
+struct GarmentFile {
+    std::string description;
+    std::vector<PatternFile> patterns;
+    std::map<std::string, PanelSettings> panels; ///< by name
+    std::vector<SeamEntry> seams;
+};
+
+} // namespace toile::garment_format
