@@ -28,6 +28,8 @@ constexpr double kTolerance = 1e-4;
 /// Inset [m] that a crossing triangle gains in a pass.
 constexpr double kCrossingInset = 1e-3;
 constexpr int kRoomPasses = 6;
+/// Surfaces that a ray inwards goes through.
+constexpr int kLayers = 4;
 /// Passes after which crossings that have not become fewer are left as they are.
 constexpr int kVainPasses = 3;
 /// Cosine above which two surfaces don't face each other.
@@ -159,23 +161,43 @@ SkinSeparation::Facing SkinSeparation::facing_at(const Pose& pose, int v, const 
 {
     if (normal.isZero() || max_inset_[v] == 0.0)
         return {};
-    const Facing before = facing_at(pose, v, normal, false), behind = facing_at(pose, v, normal, true);
+    const Facing before = in_front(pose, v, normal), behind = this->behind(pose, v, normal);
     const Facing& worse = behind.lacking > before.lacking ? behind : before;
     return {before.is_near || behind.is_near, worse.lacking, worse.triangle};
 }
 
-SkinSeparation::Facing SkinSeparation::facing_at(const Pose& pose, int v, const Vec3& normal,
-                                                 bool is_overlap) const
+SkinSeparation::Facing SkinSeparation::in_front(const Pose& pose, int v, const Vec3& normal) const
 {
-    const Vec3 direction = is_overlap ? Vec3(-normal) : normal;
-    const auto hit = rays_.closest_hit(pose.moved[v] + kRayStart * direction, direction,
-                                       is_overlap ? 2.0 * kMaxInset : clearance_);
-    if (!hit)
-        return {};
-    const Triangle& corner = triangles_[hit->triangle];
+    const auto hit = rays_.closest_hit(pose.moved[v] + kRayStart * normal, normal, clearance_);
+    return hit ? beside(pose, v, normal, *hit, hit->t) : Facing{};
+}
+
+/// The deepest skin out of which a ray inwards comes: that of a limb that has entered, or lies inside.
+SkinSeparation::Facing SkinSeparation::behind(const Pose& pose, int v, const Vec3& normal) const
+{
+    Facing deepest;
+    double depth = 0.0;
+    for (int layer = 0; layer < kLayers; ++layer) {
+        const double start = depth + kRayStart;
+        const auto hit = rays_.closest_hit(pose.moved[v] - start * normal, -normal, 2.0 * kMaxInset - start);
+        if (!hit)
+            break;
+        depth = start + hit->t;
+        const Facing facing = beside(pose, v, normal, *hit, -depth);
+        if (facing.lacking > deepest.lacking)
+            deepest = facing;
+    }
+    return deepest;
+}
+
+/// @param distance  [m] in front of the vertex; negative: behind it
+SkinSeparation::Facing SkinSeparation::beside(const Pose& pose, int v, const Vec3& normal, const RayHit& hit,
+                                              double distance) const
+{
+    const Triangle& corner = triangles_[hit.triangle];
     const auto at = [&](const auto& positions) -> Vec3 {
-        return (1.0 - hit->u - hit->v) * positions[corner[0]] + hit->u * positions[corner[1]] +
-               hit->v * positions[corner[2]];
+        return (1.0 - hit.u - hit.v) * positions[corner[0]] + hit.u * positions[corner[1]] +
+               hit.v * positions[corner[2]];
     };
     const Vec3 other_normal = (pose.moved[corner[1]] - pose.moved[corner[0]])
                                   .cross(pose.moved[corner[2]] - pose.moved[corner[0]])
@@ -185,10 +207,10 @@ SkinSeparation::Facing SkinSeparation::facing_at(const Pose& pose, int v, const 
 
     // The far side of the same limb is as far away at rest. Skin that is near at rest needs no more room.
     const double rest_distance = (at(rest_) - rest_[v]).norm();
-    if (is_overlap && rest_distance < 2.0 * hit->t + kClose)
+    if (distance < 0.0 && rest_distance < kClose - 2.0 * distance)
         return {};
-    const double kept = kRestShare * rest_distance, distance = is_overlap ? -hit->t : hit->t;
-    return {distance < kept, 0.5 * (std::min(clearance_, kept) - distance), hit->triangle};
+    const double kept = kRestShare * rest_distance;
+    return {distance < kept, 0.5 * (std::min(clearance_, kept) - distance), hit.triangle};
 }
 
 /// Skin that crosses gives way a little at a time, until none crosses or all has given what it can.

@@ -40,7 +40,9 @@ private:
 
     void make_room(Pose& pose);
     Facing facing_at(const Pose& pose, int v, const Vec3& normal) const;
-    Facing facing_at(const Pose& pose, int v, const Vec3& normal, bool is_overlap) const;
+    Facing in_front(const Pose& pose, int v, const Vec3& normal) const;
+    Facing behind(const Pose& pose, int v, const Vec3& normal) const;
+    Facing beside(const Pose& pose, int v, const Vec3& normal, const RayHit& hit, double distance) const;
     void uncross(Pose& pose);
     std::vector<Triangle> triangles_near(const Pose& pose) const;
     bool raise(Pose& pose, const std::vector<double>& wanted) const;

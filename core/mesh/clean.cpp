@@ -165,6 +165,10 @@ std::vector<int> stitch(ObjMesh& mesh, double distance)
     for (std::vector<int>& polygon : mesh.polygons)
         for (int& v : polygon)
             v = stands[v];
+    for (auto& line : mesh.lines)
+        for (int& v : line)
+            v = stands[v];
+    std::erase_if(mesh.lines, [](const auto& line) { return line[0] == line[1]; });
     return stands;
 }
 
@@ -186,6 +190,10 @@ std::vector<int> drop_loose_vertices(ObjMesh& mesh)
     for (std::vector<int>& polygon : mesh.polygons)
         for (int& v : polygon)
             v = number[v];
+    for (auto& line : mesh.lines)
+        for (int& v : line)
+            v = number[v];
+    std::erase_if(mesh.lines, [](const auto& line) { return line[0] < 0 || line[1] < 0; });
     return number;
 }
 

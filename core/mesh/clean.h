@@ -18,12 +18,12 @@ int drop_repeated_corners(ObjMesh& mesh);
 
 /// Joins border edges that lie on each other, as along texture seams and between the faces of flat-shaded
 /// meshes: the polygons there get the lower of each two vertices. Edges stay apart where three or more meet,
-/// and between polygons that lie on each other with all corners: those are layers.
+/// and between polygons that lie on each other with all corners: those are layers. Lines follow.
 /// @param distance  [m] at which two points are one
 /// @return [vertices] vertex that stands for each: itself, or a lower one
 std::vector<int> stitch(ObjMesh& mesh, double distance);
 
-/// Drops vertices without a polygon; the others keep their order.
+/// Drops vertices without a polygon, and lines to them; the others keep their order.
 /// @return [vertices before] new number; for a dropped one -1
 std::vector<int> drop_loose_vertices(ObjMesh& mesh);
 

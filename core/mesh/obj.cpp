@@ -60,7 +60,7 @@ public:
             } else if (keyword == "f" || keyword == "fo") { // fo: a face in files of the first versions
                 read_face();
             } else if (keyword == "l") {
-                ++mesh_.line_elements;
+                read_line();
             } else if (keyword == "curv" || keyword == "curv2" || keyword == "surf") {
                 ++mesh_.free_form_elements;
             }
@@ -191,6 +191,17 @@ private:
         mesh_.polygon_lines.push_back(line_);
     }
 
+    void read_line()
+    {
+        int before = -1;
+        for (std::string_view point = next_word(); !point.empty(); point = next_word()) {
+            const int v = index(point.substr(0, point.find('/')), mesh_.positions.size(), "vertex");
+            if (before >= 0 && before != v)
+                mesh_.lines.push_back({before, v});
+            before = v;
+        }
+    }
+
     /// Drops texture indices unless every face has them.
     void drop_incomplete_texture()
     {
@@ -303,6 +314,8 @@ void write_obj(const std::filesystem::path& file, const ObjMesh& mesh)
         }
         text += '\n';
     }
+    for (const auto& [a, b] : mesh.lines)
+        text += "l " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + '\n';
     write_atomically(file, text);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,10 +17,10 @@ struct ObjMesh {
     std::vector<Vec2> texture_coordinates;     ///< [vt lines]; may be empty
     std::vector<std::vector<int>> polygons;    ///< vertex indices, 0-based
     std::vector<std::vector<int>> polygon_uvs; ///< texture indices per corner, or empty; parallel to polygons
+    std::vector<std::array<int, 2>> lines;     ///< vertex indices of the pieces of l lines
 
     // Of a file, for messages; empty or 0 for a mesh made otherwise.
     std::vector<int> polygon_lines; ///< line of each polygon, counted from 1
-    int line_elements = 0;          ///< l lines, which are not read
     int free_form_elements = 0;     ///< curves and curved surfaces, which are not read
 
     /// Triangulates every polygon: triangulate_polygon().
@@ -32,7 +33,7 @@ struct ObjMesh {
 /// The same surface as polygons of three corners.
 ObjMesh faces_of(const TriangleMesh& mesh);
 
-/// Reads v, vt and f lines (negative indices too), with any line ends, comments, continued lines and a
+/// Reads v, vt, f and l lines (negative indices too), with any line ends, comments, continued lines and a
 /// byte-order mark; ignores other lines of the format. Texture indices are kept only if every face has them.
 /// @throws InvalidInput naming file and line: missing file, one without vertices, a number that does not
 ///         parse or is not finite, an index out of range, a face of fewer than three or more than 10 000
@@ -42,7 +43,8 @@ ObjMesh read_obj(const std::filesystem::path& file);
 /// As for triangles, naming the line of the face.
 void require_usable(const ObjMesh& mesh, const std::string& source);
 
-/// Writes positions with 9 significant digits and the polygons (with texture coordinates where present).
+/// Writes positions with 9 significant digits, the polygons (with texture coordinates where present) and the
+/// lines.
 /// The file appears complete or not at all.
 /// @throws InvalidInput or DeviceError as write_atomically does.
 void write_obj(const std::filesystem::path& file, const ObjMesh& mesh);

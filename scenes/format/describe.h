@@ -140,6 +140,13 @@ void describe(V& v, Skirt& s)
 }
 
 template <typename V>
+void describe(V& v, Sewing& s)
+{
+    v.field("stiffness", s.stiffness, kStiffness, "Of each thread.");
+    v.field("max_force", s.max_force, above_zero(1000.0, "N"), "With which each thread pulls at most.");
+}
+
+template <typename V>
 void describe(V& v, Cloth& c)
 {
     v.required("name", c.name, "Name, for attachments, messages and the cache's file.");
@@ -161,6 +168,9 @@ void describe(V& v, Cloth& c)
             "Rotation of the warp in the cloth's plane, from the X axis of flat cloth and the vertical of "
             "garments.");
     v.field("thickness", c.thickness, above_zero(0.05, "m"), "Replaces the fabric's thickness.");
+    v.field(
+        "sewing", c.sewing,
+        "Threads that pull together the vertices that lines (l) of the file join, as of panels to be sewn.");
     v.field("layer", c.layer, between(-100, 100),
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");

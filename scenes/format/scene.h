@@ -131,6 +131,12 @@ using ClothShape = std::variant<std::filesystem::path, Rectangle, Disc, Skirt>;
 
 enum class PreviewPattern { Plain, Checker, Stripes };
 
+/// Threads along the lines of a cloth's file.
+struct Sewing {
+    double stiffness = 100.0; ///< [N/m] of each
+    double max_force = 0.05;  ///< [N] of each
+};
+
 struct Cloth {
     std::string name;
     ClothShape shape;
@@ -143,6 +149,7 @@ struct Cloth {
     std::string fabric = "cotton";       ///< key of Scene::fabrics or name of a preset
     double grain_deg = 0.0;              ///< rotation of the warp direction in the cloth plane
     std::optional<double> thickness;     ///< [m] replaces the fabric's
+    std::optional<Sewing> sewing;        ///< absent: lines of the file are left out
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     PreviewPattern pattern = PreviewPattern::Plain;

@@ -89,9 +89,11 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
 {
     ObjMesh& mesh = result.mesh;
     const ObjMesh file = mesh;
-    if (mesh.line_elements > 0)
-        result.warnings.push_back("left out " + counted(mesh.line_elements, "l line", "l lines") +
-                                  "; panels are sewn only where their edges lie on each other");
+    if (!mesh.lines.empty() && !cloth.sewing) {
+        result.warnings.push_back("left out " + counted(std::ptrdiff_t(mesh.lines.size()), "line", "lines") +
+                                  " between vertices; \"sewing\": {} sews along them");
+        mesh.lines.clear();
+    }
     if (mesh.free_form_elements > 0)
         result.warnings.push_back(
             "left out " +

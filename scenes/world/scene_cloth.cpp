@@ -12,6 +12,7 @@
 #include "garment/energy/air/loads_kernels.h"
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
+#include "garment/seam/sewing.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/method/solver_choice.h"
 #include "scenes/surfaces/load_cloth.h"
@@ -70,7 +71,8 @@ garment::Gusts gusts_of(const scene::Wind& wind)
 
 SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
                        const std::vector<Collider>& colliders, const WorldOptions& options)
-    : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind), gusts_(gusts_of(scene.wind))
+    : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind), gusts_(gusts_of(scene.wind)),
+      sewing_(settings.sewing.value_or(scene::Sewing{}))
 {
     LoadedCloth loaded = load_cloth(scene, settings, colliders, options.warn);
     state_ = std::move(loaded.state);
@@ -136,6 +138,7 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     std::vector<std::shared_ptr<Energy>> energies;
     add_elasticity(outer == OuterMethod::Newton, energies);
     add_springs(energies);
+    add_sewing(energies);
 
     const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
     garment::StretchTension::Settings tension{fabric.strain_limit, stiffness};
@@ -166,6 +169,16 @@ void SceneCloth::add_springs(std::vector<std::shared_ptr<Energy>>& energies)
         return;
     springs_ = std::make_shared<garment::Springs>(std::move(springs));
     energies.push_back(springs_);
+}
+
+void SceneCloth::add_sewing(std::vector<std::shared_ptr<Energy>>& energies) const
+{
+    std::vector<garment::Sewing::Thread> threads;
+    for (const auto& [a, b] : state_.rest.lines)
+        threads.push_back({a, b});
+    if (!threads.empty())
+        energies.push_back(std::make_shared<garment::Sewing>(
+            std::move(threads), garment::Sewing::Settings{sewing_.stiffness, sewing_.max_force}));
 }
 
 void SceneCloth::add_loads(garment::DeviceLoads& loads, int first_vertex) const

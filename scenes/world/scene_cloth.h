@@ -90,12 +90,14 @@ private:
     void add_attachments(const Scene& scene, const std::vector<Collider>& colliders);
     void add_elasticity(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
     void add_springs(std::vector<std::shared_ptr<Energy>>& energies);
+    void add_sewing(std::vector<std::shared_ptr<Energy>>& energies) const;
 
     ClothState state_;
     std::string source_;
     Vec3 gravity_;
     scene::Wind wind_;
     garment::Gusts gusts_;
+    scene::Sewing sewing_;
     std::vector<double> masses_;
     std::vector<AttachmentConstraint> attachments_;
     std::shared_ptr<const garment::RestShape> rest_;

@@ -130,8 +130,9 @@ TEST(ReadObj, ReadsAnyLineEndsContinuationsAndAByteOrderMark)
         const ObjMesh mesh = read_text(text);
         EXPECT_EQ(mesh.positions, plain.positions) << text;
         EXPECT_EQ(mesh.polygons, plain.polygons) << text;
-        EXPECT_EQ(mesh.line_elements, 1) << text;
+        EXPECT_EQ(mesh.lines, plain.lines) << text;
     }
+    EXPECT_EQ(plain.lines, (std::vector<std::array<int, 2>>{{0, 1}}));
     EXPECT_EQ(plain.polygon_lines, std::vector<int>{5});
     EXPECT_EQ(read_text(texts[3]).polygon_lines, std::vector<int>{7});
     EXPECT_EQ(refusal("v 0 0\\\n 0\nv 1 x 0\n").substr(0, 2), "3:");
