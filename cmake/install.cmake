@@ -20,10 +20,11 @@ list(TRANSFORM libraries PREPEND toile_)
 install(TARGETS ${libraries} toile_library toile_abi EXPORT toileTargets
     ARCHIVE INCLUDES DESTINATION "${headers_dir}")
 
-# Without headers that show nlohmann_json, which are for sources of their own folder alone, and folders without headers.
+# Without headers that show nlohmann_json or CGAL, which are for sources of their own folder alone, and folders without headers.
 install(FILES toile.h DESTINATION "${headers_dir}")
 install(DIRECTORY core quadrature2d garment collision avatars export scenes DESTINATION "${headers_dir}"
     FILES_MATCHING PATTERN "*.h" PATTERN "*.cuh"
+    REGEX "garment/pattern/mesh/panel_triangulation\\.h$" EXCLUDE
     REGEX "avatars/import/gltf_(accessors|clips|file|json|meshes|nodes|uri)\\.h$" EXCLUDE
     REGEX "scenes/format/(schema/)?(checks|document|names|range_check|reader|schema_writer)\\.h$" EXCLUDE
     REGEX "(avatars/model/cuda|scenes/(benchmarks|contact|data|demo))$" EXCLUDE)

@@ -147,43 +147,44 @@ std::vector<EdgeCurve> curves_of(const Pattern& pattern, const Panel& panel)
     return curves;
 }
 
-/// Side of a polygon and its range along the direction of the sweep.
-struct Side {
-    int index = 0;
+using Edges = std::vector<std::array<int, 2>>;
+
+/// Edge and its range along the direction of the sweep.
+struct Range {
+    int edge = 0;
     double low = 0.0, high = 0.0;
 };
 
-/// Sides in ascending order along a direction that no pattern is aligned with, so that few overlap.
-std::vector<Side> sorted_sides(const std::vector<Vec2>& corners)
+/// Edges in ascending order along a direction that no pattern is aligned with, so that few overlap.
+std::vector<Range> sorted_ranges(const std::vector<Vec2>& points, const Edges& edges)
 {
     const Vec2 direction(0.8253, 0.5647);
-    std::vector<Side> sides;
-    for (size_t i = 0; i < corners.size(); ++i) {
-        const double a = direction.dot(corners[i]), b = direction.dot(corners[(i + 1) % corners.size()]);
+    std::vector<Range> ranges;
+    for (size_t i = 0; i < edges.size(); ++i) {
+        const double a = direction.dot(points[edges[i][0]]), b = direction.dot(points[edges[i][1]]);
         const double rounding = 1e-12 * (std::abs(a) + std::abs(b));
-        sides.push_back({int(i), std::min(a, b) - rounding, std::max(a, b) + rounding});
+        ranges.push_back({int(i), std::min(a, b) - rounding, std::max(a, b) + rounding});
     }
-    std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.low < b.low; });
-    return sides;
+    std::stable_sort(ranges.begin(), ranges.end(),
+                     [](const Range& a, const Range& b) { return a.low < b.low; });
+    return ranges;
 }
 
-/// True if two consecutive sides, which meet in `middle`, lie on each other.
+/// True if two edges, which meet in `middle`, lie on each other.
 bool folds_back(const Vec2& before, const Vec2& middle, const Vec2& after)
 {
     return (before - middle).dot(after - middle) > 0.0 &&
            CGAL::collinear(point(before), point(middle), point(after));
 }
 
-bool sides_meet(const std::vector<Vec2>& corners, int a, int b)
+bool edges_meet(const std::vector<Vec2>& points, const std::array<int, 2>& a, const std::array<int, 2>& b)
 {
-    const int count = int(corners.size());
-    const auto at = [&](int i) -> const Vec2& { return corners[i % count]; };
-    if ((a + 1) % count == b)
-        return folds_back(at(a), at(b), at(b + 1));
-    if ((b + 1) % count == a)
-        return folds_back(at(b), at(a), at(a + 1));
-    return CGAL::do_intersect(Kernel::Segment_2(point(at(a)), point(at(a + 1))),
-                              Kernel::Segment_2(point(at(b)), point(at(b + 1))));
+    for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k)
+            if (a[i] == b[k])
+                return folds_back(points[a[1 - i]], points[a[i]], points[b[1 - k]]);
+    return CGAL::do_intersect(Kernel::Segment_2(point(points[a[0]]), point(points[a[1]])),
+                              Kernel::Segment_2(point(points[b[0]]), point(points[b[1]])));
 }
 
 } // namespace
@@ -198,12 +199,19 @@ PatternCurves outline_curves(const Pattern& pattern)
 
 std::optional<std::array<int, 2>> find_crossing(const std::vector<Vec2>& corners)
 {
-    const std::vector<Side> sides = sorted_sides(corners);
-    for (size_t i = 0; i < sides.size(); ++i)
-        for (size_t k = i + 1; k < sides.size() && sides[k].low <= sides[i].high; ++k)
-            if (sides_meet(corners, sides[i].index, sides[k].index))
-                return std::array{std::min(sides[i].index, sides[k].index),
-                                  std::max(sides[i].index, sides[k].index)};
+    Edges sides;
+    for (int i = 0; i < int(corners.size()); ++i)
+        sides.push_back({i, (i + 1) % int(corners.size())});
+    return find_crossing(corners, sides);
+}
+
+std::optional<std::array<int, 2>> find_crossing(const std::vector<Vec2>& points, const Edges& edges)
+{
+    const std::vector<Range> ranges = sorted_ranges(points, edges);
+    for (size_t i = 0; i < ranges.size(); ++i)
+        for (size_t k = i + 1; k < ranges.size() && ranges[k].low <= ranges[i].high; ++k)
+            if (const int a = ranges[i].edge, b = ranges[k].edge; edges_meet(points, edges[a], edges[b]))
+                return std::array{std::min(a, b), std::max(a, b)};
     return std::nullopt;
 }
 

@@ -20,4 +20,10 @@ PatternCurves outline_curves(const Pattern& pattern);
 /// @param corners  [3 or more] around the polygon
 std::optional<std::array<int, 2>> find_crossing(const std::vector<Vec2>& corners);
 
+/// The same for edges between points: two that have a point in common beyond an end that they share.
+/// @param edges  pairs of points
+/// @return two of `edges`
+std::optional<std::array<int, 2>> find_crossing(const std::vector<Vec2>& points,
+                                                const std::vector<std::array<int, 2>>& edges);
+
 } // namespace toile::garment

@@ -14,6 +14,7 @@ namespace {
 struct Side {
     const std::vector<EdgePart>* parts = nullptr;
     std::vector<double> starts; ///< [parts + 1] arc length at which each part starts [m]
+    std::vector<double> marks;  ///< arc lengths inside parts at which there must be a point [m]
 
     double length() const { return starts.back(); }
 };
@@ -61,26 +62,33 @@ void require_part(const Pattern& pattern, const Seam& seam, const EdgePart& part
 }
 
 Side side_of(const Pattern& pattern, const PatternCurves& curves, const Seam& seam,
-             const std::vector<EdgePart>& parts)
+             const std::vector<EdgePart>& parts, const OutlineTargets& targets)
 {
     if (parts.empty())
         throw InvalidInput(pattern.source + ": seam " + quoted(seam.name) +
                            " has no edge on one side; name one");
-    Side side{&parts, {0.0}};
+    Side side{&parts, {0.0}, {}};
     for (const EdgePart& part : parts) {
         require_part(pattern, seam, part);
-        side.starts.push_back(side.starts.back() +
-                              curves[part.panel][part.edge].length() * std::abs(part.to - part.from));
+        const double length = curves[part.panel][part.edge].length(), start = side.starts.back();
+        for (const double mark : targets.marks[part.panel][part.edge])
+            if (mark > std::min(part.from, part.to) + kSameFraction &&
+                mark < std::max(part.from, part.to) - kSameFraction)
+                side.marks.push_back(start + length * std::abs(mark - part.from));
+        side.starts.push_back(start + length * std::abs(part.to - part.from));
     }
     return side;
 }
 
-/// Fractions of a side's length at which one part ends and the next starts.
+/// Fractions of a side's length at which one part ends and the next starts, or a mark is.
 std::vector<double> junctions(const Side& side)
 {
     std::vector<double> result;
     for (size_t i = 1; i + 1 < side.starts.size(); ++i)
         result.push_back(side.starts[i] / side.length());
+    for (const double mark : side.marks)
+        result.push_back(mark / side.length());
+    std::sort(result.begin(), result.end());
     return result;
 }
 
@@ -193,11 +201,19 @@ std::vector<Stretch> cover_edge(const Pattern& pattern, int panel, int edge, std
     std::sort(sewn.begin(), sewn.end(), [](const Stretch& a, const Stretch& b) { return a.low() < b.low(); });
     std::vector<Stretch> result;
     double covered = 0.0;
-    const auto cover_until = [&](double fraction) {
+    const auto cover_freely = [&](double fraction) {
         if (fraction - covered > kSameFraction)
             result.push_back({covered, fraction,
                               std::max(targets.free_intervals[panel][edge],
                                        intervals((fraction - covered) * length, targets.edge[panel]))});
+    };
+    const auto cover_until = [&](double fraction) {
+        for (const double mark : targets.marks[panel][edge])
+            if (mark > covered + kSameFraction && mark < fraction - kSameFraction) {
+                cover_freely(mark);
+                covered = mark;
+            }
+        cover_freely(fraction);
     };
     for (Stretch& stretch : sewn) {
         if (stretch.low() < covered - kSameFraction)
@@ -266,8 +282,8 @@ OutlinePoints divide_outlines(const Pattern& pattern, const PatternCurves& curve
     SeamRuns runs;
     for (size_t s = 0; s < pattern.seams.size(); ++s) {
         const Seam& seam = pattern.seams[s];
-        const std::array sides{side_of(pattern, curves, seam, seam.a),
-                               side_of(pattern, curves, seam, seam.b)};
+        const std::array sides{side_of(pattern, curves, seam, seam.a, targets),
+                               side_of(pattern, curves, seam, seam.b, targets)};
         runs.emplace_back(add_seam(sides, targets.edge, int(s), stretches));
     }
 

@@ -35,6 +35,9 @@ struct OutlineTargets {
 
     /// [panels][edges] least intervals between points of each stretch that is not sewn
     std::vector<std::vector<int>> free_intervals;
+
+    /// [panels][edges] fractions at which there must be a point, ascending
+    std::vector<std::vector<std::vector<double>>> marks;
 };
 
 /// Divides all edges, seams first: both sides get equally many points (see mesh_pattern).

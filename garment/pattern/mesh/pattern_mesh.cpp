@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "garment/pattern/mesh/inner_lines.h"
 #include "garment/pattern/mesh/outline_points.h"
 #include "garment/pattern/mesh/panel_fill.h"
 #include "garment/pattern/mesh/sewn_mesh.h"
@@ -130,12 +131,12 @@ struct PanelMesher {
     PanelFill fill;
     bool is_mirrored;
 
-    static PanelMesher of(std::vector<Vec2> polygon, double area, double target)
+    static PanelMesher of(PanelFrame frame, double area, double target)
     {
         if (area < 0.0)
-            for (Vec2& x : polygon)
+            for (Vec2& x : frame.points)
                 x.x() = -x.x();
-        return {PanelFill(polygon, target), area < 0.0};
+        return {PanelFill(frame, target), area < 0.0};
     }
 
     void append_to(PatternMesh& mesh) const
@@ -262,6 +263,18 @@ bool divide_closing_edges(const OutlinePoints& points, OutlineTargets& targets)
     return !closing.empty();
 }
 
+std::vector<std::vector<int>> line_vertices_of(const PatternMesh& mesh, const std::vector<InnerLine>& lines,
+                                               const std::vector<LinedFrame>& frames)
+{
+    std::vector<std::vector<int>> result;
+    for (size_t l = 0; l < lines.size(); ++l) {
+        result.push_back(frames[lines[l].panel].lines[l]);
+        for (int& vertex : result.back())
+            vertex += mesh.first_vertex[lines[l].panel];
+    }
+    return result;
+}
+
 /// Splits edges, given by vertices of the mesh, in their panels.
 void split_edges(const std::vector<std::array<int, 2>>& edges, const PatternMesh& mesh,
                  std::vector<PanelMesher>& panels)
@@ -290,19 +303,24 @@ PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& sett
 {
     const PatternCurves curves = outline_curves(pattern);
     const std::vector<PanelSize> sizes = sizes_of(pattern, curves);
-    OutlineTargets targets{targets_of(pattern, settings, sizes), {}};
+    OutlineTargets targets{targets_of(pattern, settings, sizes), {}, {}};
     require_affordable(pattern, sizes, targets.edge);
     for (const auto& panel : curves)
         targets.free_intervals.emplace_back(panel.size(), 1);
+    const std::vector<LineEnds> line_ends = place_lines(pattern, curves, settings.lines);
+    targets.marks = marks_of(curves, settings.lines, line_ends);
 
     OutlinePoints points = divide_until_simple(pattern, curves, sizes, targets);
     while (divide_closing_edges(points, targets))
         points = divide_until_simple(pattern, curves, sizes, targets);
 
     std::vector<PanelMesher> panels;
-    for (size_t p = 0; p < curves.size(); ++p)
-        panels.push_back(
-            PanelMesher::of(polygon_of(curves[p], points.fractions[p]), sizes[p].area, targets.edge[p]));
+    std::vector<LinedFrame> frames;
+    for (int p = 0; p < int(curves.size()); ++p) {
+        frames.push_back(lined_frame(pattern, p, polygon_of(curves[p], points.fractions[p]),
+                                     points.fractions[p], settings.lines, line_ends, targets.edge[p]));
+        panels.push_back(PanelMesher::of(frames[p].frame, sizes[p].area, targets.edge[p]));
+    }
 
     // An edge inside of one panel may have the ends of an edge of another, across a corner that both share.
     constexpr int kMaxRounds = 10;
@@ -314,6 +332,7 @@ PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& sett
         split_edges(edges, mesh, panels);
         mesh = assemble(panels, points, targets.edge);
     }
+    mesh.line_vertices = line_vertices_of(mesh, settings.lines, frames);
     return mesh;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "core/compute/types.h"
@@ -18,7 +19,8 @@ struct EdgeVertex {
 ///
 /// Triangles run along their panel's loop. The loop of most back panels is clockwise in the panel's plane
 /// (negative signed_area), and so are their triangles in `uv`; placed in space, all normals point away from
-/// the body. In each panel the vertices of the outline come first, along the loop from the start of edge 0.
+/// the body. In each panel the vertices of the outline come first, along the loop from the start of edge 0,
+/// then those of lines inside.
 struct PatternMesh {
     std::vector<Vec2> uv;            ///< [vertices] in the panel's plane, as in the file [m]
     std::vector<Triangle> triangles; ///< [triangles] along the panel's loop
@@ -33,6 +35,8 @@ struct PatternMesh {
     /// are two pairs.
     std::vector<std::vector<std::array<int, 2>>> stitches;
 
+    std::vector<std::vector<int>> line_vertices; ///< [lines][2 or more] along each line
+
     std::vector<double> edge; ///< [panels] target of edge lengths [m]; less than asked for in narrow panels
 
     int vertex_count() const { return int(uv.size()); }
@@ -42,9 +46,20 @@ struct PatternMesh {
     int panel_of_triangle(int triangle) const;
 };
 
+/// Line in a panel that edges of the mesh have to follow: a fold, the place of a pocket.
+struct InnerLine {
+    int panel = 0;            ///< index into Pattern::panels
+    std::vector<Vec2> points; ///< [2 or more] in the panel's plane; the last is the first of a closed one [m]
+    std::string name;         ///< for messages
+};
+
 struct PatternMeshSettings {
     double edge = 0.01;              ///< [m] target of edge lengths; none is much longer
     std::vector<double> panel_edges; ///< [panels] targets of their own [m]; empty: `edge` for all
+
+    /// They cross neither each other nor the outline. Ends nearer to the outline than 1/1000 of its length
+    /// are put on it, and so on what is sewn to it.
+    std::vector<InnerLine> lines;
 };
 
 /// Most vertices of a mesh. More are taken for a mistake in the unit or the target.
@@ -62,8 +77,8 @@ inline constexpr double kMaxPatternVertices = 4e6;
 /// outline. No edge of one panel has both ends in common with an edge of another once the pattern is sewn,
 /// but along the seam: the sewn surface stays manifold.
 /// @throws InvalidInput naming source, panel, edge or seam, and value: an outline that is open, crosses or
-///         touches itself, has no area or an edge without length; parts of seams that overlap; targets that
-///         are not positive or that ask for more than kMaxPatternVertices
+///         touches itself, has no area or an edge without length; parts of seams that overlap; lines that
+///         cross; targets that are not positive or ask for more than kMaxPatternVertices
 PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& settings);
 
 } // namespace toile::garment

@@ -20,9 +20,11 @@ using testing::HasSubstr;
 
 OutlinePoints divide(const Pattern& pattern, const std::vector<double>& edges)
 {
-    OutlineTargets targets{edges, {}};
-    for (const Panel& panel : pattern.panels)
+    OutlineTargets targets{edges, {}, {}};
+    for (const Panel& panel : pattern.panels) {
         targets.free_intervals.emplace_back(panel.edges.size(), 1);
+        targets.marks.emplace_back(panel.edges.size());
+    }
     return divide_outlines(pattern, outline_curves(pattern), targets);
 }
 

@@ -27,6 +27,8 @@ double polygon_area(const Polygon& polygon)
     return 0.5 * twice;
 }
 
+PanelFrame frame_of(const Polygon& polygon) { return {polygon, int(polygon.size()), {}}; }
+
 /// Points every `edge` [m] along the sides of a polygon.
 Polygon divided(const Polygon& corners, double edge)
 {
@@ -86,14 +88,14 @@ TEST(PanelFill, FillsPolygonsOfAnyShape)
         SCOPED_TRACE(seed);
         const double edge = seed % 3 == 0 ? 0.02 : 0.05;
         const Polygon polygon = divided(random_star(seed), edge);
-        expect_fills(PanelFill(polygon, edge), polygon);
+        expect_fills(PanelFill(frame_of(polygon), edge), polygon);
     }
 }
 
 TEST(PanelFill, FillsATriangleWithItself)
 {
     const Polygon polygon{{0.0, 0.0}, {1.0, 0.0}, {0.5, 0.8}};
-    const PanelFill fill(polygon, 1.0);
+    const PanelFill fill(frame_of(polygon), 1.0);
     ASSERT_EQ(fill.triangles().size(), 1u);
     EXPECT_EQ(fill.triangles()[0], Triangle(0, 1, 2));
 }
@@ -103,7 +105,7 @@ TEST(PanelFill, KeepsVerySharpCornersAndThinPlaces)
     const double edge = 0.02;
     for (const double width : {0.1, 0.01, 0.001, 1e-5}) {
         const Polygon polygon = divided({{0.0, 0.0}, {0.5, -0.5 * width}, {0.5, 0.5 * width}}, edge);
-        expect_fills(PanelFill(polygon, edge), polygon);
+        expect_fills(PanelFill(frame_of(polygon), edge), polygon);
     }
 }
 
@@ -117,7 +119,7 @@ TEST(PanelFill, GrowsFromAFineSide)
         polygon.emplace_back(1.0 - 0.05 * i, 1.0);
     for (int i = 0; i < 200; ++i)
         polygon.emplace_back(0.0, 1.0 - 0.005 * i);
-    const PanelFill fill(polygon, edge);
+    const PanelFill fill(frame_of(polygon), edge);
     expect_fills(fill, polygon);
     for (const Triangle& t : fill.triangles()) {
         const Vec2 &a = fill.vertices()[t[0]], &b = fill.vertices()[t[1]], &c = fill.vertices()[t[2]];
@@ -134,7 +136,7 @@ TEST(PanelFill, GrowsFromAFineSide)
 TEST(PanelFill, SplitsAnEdgeInTheMiddle)
 {
     const Polygon polygon{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
-    PanelFill fill(polygon, 1.0);
+    PanelFill fill(frame_of(polygon), 1.0);
     ASSERT_EQ(fill.triangles().size(), 2u);
     const bool is_rising =
         (fill.triangles()[0].array() == 2).any() && (fill.triangles()[1].array() == 2).any();
@@ -147,7 +149,7 @@ TEST(PanelFill, SplitsAnEdgeInTheMiddle)
 TEST(PanelFill, NumbersNeighboursNearEachOther)
 {
     const Polygon polygon = divided({{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}, 0.02);
-    const PanelFill fill(polygon, 0.02);
+    const PanelFill fill(frame_of(polygon), 0.02);
     const int inside = int(polygon.size());
     for (const Triangle& t : fill.triangles())
         for (int k = 0; k < 3; ++k)

@@ -15,7 +15,8 @@ namespace {
 TEST(Resample, ReproducesLinearFunctions)
 {
     const Pattern pattern = tee();
-    const PatternMesh coarse = mesh_pattern(pattern, {0.04, {}}), fine = mesh_pattern(pattern, {0.013, {}});
+    const PatternMesh coarse = mesh_pattern(pattern, {0.04, {}, {}}),
+                      fine = mesh_pattern(pattern, {0.013, {}, {}});
     const Resampling resampling = resample(coarse, fine);
     const auto linear = [](const Vec2& x) { return 3.0 * x.x() - 2.0 * x.y() + 0.7; };
     std::vector<double> values;
@@ -32,7 +33,7 @@ TEST(Resample, ReproducesLinearFunctions)
 
 TEST(Resample, IsTheIdentityOnTheSameMesh)
 {
-    const PatternMesh mesh = mesh_pattern(pattern_of(half_ring("skirt", 0.1, 0.4)), {0.03, {}});
+    const PatternMesh mesh = mesh_pattern(pattern_of(half_ring("skirt", 0.1, 0.4)), {0.03, {}, {}});
     const std::vector<Vec2> result = resample(mesh, mesh).apply(mesh, mesh.uv);
     for (int v = 0; v < mesh.vertex_count(); ++v)
         EXPECT_LT((result[v] - mesh.uv[v]).norm(), 1e-15);
@@ -42,7 +43,8 @@ TEST(Resample, TakesTheNearestPointBeyondACoarseOutline)
 {
     // Fine vertices of a disc lie up to a sagitta outside of the coarse polygon.
     const Pattern pattern = pattern_of(disc("patch", 0.2));
-    const PatternMesh coarse = mesh_pattern(pattern, {0.08, {}}), fine = mesh_pattern(pattern, {0.01, {}});
+    const PatternMesh coarse = mesh_pattern(pattern, {0.08, {}, {}}),
+                      fine = mesh_pattern(pattern, {0.01, {}, {}});
     const double sagitta = 0.2 - 0.2 * std::cos(std::asin(0.5 * 0.08 / 0.2));
     const std::vector<Vec2> result = resample(coarse, fine).apply(coarse, coarse.uv);
     double largest = 0.0;
@@ -56,7 +58,8 @@ TEST(Resample, FindsTheNearestTriangleAsASearchOfAllDoes)
 {
     const Pattern pattern = pattern_of(polygon(
         "u", {{0.0, 0.0}, {0.5, 0.0}, {0.5, 0.5}, {0.27, 0.5}, {0.25, 0.1}, {0.23, 0.5}, {0.0, 0.5}}));
-    const PatternMesh coarse = mesh_pattern(pattern, {0.07, {}}), fine = mesh_pattern(pattern, {0.02, {}});
+    const PatternMesh coarse = mesh_pattern(pattern, {0.07, {}, {}}),
+                      fine = mesh_pattern(pattern, {0.02, {}, {}});
     const Resampling resampling = resample(coarse, fine);
     for (int v = 0; v < fine.vertex_count(); ++v) {
         const Triangle& t = coarse.triangles[resampling.triangle[v]];
@@ -74,7 +77,8 @@ TEST(Resample, KeepsSeamsClosed)
     pattern.panels.push_back(rectangle("band", 0.5, 0.04));
     pattern.seams.push_back(
         {{{2, 0, 0.0, 0.45}, {2, 0, 0.45, 0.9}}, {{0, 2, 0.0, 1.0}, {1, 1, 0.0, 1.0}}, "waist"});
-    const PatternMesh coarse = mesh_pattern(pattern, {0.04, {}}), fine = mesh_pattern(pattern, {0.011, {}});
+    const PatternMesh coarse = mesh_pattern(pattern, {0.04, {}, {}}),
+                      fine = mesh_pattern(pattern, {0.011, {}, {}});
     const SewnMesh sewn = sewn_mesh(coarse);
     std::vector<Vec3> positions(coarse.vertex_count());
     for (int v = 0; v < coarse.vertex_count(); ++v) {
@@ -93,7 +97,7 @@ TEST(Resample, KeepsSeamsClosed)
 
 TEST(Resample, RefusesMeshesOfDifferentPatterns)
 {
-    const PatternMesh a = mesh_pattern(tee(), {0.05, {}}), b = mesh_pattern(trousers(), {0.05, {}});
+    const PatternMesh a = mesh_pattern(tee(), {0.05, {}, {}}), b = mesh_pattern(trousers(), {0.05, {}, {}});
     EXPECT_THROW(resample(a, b), InvalidUse);
 }
 

@@ -24,7 +24,7 @@ void expect_topology(const SewnMesh& sewn, const Expected& expected)
     EXPECT_NO_THROW(build_topology(sewn.triangles, sewn.vertex_count, "sewn"));
 }
 
-SewnMesh sew(const Pattern& pattern, double edge) { return sewn_mesh(mesh_pattern(pattern, {edge, {}})); }
+SewnMesh sew(const Pattern& pattern, double edge) { return sewn_mesh(mesh_pattern(pattern, {edge, {}, {}})); }
 
 /// Rectangle of 0.3 m x 0.2 m with seams between opposite edges; twisted ones join start to start.
 Pattern sheet(bool sides, bool is_twisted, bool ends)
@@ -50,7 +50,7 @@ TEST(SewnMesh, MakesATubeOfASheet) { expect_topology(sew(sheet(true, false, fals
 
 TEST(SewnMesh, WeldsFourCornersIntoOne)
 {
-    const PatternMesh mesh = mesh_pattern(sheet(true, false, true), {0.02, {}});
+    const PatternMesh mesh = mesh_pattern(sheet(true, false, true), {0.02, {}, {}});
     const SewnMesh torus = sewn_mesh(mesh);
     expect_topology(torus, {1, 0, 0});
     const int corner = torus.welded_of[0];
@@ -81,7 +81,7 @@ TEST(SewnMesh, TurnsAPanelThatIsSewnFrontToBack)
     Pattern pattern = front_and_back(rectangle("front", 0.3, 0.4), {1, 3});
     for (Seam& side : pattern.seams)
         std::swap(side.b[0].from, side.b[0].to);
-    const PatternMesh mesh = mesh_pattern(pattern, {0.03, {}});
+    const PatternMesh mesh = mesh_pattern(pattern, {0.03, {}, {}});
     const SewnMesh sewn = sewn_mesh(mesh);
     expect_topology(sewn, {1, 2, 0});
     EXPECT_EQ(sewn.is_turned, (std::vector{false, true}));
@@ -92,7 +92,7 @@ TEST(SewnMesh, TurnsAPanelThatIsSewnFrontToBack)
 
 TEST(SewnMesh, KeepsTheCornersOfThePatternMesh)
 {
-    const PatternMesh mesh = mesh_pattern(tee(), {0.03, {}});
+    const PatternMesh mesh = mesh_pattern(tee(), {0.03, {}, {}});
     const SewnMesh sewn = sewn_mesh(mesh);
     ASSERT_EQ(sewn.triangles.size(), mesh.triangles.size());
     for (size_t t = 0; t < sewn.triangles.size(); ++t)
@@ -136,7 +136,8 @@ TEST(SewnMesh, StaysManifoldInAStrapOfTwoLayers)
 TEST(SewnMesh, KeepsNarrowOpenings)
 {
     // Each end of the sleeve is one edge of front and back: both would become one edge, without an opening.
-    const PatternMesh mesh = mesh_pattern(front_and_back(rectangle("sleeve", 0.4, 0.09), {0, 2}), {0.1, {}});
+    const PatternMesh mesh =
+        mesh_pattern(front_and_back(rectangle("sleeve", 0.4, 0.09), {0, 2}), {0.1, {}, {}});
     EXPECT_EQ(mesh.edge_vertices[0][1].size(), 3u);
     expect_topology(sewn_mesh(mesh), {1, 2, 0});
 }
