@@ -54,6 +54,13 @@ std::vector<PanelSize> sizes_of(const Pattern& pattern, const PatternCurves& cur
     return sizes;
 }
 
+/// Target that a narrow panel needs: edges of at most one and a half times its width. A sliver gets no more
+/// than a thousand points along its outline for that.
+double narrow_target(const PanelSize& size)
+{
+    return std::max(3.0 * std::abs(size.area) / size.outline, 1e-3 * size.outline);
+}
+
 std::vector<double> targets_of(const Pattern& pattern, const PatternMeshSettings& settings,
                                const std::vector<PanelSize>& sizes)
 {
@@ -67,7 +74,7 @@ std::vector<double> targets_of(const Pattern& pattern, const PatternMeshSettings
         if (!(edge > 0.0) || !std::isfinite(edge))
             throw InvalidInput(pattern.source + ": panel \"" + pattern.panels[p].name + "\": edge length " +
                                std::to_string(edge) + " m; it must be positive");
-        targets.push_back(std::min(edge, 3.0 * std::abs(sizes[p].area) / sizes[p].outline));
+        targets.push_back(std::min(edge, narrow_target(sizes[p])));
     }
     return targets;
 }
@@ -109,6 +116,7 @@ OutlinePoints divide_until_simple(const Pattern& pattern, const PatternCurves& c
 {
     constexpr int kHalvings = 8;
     for (int i = 0;; ++i) {
+        require_affordable(pattern, sizes, targets.edge);
         OutlinePoints points = divide_outlines(pattern, curves, targets);
         bool is_simple = true;
         for (size_t p = 0; p < curves.size(); ++p) {
@@ -304,7 +312,6 @@ PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& sett
     const PatternCurves curves = outline_curves(pattern);
     const std::vector<PanelSize> sizes = sizes_of(pattern, curves);
     OutlineTargets targets{targets_of(pattern, settings, sizes), {}, {}};
-    require_affordable(pattern, sizes, targets.edge);
     for (const auto& panel : curves)
         targets.free_intervals.emplace_back(panel.size(), 1);
     const std::vector<LineEnds> line_ends = place_lines(pattern, curves, settings.lines);

@@ -73,9 +73,9 @@ inline constexpr double kMaxPatternVertices = 4e6;
 /// parts of one side are points of the other. Where two corners of opposite sides are nearer than 0.5 % of
 /// the seam, they meet and fractions are counted between them.
 ///
-/// A panel that is narrower than the target gets a smaller one: at most three times its area over its
-/// outline. No edge of one panel has both ends in common with an edge of another once the pattern is sewn,
-/// but along the seam: the sewn surface stays manifold.
+/// A panel that is narrower than the target gets a smaller one: three times its area over its outline, or a
+/// thousandth of the outline if that is more. Once the pattern is sewn, no edge of one panel has both ends in
+/// common with an edge of another but along the seam: the sewn surface stays manifold.
 /// @throws InvalidInput naming source, panel, edge or seam, and value: an outline that is open, crosses or
 ///         touches itself, has no area or an edge without length; parts of seams that overlap; lines that
 ///         cross; targets that are not positive or ask for more than kMaxPatternVertices

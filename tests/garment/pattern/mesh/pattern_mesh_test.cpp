@@ -132,6 +132,10 @@ TEST(MeshPattern, RefinesPanelsThatAreNarrowerThanTheTarget)
     EXPECT_NEAR(area_of(label), 1e-4, 1e-17);
     EXPECT_GT(smallest_angle_deg(label), 20.0);
 
+    const PatternMesh sliver = mesh_pattern(pattern_of(rectangle("sliver", 1.0, 1e-5)), {0.02, {}, {}});
+    EXPECT_LT(sliver.vertex_count(), 1100) << "not a million of vertices for a mistake";
+    EXPECT_NEAR(area_of(sliver), 1e-5, 1e-15);
+
     const PatternMesh coarse_disc = mesh_pattern(pattern_of(disc("button", 0.01)), {0.5, {}, {}});
     EXPECT_GE(coarse_disc.edge_vertices[0][0].size(), 4u);
 }
