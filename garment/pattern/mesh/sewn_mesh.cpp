@@ -301,29 +301,24 @@ std::vector<std::array<int, 2>> edges_to_split(const PatternMesh& mesh)
     const std::vector<int> next = next_on_outline(mesh);
 
     // Edges by their welded ends; those of the outline first, which stay.
-    struct InnerEdge {
-        std::array<int, 2> welded;
-        bool is_inner;
-        std::array<int, 2> ends;
-        auto operator<=>(const InnerEdge&) const = default;
-    };
-    std::vector<InnerEdge> edges;
+    using Ends = std::array<int, 2>;
+    std::vector<std::tuple<Ends, bool, Ends>> edges; // welded ends, is inside, ends
     for (const Triangle& t : mesh.triangles)
         for (int k = 0; k < 3; ++k) {
-            const int a = std::min(t[k], t[(k + 1) % 3]), b = std::max(t[k], t[(k + 1) % 3]);
+            const auto [a, b] = std::minmax({t[k], t[(k + 1) % 3]});
+            const auto [low, high] = std::minmax({welded[a], welded[b]});
             const bool is_outline = next[a] == b || next[b] == a;
-            edges.push_back(
-                {{std::min(welded[a], welded[b]), std::max(welded[a], welded[b])}, !is_outline, {a, b}});
+            edges.push_back({{low, high}, !is_outline, {a, b}});
         }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
-    std::vector<std::array<int, 2>> result;
-    for (size_t i = 0; i < edges.size(); ++i) {
-        const bool is_repeated = i > 0 && edges[i - 1].welded == edges[i].welded;
-        const bool is_collapsed = edges[i].welded[0] == edges[i].welded[1];
-        if (edges[i].is_inner && (is_repeated || is_collapsed))
-            result.push_back(edges[i].ends);
+    std::vector<Ends> result;
+    Ends before{-1, -1};
+    for (const auto& [ends, is_inside, own_ends] : edges) {
+        if (is_inside && (ends == before || ends[0] == ends[1]))
+            result.push_back(own_ends);
+        before = ends;
     }
     return result;
 }
