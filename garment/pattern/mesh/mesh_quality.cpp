@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
+#include <vector>
 
 namespace toile::garment {
 
@@ -60,10 +60,12 @@ OutlineVertices outline_vertices(const PatternMesh& mesh)
 
 void measure_edges(const PatternMesh& mesh, MeshQuality& quality)
 {
-    std::set<std::array<int, 2>> edges;
+    std::vector<std::array<int, 2>> edges;
     for (const Triangle& t : mesh.triangles)
         for (int k = 0; k < 3; ++k)
-            edges.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+            edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     int in_range = 0;
     double sum = 0.0;
     quality.shortest_edge = 1e300;

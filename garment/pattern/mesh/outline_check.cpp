@@ -191,6 +191,8 @@ bool edges_meet(const std::vector<Vec2>& points, const std::array<int, 2>& a, co
 
 PatternCurves outline_curves(const Pattern& pattern)
 {
+    if (pattern.panels.empty())
+        throw InvalidInput(pattern.source + " has no panels; a pattern needs one at least");
     PatternCurves curves;
     for (const Panel& panel : pattern.panels)
         curves.push_back(curves_of(pattern, panel));

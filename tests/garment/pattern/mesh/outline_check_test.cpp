@@ -34,6 +34,13 @@ TEST(OutlineCurves, AcceptsSimpleOutlines)
     EXPECT_EQ(error_of(mirrored(half_ring("skirt", 0.1, 0.6), "back")), "");
 }
 
+TEST(OutlineCurves, RefusesAPatternWithoutPanels)
+{
+    Pattern pattern;
+    pattern.source = "empty.json";
+    EXPECT_THROW(outline_curves(pattern), InvalidInput);
+}
+
 TEST(OutlineCurves, NamesAnOpenLoop)
 {
     Panel panel = rectangle("front", 0.3, 0.2);
