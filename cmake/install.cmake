@@ -10,7 +10,7 @@ install(TARGETS toile RUNTIME)
 install(TARGETS toile-bench RUNTIME OPTIONAL)
 
 # The libraries below toile::toile; each is toile::<name>, as in this build.
-set(libraries core quadrature2d garment collision collision_check collision_repair avatars export scene_format
+set(libraries core quadrature2d garment pattern_mesh collision collision_check collision_repair avatars export scene_format
     garment_format scenes)
 foreach(name IN LISTS libraries ITEMS abi)
     set_property(TARGET toile_${name} PROPERTY EXPORT_NAME ${name})
@@ -20,10 +20,11 @@ list(TRANSFORM libraries PREPEND toile_)
 install(TARGETS ${libraries} toile_library toile_abi EXPORT toileTargets
     ARCHIVE INCLUDES DESTINATION "${headers_dir}")
 
-# Without headers that show nlohmann_json, which are for sources of their own folder alone, and folders without headers.
+# Without headers that show nlohmann_json or CGAL, which are for sources of their own folder alone, and folders without headers.
 install(FILES toile.h DESTINATION "${headers_dir}")
 install(DIRECTORY core quadrature2d garment collision avatars export scenes DESTINATION "${headers_dir}"
     FILES_MATCHING PATTERN "*.h" PATTERN "*.cuh"
+    REGEX "garment/pattern/mesh/panel_triangulation\\.h$" EXCLUDE
     REGEX "avatars/import/gltf_(accessors|clips|file|json|meshes|nodes|uri)\\.h$" EXCLUDE
     REGEX "scenes/format/(schema/)?(checks|document|names|range_check|reader|schema_writer)\\.h$" EXCLUDE
     REGEX "scenes/garment_format/(assemble|edge_name|panel_json)\\.h$" EXCLUDE

@@ -48,6 +48,7 @@ MAY_INCLUDE = {
     "garment/energy/air": CORE + ["garment/energy"],
     "garment/energy/strain_limit": CORE + ["garment/energy"],
     "garment/pattern": CORE + ["garment/energy", "quadrature2d"],
+    "garment/pattern/mesh": CORE + ["garment/pattern"],
     "collision/bvh": CORE,
     "collision/geometry": CORE + ["collision/bvh"],
     "collision/body": CORE + ["collision/bvh", "collision/geometry"],
@@ -102,7 +103,8 @@ MAY_INCLUDE |= {
 # Modules of CMake whose name is not their folder.
 FOLDER_OF_MODULE = {"scene_format": "scenes/format", "garment_format": "scenes/garment_format", "preview": "apps/preview", "app": "apps/toile",
                     "benchmarks": "research/benchmarks", "quadrature_figures": "research/benchmarks/quadrature",
-                    "collision_check": "collision/check", "collision_repair": "collision/repair"}
+                    "collision_check": "collision/check", "collision_repair": "collision/repair",
+                    "pattern_mesh": "garment/pattern/mesh"}
 
 # Folders of programs within a module's folder.
 PROGRAMS = ["research/bench"]
@@ -118,7 +120,7 @@ OWNERS = {
     # The benchmark times Embree against collision.
     r"embree[34]/": ["collision/bvh", "research/benchmarks/near_pairs"],
     r"assimp/": ["avatars/import"],
-    r"CGAL/": ["collision/check", "garment/pattern"],
+    r"CGAL/": ["collision/check", "garment/pattern/mesh"],
     r"(libpng/)?png\.h": ["apps/preview"],
     r"boost/multiprecision/": [],  # comes with CGAL; rational numbers of the tests
     r"nlohmann/": ["avatars/import", "scenes/format", "scenes/garment_format", "apps"],

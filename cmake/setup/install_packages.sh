@@ -19,7 +19,7 @@ BUILD=(
     libxxhash-dev
     libembree-dev
     libassimp-dev
-    libcgal-dev        # exact predicates; header-only
+    libcgal-dev        # exact predicates, triangulations; header-only
     nlohmann-json3-dev
     libpng-dev
     libcli11-dev
