@@ -37,10 +37,6 @@ std::vector<SectionLoop> cut(const TriangleMesh& mesh, const SectionPlane& plane
 /// The closed curve through points of the plane.
 SectionLoop loop_through(std::vector<Vec3> points, const SectionPlane& plane);
 
-/// Convex hull, counter-clockwise.        [Andrew 1979]
-/// @return corners; fewer than three for points on a line
-std::vector<Vec2> convex_hull(std::vector<Vec2> points);
-
 /// Convex hull of the points, projected onto the plane. [corners x 3]
 std::vector<Vec3> convex_hull(View<const Vec3> points, const SectionPlane& plane);
 
