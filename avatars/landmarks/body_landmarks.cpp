@@ -50,6 +50,15 @@ Vec3 vector_of(const nlohmann::json& value, const std::string& place)
 
 } // namespace
 
+GivenLandmarks by_name(const BodyLandmarks& landmarks)
+{
+    BodyLandmarks copy = landmarks;
+    GivenLandmarks named;
+    for (const std::string& name : kNames)
+        named[name] = *landmark_of(copy, name);
+    return named;
+}
+
 GivenLandmarks read_landmarks(const std::filesystem::path& file)
 {
     std::ifstream stream(file);

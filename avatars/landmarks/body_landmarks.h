@@ -38,6 +38,9 @@ struct BodyLandmarks {
 /// "crotch", "left_shoulder", "left_wrist", "left_leg_top", "left_ankle" and the same of the right.
 using GivenLandmarks = std::map<std::string, Vec3>;
 
+/// All landmarks by their names.
+GivenLandmarks by_name(const BodyLandmarks& landmarks);
+
 /// Reads a JSON object of landmarks, each [x, y, z] in metres in the body's bind pose.
 /// @throws InvalidInput naming the file and the key that is unknown, with the nearest that exists, or no
 /// three

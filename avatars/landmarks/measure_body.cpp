@@ -357,6 +357,8 @@ private:
 
 } // namespace
 
+std::vector<std::string> unmeasured_keys() { return {"bum_points"}; }
+
 std::vector<Measurement> measure_body(const UprightBody& body) { return Tape(body).all(); }
 
 } // namespace toile::avatars

@@ -15,12 +15,14 @@ struct Measurement {
     std::string meaning; ///< how it was taken, in one line
 };
 
+/// Keys of GarmentCode that measure_body() leaves out: their points are marked by hand.
+std::vector<std::string> unmeasured_keys();
+
 /// Takes the measurements of GarmentCode's body files from slices. Girths are as a tape has them, the length
 /// of the convex hull of a slice; lengths over the body are those of hulls of upright slices.
 ///
 /// The bust is at its foremost points, the underbust where the trunk widens to it, the waist at the smallest
-/// girth, the hips at the largest near the hindmost point of the seat. Their "bum_points" are marked by hand,
-/// and left out.
+/// girth, the hips at the largest near the hindmost point of the seat.
 std::vector<Measurement> measure_body(const UprightBody& body);
 
 } // namespace toile::avatars

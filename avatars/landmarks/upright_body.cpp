@@ -52,6 +52,7 @@ public:
     UprightBody find()
     {
         find_legs();
+        require_metres();
         turn_to_front();
         find_crotch();
         for (const Side side : {kLeft, kRight})
@@ -99,6 +100,14 @@ private:
                 fail("two legs", "a slice at " + short_text(100.0 * fraction) + " % of the height has " +
                                      std::to_string(legs.size()) + (legs.size() == 1 ? " part" : " parts"));
         }
+    }
+
+    void require_metres() const
+    {
+        constexpr double kMin = 0.3, kMax = 3.0; // [m]
+        if (body_.height() < kMin || body_.height() > kMax)
+            throw InvalidInput(body_.source + ": stands " + short_text(body_.height()) +
+                               " m tall; give the unit of its file, m, cm, mm or in");
     }
 
     /// Rotates the mesh about the vertical until it faces +Z.

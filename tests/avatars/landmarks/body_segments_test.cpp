@@ -1,8 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iostream>
+
+#include <set>
 
 #include <Eigen/Geometry>
+
+#include <nlohmann/json.hpp>
 
 #include "tests/avatars/landmarks/bodies.h"
 
@@ -98,6 +103,37 @@ TEST(BodySegments, SkeletonAndSlicesAgree)
                 << name << ", " << kNames[s];
             EXPECT_LT((by_bones.segments[s].end - by_slices.segments[s].end).norm(), within)
                 << name << ", " << kNames[s];
+        }
+    }
+}
+
+/// The body comes with lists of the vertices of each limb, made by others.
+TEST(BodySegments, SkinOfLimbsIsThatOfThePublishedSegmentation)
+{
+    if (!has_data())
+        GTEST_SKIP() << "no " << TOILE_DATA_DIR;
+    std::ifstream file(std::filesystem::path(TOILE_DATA_DIR) / "bodies/gc_body_segmentation.json");
+    const nlohmann::json published = nlohmann::json::parse(file);
+    for (const char* name : {"bodies/gc_mean_all.obj", "avatars/gc_mean_all.glb"}) {
+        const std::unique_ptr<Avatar> body = load_body("bodies/gc_mean_all.obj");
+        const std::vector<Vec3> x = bind_pose(*body).positions;
+        const BodyArrangement found = find_segments(*load_body(name), {}, identity_affine());
+        for (const auto& [part, key] :
+             {std::pair(BodyPart::LeftArm, "left_arm"), std::pair(BodyPart::RightArm, "right_arm"),
+              std::pair(BodyPart::LeftLeg, "left_leg"), std::pair(BodyPart::RightLeg, "right_leg")}) {
+            size_t common = 0;
+            for (const int v : published[key])
+                for (const Vec3& skin : of(found, part).skin)
+                    if ((skin - x[size_t(v)]).norm() < 1e-5) {
+                        ++common;
+                        break;
+                    }
+            const double of_theirs = double(common) / double(published[key].size());
+            const double of_ours = double(common) / double(of(found, part).skin.size());
+            std::cout << name << ", " << key << ": " << of_theirs << " of theirs, " << of_ours
+                      << " of ours\n";
+            EXPECT_GT(of_theirs, 0.85) << name << ", " << key;
+            EXPECT_GT(of_ours, 0.85) << name << ", " << key;
         }
     }
 }
