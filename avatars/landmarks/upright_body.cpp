@@ -150,27 +150,28 @@ private:
         return along;
     }
 
-    /// The legs at a level, left first.
+    /// The legs at a level, left first; empty where two parts alike in size are not found.
     std::vector<SectionLoop> legs_at(double y) const
     {
+        constexpr double kAlike = 0.4; // [-] of areas: a knee and a shin; a hand beside the trunk is less
         std::vector<SectionLoop> legs = parts(y);
-        std::erase_if(
-            legs, [&](const SectionLoop& loop) { return std::abs(loop.center.x() - middle()) > reach(); });
-        if (legs.size() > 2)
-            legs.resize(2);
-        if (legs.size() == 2 && legs[0].center.x() < legs[1].center.x())
+        if (legs.size() < 2 || legs[1].area < kAlike * legs[0].area)
+            return {};
+        legs.resize(2);
+        if (legs[0].center.x() < legs[1].center.x())
             std::swap(legs[0], legs[1]);
         return legs;
     }
     double middle() const { return middle_; }
-    double reach() const { return 0.12 * body_.height(); }
 
     void find_crotch()
     {
         const std::vector<SectionLoop> knees = parts(at_height(0.25));
         middle_ = 0.5 * (knees[0].center.x() + knees[1].center.x());
-        const auto are_apart = [&](double y) { return legs_at(y).size() == 2; };
+        const auto are_apart = [&](double y) { return !legs_at(y).empty(); };
         double y = at_height(0.25);
+        if (!are_apart(y))
+            fail("the crotch", "the legs are not apart at the knees");
         while (y < at_height(0.65) && are_apart(y + step()))
             y += step();
         if (y >= at_height(0.65))
@@ -218,7 +219,7 @@ private:
     double leg_tape(Side side, double y) const
     {
         const std::vector<SectionLoop> legs = legs_at(y);
-        if (legs.size() != 2)
+        if (legs.empty())
             fail("the ankles", "the legs are not apart");
         return tape(legs[side], level(y));
     }
@@ -286,22 +287,29 @@ private:
         if ((tip - top).norm() < 0.2 * body_.height())
             fail("the " + name + " arm", "nothing lies far enough beside the trunk");
 
+        const auto require_limb = [&](const Slices& part) {
+            if (part.center.size() < kSlices / 2)
+                fail("the " + name + " arm", "slices across it do not form a limb");
+        };
         const Slices whole = slices(top, tip, 0.15, 0.95);
-        if (whole.center.size() < 40)
-            fail("the " + name + " arm", "slices across it do not form a limb");
+        require_limb(whole);
         const int wrist = whole.end_of_forearm();
         arm.elbow = whole.center[size_t(wrist / 2)];
         const Slices forearm = slices(arm.elbow, whole.center[size_t(wrist)], 0.3, 1.3);
+        require_limb(forearm);
         const int thinnest = forearm.end_of_forearm();
         arm.wrist = forearm.center[size_t(thinnest)];
         arm.wrist_tape = forearm.around[size_t(thinnest)];
 
         // The upper arm's axis, prolonged to above the armpit.
         const Slices upper = slices(top, arm.elbow, 0.4, 0.9);
+        require_limb(upper);
         const Vec3 a = upper.center.front(), direction = (upper.center.back() - a).normalized();
         arm.shoulder = a + direction.dot(top - a) * direction;
         find_shoulder_tip(arm);
     }
+
+    static constexpr int kSlices = 64; ///< across a limb
 
     /// Centres and tapes of slices across a limb.
     struct Slices {
@@ -325,11 +333,10 @@ private:
 
     Slices slices(const Vec3& a, const Vec3& b, double from, double to) const
     {
-        constexpr int kCount = 64;
         const double farthest = 0.07 * body_.height();
         Slices result;
-        for (int i = 0; i <= kCount; ++i) {
-            const double t = from + (to - from) * i / kCount;
+        for (int i = 0; i <= kSlices; ++i) {
+            const double t = from + (to - from) * i / kSlices;
             const SectionPlane plane = SectionPlane::through(a + t * (b - a), b - a);
             const std::vector<SectionLoop> loops = cut(body_.mesh, plane);
             const auto nearest =

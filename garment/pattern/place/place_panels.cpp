@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "core/base/error.h"
@@ -73,17 +74,31 @@ public:
         }
     }
 
-    void map(const std::vector<Vec2>& points, const std::vector<int>& vertices, std::vector<Vec3>& out) const
+    /// Least length of the curve on which this panel and another lie side by side [m]. 0 if they do not meet:
+    /// on other segments or heights, or one above the other on purpose.
+    double length_beside(const PlacedPanel& other) const
     {
-        const double middle = place_.height * segment_.length();
+        constexpr double kSameAngle = 10.0, kSpare = 1.02; // [degrees], [-]
+        const double apart = 0.5 * (along_.size() + other.along_.size());
+        const double difference = std::abs(std::remainder(place_.angle_deg - other.place_.angle_deg, 360.0));
+        if (!other.place_.wrap || place_.at != other.place_.at || difference < kSameAngle ||
+            std::abs(middle() - other.middle()) > apart)
+            return 0.0;
+        return kSpare * 0.5 * (right_.size() + other.right_.size()) * 360.0 / difference;
+    }
+
+    /// @param min_length  of the curve [m]
+    void map(const std::vector<Vec2>& points, const std::vector<int>& vertices, double min_length,
+             std::vector<Vec3>& out) const
+    {
         // Cloth that reaches around itself would start crossed.
         constexpr double kSpare = 1.02, kMinDistance = 1e-3; // [-], [m]
-        const GirthCurve curve(segment_, middle - 0.5 * along_.size(), middle + 0.5 * along_.size(),
-                               std::max(place_.distance, kMinDistance),
-                               place_.wrap ? kSpare * right_.size() : 0.0);
+        const double own_length = place_.wrap ? std::max(min_length, kSpare * right_.size()) : 0.0;
+        const GirthCurve curve(segment_, middle() - 0.5 * along_.size(), middle() + 0.5 * along_.size(),
+                               std::max(place_.distance, kMinDistance), own_length);
         const double arc = curve.arc_at(place_.angle_deg);
         for (size_t i = 0; i < points.size(); ++i) {
-            const double height = middle + axes_.along.dot(points[i]) - along_.middle();
+            const double height = middle() + axes_.along.dot(points[i]) - along_.middle();
             const double across = axes_.right.dot(points[i]) - right_.middle();
             const Vec2 section = place_.wrap ? curve.at(arc + across) : flat(curve, across);
             out[size_t(vertices[i])] = segment_.start + height * segment_.axis() +
@@ -92,6 +107,8 @@ public:
     }
 
 private:
+    double middle() const { return place_.height * segment_.length(); } ///< along the axis [m]
+
     /// On the plane that touches the curve, facing the angle.
     Vec2 flat(const GirthCurve& curve, double across) const
     {
@@ -119,20 +136,26 @@ std::vector<Vec3> place_panels(const Pattern& pattern, View<const Vec2> uv, View
 {
     std::vector<Vec3> x(size_t(uv.size()), Vec3::Zero());
     std::vector<std::vector<int>> vertices(pattern.panels.size());
-    for (int v = 0; v < uv.size(); ++v)
+    std::vector<std::vector<Vec2>> points(pattern.panels.size());
+    for (int v = 0; v < uv.size(); ++v) {
         vertices[size_t(panel_of_vertex[v])].push_back(v);
-    for (size_t p = 0; p < pattern.panels.size(); ++p) {
-        const Panel& panel = pattern.panels[p];
-        std::vector<Vec2> points;
-        for (const int v : vertices[p])
-            points.push_back(uv[v]);
-        if (panel.place && !body)
-            refuse_without_body(pattern, panel);
-        if (panel.place)
-            PlacedPanel(panel, points, *body).map(points, vertices[p], x);
-        else
-            for (const int v : vertices[p])
-                x[size_t(v)] = panel.placement * Vec3(uv[v].x(), uv[v].y(), 0.0);
+        points[size_t(panel_of_vertex[v])].push_back(uv[v]);
+        x[size_t(v)] = pattern.panels[size_t(panel_of_vertex[v])].placement * Vec3(uv[v].x(), uv[v].y(), 0.0);
+    }
+
+    std::map<size_t, PlacedPanel> placed;
+    for (size_t p = 0; p < pattern.panels.size(); ++p)
+        if (const Panel& panel = pattern.panels[p]; panel.place && !points[p].empty()) {
+            if (!body)
+                refuse_without_body(pattern, panel);
+            placed.emplace(p, PlacedPanel(panel, points[p], *body));
+        }
+    for (const auto& [p, panel] : placed) {
+        double min_length = 0.0;
+        for (const auto& [q, other] : placed)
+            if (q != p && pattern.panels[p].layer == pattern.panels[q].layer)
+                min_length = std::max(min_length, panel.length_beside(other));
+        panel.map(points[p], vertices[p], min_length, x);
     }
     return x;
 }

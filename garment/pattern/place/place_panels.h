@@ -17,7 +17,7 @@ using ArrangementSegments = std::array<AxisSegment, 6>;
 ///   - its middle, that of the box about it, is at `angle_deg` and `height`;
 ///   - bent, it lies on a cylinder around the convex hull of the skin between its lower and upper end, at
 ///     `distance`. Arc lengths stay, so that cloth is not stretched. The cylinder grows until the panel does
-///     not reach around itself;
+///     not reach around itself, nor over those of its layer beside it;
 ///   - its outer side faces outwards. Its y axis points along the segment, to where the height is 1. If its
 ///     file places it otherwise, by a placement that is not the identity, then that one of its four axis
 ///     directions does which the placement turns nearest to it: sleeves are drafted lying as often as

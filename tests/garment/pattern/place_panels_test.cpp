@@ -173,6 +173,31 @@ TEST(PlacePanels, CylinderGrowsRatherThanLettingClothReachAroundItself)
         EXPECT_GT(distance(segments[2].skin, p), 0.07);
 }
 
+TEST(PlacePanels, CylinderGrowsUntilPanelsLieSideBySide)
+{
+    const ArrangementSegments segments = body();
+    // Each fits around the arm, whose curve is 0.44 m long; both do not.
+    const Sheet front(0.3, 0.2, BodyPlacement{BodySegment::LeftArm, 0.0, 0.5, 0.03, true});
+    Pattern pattern = front.pattern;
+    pattern.panels.push_back(pattern.panels[0]);
+    pattern.panels[1].place->angle_deg = 180.0;
+    std::vector<Vec2> uv = front.uv;
+    uv.insert(uv.end(), front.uv.begin(), front.uv.end());
+    std::vector<int> panel(front.uv.size(), 0);
+    panel.resize(uv.size(), 1);
+    const auto clearance = [&] {
+        const std::vector<Vec3> x = place_panels(pattern, uv, panel, &segments);
+        double nearest = 1e300;
+        for (size_t v = 0; v < front.uv.size(); v += 7)
+            for (size_t w = front.uv.size(); w < x.size(); ++w)
+                nearest = std::min(nearest, (x[v] - x[w]).norm());
+        for (size_t v = 0; v < x.size(); ++v)
+            EXPECT_EQ(x[v].z() > 0.0, panel[v] == 0) << "front before, back behind the arm";
+        return nearest;
+    };
+    EXPECT_GT(clearance(), 0.003);
+}
+
 TEST(PlacePanels, FlatPanelsTouchTheCylinder)
 {
     const ArrangementSegments segments = body();

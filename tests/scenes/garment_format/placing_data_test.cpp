@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "avatars/landmarks/body_segments.h"
@@ -122,6 +123,54 @@ TEST(PlacingData, SleevesSurroundArmsInAAndTPose)
                 sum[size_t(placed.panel[v])] += placed.x[v] - arm.start;
             for (size_t p = 0; p < 2; ++p)
                 EXPECT_GT((pattern.panels[p].name.ends_with("_f") ? 1.0 : -1.0) * arm.front.dot(sum[p]), 0.0);
+        }
+    }
+}
+
+TEST(PlacingData, LegsBandsAndCollarsSurroundTheirSegments)
+{
+    if (data_is_missing())
+        GTEST_SKIP() << "no " << TOILE_DATA_DIR;
+    struct Case {
+        const char* file;
+        BodySegment at;
+        double height;
+        std::map<std::string, double> angle;
+    };
+    const std::string pants = "garmentcode/pants_mean_all_specification.json";
+    const std::string turtle = "garmentcode/long_sleeve_turtle_mean_all_specification.json";
+    const std::vector<Case> cases{
+        {pants.c_str(), BodySegment::RightLeg, 0.5, {{"pant_f_r", 0.0}, {"pant_b_r", 180.0}}},
+        {pants.c_str(), BodySegment::LeftLeg, 0.5, {{"pant_f_l", 0.0}, {"pant_b_l", 180.0}}},
+        {pants.c_str(), BodySegment::Torso, 0.45, {{"wb_front", 0.0}, {"wb_back", 180.0}}},
+        {turtle.c_str(),
+         BodySegment::Neck,
+         0.4,
+         {{"left_collar_front", 65.0},
+          {"right_collar_front", -65.0},
+          {"left_collar_back", 155.0},
+          {"right_collar_back", -155.0}}}};
+    for (const char* name : {"avatars/gc_mean_all.glb", "bodies/gc_mean_all.obj",
+                             "bodies/smpl_f_template.obj", "avatars/mh_man.glb"}) {
+        const ArrangementSegments body = segments_of(name);
+        for (const Case& piece : cases) {
+            const Pattern pattern = with_places(piece.file, piece.at, piece.height, piece.angle);
+            ASSERT_EQ(pattern.panels.size(), piece.angle.size());
+            const Placed placed = place(pattern, body);
+            const AxisSegment& segment = body[size_t(piece.at)];
+            std::vector<bool> quarter(4, false);
+            for (size_t v = 0; v < placed.x.size(); ++v) {
+                quarter[size_t((angle_about(segment, placed.x[v]) + 180.0) / 90.0001)] = true;
+                for (const Vec3& skin : segment.skin)
+                    ASSERT_GT((placed.x[v] - skin).norm(), 0.025)
+                        << name << ", " << pattern.panels[size_t(placed.panel[v])].name;
+                if (v == 0 || placed.panel[v] != placed.panel[v - 1])
+                    continue;
+                const double rest = (placed.uv[v] - placed.uv[v - 1]).norm();
+                EXPECT_NEAR((placed.x[v] - placed.x[v - 1]).norm(), rest, 0.01 * rest + 1e-9) << name;
+            }
+            for (const bool there : quarter)
+                EXPECT_TRUE(there) << name << ", " << pattern.panels[0].name;
         }
     }
 }
