@@ -63,7 +63,8 @@ MAY_INCLUDE = {
     "avatars/model": CORE,
     "avatars/import": CORE + ["avatars/model"],
     "avatars/mannequin": CORE + ["avatars/model"],
-    "avatars": CORE + ["avatars/model", "avatars/import", "avatars/mannequin"],
+    "avatars/landmarks": CORE + ["avatars/model"],
+    "avatars": CORE + ["avatars/model", "avatars/import", "avatars/mannequin", "avatars/landmarks"],
     "export": CORE,
 }
 BELOW_SCENES = CORE + ["quadrature2d", "volume", "collision", "avatars", "garment"]
@@ -123,7 +124,7 @@ OWNERS = {
     r"CGAL/": ["collision/check", "garment/pattern/mesh"],
     r"(libpng/)?png\.h": ["apps/preview"],
     r"boost/multiprecision/": [],  # comes with CGAL; rational numbers of the tests
-    r"nlohmann/": ["avatars/import", "scenes/format", "scenes/garment_format", "apps"],
+    r"nlohmann/": ["avatars/import", "avatars/landmarks", "scenes/format", "scenes/garment_format", "apps"],
     r"CLI/": ["apps/toile", "research/bench"],
     r"benchmark/": ["research/benchmarks"],
     r"g(test|mock)/": [],

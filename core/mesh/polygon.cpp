@@ -147,4 +147,28 @@ std::vector<Triangle> triangulate_polygon(View<const Vec3> corners)
     return Ring(x).cut_up();
 }
 
+std::vector<Vec2> convex_hull(std::vector<Vec2> points)
+{
+    std::sort(points.begin(), points.end(),
+              [](const Vec2& a, const Vec2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+    std::vector<Vec2> hull;
+    const auto append = [&](const Vec2& p, size_t first) {
+        const auto turns_left = [&] {
+            const Vec2 &a = hull[hull.size() - 2], &b = hull.back();
+            return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x()) > 0.0;
+        };
+        while (hull.size() >= first + 2 && !turns_left())
+            hull.pop_back();
+        hull.push_back(p);
+    };
+    for (const Vec2& p : points)
+        append(p, 0);
+    const size_t lower = hull.empty() ? 0 : hull.size() - 1;
+    for (auto p = points.rbegin(); p != points.rend(); ++p)
+        append(*p, lower);
+    if (hull.size() > 1)
+        hull.pop_back();
+    return hull;
+}
+
 } // namespace toile

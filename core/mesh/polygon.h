@@ -13,4 +13,8 @@ namespace toile {
 /// @return [corners - 2] numbers of corners, in the polygon's orientation
 std::vector<Triangle> triangulate_polygon(View<const Vec3> corners);
 
+/// Convex hull, counter-clockwise.        [Andrew 1979]
+/// @return corners; fewer than three for points on a line
+std::vector<Vec2> convex_hull(std::vector<Vec2> points);
+
 } // namespace toile

@@ -134,5 +134,15 @@ TEST(TriangulatePolygon, EndsForDegeneratePolygons)
         EXPECT_EQ(triangulate_polygon(corners).size(), corners.size() - 2);
 }
 
+TEST(ConvexHull, LeavesOutPointsOnItsSides)
+{
+    const std::vector<Vec2> hull = convex_hull({{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 0.5}, {0, 0}, {0, 1}});
+    ASSERT_EQ(hull.size(), 4u);
+    double doubled = 0.0;
+    for (size_t i = 0; i < hull.size(); ++i)
+        doubled += hull[i].x() * hull[(i + 1) % 4].y() - hull[i].y() * hull[(i + 1) % 4].x();
+    EXPECT_DOUBLE_EQ(doubled, 4.0) << "counter-clockwise";
+}
+
 } // namespace
 } // namespace toile::test

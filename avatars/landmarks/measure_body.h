@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "avatars/landmarks/upright_body.h"
+
+namespace toile::avatars {
+
+/// One measurement of a body, by the key that GarmentCode gives it.
+struct Measurement {
+    std::string key;
+    double value = 0.0; ///< [m], or degrees for angles
+    bool is_angle = false;
+    std::string meaning; ///< how it was taken, in one line
+};
+
+/// Keys of GarmentCode that measure_body() leaves out: their points are marked by hand.
+std::vector<std::string> unmeasured_keys();
+
+/// Takes the measurements of GarmentCode's body files from slices. Girths are as a tape has them, the length
+/// of the convex hull of a slice; lengths over the body are those of hulls of upright slices.
+///
+/// The bust is at its foremost points, the underbust where the trunk widens to it, the waist at the smallest
+/// girth, the hips at the largest near the hindmost point of the seat.
+std::vector<Measurement> measure_body(const UprightBody& body);
+
+} // namespace toile::avatars
