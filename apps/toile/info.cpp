@@ -72,7 +72,7 @@ void print_as_rest_shape(const std::filesystem::path& file)
 }
 
 /// Cloth that a scene would make of the file.
-void print_as_cloth(const std::filesystem::path& file)
+void print_as_cloth(const std::filesystem::path& file, const ObjMesh& obj)
 {
     scene::Cloth cloth;
     cloth.shape = file;
@@ -84,7 +84,8 @@ void print_as_cloth(const std::filesystem::path& file)
         const auto borders = std::count_if(topology.edges.begin(), topology.edges.end(),
                                            [](const Edge& edge) { return edge.is_border(); });
         print("border edges", std::to_string(borders) + (borders == 0 ? " (closed)" : " (open)"));
-        print_as_rest_shape(file);
+        if (!obj.polygon_uvs.empty() || obj.first_plain_line > 0)
+            print_as_rest_shape(file);
     } catch (const InvalidInput& error) {
         print("not usable as cloth", error.what());
     }
@@ -99,7 +100,7 @@ void print_obj(const std::filesystem::path& file)
     print("triangles", mesh.triangle_count());
     print("texture coordinates", obj.polygon_uvs.empty() ? "no" : "yes");
     print("pieces", count_pieces(mesh));
-    print_as_cloth(file);
+    print_as_cloth(file, obj);
     print_extent("extent", mesh.positions);
 }
 

@@ -3,36 +3,41 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/base/error.h"
+#include "garment/energy/principal_stretch.h"
 #include "scenes/meshes/cloth_mesh.h"
 
 namespace toile::scenes {
 
 namespace {
 
-/// Ratio of areas of a triangle posed and at rest beyond which it is not merely stretched [-]: strain limits
-/// of garments are a few per cent.
-constexpr double kMaxAreaRatio = 1.3;
+/// Ratio of lengths posed and at rest beyond which a triangle is not merely stretched [-]: strain limits of
+/// garments are a few per cent.
+constexpr double kMaxRatio = 1.15;
 
-std::vector<double> areas_of(const TriangleMesh& mesh)
+double area_of(const TriangleMesh& mesh)
 {
-    std::vector<double> areas;
+    double area = 0.0;
     for (const Triangle& t : mesh.triangles) {
         const Vec3& a = mesh.positions[t[0]];
-        areas.push_back(0.5 * (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).norm());
+        area += 0.5 * (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).norm();
     }
-    return areas;
+    return area;
 }
 
-double sum_of(const std::vector<double>& values)
+/// Principal stretches of a triangle from its flat shape to that in the mesh.
+Vec2 stretch_of(const FlatTriangle& flat, const TriangleMesh& mesh, const Triangle& t)
 {
-    double sum = 0.0;
-    for (const double value : values)
-        sum += value;
-    return sum;
+    Mat2 rest;
+    rest << flat[1] - flat[0], flat[2] - flat[0];
+    Mat32 now;
+    now.col(0) = mesh.positions[t[1]] - mesh.positions[t[0]];
+    now.col(1) = mesh.positions[t[2]] - mesh.positions[t[0]];
+    return garment::principal_stretch(now * rest.inverse()).sigma;
 }
 
 /// Value that a fraction of the items does not exceed.
@@ -64,22 +69,25 @@ UvRest uv_rest(const scene::Cloth& settings, const ObjMesh& mesh)
 {
     UvRest rest;
     rest.triangles = texture_triangles(mesh);
-    const std::vector<double> posed = areas_of(mesh.triangulated());
-    std::vector<double> ratios;
+    const TriangleMesh posed = mesh.triangulated();
+    double flat_area = 0.0;
     for (const FlatTriangle& triangle : rest.triangles)
-        ratios.push_back(std::abs(signed_area(triangle)));
-    rest.fitting_scale = std::sqrt(sum_of(posed) / sum_of(ratios)) / settings.scale;
+        flat_area += std::abs(signed_area(triangle));
+    rest.fitting_scale = std::sqrt(area_of(posed) / flat_area) / settings.scale;
     rest.uv_scale = settings.uv_scale.value_or(rest.fitting_scale);
-
-    const double factor = rest.uv_scale * settings.scale;
     for (FlatTriangle& triangle : rest.triangles)
         for (Vec2& corner : triangle)
-            corner *= factor;
+            corner *= rest.uv_scale * settings.scale;
     require_flat_in_range(rest, source_of(settings));
-    for (size_t t = 0; t < ratios.size(); ++t)
-        ratios[t] = posed[t] / (factor * factor * ratios[t]);
-    rest.ratio_p5 = quantile(ratios, 0.05);
-    rest.ratio_p95 = quantile(ratios, 0.95);
+
+    std::vector<double> smaller, larger;
+    for (size_t t = 0; t < rest.triangles.size(); ++t) {
+        const Vec2 stretch = stretch_of(rest.triangles[t], posed, posed.triangles[t]);
+        larger.push_back(stretch[0]);
+        smaller.push_back(stretch[1]);
+    }
+    rest.stretch_p5 = quantile(std::move(smaller), 0.05);
+    rest.stretch_p95 = quantile(std::move(larger), 0.95);
     return rest;
 }
 
@@ -93,13 +101,13 @@ std::string scale_note(const UvRest& rest)
 
 std::string mismatch_warning(const UvRest& rest)
 {
-    if (rest.ratio_p5 * kMaxAreaRatio > 1.0 && rest.ratio_p95 < kMaxAreaRatio)
+    if (rest.stretch_p5 * kMaxRatio > 1.0 && rest.stretch_p95 < kMaxRatio)
         return {};
     char text[200];
     std::snprintf(text, sizeof text,
-                  "texture coordinates are no flat copy of the mesh: its triangles have %.3g to %.3g times "
-                  "their area at rest (5 %% to 95 %% of them), and will shrink or grow",
-                  rest.ratio_p5, rest.ratio_p95);
+                  "texture coordinates are no flat copy of the mesh: its triangles are %.3g to %.3g times as "
+                  "long as at rest (5 %% to 95 %% of them), and will shrink or grow",
+                  rest.stretch_p5, rest.stretch_p95);
     const bool is_fitting = std::abs(std::log(rest.uv_scale / rest.fitting_scale)) < 0.1;
     return is_fitting ? text : text + ("; " + scale_note(rest));
 }

@@ -170,10 +170,11 @@ struct World::Parts {
         }
     }
 
-    /// True if the rest shape of a cloth is not its mesh, so that it may start strained.
-    bool has_panels() const
+    /// True if the rest shape of a cloth is not its mesh, and the scene lets its start be changed.
+    bool may_start_strained() const
     {
-        return std::any_of(states.begin(), states.end(),
+        return scene.contact.repair_start &&
+               std::any_of(states.begin(), states.end(),
                            [](const ClothState& state) { return !state.panels.empty(); });
     }
 
@@ -366,7 +367,7 @@ StepReport World::settle()
     if (parts().frame > 0)
         throw InvalidUse("World::settle: sample 0 is past");
     return call.take([&] {
-        if (parts().start.was_repaired || parts().has_panels()) {
+        if (parts().start.was_repaired || parts().may_start_strained()) {
             const ThreadLimit threads(parts().scene.solver.threads);
             const Stages::Activate recording(parts().stages);
             if (StepReport report = parts().relax_start(); report.status == StepReport::Status::NonFinite)

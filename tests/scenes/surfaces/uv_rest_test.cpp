@@ -217,12 +217,15 @@ TEST_F(UvRestTest, WarnsWhereTheTextureIsNoFlatCopyOfTheMesh)
     const auto place = [](double s, double t) { return posed(s, t); };
     load(grid(8, 6, place, [](double s, double t) { return Vec2(s * s + 0.1 * s, t); }));
     EXPECT_NE(
-        warnings_.find("cloth.obj: texture coordinates are no flat copy of the mesh: its triangles have "),
+        warnings_.find("cloth.obj: texture coordinates are no flat copy of the mesh: its triangles are "),
         std::string::npos)
         << warnings_;
     EXPECT_EQ(warnings_.find('\n'), std::string::npos);
+    // Of the right area, but twice as long across as along.
+    load(grid(8, 6, place, [](double s, double t) { return Vec2(flat(s, t).x(), 2.0 * flat(s, t).y()); }));
+    EXPECT_NE(warnings_.find("are 0.707 to 1.41 times as long as at rest"), std::string::npos) << warnings_;
     load(grid(8, 6, place, flat), R"(, "uv_scale": 100)");
-    EXPECT_NE(warnings_.find("have 0.0001 to 0.0001 times their area at rest (5 % to 95 % of them), and will "
+    EXPECT_NE(warnings_.find("are 0.01 to 0.01 times as long as at rest (5 % to 95 % of them), and will "
                              "shrink or grow; \"uv_scale\": 1 makes the areas"),
               std::string::npos)
         << warnings_;
@@ -258,6 +261,55 @@ TEST_F(UvRestTest, IsWhatPosedClothRelaxesTo)
         strain_of(*load(obj, R"(, "uv_scale": 1)").rest, world.cloths()[0].positions);
     EXPECT_LT(largest, 0.005);
     EXPECT_GT(smallest, -0.02);
+}
+
+/// Beyond the limit of the fabric it does so before sample 0, unless its start is to be left alone.
+TEST_F(UvRestTest, RelaxesBeforeSampleZero)
+{
+    const std::string obj = grid(
+        12, 9, [](double s, double t) { return posed(s, t, 1.3); }, flat);
+    const std::string keys = R"(, "rest": "uv", "uv_scale": 1, "fabric": "denim")";
+    World relaxed(scene_of(obj, keys)), kept(scene_of(obj, keys, R"(, "contact": {"repair_start": false})"));
+    const LoadedCloth loaded = load(obj, R"(, "uv_scale": 1, "fabric": "denim")");
+    EXPECT_NEAR(strain_of(*loaded.rest, relaxed.cloths()[0].positions).first, 0.3, 1e-9);
+    relaxed.settle();
+    kept.settle();
+    EXPECT_LT(strain_of(*loaded.rest, relaxed.cloths()[0].positions).first,
+              loaded.state.fabric.strain_limit + 0.05);
+    EXPECT_EQ(kept.cloths()[0].positions, loaded.state.positions);
+}
+
+/// A ruffle: the lower panel is half as long again as the edge that it is sewn to.
+TEST_F(UvRestTest, MayHaveLongerPanelsAlongASeam)
+{
+    std::string obj;
+    const auto vertex = [&](int i, int j) { obj += line("v", {0.02 * i, -0.02 * j, 0.002 * (i % 2)}); };
+    for (int j = 0; j <= 6; ++j)
+        for (int i = 0; i <= 10; ++i)
+            vertex(i, j);
+    for (const double width : {0.02, 0.03}) // panels above and below row 3
+        for (int j = 0; j <= 3; ++j)
+            for (int i = 0; i <= 10; ++i)
+                obj += line("vt", {width * i, -0.02 * j + (width > 0.02 ? 1.0 : 0.0)});
+    for (int j = 0; j < 6; ++j)
+        for (int i = 0; i < 10; ++i) {
+            const auto corner = [&](int di, int dj) {
+                const int v = 11 * (j + dj) + i + di + 1;
+                return " " + std::to_string(v) + "/" + std::to_string(j < 3 ? v : v + 11);
+            };
+            obj += "f" + corner(0, 0) + corner(0, 1) + corner(1, 1) + corner(1, 0) + "\n";
+        }
+    World world(
+        scene_of(obj, R"(, "rest": "uv", "uv_scale": 1)", R"(, "attachments": [{"cloth": "c", "select":
+        {"box": {"lower": [-1, -0.001, -1], "upper": [1, 0.001, 1]}}}])"));
+    EXPECT_NE(world.settle().status, StepReport::Status::NonFinite);
+    while (world.frame() + 1 < world.frame_count())
+        EXPECT_NE(world.advance_frame().status, StepReport::Status::NonFinite);
+    const std::vector<Vec3>& x = world.cloths()[0].positions;
+    double hem = 0.0;
+    for (int i = 0; i < 10; ++i)
+        hem += (x[size_t(66 + i + 1)] - x[size_t(66 + i)]).norm();
+    EXPECT_NEAR(hem, 0.3, 0.01) << "the hem of the ruffle has the length of its panel";
 }
 
 /// OBJ of a tube about the Y axis whose vertices are shared along a seam, and its flat panel.
