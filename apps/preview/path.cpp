@@ -49,14 +49,14 @@ Vec3 cosine_direction(const Vec3& normal, const Vec2& random)
 
 bool second_color(const Material& material, const Vec2& coordinates)
 {
-    const double u = std::floor(coordinates.x() / material.pattern_size);
-    const double v = std::floor(coordinates.y() / material.pattern_size);
-    switch (material.pattern) {
-    case Pattern::Plain:
+    const double u = std::floor(coordinates.x() / material.print_size);
+    const double v = std::floor(coordinates.y() / material.print_size);
+    switch (material.print) {
+    case Print::Plain:
         return false;
-    case Pattern::Checker:
+    case Print::Checker:
         return std::fmod(std::abs(u + v), 2.0) == 1.0;
-    case Pattern::Stripes:
+    case Print::Stripes:
         return std::fmod(std::abs(u), 2.0) == 1.0;
     }
     return false;
@@ -131,10 +131,10 @@ SurfacePoint PathTracer::surface_point(const Vec3& origin, const Vec3& direction
     at.shadow_origin = at.position + lift + step_off_ * at.facet_normal;
 
     at.albedo = is_front ? mesh.material.front : mesh.material.back;
-    if (is_front && mesh.material.pattern != Pattern::Plain) {
+    if (is_front && mesh.material.print != Print::Plain) {
         const std::array<Vec2, 3>& uv = mesh.corner_coordinates[size_t(hit.triangle)];
         if (second_color(mesh.material, weight[0] * uv[0] + weight[1] * uv[1] + weight[2] * uv[2]))
-            at.albedo = mesh.material.pattern_front;
+            at.albedo = mesh.material.print_front;
     }
     return at;
 }

@@ -9,7 +9,7 @@ Material cloth_material(const Vec3& front)
     material.back = 0.55 * front + 0.30 * Vec3::Ones();
     material.sheen = 0.35;
     material.translucency = 0.12;
-    material.pattern_front = 0.12 * front + 0.80 * Vec3::Ones();
+    material.print_front = 0.12 * front + 0.80 * Vec3::Ones();
     return material;
 }
 
@@ -19,17 +19,6 @@ Material mannequin_material()
     material.front = material.back = Vec3(0.80, 0.72, 0.65);
     material.gloss = 0.25;
     return material;
-}
-
-std::vector<std::array<Vec2, 3>> corner_coordinates(const ObjMesh& mesh)
-{
-    std::vector<std::array<Vec2, 3>> corners;
-    for (int f = 0; f < int(mesh.polygon_uvs.size()); ++f)
-        for (const Triangle& corner : mesh.triangles_of(f)) {
-            const auto at = [&](int k) { return mesh.texture_coordinates[mesh.polygon_uvs[f][corner[k]]]; };
-            corners.push_back({at(0), at(1), at(2)});
-        }
-    return corners;
 }
 
 std::vector<std::array<Vec2, 3>> corner_coordinates(View<const Triangle> triangles, View<const Vec2> rest)

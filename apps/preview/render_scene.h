@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "core/compute/types.h"
-#include "core/mesh/obj.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace toile::preview {
 
-enum class Pattern { Plain, Checker, Stripes };
+enum class Print { Plain, Checker, Stripes };
 
 /// Appearance of a surface. Colours are linear RGB in [0, 1].
 struct Material {
@@ -19,9 +19,9 @@ struct Material {
     double gloss = 0.0;        ///< blurred highlight of the sun [-], 0 none
     double translucency = 0.0; ///< fraction of the sun that shines through to the shaded side [-]
 
-    Pattern pattern = Pattern::Plain;
-    Vec3 pattern_front = Vec3::Ones(); ///< second colour of the pattern on the front
-    double pattern_size = 0.05;        ///< side of a square or width of a stripe, in corner_coordinates
+    Print print = Print::Plain;
+    Vec3 print_front = Vec3::Ones(); ///< second colour of the print on the front
+    double print_size = 0.05;        ///< side of a square or width of a stripe, in corner_coordinates
 };
 
 /// Matt woven fabric: sheen, some light shining through, the back side a paler tone of the front.
@@ -35,12 +35,10 @@ struct RenderMesh {
     std::vector<Triangle> triangles; ///< [triangles]
     Material material;
 
-    /// Pattern coordinates per triangle corner, from texture or rest coordinates; only for patterns.
+    /// Print coordinates per triangle corner, from texture or rest coordinates; only for prints.
     std::vector<std::array<Vec2, 3>> corner_coordinates;
 };
 
-/// Corner coordinates from an OBJ's texture coordinates, parallel to triangulated(); empty if there are none.
-std::vector<std::array<Vec2, 3>> corner_coordinates(const ObjMesh& mesh);
 /// Corner coordinates from a 2-D rest shape [vertices] [m].
 std::vector<std::array<Vec2, 3>> corner_coordinates(View<const Triangle> triangles, View<const Vec2> rest);
 

@@ -34,9 +34,8 @@ void require_sane(const RenderScene& scene, const RenderSettings& settings)
             if (t.minCoeff() < 0 || t.maxCoeff() >= int(mesh.positions.size()))
                 throw InvalidInput(name + " has a triangle out of range of its " +
                                    std::to_string(mesh.positions.size()) + " vertices; check its indices");
-        if (mesh.material.pattern != Pattern::Plain &&
-            mesh.corner_coordinates.size() != mesh.triangles.size())
-            throw InvalidInput(name + " has a pattern but no coordinates for it; give corner_coordinates "
+        if (mesh.material.print != Print::Plain && mesh.corner_coordinates.size() != mesh.triangles.size())
+            throw InvalidInput(name + " has a print but no coordinates for it; give corner_coordinates "
                                       "or make it plain");
     }
 }

@@ -21,7 +21,7 @@ struct RenderSettings {
 class Renderer {
 public:
     /// Copies the scene and builds its ray tree.
-    /// @throws InvalidInput for settings out of range, a triangle out of range, a pattern without
+    /// @throws InvalidInput for settings out of range, a triangle out of range, a print without
     ///         corner_coordinates.
     Renderer(RenderScene scene, RenderSettings settings);
 

@@ -14,6 +14,7 @@
 #include "export/point_cache.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
+#include "scenes/surfaces/uv_rest.h"
 
 namespace toile::app {
 
@@ -54,8 +55,24 @@ int count_pieces(const TriangleMesh& mesh)
     return pieces;
 }
 
-/// What a scene would make of the file.
-void print_as_cloth(const std::filesystem::path& file)
+/// Rest shape that "rest": "uv" would take from the file.
+void print_as_rest_shape(const std::filesystem::path& file)
+{
+    scene::Cloth cloth;
+    cloth.shape = file;
+    cloth.rest = scene::RestFrom::Uv;
+    try {
+        const scenes::UvRest rest = scenes::uv_rest(cloth, scenes::cloth_mesh(cloth).mesh);
+        print("as rest shape", scenes::scale_note(rest));
+        if (const std::string text = scenes::mismatch_warning(rest); !text.empty())
+            print("as rest shape", text);
+    } catch (const InvalidInput& error) {
+        print("not usable as rest shape", error.what());
+    }
+}
+
+/// Cloth that a scene would make of the file.
+void print_as_cloth(const std::filesystem::path& file, const ObjMesh& obj)
 {
     scene::Cloth cloth;
     cloth.shape = file;
@@ -67,6 +84,8 @@ void print_as_cloth(const std::filesystem::path& file)
         const auto borders = std::count_if(topology.edges.begin(), topology.edges.end(),
                                            [](const Edge& edge) { return edge.is_border(); });
         print("border edges", std::to_string(borders) + (borders == 0 ? " (closed)" : " (open)"));
+        if (!obj.polygon_uvs.empty() || obj.first_plain_line > 0)
+            print_as_rest_shape(file);
     } catch (const InvalidInput& error) {
         print("not usable as cloth", error.what());
     }
@@ -81,7 +100,7 @@ void print_obj(const std::filesystem::path& file)
     print("triangles", mesh.triangle_count());
     print("texture coordinates", obj.polygon_uvs.empty() ? "no" : "yes");
     print("pieces", count_pieces(mesh));
-    print_as_cloth(file);
+    print_as_cloth(file, obj);
     print_extent("extent", mesh.positions);
 }
 

@@ -205,11 +205,13 @@ private:
     /// Drops texture indices unless every face has them.
     void drop_incomplete_texture()
     {
-        for (const std::vector<int>& uvs : mesh_.polygon_uvs)
-            if (uvs.empty()) {
-                mesh_.polygon_uvs.clear();
-                return;
-            }
+        std::vector<std::vector<int>>& uvs = mesh_.polygon_uvs;
+        const auto plain = std::find_if(uvs.begin(), uvs.end(), [](const auto& of) { return of.empty(); });
+        if (plain == uvs.end())
+            return;
+        if (std::any_of(uvs.begin(), uvs.end(), [](const auto& of) { return !of.empty(); }))
+            mesh_.first_plain_line = mesh_.polygon_lines[size_t(plain - uvs.begin())];
+        uvs.clear();
     }
 
     std::filesystem::path file_;
@@ -253,6 +255,53 @@ ObjMesh faces_of(const TriangleMesh& mesh)
     for (const Triangle& t : mesh.triangles)
         faces.polygons.push_back({t[0], t[1], t[2]});
     return faces;
+}
+
+namespace {
+
+/// The texture as a surface in the plane z = 0, parallel to triangulated().
+TriangleMesh texture_surface(const ObjMesh& mesh)
+{
+    TriangleMesh texture;
+    for (const Vec2& uv : mesh.texture_coordinates)
+        texture.positions.emplace_back(uv.x(), uv.y(), 0.0);
+    for (int f = 0; f < int(mesh.polygon_uvs.size()); ++f) {
+        const std::vector<int>& uvs = mesh.polygon_uvs[f];
+        for (const Triangle& corner : mesh.triangles_of(f))
+            texture.triangles.emplace_back(uvs[corner[0]], uvs[corner[1]], uvs[corner[2]]);
+    }
+    return texture;
+}
+
+} // namespace
+
+double signed_area(const FlatTriangle& triangle)
+{
+    const Vec2 a = triangle[1] - triangle[0], b = triangle[2] - triangle[0];
+    return 0.5 * (a.x() * b.y() - a.y() * b.x());
+}
+
+std::vector<FlatTriangle> texture_triangles(const ObjMesh& mesh)
+{
+    std::vector<FlatTriangle> corners;
+    for (int f = 0; f < int(mesh.polygon_uvs.size()); ++f)
+        for (const Triangle& corner : mesh.triangles_of(f)) {
+            const auto at = [&](int k) { return mesh.texture_coordinates[mesh.polygon_uvs[f][corner[k]]]; };
+            corners.push_back({at(0), at(1), at(2)});
+        }
+    return corners;
+}
+
+ObjMesh subdivide(const ObjMesh& mesh, int levels)
+{
+    ObjMesh fine = faces_of(subdivide(mesh.triangulated(), levels));
+    if (mesh.polygon_uvs.empty())
+        return fine;
+    const ObjMesh texture = faces_of(subdivide(texture_surface(mesh), levels));
+    for (const Vec3& uv : texture.positions)
+        fine.texture_coordinates.emplace_back(uv.x(), uv.y());
+    fine.polygon_uvs = texture.polygons;
+    return fine;
 }
 
 void require_usable(const ObjMesh& mesh, const std::string& source)

@@ -21,6 +21,7 @@ struct ObjMesh {
 
     // Of a file, for messages; empty or 0 for a mesh made otherwise.
     std::vector<int> polygon_lines; ///< line of each polygon, counted from 1
+    int first_plain_line = 0;       ///< of a polygon without texture indices where others have them; 0: none
     int free_form_elements = 0;     ///< curves and curved surfaces, which are not read
 
     /// Triangulates every polygon: triangulate_polygon().
@@ -32,6 +33,18 @@ struct ObjMesh {
 
 /// The same surface as polygons of three corners.
 ObjMesh faces_of(const TriangleMesh& mesh);
+
+/// Corners of a triangle in a plane.
+using FlatTriangle = std::array<Vec2, 3>;
+
+/// Area, positive for corners in counter-clockwise order.
+double signed_area(const FlatTriangle& triangle);
+
+/// Texture coordinates of the corners of triangulated()'s triangles; empty for a mesh without any.
+std::vector<FlatTriangle> texture_triangles(const ObjMesh& mesh);
+
+/// Triangles of a mesh split as by subdivide(TriangleMesh), with their texture.
+ObjMesh subdivide(const ObjMesh& mesh, int levels);
 
 /// Reads v, vt, f and l lines (negative indices too), with any line ends, comments, continued lines and a
 /// byte-order mark; ignores other lines of the format. Texture indices are kept only if every face has them.

@@ -99,4 +99,23 @@ RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, dou
     return complete(std::move(shape), build_branching_topology(mesh, source));
 }
 
+RestShape rest_shape_of_panels(const TriangleMesh& mesh, const std::vector<FlatTriangle>& panels,
+                               double rotation, const std::string& source)
+{
+    require_usable(mesh, source);
+    RestShape shape;
+    shape.triangles = mesh.triangles;
+    Mat2 material_from_panel; // rows u along the warp, v
+    material_from_panel << -std::sin(rotation), std::cos(rotation), -std::cos(rotation), -std::sin(rotation);
+    for (const FlatTriangle& corner : panels) {
+        Mat2 edges;
+        edges << corner[1] - corner[0], corner[2] - corner[0];
+        edges = material_from_panel * edges;
+        if (edges.determinant() < 0.0)
+            edges.row(1) *= -1.0; // mirror about the warp
+        shape.edges.push_back(edges);
+    }
+    return complete(std::move(shape), build_branching_topology(mesh, source));
+}
+
 } // namespace toile::garment

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -57,5 +58,13 @@ RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<T
 ///                  outside
 RestShape rest_shape_of_surface(const TriangleMesh& mesh, const Vec3& grain, double rotation,
                                 const std::string& source);
+
+/// Rest shape of a surface in space whose triangles lie flat in panels, as sewn garments have. Triangles that
+/// meet in a vertex or at an edge of the surface may lie anywhere in the plane.
+/// @param panels    [triangles] corners of each in its panel, x right and y up [m]; mirrored ones may be
+///                  clockwise
+/// @param rotation  angle [rad] of the warp from the panels' y axis, counter-clockwise in their plane
+RestShape rest_shape_of_panels(const TriangleMesh& mesh, const std::vector<FlatTriangle>& panels,
+                               double rotation, const std::string& source);
 
 } // namespace toile::garment

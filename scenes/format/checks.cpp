@@ -116,6 +116,25 @@ void check_skirt(const Document& document, const std::string& key_path, const Sk
                             " (waist_radius + length)");
 }
 
+/// Checks keys that depend on others.
+void check_rest(const Document& document, const std::string& key_path, const Cloth& cloth)
+{
+    const bool is_from_uv = cloth.rest == RestFrom::Uv;
+    if (is_from_uv && !std::holds_alternative<std::filesystem::path>(cloth.shape))
+        document.refuse(below(key_path, "rest"),
+                        "only a file has texture coordinates; remove it, or write \"shape\"");
+    if (cloth.uv_scale && !is_from_uv)
+        document.refuse(below(key_path, "uv_scale"),
+                        "has no effect on a rest shape that is the mesh; add \"rest\": \"uv\" or remove it");
+}
+
+void check_print(const Document& document, const std::string& key_path, const Cloth& cloth)
+{
+    if (cloth.pattern && cloth.print != Print::Plain && cloth.print != *cloth.pattern)
+        document.refuse(below(key_path, "pattern"),
+                        "is the former name of print, which is given too; remove it");
+}
+
 void check_cloths(const Document& document, const scenes::Scene& scene)
 {
     if (scene.cloths.empty() && scene.solids.empty())
@@ -130,6 +149,8 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
             document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
         if (const auto* skirt = std::get_if<Skirt>(&cloth.shape))
             check_skirt(document, below(key_path, "skirt"), *skirt);
+        check_rest(document, key_path, cloth);
+        check_print(document, key_path, cloth);
         if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMaxVertices)
             document.refuse(key_path,
                             "resolution and subdivide make more than 5 million vertices; choose a " +

@@ -160,13 +160,19 @@ void describe(V& v, Cloth& c)
     v.field("weld", c.weld,
             "Join edges of the file that lie on each other, as along texture seams; false keeps them apart.");
     v.field("unit", c.unit, "Length unit of the file.");
+    v.field("rest", c.rest,
+            "Rest shape: the mesh as it is posed (\"shape\"), or each triangle's texture coordinates, flat "
+            "(\"uv\"), as of garments made from patterns.");
+    v.field("uv_scale", c.uv_scale, above_zero(1e6, "m"),
+            "Metres per texture unit of \"rest\": \"uv\", before scale; unit does not apply to it. Absent: "
+            "as much as makes the areas at rest and of the mesh equal; the run prints it.");
     v.field("scale", c.scale, above_zero(1e6), "Factor on the cloth's lengths, at rest too.");
     v.field("translate", c.translate, kPosition, "Moves the cloth, after scale and rotate_deg.");
     v.field("rotate_deg", c.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
     v.field("fabric", c.fabric, "A key of fabrics or the name of a preset.");
     v.field("grain_deg", c.grain_deg, kAngle,
             "Rotation of the warp in the cloth's plane, from the X axis of flat cloth and the vertical of "
-            "garments.");
+            "garments; with \"rest\": \"uv\" in the texture's plane, counter-clockwise from its v axis.");
     v.field("thickness", c.thickness, above_zero(0.05, "m"), "Replaces the fabric's thickness.");
     v.field(
         "sewing", c.sewing,
@@ -175,7 +181,8 @@ void describe(V& v, Cloth& c)
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");
     v.field("color", c.color, kColor, "Red, green, blue in pictures.");
-    v.field("pattern", c.pattern, "Pattern of the cloth in pictures.");
+    v.field("print", c.print, "Print on the cloth in pictures.");
+    v.field("pattern", c.pattern, "Former key: print.");
 }
 
 template <typename V>

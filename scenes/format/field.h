@@ -69,11 +69,15 @@ struct Words<LengthUnit> {
 };
 
 template <>
-struct Words<PreviewPattern> {
-    static constexpr std::array<std::pair<const char*, PreviewPattern>, 3> kAll{
-        {{"plain", PreviewPattern::Plain},
-         {"checker", PreviewPattern::Checker},
-         {"stripes", PreviewPattern::Stripes}}};
+struct Words<Print> {
+    static constexpr std::array<std::pair<const char*, Print>, 3> kAll{
+        {{"plain", Print::Plain}, {"checker", Print::Checker}, {"stripes", Print::Stripes}}};
+};
+
+template <>
+struct Words<RestFrom> {
+    static constexpr std::array<std::pair<const char*, RestFrom>, 2> kAll{
+        {{"shape", RestFrom::Shape}, {"uv", RestFrom::Uv}}};
 };
 
 template <>

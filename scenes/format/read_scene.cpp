@@ -38,6 +38,8 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& source)
     if (scene.name.empty())
         scene.name = source.stem().string();
     scene_format::require_consistent(document, scene);
+    for (scene::Cloth& cloth : scene.cloths)
+        cloth.print = cloth.pattern.value_or(cloth.print);
     resolve_files(document, "avatars", scene.avatars);
     resolve_files(document, "cloths", scene.cloths);
     resolve_files(document, "solids", scene.solids);

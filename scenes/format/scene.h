@@ -129,7 +129,10 @@ struct Skirt {
 
 using ClothShape = std::variant<std::filesystem::path, Rectangle, Disc, Skirt>;
 
-enum class PreviewPattern { Plain, Checker, Stripes };
+enum class Print { Plain, Checker, Stripes };
+
+/// Source of a cloth's rest shape: its mesh as it is posed, or its texture coordinates.
+enum class RestFrom { Shape, Uv };
 
 /// Threads along the lines of a cloth's file.
 struct Sewing {
@@ -143,6 +146,8 @@ struct Cloth {
     int subdivide = 0;                   ///< number of times that every triangle is split into four
     bool weld = true;                    ///< join edges of the file that lie on each other
     LengthUnit unit = LengthUnit::Metre; ///< of the file
+    RestFrom rest = RestFrom::Shape;     ///< what the rest shape is taken from
+    std::optional<double> uv_scale;      ///< [m] per texture unit, before `scale`; absent: areas agree
     double scale = 1.0;                  ///< [-]
     Vec3 translate = Vec3::Zero();       ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
@@ -152,7 +157,8 @@ struct Cloth {
     std::optional<Sewing> sewing;        ///< absent: lines of the file are left out
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
-    PreviewPattern pattern = PreviewPattern::Plain;
+    Print print = Print::Plain;          ///< in pictures
+    std::optional<Print> pattern;        ///< former key for print
 };
 
 /// One number per thread direction; absent: as in the base fabric.

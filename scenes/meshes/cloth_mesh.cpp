@@ -4,8 +4,10 @@
 
 #include "core/base/error.h"
 #include "core/mesh/clean.h"
+#include "core/mesh/obj.h"
 #include "core/mesh/winding.h"
 #include "garment/pattern/shapes.h"
+#include "scenes/meshes/flat_texture.h"
 #include "scenes/meshes/rigid_motion.h"
 
 namespace toile::scenes {
@@ -147,8 +149,10 @@ ClothMesh cloth_mesh(const scene::Cloth& cloth)
         clean(cloth, result);
     else
         require_usable(mesh, source_of(cloth));
+    if (cloth.rest == scene::RestFrom::Uv)
+        require_flat_texture(mesh, source_of(cloth));
     if (cloth.subdivide > 0)
-        mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
+        mesh = subdivide(mesh, cloth.subdivide);
     place(mesh);
     place(result.file);
     require_in_range(mesh.positions, source_of(cloth));

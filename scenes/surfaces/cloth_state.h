@@ -15,7 +15,9 @@ struct ClothState {
     std::string name;
     std::vector<Vec3> positions; ///< [vertices] current [m]
     std::vector<Triangle> triangles;
-    ObjMesh rest;           ///< start placement, rest lengths, faces and texture coordinates as simulated
+    ObjMesh rest; ///< start placement, faces and texture coordinates as simulated
+    /// [triangles] rest shape, each corner in the plane of its panel [m]; empty: the triangles of `rest`.
+    std::vector<FlatTriangle> panels;
     garment::Fabric fabric; ///< of a solid: none, and a strain limit of 0
 
     FileNumbers numbers; ///< of the file's vertices; empty: those of `rest` come first, in its order

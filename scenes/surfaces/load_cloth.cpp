@@ -11,6 +11,7 @@
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/meshes/rigid_motion.h"
 #include "scenes/surfaces/load_solid.h"
+#include "scenes/surfaces/uv_rest.h"
 
 namespace toile::scenes {
 
@@ -31,6 +32,22 @@ rest_shape_of(std::vector<Vec3> unmoved, const std::vector<Triangle>& triangles,
     return std::make_shared<const garment::RestShape>(garment::rest_shape_of_surface(
         {is_flat ? std::move(own) : std::move(unmoved), triangles}, is_flat ? Vec3::UnitX() : Vec3::UnitY(),
         settings.grain_deg * std::numbers::pi / 180.0, source_of(settings)));
+}
+
+/// Takes the rest shape from the texture coordinates of a cloth that is not translated yet.
+void rest_on_texture(const scene::Cloth& settings, LoadedCloth& loaded,
+                     const std::function<void(const std::string&)>& warn)
+{
+    ClothState& state = loaded.state;
+    UvRest uv = uv_rest(settings, state.rest);
+    if (!settings.uv_scale)
+        loaded.note = source_of(settings) + ": " + scale_note(uv);
+    if (const std::string text = mismatch_warning(uv); warn && !text.empty())
+        warn(source_of(settings) + ": " + text);
+    state.panels = std::move(uv.triangles);
+    loaded.rest = std::make_shared<const garment::RestShape>(
+        garment::rest_shape_of_panels({state.rest.positions, state.triangles}, state.panels,
+                                      settings.grain_deg * std::numbers::pi / 180.0, source_of(settings)));
 }
 
 /// The selection with the cloth's numbers of vertices for those of the file.
@@ -113,7 +130,10 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
     state.numbers = std::move(mesh.numbers);
     state.file = std::move(mesh.file);
     state.triangles = state.rest.triangulated().triangles;
-    loaded.rest = rest_shape_of(state.rest.positions, state.triangles, settings);
+    if (settings.rest == scene::RestFrom::Uv)
+        rest_on_texture(settings, loaded, warn);
+    else
+        loaded.rest = rest_shape_of(state.rest.positions, state.triangles, settings);
     for (ObjMesh* placed : {&state.rest, &state.file})
         for (Vec3& p : placed->positions)
             p += settings.translate;

@@ -15,6 +15,7 @@ namespace toile::scenes {
 struct LoadedCloth {
     ClothState state; ///< in the start placement, with its attachments in the order of the scene
     std::shared_ptr<const garment::RestShape> rest;
+    std::string note; ///< what was chosen for the scene, with the name of the mesh; empty: nothing
 };
 
 /// Reads or cuts a cloth and selects its attached vertices.

@@ -1,10 +1,13 @@
 #include "scenes/world/scene_cloth.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <iterator>
 #include <numeric>
+
+#include <Eigen/Geometry>
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
@@ -30,6 +33,22 @@ constexpr double kMaxAcceleration = 30.0;
 
 /// Distance from an avatar [m] beyond which attached cloth is not on it.
 constexpr double kFar = 0.05;
+
+/// Diagonal of the box around the cloth [m], as large as the cloth is at rest.
+double size_at_rest(const ClothState& cloth, const garment::RestShape& rest)
+{
+    const Bounds box = bounds(cloth.rest.positions);
+    const double posed = (box.upper - box.lower).norm();
+    if (cloth.panels.empty())
+        return posed;
+    double rest_area = 0.0, posed_area = 0.0;
+    for (size_t t = 0; t < rest.triangles.size(); ++t) {
+        const Mat32 F = rest.deformation_gradient(int(t), cloth.rest.positions);
+        rest_area += rest.areas[t];
+        posed_area += rest.areas[t] * F.col(0).cross(F.col(1)).norm();
+    }
+    return posed * std::sqrt(rest_area / posed_area);
+}
 
 /// Attachments that keep vertices where they are may share them.
 /// @throws InvalidInput for a vertex of two attachments that may part
@@ -75,6 +94,8 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
       sewing_(settings.sewing.value_or(scene::Sewing{}))
 {
     LoadedCloth loaded = load_cloth(scene, settings, colliders, options.warn);
+    if (options.note && !loaded.note.empty())
+        options.note(loaded.note);
     state_ = std::move(loaded.state);
     rest_ = std::move(loaded.rest);
     masses_ = rest_->vertex_areas();
@@ -146,10 +167,9 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
         strain_limit_ = std::make_unique<garment::StrainLimit>(
             rest_, garment::StrainLimit::Settings{fabric.strain_limit, kYielding}, source_);
         // That of cloth of even width, as long as the diagonal, which hangs by a whole edge across the wind.
-        const Bounds box = bounds(state_.rest.positions);
         const double pressure =
             fabric.areal_density * gravity_.norm() + air_->pressure(wind_.velocity.norm());
-        const double load = pressure * (box.upper - box.lower).norm();
+        const double load = pressure * size_at_rest(state_, *rest_);
         tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, load);
     }
     tension_ = std::make_shared<garment::StretchTension>(rest_, tension);

@@ -170,8 +170,16 @@ struct World::Parts {
         }
     }
 
-    /// Relaxes cloth that the repair of the start pose has strained beyond its limit, as long as the strain
-    /// falls. Cloth that shares its group with solids does so in the first steps.
+    /// True if the rest shape of a cloth is not its mesh, and the scene lets its start be changed.
+    bool may_start_strained() const
+    {
+        return scene.contact.repair_start &&
+               std::any_of(states.begin(), states.end(),
+                           [](const ClothState& state) { return !state.panels.empty(); });
+    }
+
+    /// Relaxes cloth that the start pose or its repair strain beyond its limit, as long as the strain falls.
+    /// Cloth that shares its group with solids does so in the first steps.
     StepReport relax_start()
     {
         constexpr int kMaxSteps = 60, kPatience = 5;
@@ -284,8 +292,9 @@ World::World(const Scene& scene, const WorldOptions& options)
     parts_ = std::make_unique<Parts>(scene, options);
     require_methods(scene, options.baselines);
     if (options.warn)
-        for (const std::string& warning : solver_warnings_of(scene))
-            options.warn(warning);
+        for (const auto& warnings : {former_key_warnings_of(scene), solver_warnings_of(scene)})
+            for (const std::string& warning : warnings)
+                options.warn(warning);
     const ThreadLimit threads(scene.solver.threads);
     const Stages::Activate recording(parts_->stages);
     const Cancellation::Scope cancellation(parts_->goes_on);
@@ -358,7 +367,7 @@ StepReport World::settle()
     if (parts().frame > 0)
         throw InvalidUse("World::settle: sample 0 is past");
     return call.take([&] {
-        if (parts().start.was_repaired) {
+        if (parts().start.was_repaired || parts().may_start_strained()) {
             const ThreadLimit threads(parts().scene.solver.threads);
             const Stages::Activate recording(parts().stages);
             if (StepReport report = parts().relax_start(); report.status == StepReport::Status::NonFinite)

@@ -39,6 +39,9 @@ struct WorldOptions {
 
     /// Receives problems that do not stop the run, e.g. a damaged cache file; may be empty.
     std::function<void(const std::string&)> warn = nullptr;
+
+    /// Receives what was chosen where the scene leaves it open, e.g. a cloth's uv_scale; may be empty.
+    std::function<void(const std::string&)> note = nullptr;
 };
 
 } // namespace toile::scenes

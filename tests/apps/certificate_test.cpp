@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -73,6 +74,46 @@ TEST(Certificate, HasTheDocumentedKeys)
     EXPECT_EQ(found["cloths"][0]["name"], "sheet");
     EXPECT_TRUE(found["cloths_left_out"].empty());
     EXPECT_TRUE(found["first_crossing"].is_null());
+}
+
+/// A sheet of 0.4 m x 0.2 m that is 1.1 times as long in space as in its texture, in decimetres. Poisson's
+/// ratio is zero, so that what is held between its ends is stretched evenly.
+TEST(Certificate, MeasuresStrainAgainstTheTextureThatIsTheRestShape)
+{
+    const TemporaryFolder folder;
+    std::string obj;
+    for (int j = 0; j <= 4; ++j)
+        for (int i = 0; i <= 8; ++i)
+            obj += "v " + std::to_string(0.055 * i) + " 1 " + std::to_string(-0.05 * j) + "\nvt " +
+                   std::to_string(0.5 * i) + " " + std::to_string(0.5 * j) + "\n";
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 8; ++i) {
+            const auto corner = [&](int di, int dj) {
+                const std::string k = std::to_string(9 * (j + dj) + i + di + 1);
+                return " " + k + "/" + k;
+            };
+            obj += "f" + corner(0, 0) + corner(1, 0) + corner(1, 1) + corner(0, 1) + "\n";
+        }
+    folder.write("sheet.obj", obj);
+    const std::string ends = R"("attachments": [
+        {"cloth": "sheet", "select": {"box": {"lower": [-0.001, 0, -1], "upper": [0.001, 2, 1]}}},
+        {"cloth": "sheet", "select": {"box": {"lower": [0.439, 0, -1], "upper": [0.441, 2, 1]}}}])";
+    const auto strain = [&](const std::string& keys) {
+        folder.write(
+            "sheet.json",
+            R"({"toile": 1, "frames": 3, "gravity": [0, 0, 0], "fabrics": {"soft": {"strain_limit": 1.5}},
+            "cloths": [{"name": "sheet", "file": "sheet.obj", "fabric": "soft")" +
+                keys + "}], " + ends + "}");
+        const Finished run = run_toile({"simulate", "sheet.json", "-o", "."}, folder.path());
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        EXPECT_EQ(run.errors.find("\"uv_scale\": ") != std::string::npos,
+                  keys.find("uv_scale") == std::string::npos && !keys.empty())
+            << run.errors;
+        return json_in(folder, "certificate.json")["max_strain"].get<double>();
+    };
+    EXPECT_NEAR(strain(""), 0.0, 1e-6);
+    EXPECT_NEAR(strain(R"(, "rest": "uv", "uv_scale": 0.1)"), 0.1, 1e-4);
+    EXPECT_GE(strain(R"(, "rest": "uv")"), std::sqrt(1.1) - 1.0 - 1e-6) << "areas agree";
 }
 
 TEST(Certificate, MeasuresTheGapOfTwoCloths)

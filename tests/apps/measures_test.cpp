@@ -53,6 +53,22 @@ TEST(StrainMeter, IsZeroAtRestAndAfterARigidMotion)
     EXPECT_NEAR(meter.largest(moved, kFree).of_free, 0.0, 1e-13);
 }
 
+/// Panels lie anywhere in the plane, mirrored or not.
+TEST(StrainMeter, MeasuresAgainstPanels)
+{
+    const std::vector<FlatTriangle> panels{{Vec2(5, 5), Vec2(6, 5), Vec2(5, 6)},
+                                           {Vec2(0, 0), Vec2(-1, 1), Vec2(0, 1)}};
+    const StrainMeter meter(panels, {Triangle(0, 1, 2), Triangle(1, 3, 2)});
+    EXPECT_NEAR(meter.rest_area(), 1.0, 1e-15);
+    std::vector<Vec3> x{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+    EXPECT_NEAR(meter.largest(x, kFree).of_free, std::sqrt(1.5 + std::sqrt(1.25)) - 1.0, 1e-14)
+        << "the second triangle is sheared by one";
+    for (Vec3& p : x)
+        p.y() *= 1.1;
+    const StrainMeter first({panels[0]}, {Triangle(0, 1, 2)});
+    EXPECT_NEAR(first.largest(x, kFree).of_free, 0.1, 1e-14);
+}
+
 TEST(StrainMeter, AgreesWithTheSingularValuesOfRandomDeformations)
 {
     std::mt19937 random(7);

@@ -213,6 +213,12 @@ TEST(Info, DescribesEveryKindOfFile)
     folder.write("two_sided.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n");
     says("two_sided.obj", "as cloth: left out 1 face with the corners of others");
     says("two_sided.obj", "border edges: 3 (open)");
+    const std::string textured = "v 0 0 0\nv .1 0 0\nv 0 .1 0\nvt 0 0\nvt 5 0\nvt 0 5\nf 1/1 2/2 3/3\n";
+    folder.write("textured.obj", textured);
+    says("textured.obj", "as rest shape: \"uv_scale\": 0.02 makes the areas at rest and of the mesh equal");
+    folder.write("mixed.obj", textured + "v .1 .1 0\nf 2 4 3\n");
+    says("mixed.obj", "not usable as rest shape: mixed.obj:9: the face has no texture coordinates");
+    EXPECT_EQ(run_toile({"info", "sheet.obj"}, folder.path()).output.find("rest shape"), std::string::npos);
     folder.write("points.obj", "v 0 0 0\n");
     says("points.obj", "not usable as cloth: points.obj: the mesh has no triangle");
     folder.write("tet.vtk",

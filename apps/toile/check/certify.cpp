@@ -32,12 +32,17 @@ double area_of(View<const Vec3> x, View<const Triangle> triangles)
     return 0.5 * twice;
 }
 
+StrainMeter strain_meter_of(const scenes::ClothState& cloth)
+{
+    return cloth.panels.empty() ? StrainMeter(cloth.rest.positions, cloth.triangles)
+                                : StrainMeter(cloth.panels, cloth.triangles);
+}
+
 /// A cloth with its strain meter and samples.
 struct MeasuredCloth {
     const scenes::ClothState& state;
     exports::PointCache cache;
     StrainMeter strain;
-    double rest_area; ///< [m^2]
     collision::ClothSamples samples;
     double strain_limit;                                   ///< [-] the margin included
     int first_vertex, first_triangle;                      ///< in the arrays of all cloths
@@ -89,8 +94,7 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
         longest_ = std::max(longest_, cache.frame_count());
         cloths_.push_back({cloth,
                            std::move(cache),
-                           StrainMeter(cloth.rest.positions, cloth.triangles),
-                           area_of(cloth.rest.positions, cloth.triangles),
+                           strain_meter_of(cloth),
                            collision::ClothSamples(cloth.triangles, vertex_count),
                            cloth.fabric.strain_limit + limits.strain_margin,
                            int(rest.size()),
@@ -174,7 +178,7 @@ void Examiner::measure_each(double time, FrameFindings& found)
         const StrainMeter::Largest strain = cloth.strain.largest(x, cloth.state.attached(time));
         found.strain = std::max(found.strain, strain.of_free);
         found.attached_strain = std::max(found.attached_strain, strain.of_attached);
-        found.area = std::min(found.area, area_of(x, cloth.state.triangles) / cloth.rest_area);
+        found.area = std::min(found.area, area_of(x, cloth.state.triangles) / cloth.strain.rest_area());
         found.is_overstretched = found.is_overstretched || strain.of_free > cloth.strain_limit;
     }
 }

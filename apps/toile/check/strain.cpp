@@ -22,15 +22,28 @@ double largest_singular_value(const Vec3& a, const Vec3& b)
 StrainMeter::StrainMeter(View<const Vec3> rest, std::vector<Triangle> triangles)
     : triangles_(std::move(triangles))
 {
-    for (const Triangle& t : triangles_) {
-        // Express the triangle in its plane, first edge along u.
-        const Vec3 e1 = rest[t[1]] - rest[t[0]], e2 = rest[t[2]] - rest[t[0]];
-        const Vec3 u = e1.normalized();
-        const double along = e2.dot(u);
-        Mat2 edges;
-        edges << e1.norm(), along, 0.0, (e2 - along * u).norm();
-        inverse_rest_.push_back(edges.inverse());
+    for (const Triangle& t : triangles_)
+        add(rest[t[1]] - rest[t[0]], rest[t[2]] - rest[t[0]]);
+}
+
+StrainMeter::StrainMeter(const std::vector<FlatTriangle>& panels, std::vector<Triangle> triangles)
+    : triangles_(std::move(triangles))
+{
+    for (const FlatTriangle& corner : panels) {
+        const Vec2 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+        add(Vec3(e1.x(), e1.y(), 0.0), Vec3(e2.x(), e2.y(), 0.0));
     }
+}
+
+/// Appends a triangle by two edges at rest, expressed in its plane, the first along u.
+void StrainMeter::add(const Vec3& e1, const Vec3& e2)
+{
+    const Vec3 u = e1.normalized();
+    const double along = e2.dot(u);
+    Mat2 edges;
+    edges << e1.norm(), along, 0.0, (e2 - along * u).norm();
+    inverse_rest_.push_back(edges.inverse());
+    rest_area_ += 0.5 * edges.determinant();
 }
 
 StrainMeter::Largest StrainMeter::largest(View<const Vec3> x, View<const unsigned char> attached) const

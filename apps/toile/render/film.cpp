@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "apps/toile/check/cache_cloth.h"
-#include "apps/toile/render/pattern.h"
+#include "apps/toile/render/print.h"
 #include "core/base/error.h"
 #include "core/base/long_work.h"
 #include "scenes/surfaces/load_cloth.h"
@@ -92,8 +92,7 @@ Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches)
                                ": has points without faces; give --scene with the scene that it " +
                                "was made from");
         film.settings_.fps = cache.fps().value_or(film.settings_.fps);
-        film.add_cloth({}, *cache.mesh(), cache.mesh()->triangulated().triangles, cache.mesh()->positions,
-                       cache, file);
+        film.add_cloth({}, cache.mesh()->triangulated().triangles, cache.mesh()->positions, cache, file);
     }
     return film;
 }
@@ -103,16 +102,17 @@ void Film::add_surface(int index, const scenes::ClothState& state, std::optional
                        const std::filesystem::path& file)
 {
     const int solid = index - int(settings_.cloths.size());
-    add_cloth(solid < 0 ? settings_.cloths[size_t(index)] : scene::Cloth{}, state.rest, state.triangles,
-              state.positions, std::move(cache), file);
+    const scene::Cloth settings = solid < 0 ? settings_.cloths[size_t(index)] : scene::Cloth{};
+    add_cloth(settings, state.triangles, state.positions, std::move(cache), file);
     tracks_.back().cloth = state;
+    apply_print(settings, state, tracks_.back().mesh);
     if (solid >= 0)
         tracks_.back().mesh.material = body_material(settings_.solids[size_t(solid)].color);
 }
 
-void Film::add_cloth(const scene::Cloth& settings, const ObjMesh& rest,
-                     const std::vector<Triangle>& triangles, const std::vector<Vec3>& start,
-                     std::optional<exports::PointCache> cache, const std::filesystem::path& file)
+void Film::add_cloth(const scene::Cloth& settings, const std::vector<Triangle>& triangles,
+                     const std::vector<Vec3>& start, std::optional<exports::PointCache> cache,
+                     const std::filesystem::path& file)
 {
     Track track;
     track.file = file;
@@ -122,7 +122,6 @@ void Film::add_cloth(const scene::Cloth& settings, const ObjMesh& rest,
     track.start = start;
     track.mesh.triangles = triangles;
     track.mesh.material = preview::cloth_material(linear_color(settings.color));
-    apply_pattern(settings, rest, triangles, track.mesh);
     tracks_.push_back(std::move(track));
 }
 

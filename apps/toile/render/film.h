@@ -50,7 +50,7 @@ private:
 
     void add_surface(int index, const scenes::ClothState& state, std::optional<exports::PointCache> cache,
                      const std::filesystem::path& file);
-    void add_cloth(const scene::Cloth& settings, const ObjMesh& rest, const std::vector<Triangle>& triangles,
+    void add_cloth(const scene::Cloth& settings, const std::vector<Triangle>& triangles,
                    const std::vector<Vec3>& start, std::optional<exports::PointCache> cache,
                    const std::filesystem::path& file);
     std::vector<Vec3> positions(const Track& track, int frame) const;

@@ -105,6 +105,7 @@ scenes::WorldOptions SceneRun::world_options(const RunSettings& settings)
     options.progress = [this](const std::string& task, double fraction) { tell(task, fraction); };
     options.goes_on = [this] { return interrupt_ == nullptr || !interrupt_->requested(); };
     options.warn = [this](const std::string& text) { progress_.warn(text); };
+    options.note = [this](const std::string& text) { progress_.note(text); };
     return options;
 }
 

@@ -72,6 +72,15 @@ void SetupProgress::warn(const std::string& text)
     std::fprintf(stderr, "toile: warning: %s%s\n", prefix_.c_str(), text.c_str());
 }
 
+void SetupProgress::note(const std::string& text)
+{
+    const std::lock_guard lock(mutex_);
+    if (quiet_)
+        return;
+    end_line();
+    std::fprintf(stderr, "toile: %s%s\n", prefix_.c_str(), text.c_str());
+}
+
 void SetupProgress::end_line()
 {
     if (line_open_)

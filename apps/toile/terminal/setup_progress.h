@@ -26,6 +26,9 @@ public:
     /// Prints "toile: warning: ..." on a line of its own, quiet or not.
     void warn(const std::string& text);
 
+    /// Prints "toile: ..." on a line of its own, unless quiet.
+    void note(const std::string& text);
+
     /// Ends the line after the work was cancelled.
     void stop();
 

@@ -82,29 +82,29 @@ TEST(Renderer, ShowsEachSideInItsColor)
     EXPECT_GT(seen[1], 2 * seen[0]);
 }
 
-TEST(Renderer, LaysThePatternAlongItsCoordinates)
+TEST(Renderer, LaysThePrintAlongItsCoordinates)
 {
     RenderMesh sheet = square(Vec3::Zero(), false);
     sheet.material.front = Vec3(0.6, 0.05, 0.05);
-    sheet.material.pattern_front = Vec3(0.05, 0.05, 0.6);
-    sheet.material.pattern_size = 0.5;
+    sheet.material.print_front = Vec3(0.05, 0.05, 0.6);
+    sheet.material.print_size = 0.5;
     const std::vector<Vec2> rest = {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)};
     sheet.corner_coordinates = corner_coordinates(sheet.triangles, rest);
 
-    const auto is_blue = [&](Pattern pattern, const Vec3& point) {
-        sheet.material.pattern = pattern;
+    const auto is_blue = [&](Print print, const Vec3& point) {
+        sheet.material.print = print;
         const RenderScene scene{.meshes = {sheet}, .ground_height = {}};
         const Camera camera = camera_for(scene, 0.0, 0.0);
         const Image image = Renderer(scene, kSmall).render(camera);
         const std::uint8_t* pixel = pixel_at(image, camera.project(point));
         return pixel[2] > pixel[0];
     };
-    EXPECT_FALSE(is_blue(Pattern::Plain, Vec3(0.75, 0.25, 0)));
-    EXPECT_TRUE(is_blue(Pattern::Checker, Vec3(0.75, 0.25, 0)));
-    EXPECT_FALSE(is_blue(Pattern::Checker, Vec3(0.75, 0.75, 0)));
-    EXPECT_TRUE(is_blue(Pattern::Checker, Vec3(-0.25, 0.25, 0)));
-    EXPECT_TRUE(is_blue(Pattern::Stripes, Vec3(0.75, 0.75, 0)));
-    EXPECT_FALSE(is_blue(Pattern::Stripes, Vec3(0.25, -0.25, 0)));
+    EXPECT_FALSE(is_blue(Print::Plain, Vec3(0.75, 0.25, 0)));
+    EXPECT_TRUE(is_blue(Print::Checker, Vec3(0.75, 0.25, 0)));
+    EXPECT_FALSE(is_blue(Print::Checker, Vec3(0.75, 0.75, 0)));
+    EXPECT_TRUE(is_blue(Print::Checker, Vec3(-0.25, 0.25, 0)));
+    EXPECT_TRUE(is_blue(Print::Stripes, Vec3(0.75, 0.75, 0)));
+    EXPECT_FALSE(is_blue(Print::Stripes, Vec3(0.25, -0.25, 0)));
 }
 
 TEST(Renderer, LetsTheSunShineThroughThinCloth)
@@ -175,9 +175,9 @@ TEST(Renderer, RefusesInvalidScenes)
     };
     RenderMesh mesh = square(Vec3::Zero(), true);
     EXPECT_THAT(message(mesh, {.width = 0}), HasSubstr("0 x 720 pixels"));
-    mesh.material.pattern = Pattern::Checker;
+    mesh.material.print = Print::Checker;
     EXPECT_THAT(message(mesh), HasSubstr("corner_coordinates"));
-    mesh.material.pattern = Pattern::Plain;
+    mesh.material.print = Print::Plain;
     mesh.triangles.push_back(Triangle(0, 1, 4));
     EXPECT_THAT(message(mesh), HasSubstr("out of range of its 4 vertices"));
 

@@ -53,6 +53,48 @@ const std::string kThreeVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 } // namespace
 
+TEST(ReadObj, NamesTheFirstFaceWithoutTexture)
+{
+    const std::string texture = "vt 0 0\nvt 1 0\nvt 0 1\n";
+    EXPECT_EQ(read_text(kThreeVertices + texture + "f 1/1 2/2 3/3\n").first_plain_line, 0);
+    EXPECT_EQ(read_text(kThreeVertices + texture + "f 1 2 3\n").first_plain_line, 0);
+    const ObjMesh mixed = read_text(kThreeVertices + texture + "f 1/1 2/2 3/3\nf 1 2 3\nf 3 2 1\n");
+    EXPECT_EQ(mixed.first_plain_line, 8);
+    EXPECT_TRUE(mixed.polygon_uvs.empty());
+}
+
+TEST(Texture, IsThatOfTheTriangles)
+{
+    const ObjMesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 5 5\nvt 6 5\nvt 6 6\nvt 5 6\n"
+                                   "f 1/4 2/3 3/2 4/1\n");
+    const std::vector<FlatTriangle> triangles = texture_triangles(mesh);
+    ASSERT_EQ(triangles.size(), 2u);
+    EXPECT_EQ(triangles[0], (FlatTriangle{Vec2(5, 6), Vec2(6, 6), Vec2(6, 5)}));
+    EXPECT_EQ(triangles[1], (FlatTriangle{Vec2(5, 6), Vec2(6, 5), Vec2(5, 5)}));
+    EXPECT_EQ(signed_area(triangles[0]), -0.5);
+    EXPECT_EQ(signed_area({Vec2(0, 0), Vec2(2, 0), Vec2(0, 3)}), 3.0);
+}
+
+/// Two triangles that share an edge, but not its texture.
+TEST(Texture, IsSubdividedWithItsTriangles)
+{
+    const ObjMesh mesh =
+        read_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 8 0\nvt 9 1\n"
+                  "vt 8 1\nf 1/1 2/2 3/3\nf 1/4 3/5 4/6\n");
+    const ObjMesh fine = subdivide(mesh, 2);
+    const TriangleMesh expected = subdivide(mesh.triangulated(), 2);
+    EXPECT_EQ(fine.positions, expected.positions);
+    EXPECT_EQ(fine.triangulated().triangles, expected.triangles);
+    const std::vector<FlatTriangle> texture = texture_triangles(fine);
+    ASSERT_EQ(texture.size(), expected.triangles.size());
+    for (size_t t = 0; t < texture.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const Vec3& p = fine.positions[fine.polygons[t][size_t(k)]];
+            EXPECT_EQ(texture[t][size_t(k)], Vec2(p.x() + (t < 16 ? 0.0 : 8.0), p.y()));
+        }
+    EXPECT_TRUE(subdivide(faces_of(mesh.triangulated()), 1).polygon_uvs.empty());
+}
+
 TEST(ReadObj, KeepsOrderQuadsAndTexture)
 {
     const ObjMesh mesh = read_text("# a quad and a triangle\n"

@@ -1,8 +1,10 @@
+#include "core/base/error.h"
 #include "scenes/format/read_scene.h"
 
 #include <gtest/gtest.h>
 
 #include "scenes/format/scene_fabric.h"
+#include "scenes/format/validate.h"
 
 namespace toile::test {
 
@@ -31,6 +33,22 @@ TEST(ReadScene, GivesTheDocumentedDefaultsToAMinimalScene)
     EXPECT_FALSE(scene.cloths[0].thickness.has_value());
 }
 
+TEST(ReadScene, AcceptsTheFormerNameOfPrintWithAWarning)
+{
+    const auto scene_with = [](const std::string& key) {
+        return parse_scene(R"({"toile": 1, "frames": 1, "cloths": [{"name": "c", "disc": {}, )" + key + "}]}",
+                           "old.json");
+    };
+    const Scene old = scene_with(R"("pattern": "checker")");
+    EXPECT_EQ(old.cloths[0].print, scene::Print::Checker);
+    EXPECT_EQ(former_key_warnings_of(old),
+              std::vector<std::string>{
+                  "old.json: cloths[0].pattern is the former name of print; write \"print\": \"checker\""});
+    EXPECT_TRUE(former_key_warnings_of(scene_with(R"("print": "checker")")).empty());
+    EXPECT_NO_THROW(require_valid(old));
+    EXPECT_THROW(scene_with(R"("pattern": "checker", "print": "stripes")"), InvalidInput);
+}
+
 TEST(ReadScene, ReadsEveryKindOfValue)
 {
     const Scene scene = parse_scene(R"({
@@ -42,7 +60,7 @@ TEST(ReadScene, ReadsEveryKindOfValue)
              "preroll": {"hold": 0.25, "ease": 1, "from_bind": true}}],
         "cloths": [
             {"name": "sheet", "rectangle": {"size": [1, 2], "resolution": 0.1}, "grain_deg": 45,
-             "subdivide": 1, "pattern": "stripes", "fabric": "felt", "thickness": 0.002},
+             "subdivide": 1, "print": "stripes", "fabric": "felt", "thickness": 0.002},
             {"name": "round", "disc": {"radius": 0.3}, "scale": 2}],
         "fabrics": {"felt": {"base": "wool", "areal_density": 0.3, "stretch": {"warp": 500},
                              "bend": {"weft": 0}, "strain_limit": 1.06}},
@@ -61,7 +79,7 @@ TEST(ReadScene, ReadsEveryKindOfValue)
     EXPECT_EQ(std::get<scene::Mannequin>(scene.avatars[1].shape).height, 1.6);
     EXPECT_TRUE(scene.avatars[1].preroll.from_bind);
     EXPECT_EQ(std::get<scene::Rectangle>(scene.cloths[0].shape).size, Vec2(1.0, 2.0));
-    EXPECT_EQ(scene.cloths[0].pattern, scene::PreviewPattern::Stripes);
+    EXPECT_EQ(scene.cloths[0].print, scene::Print::Stripes);
     EXPECT_EQ(std::get<std::vector<int>>(scene.attachments[0].select.by), (std::vector<int>{0, 3}));
     EXPECT_EQ(scene.attachments[0].to, "fixed");
     EXPECT_EQ(std::get<std::vector<Vec3>>(scene.attachments[1].select.by).at(1), Vec3(1.0, 1.0, 1.0));

@@ -1,46 +1,39 @@
-#include "apps/toile/render/pattern.h"
+#include "apps/toile/render/print.h"
 
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Geometry>
 
+#include "core/mesh/obj.h"
 #include "scenes/meshes/rigid_motion.h"
 
 namespace toile::app {
 
 namespace {
 
-using CornerCoordinates = std::vector<std::array<Vec2, 3>>;
-
-double area_of(const std::array<Vec2, 3>& corners)
+/// Texture coordinates, whose unit is arbitrary, scaled so that areas equal the cloth's.
+std::vector<FlatTriangle> texture_in_metres(const ObjMesh& rest, const std::vector<Triangle>& triangles)
 {
-    const Vec2 a = corners[1] - corners[0], b = corners[2] - corners[0];
-    return 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
-}
-
-/// Scales texture coordinates, whose unit is arbitrary, so that areas equal the cloth's.
-CornerCoordinates in_metres(CornerCoordinates coordinates, const ObjMesh& rest,
-                            const std::vector<Triangle>& triangles)
-{
+    std::vector<FlatTriangle> texture = texture_triangles(rest);
     double cloth_area = 0.0, texture_area = 0.0;
-    for (size_t k = 0; k < coordinates.size(); ++k) {
+    for (size_t k = 0; k < texture.size(); ++k) {
         const Triangle& t = triangles[k];
         const Vec3 a = rest.positions[t[1]] - rest.positions[t[0]];
         cloth_area += 0.5 * a.cross(rest.positions[t[2]] - rest.positions[t[0]]).norm();
-        texture_area += area_of(coordinates[k]);
+        texture_area += std::abs(signed_area(texture[k]));
     }
     const double scale = texture_area > 0.0 ? std::sqrt(cloth_area / texture_area) : 1.0;
-    for (std::array<Vec2, 3>& corners : coordinates)
+    for (FlatTriangle& corners : texture)
         for (Vec2& corner : corners)
             corner *= scale;
-    return coordinates;
+    return texture;
 }
 
 /// Arc length and height around the Y axis. Triangles across the seam at angle pi are unwrapped.
-std::array<Vec2, 3> around_axis(const std::array<Vec3, 3>& corners, double radius)
+FlatTriangle around_axis(const std::array<Vec3, 3>& corners, double radius)
 {
-    std::array<Vec2, 3> coordinates;
+    FlatTriangle coordinates;
     const double first = std::atan2(corners[0].x(), corners[0].z());
     for (size_t k = 0; k < 3; ++k) {
         const double angle = std::atan2(corners[k].x(), corners[k].z());
@@ -51,12 +44,12 @@ std::array<Vec2, 3> around_axis(const std::array<Vec3, 3>& corners, double radiu
 }
 
 /// Coordinates of a generated cloth, in the frame of its cut.
-CornerCoordinates of_cut(const scene::Cloth& cloth, const ObjMesh& rest,
-                         const std::vector<Triangle>& triangles)
+std::vector<FlatTriangle> of_cut(const scene::Cloth& cloth, const ObjMesh& rest,
+                                 const std::vector<Triangle>& triangles)
 {
     const Mat3 R = scenes::rotation_of(cloth.rotate_deg);
     const auto* skirt = std::get_if<scene::Skirt>(&cloth.shape);
-    CornerCoordinates coordinates;
+    std::vector<FlatTriangle> coordinates;
     for (const Triangle& t : triangles) {
         std::array<Vec3, 3> corners;
         for (int k = 0; k < 3; ++k)
@@ -78,22 +71,23 @@ Vec3 linear_color(const Vec3& srgb)
         [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); });
 }
 
-void apply_pattern(const scene::Cloth& cloth, const ObjMesh& rest, const std::vector<Triangle>& triangles,
-                   preview::RenderMesh& mesh)
+void apply_print(const scene::Cloth& cloth, const scenes::ClothState& state, preview::RenderMesh& mesh)
 {
-    if (cloth.pattern == scene::PreviewPattern::Plain)
+    if (cloth.print == scene::Print::Plain)
         return;
-    CornerCoordinates coordinates;
-    if (std::holds_alternative<std::filesystem::path>(cloth.shape))
-        coordinates = in_metres(preview::corner_coordinates(rest), rest, triangles);
+    std::vector<FlatTriangle> coordinates;
+    if (!state.panels.empty())
+        coordinates = state.panels;
+    else if (std::holds_alternative<std::filesystem::path>(cloth.shape))
+        coordinates = texture_in_metres(state.rest, state.triangles);
     else
-        coordinates = of_cut(cloth, rest, triangles);
-    if (coordinates.size() != triangles.size())
+        coordinates = of_cut(cloth, state.rest, state.triangles);
+    if (coordinates.size() != state.triangles.size())
         return;
     mesh.corner_coordinates = std::move(coordinates);
-    mesh.material.pattern = cloth.pattern == scene::PreviewPattern::Checker ? preview::Pattern::Checker
-                                                                            : preview::Pattern::Stripes;
-    mesh.material.pattern_front = linear_color(Vec3(0.93, 0.91, 0.87));
+    mesh.material.print =
+        cloth.print == scene::Print::Checker ? preview::Print::Checker : preview::Print::Stripes;
+    mesh.material.print_front = linear_color(Vec3(0.93, 0.91, 0.87));
 }
 
 } // namespace toile::app
