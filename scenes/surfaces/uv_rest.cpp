@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "garment/energy/principal_stretch.h"
 #include "scenes/meshes/cloth_mesh.h"
 
@@ -48,9 +49,16 @@ double quantile(std::vector<double> items, double fraction)
     return *at;
 }
 
+/// Area below which the inverse of a triangle's edges is no number [m^2].
+constexpr double kMinArea = 1e-100;
+
 void require_flat_in_range(const UvRest& rest, const std::string& source)
 {
-    for (const FlatTriangle& triangle : rest.triangles)
+    for (const FlatTriangle& triangle : rest.triangles) {
+        if (std::abs(signed_area(triangle)) < kMinArea)
+            throw InvalidInput(source + ": texture coordinates times \"uv_scale\" " +
+                               short_text(rest.uv_scale) +
+                               " have no area; give the metres of a texture unit, or leave it out");
         for (const Vec2& corner : triangle) {
             if (is_in_range(Vec3(corner.x(), corner.y(), 0.0)))
                 continue;
@@ -61,6 +69,7 @@ void require_flat_in_range(const UvRest& rest, const std::string& source)
                           rest.uv_scale, corner.x(), corner.y());
             throw InvalidInput(source + text);
         }
+    }
 }
 
 } // namespace

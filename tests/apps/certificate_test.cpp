@@ -104,12 +104,12 @@ TEST(Certificate, MeasuresStrainAgainstTheTextureThatIsTheRestShape)
             R"({"toile": 1, "frames": 3, "gravity": [0, 0, 0], "fabrics": {"soft": {"strain_limit": 1.5}},
             "cloths": [{"name": "sheet", "file": "sheet.obj", "fabric": "soft")" +
                 keys + "}], " + ends + "}");
-        const Finished run = run_toile({"simulate", "sheet.json", "-o", "."}, folder.path());
+        const Finished run = run_toile({"simulate", "sheet.json", "-o", "out"}, folder.path());
         EXPECT_EQ(run.exit_code, 0) << run.errors;
         EXPECT_EQ(run.errors.find("\"uv_scale\": ") != std::string::npos,
                   keys.find("uv_scale") == std::string::npos && !keys.empty())
             << run.errors;
-        return json_in(folder, "certificate.json")["max_strain"].get<double>();
+        return json_in(folder, "out/certificate.json")["max_strain"].get<double>();
     };
     EXPECT_NEAR(strain(""), 0.0, 1e-6);
     EXPECT_NEAR(strain(R"(, "rest": "uv", "uv_scale": 0.1)"), 0.1, 1e-4);

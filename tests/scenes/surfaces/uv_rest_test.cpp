@@ -426,6 +426,9 @@ TEST_F(UvRestTest, RefusesTexturesThatAreNoRestShape)
         refused(points + texture + "f 1/1 2/2 3/3 4/4\n", R"(, "uv_scale": 999999)"),
         "cloth.obj: texture coordinates times \"uv_scale\" 999999 are at (999999, 0) m; they must be finite "
         "and at most 100 km");
+    EXPECT_EQ(refused(points + texture + "f 1/1 2/2 3/3 4/4\n", R"(, "uv_scale": 1e-200)"),
+              "cloth.obj: texture coordinates times \"uv_scale\" 1e-200 have no area; give the metres of a "
+              "texture unit, or leave it out");
 }
 
 TEST_F(UvRestTest, RefusesKeysThatHaveNoEffect)
