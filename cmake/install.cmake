@@ -11,7 +11,7 @@ install(TARGETS toile-bench RUNTIME OPTIONAL)
 
 # The libraries below toile::toile; each is toile::<name>, as in this build.
 set(libraries core quadrature2d garment pattern_mesh collision collision_check collision_repair avatars export scene_format
-    garment_format scenes)
+    garment_format scenes drape)
 foreach(name IN LISTS libraries ITEMS abi)
     set_property(TARGET toile_${name} PROPERTY EXPORT_NAME ${name})
 endforeach()

@@ -7,8 +7,14 @@ namespace {
 std::vector<toile::app::Command> add_commands(CLI::App& parser)
 {
     using namespace toile::app;
-    return {add_simulate(parser, nullptr), add_render(parser),  add_check(parser), add_info(parser),
-            add_measure(parser),           add_pattern(parser), add_schema(parser)};
+    return {add_simulate(parser, nullptr),
+            add_drape(parser),
+            add_render(parser),
+            add_check(parser),
+            add_info(parser),
+            add_measure(parser),
+            add_pattern(parser),
+            add_schema(parser)};
 }
 
 } // namespace

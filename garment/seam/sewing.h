@@ -15,8 +15,8 @@ namespace toile::garment {
 class Sewing : public Energy {
 public:
     struct Settings {
-        double stiffness = 100.0; ///< [N/m] k of each thread
-        double max_force = 0.05;  ///< [N] of each thread
+        double stiffness = 1000.0; ///< [N/m] k of each thread
+        double max_force = 0.5;    ///< [N] of each thread
     };
     struct Thread {
         int a = 0, b = 0; ///< vertices

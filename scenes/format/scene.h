@@ -136,8 +136,8 @@ enum class RestFrom { Shape, Uv };
 
 /// Threads along the lines of a cloth's file.
 struct Sewing {
-    double stiffness = 100.0; ///< [N/m] of each
-    double max_force = 0.05;  ///< [N] of each
+    double stiffness = 1000.0; ///< [N/m] of each
+    double max_force = 0.5;    ///< [N] of each
 };
 
 struct Cloth {

@@ -85,21 +85,8 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles, const std
     return sides;
 }
 
-[[noreturn]] void refuse_fold(const ObjMesh& mesh, const std::string& source, const Side& side, int polygon,
-                              int other)
-{
-    const auto line = [&](int f) { return mesh.polygon_lines[size_t(f)]; };
-    const std::string along =
-        "along " + text_of(side.at_low) + " to " + text_of(side.at_high) + "; unfold the texture there";
-    if (polygon == other)
-        throw InvalidInput(at_line(source, line(polygon)) + "folds over itself in the texture plane, " +
-                           along + kOrShape);
-    throw InvalidInput(at_line(source, line(std::max(polygon, other))) + "and that of line " +
-                       std::to_string(line(std::min(polygon, other))) +
-                       " fold over each other in the texture plane, " + along +
-                       ", move halves that mirror each other apart" + kOrShape);
-}
-
+/// A polygon may not fold over itself. Polygons that lie on each other beyond a common edge are halves of a
+/// garment that mirror each other.
 void require_unfolded(const ObjMesh& mesh, const std::vector<FlatTriangle>& flat,
                       const std::vector<int>& polygon, const std::string& source)
 {
@@ -109,8 +96,11 @@ void require_unfolded(const ObjMesh& mesh, const std::vector<FlatTriangle>& flat
         while (end < sides.size() && sides[begin].key() == sides[end].key())
             ++end;
         const Side &a = sides[begin], &b = sides[end - 1];
-        if (end - begin == 2 && a.is_left == b.is_left)
-            refuse_fold(mesh, source, a, polygon[size_t(a.triangle)], polygon[size_t(b.triangle)]);
+        const int folded = polygon[size_t(a.triangle)];
+        if (end - begin == 2 && a.is_left == b.is_left && folded == polygon[size_t(b.triangle)])
+            throw InvalidInput(at_line(source, mesh.polygon_lines[size_t(folded)]) +
+                               "folds over itself in the texture plane, along " + text_of(a.at_low) + " to " +
+                               text_of(a.at_high) + "; unfold the texture there" + kOrShape);
     }
 }
 

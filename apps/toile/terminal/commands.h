@@ -22,6 +22,7 @@ struct Command {
 Command add_simulate(CLI::App& parser, const scenes::BaselineMethods* baselines);
 Command add_render(CLI::App& parser);
 Command add_check(CLI::App& parser);
+Command add_drape(CLI::App& parser);
 Command add_info(CLI::App& parser);
 Command add_measure(CLI::App& parser);
 Command add_pattern(CLI::App& parser);

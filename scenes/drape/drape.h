@@ -1,0 +1,81 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/mesh/obj.h"
+#include "scenes/format/scene.h"
+#include "scenes/world/world_options.h"
+
+namespace toile::scenes {
+
+/// How a drape ended.
+enum class DrapeOutcome {
+    Draped,
+    Placement, ///< the panels do not lie around the body
+    Tangled,   ///< a seam could not be pulled shut
+    NotAtRest, ///< the garment still moves after DrapeSettings::max_motion
+    SlidOff,   ///< a labelled edge sank by more than kMaxSlide after it was released
+    Solver,    ///< a step gave numbers that are not finite
+};
+
+/// Distance by which a released edge may sink [m].
+inline constexpr double kMaxSlide = 0.05;
+/// Gap of a seam that is welded [m].
+inline constexpr double kMaxWeldGap = 0.002;
+
+struct DrapeSettings {
+    std::filesystem::path garment; ///< garment file or panel JSON
+    scene::Avatar body;            ///< in the pose of its first sample
+    std::string fabric = "cotton"; ///< of panels without one
+    double edge = 0.01;            ///< [m] of the final mesh
+    Vec3 shift = Vec3::Zero();     ///< [m] added to the placement of the panels
+    double max_motion = 20.0;      ///< [s] of simulated time until it has to be at rest
+    std::filesystem::path folder;  ///< of the scenes and meshes of its stages; exists
+    std::string name;              ///< of the garment in files and messages: letters, digits, _ and -
+};
+
+struct DrapeStage {
+    std::string name; ///< mesh, sew, settle, drape
+    double seconds = 0.0;
+    int frames = 0;
+    int vertices = 0;
+};
+
+struct DrapeSeam {
+    std::string name;
+    double gap = 0.0; ///< [m] largest, before it was welded
+};
+
+struct DrapeSlide {
+    std::string label;
+    double slid = 0.0; ///< [m] that the mean of the edge sank after it was released
+};
+
+struct DrapeResult {
+    DrapeOutcome outcome = DrapeOutcome::Draped;
+    std::string message; ///< one line, unless it is draped
+    std::vector<DrapeStage> stages;
+    std::vector<DrapeSeam> seams;
+    std::vector<DrapeSlide> slides;
+    int pieces = 0, border_loops = 0, euler_characteristic = 0;
+    double rest_speed = 0.0; ///< [m/s] of the fastest vertex in the last half second
+    double max_strain = 0.0; ///< [-]
+    ObjMesh mesh;            ///< the garment as it ended, or the panels if their seams are open
+    Scene scene;             ///< that simulates the garment on from there
+};
+
+/// Sews a pattern around a body and drapes it.
+///
+///   mesh    panels at kSewingEdge and at the final edge length
+///   sew     threads pull the seams shut, without gravity, on the coarse mesh
+///   settle  the welded coarse mesh falls into place
+///   drape   the same on the fine mesh, until it is at rest; labelled edges are held by springs, and released
+///           but for the waist and strapless tops
+///
+/// Every stage is a scene that is written to the folder before it runs.
+/// @throws InvalidInput for a pattern, fabric or body that does not work; Cancelled as World
+DrapeResult drape(const DrapeSettings& settings, const WorldOptions& options);
+
+} // namespace toile::scenes

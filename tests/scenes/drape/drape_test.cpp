@@ -1,0 +1,102 @@
+#include "scenes/drape/drape.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "collision/check/find_crossings.h"
+#include "tests/support/temporary_folder.h"
+
+namespace toile::test {
+
+using namespace scenes;
+
+namespace {
+
+/// Panel JSON of a tube: a front and a back panel, 20 cm high, whose sides are sewn. In metres.
+std::string tube(double width, const std::string& label, double front = 0.14)
+{
+    const auto panel = [&](double z, bool is_back) {
+        const double w = 0.5 * width;
+        // Seen from the outside of the body both loops are counter-clockwise.
+        const std::string left = std::to_string(is_back ? w : -w), right = std::to_string(is_back ? -w : w);
+        return R"({"vertices": [[)" + left + ", -0.1], [" + right + ", -0.1], [" + right + ", 0.1], [" +
+               left +
+               R"(, 0.1]], "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3])" +
+               (label.empty() ? "" : R"(, "label": ")" + label + "\"") +
+               R"(}, {"endpoints": [3, 0]}], "rotation": [0, 0, 0], "translation": [0, 0, )" +
+               std::to_string(z) + "]}";
+    };
+    return R"({"pattern": {"panels": {"front": )" + panel(front, false) + R"(, "back": )" +
+           panel(-0.14, true) +
+           R"(}, "stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 3}],
+               [{"panel": "front", "edge": 3}, {"panel": "back", "edge": 1}]]},
+           "properties": {"units_in_meter": 1, "curvature_coords": "relative"}})";
+}
+
+class DrapeTest : public ::testing::Test {
+protected:
+    DrapeResult drape_tube(const std::string& pattern)
+    {
+        const std::filesystem::path file = folder_.path() / "tube.json";
+        std::ofstream(file) << pattern;
+        DrapeSettings settings;
+        settings.garment = file;
+        settings.body.name = "body";
+        settings.body.shape = scene::Capsule{0.1, 0.4};
+        settings.fabric = "jersey";
+        settings.edge = 0.03;
+        settings.folder = folder_.path();
+        settings.name = "tube";
+        return drape(settings, {});
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(DrapeTest, SewsATubeAroundABodyAndHoldsIt)
+{
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"));
+    EXPECT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    EXPECT_EQ(result.pieces, 1);
+    EXPECT_EQ(result.border_loops, 2);
+    EXPECT_EQ(result.euler_characteristic, 0);
+    ASSERT_EQ(result.seams.size(), 2u);
+    for (const DrapeSeam& seam : result.seams)
+        EXPECT_LT(seam.gap, kMaxWeldGap) << seam.name;
+    EXPECT_LT(result.max_strain, 0.05);
+    EXPECT_LE(result.rest_speed, 0.02);
+
+    // It surrounds the body, and crosses nothing.
+    const TriangleMesh mesh = result.mesh.triangulated();
+    EXPECT_TRUE(collision::find_crossings(mesh.triangles, mesh.positions).empty());
+    for (const Vec3& x : mesh.positions) {
+        EXPECT_GT(std::hypot(x.x(), x.z()), 0.1);
+        EXPECT_LT(std::hypot(x.x(), x.z()), 0.16);
+    }
+    // Both panels keep their texture coordinates along the seams.
+    EXPECT_GT(result.mesh.texture_coordinates.size(), result.mesh.positions.size() + 8u);
+}
+
+TEST_F(DrapeTest, SaysThatALooseTubeSlidOff)
+{
+    const DrapeResult result = drape_tube(tube(0.40, "top"));
+    EXPECT_EQ(result.outcome, DrapeOutcome::SlidOff) << result.message;
+    ASSERT_EQ(result.slides.size(), 1u);
+    EXPECT_EQ(result.slides[0].label, "top");
+    EXPECT_GT(result.slides[0].slid, kMaxSlide);
+}
+
+TEST_F(DrapeTest, NamesASeamThatCannotClose)
+{
+    // 20 cm around half of 63.
+    const DrapeResult result = drape_tube(tube(0.10, "strapless_top"));
+    EXPECT_EQ(result.outcome, DrapeOutcome::Tangled);
+    EXPECT_NE(result.message.find("stays open by"), std::string::npos) << result.message;
+    EXPECT_FALSE(result.mesh.lines.empty());
+}
+
+} // namespace
+
+} // namespace toile::test
