@@ -48,6 +48,8 @@ MAY_INCLUDE = {
     "garment/energy/air": CORE + ["garment/energy"],
     "garment/energy/strain_limit": CORE + ["garment/energy"],
     "garment/pattern": CORE + ["garment/energy", "quadrature2d"],
+    "garment/pattern/place": CORE + ["garment/pattern"],
+    "garment/seam": CORE,
     "garment/pattern/mesh": CORE + ["garment/pattern"],
     "collision/bvh": CORE,
     "collision/geometry": CORE + ["collision/bvh"],
@@ -60,6 +62,7 @@ MAY_INCLUDE = {
     "collision/check": CORE + ["collision/bvh", "collision/geometry"],
     "collision/repair": CORE + ["collision/bvh", "collision/geometry", "collision/body", "collision/self",
                                 "collision/ccd", "collision/contact", "collision/check"],
+    "collision/skin": CORE + ["collision/bvh", "collision/check"],
     "avatars/model": CORE,
     "avatars/import": CORE + ["avatars/model"],
     "avatars/mannequin": CORE + ["avatars/model"],
@@ -75,6 +78,7 @@ MAY_INCLUDE |= {
     "scenes/colliders": BELOW_SCENES + ["scenes/format", "scenes/meshes"],
     "scenes/method": BELOW_SCENES + ["scenes/format"],
     "scenes/surfaces": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders"],
+    "scenes/drape": BELOW_SCENES + ["scenes/format", "scenes/garment_format", "scenes/world"],
     "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders", "scenes/method",
                                     "scenes/surfaces"],
 }
@@ -102,9 +106,11 @@ MAY_INCLUDE |= {
 }
 
 # Modules of CMake whose name is not their folder.
-FOLDER_OF_MODULE = {"scene_format": "scenes/format", "garment_format": "scenes/garment_format", "preview": "apps/preview", "app": "apps/toile",
+FOLDER_OF_MODULE = {"scene_format": "scenes/format", "garment_format": "scenes/garment_format",
+                    "drape": "scenes/drape", "preview": "apps/preview", "app": "apps/toile",
                     "benchmarks": "research/benchmarks", "quadrature_figures": "research/benchmarks/quadrature",
                     "collision_check": "collision/check", "collision_repair": "collision/repair",
+                    "collision_skin": "collision/skin",
                     "pattern_mesh": "garment/pattern/mesh"}
 
 # Folders of programs within a module's folder.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "avatars/model/moving_avatar.h"
-#include "collision/repair/skin_separation.h"
+#include "collision/skin/skin_separation.h"
 
 namespace toile::scenes {
 

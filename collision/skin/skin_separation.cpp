@@ -1,4 +1,4 @@
-#include "collision/repair/skin_separation.h"
+#include "collision/skin/skin_separation.h"
 
 #include <algorithm>
 #include <limits>
