@@ -98,7 +98,10 @@ private:
             const std::vector<SectionLoop> legs = parts(at_height(fraction));
             if (legs.size() != 2 || legs[1].area < 0.5 * legs[0].area)
                 fail("two legs", "a slice at " + short_text(100.0 * fraction) + " % of the height has " +
-                                     std::to_string(legs.size()) + (legs.size() == 1 ? " part" : " parts"));
+                                     std::to_string(legs.size()) +
+                                     (legs.size() == 1   ? " part"
+                                      : legs.size() == 2 ? " parts of different sizes"
+                                                         : " parts"));
         }
     }
 
@@ -113,8 +116,9 @@ private:
     /// Rotates the mesh about the vertical until it faces +Z.
     void turn_to_front()
     {
-        Vec3 front = is_given("front") ? given_.at("front") : direction_of_toes();
-        front = snapped(Vec3(front.x(), 0.0, front.z()).normalized());
+        const auto level_out = [](const Vec3& x) { return Vec3(x.x(), 0.0, x.z()).normalized(); };
+        const Vec3 front =
+            is_given("front") ? level_out(given_.at("front")) : snapped(level_out(direction_of_toes()));
         body_.world_from_body.col(0) = Vec3::UnitY().cross(front);
         body_.world_from_body.col(1) = Vec3::UnitY();
         body_.world_from_body.col(2) = front;

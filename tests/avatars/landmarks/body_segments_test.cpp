@@ -220,6 +220,18 @@ TEST(BodySegments, GivenLandmarksReplaceThoseFound)
         EXPECT_EQ(of(told, BodyPart::LeftArm).start, wrist);
         EXPECT_EQ(of(told, BodyPart::LeftArm).end, of(found, BodyPart::LeftArm).end);
     }
+    // Told that it faces its left, the body is taken at its word: its limbs are no longer beside each other.
+    EXPECT_NE(refusal_of([&] {
+                  find_segments(*load_body("bodies/gc_mean_all.obj"), {}, identity_affine(),
+                                {{"front", {1, 0, 0}}});
+              }),
+              "");
+    const Vec3 front = Vec3(0.1, 0.0, 1.0).normalized();
+    EXPECT_LT((find_segments(*load_body("bodies/gc_mean_all.obj"), {}, identity_affine(), {{"front", front}})
+                   .landmarks.front -
+               front)
+                  .norm(),
+              1e-9);
     // A body in which nothing is found, told whole.
     const GivenLandmarks all{{"neck_top", {0, 0.6, -0.3}},        {"neck_base", {0, 0.4, -0.2}},
                              {"crotch", {0, -0.4, 0.3}},          {"left_shoulder", {0.2, 0, -0.1}},
