@@ -107,6 +107,7 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
                                   " with the corners of others: duplicates, or backs of two-sided faces");
     const int branching_in_file = branching_edges(mesh);
     const bool is_welded = join_vertices(cloth, result);
+    drop_repeated_lines(mesh);
     if (const int count = make_windings_agree(mesh); count > 0)
         result.warnings.push_back("flipped " + counted(count, "face", "faces") +
                                   (count == 1 ? " that was" : " that were") +
@@ -124,6 +125,22 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
             (is_welded ? "; cut it, or keep its seams apart with \"weld\": false" : "; cut it"));
     if (!result.numbers.vertex.empty() && cloth.subdivide == 0)
         result.file = file;
+}
+
+/// Splits every triangle into four, `levels` times. Vertices keep their numbers, and so lines their ends;
+/// groups keep their parts of the surface.
+ObjMesh subdivided(const ObjMesh& mesh, int levels)
+{
+    ObjMesh fine = faces_of(subdivide(mesh.triangulated(), levels));
+    fine.lines = mesh.lines;
+    auto group = mesh.groups.begin();
+    int triangles = 0;
+    for (int f = 0; f < int(mesh.polygons.size()); ++f) {
+        for (; group != mesh.groups.end() && group->first_polygon == f; ++group)
+            fine.groups.push_back({triangles << (2 * levels), group->name});
+        triangles += int(mesh.triangles_of(f).size());
+    }
+    return fine;
 }
 
 } // namespace
@@ -148,7 +165,7 @@ ClothMesh cloth_mesh(const scene::Cloth& cloth)
     else
         require_usable(mesh, source_of(cloth));
     if (cloth.subdivide > 0)
-        mesh = faces_of(subdivide(mesh.triangulated(), cloth.subdivide));
+        mesh = subdivided(mesh, cloth.subdivide);
     place(mesh);
     place(result.file);
     require_in_range(mesh.positions, source_of(cloth));
