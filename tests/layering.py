@@ -49,6 +49,7 @@ MAY_INCLUDE = {
     "garment/energy/strain_limit": CORE + ["garment/energy"],
     "garment/pattern": CORE + ["garment/energy", "quadrature2d"],
     "garment/pattern/mesh": CORE + ["garment/pattern"],
+    "garment/seam": CORE,
     "collision/bvh": CORE,
     "collision/geometry": CORE + ["collision/bvh"],
     "collision/body": CORE + ["collision/bvh", "collision/geometry"],
