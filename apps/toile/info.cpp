@@ -2,6 +2,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
@@ -31,28 +32,40 @@ void print_extent(const std::string& key, View<const Vec3> points)
     std::cout << "\n";
 }
 
-/// Number of components connected through edges; vertices without a triangle are ignored.
-int count_pieces(const TriangleMesh& mesh)
+std::string counted(std::ptrdiff_t count, const char* one, const char* many)
 {
-    std::vector<int> root(size_t(mesh.vertex_count()));
-    for (int v = 0; v < mesh.vertex_count(); ++v)
-        root[size_t(v)] = v;
-    const auto find = [&](int v) {
-        while (root[size_t(v)] != v)
-            v = root[size_t(v)] = root[size_t(root[size_t(v)])];
-        return v;
-    };
-    for (const Triangle& t : mesh.triangles)
-        for (int k = 1; k < 3; ++k)
-            root[size_t(find(t[k]))] = find(t[0]);
-    std::vector<bool> counted(root.size(), false);
-    int pieces = 0;
-    for (const Triangle& t : mesh.triangles)
-        if (const size_t r = size_t(find(t[0])); !counted[r]) {
-            counted[r] = true;
-            ++pieces;
-        }
-    return pieces;
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::string shape_text(const SurfaceTopology& topology)
+{
+    return counted(topology.pieces, "piece", "pieces") + ", " +
+           counted(topology.border_loops, "border loop", "border loops") + ", Euler characteristic " +
+           std::to_string(topology.euler_characteristic);
+}
+
+void print_topology(const SurfaceTopology& topology)
+{
+    print("pieces", topology.pieces);
+    print("border loops", topology.border_loops);
+    print("Euler characteristic", topology.euler_characteristic);
+    if (!topology.non_manifold_edges.empty())
+        print("edges of three or more triangles", topology.non_manifold_edges.size());
+}
+
+/// Names of groups in the order of the file, each once.
+void print_groups(const ObjMesh& mesh)
+{
+    std::vector<std::string> names;
+    std::set<std::string> seen;
+    for (const ObjGroup& group : mesh.groups)
+        if (seen.insert(group.name).second)
+            names.push_back(group.name);
+    std::string text = std::to_string(names.size());
+    constexpr size_t kShown = 20;
+    for (size_t i = 0; i < std::min(names.size(), kShown); ++i)
+        text += (i == 0 ? " (" : ", ") + names[i];
+    print("groups", text + (names.empty() ? "" : names.size() > kShown ? ", ...)" : ")"));
 }
 
 /// Rest shape that "rest": "uv" would take from the file.
@@ -71,16 +84,22 @@ void print_as_rest_shape(const std::filesystem::path& file)
     }
 }
 
-/// Cloth that a scene would make of the file.
-void print_as_cloth(const std::filesystem::path& file, const ObjMesh& obj)
+/// What a scene would make of the file.
+/// @param stored  topology of the file as it is
+void print_as_cloth(const std::filesystem::path& file, const ObjMesh& obj, const SurfaceTopology& stored)
 {
     scene::Cloth cloth;
     cloth.shape = file;
+    cloth.sewing.emplace();
     try {
         const scenes::ClothMesh made = scenes::cloth_mesh(cloth);
         for (const std::string& warning : made.warnings)
             print("as cloth", warning);
-        const Topology topology = build_branching_topology(made.mesh.triangulated(), file.string());
+        const TriangleMesh mesh = made.mesh.triangulated();
+        const SurfaceTopology surface = surface_topology(mesh.triangles);
+        if (shape_text(surface) != shape_text(stored))
+            print("as cloth", shape_text(surface));
+        const Topology topology = build_branching_topology(mesh, file.string());
         const auto borders = std::count_if(topology.edges.begin(), topology.edges.end(),
                                            [](const Edge& edge) { return edge.is_border(); });
         print("border edges", std::to_string(borders) + (borders == 0 ? " (closed)" : " (open)"));
@@ -99,8 +118,11 @@ void print_obj(const std::filesystem::path& file)
     print("polygons", obj.polygons.size());
     print("triangles", mesh.triangle_count());
     print("texture coordinates", obj.polygon_uvs.empty() ? "no" : "yes");
-    print("pieces", count_pieces(mesh));
-    print_as_cloth(file, obj);
+    print_groups(obj);
+    print("lines", obj.lines.size());
+    const SurfaceTopology topology = surface_topology(mesh.triangles);
+    print_topology(topology);
+    print_as_cloth(file, obj, topology);
     print_extent("extent", mesh.positions);
 }
 
@@ -112,6 +134,7 @@ void print_tets(const std::filesystem::path& file)
     print("tetrahedra", mesh.tets.size());
     print("vertices of the surface", surface.vertex_count());
     print("triangles of the surface", surface.triangle_count());
+    print_topology(surface_topology(surface.triangles));
     print_extent("extent", surface.positions);
 }
 
@@ -124,6 +147,7 @@ void print_avatar(const std::filesystem::path& file)
     avatar->pose({}, avatars::identity_affine(), positions);
     print("vertices", avatar->vertex_count());
     print("triangles", avatar->triangles().size());
+    print_topology(surface_topology(avatar->triangles()));
     if (avatar->turned_count() > 0)
         print("triangles turned", std::to_string(avatar->turned_count()) +
                                       " (they faced into the body or against their neighbours)");

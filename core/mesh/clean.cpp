@@ -1,10 +1,11 @@
 #include "core/mesh/clean.h"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <tuple>
+#include <utility>
 
+#include "core/mesh/disjoint_sets.h"
 #include "core/mesh/weld.h"
 
 namespace toile {
@@ -15,8 +16,13 @@ namespace {
 template <typename IsDropped>
 int drop_polygons(ObjMesh& mesh, const IsDropped& is_dropped)
 {
+    const std::vector<ObjGroup> groups = std::move(mesh.groups);
+    mesh.groups.clear();
+    auto group = groups.begin();
     size_t kept = 0;
     for (size_t f = 0; f < mesh.polygons.size(); ++f) {
+        for (; group != groups.end() && group->first_polygon == int(f); ++group)
+            begin_group(mesh, group->name, int(kept));
         if (is_dropped(mesh.polygons[f]))
             continue;
         if (kept != f) {
@@ -28,6 +34,8 @@ int drop_polygons(ObjMesh& mesh, const IsDropped& is_dropped)
         }
         ++kept;
     }
+    if (!mesh.groups.empty() && mesh.groups.back().first_polygon == int(kept))
+        mesh.groups.pop_back();
     const int dropped = int(mesh.polygons.size() - kept);
     mesh.polygons.resize(kept);
     mesh.polygon_uvs.resize(std::min(kept, mesh.polygon_uvs.size()));
@@ -84,29 +92,6 @@ std::set<int> points_of(const std::vector<int>& polygon, const std::vector<int>&
     return points;
 }
 
-/// Sets of vertices that became one; the lowest stands for its set.
-class Joined {
-public:
-    explicit Joined(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-    int find(int v)
-    {
-        while (parent_[v] != v)
-            v = parent_[v] = parent_[parent_[v]];
-        return v;
-    }
-
-    void join(int a, int b)
-    {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<int> parent_;
-};
-
 } // namespace
 
 int drop_repeated_polygons(ObjMesh& mesh)
@@ -146,7 +131,7 @@ std::vector<int> stitch(ObjMesh& mesh, double distance)
 {
     const std::vector<int> point_of = weld({mesh.positions, {}}, distance).welded_of;
     const std::vector<Side> border = border_of(mesh, point_of);
-    Joined joined(mesh.positions.size());
+    DisjointSets joined(int(mesh.positions.size()));
     for (size_t begin = 0, end = 0; begin < border.size(); begin = end) {
         end = begin + 1;
         while (end < border.size() && border[begin].key() == border[end].key())
@@ -170,6 +155,13 @@ std::vector<int> stitch(ObjMesh& mesh, double distance)
             v = stands[v];
     std::erase_if(mesh.lines, [](const auto& line) { return line[0] == line[1]; });
     return stands;
+}
+
+void drop_repeated_lines(ObjMesh& mesh)
+{
+    std::set<std::pair<int, int>> seen;
+    std::erase_if(mesh.lines,
+                  [&](const auto& line) { return !seen.insert(std::minmax(line[0], line[1])).second; });
 }
 
 std::vector<int> drop_loose_vertices(ObjMesh& mesh)

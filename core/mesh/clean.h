@@ -7,7 +7,7 @@
 namespace toile {
 
 /// Drops polygons that have the corners of an earlier one, in any order: duplicates, and the backs of
-/// two-sided faces.
+/// two-sided faces. Groups keep their other polygons.
 /// @return number of dropped polygons
 int drop_repeated_polygons(ObjMesh& mesh);
 
@@ -22,6 +22,9 @@ int drop_repeated_corners(ObjMesh& mesh);
 /// @param distance  [m] at which two points are one
 /// @return [vertices] vertex that stands for each: itself, or a lower one
 std::vector<int> stitch(ObjMesh& mesh, double distance);
+
+/// Drops lines between the ends of an earlier one, in any direction.
+void drop_repeated_lines(ObjMesh& mesh);
 
 /// Drops vertices without a polygon, and lines to them; the others keep their order.
 /// @return [vertices before] new number; for a dropped one -1

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <fstream>
@@ -59,6 +60,8 @@ public:
                 mesh_.texture_coordinates.push_back(Vec2{u, is_line_read() ? 0.0 : number()});
             } else if (keyword == "f" || keyword == "fo") { // fo: a face in files of the first versions
                 read_face();
+            } else if (keyword == "g") {
+                begin_group(mesh_, std::string(rest_of_line()), int(mesh_.polygons.size()));
             } else if (keyword == "l") {
                 read_line();
             } else if (keyword == "curv" || keyword == "curv2" || keyword == "surf") {
@@ -68,6 +71,7 @@ public:
         if (mesh_.positions.empty())
             refuse_content();
         drop_incomplete_texture();
+        drop_empty_group();
         return std::move(mesh_);
     }
 
@@ -142,6 +146,13 @@ private:
         return word;
     }
 
+    /// Without the spaces around it.
+    std::string_view rest_of_line() const
+    {
+        const size_t begin = std::min(rest_.find_first_not_of(" \t\r"), rest_.size());
+        return rest_.substr(begin, rest_.find_last_not_of(" \t\r") + 1 - begin);
+    }
+
     double number()
     {
         if (is_line_read())
@@ -214,6 +225,13 @@ private:
         uvs.clear();
     }
 
+    /// Drops a group that begins after the last polygon.
+    void drop_empty_group()
+    {
+        if (!mesh_.groups.empty() && mesh_.groups.back().first_polygon == int(mesh_.polygons.size()))
+            mesh_.groups.pop_back();
+    }
+
     std::filesystem::path file_;
     std::string text_;
     std::string_view left_; ///< of text_, not taken yet
@@ -246,6 +264,15 @@ std::vector<Triangle> ObjMesh::triangles_of(int polygon) const
     for (const int v : polygons[polygon])
         corners.push_back(positions[v]);
     return triangulate_polygon(corners);
+}
+
+void begin_group(ObjMesh& mesh, const std::string& name, int polygon)
+{
+    std::vector<ObjGroup>& groups = mesh.groups;
+    if (!groups.empty() && groups.back().first_polygon == polygon)
+        groups.pop_back();
+    if (name != (groups.empty() ? "" : groups.back().name))
+        groups.push_back({polygon, name});
 }
 
 ObjMesh faces_of(const TriangleMesh& mesh)
@@ -295,6 +322,14 @@ std::vector<FlatTriangle> texture_triangles(const ObjMesh& mesh)
 ObjMesh subdivide(const ObjMesh& mesh, int levels)
 {
     ObjMesh fine = faces_of(subdivide(mesh.triangulated(), levels));
+    fine.lines = mesh.lines;
+    auto group = mesh.groups.begin();
+    int triangles = 0;
+    for (int f = 0; f < int(mesh.polygons.size()); ++f) {
+        for (; group != mesh.groups.end() && group->first_polygon == f; ++group)
+            fine.groups.push_back({triangles << (2 * levels), group->name});
+        triangles += int(mesh.triangles_of(f).size());
+    }
     if (mesh.polygon_uvs.empty())
         return fine;
     const ObjMesh texture = faces_of(subdivide(texture_surface(mesh), levels));
@@ -343,6 +378,15 @@ void append_line(std::string& text, const char* keyword, std::span<const double>
     text += '\n';
 }
 
+/// Characters that end a name, or the line, for a reader.
+std::string group_line(std::string name)
+{
+    for (char& c : name)
+        if (std::iscntrl(static_cast<unsigned char>(c)) != 0 || c == '#' || c == '\\')
+            c = '_';
+    return name.empty() ? "g\n" : "g " + name + "\n";
+}
+
 } // namespace
 
 ObjMesh read_obj(const std::filesystem::path& file) { return ObjReader(file).read(); }
@@ -354,7 +398,10 @@ void write_obj(const std::filesystem::path& file, const ObjMesh& mesh)
         append_line(text, "v", {p.data(), 3});
     for (const Vec2& t : mesh.texture_coordinates)
         append_line(text, "vt", {t.data(), 2});
+    auto group = mesh.groups.begin();
     for (size_t f = 0; f < mesh.polygons.size(); ++f) {
+        for (; group != mesh.groups.end() && group->first_polygon == int(f); ++group)
+            text += group_line(group->name);
         text += 'f';
         for (size_t k = 0; k < mesh.polygons[f].size(); ++k) {
             text += ' ' + std::to_string(mesh.polygons[f][k] + 1);

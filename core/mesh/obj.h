@@ -10,6 +10,14 @@
 
 namespace toile {
 
+/// Polygons from one of a mesh to the next group.
+struct ObjGroup {
+    int first_polygon = 0;
+    std::string name; ///< rest of the g line, with the spaces in it; empty: the group of no name
+
+    bool operator==(const ObjGroup&) const = default;
+};
+
 /// Wavefront OBJ surface as stored. Vertex order, polygons and texture coordinates are kept, so that a cache
 /// in vertex order plays on the mesh it came from (assimp reorders; 0 of 9 612 vertices stay).
 struct ObjMesh {
@@ -18,6 +26,7 @@ struct ObjMesh {
     std::vector<std::vector<int>> polygons;    ///< vertex indices, 0-based
     std::vector<std::vector<int>> polygon_uvs; ///< texture indices per corner, or empty; parallel to polygons
     std::vector<std::array<int, 2>> lines;     ///< vertex indices of the pieces of l lines
+    std::vector<ObjGroup> groups;              ///< by their first polygons, ascending; may be empty
 
     // Of a file, for messages; empty or 0 for a mesh made otherwise.
     std::vector<int> polygon_lines; ///< line of each polygon, counted from 1
@@ -43,10 +52,15 @@ double signed_area(const FlatTriangle& triangle);
 /// Texture coordinates of the corners of triangulated()'s triangles; empty for a mesh without any.
 std::vector<FlatTriangle> texture_triangles(const ObjMesh& mesh);
 
-/// Triangles of a mesh split as by subdivide(TriangleMesh), with their texture.
+/// Triangles of a mesh split as by subdivide(TriangleMesh), with their texture,
+/// groups and lines, which keep their ends.
 ObjMesh subdivide(const ObjMesh& mesh, int levels);
 
-/// Reads v, vt, f and l lines (negative indices too), with any line ends, comments, continued lines and a
+/// Lets the polygons from `polygon` on be of a group, until the next begins.
+/// @param polygon  at least the first of all groups so far
+void begin_group(ObjMesh& mesh, const std::string& name, int polygon);
+
+/// Reads v, vt, f, g and l lines (negative indices too), with any line ends, comments, continued lines and a
 /// byte-order mark; ignores other lines of the format. Texture indices are kept only if every face has them.
 /// @throws InvalidInput naming file and line: missing file, one without vertices, a number that does not
 ///         parse or is not finite, an index out of range, a face of fewer than three or more than 10 000
@@ -56,9 +70,9 @@ ObjMesh read_obj(const std::filesystem::path& file);
 /// As for triangles, naming the line of the face.
 void require_usable(const ObjMesh& mesh, const std::string& source);
 
-/// Writes positions with 9 significant digits, the polygons (with texture coordinates where present) and the
-/// lines.
-/// The file appears complete or not at all.
+/// Writes positions with 9 significant digits, the polygons (with texture coordinates where present) in their
+/// groups, and the lines. Characters of names that would end them are written as _. The file appears complete
+/// or not at all.
 /// @throws InvalidInput or DeviceError as write_atomically does.
 void write_obj(const std::filesystem::path& file, const ObjMesh& mesh);
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh);

@@ -57,6 +57,26 @@ Topology build_topology(View<const Triangle> triangles, int vertex_count, const 
 /// @throws InvalidInput for two that run along an edge in the same direction, where they can't be paired
 Topology build_branching_topology(const TriangleMesh& mesh, const std::string& source);
 
+/// Shape of a triangle surface, whatever its windings. Vertices without a triangle do not count, and neither
+/// do collapsed triangles but for being listed.
+struct SurfaceTopology {
+    int pieces = 0;               ///< sets of triangles joined by edges
+    int border_loops = 0;         ///< openings: neck, hem, cuffs
+    int euler_characteristic = 0; ///< vertices - edges + triangles; 2 - 2 genus - border loops a piece
+
+    std::vector<std::array<int, 2>> non_manifold_edges; ///< vertices; of three or more triangles, borders
+    std::vector<int> collapsed_triangles;               ///< with two corners in one vertex
+    std::vector<int> duplicate_triangles;               ///< with the corners of an earlier one
+
+    bool is_manifold() const
+    {
+        return non_manifold_edges.empty() && collapsed_triangles.empty() && duplicate_triangles.empty();
+    }
+};
+
+/// O(n log n).
+SurfaceTopology surface_topology(View<const Triangle> triangles);
+
 /// Corners (3 * triangle + corner) per vertex, ascending: for gathering per-corner values.
 Incidence corners_of_vertices(View<const Triangle> triangles, int vertex_count);
 

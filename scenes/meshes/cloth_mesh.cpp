@@ -109,6 +109,7 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
                                   " with the corners of others: duplicates, or backs of two-sided faces");
     const int branching_in_file = branching_edges(mesh);
     const bool is_welded = join_vertices(cloth, result);
+    drop_repeated_lines(mesh);
     if (const int count = make_windings_agree(mesh); count > 0)
         result.warnings.push_back("flipped " + counted(count, "face", "faces") +
                                   (count == 1 ? " that was" : " that were") +

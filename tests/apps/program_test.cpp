@@ -219,12 +219,18 @@ TEST(Info, DescribesEveryKindOfFile)
     folder.write("mixed.obj", textured + "v .1 .1 0\nf 2 4 3\n");
     says("mixed.obj", "not usable as rest shape: mixed.obj:9: the face has no texture coordinates");
     EXPECT_EQ(run_toile({"info", "sheet.obj"}, folder.path()).output.find("rest shape"), std::string::npos);
+    says("two_sided.obj", "pieces: 1\nborder loops: 0\nEuler characteristic: 2\n");
+    says("two_sided.obj", "as cloth: 1 piece, 1 border loop, Euler characteristic 1\n");
+    folder.write("branching.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\ng a\nf 1 2 3\ng b\nf 1 2 4\n"
+                                  "g a\nf 1 2 5\nl 3 4 5\n");
+    says("branching.obj", "groups: 2 (a, b)\nlines: 2\npieces: 1\n");
+    says("branching.obj", "edges of three or more triangles: 1\n");
     folder.write("points.obj", "v 0 0 0\n");
     says("points.obj", "not usable as cloth: points.obj: the mesh has no triangle");
     folder.write("tet.vtk",
                  "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
                  "0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
-    says("tet.vtk", "triangles of the surface: 4");
+    says("tet.vtk", "triangles of the surface: 4\npieces: 1\nborder loops: 0\nEuler characteristic: 2\n");
 }
 
 TEST(Schema, PrintsJsonAndTables)

@@ -6,5 +6,6 @@ namespace toile::app {
 
 // Subcommands of `toile pattern`, one source file each.
 Command add_pattern_show(CLI::App& parser);
+Command add_pattern_mesh(CLI::App& parser);
 
 } // namespace toile::app

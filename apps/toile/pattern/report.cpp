@@ -111,10 +111,11 @@ std::string panel_text(const Panel& panel, const PanelFacts& facts)
 std::string seam_text(const PatternReport& report, int index)
 {
     const SeamFacts& facts = report.seams[size_t(index)];
-    const SeamWords words = words_of(report.pattern, report.pattern.seams[size_t(index)]);
-    return "seam " + std::to_string(index) + ": " + joined(words.a) + " to " + joined(words.b) +
-           formatted(", %s, %.4f and %.4f m, ratio %.3f, gap %.3f m\n", words.join, facts.measure.length_a,
-                     facts.measure.length_b, facts.measure.ratio(), facts.measure.gap);
+    const Seam& seam = report.pattern.seams[size_t(index)];
+    return "seam " + std::to_string(index) + ": " + sides_text(report.pattern, seam) +
+           formatted(", %s, %.4f and %.4f m, ratio %.3f, gap %.3f m\n", words_of(report.pattern, seam).join,
+                     facts.measure.length_a, facts.measure.length_b, facts.measure.ratio(),
+                     facts.measure.gap);
 }
 
 Json json_of(const EdgeFacts& edge, int index)
@@ -194,6 +195,12 @@ PatternReport report_on(Pattern pattern)
     }
     report.pattern = std::move(pattern);
     return report;
+}
+
+std::string sides_text(const Pattern& pattern, const Seam& seam)
+{
+    const SeamWords words = words_of(pattern, seam);
+    return joined(words.a) + " to " + joined(words.b);
 }
 
 std::string name_in_garment_file(const Pattern& pattern, const EdgePart& part)

@@ -50,6 +50,9 @@ std::string to_json(const PatternReport& report);
 /// Why a seam is twisted and what mends it, in one line: seam 3: ...
 std::string twist_text(const PatternReport& report, int seam);
 
+/// Sides of a seam in the words of a garment file: band.0 to front.2 + back.2.
+std::string sides_text(const garment::Pattern& pattern, const garment::Seam& seam);
+
 /// Panel and edge as garment files name them: front.3[0.2:0.6].
 std::string name_in_garment_file(const garment::Pattern& pattern, const garment::EdgePart& part);
 

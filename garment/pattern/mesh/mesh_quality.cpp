@@ -39,14 +39,25 @@ struct OutlineVertices {
     }
 };
 
-OutlineVertices outline_vertices(const PatternMesh& mesh)
+/// Panels of a mesh from one to before another.
+struct PanelRange {
+    int begin, end;
+
+    View<const Triangle> triangles(const PatternMesh& mesh) const
+    {
+        const int first = mesh.first_triangle[begin];
+        return View<const Triangle>(mesh.triangles.data() + first, mesh.first_triangle[end] - first);
+    }
+};
+
+OutlineVertices outline_vertices(const PatternMesh& mesh, const PanelRange& panels)
 {
     std::vector<double> angles(mesh.vertex_count(), 0.0);
-    for (const Triangle& t : mesh.triangles)
+    for (const Triangle& t : panels.triangles(mesh))
         for (int k = 0; k < 3; ++k)
             angles[t[k]] += angle_at(mesh, t, k);
     std::vector<bool> is_outline(mesh.vertex_count(), false), is_forced = is_outline;
-    for (int p = 0; p < mesh.panel_count(); ++p)
+    for (int p = panels.begin; p < panels.end; ++p)
         for (const auto& edge : mesh.edge_vertices[p])
             for (size_t i = 0; i + 1 < edge.size(); ++i) {
                 const int a = edge[i].vertex, b = edge[i + 1].vertex;
@@ -58,10 +69,10 @@ OutlineVertices outline_vertices(const PatternMesh& mesh)
     return {is_outline, is_forced};
 }
 
-void measure_edges(const PatternMesh& mesh, MeshQuality& quality)
+void measure_edges(const PatternMesh& mesh, View<const Triangle> triangles, MeshQuality& quality)
 {
     std::vector<std::array<int, 2>> edges;
-    for (const Triangle& t : mesh.triangles)
+    for (const Triangle& t : triangles)
         for (int k = 0; k < 3; ++k)
             edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
     std::sort(edges.begin(), edges.end());
@@ -80,23 +91,22 @@ void measure_edges(const PatternMesh& mesh, MeshQuality& quality)
     quality.in_range = in_range / double(edges.size());
 }
 
-} // namespace
-
-MeshQuality quality_of(const PatternMesh& mesh)
+MeshQuality quality_of(const PatternMesh& mesh, const PanelRange& panels)
 {
+    const View<const Triangle> triangles = panels.triangles(mesh);
     MeshQuality quality;
-    quality.vertices = mesh.vertex_count();
-    quality.triangles = mesh.triangle_count();
-    measure_edges(mesh, quality);
+    quality.vertices = mesh.first_vertex[panels.end] - mesh.first_vertex[panels.begin];
+    quality.triangles = triangles.size();
+    measure_edges(mesh, triangles, quality);
 
-    const OutlineVertices outline = outline_vertices(mesh);
+    const OutlineVertices outline = outline_vertices(mesh, panels);
     quality.smallest_angle = quality.smallest_free_angle = std::numbers::pi;
-    for (int i = 0; i < mesh.triangle_count(); ++i) {
-        const Triangle& t = mesh.triangles[i];
+    for (int i = 0; i < triangles.size(); ++i) {
+        const Triangle& t = triangles[i];
         const double angle = smallest_angle(mesh, t);
         if (angle < quality.smallest_angle) {
             quality.smallest_angle = angle;
-            quality.smallest_angle_triangle = i;
+            quality.smallest_angle_triangle = mesh.first_triangle[panels.begin] + i;
         }
         if (outline.force(t))
             ++quality.forced_triangles;
@@ -104,6 +114,18 @@ MeshQuality quality_of(const PatternMesh& mesh)
             quality.smallest_free_angle = std::min(quality.smallest_free_angle, angle);
     }
     return quality;
+}
+
+} // namespace
+
+MeshQuality quality_of(const PatternMesh& mesh)
+{
+    return quality_of(mesh, PanelRange{0, mesh.panel_count()});
+}
+
+MeshQuality quality_of_panel(const PatternMesh& mesh, int panel)
+{
+    return quality_of(mesh, PanelRange{panel, panel + 1});
 }
 
 } // namespace toile::garment

@@ -25,4 +25,7 @@ struct MeshQuality {
 
 MeshQuality quality_of(const PatternMesh& mesh);
 
+/// The same of one panel. `smallest_angle_triangle` counts in the whole mesh.
+MeshQuality quality_of_panel(const PatternMesh& mesh, int panel);
+
 } // namespace toile::garment

@@ -87,12 +87,17 @@ std::vector<PanelTriangulation::Face> PanelTriangulation::inside_faces() const
     return faces;
 }
 
+/// CGAL's own loop over edges compares addresses of faces, so that its order differs from run to run.
 std::vector<std::array<PanelTriangulation::Vertex, 2>> PanelTriangulation::free_edges() const
 {
+    const std::vector<Face> faces = inside_faces();
+    for (size_t i = 0; i < faces.size(); ++i)
+        faces[i]->info().stamp = int(i);
     std::vector<std::array<Vertex, 2>> edges;
-    for (const auto& [f, k] : cdt_.finite_edges())
-        if (f->info().is_inside && !f->is_constrained(k))
-            edges.push_back({f->vertex(Cdt::ccw(k)), f->vertex(Cdt::cw(k))});
+    for (const Face f : faces)
+        for (int k = 0; k < 3; ++k)
+            if (!f->is_constrained(k) && f->info().stamp < f->neighbor(k)->info().stamp)
+                edges.push_back({f->vertex(Cdt::ccw(k)), f->vertex(Cdt::cw(k))});
     return edges;
 }
 

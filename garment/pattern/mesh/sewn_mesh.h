@@ -4,29 +4,18 @@
 #include <optional>
 #include <vector>
 
+#include "core/mesh/topology.h"
 #include "garment/pattern/mesh/pattern_mesh.h"
 
 namespace toile::garment {
 
-/// Topology of a sewn surface.
-struct SewnTopology {
-    int pieces = 0;               ///< sets of triangles joined by edges
-    int border_loops = 0;         ///< openings: neck, hem, cuffs
-    int euler_characteristic = 0; ///< vertices - edges + triangles; 2 - 2 genus - border loops a piece
-
+/// Topology of a sewn surface, by its welded vertices.
+struct SewnTopology : SurfaceTopology {
     /// Seam that makes the surface one-sided: a strip of it has its outside inside after one turn. Flip one
     /// of its sides to mend it. None if the surface has two sides.
     std::optional<int> one_sided_seam;
 
-    std::vector<std::array<int, 2>> non_manifold_edges; ///< welded vertices; of three or more triangles
-    std::vector<int> collapsed_triangles;               ///< with two corners in one welded vertex
-    std::vector<int> duplicate_triangles;               ///< with the corners of an earlier one
-
     bool is_orientable() const { return !one_sided_seam; }
-    bool is_manifold() const
-    {
-        return non_manifold_edges.empty() && collapsed_triangles.empty() && duplicate_triangles.empty();
-    }
 };
 
 /// Pattern mesh with stitched vertices welded. Triangle t is that of the pattern mesh; the corners there are

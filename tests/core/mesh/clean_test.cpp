@@ -100,6 +100,25 @@ TEST(DropRepeatedPolygons, KeepsEachOnceWithItsTextureAndLine)
     EXPECT_EQ(mesh.polygon_lines, (std::vector<int>{11, 13}));
 }
 
+TEST(DropRepeatedPolygons, KeepsGroups)
+{
+    ObjMesh mesh;
+    mesh.positions.resize(5, Vec3::Zero());
+    mesh.polygons = {{0, 1, 2}, {2, 1, 0}, {1, 2, 3}, {0, 1, 2}, {2, 3, 4}, {4, 3, 2}};
+    mesh.groups = {{0, "front"}, {1, "its back"}, {2, "side"}, {3, "side again"}, {5, "end"}};
+    EXPECT_EQ(drop_repeated_polygons(mesh), 3);
+    EXPECT_EQ(mesh.polygons, (Polygons{{0, 1, 2}, {1, 2, 3}, {2, 3, 4}}));
+    EXPECT_EQ(mesh.groups, (std::vector<ObjGroup>{{0, "front"}, {1, "side"}, {2, "side again"}}));
+}
+
+TEST(DropRepeatedLines, KeepsEachOnceInItsDirection)
+{
+    ObjMesh mesh;
+    mesh.lines = {{3, 1}, {0, 2}, {1, 3}, {3, 1}, {0, 1}};
+    drop_repeated_lines(mesh);
+    EXPECT_EQ(mesh.lines, (std::vector<std::array<int, 2>>{{3, 1}, {0, 2}, {0, 1}}));
+}
+
 TEST(DropLooseVertices, KeepsTheOrderOfTheOthers)
 {
     ObjMesh mesh;

@@ -262,6 +262,46 @@ TEST(WriteObj, OfTrianglesReadsBackAsTheSameTriangles)
     EXPECT_EQ(again.triangles, mesh.triangles);
 }
 
+using Groups = std::vector<ObjGroup>;
+
+TEST(ReadObj, KeepsGroupsByTheirFirstFaces)
+{
+    const std::string face = "f 1 2 3\n";
+    const auto groups = [&](const std::string& text) { return read_text(kThreeVertices + text).groups; };
+    EXPECT_EQ(groups(face), Groups{});
+    EXPECT_EQ(groups("g front\n" + face + face + "g left  sleeve \r\n" + face),
+              (Groups{{0, "front"}, {2, "left  sleeve"}}));
+    // Faces before the first g, one without a name, groups without a face, and one that goes on.
+    EXPECT_EQ(groups(face + "g none\ng a\n" + face + "g a\n" + face + "g\n" + face + "g end\n"),
+              (Groups{{1, "a"}, {3, ""}}));
+    EXPECT_EQ(groups("g a\n" + face + "g b\ng a\n" + face), (Groups{{0, "a"}}));
+    EXPECT_EQ(groups("g a # not b\n" + face + "g c\\\nd\n" + face), (Groups{{0, "a"}, {1, "c d"}}));
+}
+
+TEST(WriteObj, RoundTripKeepsGroupsAndLines)
+{
+    ObjMesh mesh = faces_of(tetrahedron());
+    mesh.groups = {{1, "front panel"}, {2, ""}, {3, "\xc3\xa4rmel"}};
+    mesh.lines = {{0, 3}, {2, 1}};
+    const ObjFile file;
+    write_obj(file.path(), mesh);
+    const ObjMesh again = read_obj(file.path());
+    EXPECT_EQ(again.groups, mesh.groups);
+    EXPECT_EQ(again.lines, mesh.lines);
+    EXPECT_EQ(again.polygons, mesh.polygons);
+}
+
+TEST(WriteObj, LetsNoNameEndItsLine)
+{
+    ObjMesh mesh = faces_of(tetrahedron());
+    mesh.groups = {{0, "a\nf 1 2 9"}, {1, "b #c"}, {2, "d\\"}};
+    const ObjFile file;
+    write_obj(file.path(), mesh);
+    const ObjMesh again = read_obj(file.path());
+    EXPECT_EQ(again.groups, (Groups{{0, "a_f 1 2 9"}, {1, "b _c"}, {2, "d_"}}));
+    EXPECT_EQ(again.polygons, mesh.polygons);
+}
+
 TEST(ReadObj, ReadsTheRealGarmentsAndBodies)
 {
     struct Known {

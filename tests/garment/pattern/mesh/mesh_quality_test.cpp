@@ -62,6 +62,33 @@ TEST(QualityOf, LeavesForcedPlacesOut)
     EXPECT_EQ(quality_of(mesh).forced_triangles, 4);
 }
 
+TEST(QualityOf, OfAPanelIsThatOfAPatternOfItAlone)
+{
+    // Panels that nothing joins are meshed alike, alone or not.
+    Pattern pattern = pattern_of(half_disc("collar", 0.2));
+    pattern.panels.push_back(rectangle("band", 0.5, 0.03));
+    const PatternMesh mesh = mesh_pattern(pattern, {0.02, {0.02, 0.013}, {}});
+    int vertices = 0, triangles = 0;
+    for (int p = 0; p < 2; ++p) {
+        const MeshQuality alone =
+            quality_of(mesh_pattern(pattern_of(pattern.panels[size_t(p)]), {mesh.edge[size_t(p)], {}, {}}));
+        const MeshQuality quality = quality_of_panel(mesh, p);
+        EXPECT_EQ(quality.vertices, alone.vertices);
+        EXPECT_EQ(quality.triangles, alone.triangles);
+        EXPECT_EQ(quality.smallest_angle, alone.smallest_angle);
+        EXPECT_EQ(quality.smallest_angle_triangle - mesh.first_triangle[size_t(p)],
+                  alone.smallest_angle_triangle);
+        EXPECT_EQ(quality.smallest_free_angle, alone.smallest_free_angle);
+        EXPECT_EQ(quality.forced_triangles, alone.forced_triangles);
+        EXPECT_EQ(quality.in_range, alone.in_range);
+        EXPECT_EQ(quality.longest_edge, alone.longest_edge);
+        vertices += quality.vertices;
+        triangles += quality.triangles;
+    }
+    EXPECT_EQ(vertices, quality_of(mesh).vertices);
+    EXPECT_EQ(triangles, quality_of(mesh).triangles);
+}
+
 } // namespace
 
 } // namespace toile::garment::test

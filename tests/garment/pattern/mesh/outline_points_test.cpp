@@ -96,7 +96,7 @@ TEST(DivideOutlines, MakesCornersOfOneSidePointsOfTheOther)
     // A T-seam: one edge of 0.8 m against two of 0.3 m and 0.5 m of different panels.
     Pattern pattern = two_rectangles(0.3, 0.5);
     pattern.panels.push_back(rectangle("yoke", 0.8, 0.1));
-    pattern.seams = {{{{2, 0, 0.0, 1.0}}, {{0, 2, 1.0, 0.0}, {1, 2, 1.0, 0.0}}, "yoke seam"}};
+    pattern.seams = {{{{2, 0, 0.0, 1.0}}, {{0, 2, 1.0, 0.0}, {1, 2, 1.0, 0.0}}, "yoke seam", {}}};
     const OutlinePoints points = divide(pattern, 0.019);
     EXPECT_THAT(points.fractions[2][0], Contains(DoubleNear(0.375, 1e-12)));
     EXPECT_EQ(points.fractions[0][2].size() - 1, 16u);
@@ -113,7 +113,8 @@ TEST(DivideOutlines, PairsPointsByArcLengthThroughChainsAndFractions)
 {
     Pattern pattern = two_rectangles(0.6, 0.5);
     // a: part of the bottom, then the right side; b: left side, downwards, then part of the bottom.
-    pattern.seams = {{{{0, 0, 0.25, 1.0}, {0, 1, 0.0, 1.0}}, {{1, 3, 0.0, 1.0}, {1, 0, 0.0, 0.7}}, "spiral"}};
+    pattern.seams = {
+        {{{0, 0, 0.25, 1.0}, {0, 1, 0.0, 1.0}}, {{1, 3, 0.0, 1.0}, {1, 0, 0.0, 0.7}}, "spiral", {}}};
     const OutlinePoints points = divide(pattern, 0.013);
     const auto along = [&](const OutlinePoint& at, bool is_a) {
         const double f = fraction(points, at);
@@ -138,7 +139,8 @@ TEST(DivideOutlines, LetsCornersMeetThatAreNearEachOther)
     Pattern pattern = two_rectangles(0.40, 0.402);
     pattern.panels.push_back(rectangle("c", 0.60, 0.1));
     pattern.panels.push_back(rectangle("d", 0.598, 0.1));
-    pattern.seams = {{{{0, 0, 0.0, 1.0}, {2, 0, 0.0, 1.0}}, {{1, 2, 1.0, 0.0}, {3, 2, 1.0, 0.0}}, "side"}};
+    pattern.seams = {
+        {{{0, 0, 0.0, 1.0}, {2, 0, 0.0, 1.0}}, {{1, 2, 1.0, 0.0}, {3, 2, 1.0, 0.0}}, "side", {}}};
     const OutlinePoints points = divide(pattern, 0.02);
     EXPECT_EQ(points.fractions[0][0].size(), 22u);
     EXPECT_EQ(points.fractions[1][2].size(), 22u);
@@ -157,7 +159,8 @@ TEST(DivideOutlines, DoesNotLetThePairingDependOnTheTarget)
     Pattern pattern = two_rectangles(0.40, 0.402);
     pattern.panels.push_back(rectangle("c", 0.60, 0.1));
     pattern.panels.push_back(rectangle("d", 0.598, 0.1));
-    pattern.seams = {{{{0, 0, 0.0, 1.0}, {2, 0, 0.0, 1.0}}, {{1, 2, 1.0, 0.0}, {3, 2, 1.0, 0.0}}, "side"}};
+    pattern.seams = {
+        {{{0, 0, 0.0, 1.0}, {2, 0, 0.0, 1.0}}, {{1, 2, 1.0, 0.0}, {3, 2, 1.0, 0.0}}, "side", {}}};
     for (const double target : {0.03, 0.01, 0.001}) {
         const OutlinePoints points = divide(pattern, target);
         for (const auto& [a, b] : points.seams[0])
@@ -168,7 +171,7 @@ TEST(DivideOutlines, DoesNotLetThePairingDependOnTheTarget)
 TEST(DivideOutlines, SewsAnEdgeToItself)
 {
     Pattern pattern = pattern_of(rectangle("pouch", 0.4, 0.2));
-    pattern.seams = {{{{0, 0, 0.0, 0.5}}, {{0, 0, 1.0, 0.5}}, "fold"}};
+    pattern.seams = {{{{0, 0, 0.0, 0.5}}, {{0, 0, 1.0, 0.5}}, "fold", {}}};
     const OutlinePoints points = divide(pattern, 0.05);
     ASSERT_EQ(points.seams[0].size(), 5u);
     EXPECT_EQ(points.seams[0].back()[0], points.seams[0].back()[1]) << "the middle meets itself";
@@ -177,8 +180,8 @@ TEST(DivideOutlines, SewsAnEdgeToItself)
 TEST(DivideOutlines, RefusesPartsThatOverlap)
 {
     Pattern pattern = two_rectangles(0.5, 0.5);
-    pattern.seams = {{{{0, 0, 0.0, 0.6}}, {{1, 0, 0.0, 1.0}}, "left"},
-                     {{{0, 0, 0.5, 1.0}}, {{1, 2, 0.0, 1.0}}, "right"}};
+    pattern.seams = {{{{0, 0, 0.0, 0.6}}, {{1, 0, 0.0, 1.0}}, "left", {}},
+                     {{{0, 0, 0.5, 1.0}}, {{1, 2, 0.0, 1.0}}, "right", {}}};
     EXPECT_THAT(error_of(pattern), AllOf(HasSubstr("test.json: panel \"front\", edge 0 is sewn twice"),
                                          HasSubstr("\"left\""), HasSubstr("\"right\""), HasSubstr("0.5")));
     pattern.seams[1].a[0].from = 0.6;
@@ -189,8 +192,8 @@ TEST(DivideOutlines, TakesFractionsOfThreeDigitsAsOnePoint)
 {
     Pattern pattern = two_rectangles(0.5, 0.5);
     for (const double end : {0.3333, 0.333, 0.334}) {
-        pattern.seams = {{{{0, 0, 0.0, end}}, {{1, 0, 0.0, 1.0}}, "left"},
-                         {{{0, 0, 1.0 / 3.0, 1.0}}, {{1, 2, 0.0, 1.0}}, "right"}};
+        pattern.seams = {{{{0, 0, 0.0, end}}, {{1, 0, 0.0, 1.0}}, "left", {}},
+                         {{{0, 0, 1.0 / 3.0, 1.0}}, {{1, 2, 0.0, 1.0}}, "right", {}}};
         const OutlinePoints points = divide(pattern, 0.01);
         EXPECT_EQ(points.seams[0].back()[0], points.seams[1].front()[0]) << end;
     }
@@ -199,7 +202,7 @@ TEST(DivideOutlines, TakesFractionsOfThreeDigitsAsOnePoint)
 TEST(DivideOutlines, RefusesPartsThatDoNotExist)
 {
     Pattern pattern = two_rectangles(0.5, 0.5);
-    pattern.seams = {{{{0, 9, 0.0, 1.0}}, {{1, 0, 0.0, 1.0}}, "left"}};
+    pattern.seams = {{{{0, 9, 0.0, 1.0}}, {{1, 0, 0.0, 1.0}}, "left", {}}};
     EXPECT_THAT(error_of(pattern), HasSubstr("seam \"left\": panel \"front\" has no edge 9; it has 4"));
     pattern.seams[0].a[0] = {5, 0, 0.0, 1.0};
     EXPECT_THAT(error_of(pattern), HasSubstr("panel 5 does not exist; the pattern has 2"));

@@ -76,7 +76,7 @@ Pattern pattern_of(const Panel& panel)
 
 Seam seam(const std::string& name, int panel_a, int edge_a, int panel_b, int edge_b)
 {
-    return {{{panel_a, edge_a, 0.0, 1.0}}, {{panel_b, edge_b, 1.0, 0.0}}, name};
+    return {{{panel_a, edge_a, 0.0, 1.0}}, {{panel_b, edge_b, 1.0, 0.0}}, name, {}};
 }
 
 Pattern front_and_back(const Panel& front, const std::vector<int>& sewn_edges)

@@ -76,7 +76,7 @@ TEST(Resample, KeepsSeamsClosed)
     Pattern pattern = front_and_back(half_ring("front", 0.1, 0.4), {1, 3});
     pattern.panels.push_back(rectangle("band", 0.5, 0.04));
     pattern.seams.push_back(
-        {{{2, 0, 0.0, 0.45}, {2, 0, 0.45, 0.9}}, {{0, 2, 0.0, 1.0}, {1, 1, 0.0, 1.0}}, "waist"});
+        {{{2, 0, 0.0, 0.45}, {2, 0, 0.45, 0.9}}, {{0, 2, 0.0, 1.0}, {1, 1, 0.0, 1.0}}, "waist", {}});
     const PatternMesh coarse = mesh_pattern(pattern, {0.04, {}, {}}),
                       fine = mesh_pattern(pattern, {0.011, {}, {}});
     const SewnMesh sewn = sewn_mesh(coarse);

@@ -1,0 +1,85 @@
+#include <iostream>
+#include <memory>
+
+#include "apps/toile/pattern/commands.h"
+#include "apps/toile/pattern/mesh_report.h"
+#include "apps/toile/terminal/command_line.h"
+#include "apps/toile/terminal/run_log.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/extension.h"
+#include "core/base/file_plan.h"
+#include "core/base/number.h"
+#include "garment/pattern/mesh/placed_panels.h"
+#include "scenes/format/field.h"
+#include "scenes/garment_format/read_garment.h"
+
+namespace toile::app {
+
+namespace {
+
+struct MeshOptions {
+    std::filesystem::path file;
+    std::filesystem::path output; ///< empty: no mesh is written
+    double edge = 0.01;           ///< [m]
+    bool json = false;
+};
+
+void require_valid(const MeshOptions& options)
+{
+    const scene_format::Range& range = scene_format::kResolution; // as of edges in garment files
+    if (!range.contains(options.edge))
+        throw InvalidInput("--edge " + short_text(options.edge) + ": is out of range; give a length " +
+                           to_sentence(range));
+    if (!options.output.empty() && lower_case_extension(options.output) != ".obj" &&
+        !is_stream(options.output))
+        throw InvalidInput(options.output.string() + ": meshes are OBJ; name a file that ends in .obj");
+}
+
+/// Refuses a mesh that would replace a file that it is made from, or could not be written.
+void require_safe_output(const std::filesystem::path& file, const garment::Pattern& pattern)
+{
+    FilePlan plan;
+    for (const std::filesystem::path& input : pattern.files)
+        plan.add_input(input, "the pattern");
+    plan.add_output(file, "the mesh");
+    require_writable(file);
+}
+
+int mesh(const MeshOptions& options)
+{
+    require_valid(options);
+    garment::Pattern pattern = garment_format::read_pattern(options.file);
+    if (!options.output.empty())
+        require_safe_output(options.output, pattern);
+    const MeshReport report = mesh_report_on(std::move(pattern), options.edge);
+    if (!options.output.empty())
+        write_obj(options.output, placed_panels(report.pattern.pattern, report.mesh));
+    std::cout << (options.json ? to_json(report) : to_text(report));
+    const std::string failure = failure_of(report);
+    if (failure.empty())
+        return kExitOk;
+    RunLog(false).error(failure);
+    return kExitFailure;
+}
+
+} // namespace
+
+Command add_pattern_mesh(CLI::App& parser)
+{
+    Command command;
+    command.options =
+        parser.add_subcommand("mesh", "Fill the panels of a pattern with triangles that match along seams");
+    auto options = std::make_shared<MeshOptions>();
+    CLI::App& add = *command.options;
+    add.add_option("file", options->file, "Garment file or panel JSON")->required();
+    add.add_option("-o,--output", options->output,
+                   "Write the panels, where they start in space, to this .obj; its lines are the stitches");
+    add.add_option("--edge", options->edge,
+                   "Length of edges [m] in panels that have none of their own; 0.01");
+    add.add_flag("--json", options->json, "Print JSON instead of lines");
+    command.run = [options] { return mesh(*options); };
+    return command;
+}
+
+} // namespace toile::app
