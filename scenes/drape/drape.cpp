@@ -21,8 +21,10 @@ namespace toile::scenes {
 namespace {
 
 constexpr double kSewingEdge = 0.02; ///< [m]
-/// Time [s] for seams to close, and to fall into place on the coarse mesh.
-constexpr double kSewingTime = 3.0, kSettlingTime = 1.0;
+/// Time [s] for seams to close, to be pressed, and to fall into place on the coarse mesh.
+constexpr double kSewingTime = 3.0, kPressingTime = 0.5, kSettlingTime = 1.0;
+/// Bending rigidity [N m] of cloth that is pressed: a hundred times that of cotton.
+constexpr double kPressedRigidity = 1e-3;
 /// Samples without progress of the widest seam after which sewing ends.
 constexpr int kVainFrames = 30;
 /// Friction of panels that are pulled around the body.
@@ -78,7 +80,7 @@ public:
         if (!sew(coarse, x))
             return std::move(result_);
         std::vector<Vec3> welded = coarse.weld(x);
-        if (!settle(coarse, welded))
+        if (!press(coarse, welded) || !settle(coarse, welded))
             return std::move(result_);
         drape(fine, fine.weld(finer.apply(coarse.panels, coarse.unweld(welded))));
         return std::move(result_);
@@ -246,19 +248,40 @@ private:
         return false;
     }
 
+    /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
+    /// great bending rigidity, without gravity. x [welded vertices]
+    bool press(const GarmentMesh& mesh, std::vector<Vec3>& x)
+    {
+        const Clock clock;
+        Scene scene = scene_of("press", mesh.welded(x));
+        scene.gravity.setZero();
+        scene.contact.friction = kSewingFriction;
+        scene::Fabric& pressed = scene.fabrics["pressed"];
+        pressed.base = fabric_;
+        pressed.bend = {kPressedRigidity, kPressedRigidity};
+        scene.cloths[0].fabric = "pressed";
+        return simulate(scene, "press", kPressingTime, clock, x);
+    }
+
     /// Lets the welded coarse garment fall into place. x [welded vertices]
     bool settle(const GarmentMesh& mesh, std::vector<Vec3>& x)
     {
         const Clock clock;
         Scene scene = scene_of("settle", mesh.welded(x));
         hold_labels(mesh, scene, true);
-        scene.frames = int(kSettlingTime * scene.fps);
+        return simulate(scene, "settle", kSettlingTime, clock, x);
+    }
+
+    bool simulate(Scene& scene, const std::string& stage, double duration, const Clock& clock,
+                  std::vector<Vec3>& x)
+    {
+        scene.frames = int(duration * scene.fps);
         World world(scene, options_);
         for (int frame = 0; frame < scene.frames; ++frame)
             if (!is_finite(world.advance_frame()))
                 return false;
         x.assign(world.cloths()[0].positions.begin(), world.cloths()[0].positions.end());
-        result_.stages.push_back({"settle", clock.seconds(), scene.frames, int(x.size())});
+        result_.stages.push_back({stage, clock.seconds(), scene.frames, int(x.size())});
         return true;
     }
 

@@ -37,7 +37,7 @@ struct DrapeSettings {
 };
 
 struct DrapeStage {
-    std::string name; ///< mesh, sew, settle, drape
+    std::string name; ///< mesh, sew, press, settle, drape
     double seconds = 0.0;
     int frames = 0;
     int vertices = 0;
@@ -70,7 +70,8 @@ struct DrapeResult {
 ///
 ///   mesh    panels at kSewingEdge and at the final edge length
 ///   sew     threads pull the seams shut, without gravity, on the coarse mesh
-///   settle  the welded coarse mesh falls into place
+///   press   the welded coarse mesh unfolds along its seams
+///   settle  it falls into place
 ///   drape   the same on the fine mesh, until it is at rest; labelled edges are held by springs, and released
 ///           but for the waist and strapless tops
 ///
