@@ -185,18 +185,24 @@ private:
         return scene;
     }
 
-    /// Springs from labelled edges to the body.
+    /// Springs from labelled edges to the body. A vertex of two edges follows the one that stays attached.
     void hold_labels(const GarmentMesh& mesh, Scene& scene, bool also_released) const
     {
-        for (const std::string& label : labels_) {
-            if (!also_released && !stays_attached(label))
-                continue;
-            scene::Attachment attachment;
-            attachment.cloth = settings_.name;
-            attachment.select.by = mesh.labelled(pattern_, label);
-            attachment.to = settings_.body.name;
-            scene.attachments.push_back(attachment);
-        }
+        std::set<int> held;
+        for (const bool stays : {true, false})
+            for (const std::string& label : labels_) {
+                if (stays_attached(label) != stays || (!stays && !also_released))
+                    continue;
+                std::vector<int> vertices = mesh.labelled(pattern_, label);
+                std::erase_if(vertices, [&](int v) { return !held.insert(v).second; });
+                if (vertices.empty())
+                    continue;
+                scene::Attachment attachment;
+                attachment.cloth = settings_.name;
+                attachment.select.by = std::move(vertices);
+                attachment.to = settings_.body.name;
+                scene.attachments.push_back(attachment);
+            }
     }
 
     bool is_finite(const StepReport& report)
