@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/mesh/disjoint_sets.h"
+#include "core/base/disjoint_sets.h"
 #include "core/mesh/weld.h"
 
 namespace toile {

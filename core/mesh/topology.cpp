@@ -4,8 +4,8 @@
 #include <array>
 #include <tuple>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/error.h"
-#include "core/mesh/disjoint_sets.h"
 
 namespace toile {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/mesh/disjoint_sets.h"
+#include "core/base/disjoint_sets.h"
 
 namespace toile::garment {
 
