@@ -182,6 +182,7 @@ private:
         cloth.fabric = fabric_;
         scene.cloths = {cloth};
         scene.solver.quality = scene::Quality::Preview;
+        scene.solver.sleep.enabled = false; // asleep, it would have neither speed nor strain
         return scene;
     }
 
