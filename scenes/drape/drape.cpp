@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -306,16 +307,21 @@ private:
             held = x;
             Scene scene = scene_of(all ? "drape" : "release", mesh.welded(x));
             hold_labels(mesh, scene, all);
-            if (!come_to_rest(scene, x, frames))
+            const bool is_at_rest = come_to_rest(scene, x, frames, [&](View<const Vec3> now) {
+                return !all && has_slid_off(mesh, held, now);
+            });
+            if (!is_at_rest)
                 break;
             result_.scene = scene;
         }
         result_.stages.push_back({"drape", clock.seconds(), frames, int(x.size())});
         result_.mesh = mesh.welded(x);
-        measure_slides(mesh, held, x);
+        has_slid_off(mesh, held, x);
     }
 
-    bool come_to_rest(const Scene& scene, std::vector<Vec3>& x, int& frames)
+    /// @param has_failed  asked after every frame, and sets the outcome
+    bool come_to_rest(const Scene& scene, std::vector<Vec3>& x, int& frames,
+                      const std::function<bool(View<const Vec3>)>& has_failed)
     {
         World world(scene, options_);
         RestWatch watch(scene.frame_duration());
@@ -328,32 +334,36 @@ private:
             ++frames;
             watch.add(world.cloths()[0].positions);
             at_rest = watch.is_at_rest();
+            if (has_failed(world.cloths()[0].positions))
+                break;
         }
         x.assign(world.cloths()[0].positions.begin(), world.cloths()[0].positions.end());
         result_.rest_speed = watch.speed();
         result_.max_strain = report.max_strain;
-        if (at_rest)
-            return true;
+        if (at_rest || result_.outcome != DrapeOutcome::Draped)
+            return at_rest;
         result_.outcome = DrapeOutcome::NotAtRest;
         result_.message = "its fastest vertex moves at " + std::to_string(watch.speed()) + " m/s after " +
                           std::to_string(settings_.max_motion) + " s";
         return false;
     }
 
-    void measure_slides(const GarmentMesh& mesh, const std::vector<Vec3>& before,
-                        const std::vector<Vec3>& after)
+    /// Measures how far labelled edges have sunk. True if one has by more than it may.
+    bool has_slid_off(const GarmentMesh& mesh, const std::vector<Vec3>& before, View<const Vec3> after)
     {
+        result_.slides.clear();
         for (const std::string& label : labels_) {
             double sank = 0.0;
             const std::vector<int> edge = mesh.labelled(pattern_, label);
             for (const int v : edge)
                 sank += (before[v].y() - after[v].y()) / double(edge.size());
             result_.slides.push_back({label, sank});
-            if (sank <= kMaxSlide || result_.outcome != DrapeOutcome::Draped)
+            if (sank <= kMaxSlide)
                 continue;
             result_.outcome = DrapeOutcome::SlidOff;
             result_.message = "the edge \"" + label + "\" sank by " + std::to_string(100.0 * sank) + " cm";
         }
+        return result_.outcome == DrapeOutcome::SlidOff;
     }
 
     const DrapeSettings& settings_;

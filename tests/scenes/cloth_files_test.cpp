@@ -142,7 +142,7 @@ TEST_F(ClothFiles, RepeatedFacesAndLinesAreLeftOut)
     const std::string faces = obj.substr(obj.find("f "));
     World world = world_of(obj + "f 7 2 1 6\n" + faces + "l 1 2 3\n");
     EXPECT_TRUE(says("left out 17 faces with the corners of others")) << warnings_;
-    EXPECT_TRUE(says("left out 1 l line;")) << warnings_;
+    EXPECT_TRUE(says("left out 2 lines between vertices; \"sewing\": {} sews along them")) << warnings_;
     EXPECT_EQ(world.cloths()[0].triangles.size(), 32u);
     finish(world);
 }
