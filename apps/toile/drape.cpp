@@ -86,13 +86,12 @@ std::string report_of(const scenes::DrapeResult& result)
 std::string scene_text(const DrapeOptions& options, const scenes::DrapeResult& result)
 {
     const std::string& name = options.settings.name;
-    const std::filesystem::path body = std::filesystem::absolute(options.avatar);
     Json json = {{"toile", 1}, {"name", name + ", draped"}, {"frames", 60}};
     Json avatar = {{"name", options.settings.body.name}};
     if (options.avatar.empty())
         avatar["mannequin"] = Json::object();
     else
-        avatar["file"] = body.string();
+        avatar["file"] = std::filesystem::absolute(options.avatar).string();
     json["avatars"] = {avatar};
     json["cloths"] = {{{"name", name},
                        {"file", name + ".obj"},

@@ -159,6 +159,7 @@ private:
     std::vector<Vec3> placed(const GarmentMesh& mesh) const
     {
         std::vector<int> panel_of_vertex;
+        panel_of_vertex.reserve(size_t(mesh.panels.vertex_count()));
         for (int v = 0; v < mesh.panels.vertex_count(); ++v)
             panel_of_vertex.push_back(mesh.panels.panel_of_vertex(v));
         return garment::place_panels(pattern_, mesh.panels.uv, panel_of_vertex,

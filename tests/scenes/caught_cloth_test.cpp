@@ -83,10 +83,12 @@ Outcome run(const std::vector<BodyPart>& parts, const std::string& sheet, int fr
 {
     const TemporaryFolder folder;
     write_gltf(folder.path() / "body.gltf", parts);
-    folder.write("scene.json", R"({"toile": 1, "frames": )" + std::to_string(frames) +
-                                   R"(, "avatars": [{"name": "body", "file": "body.gltf", "clip": "move"}],
+    folder.write(
+        "scene.json",
+        R"({"toile": 1, "frames": )" + std::to_string(frames) +
+            R"(, "avatars": [{"name": "body", "file": "body.gltf", "clip": "move", "self_contact": "keep"}],
         "cloths": [{"name": "sheet", )" +
-                                   sheet + "}" + more + "}");
+            sheet + "}" + more + "}");
     const Scene scene = read_scene(folder.path() / "scene.json");
     World world(scene);
     EXPECT_TRUE(world.start().is_clean());

@@ -71,8 +71,8 @@ Scene scene_of(const Case& c)
 {
     return parse_scene(R"({"toile": 1, "frames": )" + std::to_string(c.frames) +
                            R"(, "avatars": [{"name": "body", "file": ")" +
-                           file_of(c.avatar)->generic_string() + R"(", "clip": ")" + c.clip +
-                           R"(", "start": )" + std::to_string(c.start) +
+                           file_of(c.avatar)->generic_string() + R"(", "self_contact": "keep", "clip": ")" +
+                           c.clip + R"(", "start": )" + std::to_string(c.start) +
                            R"(}], "cloths": [{"name": "sheet", )" + c.sheet +
                            R"(}], "attachments": [{"cloth": "sheet", "to": "body", "stiffness": 100,
                                "select": {"box": {"lower": [-9, )" +

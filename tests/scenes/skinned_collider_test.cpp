@@ -24,6 +24,7 @@ scene::Avatar bending_column()
     avatar.name = "column";
     avatar.shape = std::filesystem::path(TOILE_SOURCE_DIR) / "tests/avatars/bending_column.gltf";
     avatar.clip = "bend";
+    avatar.self_contact = scene::SelfContact::Keep;
     return avatar;
 }
 
