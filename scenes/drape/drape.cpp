@@ -220,6 +220,8 @@ private:
     /// Pulls the seams shut. x [vertices of the panels] in: placed; out: sewn.
     bool sew(const GarmentMesh& mesh, std::vector<Vec3>& x)
     {
+        if (pattern_.seams.empty())
+            return true;
         const Clock clock;
         Scene scene = scene_of("sew", mesh.unsewn(x));
         scene.gravity.setZero();

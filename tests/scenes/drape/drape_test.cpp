@@ -49,10 +49,12 @@ protected:
         settings.edge = 0.03;
         settings.folder = folder_.path();
         settings.name = "tube";
+        settings.max_motion = max_motion_;
         return drape(settings, {});
     }
 
     TemporaryFolder folder_;
+    double max_motion_ = 20.0; ///< [s]
 };
 
 TEST_F(DrapeTest, SewsATubeAroundABodyAndHoldsIt)
@@ -86,6 +88,18 @@ TEST_F(DrapeTest, SaysThatALooseTubeSlidOff)
     ASSERT_EQ(result.slides.size(), 1u);
     EXPECT_EQ(result.slides[0].label, "top");
     EXPECT_GT(result.slides[0].slid, kMaxSlide);
+}
+
+TEST_F(DrapeTest, DrapesAPanelWithoutSeams)
+{
+    std::string pattern = tube(0.36, "");
+    const size_t stitches = pattern.find("\"stitches\": ["), end = pattern.find("]]}", stitches);
+    pattern.replace(stitches, end + 2 - stitches, "\"stitches\": []");
+    max_motion_ = 0.2;
+    const DrapeResult result = drape_tube(pattern);
+    EXPECT_EQ(result.outcome, DrapeOutcome::NotAtRest) << result.message; // the panels fall beside the body
+    EXPECT_EQ(result.pieces, 2);
+    EXPECT_TRUE(result.seams.empty());
 }
 
 TEST_F(DrapeTest, NamesASeamThatCannotClose)
