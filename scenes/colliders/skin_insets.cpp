@@ -10,15 +10,6 @@ namespace {
 /// Room [m] between surfaces of skin: for two layers of thick cloth with their gaps.
 constexpr double kClearance = 0.012;
 
-std::vector<Vec3> bind_pose(const avatars::MovingAvatar& avatar, std::vector<avatars::Affine>& bones)
-{
-    bones.resize(size_t(avatar.avatar().bone_count()));
-    avatar.pose_bones({}, bones);
-    std::vector<Vec3> x(size_t(avatar.avatar().vertex_count()));
-    avatar.avatar().skin_vertices(bones, x);
-    return x;
-}
-
 /// Maps directions at the vertices of a pose to mesh space. [vertices]
 std::vector<Vec3> to_mesh_space(const avatars::SkinView& skin, View<const avatars::Affine> bones,
                                 const std::vector<Vec3>& directions)
@@ -44,15 +35,29 @@ void forget_far(Samples& samples, int sample)
 
 } // namespace
 
-SkinInsets::SkinInsets(const avatars::MovingAvatar& avatar, const std::vector<Triangle>& triangles)
-    : separation_([&] {
-          std::vector<avatars::Affine> bones;
-          return collision::SkinSeparation(triangles, bind_pose(avatar, bones), kClearance);
-      }())
-{
+/// Bones and vertices of a pose.
+struct SkinInsets::Posed {
     std::vector<avatars::Affine> bones;
-    bind_pose(avatar, bones);
-    inward_ = to_mesh_space(avatar.avatar().skin(), bones, separation_.inward());
+    std::vector<Vec3> x; ///< [vertices] without insets [m]
+
+    Posed(const avatars::MovingAvatar& avatar, const avatars::PoseAt& at)
+        : bones(size_t(avatar.avatar().bone_count())), x(size_t(avatar.avatar().vertex_count()))
+    {
+        avatar.pose_bones(at, bones);
+        avatar.avatar().skin_vertices(bones, x);
+    }
+};
+
+SkinInsets::SkinInsets(const avatars::MovingAvatar& avatar, const std::vector<Triangle>& triangles)
+    : SkinInsets(avatar, triangles, Posed(avatar, {}))
+{
+}
+
+SkinInsets::SkinInsets(const avatars::MovingAvatar& avatar, const std::vector<Triangle>& triangles,
+                       const Posed& bind)
+    : separation_(triangles, bind.x, kClearance),
+      inward_(to_mesh_space(avatar.avatar().skin(), bind.bones, separation_.inward()))
+{
 }
 
 std::vector<double> SkinInsets::at(const avatars::MovingAvatar& avatar, double t)
@@ -105,15 +110,13 @@ const SkinInsets::Insets& SkinInsets::needed(const avatars::MovingAvatar& avatar
 
 SkinInsets::Insets SkinInsets::separated(const avatars::MovingAvatar& avatar, const avatars::PoseAt& pose)
 {
-    std::vector<avatars::Affine> bones(size_t(avatar.avatar().bone_count()));
-    avatar.pose_bones(pose, bones);
-    std::vector<Vec3> x(inward_.size()), inward(inward_.size());
+    const Posed posed(avatar, pose);
     avatars::SkinView skin = avatar.avatar().skin();
-    avatar.avatar().skin_vertices(bones, x);
     skin.inward = inward_;
+    std::vector<Vec3> inward(inward_.size());
     for (int v = 0; v < int(inward.size()); ++v)
-        inward[v] = skin.posed_inward(v, bones);
-    return separation_.insets(x, inward);
+        inward[v] = skin.posed_inward(v, posed.bones);
+    return separation_.insets(posed.x, inward);
 }
 
 } // namespace toile::scenes

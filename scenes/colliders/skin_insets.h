@@ -29,6 +29,10 @@ public:
     static constexpr int kReach = 1;      ///< samples before and after one that are around it
 
 private:
+    struct Posed;
+    SkinInsets(const avatars::MovingAvatar& avatar, const std::vector<Triangle>& triangles,
+               const Posed& bind);
+
     struct Sample {
         avatars::PoseAt pose;
         std::vector<double> insets;

@@ -8,7 +8,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
-#include "core/base/file_plan.h"
 #include "core/base/number.h"
 #include "garment/pattern/mesh/placed_panels.h"
 #include "scenes/format/field.h"
@@ -36,22 +35,12 @@ void require_valid(const MeshOptions& options)
         throw InvalidInput(options.output.string() + ": meshes are OBJ; name a file that ends in .obj");
 }
 
-/// Refuses a mesh that would replace a file that it is made from, or could not be written.
-void require_safe_output(const std::filesystem::path& file, const garment::Pattern& pattern)
-{
-    FilePlan plan;
-    for (const std::filesystem::path& input : pattern.files)
-        plan.add_input(input, "the pattern");
-    plan.add_output(file, "the mesh");
-    require_writable(file);
-}
-
 int mesh(const MeshOptions& options)
 {
     require_valid(options);
     garment::Pattern pattern = garment_format::read_pattern(options.file);
     if (!options.output.empty())
-        require_safe_output(options.output, pattern);
+        require_safe_output(options.output, "the mesh", pattern);
     const MeshReport report = mesh_report_on(std::move(pattern), options.edge);
     if (!options.output.empty())
         write_obj(options.output, placed_panels(report.pattern.pattern, report.mesh));

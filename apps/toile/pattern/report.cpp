@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/atomic_file.h"
+#include "core/base/file_plan.h"
 #include "core/base/number.h"
 #include "garment/pattern/edge_curve.h"
 #include "garment/pattern/sewn_sides.h"
@@ -254,6 +256,16 @@ std::string to_json(const PatternReport& report)
     for (size_t s = 0; s < report.seams.size(); ++s)
         json["seams"].push_back(seam_json(report, int(s)));
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void require_safe_output(const std::filesystem::path& file, const std::string& role,
+                         const garment::Pattern& pattern)
+{
+    FilePlan plan;
+    for (const std::filesystem::path& input : pattern.files)
+        plan.add_input(input, "the pattern");
+    plan.add_output(file, role);
+    require_writable(file);
 }
 
 } // namespace toile::app

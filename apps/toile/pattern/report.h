@@ -41,6 +41,11 @@ struct PatternReport {
 
 PatternReport report_on(garment::Pattern pattern);
 
+/// Refuses an output that would replace a file of the pattern, or could not be written.
+/// @param role  named in errors: "the drawing"
+void require_safe_output(const std::filesystem::path& file, const std::string& role,
+                         const garment::Pattern& pattern);
+
 /// A line per panel, edge and seam.
 std::string to_text(const PatternReport& report);
 

@@ -8,7 +8,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
-#include "core/base/file_plan.h"
 #include "scenes/garment_format/read_garment.h"
 
 namespace toile::app {
@@ -21,16 +20,6 @@ struct ShowOptions {
     bool json = false;
 };
 
-/// Refuses a drawing that would replace a file that it is made from, or could not be written.
-void require_safe_output(const std::filesystem::path& file, const garment::Pattern& pattern)
-{
-    FilePlan plan;
-    for (const std::filesystem::path& input : pattern.files)
-        plan.add_input(input, "the pattern");
-    plan.add_output(file, "the drawing");
-    require_writable(file);
-}
-
 int show(const ShowOptions& options)
 {
     if (!options.output.empty() && lower_case_extension(options.output) != ".svg" &&
@@ -38,7 +27,7 @@ int show(const ShowOptions& options)
         throw InvalidInput(options.output.string() + ": drawings are SVG; name a file that ends in .svg");
     const PatternReport report = report_on(garment_format::read_pattern(options.file));
     if (!options.output.empty()) {
-        require_safe_output(options.output, report.pattern);
+        require_safe_output(options.output, "the drawing", report.pattern);
         write_atomically(options.output, to_svg(report));
     }
     std::cout << (options.json ? to_json(report) : to_text(report));
