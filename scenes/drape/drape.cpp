@@ -5,15 +5,15 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <set>
 
 #include "avatars/landmarks/body_segments.h"
 #include "avatars/load_avatar.h"
 #include "core/base/error.h"
 #include "garment/pattern/mesh/resampling.h"
 #include "garment/pattern/place/placement_shift.h"
-#include "scenes/drape/garment_mesh.h"
 #include "scenes/drape/rest_watch.h"
+#include "scenes/drape/seam_lift.h"
+#include "scenes/drape/stage_scenes.h"
 #include "scenes/garment_format/read_garment.h"
 #include "scenes/world/world.h"
 
@@ -24,19 +24,8 @@ namespace {
 constexpr double kSewingEdge = 0.02; ///< [m]
 /// Time [s] for seams to close, to be pressed, and to fall into place on the coarse mesh.
 constexpr double kSewingTime = 3.0, kPressingTime = 0.5, kSettlingTime = 1.0;
-/// Bending rigidity [N m] of cloth that is pressed: a hundred times that of cotton.
-constexpr double kPressedRigidity = 1e-3;
 /// Samples without progress of the widest seam after which sewing ends.
 constexpr int kVainFrames = 30;
-/// Friction of panels that are pulled around the body.
-constexpr double kSewingFriction = 0.05;
-
-/// Labels of edges that stay attached: nothing else holds them up.
-bool stays_attached(const std::string& label)
-{
-    return label == "lower_interface" || label == "strapless_top";
-}
-
 class Clock {
 public:
     double seconds() const
@@ -53,7 +42,7 @@ class Draping {
 public:
     Draping(const DrapeSettings& settings, const WorldOptions& options)
         : settings_(settings), options_(options), pattern_(garment_format::read_pattern(settings.garment)),
-          labels_(labels_of(pattern_))
+          stages_(settings_, pattern_, fabric_)
     {
         for (garment::Panel& panel : pattern_.panels)
             panel.placement.pretranslate(settings.shift);
@@ -61,7 +50,7 @@ public:
             if (options.warn)
                 options.warn(settings.garment.string() + ": " + text);
         choose_fabric();
-        find_segments();
+        load_body();
     }
 
     DrapeResult run()
@@ -88,16 +77,6 @@ public:
     }
 
 private:
-    static std::set<std::string> labels_of(const garment::Pattern& pattern)
-    {
-        std::set<std::string> labels;
-        for (const garment::Panel& panel : pattern.panels)
-            for (const garment::PanelEdge& edge : panel.edges)
-                if (!edge.label.empty())
-                    labels.insert(edge.label);
-        return labels;
-    }
-
     /// What the pattern asks for and a drape does not do.
     static std::vector<std::string> not_used(const garment::Pattern& pattern)
     {
@@ -125,8 +104,8 @@ private:
         }
     }
 
-    /// Segments of the body, if panels are placed by them or it has some.
-    void find_segments()
+    /// The skin of a body that has one, and its segments if panels are placed by them or it has some.
+    void load_body()
     {
         avatars::AvatarSettings body;
         if (const auto* file = std::get_if<std::filesystem::path>(&settings_.body.shape))
@@ -136,6 +115,9 @@ private:
         const bool needed = std::any_of(pattern_.panels.begin(), pattern_.panels.end(),
                                         [](const garment::Panel& panel) { return panel.place.has_value(); });
         const std::unique_ptr<avatars::Avatar> avatar = avatars::load_avatar(body);
+        skin_.triangles = avatar->triangles();
+        skin_.positions.resize(size_t(avatar->vertex_count()));
+        avatar->pose({}, avatars::identity_affine(), skin_.positions);
         try {
             segments_ = avatars::find_segments(*avatar, {}, avatars::identity_affine()).segments;
         } catch (const InvalidInput&) {
@@ -162,50 +144,12 @@ private:
         panel_of_vertex.reserve(size_t(mesh.panels.vertex_count()));
         for (int v = 0; v < mesh.panels.vertex_count(); ++v)
             panel_of_vertex.push_back(mesh.panels.panel_of_vertex(v));
-        return garment::place_panels(pattern_, mesh.panels.uv, panel_of_vertex,
-                                     segments_ ? &*segments_ : nullptr);
-    }
-
-    /// A scene of the garment on the body; its mesh is written.
-    Scene scene_of(const std::string& stage, const ObjMesh& mesh) const
-    {
-        Scene scene;
-        scene.name = settings_.name + ", " + stage;
-        scene.source = settings_.folder / (stage + ".json");
-        scene.avatars = {settings_.body};
-        scene::Cloth cloth;
-        cloth.name = settings_.name;
-        const std::filesystem::path file = settings_.folder / (settings_.name + "_" + stage + ".obj");
-        write_obj(file, mesh);
-        cloth.shape = file;
-        cloth.weld = false;
-        cloth.rest = scene::RestFrom::Uv;
-        cloth.uv_scale = 1.0;
-        cloth.fabric = fabric_;
-        scene.cloths = {cloth};
-        scene.solver.quality = scene::Quality::Preview;
-        scene.solver.sleep.enabled = false; // asleep, it would have neither speed nor strain
-        return scene;
-    }
-
-    /// Springs from labelled edges to the body. A vertex of two edges follows the one that stays attached.
-    void hold_labels(const GarmentMesh& mesh, Scene& scene, bool also_released) const
-    {
-        std::set<int> held;
-        for (const bool stays : {true, false})
-            for (const std::string& label : labels_) {
-                if (stays_attached(label) != stays || (!stays && !also_released))
-                    continue;
-                std::vector<int> vertices = mesh.labelled(pattern_, label);
-                std::erase_if(vertices, [&](int v) { return !held.insert(v).second; });
-                if (vertices.empty())
-                    continue;
-                scene::Attachment attachment;
-                attachment.cloth = settings_.name;
-                attachment.select.by = std::move(vertices);
-                attachment.to = settings_.body.name;
-                scene.attachments.push_back(attachment);
-            }
+        std::vector<Vec3> x = garment::place_panels(pattern_, mesh.panels.uv, panel_of_vertex,
+                                                    segments_ ? &*segments_ : nullptr);
+        const double lift = shoulder_lift(mesh.panels.stitches, x, skin_);
+        for (Vec3& p : x)
+            p.y() += lift;
+        return x;
     }
 
     bool is_finite(const StepReport& report)
@@ -223,10 +167,7 @@ private:
         if (pattern_.seams.empty())
             return true;
         const Clock clock;
-        Scene scene = scene_of("sew", mesh.unsewn(x));
-        scene.gravity.setZero();
-        scene.contact.friction = kSewingFriction;
-        scene.cloths[0].sewing = scene::Sewing{};
+        Scene scene = stages_.sew(mesh, x);
         scene.frames = int(kSewingTime * scene.fps);
         World world(scene, options_);
         double narrowest = std::numeric_limits<double>::infinity();
@@ -259,18 +200,11 @@ private:
         return false;
     }
 
-    /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
-    /// great bending rigidity, without gravity. x [welded vertices]
+    /// Unfolds the seams. x [welded vertices]
     bool press(const GarmentMesh& mesh, std::vector<Vec3>& x)
     {
         const Clock clock;
-        Scene scene = scene_of("press", mesh.welded(x));
-        scene.gravity.setZero();
-        scene.contact.friction = kSewingFriction;
-        scene::Fabric& pressed = scene.fabrics["pressed"];
-        pressed.base = fabric_;
-        pressed.bend = {kPressedRigidity, kPressedRigidity};
-        scene.cloths[0].fabric = "pressed";
+        Scene scene = stages_.press(mesh, x);
         return simulate(scene, "press", kPressingTime, clock, x);
     }
 
@@ -278,8 +212,7 @@ private:
     bool settle(const GarmentMesh& mesh, std::vector<Vec3>& x)
     {
         const Clock clock;
-        Scene scene = scene_of("settle", mesh.welded(x));
-        hold_labels(mesh, scene, true);
+        Scene scene = stages_.hang(mesh, x, "settle", true);
         return simulate(scene, "settle", kSettlingTime, clock, x);
     }
 
@@ -301,21 +234,21 @@ private:
         const Clock clock;
         int frames = 0;
         // With all labels held, then with those that stay.
-        const bool has_released =
-            std::any_of(labels_.begin(), labels_.end(), [](auto& label) { return !stays_attached(label); });
+        const bool has_released = std::any_of(stages_.labels().begin(), stages_.labels().end(),
+                                              [](auto& label) { return !stays_attached(label); });
         std::vector<Vec3> held;
         for (const bool all : {true, false}) {
             if (!all && !has_released)
                 break;
             held = x;
-            Scene scene = scene_of(all ? "drape" : "release", mesh.welded(x));
-            hold_labels(mesh, scene, all);
+            const Scene scene = stages_.hang(mesh, x, all ? "drape" : "release", all);
             const bool is_at_rest = come_to_rest(scene, x, frames, [&](View<const Vec3> now) {
                 return !all && has_slid_off(mesh, held, now);
             });
             if (!is_at_rest)
                 break;
             result_.scene = scene;
+            result_.scene.cloths[0].fabric = fabric_;
         }
         result_.stages.push_back({"drape", clock.seconds(), frames, int(x.size())});
         result_.mesh = mesh.welded(x);
@@ -355,7 +288,7 @@ private:
     bool has_slid_off(const GarmentMesh& mesh, const std::vector<Vec3>& before, View<const Vec3> after)
     {
         result_.slides.clear();
-        for (const std::string& label : labels_) {
+        for (const std::string& label : stages_.labels()) {
             double sank = 0.0;
             const std::vector<int> edge = mesh.labelled(pattern_, label);
             for (const int v : edge)
@@ -372,8 +305,9 @@ private:
     const DrapeSettings& settings_;
     const WorldOptions& options_;
     garment::Pattern pattern_;
-    std::set<std::string> labels_;
-    std::string fabric_;
+    std::string fabric_; ///< preset
+    StageScenes stages_;
+    TriangleMesh skin_; ///< of the body, in the pose to be dressed; empty: a shape
     std::optional<garment::ArrangementSegments> segments_;
     DrapeResult result_;
 };

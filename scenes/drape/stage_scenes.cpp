@@ -1,0 +1,129 @@
+#include "scenes/drape/stage_scenes.h"
+
+#include <algorithm>
+
+#include "garment/fabric/fabric.h"
+
+namespace toile::scenes {
+
+namespace {
+
+/// Bending rigidity [N m] of cloth that is pressed: hundreds of times that of cotton.
+constexpr double kPressedRigidity = 1e-3;
+/// Membrane of panels while they are sewn [N/m, -]: at most as stiff as jersey.
+constexpr double kSewingStretch = 60.0, kSewingShear = 20.0, kSewingStrainLimit = 1.25;
+/// Decay rate of velocities [1/s] of panels that are sewn: threads of 0.5 N would throw them.
+constexpr double kSewingDamping = 1000.0;
+/// Friction of panels that are pulled around the body.
+constexpr double kSewingFriction = 0.05;
+/// Decay rate of velocities [1/s] of cloth that falls into place. A skirt that swings as a pendulum of 0.3 m
+/// is damped critically by 11.
+constexpr double kHangingDamping = 6.0;
+
+} // namespace
+
+bool stays_attached(const std::string& label)
+{
+    return label == "lower_interface" || label == "strapless_top";
+}
+
+StageScenes::StageScenes(const DrapeSettings& settings, const garment::Pattern& pattern,
+                         const std::string& fabric)
+    : settings_(settings), pattern_(pattern), fabric_(fabric)
+{
+    for (const garment::Panel& panel : pattern.panels)
+        for (const garment::PanelEdge& edge : panel.edges)
+            if (!edge.label.empty())
+                labels_.insert(edge.label);
+}
+
+Scene StageScenes::sew(const GarmentMesh& mesh, View<const Vec3> x) const
+{
+    Scene scene = scene_of("sew", mesh.unsewn(x), sewing_fabric());
+    scene.gravity.setZero();
+    scene.contact.friction = kSewingFriction;
+    scene.cloths[0].sewing = scene::Sewing{};
+    return scene;
+}
+
+Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
+{
+    scene::Fabric pressed = damped_fabric();
+    pressed.bend = {kPressedRigidity, kPressedRigidity};
+    Scene scene = scene_of("press", mesh.welded(x), pressed);
+    scene.gravity.setZero();
+    scene.contact.friction = kSewingFriction;
+    return scene;
+}
+
+Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage,
+                        bool holds_all) const
+{
+    Scene scene = scene_of(stage, mesh.welded(x), damped_fabric());
+    hold_labels(mesh, scene, holds_all);
+    return scene;
+}
+
+Scene StageScenes::scene_of(const std::string& stage, const ObjMesh& mesh, const scene::Fabric& fabric) const
+{
+    Scene scene;
+    scene.name = settings_.name + ", " + stage;
+    scene.source = settings_.folder / (stage + ".json");
+    scene.avatars = {settings_.body};
+    scene::Cloth cloth;
+    cloth.name = settings_.name;
+    const std::filesystem::path file = settings_.folder / (settings_.name + "_" + stage + ".obj");
+    write_obj(file, mesh);
+    cloth.shape = file;
+    cloth.weld = false;
+    cloth.rest = scene::RestFrom::Uv;
+    cloth.uv_scale = 1.0;
+    cloth.fabric = stage;
+    scene.fabrics[stage] = fabric;
+    scene.cloths = {cloth};
+    scene.solver.quality = scene::Quality::Preview;
+    scene.solver.integrator = Integrator::ImplicitEuler;
+    scene.solver.sleep.enabled = false; // asleep, it would have neither speed nor strain
+    return scene;
+}
+
+scene::Fabric StageScenes::damped_fabric() const
+{
+    scene::Fabric fabric;
+    fabric.base = fabric_;
+    fabric.damping = kHangingDamping;
+    return fabric;
+}
+
+scene::Fabric StageScenes::sewing_fabric() const
+{
+    const garment::Fabric& own = garment::fabric_preset(fabric_, settings_.garment.string());
+    scene::Fabric fabric = damped_fabric();
+    fabric.stretch = {std::min(own.stretch_warp, kSewingStretch), std::min(own.stretch_weft, kSewingStretch)};
+    fabric.shear = std::min({own.shear, kSewingShear, 0.5 * own.stretch_warp, 0.5 * own.stretch_weft});
+    fabric.strain_limit = std::max(1.0 + own.strain_limit, kSewingStrainLimit);
+    fabric.damping = kSewingDamping;
+    return fabric;
+}
+
+/// A vertex of two edges follows the one that stays attached.
+void StageScenes::hold_labels(const GarmentMesh& mesh, Scene& scene, bool holds_all) const
+{
+    std::set<int> held;
+    for (const bool stays : {true, false})
+        for (const std::string& label : labels_) {
+            if (stays_attached(label) != stays || (!stays && !holds_all))
+                continue;
+            std::vector<int> vertices = mesh.labelled(pattern_, label);
+            std::erase_if(vertices, [&](int v) { return !held.insert(v).second; });
+            if (vertices.empty())
+                continue;
+            scene::Attachment attachment;
+            attachment.cloth = settings_.name;
+            attachment.select.by = std::move(vertices);
+            attachment.to = settings_.body.name;
+            scene.attachments.push_back(attachment);
+        }
+}
+
+} // namespace toile::scenes

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "scenes/drape/drape.h"
+#include "scenes/drape/garment_mesh.h"
+
+namespace toile::scenes {
+
+/// Labels of edges that stay attached to the body: nothing else holds them up.
+bool stays_attached(const std::string& label);
+
+/// Makes the scenes of a drape's stages, and writes their meshes into the folder.
+class StageScenes {
+public:
+    /// @param fabric  preset
+    /// All are kept by reference.
+    StageScenes(const DrapeSettings& settings, const garment::Pattern& pattern, const std::string& fabric);
+
+    const std::set<std::string>& labels() const { return labels_; } ///< of the pattern's edges
+
+    /// Threads pull the seams shut, without gravity. The panels give way to the body as jersey does, and move
+    /// so slowly that they stop where no force pulls.
+    /// @param x  [vertices of the panels] [m]
+    Scene sew(const GarmentMesh& mesh, View<const Vec3> x) const;
+
+    /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
+    /// great bending rigidity, without gravity.
+    /// @param x  [welded vertices] [m]
+    Scene press(const GarmentMesh& mesh, View<const Vec3> x) const;
+
+    /// The garment hangs on the body, in motion that is damped: rest is the same as without damping.
+    /// @param holds_all  labelled edges that are released in the end are held too, by springs
+    Scene hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage, bool holds_all) const;
+
+private:
+    Scene scene_of(const std::string& stage, const ObjMesh& mesh, const scene::Fabric& fabric) const;
+    scene::Fabric damped_fabric() const;
+    scene::Fabric sewing_fabric() const;
+    void hold_labels(const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
+
+    const DrapeSettings& settings_;
+    const garment::Pattern& pattern_;
+    const std::string& fabric_;
+    std::set<std::string> labels_;
+};
+
+} // namespace toile::scenes
