@@ -12,6 +12,7 @@
 #include "garment/pattern/mesh/resampling.h"
 #include "garment/pattern/place/placement_shift.h"
 #include "scenes/drape/rest_watch.h"
+#include "scenes/drape/seam_closing.h"
 #include "scenes/drape/seam_lift.h"
 #include "scenes/drape/stage_scenes.h"
 #include "scenes/garment_format/read_garment.h"
@@ -22,10 +23,12 @@ namespace toile::scenes {
 namespace {
 
 constexpr double kSewingEdge = 0.02; ///< [m]
-/// Time [s] for seams to close, to be pressed, and to fall into place on the coarse mesh.
-constexpr double kSewingTime = 3.0, kPressingTime = 0.5, kSettlingTime = 1.0;
-/// Samples without progress of the widest seam after which sewing ends.
-constexpr int kVainFrames = 30;
+/// Time [s] for a garment to be pressed, and to fall into place on the coarse mesh.
+constexpr double kPressingTime = 0.5, kSettlingTime = 1.0;
+/// Frames in which threads become no shorter than by this ratio, after which pulling on ends.
+constexpr int kVainFrames = 5;
+constexpr double kProgress = 0.98;
+
 class Clock {
 public:
     double seconds() const
@@ -69,10 +72,10 @@ public:
         std::vector<Vec3> x = placed(coarse);
         if (!sew(coarse, x))
             return std::move(result_);
-        std::vector<Vec3> welded = coarse.weld(x);
+        std::vector<Vec3> welded = weld(coarse.sewn, x);
         if (!press(coarse, welded) || !settle(coarse, welded))
             return std::move(result_);
-        drape(fine, fine.weld(finer.apply(coarse.panels, coarse.unweld(welded))));
+        drape(fine, weld(fine.sewn, finer.apply(coarse.panels, unweld(coarse.sewn, welded))));
         return std::move(result_);
     }
 
@@ -164,40 +167,46 @@ private:
     /// Pulls the seams shut. x [vertices of the panels] in: placed; out: sewn.
     bool sew(const GarmentMesh& mesh, std::vector<Vec3>& x)
     {
-        if (pattern_.seams.empty())
-            return true;
         const Clock clock;
-        Scene scene = stages_.sew(mesh, x);
-        scene.frames = int(kSewingTime * scene.fps);
-        World world(scene, options_);
-        double narrowest = std::numeric_limits<double>::infinity();
-        int frame = 0, frame_of_narrowest = 0;
-        std::vector<double> gaps;
-        for (; frame < scene.frames; ++frame) {
-            if (!is_finite(world.advance_frame()))
+        SeamClosing seams(mesh, std::move(x));
+        int frames = 0;
+        bool goes_on = true;
+        while (goes_on && !seams.are_closed()) {
+            if (!pull(seams, frames))
                 return false;
-            gaps = mesh.seam_gaps(world.cloths()[0].positions);
-            const double widest = *std::max_element(gaps.begin(), gaps.end());
-            if (widest < 0.99 * narrowest) {
-                narrowest = widest;
-                frame_of_narrowest = frame;
-            }
-            if (widest < kMaxWeldGap || frame - frame_of_narrowest >= kVainFrames)
-                break;
+            goes_on = seams.weld() > 0;
         }
-        x.assign(world.cloths()[0].positions.begin(), world.cloths()[0].positions.end());
-        result_.stages.push_back({"sew", clock.seconds(), frame + 1, int(x.size())});
+        x = seams.positions();
+        result_.stages.push_back({"sew", clock.seconds(), frames, int(x.size())});
+        const std::vector<double> gaps = seams.gaps();
         for (size_t s = 0; s < gaps.size(); ++s)
             result_.seams.push_back({pattern_.seams[s].name, gaps[s]});
-        const auto widest = std::max_element(gaps.begin(), gaps.end());
-        if (*widest < kMaxWeldGap)
+        if (seams.are_closed())
             return true;
-        const int seam = int(widest - gaps.begin());
+        const auto widest = std::max_element(gaps.begin(), gaps.end());
         result_.outcome = DrapeOutcome::Tangled;
-        result_.message =
-            pattern_.seams[size_t(seam)].name + " stays open by " + std::to_string(1000.0 * *widest) + " mm";
-        result_.mesh = mesh.unsewn(x);
+        result_.message = pattern_.seams[size_t(widest - gaps.begin())].name + " stays open by " +
+                          std::to_string(1000.0 * *widest) + " mm";
+        result_.mesh = seams.surface();
         return false;
+    }
+
+    /// Pulls on the open threads until all can be welded or none gets shorter.
+    bool pull(SeamClosing& seams, int& frames)
+    {
+        const Scene scene = stages_.sew(seams.surface());
+        World world(scene, options_);
+        double shortest = std::numeric_limits<double>::infinity();
+        for (int in_vain = 0; in_vain < kVainFrames && !seams.can_weld(); ++in_vain, ++frames) {
+            if (!is_finite(world.advance_frame()))
+                return false;
+            seams.move(world.cloths()[0].positions);
+            if (seams.open_length() > kProgress * shortest)
+                continue;
+            shortest = seams.open_length();
+            in_vain = 0;
+        }
+        return true;
     }
 
     /// Unfolds the seams. x [welded vertices]
@@ -251,7 +260,7 @@ private:
             result_.scene.cloths[0].fabric = fabric_;
         }
         result_.stages.push_back({"drape", clock.seconds(), frames, int(x.size())});
-        result_.mesh = mesh.welded(x);
+        result_.mesh = mesh.surface(x);
         has_slid_off(mesh, held, x);
     }
 

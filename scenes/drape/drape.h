@@ -22,8 +22,6 @@ enum class DrapeOutcome {
 
 /// Distance by which a released edge may sink [m].
 inline constexpr double kMaxSlide = 0.05;
-/// Gap of a seam that is welded [m].
-inline constexpr double kMaxWeldGap = 0.002;
 
 struct DrapeSettings {
     std::filesystem::path garment; ///< garment file or panel JSON

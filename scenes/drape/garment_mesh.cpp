@@ -15,19 +15,6 @@ garment::PatternMesh mesh_panels(const garment::Pattern& pattern, double edge, d
     return garment::mesh_pattern(pattern, settings);
 }
 
-ObjMesh with_texture(const std::vector<Triangle>& triangles, const std::vector<Triangle>& corners,
-                     const std::vector<Vec2>& uv, View<const Vec3> x)
-{
-    ObjMesh mesh;
-    mesh.positions.assign(x.begin(), x.end());
-    mesh.texture_coordinates = uv;
-    for (size_t t = 0; t < triangles.size(); ++t) {
-        mesh.polygons.push_back({triangles[t][0], triangles[t][1], triangles[t][2]});
-        mesh.polygon_uvs.push_back({corners[t][0], corners[t][1], corners[t][2]});
-    }
-    return mesh;
-}
-
 } // namespace
 
 GarmentMesh::GarmentMesh(const garment::Pattern& pattern, double edge, double least)
@@ -35,39 +22,7 @@ GarmentMesh::GarmentMesh(const garment::Pattern& pattern, double edge, double le
 {
 }
 
-ObjMesh GarmentMesh::unsewn(View<const Vec3> x) const
-{
-    // Panels that are sewn front to back are turned, as in the welded surface.
-    ObjMesh mesh = with_texture(sewn.corners, sewn.corners, panels.uv, x);
-    for (const auto& seam : panels.stitches)
-        mesh.lines.insert(mesh.lines.end(), seam.begin(), seam.end());
-    return mesh;
-}
-
-ObjMesh GarmentMesh::welded(View<const Vec3> x) const
-{
-    return with_texture(sewn.triangles, sewn.corners, panels.uv, x);
-}
-
-std::vector<Vec3> GarmentMesh::weld(View<const Vec3> x) const
-{
-    std::vector<Vec3> welded;
-    for (const std::vector<int>& members : sewn.members) {
-        Vec3 sum = Vec3::Zero();
-        for (const int v : members)
-            sum += x[v];
-        welded.push_back(sum / double(members.size()));
-    }
-    return welded;
-}
-
-std::vector<Vec3> GarmentMesh::unweld(View<const Vec3> welded) const
-{
-    std::vector<Vec3> x;
-    for (const int v : sewn.welded_of)
-        x.push_back(welded[v]);
-    return x;
-}
+ObjMesh GarmentMesh::surface(View<const Vec3> x) const { return textured_surface(sewn, panels, x); }
 
 std::vector<int> GarmentMesh::labelled(const garment::Pattern& pattern, const std::string& label) const
 {
@@ -82,16 +37,38 @@ std::vector<int> GarmentMesh::labelled(const garment::Pattern& pattern, const st
     return vertices;
 }
 
-std::vector<double> GarmentMesh::seam_gaps(View<const Vec3> x) const
+ObjMesh textured_surface(const garment::SewnMesh& sewn, const garment::PatternMesh& panels,
+                         View<const Vec3> x)
 {
-    std::vector<double> gaps;
-    for (const auto& seam : panels.stitches) {
-        double largest = 0.0;
-        for (const auto& [a, b] : seam)
-            largest = std::max(largest, (x[a] - x[b]).norm());
-        gaps.push_back(largest);
+    ObjMesh mesh;
+    mesh.positions.assign(x.begin(), x.end());
+    mesh.texture_coordinates = panels.uv;
+    for (size_t t = 0; t < sewn.triangles.size(); ++t) {
+        const Triangle &corner = sewn.triangles[t], &flat = sewn.corners[t];
+        mesh.polygons.push_back({corner[0], corner[1], corner[2]});
+        mesh.polygon_uvs.push_back({flat[0], flat[1], flat[2]});
     }
-    return gaps;
+    return mesh;
+}
+
+std::vector<Vec3> weld(const garment::SewnMesh& sewn, View<const Vec3> x)
+{
+    std::vector<Vec3> welded;
+    for (const std::vector<int>& members : sewn.members) {
+        Vec3 sum = Vec3::Zero();
+        for (const int v : members)
+            sum += x[v];
+        welded.push_back(sum / double(members.size()));
+    }
+    return welded;
+}
+
+std::vector<Vec3> unweld(const garment::SewnMesh& sewn, View<const Vec3> welded)
+{
+    std::vector<Vec3> x;
+    for (const int v : sewn.welded_of)
+        x.push_back(welded[v]);
+    return x;
 }
 
 } // namespace toile::scenes

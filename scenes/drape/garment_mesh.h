@@ -15,25 +15,26 @@ struct GarmentMesh {
     /// @param least  [m] of any
     GarmentMesh(const garment::Pattern& pattern, double edge, double least = 0.0);
 
-    /// Panels side by side with a thread for every pair of stitched vertices; texture coordinates are those
-    /// of the panels [m].
-    /// @param x  [vertices of the panels] [m]
-    ObjMesh unsewn(View<const Vec3> x) const;
-
-    /// The welded surface with the same texture coordinates.
+    /// The welded surface; texture coordinates are those of the panels [m].
     /// @param x  [welded vertices] [m]
-    ObjMesh welded(View<const Vec3> x) const;
-
-    /// Mean of the vertices that are welded into one. [welded vertices] [m]
-    std::vector<Vec3> weld(View<const Vec3> x) const;
-    /// The same position for all of them. [vertices of the panels] [m]
-    std::vector<Vec3> unweld(View<const Vec3> welded) const;
+    ObjMesh surface(View<const Vec3> x) const;
 
     /// Welded vertices of the edges that have a label, in ascending order.
     std::vector<int> labelled(const garment::Pattern& pattern, const std::string& label) const;
-
-    /// Largest distance between the sides of each seam. [seams] [m]
-    std::vector<double> seam_gaps(View<const Vec3> x) const;
 };
+
+/// Welded surface with the texture coordinates of the panels [m].
+/// @param x  [welded vertices] [m]
+ObjMesh textured_surface(const garment::SewnMesh& sewn, const garment::PatternMesh& panels,
+                         View<const Vec3> x);
+
+/// Mean of the vertices that are welded into one.
+/// @param x  [vertices of the panels] [m]
+/// @return [welded vertices] [m]
+std::vector<Vec3> weld(const garment::SewnMesh& sewn, View<const Vec3> x);
+/// The same position for all of them.
+/// @param welded  [welded vertices] [m]
+/// @return [vertices of the panels] [m]
+std::vector<Vec3> unweld(const garment::SewnMesh& sewn, View<const Vec3> welded);
 
 } // namespace toile::scenes

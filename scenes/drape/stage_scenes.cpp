@@ -12,10 +12,12 @@ namespace {
 constexpr double kPressedRigidity = 1e-3;
 /// Membrane of panels while they are sewn [N/m, -]: at most as stiff as jersey.
 constexpr double kSewingStretch = 60.0, kSewingShear = 20.0, kSewingStrainLimit = 1.25;
-/// Decay rate of velocities [1/s] of panels that are sewn: threads of 0.5 N would throw them.
+/// Decay rate of velocities [1/s] of panels that are sewn: threads would throw them.
 constexpr double kSewingDamping = 1000.0;
-/// Friction of panels that are pulled around the body.
-constexpr double kSewingFriction = 0.05;
+/// Threads [N/m, N].
+constexpr double kThreadStiffness = 2000.0, kThreadForce = 2.0;
+/// Friction of a garment that is pressed.
+constexpr double kPressingFriction = 0.05;
 /// Decay rate of velocities [1/s] of cloth that falls into place. A skirt that swings as a pendulum of 0.3 m
 /// is damped critically by 11.
 constexpr double kHangingDamping = 6.0;
@@ -37,12 +39,12 @@ StageScenes::StageScenes(const DrapeSettings& settings, const garment::Pattern& 
                 labels_.insert(edge.label);
 }
 
-Scene StageScenes::sew(const GarmentMesh& mesh, View<const Vec3> x) const
+Scene StageScenes::sew(const ObjMesh& panels) const
 {
-    Scene scene = scene_of("sew", mesh.unsewn(x), sewing_fabric());
+    Scene scene = scene_of("sew", panels, sewing_fabric());
     scene.gravity.setZero();
-    scene.contact.friction = kSewingFriction;
-    scene.cloths[0].sewing = scene::Sewing{};
+    scene.contact.friction = 0.0;
+    scene.cloths[0].sewing = scene::Sewing{kThreadStiffness, kThreadForce};
     return scene;
 }
 
@@ -50,16 +52,16 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 {
     scene::Fabric pressed = damped_fabric();
     pressed.bend = {kPressedRigidity, kPressedRigidity};
-    Scene scene = scene_of("press", mesh.welded(x), pressed);
+    Scene scene = scene_of("press", mesh.surface(x), pressed);
     scene.gravity.setZero();
-    scene.contact.friction = kSewingFriction;
+    scene.contact.friction = kPressingFriction;
     return scene;
 }
 
 Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage,
                         bool holds_all) const
 {
-    Scene scene = scene_of(stage, mesh.welded(x), damped_fabric());
+    Scene scene = scene_of(stage, mesh.surface(x), damped_fabric());
     hold_labels(mesh, scene, holds_all);
     return scene;
 }

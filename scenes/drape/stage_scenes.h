@@ -22,8 +22,8 @@ public:
 
     /// Threads pull the seams shut, without gravity. The panels give way to the body as jersey does, and move
     /// so slowly that they stop where no force pulls.
-    /// @param x  [vertices of the panels] [m]
-    Scene sew(const GarmentMesh& mesh, View<const Vec3> x) const;
+    /// @param panels  with lines as threads
+    Scene sew(const ObjMesh& panels) const;
 
     /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
     /// great bending rigidity, without gravity.

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "collision/check/find_crossings.h"
+#include "scenes/drape/seam_closing.h"
 #include "tests/support/temporary_folder.h"
 
 namespace toile::test {
@@ -66,7 +67,7 @@ TEST_F(DrapeTest, SewsATubeAroundABodyAndHoldsIt)
     EXPECT_EQ(result.euler_characteristic, 0);
     ASSERT_EQ(result.seams.size(), 2u);
     for (const DrapeSeam& seam : result.seams)
-        EXPECT_LT(seam.gap, kMaxWeldGap) << seam.name;
+        EXPECT_LT(seam.gap, SeamClosing::kMaxGap) << seam.name;
     EXPECT_LT(result.max_strain, 0.05);
     EXPECT_LE(result.rest_speed, 0.02);
 
