@@ -33,6 +33,14 @@ ObjMesh with_texture(const std::vector<Triangle>& triangles, const std::vector<T
 GarmentMesh::GarmentMesh(const garment::Pattern& pattern, double edge, double least)
     : panels(mesh_panels(pattern, edge, least)), sewn(garment::sewn_mesh(panels))
 {
+    for (const garment::Panel& panel : pattern.panels)
+        panel_names.push_back(panel.name);
+}
+
+void GarmentMesh::add_groups(ObjMesh& mesh) const
+{
+    for (size_t p = 0; p < panel_names.size(); ++p)
+        begin_group(mesh, panel_names[p], panels.first_triangle[p]);
 }
 
 ObjMesh GarmentMesh::unsewn(View<const Vec3> x) const
@@ -41,12 +49,15 @@ ObjMesh GarmentMesh::unsewn(View<const Vec3> x) const
     ObjMesh mesh = with_texture(sewn.corners, sewn.corners, panels.uv, x);
     for (const auto& seam : panels.stitches)
         mesh.lines.insert(mesh.lines.end(), seam.begin(), seam.end());
+    add_groups(mesh);
     return mesh;
 }
 
 ObjMesh GarmentMesh::welded(View<const Vec3> x) const
 {
-    return with_texture(sewn.triangles, sewn.corners, panels.uv, x);
+    ObjMesh mesh = with_texture(sewn.triangles, sewn.corners, panels.uv, x);
+    add_groups(mesh);
+    return mesh;
 }
 
 std::vector<Vec3> GarmentMesh::weld(View<const Vec3> x) const

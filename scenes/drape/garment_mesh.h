@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/mesh/obj.h"
 #include "garment/pattern/mesh/pattern_mesh.h"
 #include "garment/pattern/mesh/sewn_mesh.h"
@@ -10,17 +13,18 @@ namespace toile::scenes {
 struct GarmentMesh {
     garment::PatternMesh panels;
     garment::SewnMesh sewn;
+    std::vector<std::string> panel_names; ///< [panels]
 
     /// @param edge   [m] of panels that have no edge length of their own
     /// @param least  [m] of any
     GarmentMesh(const garment::Pattern& pattern, double edge, double least = 0.0);
 
     /// Panels side by side with a thread for every pair of stitched vertices; texture coordinates are those
-    /// of the panels [m].
+    /// of the panels [m], and a group names each panel.
     /// @param x  [vertices of the panels] [m]
     ObjMesh unsewn(View<const Vec3> x) const;
 
-    /// The welded surface with the same texture coordinates.
+    /// The welded surface with the same texture coordinates and groups.
     /// @param x  [welded vertices] [m]
     ObjMesh welded(View<const Vec3> x) const;
 
@@ -34,6 +38,9 @@ struct GarmentMesh {
 
     /// Largest distance between the sides of each seam. [seams] [m]
     std::vector<double> seam_gaps(View<const Vec3> x) const;
+
+private:
+    void add_groups(ObjMesh& mesh) const;
 };
 
 } // namespace toile::scenes
