@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "garment/pattern/mesh/resampling.h"
 #include "garment/pattern/place/placement_shift.h"
+#include "scenes/drape/drape_watch.h"
 #include "scenes/drape/garment_mesh.h"
 #include "scenes/drape/rest_watch.h"
 #include "scenes/garment_format/read_garment.h"
@@ -51,18 +52,20 @@ private:
 /// A drape in progress.
 class Draping {
 public:
-    Draping(const DrapeSettings& settings, const WorldOptions& options)
-        : settings_(settings), options_(options), pattern_(garment_format::read_pattern(settings.garment)),
-          labels_(labels_of(pattern_))
+    Draping(const DrapeSettings& settings, DrapeWatch& watch)
+        : settings_(settings), watch_(watch), options_(watch.options()),
+          pattern_(garment_format::read_pattern(settings.garment)), labels_(labels_of(pattern_))
     {
         for (garment::Panel& panel : pattern_.panels)
             panel.placement.pretranslate(settings.shift);
         for (const std::string& text : not_used(pattern_))
-            if (options.warn)
-                options.warn(settings.garment.string() + ": " + text);
+            if (options_.warn)
+                options_.warn(settings.garment.string() + ": " + text);
         choose_fabric();
         find_segments();
     }
+
+    DrapeResult& unfinished() { return result_; }
 
     DrapeResult run()
     {
@@ -177,6 +180,7 @@ private:
         cloth.name = settings_.name;
         const std::filesystem::path file = settings_.folder / (settings_.name + "_" + stage + ".obj");
         write_obj(file, mesh);
+        watch_.begin(stage, mesh, scene.frame_duration());
         cloth.shape = file;
         cloth.weld = false;
         cloth.rest = scene::RestFrom::Uv;
@@ -233,7 +237,7 @@ private:
         int frame = 0, frame_of_narrowest = 0;
         std::vector<double> gaps;
         for (; frame < scene.frames; ++frame) {
-            if (!is_finite(world.advance_frame()))
+            if (!is_finite(watch_.advance(world)))
                 return false;
             gaps = mesh.seam_gaps(world.cloths()[0].positions);
             const double widest = *std::max_element(gaps.begin(), gaps.end());
@@ -245,7 +249,7 @@ private:
                 break;
         }
         x.assign(world.cloths()[0].positions.begin(), world.cloths()[0].positions.end());
-        result_.stages.push_back({"sew", clock.seconds(), frame + 1, int(x.size())});
+        result_.stages.push_back({"sew", clock.seconds(), frame + 1, int(x.size()), watch_.take_steps()});
         for (size_t s = 0; s < gaps.size(); ++s)
             result_.seams.push_back({pattern_.seams[s].name, gaps[s]});
         const auto widest = std::max_element(gaps.begin(), gaps.end());
@@ -289,10 +293,10 @@ private:
         scene.frames = int(duration * scene.fps);
         World world(scene, options_);
         for (int frame = 0; frame < scene.frames; ++frame)
-            if (!is_finite(world.advance_frame()))
+            if (!is_finite(watch_.advance(world, duration)))
                 return false;
         x.assign(world.cloths()[0].positions.begin(), world.cloths()[0].positions.end());
-        result_.stages.push_back({stage, clock.seconds(), scene.frames, int(x.size())});
+        result_.stages.push_back({stage, clock.seconds(), scene.frames, int(x.size()), watch_.take_steps()});
         return true;
     }
 
@@ -317,7 +321,7 @@ private:
                 break;
             result_.scene = scene;
         }
-        result_.stages.push_back({"drape", clock.seconds(), frames, int(x.size())});
+        result_.stages.push_back({"drape", clock.seconds(), frames, int(x.size()), watch_.take_steps()});
         result_.mesh = mesh.welded(x);
         has_slid_off(mesh, held, x);
     }
@@ -331,7 +335,7 @@ private:
         StepReport report;
         bool at_rest = false;
         while (!at_rest && frames < settings_.max_motion * scene.fps) {
-            report = world.advance_frame();
+            report = watch_.advance(world);
             if (!is_finite(report))
                 return false;
             ++frames;
@@ -370,6 +374,7 @@ private:
     }
 
     const DrapeSettings& settings_;
+    DrapeWatch& watch_;
     const WorldOptions& options_;
     garment::Pattern pattern_;
     std::set<std::string> labels_;
@@ -382,7 +387,9 @@ private:
 
 DrapeResult drape(const DrapeSettings& settings, const WorldOptions& options)
 {
-    return Draping(settings, options).run();
+    DrapeWatch watch(settings, options);
+    Draping draping(settings, watch);
+    return watch.run([&] { return draping.run(); }, draping.unfinished());
 }
 
 } // namespace toile::scenes
