@@ -1,26 +1,27 @@
-#include <algorithm>
-#include <cctype>
-#include <iostream>
+#include <cmath>
 #include <memory>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/toile/drape/drape_files.h"
+#include "apps/toile/drape/drape_progress.h"
+#include "apps/toile/drape/drape_report.h"
+#include "apps/toile/pattern/mesh_report.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
 #include "apps/toile/terminal/setup_progress.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/file_plan.h"
+#include "core/base/number.h"
 #include "core/compute/parallel.h"
-#include "scenes/drape/drape.h"
+#include "garment/fabric/fabric.h"
+#include "scenes/garment_format/read_garment.h"
 
 namespace toile::app {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+/// Default of --time-limit [s].
+constexpr double kTimeLimit = 600.0;
 
 struct DrapeOptions {
     scenes::DrapeSettings settings;
@@ -31,113 +32,21 @@ struct DrapeOptions {
     bool quiet = false;
 };
 
-/// Name of the garment: that of its file, with what can't name a cloth replaced.
-std::string name_of(const std::filesystem::path& file)
+void require_valid(const scenes::DrapeSettings& settings)
 {
-    std::string name = file.stem().string();
-    if (name.ends_with(".garment"))
-        name.resize(name.size() - std::string(".garment").size());
-    std::replace_if(
-        name.begin(), name.end(),
-        [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; }, '_');
-    return name.empty() ? "garment" : name;
+    require_edge_option(settings.edge);
+    garment::fabric_preset(settings.fabric, "--fabric");
+    if (!(settings.time_limit > 0.0))
+        throw InvalidInput("--time-limit " + short_text(settings.time_limit) +
+                           ": must be a positive number of seconds");
 }
 
-const char* to_word(scenes::DrapeOutcome outcome)
-{
-    switch (outcome) {
-    case scenes::DrapeOutcome::Placement:
-        return "placement";
-    case scenes::DrapeOutcome::Tangled:
-        return "tangled";
-    case scenes::DrapeOutcome::NotAtRest:
-        return "not at rest";
-    case scenes::DrapeOutcome::SlidOff:
-        return "slid off";
-    case scenes::DrapeOutcome::Solver:
-        return "solver";
-    case scenes::DrapeOutcome::Draped:
-        break;
-    }
-    return "draped";
-}
-
-std::string report_of(const scenes::DrapeResult& result)
-{
-    Json json = {{"class", to_word(result.outcome)}, {"message", result.message}};
-    for (const scenes::DrapeStage& stage : result.stages)
-        json["stages"].push_back({{"name", stage.name},
-                                  {"seconds", stage.seconds},
-                                  {"frames", stage.frames},
-                                  {"vertices", stage.vertices}});
-    json["pieces"] = result.pieces;
-    json["border_loops"] = result.border_loops;
-    json["euler_characteristic"] = result.euler_characteristic;
-    for (const scenes::DrapeSeam& seam : result.seams)
-        json["seams"].push_back({{"name", seam.name}, {"gap_before_weld_m", seam.gap}});
-    for (const scenes::DrapeSlide& slide : result.slides)
-        json["slid_m"][slide.label] = slide.slid;
-    json["rest_speed_m_s"] = result.rest_speed;
-    json["max_strain"] = result.max_strain;
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-/// The scene that simulates the garment on, for two seconds.
-std::string scene_text(const DrapeOptions& options, const scenes::DrapeResult& result)
-{
-    const std::string& name = options.settings.name;
-    Json json = {{"toile", 1}, {"name", name + ", draped"}, {"frames", 60}};
-    Json avatar = {{"name", options.settings.body.name}};
-    if (options.avatar.empty())
-        avatar["mannequin"] = Json::object();
-    else
-        avatar["file"] = std::filesystem::absolute(options.avatar).string();
-    json["avatars"] = {avatar};
-    json["cloths"] = {{{"name", name},
-                       {"file", name + ".obj"},
-                       {"weld", false},
-                       {"rest", "uv"},
-                       {"uv_scale", 1.0},
-                       {"fabric", result.scene.cloths.at(0).fabric}}};
-    for (const scene::Attachment& attachment : result.scene.attachments)
-        json["attachments"].push_back(
-            {{"cloth", name},
-             {"select", {{"vertices", std::get<std::vector<int>>(attachment.select.by)}}},
-             {"to", attachment.to}});
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-scenes::WorldOptions world_options(SetupProgress& progress, const InterruptGuard& interrupt)
-{
-    scenes::WorldOptions options;
-    options.progress = [&](const std::string& task, double fraction) { progress.update(task, fraction); };
-    options.goes_on = [&] { return !interrupt.requested(); };
-    options.warn = [&](const std::string& text) { progress.warn(text); };
-    return options;
-}
-
-void prepare_files(DrapeOptions& options)
+/// Completes the settings by those of the options that have another form there.
+void complete(DrapeOptions& options, const DrapeFiles& files)
 {
     scenes::DrapeSettings& settings = options.settings;
-    settings.name = name_of(settings.garment);
-    if (options.folder.empty())
-        options.folder = std::filesystem::path("out") / settings.name;
-    settings.folder = options.folder / "stages";
-    FilePlan plan;
-    plan.add_input(settings.garment, "the garment");
-    if (!options.avatar.empty())
-        plan.add_input(options.avatar, "the avatar");
-    for (const std::string& file :
-         {settings.name + ".obj", std::string("scene.json"), std::string("drape.json")})
-        plan.add_output(options.folder / file, "the draped garment");
-    require_writable_folder(settings.folder);
-}
-
-int drape(DrapeOptions options)
-{
-    const ThreadLimit threads(options.threads);
-    scenes::DrapeSettings& settings = options.settings;
-    prepare_files(options);
+    settings.name = files.name();
+    settings.folder = files.stages();
     settings.body.name = "body";
     if (options.avatar.empty())
         settings.body.shape = scene::Mannequin{};
@@ -145,30 +54,93 @@ int drape(DrapeOptions options)
         settings.body.shape = options.avatar;
     if (!options.shift.empty())
         settings.shift = Vec3(options.shift[0], options.shift[1], options.shift[2]);
+}
 
+/// Reads the garment, and meshes it to know that it can be sewn. A refusal is reported in the folder too.
+/// @throws InvalidInput
+garment::Pattern sewable_pattern(const scenes::DrapeSettings& settings, const DrapeFiles& files)
+{
+    garment::Pattern pattern;
+    try {
+        pattern = garment_format::read_pattern(settings.garment);
+    } catch (const InvalidInput& error) {
+        if (std::filesystem::exists(settings.garment))
+            files.write_refusal({"pattern", error.what()});
+        throw;
+    }
+    files.require_safe(pattern);
+    std::string word = "meshing";
+    try {
+        const MeshReport report = mesh_report_on(pattern, settings.edge);
+        if (const std::string failure = failure_of(report); !failure.empty()) {
+            word = report.outcome();
+            throw InvalidInput(failure);
+        }
+    } catch (const InvalidInput& error) {
+        files.write_refusal({word, error.what()});
+        throw;
+    }
+    return pattern;
+}
+
+/// Drapes with a progress line. What the drape refuses of the garment is reported in the folder too.
+scenes::DrapeResult drape_with_progress(DrapeOptions& options, const DrapeFiles& files,
+                                        const InterruptGuard& interrupt)
+{
+    SetupProgress progress(options.quiet);
+    DrapeProgressLine line(progress);
+    scenes::WorldOptions world;
+    world.progress = [&](const std::string& task, double fraction) { line.update_world(task, fraction); };
+    world.goes_on = [&] { return !interrupt.requested(); };
+    world.warn = [&](const std::string& text) { progress.warn(text); };
+    options.settings.progress = [&](const scenes::DrapeProgress& now) { line.update(now); };
+    try {
+        return scenes::drape(options.settings, world);
+    } catch (const InvalidInput& error) {
+        // Errors begin with the file at fault: the garment, or the avatar, which is no class of garments.
+        if (std::string(error.what()).starts_with(options.settings.garment.string()))
+            files.write_refusal({"pattern", error.what()});
+        throw;
+    }
+}
+
+int drape(DrapeOptions options)
+{
+    const scenes::DrapeSettings& settings = options.settings;
+    require_valid(settings);
+    const ThreadLimit threads(options.threads);
+    const DrapeFiles files(settings.garment, options.avatar, options.folder);
+    const garment::Pattern pattern = sewable_pattern(settings, files);
+    complete(options, files);
+
+    // Drape, and certify what rests.
     const RunLog log(options.quiet);
     const InterruptGuard interrupt;
-    scenes::DrapeResult result;
-    {
-        SetupProgress progress(options.quiet);
-        result = scenes::drape(settings, world_options(progress, interrupt));
+    DrapeReport report;
+    report.result = drape_with_progress(options, files, interrupt);
+    files.write_garment(settings, report.result, log);
+    report.verdict = verdict_of(report.result);
+    if (report.verdict.is_draped()) {
+        const std::optional<Certificate> certificate = files.write_certificate(log, interrupt);
+        if (!certificate) {
+            log.error("interrupted before the garment was certified");
+            return kExitFailure;
+        }
+        report.verdict = verdict_of(*certificate, report.result.mesh);
     }
-    const std::filesystem::path report = options.folder / "drape.json";
-    write_atomically(report, report_of(result));
-    if (!result.mesh.positions.empty()) {
-        const std::filesystem::path mesh = options.folder / (settings.name + ".obj");
-        write_obj(mesh, result.mesh);
-        log.file(mesh);
-    }
-    log.file(report);
-    if (result.outcome != scenes::DrapeOutcome::Draped) {
-        log.error(std::string(to_word(result.outcome)) + ": " + result.message);
-        return kExitFailure;
-    }
-    const std::filesystem::path scene = options.folder / "scene.json";
-    write_atomically(scene, scene_text(options, result));
-    log.file(scene);
-    return kExitOk;
+
+    // Report it.
+    const ObjMesh& mesh = report.result.mesh;
+    if (!mesh.positions.empty())
+        report.measures = measure_garment(mesh, pattern, settings.fabric);
+    files.write_report(report, pattern, log);
+    if (!mesh.positions.empty())
+        files.write_picture(settings, log);
+    log.result(summary_of(report));
+    if (report.verdict.is_draped())
+        return kExitOk;
+    log.error(report.verdict.word + ": " + report.verdict.message);
+    return kExitFailure;
 }
 
 } // namespace
@@ -189,6 +161,9 @@ Command add_drape(CLI::App& parser)
     add.add_option("--shift", options->shift, "x,y,z added to the placement of the panels [m]")
         ->delimiter(',')
         ->expected(3);
+    options->settings.time_limit = kTimeLimit;
+    add.add_option("--time-limit", options->settings.time_limit, "Ends the drape after these seconds")
+        ->capture_default_str();
     add.add_option("-o,--output", options->folder, "Folder of the results [out/NAME]");
     add.add_option("--threads", options->threads, "CPU threads; 0: all")->capture_default_str();
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
