@@ -75,7 +75,8 @@ void DrapeWatch::end_early(DrapeResult& result) const
         return;
     }
     result.message += "in stage " + stage_ + ", after " + short_text(frames_ * frame_) + " s of its motion";
-    result.stages.push_back({stage_, seconds_of_stage(), frames_, int(state_.positions.size()), stage_steps_});
+    result.stages.push_back(
+        {stage_, seconds_of_stage(), frames_, int(state_.positions.size()), stage_steps_});
 }
 
 void DrapeWatch::tell(double time, double duration) const

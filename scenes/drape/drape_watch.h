@@ -51,11 +51,11 @@ private:
     const DrapeSettings& settings_;
     WorldOptions options_;
     Clock::time_point start_ = Clock::now(), stage_start_ = start_;
-    std::string stage_;  ///< empty: none has begun
-    double frame_ = 0.0; ///< [s]
-    int frames_ = 0;     ///< of the stage
+    std::string stage_;               ///< empty: none has begun
+    double frame_ = 0.0;              ///< [s]
+    int frames_ = 0;                  ///< of the stage
     int stage_steps_ = 0, steps_ = 0; ///< of the stage; since take_steps()
-    ObjMesh state_; ///< last finite one; no positions before the first stage
+    ObjMesh state_;                   ///< last finite one; no positions before the first stage
 };
 
 } // namespace toile::scenes
