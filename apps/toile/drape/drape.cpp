@@ -115,6 +115,7 @@ int drape(DrapeOptions options)
 
     // Drape, and certify what rests.
     const RunLog log(options.quiet);
+    const exports::FolderLock lock = files.lock(log);
     const InterruptGuard interrupt;
     DrapeReport report;
     report.result = drape_with_progress(options, files, interrupt);

@@ -86,10 +86,21 @@ void DrapeFiles::require_safe(const garment::Pattern& pattern) const
     require_writable_folder(stages());
 }
 
+exports::FolderLock DrapeFiles::lock(const RunLog& log) const
+{
+    return exports::FolderLock(folder_, [&](const std::string& text) { log.note("warning: " + text); });
+}
+
 void DrapeFiles::write_refusal(const DrapeVerdict& verdict) const
 {
-    if (!std::filesystem::exists(report()) || is_report(report()))
-        write_atomically(report(), to_json(verdict));
+    if (std::filesystem::exists(report()) && !is_report(report()))
+        return;
+    try {
+        require_writable(report());
+    } catch (const InvalidInput&) {
+        return; // the caller tells the refusal of the input, which is what has to be mended first
+    }
+    write_atomically(report(), to_json(verdict));
 }
 
 void DrapeFiles::write_garment(const scenes::DrapeSettings& settings, const scenes::DrapeResult& result,

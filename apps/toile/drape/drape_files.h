@@ -8,6 +8,7 @@
 #include "apps/toile/drape/drape_report.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
+#include "export/folder_lock.h"
 #include "garment/pattern/pattern.h"
 #include "scenes/drape/drape.h"
 
@@ -27,8 +28,11 @@ public:
     /// @throws InvalidInput naming both files
     void require_safe(const garment::Pattern& pattern) const;
 
-    /// Writes a report on refused input, unless that would replace another file than such a report. Other
-    /// results stay as they are.
+    /// Keeps other runs out of the folder while it lives. @throws as FolderLock
+    exports::FolderLock lock(const RunLog& log) const;
+
+    /// Writes a report on refused input if the folder can be written to, unless that would replace another
+    /// file than such a report. Other results stay as they are.
     void write_refusal(const DrapeVerdict& verdict) const;
 
     /// Writes the mesh, and, for a garment at rest, the scene that simulates it on for two seconds. Removes

@@ -149,7 +149,7 @@ std::string summary_of(const DrapeReport& report)
     if (!result.seams.empty()) {
         const auto widest = std::max_element(result.seams.begin(), result.seams.end(),
                                              [](const auto& a, const auto& b) { return a.gap < b.gap; });
-        std::snprintf(text, sizeof text, ", seams closed to %.2g mm", 1e3 * widest->gap);
+        std::snprintf(text, sizeof text, ", widest seam gap %.2g mm", 1e3 * widest->gap);
         summary += text;
     }
     if (!report.measures)

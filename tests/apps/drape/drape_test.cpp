@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/mesh/obj.h"
+#include "export/folder_lock.h"
 #include "tests/apps/program.h"
 
 /// toile drape: what it writes, and what it refuses.
@@ -160,6 +161,7 @@ TEST_F(Drape, ReportsWhatIsWrongWithTheInput)
         EXPECT_NE(finished.errors.find(message), std::string::npos) << finished.errors;
     }
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file("out")), {}), 1) << "drape.json only";
+    expect_refusal({"broken.json", "-o", "/proc/nowhere"}, {"not valid JSON"});
 }
 
 TEST_F(Drape, RefusesOptionsBeforeAnythingIsWritten)
@@ -171,6 +173,13 @@ TEST_F(Drape, RefusesOptionsBeforeAnythingIsWritten)
     expect_refusal({"tube.json", "--time-limit", "0"}, {"--time-limit 0", "positive"});
     expect_refusal({"tube.json", "--time-limt", "5"}, {"did you mean --time-limit?"});
     expect_refusal({"none.json"}, {"none.json"});
+}
+
+TEST_F(Drape, LeavesAFolderToTheRunThatHasIt)
+{
+    temporary_.write("tube.json", tube());
+    const exports::FolderLock lock(file("out"));
+    expect_refusal({"tube.json", "-o", "out"}, {"out: another run"});
 }
 
 TEST_F(Drape, ReplacesNothingThatItReads)
