@@ -43,7 +43,7 @@ void DrapeWatch::begin(const std::string& stage, const ObjMesh& mesh, double fra
 
 StepReport DrapeWatch::advance(World& world, double duration)
 {
-    const StepReport report = world.advance_frame();
+    StepReport report = world.advance_frame();
     ++frames_;
     stage_steps_ += report.steps;
     steps_ += report.steps;

@@ -148,7 +148,7 @@ std::optional<Certificate> DrapeFiles::write_certificate(const RunLog& log,
     scenes::Scene scene_at_rest = scenes::read_scene(scene());
     scene_at_rest.frames = 1;
     const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene_at_rest);
-    const std::optional<Certificate> certified =
+    std::optional<Certificate> certified =
         certify(scene_at_rest, {{&surfaces.at(0), mesh(), mesh()}}, {}, log, interrupt);
     if (!certified)
         return std::nullopt;
