@@ -91,6 +91,8 @@ MAY_INCLUDE |= {
     "apps/toile/render": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/preview"],
     "apps/toile/simulate": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check"],
     "apps/toile/pattern": BELOW_APPS + ["apps/toile/terminal"],
+    "apps/toile/drape": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/toile/render",
+                                      "apps/toile/pattern", "apps/preview"],
     "apps/toile": BELOW_APPS + ["apps/toile/terminal"],
     "python": BELOW_APPS,
     # Nothing that ships includes research.

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "garment/pattern/mesh/resampling.h"
 #include "garment/pattern/place/placement_shift.h"
+#include "scenes/drape/drape_watch.h"
 #include "scenes/drape/rest_watch.h"
 #include "scenes/drape/seam_closing.h"
 #include "scenes/drape/seam_lift.h"
@@ -43,18 +44,21 @@ private:
 /// A drape in progress.
 class Draping {
 public:
-    Draping(const DrapeSettings& settings, const WorldOptions& options)
-        : settings_(settings), options_(options), pattern_(garment_format::read_pattern(settings.garment)),
-          stages_(settings_, pattern_, fabric_)
+    Draping(const DrapeSettings& settings, DrapeWatch& watch)
+        : settings_(settings), watch_(watch), options_(watch.options()),
+          pattern_(garment_format::read_pattern(settings.garment)),
+          stages_(settings_, pattern_, fabric_, watch_)
     {
         for (garment::Panel& panel : pattern_.panels)
             panel.placement.pretranslate(settings.shift);
         for (const std::string& text : not_used(pattern_))
-            if (options.warn)
-                options.warn(settings.garment.string() + ": " + text);
+            if (options_.warn)
+                options_.warn(settings.garment.string() + ": " + text);
         choose_fabric();
         load_body();
     }
+
+    DrapeResult& unfinished() { return result_; }
 
     DrapeResult run()
     {
@@ -177,7 +181,7 @@ private:
             goes_on = seams.weld() > 0;
         }
         x = seams.positions();
-        result_.stages.push_back({"sew", clock.seconds(), frames, int(x.size())});
+        result_.stages.push_back({"sew", clock.seconds(), frames, int(x.size()), watch_.take_steps()});
         const std::vector<double> gaps = seams.gaps();
         for (size_t s = 0; s < gaps.size(); ++s)
             result_.seams.push_back({pattern_.seams[s].name, gaps[s]});
@@ -198,7 +202,7 @@ private:
         World world(scene, options_);
         double shortest = std::numeric_limits<double>::infinity();
         for (int in_vain = 0; in_vain < kVainFrames && !seams.can_weld(); ++in_vain, ++frames) {
-            if (!is_finite(world.advance_frame()))
+            if (!is_finite(watch_.advance(world)))
                 return false;
             seams.move(world.cloths()[0].positions);
             if (seams.open_length() > kProgress * shortest)
@@ -231,10 +235,10 @@ private:
         scene.frames = int(duration * scene.fps);
         World world(scene, options_);
         for (int frame = 0; frame < scene.frames; ++frame)
-            if (!is_finite(world.advance_frame()))
+            if (!is_finite(watch_.advance(world, duration)))
                 return false;
         x.assign(world.cloths()[0].positions.begin(), world.cloths()[0].positions.end());
-        result_.stages.push_back({stage, clock.seconds(), scene.frames, int(x.size())});
+        result_.stages.push_back({stage, clock.seconds(), scene.frames, int(x.size()), watch_.take_steps()});
         return true;
     }
 
@@ -259,7 +263,7 @@ private:
             result_.scene = scene;
             result_.scene.cloths[0].fabric = fabric_;
         }
-        result_.stages.push_back({"drape", clock.seconds(), frames, int(x.size())});
+        result_.stages.push_back({"drape", clock.seconds(), frames, int(x.size()), watch_.take_steps()});
         result_.mesh = mesh.surface(x);
         has_slid_off(mesh, held, x);
     }
@@ -273,7 +277,7 @@ private:
         StepReport report;
         bool at_rest = false;
         while (!at_rest && frames < settings_.max_motion * scene.fps) {
-            report = world.advance_frame();
+            report = watch_.advance(world);
             if (!is_finite(report))
                 return false;
             ++frames;
@@ -312,6 +316,7 @@ private:
     }
 
     const DrapeSettings& settings_;
+    DrapeWatch& watch_;
     const WorldOptions& options_;
     garment::Pattern pattern_;
     std::string fabric_; ///< preset
@@ -325,7 +330,9 @@ private:
 
 DrapeResult drape(const DrapeSettings& settings, const WorldOptions& options)
 {
-    return Draping(settings, options).run();
+    DrapeWatch watch(settings, options);
+    Draping draping(settings, watch);
+    return watch.run([&] { return draping.run(); }, draping.unfinished());
 }
 
 } // namespace toile::scenes

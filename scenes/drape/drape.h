@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,7 @@ namespace toile::scenes {
 /// How a drape ended.
 enum class DrapeOutcome {
     Draped,
+    Meshing,   ///< the time limit ended it before it was sewn
     Placement, ///< the panels do not lie around the body
     Tangled,   ///< a seam could not be pulled shut
     NotAtRest, ///< the garment still moves after DrapeSettings::max_motion
@@ -23,6 +26,14 @@ enum class DrapeOutcome {
 /// Distance by which a released edge may sink [m].
 inline constexpr double kMaxSlide = 0.05;
 
+/// A moment of a drape.
+struct DrapeProgress {
+    std::string stage;
+    double time = 0.0;     ///< [s] simulated in the stage; 0: its scene is being loaded
+    double duration = 0.0; ///< [s] to be simulated in it; 0: it ends by what happens
+    double seconds = 0.0;  ///< [s] of wall time since it began
+};
+
 struct DrapeSettings {
     std::filesystem::path garment; ///< garment file or panel JSON
     scene::Avatar body;            ///< in the pose of its first sample
@@ -30,8 +41,10 @@ struct DrapeSettings {
     double edge = 0.01;            ///< [m] of the final mesh
     Vec3 shift = Vec3::Zero();     ///< [m] added to the placement of the panels
     double max_motion = 20.0;      ///< [s] of simulated time until it has to be at rest
-    std::filesystem::path folder;  ///< of the scenes and meshes of its stages; exists
-    std::string name;              ///< of the garment in files and messages: letters, digits, _ and -
+    double time_limit = std::numeric_limits<double>::infinity(); ///< [s] of wall time
+    std::function<void(const DrapeProgress&)> progress;          ///< called after every sample; may be empty
+    std::filesystem::path folder; ///< of the scenes and meshes of its stages; exists
+    std::string name;             ///< of the garment in files and messages: letters, digits, _ and -
 };
 
 struct DrapeStage {
@@ -39,6 +52,7 @@ struct DrapeStage {
     double seconds = 0.0;
     int frames = 0;
     int vertices = 0;
+    int steps = 0; ///< time steps
 };
 
 struct DrapeSeam {
@@ -60,8 +74,8 @@ struct DrapeResult {
     int pieces = 0, border_loops = 0, euler_characteristic = 0;
     double rest_speed = 0.0; ///< [m/s] of the fastest vertex in the last half second
     double max_strain = 0.0; ///< [-]
-    ObjMesh mesh;            ///< the garment as it ended, or the panels if their seams are open
-    Scene scene;             ///< that simulates the garment on from there
+    ObjMesh mesh; ///< the garment as it ended, or the panels if their seams are open; groups: panels
+    Scene scene;  ///< that simulates the garment on from there
 };
 
 /// Sews a pattern around a body and drapes it.

@@ -20,9 +20,11 @@ garment::PatternMesh mesh_panels(const garment::Pattern& pattern, double edge, d
 GarmentMesh::GarmentMesh(const garment::Pattern& pattern, double edge, double least)
     : panels(mesh_panels(pattern, edge, least)), sewn(garment::sewn_mesh(panels))
 {
+    for (const garment::Panel& panel : pattern.panels)
+        panel_names.push_back(panel.name);
 }
 
-ObjMesh GarmentMesh::surface(View<const Vec3> x) const { return textured_surface(sewn, panels, x); }
+ObjMesh GarmentMesh::surface(View<const Vec3> x) const { return textured_surface(*this, sewn, x); }
 
 std::vector<int> GarmentMesh::labelled(const garment::Pattern& pattern, const std::string& label) const
 {
@@ -37,17 +39,18 @@ std::vector<int> GarmentMesh::labelled(const garment::Pattern& pattern, const st
     return vertices;
 }
 
-ObjMesh textured_surface(const garment::SewnMesh& sewn, const garment::PatternMesh& panels,
-                         View<const Vec3> x)
+ObjMesh textured_surface(const GarmentMesh& garment, const garment::SewnMesh& sewn, View<const Vec3> x)
 {
     ObjMesh mesh;
     mesh.positions.assign(x.begin(), x.end());
-    mesh.texture_coordinates = panels.uv;
+    mesh.texture_coordinates = garment.panels.uv;
     for (size_t t = 0; t < sewn.triangles.size(); ++t) {
         const Triangle &corner = sewn.triangles[t], &flat = sewn.corners[t];
         mesh.polygons.push_back({corner[0], corner[1], corner[2]});
         mesh.polygon_uvs.push_back({flat[0], flat[1], flat[2]});
     }
+    for (size_t p = 0; p < garment.panel_names.size(); ++p)
+        begin_group(mesh, garment.panel_names[p], garment.panels.first_triangle[p]);
     return mesh;
 }
 

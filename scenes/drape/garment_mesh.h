@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/mesh/obj.h"
 #include "garment/pattern/mesh/pattern_mesh.h"
 #include "garment/pattern/mesh/sewn_mesh.h"
@@ -10,12 +13,13 @@ namespace toile::scenes {
 struct GarmentMesh {
     garment::PatternMesh panels;
     garment::SewnMesh sewn;
+    std::vector<std::string> panel_names; ///< [panels]
 
     /// @param edge   [m] of panels that have no edge length of their own
     /// @param least  [m] of any
     GarmentMesh(const garment::Pattern& pattern, double edge, double least = 0.0);
 
-    /// The welded surface; texture coordinates are those of the panels [m].
+    /// The welded surface; texture coordinates are those of the panels [m], and a group names each panel.
     /// @param x  [welded vertices] [m]
     ObjMesh surface(View<const Vec3> x) const;
 
@@ -23,10 +27,10 @@ struct GarmentMesh {
     std::vector<int> labelled(const garment::Pattern& pattern, const std::string& label) const;
 };
 
-/// Welded surface with the texture coordinates of the panels [m].
+/// The garment with only some of its seams welded, as in `sewn`; with the same texture coordinates and
+/// groups.
 /// @param x  [welded vertices] [m]
-ObjMesh textured_surface(const garment::SewnMesh& sewn, const garment::PatternMesh& panels,
-                         View<const Vec3> x);
+ObjMesh textured_surface(const GarmentMesh& garment, const garment::SewnMesh& sewn, View<const Vec3> x);
 
 /// Mean of the vertices that are welded into one.
 /// @param x  [vertices of the panels] [m]

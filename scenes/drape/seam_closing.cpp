@@ -24,7 +24,7 @@ SeamClosing::SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x)
 
 ObjMesh SeamClosing::surface() const
 {
-    ObjMesh surface = textured_surface(sewn_, closed_, toile::scenes::weld(sewn_, x_));
+    ObjMesh surface = textured_surface(mesh_, sewn_, toile::scenes::weld(sewn_, x_));
     for (const auto& seam : open_)
         for (const auto& [a, b] : seam)
             if (sewn_.welded_of[a] != sewn_.welded_of[b])

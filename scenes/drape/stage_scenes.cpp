@@ -30,8 +30,8 @@ bool stays_attached(const std::string& label)
 }
 
 StageScenes::StageScenes(const DrapeSettings& settings, const garment::Pattern& pattern,
-                         const std::string& fabric)
-    : settings_(settings), pattern_(pattern), fabric_(fabric)
+                         const std::string& fabric, DrapeWatch& watch)
+    : settings_(settings), pattern_(pattern), fabric_(fabric), watch_(watch)
 {
     for (const garment::Panel& panel : pattern.panels)
         for (const garment::PanelEdge& edge : panel.edges)
@@ -76,6 +76,7 @@ Scene StageScenes::scene_of(const std::string& stage, const ObjMesh& mesh, const
     cloth.name = settings_.name;
     const std::filesystem::path file = settings_.folder / (settings_.name + "_" + stage + ".obj");
     write_obj(file, mesh);
+    watch_.begin(stage, mesh, scene.frame_duration());
     cloth.shape = file;
     cloth.weld = false;
     cloth.rest = scene::RestFrom::Uv;

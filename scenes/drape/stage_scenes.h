@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scenes/drape/drape.h"
+#include "scenes/drape/drape_watch.h"
 #include "scenes/drape/garment_mesh.h"
 
 namespace toile::scenes {
@@ -14,9 +15,11 @@ bool stays_attached(const std::string& label);
 /// Makes the scenes of a drape's stages, and writes their meshes into the folder.
 class StageScenes {
 public:
-    /// @param fabric  preset
     /// All are kept by reference.
-    StageScenes(const DrapeSettings& settings, const garment::Pattern& pattern, const std::string& fabric);
+    /// @param fabric  preset
+    /// @param watch   is told when a stage begins
+    StageScenes(const DrapeSettings& settings, const garment::Pattern& pattern, const std::string& fabric,
+                DrapeWatch& watch);
 
     const std::set<std::string>& labels() const { return labels_; } ///< of the pattern's edges
 
@@ -43,6 +46,7 @@ private:
     const DrapeSettings& settings_;
     const garment::Pattern& pattern_;
     const std::string& fabric_;
+    DrapeWatch& watch_;
     std::set<std::string> labels_;
 };
 

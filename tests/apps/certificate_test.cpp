@@ -66,6 +66,7 @@ TEST(Certificate, HasTheDocumentedKeys)
     EXPECT_EQ(found["cloth_avatar_crossings"], 0);
     EXPECT_TRUE(found["min_gap_m"].is_null()) << found["min_gap_m"];
     EXPECT_EQ(found["max_penetration_m"], 0.0);
+    EXPECT_TRUE(found["max_penetration_point_m"].is_null());
     EXPECT_NEAR(found["max_strain"], 0.0, 0.01);
     EXPECT_TRUE(found["first_bad_frame"].is_null());
     EXPECT_EQ(found["solver"], "auto");
@@ -200,6 +201,34 @@ TEST(Certificate, NamesTheBoneThatClothCrosses)
     const Json found = json_in(folder, "out/sheet.certificate.json");
     EXPECT_EQ(found["first_crossing"]["b"]["bone"], "base");
     EXPECT_FALSE(found["first_crossing"]["a"].contains("bone"));
+}
+
+/// A sheet that lies in a ball is deepest over its centre; one corner is pulled out.
+TEST(Certificate, SaysWhereClothIsDeepAndStretched)
+{
+    const TemporaryFolder folder;
+    folder.write("ball.json", small_scene(2));
+    ASSERT_EQ(run_toile({"simulate", "ball.json", "-o", ".", "--no-check"}, folder.path()).exit_code, 0);
+    const Vec3 corner(-0.3, 0.1, -0.3);
+    rewrite(folder.path() / "sheet.pc2", [&](int frame, std::vector<Vec3>& x) {
+        for (Vec3& p : x)
+            p.y() = frame == 1 ? 0.1 : 0.25;
+        if (frame == 1)
+            *std::min_element(x.begin(), x.end(), [](const Vec3& a, const Vec3& b) {
+                return a.x() + a.z() < b.x() + b.z();
+            }) = corner;
+    });
+    const Finished run = run_toile({"check", "sheet.pc2", "--scene", "ball.json", "--quiet"}, folder.path());
+    EXPECT_EQ(run.exit_code, 1);
+    const Json found = json_in(folder, "sheet.certificate.json");
+    EXPECT_NEAR(found["max_penetration_m"], 0.1, 1e-3);
+    const auto distance = [](const Json& point, const Vec3& from) {
+        return (Vec3(point[0], point[1], point[2]) - from).norm();
+    };
+    EXPECT_LT(distance(found["max_penetration_point_m"], Vec3(0, 0.1, 0)), 0.05) << "within one triangle";
+    EXPECT_LT(distance(found["max_strain_point_m"], corner), 0.15);
+    for (const char* part : {"mm deep in an avatar near (", "% near (-0."})
+        EXPECT_NE(run.errors.find(part), std::string::npos) << run.errors;
 }
 
 TEST(Certificate, FindsClothThatAFastBodyHasGoneThrough)

@@ -89,9 +89,12 @@ TEST(StrainMeter, AgreesWithTheSingularValuesOfRandomDeformations)
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 2; ++j)
                 F(i, j) = edges(i, 0) * inverse(0, j) + edges(i, 1) * inverse(1, j);
-        const double sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(F).singularValues()[0];
-        const double measured = StrainMeter(rest, {Triangle(0, 1, 2)}).largest(x, kFree).of_free;
-        EXPECT_NEAR(measured, sigma - 1.0, 1e-10 * sigma);
+        const Eigen::Vector2d sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(F).singularValues();
+        const StrainMeter meter(rest, {Triangle(0, 1, 2)});
+        EXPECT_NEAR(meter.largest(x, kFree).of_free, sigma[0] - 1.0, 1e-10 * sigma[0]);
+        EXPECT_NEAR(meter.stretches(x, 0).larger, sigma[0], 1e-10 * sigma[0]);
+        EXPECT_NEAR(meter.stretches(x, 0).smaller, sigma[1], 1e-10 * sigma[0]);
+        EXPECT_NEAR(meter.rest_area(0), 0.5 * std::abs(rest_edges.determinant()), 1e-12);
     }
 }
 

@@ -12,6 +12,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string near_text(const Vec3& p)
+{
+    char text[80];
+    std::snprintf(text, sizeof text, "near (%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
+    return text;
+}
+
 /// Defects of a frame in words; empty for none.
 std::string reason_of(const FrameFindings& found, const CertificateLimits& limits)
 {
@@ -27,33 +34,30 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
     if (found.cloth_avatar_crossings > 0)
         add(std::to_string(found.cloth_avatar_crossings) + " cloth-avatar crossings");
     if (found.crossing) {
-        const Vec3& p = found.crossing->point;
-        std::snprintf(text, sizeof text, "the first near (%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
         const FrameFindings::Side& body = found.crossing->b;
-        add(text + (body.bone.empty() ? "" : ", by \"" + body.bone + "\" of \"" + body.name + "\""));
+        add("the first " + near_text(found.crossing->point) +
+            (body.bone.empty() ? "" : ", by \"" + body.bone + "\" of \"" + body.name + "\""));
     }
-    if (found.passage) {
-        const Vec3& p = found.passage->point;
-        std::snprintf(text, sizeof text,
-                      "%d points of cloth passed through an avatar since the last frame, the first near "
-                      "(%.3f, %.3f, %.3f) m",
-                      found.passages, p.x(), p.y(), p.z());
-        add(text);
-    }
+    if (found.passage)
+        add(std::to_string(found.passages) +
+            " points of cloth passed through an avatar since the last frame, the first " +
+            near_text(found.passage->point));
     if (found.penetration > limits.penetration) {
-        std::snprintf(text, sizeof text, "%.3g mm deep in an avatar", 1e3 * found.penetration);
-        add(text);
+        std::snprintf(text, sizeof text, "%.3g mm deep in an avatar ", 1e3 * found.penetration);
+        add(text + near_text(found.penetration_point));
     }
     if (found.area < kSmallestArea) {
         std::snprintf(text, sizeof text, "%.3g %% of the area at rest", 1e2 * found.area);
         add(text);
     }
     if (found.is_overstretched) {
-        std::snprintf(text, sizeof text, "strain %.3g %%", 1e2 * found.strain);
-        add(text);
+        std::snprintf(text, sizeof text, "strain %.3g %% ", 1e2 * found.strain);
+        add(text + near_text(found.strain_point));
     }
     return reason;
 }
+
+Json json_of(const Vec3& point) { return {point.x(), point.y(), point.z()}; }
 
 Json json_of(const FrameFindings::CrossingSite& site)
 {
@@ -63,10 +67,8 @@ Json json_of(const FrameFindings::CrossingSite& site)
             json["bone"] = of.bone;
         return json;
     };
-    return {{"frame", site.frame},
-            {"a", side(site.a)},
-            {"b", side(site.b)},
-            {"point_m", {site.point.x(), site.point.y(), site.point.z()}}};
+    return {
+        {"frame", site.frame}, {"a", side(site.a)}, {"b", side(site.b)}, {"point_m", json_of(site.point)}};
 }
 
 Json json_of(const FrameFindings::PassageSite& site)
@@ -75,7 +77,7 @@ Json json_of(const FrameFindings::PassageSite& site)
             {"cloth", site.cloth},
             {"sample", site.sample},
             {"avatar", site.avatar},
-            {"point_m", {site.point.x(), site.point.y(), site.point.z()}}};
+            {"point_m", json_of(site.point)}};
 }
 
 template <typename T>
@@ -111,10 +113,12 @@ void Certificate::add(const FrameFindings& found)
     }
     if (found.penetration > worst.penetration) {
         worst.penetration = found.penetration;
+        worst.penetration_point = found.penetration_point;
         worst_penetration_frame = frame;
     }
     if (found.strain > worst.strain) {
         worst.strain = found.strain;
+        worst.strain_point = found.strain_point;
         worst_strain_frame = frame;
     }
     if (found.attached_strain > worst.attached_strain) {
@@ -167,8 +171,12 @@ std::string to_json(const Certificate& certificate)
         {"min_gap_frame", certificate.min_gap ? Json(certificate.min_gap_frame) : Json(nullptr)},
         {"max_penetration_m", certificate.worst.penetration},
         {"max_penetration_frame", certificate.worst_penetration_frame},
+        {"max_penetration_point_m",
+         certificate.worst.penetration > 0.0 ? json_of(certificate.worst.penetration_point) : Json(nullptr)},
         {"max_strain", certificate.worst.strain},
         {"max_strain_frame", certificate.worst_strain_frame},
+        {"max_strain_point_m",
+         certificate.worst.strain > 0.0 ? json_of(certificate.worst.strain_point) : Json(nullptr)},
         {"max_attached_strain", certificate.worst.attached_strain},
         {"max_attached_strain_frame", certificate.worst_attached_strain_frame},
         {"min_area_ratio", certificate.worst.area},

@@ -46,19 +46,21 @@ struct FrameFindings {
     int torn = 0;         ///< vertices of the file that have left the one that they are joined to
     int out_of_range = 0; ///< vertices that are not is_in_range()
     int cloth_cloth_crossings = 0;
-    int cloth_avatar_crossings = 0;       ///< outside of pinches (AvatarCrossings)
-    int pinched_crossings = 0;            ///< in pinches
-    std::optional<CrossingSite> pinch;    ///< the first of them
-    std::optional<CrossingSite> crossing; ///< first crossing that makes the frame bad
-    int passages = 0;                     ///< samples of cloth that went through avatars, outside of pinches
-    std::optional<PassageSite> passage;   ///< the first of them
-    int pinched_passages = 0;             ///< in pinches
-    std::optional<double> gap;            ///< [m] none: larger than kGapReach
-    double penetration = 0.0;             ///< [m] maximum depth
-    double pinched_depth = 0.0;           ///< [m] maximum depth in pinches
-    double strain = 0.0;                  ///< [-] maximum of all cloths
-    double attached_strain = 0.0;         ///< [-] of triangles with three attached vertices
-    bool is_overstretched = false;        ///< a cloth exceeded its limit
+    int cloth_avatar_crossings = 0;        ///< outside of pinches (AvatarCrossings)
+    int pinched_crossings = 0;             ///< in pinches
+    std::optional<CrossingSite> pinch;     ///< the first of them
+    std::optional<CrossingSite> crossing;  ///< first crossing that makes the frame bad
+    int passages = 0;                      ///< samples of cloth that went through avatars, outside of pinches
+    std::optional<PassageSite> passage;    ///< the first of them
+    int pinched_passages = 0;              ///< in pinches
+    std::optional<double> gap;             ///< [m] none: larger than kGapReach
+    double penetration = 0.0;              ///< [m] maximum depth
+    Vec3 penetration_point = Vec3::Zero(); ///< [m] of the cloth there
+    double pinched_depth = 0.0;            ///< [m] maximum depth in pinches
+    double strain = 0.0;                   ///< [-] maximum of all cloths
+    Vec3 strain_point = Vec3::Zero();      ///< [m] middle of that triangle
+    double attached_strain = 0.0;          ///< [-] of triangles with three attached vertices
+    bool is_overstretched = false;         ///< a cloth exceeded its limit
     double area = 1.0; ///< [-] smallest area of a cloth relative to that at rest, at most 1
 };
 

@@ -173,10 +173,17 @@ void Examiner::measure_each(double time, FrameFindings& found)
         const View<const Vec3> x(x_.data() + cloth.first_vertex, vertex_count);
         const ScenePenetration::Depth depth =
             avatars_.measure(x, cloth.state.triangles, cloth.samples, cloth.sides);
-        found.penetration = std::max(found.penetration, depth.deepest);
+        if (depth.deepest > found.penetration) {
+            found.penetration = depth.deepest;
+            found.penetration_point = depth.point;
+        }
         found.pinched_depth = std::max(found.pinched_depth, depth.pinched);
         const StrainMeter::Largest strain = cloth.strain.largest(x, cloth.state.attached(time));
-        found.strain = std::max(found.strain, strain.of_free);
+        if (strain.of_free > found.strain) {
+            const Triangle& t = cloth.state.triangles[size_t(strain.free_triangle)];
+            found.strain = strain.of_free;
+            found.strain_point = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0;
+        }
         found.attached_strain = std::max(found.attached_strain, strain.of_attached);
         found.area = std::min(found.area, area_of(x, cloth.state.triangles) / cloth.strain.rest_area());
         found.is_overstretched = found.is_overstretched || strain.of_free > cloth.strain_limit;

@@ -1,6 +1,7 @@
 #include "apps/toile/check/penetration.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/long_work.h"
 #include "core/compute/parallel.h"
@@ -10,7 +11,9 @@ namespace toile::app {
 
 namespace {
 
-double deepest_in(const scenes::SceneBody& solid, View<const Vec3> x, View<const Triangle> triangles)
+/// Depth of the deepest triangle in a shape [m], and the triangle's centroid [m].
+std::pair<double, Vec3> deepest_in(const scenes::SceneBody& solid, View<const Vec3> x,
+                                   View<const Triangle> triangles)
 {
     std::vector<double> depths(triangles.size());
     parallel_for(kCpu, "check/penetration", triangles.size(), [&](int t) {
@@ -19,7 +22,11 @@ double deepest_in(const scenes::SceneBody& solid, View<const Vec3> x, View<const
         if (a.allFinite() && b.allFinite() && c.allFinite())
             depths[t] = penetration_of_triangle(*solid.shape(), solid.pose(), a, b, c);
     });
-    return depths.empty() ? 0.0 : *std::max_element(depths.begin(), depths.end());
+    if (depths.empty())
+        return {0.0, Vec3::Zero()};
+    const auto deepest = std::max_element(depths.begin(), depths.end());
+    const Triangle& t = triangles[int(deepest - depths.begin())];
+    return {*deepest, (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0};
 }
 
 } // namespace
@@ -71,13 +78,20 @@ ScenePenetration::measure(View<const Vec3> x, View<const Triangle> triangles,
     sides.resize(bodies_.size());
     const std::vector<Vec3> points = samples.at(x);
     Depth depth;
+    const auto add = [&](double deepest, const Vec3& point) {
+        if (deepest <= depth.deepest)
+            return;
+        depth.deepest = deepest;
+        depth.point = point;
+    };
     for (size_t b = 0; b < bodies_.size(); ++b) {
         if (!meters_[b]) {
-            depth.deepest = std::max(depth.deepest, deepest_in(bodies_[b], x, triangles));
+            const auto [deepest, point] = deepest_in(bodies_[b], x, triangles);
+            add(deepest, point);
             continue;
         }
         const collision::Penetration found = meters_[b]->measure(points, &sides[b]);
-        depth.deepest = std::max(depth.deepest, found.max_depth);
+        add(found.max_depth, found.point);
         depth.pinched = std::max(depth.pinched, found.deepest_excluded);
     }
     return depth;

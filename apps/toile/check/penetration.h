@@ -34,7 +34,8 @@ public:
     /// Maximum depths below the surface of any avatar [m].
     struct Depth {
         double deepest = 0.0;
-        double pinched = 0.0; ///< where parts of a mesh leave no room (PenetrationMeter)
+        Vec3 point = Vec3::Zero(); ///< of the cloth at `deepest` [m]
+        double pinched = 0.0;      ///< where parts of a mesh leave no room (PenetrationMeter)
     };
 
     /// Depth of the cloth's vertices in planes, spheres, capsules and boxes, of its samples in meshes.

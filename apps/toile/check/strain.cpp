@@ -46,18 +46,36 @@ void StrainMeter::add(const Vec3& e1, const Vec3& e2)
     rest_area_ += 0.5 * edges.determinant();
 }
 
+double StrainMeter::rest_area(int triangle) const
+{
+    return 0.5 / inverse_rest_[size_t(triangle)].determinant();
+}
+
+StrainMeter::Stretches StrainMeter::stretches(View<const Vec3> x, int triangle) const
+{
+    // Deformation gradient F = (a, b): rest edges to current edges. Its singular values have the product
+    // |a x b|, which does not cancel as the difference in the formula of the larger would.
+    const Triangle& t = triangles_[size_t(triangle)];
+    const Vec3 e1 = x[t[1]] - x[t[0]], e2 = x[t[2]] - x[t[0]];
+    const Mat2& inverse = inverse_rest_[size_t(triangle)];
+    const Vec3 a = inverse(0, 0) * e1 + inverse(1, 0) * e2, b = inverse(0, 1) * e1 + inverse(1, 1) * e2;
+    const double larger = largest_singular_value(a, b);
+    return {larger, larger > 0.0 ? a.cross(b).norm() / larger : 0.0};
+}
+
 StrainMeter::Largest StrainMeter::largest(View<const Vec3> x, View<const unsigned char> attached) const
 {
     Largest largest;
-    for (size_t k = 0; k < triangles_.size(); ++k) {
-        const Triangle& t = triangles_[k];
-        const Vec3 e1 = x[t[1]] - x[t[0]], e2 = x[t[2]] - x[t[0]];
-        const Mat2& inverse = inverse_rest_[k];
-        const double stretch = largest_singular_value(inverse(0, 0) * e1 + inverse(1, 0) * e2,
-                                                      inverse(0, 1) * e1 + inverse(1, 1) * e2);
+    for (int k = 0; k < triangle_count(); ++k) {
+        const Triangle& t = triangles_[size_t(k)];
+        const double strain = stretches(x, k).larger - 1.0;
         const bool is_attached = attached[t[0]] != 0 && attached[t[1]] != 0 && attached[t[2]] != 0;
-        double& strain = is_attached ? largest.of_attached : largest.of_free;
-        strain = std::fmax(strain, stretch - 1.0);
+        if (is_attached) {
+            largest.of_attached = std::fmax(largest.of_attached, strain);
+        } else if (strain > largest.of_free) {
+            largest.of_free = strain;
+            largest.free_triangle = k;
+        }
     }
     return largest;
 }

@@ -18,10 +18,20 @@ public:
 
     double rest_area() const { return rest_area_; } ///< [m^2]
 
+    /// Principal stretches of a triangle [-]: both are 1 at rest.
+    struct Stretches {
+        double larger, smaller;
+    };
+    Stretches stretches(View<const Vec3> x, int triangle) const;
+
+    int triangle_count() const { return int(triangles_.size()); }
+    double rest_area(int triangle) const; ///< [m^2]
+
     /// Maximum principal stretch minus one [-]; 0 for a mesh at rest, -1 for a point or no triangle.
     struct Largest {
         double of_free = -1.0;
         double of_attached = -1.0; ///< of triangles with three attached vertices
+        int free_triangle = -1;    ///< that of of_free
     };
 
     /// @param attached  [vertices] nonzero for attached ones

@@ -8,9 +8,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
-#include "core/base/number.h"
 #include "garment/pattern/mesh/placed_panels.h"
-#include "scenes/format/field.h"
 #include "scenes/garment_format/read_garment.h"
 
 namespace toile::app {
@@ -26,10 +24,7 @@ struct MeshOptions {
 
 void require_valid(const MeshOptions& options)
 {
-    const scene_format::Range& range = scene_format::kResolution; // as of edges in garment files
-    if (!range.contains(options.edge))
-        throw InvalidInput("--edge " + short_text(options.edge) + ": is out of range; give a length " +
-                           to_sentence(range));
+    require_edge_option(options.edge);
     if (!options.output.empty() && lower_case_extension(options.output) != ".obj" &&
         !is_stream(options.output))
         throw InvalidInput(options.output.string() + ": meshes are OBJ; name a file that ends in .obj");

@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.h"
 #include "core/base/number.h"
+#include "scenes/format/field.h"
 
 namespace toile::app {
 
@@ -158,6 +160,14 @@ const char* MeshReport::outcome() const
     if (!sewn.topology.is_orientable())
         return "seams";
     return sewn.topology.is_manifold() ? "ok" : "meshing";
+}
+
+void require_edge_option(double edge)
+{
+    const scene_format::Range& range = scene_format::kResolution; // as of edges in garment files
+    if (!range.contains(edge))
+        throw InvalidInput("--edge " + short_text(edge) + ": is out of range; give a length " +
+                           to_sentence(range));
 }
 
 std::string failure_of(const MeshReport& report)

@@ -26,6 +26,10 @@ struct MeshReport {
     const char* outcome() const;
 };
 
+/// @param edge  value of --edge [m]
+/// @throws InvalidInput unless it is a length that edges of a mesh may have
+void require_edge_option(double edge);
+
 /// Why the pattern can't be sewn, in one line with the remedy; empty if it can.
 std::string failure_of(const MeshReport& report);
 

@@ -161,6 +161,17 @@ Bounds Film::bounds_of(int frame)
     return box;
 }
 
+void Film::put_floor_below_avatars()
+{
+    show_bodies(0);
+    Bounds box;
+    for (const scenes::SceneBody& body : bodies_)
+        for (const Vec3& p : body.surface().positions)
+            box.extend(p);
+    if (settings_.render.ground && !bodies_.empty())
+        settings_.render.ground = box.lower.y();
+}
+
 void Film::choose(const std::vector<int>& frames)
 {
     frames_ = frames;

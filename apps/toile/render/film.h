@@ -33,6 +33,9 @@ public:
     double fps() const { return settings_.fps; }
     scene::Render& render() { return settings_.render; } ///< size, view and samples; may be changed
 
+    /// Puts the floor at the lowest point of the avatars in their first pose, if there are any and a floor.
+    void put_floor_below_avatars();
+
     /// Prepares pictures of these frames. The view contains all of them and follows a walking avatar.
     void choose(const std::vector<int>& frames);
 

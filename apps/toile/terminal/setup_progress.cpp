@@ -33,17 +33,10 @@ void SetupProgress::update(const std::string& task, double fraction)
 {
     const std::lock_guard lock(mutex_);
     const Clock::time_point now = Clock::now();
-    if (!is_working_ || task != task_) {
-        is_working_ = true;
-        task_ = task;
-        first_fraction_ = fraction;
-        start_ = now;
-        last_line_ = rewrites_ ? now - kTerminalInterval : now + kSilence - kLogInterval;
-    }
+    begin(task, fraction, now);
     const bool is_finished = fraction >= 1.0;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    const bool is_due = now - last_line_ >= (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
-    if (!quiet_ && (is_finished ? now - start_ >= kSilence : is_due)) {
+    if (!quiet_ && (is_finished ? now - start_ >= kSilence : is_due(now))) {
         last_line_ = now;
         std::string text = prefix_ + task + ": " + std::to_string(int(100.0 * fraction)) + " %";
         if (is_finished)
@@ -56,6 +49,34 @@ void SetupProgress::update(const std::string& task, double fraction)
         is_working_ = false;
         now - start_ < kSilence ? erase_line() : end_line();
     }
+}
+
+void SetupProgress::tell(const std::string& task, const std::string& state)
+{
+    const std::lock_guard lock(mutex_);
+    const Clock::time_point now = Clock::now();
+    begin(task, 0.0, now);
+    if (quiet_ || !is_due(now))
+        return;
+    last_line_ = now;
+    print(prefix_ + task + ": " + state);
+}
+
+/// Notes the begin of a task unless it is under way.
+void SetupProgress::begin(const std::string& task, double fraction, Clock::time_point now)
+{
+    if (is_working_ && task == task_)
+        return;
+    is_working_ = true;
+    task_ = task;
+    first_fraction_ = fraction;
+    start_ = now;
+    last_line_ = rewrites_ ? now - kTerminalInterval : now + kSilence - kLogInterval;
+}
+
+bool SetupProgress::is_due(Clock::time_point now) const
+{
+    return now - last_line_ >= (rewrites_ ? Clock::duration(kTerminalInterval) : kLogInterval);
 }
 
 void SetupProgress::stop()

@@ -23,6 +23,9 @@ public:
     /// @param fraction  finished [0, 1]; after 1 the next call begins anew
     void update(const std::string& task, double fraction);
 
+    /// Tells the state of work whose end is not known: "sew: 0.53 s simulated".
+    void tell(const std::string& task, const std::string& state);
+
     /// Prints "toile: warning: ..." on a line of its own, quiet or not.
     void warn(const std::string& text);
 
@@ -35,6 +38,8 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    void begin(const std::string& task, double fraction, Clock::time_point now);
+    bool is_due(Clock::time_point now) const;
     void end_line();
     void erase_line();
     void print(const std::string& text);

@@ -51,11 +51,21 @@ protected:
         settings.folder = folder_.path();
         settings.name = "tube";
         settings.max_motion = max_motion_;
-        return drape(settings, {});
+        settings.progress = [&](const DrapeProgress& now) {
+            moments_.push_back(now);
+            if (now.stage == last_stage_ && now.time > 0.1)
+                settings.time_limit = 0.0;
+        };
+        WorldOptions options;
+        options.goes_on = [this] { return moments_.empty() || moments_.back().stage != cancelled_stage_; };
+        return drape(settings, options);
     }
 
     TemporaryFolder folder_;
-    double max_motion_ = 20.0; ///< [s]
+    double max_motion_ = 20.0;    ///< [s]
+    std::string last_stage_;      ///< in which the time limit passes, after 0.1 s; empty: none
+    std::string cancelled_stage_; ///< that the caller cancels; empty: none
+    std::vector<DrapeProgress> moments_;
 };
 
 TEST_F(DrapeTest, SewsATubeAroundABodyAndHoldsIt)
@@ -78,8 +88,51 @@ TEST_F(DrapeTest, SewsATubeAroundABodyAndHoldsIt)
         EXPECT_GT(std::hypot(x.x(), x.z()), 0.1);
         EXPECT_LT(std::hypot(x.x(), x.z()), 0.16);
     }
+    // Panels are groups, each on its side of the body.
+    ASSERT_EQ(result.mesh.groups.size(), 2u);
+    EXPECT_EQ(result.mesh.groups[0], (ObjGroup{0, "back"}));
+    EXPECT_EQ(result.mesh.groups[1], (ObjGroup{int(mesh.triangles.size() / 2), "front"}));
+    double front = 0.0, back = 0.0; // sums of z [m]
+    for (int t = 0; t < int(mesh.triangles.size()); ++t)
+        for (const int v : mesh.triangles[size_t(t)])
+            (t < result.mesh.groups[1].first_polygon ? back : front) += mesh.positions[size_t(v)].z();
+    EXPECT_GT(front / double(mesh.triangles.size()), 0.05);
+    EXPECT_LT(back / double(mesh.triangles.size()), -0.05);
     // Both panels keep their texture coordinates along the seams.
     EXPECT_GT(result.mesh.texture_coordinates.size(), result.mesh.positions.size() + 8u);
+}
+
+TEST_F(DrapeTest, EndsAtItsTimeLimitWithTheLastState)
+{
+    last_stage_ = "settle";
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"));
+    EXPECT_EQ(result.outcome, DrapeOutcome::NotAtRest);
+    EXPECT_NE(result.message.find("in stage settle, after "), std::string::npos) << result.message;
+    EXPECT_EQ(result.stages.back().name, "settle");
+    EXPECT_GE(result.stages.back().frames, 4);
+    EXPECT_GE(result.stages.back().steps, result.stages.back().frames);
+    EXPECT_EQ(result.stages.back().vertices, int(result.mesh.positions.size()));
+    EXPECT_EQ(result.mesh.groups.size(), 2u);
+    EXPECT_EQ(result.seams.size(), 2u);
+    // The tube surrounds the body by then; placed, its panels were 4 cm away from it.
+    for (const Vec3& x : result.mesh.positions)
+        EXPECT_LT(std::hypot(x.x(), x.z()), 0.135);
+
+    // Before its first sample a stage loads. Only stages of a known duration tell one.
+    ASSERT_FALSE(moments_.empty());
+    EXPECT_EQ(moments_.front().stage, "sew");
+    EXPECT_EQ(moments_.front().time, 0.0);
+    for (const DrapeProgress& now : moments_) {
+        EXPECT_EQ(now.duration > 0.0, now.time > 0.0 && now.stage != "sew") << now.stage;
+        EXPECT_LE(now.stage == "sew" ? 0.0 : now.time, now.duration + 1e-9);
+    }
+}
+
+TEST_F(DrapeTest, IsCancelledByItsCaller)
+{
+    cancelled_stage_ = "press";
+    EXPECT_THROW(drape_tube(tube(0.36, "strapless_top")), Cancelled);
+    EXPECT_EQ(moments_.back().stage, "press");
 }
 
 TEST_F(DrapeTest, SaysThatALooseTubeSlidOff)

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "apps/toile/check/certificate.h"
+#include "apps/toile/drape/drape_report.h"
+#include "apps/toile/terminal/interrupt.h"
+#include "apps/toile/terminal/run_log.h"
+#include "export/folder_lock.h"
+#include "garment/pattern/pattern.h"
+#include "scenes/drape/drape.h"
+
+namespace toile::app {
+
+/// Files of one drape.
+class DrapeFiles {
+public:
+    /// @param avatar  file of the body; empty: the mannequin
+    /// @param folder  of the results; empty: out/NAME
+    DrapeFiles(std::filesystem::path garment, std::filesystem::path avatar, std::filesystem::path folder);
+
+    const std::string& name() const { return name_; } ///< of the garment: letters, digits, _ and -
+    std::filesystem::path stages() const { return folder_ / "stages"; }
+
+    /// Refuses results that would replace what is read, or could not be written.
+    /// @throws InvalidInput naming both files
+    void require_safe(const garment::Pattern& pattern) const;
+
+    /// Keeps other runs out of the folder while it lives. @throws as FolderLock
+    exports::FolderLock lock(const RunLog& log) const;
+
+    /// Writes a report on refused input if the folder can be written to, unless that would replace another
+    /// file than such a report. Other results stay as they are.
+    void write_refusal(const DrapeVerdict& verdict) const;
+
+    /// Writes the mesh, and, for a garment at rest, the scene that simulates it on for two seconds. Removes
+    /// all other results of an earlier drape.
+    void write_garment(const scenes::DrapeSettings& settings, const scenes::DrapeResult& result,
+                       const RunLog& log) const;
+
+    /// Certifies and writes what write_garment() has written, at rest in the first pose of the body, as
+    /// `toile check` does.
+    /// @return none if interrupted; nothing was written then
+    std::optional<Certificate> write_certificate(const RunLog& log, const InterruptGuard& interrupt) const;
+
+    void write_report(const DrapeReport& report, const garment::Pattern& pattern, const RunLog& log) const;
+
+    /// Writes a picture of the mesh on the body, from the front at an angle of 30 degrees.
+    void write_picture(const scenes::DrapeSettings& settings, const RunLog& log) const;
+
+private:
+    std::filesystem::path mesh() const { return folder_ / (name_ + ".obj"); }
+    std::filesystem::path scene() const { return folder_ / "scene.json"; }
+    std::filesystem::path report() const { return folder_ / "drape.json"; }
+    std::filesystem::path certificate() const { return folder_ / "certificate.json"; }
+    std::filesystem::path picture() const { return folder_ / (name_ + ".png"); }
+    std::string scene_text(const scenes::DrapeSettings& settings, const scenes::DrapeResult& result) const;
+
+    std::filesystem::path garment_, avatar_;
+    std::string name_;
+    std::filesystem::path folder_;
+};
+
+} // namespace toile::app

@@ -1,0 +1,214 @@
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/mesh/obj.h"
+#include "export/folder_lock.h"
+#include "tests/apps/program.h"
+
+/// toile drape: what it writes, and what it refuses.
+namespace toile::test {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// Panel JSON of a tube of cloth around the mannequin's waist; sizes in metres.
+/// @param size    width and height of its two panels
+/// @param second  appended to the second stitch
+std::string tube(double size = 0.6, const std::string& second = "")
+{
+    const auto panel = [&](const std::string& name, double z, bool is_back) {
+        const std::string a = std::to_string(is_back ? 0.5 * size : -0.5 * size), s = std::to_string(size),
+                          b = std::to_string(is_back ? -0.5 * size : 0.5 * size);
+        return "\"" + name + R"(": {"vertices": [[)" + a + ", 0], [" + b + ", 0], [" + b + ", " + s + "], [" +
+               a + ", " + s +
+               R"(]], "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]},
+                  {"endpoints": [3, 0]}], "translation": [0, 0.7, )" +
+               std::to_string(z) + "]}";
+    };
+    return R"({"pattern": {"panels": {)" + panel("front", 0.25, false) + ", " + panel("back", -0.25, true) +
+           R"(}, "stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 3}],
+               [{"panel": "front", "edge": 3}, {"panel": "back", "edge": 1})" +
+           second + R"(]]}, "properties": {"units_in_meter": 1, "curvature_coords": "relative"}})";
+}
+
+class Drape : public FileTest {
+protected:
+    Finished drape(std::vector<std::string> arguments) const
+    {
+        arguments.insert(arguments.begin(), "drape");
+        return run_toile(arguments, folder_);
+    }
+
+    /// The folder's files without the results of `drape`: refused, and unchanged.
+    void expect_refusal(const std::vector<std::string>& arguments, const std::vector<std::string>& says) const
+    {
+        const auto before = temporary_.snapshot();
+        const Finished finished = drape(arguments);
+        EXPECT_EQ(finished.exit_code, 2) << finished.errors;
+        EXPECT_EQ(finished.error_lines(), 1) << finished.errors;
+        for (const std::string& part : says)
+            EXPECT_NE(finished.errors.find(part), std::string::npos) << finished.errors;
+        EXPECT_EQ(temporary_.snapshot(), before) << arguments.front();
+    }
+
+    Json json_in(const std::string& name) const { return Json::parse(bytes_of(file(name))); }
+};
+
+/// Mean of the corners of some polygons [m]; the body looks along z.
+double mean_z(const ObjMesh& mesh, int begin, int end)
+{
+    double sum = 0.0;
+    int count = 0;
+    for (int polygon = begin; polygon < end; ++polygon)
+        for (const int corner : mesh.polygons[size_t(polygon)]) {
+            sum += mesh.positions[size_t(corner)].z();
+            ++count;
+        }
+    return sum / count;
+}
+
+/// One run of the script does all: it reads, meshes, drapes, simulates and certifies.
+TEST_F(Drape, PassesTheAcceptanceOfASkirt)
+{
+    const std::string source = TOILE_SOURCE_DIR;
+    const Finished script =
+        run_shell("export TOILE EDGE=0.025 OUT=out\nbash " + source + "/tests/acceptance/drape.sh " + source +
+                      "/assets/a_line_skirt.garment.json mannequin",
+                  folder_);
+    ASSERT_EQ(script.exit_code, 0) << script.output << script.errors;
+    EXPECT_EQ(std::count(script.output.begin(), script.output.end(), '\n'), 7) << script.output;
+
+    const ObjMesh mesh = read_obj(file("out/a_line_skirt.obj"));
+    ASSERT_EQ(mesh.groups.size(), 3u);
+    EXPECT_EQ(mesh.groups[0].name, "front");
+    EXPECT_EQ(mesh.groups[1].name, "back");
+    EXPECT_EQ(mesh.groups[2].name, "band");
+    EXPECT_GT(mean_z(mesh, mesh.groups[0].first_polygon, mesh.groups[1].first_polygon), 0.05);
+    EXPECT_LT(mean_z(mesh, mesh.groups[1].first_polygon, mesh.groups[2].first_polygon), -0.05);
+
+    const Json report = json_in("out/drape.json"), certificate = json_in("out/certificate.json");
+    EXPECT_EQ(report["vertices"], mesh.positions.size());
+    EXPECT_EQ(certificate["cloths"][0]["vertices"], mesh.positions.size());
+    EXPECT_EQ(certificate["frames"], 1);
+    EXPECT_EQ(report["seams"].size(), 4u);
+    for (const Json& seam : report["seams"]) {
+        EXPECT_NEAR(seam["ratio"], seam["name"] == "seams[0]" ? 1.05 : 1.0, 0.001) << "as the garment says";
+        EXPECT_LT(seam["gap_before_weld_m"], 0.002);
+    }
+    int steps = 0;
+    for (const Json& stage : report["stages"])
+        steps += stage["steps"].get<int>();
+    EXPECT_GT(steps, 100);
+
+    // No triangle of the skirt is attached at all corners, so that the certificate measures all of them.
+    const Json& strain = report["strain"]["cotton"];
+    EXPECT_NEAR(strain["max"], certificate["max_strain"], 1e-6);
+    EXPECT_LT(strain["p99"], strain["max"]);
+    EXPECT_LT(strain["mean"], strain["p99"]);
+    EXPECT_GE(report["uv_distortion"]["l2_stretch"], 1.0);
+    EXPECT_LT(report["uv_distortion"]["l2_stretch"], 1.001);
+
+    const std::string png = bytes_of(file("out/a_line_skirt.png"));
+    EXPECT_EQ(png.substr(1, 3), "PNG");
+    EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x02\xd0\0\0\x03\xc0", 8)) << "720 x 960";
+}
+
+TEST_F(Drape, EndsAtItsTimeLimitWithItsLastState)
+{
+    temporary_.write("tube.json", tube());
+    std::filesystem::create_directory(file("out"));
+    for (const char* earlier : {"out/certificate.json", "out/scene.json"})
+        temporary_.write(earlier, "of an earlier drape");
+    const Finished finished =
+        drape({"tube.json", "--edge", "0.05", "--time-limit", "0.001", "-o", "out", "--quiet"});
+    EXPECT_EQ(finished.exit_code, 1);
+    EXPECT_EQ(finished.error_lines(), 1) << finished.errors;
+    EXPECT_NE(finished.errors.find("the time limit of 0.001 s"), std::string::npos) << finished.errors;
+    const Json report = json_in("out/drape.json");
+    EXPECT_TRUE(report["class"] == "tangled" || report["class"] == "meshing") << report["class"];
+    EXPECT_FALSE(std::filesystem::exists(file("out/certificate.json")));
+    EXPECT_FALSE(std::filesystem::exists(file("out/scene.json")));
+    if (report["class"] == "meshing")
+        return;
+    EXPECT_EQ(read_obj(file("out/tube.obj")).groups.size(), 2u);
+    EXPECT_TRUE(std::filesystem::exists(file("out/tube.png")));
+}
+
+TEST_F(Drape, ReportsWhatIsWrongWithTheInput)
+{
+    temporary_.write("broken.json", tube().substr(0, 300));
+    temporary_.write("far.json", tube(20.0));
+    temporary_.write("moebius.json", tube(0.6, ", \"right_wrong\""));
+    temporary_.write("large.json", tube(3.0));
+    struct Case {
+        const char *garment, *edge, *word, *says;
+    };
+    for (const Case& wrong : {Case{"broken.json", "0.02", "pattern", "not valid JSON"},
+                              Case{"far.json", "0.02", "pattern", "far.json"},
+                              Case{"moebius.json", "0.02", "seams", "remove \"right_wrong\""},
+                              Case{"large.json", "0.0005", "meshing", "large.json"}}) {
+        const Finished finished = drape({wrong.garment, "--edge", wrong.edge, "-o", "out"});
+        EXPECT_EQ(finished.exit_code, 2) << finished.errors;
+        EXPECT_EQ(finished.error_lines(), 1) << finished.errors;
+        const Json report = json_in("out/drape.json");
+        EXPECT_EQ(report["class"], wrong.word) << finished.errors;
+        const std::string message = report["message"];
+        EXPECT_NE(message.find(wrong.says), std::string::npos) << message;
+        EXPECT_NE(finished.errors.find(message), std::string::npos) << finished.errors;
+    }
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file("out")), {}), 1) << "drape.json only";
+    expect_refusal({"broken.json", "-o", "/proc/nowhere"}, {"not valid JSON"});
+}
+
+TEST_F(Drape, RefusesOptionsBeforeAnythingIsWritten)
+{
+    temporary_.write("tube.json", tube());
+    expect_refusal({"tube.json", "--fabric", "cottn"}, {"--fabric", "did you mean \"cotton\"?"});
+    expect_refusal({"tube.json", "--edge", "0"}, {"--edge 0", "0.0005"});
+    expect_refusal({"tube.json", "--edge", "nan"}, {"--edge nan"});
+    expect_refusal({"tube.json", "--time-limit", "0"}, {"--time-limit 0", "positive"});
+    expect_refusal({"tube.json", "--time-limt", "5"}, {"did you mean --time-limit?"});
+    expect_refusal({"none.json"}, {"none.json"});
+}
+
+TEST_F(Drape, LeavesAFolderToTheRunThatHasIt)
+{
+    temporary_.write("tube.json", tube());
+    const exports::FolderLock lock(file("out"));
+    expect_refusal({"tube.json", "-o", "out"}, {"out: another run"});
+}
+
+TEST_F(Drape, ReplacesNothingThatItReads)
+{
+    const std::string body = "v 0 -1 0\nv 0 -1 9\nv 9 -1 9\nf 1 2 3\n";
+    std::filesystem::create_directories(file("stages/deep"));
+    for (const char* name : {"drape.json", "scene.json", "stages/deep/tube.json"})
+        temporary_.write(name, tube());
+    for (const char* name : {"drape.obj", "stages/body.obj"})
+        temporary_.write(name, body);
+    temporary_.write("g.garment.json", R"({"toile_garment": 1, "patterns": [{"file": "scene.json"}]})");
+    temporary_.write("c.gltf",
+                     R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": "tube.png"}]})");
+    temporary_.write("tube.png", "abcd");
+    temporary_.write("tube.json", tube());
+
+    expect_refusal({"drape.json", "-o", "."}, {"drape.json", "the pattern"});
+    expect_refusal({"g.garment.json", "-o", "."}, {"scene.json", "the pattern"});
+    expect_refusal({"stages/deep/tube.json", "-o", "."}, {"stages", "the pattern"});
+    expect_refusal({"scene.json", "-o", "out", "--avatar", "none.obj"}, {"none.obj"});
+    expect_refusal({"drape.json", "-o", "x/..", "--avatar", "drape.obj"}, {"drape."});
+    expect_refusal({"tube.json", "-o", ".", "--avatar", "stages/body.obj"}, {"stages", "the avatar"});
+    expect_refusal({"tube.json", "-o", ".", "--avatar", "c.gltf"}, {"tube.png", "a part of the avatar"});
+
+    // A garment that can't be read may name a file that is called like the report.
+    temporary_.write("h.garment.json",
+                     R"({"toile_garment": 1, "patterns": [{"file": "drape.json"}], "x": 1})");
+    expect_refusal({"h.garment.json", "-o", "."}, {"h.garment.json"});
+}
+
+} // namespace
+} // namespace toile::test
