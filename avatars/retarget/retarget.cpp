@@ -125,8 +125,9 @@ private:
         const Vec3 level(forward.x(), 0.0, forward.z());
         constexpr double kLying = 0.1; // [-] a body that faces up or down has no heading
         const bool has_heading = level.norm() > kLying && std::abs(reference_.front.y()) < kLying;
-        const Quaterniond Q =
-            has_heading ? Quaterniond::FromTwoVectors(level, reference_.front) : Quaterniond::Identity();
+        const double angle =
+            has_heading ? std::atan2(level.cross(reference_.front).y(), level.dot(reference_.front)) : 0.0;
+        const Quaterniond Q(Eigen::AngleAxisd(angle, Vec3::UnitY()));
         for (BodyKey& key : keys_) {
             key.travel = Q * Vec3(key.travel - start);
             for (size_t j = 0; j < source_of_.size(); ++j)

@@ -94,25 +94,27 @@ TEST(Retarget, ScalesTheTravelOfTheRootByLegLengths)
 
 TEST(Retarget, BeginsWhereAndAsTheBodyStands)
 {
-    Retargeted result({}, {}, kTimes);
+    const Retargeted original({}, {}, kTimes);
     // Turn and move the whole source; the body must not notice.
-    const Clip before = result.clip;
-    const Quaterniond turn = rotation(115.0, Vec3::UnitY());
-    JointTrack& hips = result.motion.clips[0].tracks[0];
-    for (Key<Quaterniond>& key : hips.rotation.keys)
-        key.value = turn * key.value;
-    for (Key<Vec3>& key : hips.translation.keys)
-        key.value = turn * key.value + Vec3(3.0, -2.0, 5.0);
-    result.run();
-    for (const double time : kTimes) {
-        const WorldPose a = pose_at(result.body.skeleton, before, time - kTimes[0]);
-        const WorldPose b = result.body_at(time - kTimes[0]);
-        for (size_t j = 0; j < a.position.size(); ++j)
-            EXPECT_LT((a.position[j] - b.position[j]).norm(), 1e-9) << j;
+    for (const double angle_deg : {115.0, 180.0}) {
+        Retargeted result = original;
+        const Quaterniond turn = rotation(angle_deg, Vec3::UnitY());
+        JointTrack& hips = result.motion.clips[0].tracks[0];
+        for (Key<Quaterniond>& key : hips.rotation.keys)
+            key.value = turn * key.value;
+        for (Key<Vec3>& key : hips.translation.keys)
+            key.value = turn * key.value + Vec3(3.0, -2.0, 5.0);
+        result.run();
+        for (const double time : kTimes) {
+            const WorldPose a = original.body_at(time - kTimes[0]);
+            const WorldPose b = result.body_at(time - kTimes[0]);
+            for (size_t j = 0; j < a.position.size(); ++j)
+                EXPECT_LT((a.position[j] - b.position[j]).norm(), 1e-9) << j;
+        }
+        const Vec3 start = result.body_at(0.0).position[0];
+        EXPECT_NEAR(start.x(), 0.0, 1e-12);
+        EXPECT_NEAR(start.z(), 0.0, 1e-12);
     }
-    const Vec3 start = result.body_at(0.0).position[0];
-    EXPECT_NEAR(start.x(), 0.0, 1e-12);
-    EXPECT_NEAR(start.z(), 0.0, 1e-12);
 }
 
 TEST(Retarget, MovesABodyOfOtherUnitsAndAxesAlike)
