@@ -7,6 +7,8 @@
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "avatars/load_avatar.h"
+#include "avatars/model/skinned_avatar.h"
+#include "avatars/retarget/motion_file.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
 #include "core/mesh/obj.h"
@@ -138,8 +140,36 @@ void print_tets(const std::filesystem::path& file)
     print_extent("extent", surface.positions);
 }
 
+void print_clip(const std::string& name, double duration)
+{
+    print("clip", "\"" + name + "\", " + std::to_string(duration) + " s");
+}
+
+void print_joints(const avatars::Skeleton& skeleton)
+{
+    std::string names;
+    for (const avatars::Joint& joint : skeleton.joints())
+        names += (names.empty() ? "" : ", ") + joint.name;
+    print("joints", std::to_string(skeleton.size()) + " (" + names + ")");
+}
+
+/// A skeleton and its clips.
+void print_motion(const avatars::SkeletalMotion& motion)
+{
+    print("surface", "none; a motion for avatars[].motion");
+    print_joints(motion.skeleton);
+    for (const avatars::Clip& clip : motion.clips)
+        print_clip(clip.name, clip.duration);
+}
+
+void print_motion_file(const std::filesystem::path& file) { print_motion(avatars::read_motion_file(file)); }
+
 void print_avatar(const std::filesystem::path& file)
 {
+    if (const avatars::SkeletalMotion motion = avatars::read_motion_file(file); !motion.has_surface) {
+        print_motion(motion);
+        return;
+    }
     avatars::AvatarSettings settings;
     settings.file = file;
     const std::unique_ptr<avatars::Avatar> avatar = load_avatar(settings);
@@ -153,7 +183,9 @@ void print_avatar(const std::filesystem::path& file)
                                       " (they faced into the body or against their neighbours)");
     print_extent("extent in the bind pose [m]", positions);
     for (const avatars::Avatar::ClipName& clip : avatar->clips())
-        print("clip", "\"" + clip.name + "\", " + std::to_string(clip.duration) + " s");
+        print_clip(clip.name, clip.duration);
+    if (const auto* skinned = dynamic_cast<const avatars::SkinnedAvatar*>(avatar.get()))
+        print_joints(skinned->model().skeleton);
 }
 
 void print_cache(const std::filesystem::path& file)
@@ -178,7 +210,8 @@ void print_scene(const std::filesystem::path& file)
         print("description", scene.description);
     print("frames", std::to_string(scene.frames) + " at " + std::to_string(int(scene.fps)) + " per second");
     for (const scene::Avatar& avatar : scene.avatars)
-        print("avatar", avatar.name + (avatar.clip.empty() ? "" : ", clip " + avatar.clip));
+        print("avatar", avatar.name + (avatar.clip.empty() ? "" : ", clip " + avatar.clip) +
+                            (avatar.motion ? ", motion " + avatar.motion->file.string() : ""));
     for (const scene::Cloth& cloth : scene.cloths)
         print("cloth", cloth.name + ", " + cloth.fabric);
     print("attachments", scene.attachments.size());
@@ -187,15 +220,17 @@ void print_scene(const std::filesystem::path& file)
 int info(const std::filesystem::path& file)
 {
     static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
-        {".obj", print_obj},    {".vtk", print_tets},  {".glb", print_avatar}, {".gltf", print_avatar},
-        {".fbx", print_avatar}, {".pc2", print_cache}, {".mdd", print_cache},  {".json", print_scene}};
+        {".obj", print_obj},     {".vtk", print_tets},   {".glb", print_avatar},
+        {".gltf", print_avatar}, {".fbx", print_avatar}, {".bvh", print_motion_file},
+        {".pc2", print_cache},   {".mdd", print_cache},  {".json", print_scene}};
     if (!std::filesystem::is_regular_file(file))
         throw InvalidInput(file.string() + ": can't be found; name a file");
     const auto printer = kPrinters.find(lower_case_extension(file));
     if (printer == kPrinters.end())
-        throw InvalidInput(file.string() +
-                           ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .pc2, .mdd " +
-                           "and .json (scene)");
+        throw InvalidInput(
+            file.string() +
+            ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .bvh, .pc2, .mdd " +
+            "and .json (scene)");
     printer->second(file);
     return kExitOk;
 }

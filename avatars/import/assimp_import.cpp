@@ -44,14 +44,25 @@ public:
 
     RiggedModel read()
     {
+        read_parts();
+        return builder_.finish();
+    }
+
+    SkeletalMotion read_motion()
+    {
+        read_parts();
+        return builder_.motion();
+    }
+
+private:
+    void read_parts()
+    {
         add_node(*scene_.mRootNode, -1);
         for (const auto& [mesh, joint] : instances_)
             add_mesh(*scene_.mMeshes[mesh], joint);
         add_clips();
-        return builder_.finish();
     }
 
-private:
     void add_node(const aiNode& node, int parent)
     {
         aiVector3D scale, translation;
@@ -226,6 +237,13 @@ RiggedModel import_rigged_model(const std::filesystem::path& file)
     Assimp::Importer importer;
     const aiScene* scene = read_scene(importer, file);
     return SceneReader(*scene, file.string()).read();
+}
+
+SkeletalMotion import_skeletal_motion(const std::filesystem::path& file)
+{
+    Assimp::Importer importer;
+    const aiScene* scene = read_scene(importer, file);
+    return SceneReader(*scene, file.string()).read_motion();
 }
 
 } // namespace toile::avatars

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "avatars/model/skeletal_motion.h"
 #include "avatars/model/skinned_avatar.h"
 
 namespace toile::avatars {
@@ -12,5 +13,9 @@ namespace toile::avatars {
 /// linear.
 /// @throws InvalidInput in one line, see load_avatar().
 RiggedModel import_rigged_model(const std::filesystem::path& file);
+
+/// Reads the joints and clips of a file through assimp, whether it has a surface or not: BVH, FBX, Collada.
+/// @throws InvalidInput in one line
+SkeletalMotion import_skeletal_motion(const std::filesystem::path& file);
 
 } // namespace toile::avatars

@@ -23,7 +23,12 @@ bool is_gltf(const std::filesystem::path& file)
     return std::string_view(start.data(), start.size()) == kMagic;
 }
 
-RiggedModel import_gltf(const std::filesystem::path& file)
+namespace {
+
+/// Reads joints, meshes and clips of a file, and makes the result from them.
+/// @param finish  from ModelBuilder to the result
+template <typename Finish>
+auto import(const std::filesystem::path& file, const Finish& finish)
 {
     try {
         GltfFile gltf(file);
@@ -33,10 +38,22 @@ RiggedModel import_gltf(const std::filesystem::path& file)
         const std::set<int> animated = nodes_with_moving_shapes(gltf);
         const auto shapes_of_node = GltfMeshes(gltf, accessors, tree, animated, builder).read();
         add_clips(gltf, accessors, tree, shapes_of_node, builder);
-        return builder.finish();
+        return finish(builder);
     } catch (const std::bad_alloc&) {
         throw InvalidInput(file.string() + ": needs more memory than there is; the file is too large");
     }
+}
+
+} // namespace
+
+RiggedModel import_gltf(const std::filesystem::path& file)
+{
+    return import(file, [](ModelBuilder& builder) { return builder.finish(); });
+}
+
+SkeletalMotion import_gltf_motion(const std::filesystem::path& file)
+{
+    return import(file, [](ModelBuilder& builder) { return builder.motion(); });
 }
 
 std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& file)

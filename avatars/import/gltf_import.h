@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "avatars/model/skeletal_motion.h"
 #include "avatars/model/skinned_avatar.h"
 
 namespace toile::avatars {
@@ -17,6 +18,10 @@ bool is_gltf(const std::filesystem::path& file);
 /// lists, strips and fans, KHR_mesh_quantization. Left out: points, lines, materials, images, cameras.
 /// @throws InvalidInput in one line, naming the file and the place in its JSON, see load_avatar().
 RiggedModel import_gltf(const std::filesystem::path& file);
+
+/// Reads the joints and clips of a glTF 2.0 file, whether it has a surface or not.
+/// @throws InvalidInput as import_gltf()
+SkeletalMotion import_gltf_motion(const std::filesystem::path& file);
 
 /// Files that a glTF file names: buffers and images.
 /// @throws InvalidInput as import_gltf() if the JSON can't be read

@@ -95,6 +95,14 @@ RiggedModel ModelBuilder::finish()
     return std::move(model_);
 }
 
+SkeletalMotion ModelBuilder::motion()
+{
+    for (Clip& clip : model_.clips)
+        clip.shape_tracks.clear();
+    return {source_, std::move(model_.skeleton), std::move(model_.clips),
+            !model_.mesh.rest.triangles.empty()};
+}
+
 void ModelBuilder::require_surface() const
 {
     const TriangleMesh& surface = model_.mesh.rest;

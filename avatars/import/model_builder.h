@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "avatars/model/skeletal_motion.h"
 #include "avatars/model/skinned_avatar.h"
 
 namespace toile::avatars {
@@ -43,6 +44,9 @@ public:
     /// @throws InvalidInput for a model without surface, a vertex without weight, a number that is not
     /// finite.
     RiggedModel finish();
+
+    /// Joints and clips alone, of a file that needs no surface.
+    SkeletalMotion motion();
 
 private:
     void require_surface() const;

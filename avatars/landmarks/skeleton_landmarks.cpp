@@ -50,24 +50,6 @@ std::vector<BodyPart> parts_of(const RiggedModel& model, const BodyJoints& joint
     return part;
 }
 
-BodyJoints find_joints(SkinnedAvatar& avatar)
-{
-    const RiggedModel& model = avatar.model();
-    BodyJoints joints = joints_by_name(model.skeleton);
-    if (!joints.is_whole()) {
-        std::vector<Affine> bones(size_t(avatar.bone_count()));
-        avatar.pose_bones({}, identity_affine(), bones);
-        const BodyJoints by_tree = joints_by_tree(model.skeleton, joint_positions(model, bones));
-        if (!by_tree.is_whole())
-            throw InvalidInput(avatar.source() + ": " + joints.missing() + " can't be found among its " +
-                               std::to_string(model.skeleton.size()) +
-                               " joints; name them as LeftArm, LeftForeArm, LeftHand, LeftUpLeg, LeftLeg, "
-                               "LeftFoot, Neck and Head");
-        joints = by_tree;
-    }
-    return joints;
-}
-
 /// Vertices of a part within `reach` of a plane, or as much further as gives enough of them.
 std::vector<Vec3> ring(const PosedSkeleton& body, const SectionPlane& plane, double reach, BodyPart part)
 {
@@ -92,6 +74,24 @@ Vec3 near_axis(const Vec3& direction)
 }
 
 } // namespace
+
+BodyJoints find_joints(SkinnedAvatar& avatar)
+{
+    const RiggedModel& model = avatar.model();
+    BodyJoints joints = joints_by_name(model.skeleton);
+    if (!joints.is_whole()) {
+        std::vector<Affine> bones(size_t(avatar.bone_count()));
+        avatar.pose_bones({}, identity_affine(), bones);
+        const BodyJoints by_tree = joints_by_tree(model.skeleton, joint_positions(model, bones));
+        if (!by_tree.is_whole())
+            throw InvalidInput(avatar.source() + ": " + joints.missing() + " can't be found among its " +
+                               std::to_string(model.skeleton.size()) +
+                               " joints; name them as LeftArm, LeftForeArm, LeftHand, LeftUpLeg, LeftLeg, "
+                               "LeftFoot, Neck and Head");
+        joints = by_tree;
+    }
+    return joints;
+}
 
 PosedSkeleton pose_skeleton(SkinnedAvatar& avatar, const PoseAt& at, const Affine& world_from_avatar)
 {

@@ -16,6 +16,10 @@ struct PosedSkeleton {
     std::vector<Vec3> vertices; ///< [vertices] [m]
 };
 
+/// Joints by their names, else by the shape of the tree.
+/// @throws InvalidInput naming the limbs whose joints can't be told
+BodyJoints find_joints(SkinnedAvatar& avatar);
+
 /// @throws InvalidInput naming the limbs whose joints can't be told
 PosedSkeleton pose_skeleton(SkinnedAvatar& avatar, const PoseAt& at, const Affine& world_from_avatar);
 

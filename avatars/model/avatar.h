@@ -85,6 +85,8 @@ public:
     void pose(const PoseAt& at, const Affine& world_from_avatar, View<Vec3> out);
 
 protected:
+    void add_clip_name(ClipName clip) { clips_.push_back(std::move(clip)); }
+
     Avatar(std::string source, std::vector<Triangle> triangles, int vertex_count, std::vector<ClipName> clips)
         : source_(std::move(source)), triangles_(std::move(triangles)), vertex_count_(vertex_count),
           clips_(std::move(clips))

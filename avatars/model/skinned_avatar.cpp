@@ -77,6 +77,20 @@ SkinnedAvatar::SkinnedAvatar(std::string source, RiggedModel model)
         travel_of_clip_.push_back(root_travel(clip));
 }
 
+std::string SkinnedAvatar::add_clip(Clip clip)
+{
+    const auto is_taken = [&](const std::string& name) {
+        return std::any_of(clips().begin(), clips().end(), [&](const ClipName& c) { return c.name == name; });
+    };
+    const std::string name = clip.name;
+    for (int number = 2; is_taken(clip.name); ++number)
+        clip.name = name + "#" + std::to_string(number);
+    travel_of_clip_.push_back(root_travel(clip));
+    add_clip_name({clip.name, clip.duration});
+    model_.clips.push_back(std::move(clip));
+    return model_.clips.back().name;
+}
+
 Vec3 SkinnedAvatar::root_travel(const Clip& clip) const
 {
     // The root is the first joint in tree order that the clip translates at all.

@@ -34,6 +34,10 @@ public:
 
     const RiggedModel& model() const { return model_; }
 
+    /// Adds a clip, of joints of the skeleton.
+    /// @return its name in clips(): "walk", or "walk#2" where the body has a "walk"
+    std::string add_clip(Clip clip);
+
 private:
     Vec3 root_travel(const Clip& clip) const;
     void pose_shapes(const PoseAt& at, View<Affine> maps);

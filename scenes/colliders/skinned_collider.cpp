@@ -1,6 +1,7 @@
 #include "scenes/colliders/skinned_collider.h"
 
 #include "avatars/load_avatar.h"
+#include "avatars/retarget/add_motion.h"
 #include "core/compute/cuda/array.h"
 
 namespace toile::scenes {
@@ -34,13 +35,16 @@ avatars::MovingAvatar make_avatar(const scene::Avatar& avatar, const avatars::Af
 
     avatars::Motion motion;
     motion.clip = avatar.clip;
+    std::unique_ptr<avatars::Avatar> body = load_avatar(settings);
+    if (avatar.motion)
+        motion.clip = add_motion(*body, {avatar.motion->file, avatar.motion->clip, avatar.motion->map});
     motion.loop = avatar.loop;
     motion.speed = avatar.speed;
     motion.start = avatar.start;
     motion.accumulate_root = avatar.accumulate_root;
     motion.pre_roll = {avatar.preroll.hold, avatar.preroll.ease, avatar.preroll.from_bind};
     const avatars::Placement placement{avatar.translate, avatar.rotate_deg, avatar.scale};
-    return {load_avatar(settings), motion, placement, root_transform};
+    return {std::move(body), motion, placement, root_transform};
 }
 
 std::optional<avatars::ContactSurface> make_contact_surface(const scene::Avatar& settings,

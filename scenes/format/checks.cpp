@@ -43,6 +43,21 @@ void check_extension(const Document& document, const std::string& key_path, cons
 
 // --- avatars ---
 
+void check_motion_file(const Document& document, const std::string& key_path, const Avatar& avatar)
+{
+    const AvatarMotion& motion = *avatar.motion;
+    check_extension(document, below(key_path, "file"), motion.file, {".bvh", ".fbx", ".glb", ".gltf"});
+    const auto* body = std::get_if<std::filesystem::path>(&avatar.shape);
+    if (body != nullptr && lower_case_extension(*body) == ".obj")
+        document.refuse(key_path, "an .obj body has no bones; use a .glb, .gltf or .fbx body");
+    if (!avatar.clip.empty())
+        document.refuse(key_path, "excludes clip; remove one of them");
+    if (motion.is_mapped_by_file() && lower_case_extension(motion.map) != ".json")
+        document.refuse(below(key_path, "map"),
+                        as_written(motion.map) + " is unknown; write \"names\", \"cmu\" " +
+                            "or the path of a .json file" + did_you_mean(motion.map, {"names", "cmu"}));
+}
+
 /// Checks keys that only an animated avatar supports.
 void check_avatar_motion(const Document& document, const std::string& key_path, const Avatar& avatar)
 {
@@ -51,6 +66,7 @@ void check_avatar_motion(const Document& document, const std::string& key_path, 
     const Preroll& preroll = avatar.preroll;
     const std::pair<const char*, bool> used[] = {
         {"clip", !avatar.clip.empty()},
+        {"motion", avatar.motion.has_value()},
         {"loop", avatar.loop},
         {"accumulate_root", avatar.accumulate_root},
         {"speed", avatar.speed != 1.0},
@@ -59,10 +75,12 @@ void check_avatar_motion(const Document& document, const std::string& key_path, 
     for (const auto& [key, is_used] : used) {
         if (is_used && !is_skinned)
             document.refuse(below(key_path, key), "a shape has no clips; move it with keyframes");
-        if (is_used && avatar.clip.empty())
+        if (is_used && avatar.clip.empty() && !avatar.motion)
             document.refuse(below(key_path, key), "has no effect without a clip; name the clip to play");
     }
-    if (!avatar.keyframes.empty() && (!avatar.clip.empty() || (is_skinned && !from_file)))
+    if (avatar.motion)
+        check_motion_file(document, below(key_path, "motion"), avatar);
+    if (!avatar.keyframes.empty() && (!avatar.clip.empty() || avatar.motion || (is_skinned && !from_file)))
         document.refuse(below(key_path, "keyframes"),
                         "an animated avatar is not moved by keyframes; remove them " +
                             std::string("or the clip"));

@@ -83,6 +83,18 @@ void describe(V& v, Preroll& p)
 }
 
 template <typename V>
+void describe(V& v, AvatarMotion& m)
+{
+    v.required("file", m.file, "Motion to load: .bvh, .fbx, .glb or .gltf; its mesh, if any, is left out.");
+    v.field("clip", m.clip, "Animation of the file, by name; empty: the longest.");
+    v.field(
+        "map", m.map,
+        "\"names\": the file's bones have the names and axes of the avatar's. \"cmu\": retargeted from a "
+        "skeleton of the CMU library. Else a JSON file {\"joint of the avatar\": \"joint of the file\"} by "
+        "which it is retargeted.");
+}
+
+template <typename V>
 void describe(V& v, Avatar& a)
 {
     v.required("name", a.name, "Name, for attachments and messages.");
@@ -97,6 +109,7 @@ void describe(V& v, Avatar& a)
     v.field("translate", a.translate, kPosition, "Moves the avatar, after scale and rotate_deg.");
     v.field("rotate_deg", a.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
     v.field("clip", a.clip, "Animation to play, by name; empty: the bind pose.");
+    v.field("motion", a.motion, "Animation from a file of its own, instead of a clip.");
     v.field("loop", a.loop, "Repeat the clip; otherwise its last pose stays.");
     v.field("accumulate_root", a.accumulate_root,
             "Repeated cycles continue the root motion instead of jumping back.");

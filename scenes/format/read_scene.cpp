@@ -20,6 +20,19 @@ void resolve_files(const scene_format::Document& document, const std::string& li
                                            scene_format::below(scene_format::below(list, i), "file"));
 }
 
+/// Replaces the paths of motions and of their maps.
+void resolve_motions(const scene_format::Document& document, std::vector<scene::Avatar>& avatars)
+{
+    using scene_format::below;
+    for (size_t i = 0; i < avatars.size(); ++i)
+        if (auto& motion = avatars[i].motion) {
+            const std::string key_path = below(below("avatars", i), "motion");
+            motion->file = document.existing_file(motion->file.string(), below(key_path, "file"));
+            if (motion->is_mapped_by_file())
+                motion->map = document.existing_file(motion->map, below(key_path, "map")).string();
+        }
+}
+
 } // namespace
 
 Scene read_scene(const std::filesystem::path& file)
@@ -41,6 +54,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& source)
     for (scene::Cloth& cloth : scene.cloths)
         cloth.print = cloth.pattern.value_or(cloth.print);
     resolve_files(document, "avatars", scene.avatars);
+    resolve_motions(document, scene.avatars);
     resolve_files(document, "cloths", scene.cloths);
     resolve_files(document, "solids", scene.solids);
     return scene;

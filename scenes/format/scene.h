@@ -79,6 +79,15 @@ struct Preroll {
     bool from_bind = false; ///< stand in the bind pose first and blend into the clip's pose
 };
 
+/// A clip in a file of its own.
+struct AvatarMotion {
+    std::filesystem::path file;
+    std::string clip;          ///< by name; empty: the longest of the file
+    std::string map = "names"; ///< "names", "cmu" or the path of a map of joints
+
+    bool is_mapped_by_file() const { return map != "names" && map != "cmu"; }
+};
+
 using AvatarShape = std::variant<std::filesystem::path, Mannequin, Plane, Sphere, Capsule, Box>;
 
 /// A body that cloth collides with.
@@ -92,11 +101,12 @@ struct Avatar {
     double scale = 1.0;             ///< [-]
     Vec3 translate = Vec3::Zero();  ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
-    std::string clip;             ///< animation by name; empty: the bind pose
-    bool loop = false;            ///< repeat the clip; otherwise its last pose stays
-    bool accumulate_root = false; ///< repeated cycles continue the root motion instead of jumping back
-    double speed = 1.0;           ///< [-] clip seconds per scene second; 0 freezes the pose at start
-    double start = 0.0;           ///< [s] of the clip at sample 0
+    std::string clip;                   ///< animation by name; empty: the bind pose, or that of `motion`
+    std::optional<AvatarMotion> motion; ///< replaces `clip`
+    bool loop = false;                  ///< repeat the clip; otherwise its last pose stays
+    bool accumulate_root = false;       ///< repeated cycles continue the root motion instead of jumping back
+    double speed = 1.0;                 ///< [-] clip seconds per scene second; 0 freezes the pose at start
+    double start = 0.0;                 ///< [s] of the clip at sample 0
     Preroll preroll;
     std::vector<Keyframe> keyframes;
     SelfContact self_contact = SelfContact::Separate;

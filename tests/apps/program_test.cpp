@@ -205,6 +205,12 @@ TEST(Info, DescribesEveryKindOfFile)
         EXPECT_NE(run.output.find(what), std::string::npos) << run.output;
     };
     says("drop.json", "cloth: sheet, cotton");
+    folder.write("nod.bvh",
+                 "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Yrotation Xrotation\n"
+                 "JOINT head\n{\nOFFSET 0 60 0\nCHANNELS 3 Zrotation Yrotation Xrotation\nEnd Site\n"
+                 "{\nOFFSET 0 20 0\n}\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.25\n0 0 0 0 0 0\n"
+                 "0 0 0 0 0 9\n0 0 0 0 0 0\n");
+    says("nod.bvh", "joints: 3 (hips, head, EndSite_head)\nclip: \"Motion\", 0.500000 s\n");
     says("sheet.pc2", "frames: 2");
     says("sheet.obj", "pieces: 1");
     says("sheet.obj", "(open)");

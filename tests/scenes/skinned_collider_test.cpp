@@ -76,6 +76,29 @@ TEST(SkinnedCollider, FindsTheBoneNearAPoint)
     EXPECT_EQ(column.nearest_vertex({0.0, 5.0, 0.0}, 0.1), -1);
 }
 
+/// Tests on the clip of the body's own file are of a motion from another file too.
+TEST(SkinnedCollider, PlaysAMotionFromAnotherFileLikeItsOwnClip)
+{
+    scene::Avatar own = bending_column(), other = bending_column();
+    other.clip.clear();
+    other.motion = {std::get<std::filesystem::path>(own.shape), "bend", "names"};
+    for (scene::Avatar* avatar : {&own, &other}) {
+        avatar->start = 0.2;
+        avatar->speed = 0.5;
+        avatar->preroll = {0.1, 0.2, true};
+        avatar->translate = Vec3(1.0, 0.0, 0.0);
+    }
+    SkinnedCollider a(own, identity_affine()), b(other, identity_affine());
+    std::vector<Vec3> x(size_t(a.vertex_count())), y(x.size());
+    for (const double t : {0.0, 0.15, 0.3, 0.45, 0.8}) {
+        EXPECT_EQ(a.advance_to(t, identity_affine()), b.advance_to(t, identity_affine()));
+        a.pose_t1(x);
+        b.pose_t1(y);
+        for (size_t v = 0; v < x.size(); ++v)
+            EXPECT_LT((x[v] - y[v]).norm(), 1e-12) << v << " at " << t;
+    }
+}
+
 /// A strap that is stretched between attachments beside the column's tip.
 TEST(SkinnedCollider, IsNamedWithItsBoneWhereClothYields)
 {

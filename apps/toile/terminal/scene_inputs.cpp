@@ -35,6 +35,11 @@ void add_inputs(FilePlan& plan, const scenes::Scene& scene)
         if (const auto* file = std::get_if<path>(&avatar.shape); file != nullptr && avatars::is_gltf(*file))
             for (const path& part : avatars::files_of_gltf(*file))
                 plan.add_input(part, "a part of " + file->string());
+        if (avatar.motion) {
+            plan.add_input(avatar.motion->file, "the motion of avatar \"" + avatar.name + "\"");
+            if (avatar.motion->is_mapped_by_file())
+                plan.add_input(avatar.motion->map, "the map of joints of avatar \"" + avatar.name + "\"");
+        }
     }
 }
 

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "scenes/format/scene_fabric.h"
 #include "scenes/format/validate.h"
 
@@ -47,6 +50,29 @@ TEST(ReadScene, AcceptsTheFormerNameOfPrintWithAWarning)
     EXPECT_TRUE(former_key_warnings_of(scene_with(R"("print": "checker")")).empty());
     EXPECT_NO_THROW(require_valid(old));
     EXPECT_THROW(scene_with(R"("pattern": "checker", "print": "stripes")"), InvalidInput);
+}
+
+/// Files of motions and of their maps are looked for beside the scene.
+TEST(ReadScene, FindsMotionsAndMapsBesideTheScene)
+{
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "toile_motions";
+    std::filesystem::create_directories(folder);
+    for (const char* name : {"walk.bvh", "map.json"})
+        std::ofstream(folder / name) << "-";
+    const auto read = [&](const std::string& map) {
+        return parse_scene(R"({"toile": 1, "frames": 1, "cloths": [{"name": "c", "disc": {}}],
+            "avatars": [{"name": "a", "mannequin": {}, "start": 0.5,
+                         "motion": {"file": "walk.bvh", "clip": "w", "map": ")" +
+                               map + R"("}}]})",
+                           folder / "scene.json")
+            .avatars[0];
+    };
+    const scene::Avatar avatar = read("map.json");
+    ASSERT_TRUE(avatar.motion);
+    EXPECT_EQ(avatar.motion->file, folder / "walk.bvh");
+    EXPECT_EQ(avatar.motion->clip, "w");
+    EXPECT_EQ(avatar.motion->map, (folder / "map.json").string());
+    EXPECT_EQ(read("cmu").motion->map, "cmu");
 }
 
 TEST(ReadScene, ReadsEveryKindOfValue)

@@ -192,6 +192,27 @@ TEST(SceneErrors, RefuseAvatarsThatContradictThemselves)
          "of time"},
         {avatar_scene(R"("name": "a", "file": "body.stl")"),
          R"(bad.json: avatars[0].file: "body.stl" is of an unknown format; use .glb, .gltf, .fbx or .obj)"},
+        {avatar_scene(R"("name": "a", "box": {}, "motion": {"file": "walk.bvh"})"),
+         "bad.json: avatars[0].motion: a shape has no clips; move it with keyframes"},
+        {avatar_scene(R"("name": "a", "file": "body.obj", "motion": {"file": "walk.bvh"})"),
+         "bad.json: avatars[0].motion: an .obj body has no bones; use a .glb, .gltf or .fbx body"},
+        {avatar_scene(R"("name": "a", "mannequin": {}, "clip": "walk", "motion": {"file": "walk.bvh"})"),
+         "bad.json: avatars[0].motion: excludes clip; remove one of them"},
+        {avatar_scene(
+             R"("name": "a", "mannequin": {}, "motion": {"file": "walk.bvh"}, "keyframes": [{"time": 0}])"),
+         "bad.json: avatars[0].keyframes: an animated avatar is not moved by keyframes; remove them or the "
+         "clip"},
+        {avatar_scene(R"("name": "a", "mannequin": {}, "motion": {"clip": "walk"})"),
+         R"(bad.json: avatars[0].motion: the key "file" is missing; add it)"},
+        {avatar_scene(R"("name": "a", "mannequin": {}, "motion": {"file": "walk.mdd"})"),
+         R"(bad.json: avatars[0].motion.file: "walk.mdd" is of an unknown format; use .bvh, .fbx, .glb or .gltf)"},
+        {avatar_scene(R"("name": "a", "mannequin": {}, "motion": {"file": "walk.bvh", "map": "cmuu"})"),
+         R"(bad.json: avatars[0].motion.map: "cmuu" is unknown; write "names", "cmu" or the path of a .json file; )"
+         R"(did you mean "cmu"?)"},
+        {avatar_scene(R"("name": "a", "mannequin": {}, "motion": {"file": "none.bvh", "map": "cmu"})"),
+         "bad.json: avatars[0].motion.file: the file \"none.bvh\" does not exist; paths are relative to the "
+         "folder "
+         "of the file that names them"},
         {scene_with(R"("avatars": [{"name": "a", "box": {}}, {"name": "a", "sphere": {}}])"),
          R"(bad.json: avatars[1].name: "a" is taken by an earlier entry; choose another name)"},
     });
