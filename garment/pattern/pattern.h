@@ -72,15 +72,19 @@ struct EdgePart {
     double to = 1.0;   ///< [-] at which it ends
 };
 
+/// Side of a seam that keeps its length; the other one is gathered or stretched to it.
+enum class Gather { Short, Long };
+
 /// Two chains of edges that are sewn to each other, point by point in proportion to arc length: the start of
 /// `a` meets the start of `b`.
 struct Seam {
     std::vector<EdgePart> a; ///< consecutive parts
     std::vector<EdgePart> b;
-    std::string name;      ///< for messages: how the file calls it
-    std::string flip;      ///< for messages: the change of the file that joins the other ends
-    double fold_deg = 0.0; ///< fold along the seam at rest, outer sides towards each other; 0: flat
-    int order = 0;         ///< lower ones are sewn first
+    std::string name;              ///< for messages: how the file calls it
+    std::string flip;              ///< for messages: the change of the file that joins the other ends
+    double fold_deg = 0.0;         ///< fold along the seam at rest, outer sides towards each other; 0: flat
+    int order = 0;                 ///< lower ones are sewn first
+    Gather gather = Gather::Short; ///< length of the sewn line, where one side is longer
 };
 
 struct Pattern {

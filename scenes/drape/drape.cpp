@@ -191,7 +191,7 @@ private:
         result_.outcome = DrapeOutcome::Tangled;
         result_.message = pattern_.seams[size_t(widest - gaps.begin())].name + " stays open by " +
                           std::to_string(1000.0 * *widest) + " mm";
-        result_.mesh = seams.surface();
+        result_.surface = seams.surface();
         return false;
     }
 
@@ -264,7 +264,7 @@ private:
             result_.scene.cloths[0].fabric = fabric_;
         }
         result_.stages.push_back({"drape", clock.seconds(), frames, int(x.size()), watch_.take_steps()});
-        result_.mesh = mesh.surface(x);
+        result_.surface = mesh.surface(x);
         has_slid_off(mesh, held, x);
     }
 

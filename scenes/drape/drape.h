@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/obj.h"
+#include "scenes/drape/garment_mesh.h"
 #include "scenes/format/scene.h"
 #include "scenes/world/world_options.h"
 
@@ -74,8 +74,8 @@ struct DrapeResult {
     int pieces = 0, border_loops = 0, euler_characteristic = 0;
     double rest_speed = 0.0; ///< [m/s] of the fastest vertex in the last half second
     double max_strain = 0.0; ///< [-]
-    ObjMesh mesh; ///< the garment as it ended, or the panels if their seams are open; groups: panels
-    Scene scene;  ///< that simulates the garment on from there
+    GarmentSurface surface;  ///< as it ended; if seams are open, with lines as threads
+    Scene scene;             ///< that simulates the garment on from there
 };
 
 /// Sews a pattern around a body and drapes it.

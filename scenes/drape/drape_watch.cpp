@@ -33,18 +33,18 @@ DrapeResult DrapeWatch::run(const std::function<DrapeResult()>& work, DrapeResul
         result = std::move(unfinished);
         end_early(result);
     }
-    if (result.mesh.positions.empty() || result.outcome == DrapeOutcome::Solver)
-        result.mesh = state_;
+    if (result.surface.mesh.positions.empty() || result.outcome == DrapeOutcome::Solver)
+        result.surface = state_;
     return result;
 }
 
-void DrapeWatch::begin(const std::string& stage, const ObjMesh& mesh, double frame)
+void DrapeWatch::begin(const std::string& stage, GarmentSurface surface, double frame)
 {
     stage_ = stage;
     stage_start_ = Clock::now();
     frame_ = frame;
     frames_ = stage_steps_ = 0;
-    state_ = mesh;
+    state_ = std::move(surface);
     tell(0.0, 0.0);
 }
 
@@ -57,7 +57,7 @@ StepReport DrapeWatch::advance(World& world, double duration)
     if (report.status == StepReport::Status::NonFinite)
         return report;
     const std::vector<Vec3>& x = world.cloths()[0].positions;
-    state_.positions.assign(x.begin(), x.end());
+    state_.mesh.positions.assign(x.begin(), x.end());
     tell(frames_ * frame_, duration);
     return report;
 }
@@ -83,7 +83,7 @@ void DrapeWatch::end_early(DrapeResult& result) const
     }
     result.message += "in stage " + stage_ + ", after " + short_text(frames_ * frame_) + " s of its motion";
     result.stages.push_back(
-        {stage_, seconds_of_stage(), frames_, int(state_.positions.size()), stage_steps_});
+        {stage_, seconds_of_stage(), frames_, int(state_.mesh.positions.size()), stage_steps_});
 }
 
 void DrapeWatch::tell(double time, double duration) const

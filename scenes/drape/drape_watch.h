@@ -4,7 +4,6 @@
 #include <functional>
 #include <string>
 
-#include "core/mesh/obj.h"
 #include "core/pd/step/step_report.h"
 #include "scenes/drape/drape.h"
 #include "scenes/world/world.h"
@@ -30,7 +29,7 @@ public:
     DrapeResult run(const std::function<DrapeResult()>& work, DrapeResult& unfinished) const;
 
     /// @param frame  [s] of motion between samples
-    void begin(const std::string& stage, const ObjMesh& mesh, double frame);
+    void begin(const std::string& stage, GarmentSurface surface, double frame);
 
     /// Advances by a sample and keeps its state unless it is not finite.
     /// @param duration  of the stage, where it has one [s]; 0: it ends by what happens
@@ -55,7 +54,7 @@ private:
     double frame_ = 0.0;              ///< [s]
     int frames_ = 0;                  ///< of the stage
     int stage_steps_ = 0, steps_ = 0; ///< of the stage; since take_steps()
-    ObjMesh state_;                   ///< last finite one; no positions before the first stage
+    GarmentSurface state_;            ///< last finite one; no positions before the first stage
 };
 
 } // namespace toile::scenes

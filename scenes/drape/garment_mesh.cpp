@@ -1,6 +1,9 @@
 #include "scenes/drape/garment_mesh.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "garment/pattern/mesh/gathers.h"
 
 namespace toile::scenes {
 
@@ -15,6 +18,15 @@ garment::PatternMesh mesh_panels(const garment::Pattern& pattern, double edge, d
     return garment::mesh_pattern(pattern, settings);
 }
 
+bool is_texture(const std::vector<FlatTriangle>& rest, const garment::PatternMesh& mesh)
+{
+    for (size_t t = 0; t < rest.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            if (rest[t][size_t(k)] != mesh.uv[size_t(mesh.triangles[t][k])])
+                return false;
+    return true;
+}
+
 } // namespace
 
 GarmentMesh::GarmentMesh(const garment::Pattern& pattern, double edge, double least)
@@ -22,9 +34,42 @@ GarmentMesh::GarmentMesh(const garment::Pattern& pattern, double edge, double le
 {
     for (const garment::Panel& panel : pattern.panels)
         panel_names.push_back(panel.name);
+    gathered = garment::gathered_rest(pattern, panels);
+    if (is_texture(gathered, panels))
+        gathered.clear();
 }
 
-ObjMesh GarmentMesh::surface(View<const Vec3> x) const { return textured_surface(*this, sewn, x); }
+GarmentSurface GarmentMesh::surface(const garment::SewnMesh& partly, View<const Vec3> x) const
+{
+    GarmentSurface surface;
+    ObjMesh& mesh = surface.mesh;
+    mesh.positions.assign(x.begin(), x.end());
+    mesh.texture_coordinates = panels.uv;
+    for (size_t t = 0; t < partly.triangles.size(); ++t) {
+        const Triangle &corner = partly.triangles[t], &flat = partly.corners[t];
+        mesh.polygons.push_back({corner[0], corner[1], corner[2]});
+        mesh.polygon_uvs.push_back({flat[0], flat[1], flat[2]});
+    }
+    for (size_t p = 0; p < panel_names.size(); ++p)
+        begin_group(mesh, panel_names[p], panels.first_triangle[p]);
+    surface.rest = gathered;
+    for (size_t t = 0; t < surface.rest.size(); ++t)
+        if (partly.is_turned[size_t(panels.panel_of_triangle(int(t)))])
+            std::swap(surface.rest[t][1], surface.rest[t][2]);
+    return surface;
+}
+
+ObjMesh GarmentSurface::rest_mesh() const
+{
+    ObjMesh flat = mesh;
+    flat.texture_coordinates.clear();
+    for (size_t t = 0; t < rest.size(); ++t) {
+        const int first = int(flat.texture_coordinates.size());
+        flat.texture_coordinates.insert(flat.texture_coordinates.end(), rest[t].begin(), rest[t].end());
+        flat.polygon_uvs[t] = {first, first + 1, first + 2};
+    }
+    return flat;
+}
 
 std::vector<int> GarmentMesh::labelled(const garment::Pattern& pattern, const std::string& label) const
 {
@@ -37,21 +82,6 @@ std::vector<int> GarmentMesh::labelled(const garment::Pattern& pattern, const st
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
-}
-
-ObjMesh textured_surface(const GarmentMesh& garment, const garment::SewnMesh& sewn, View<const Vec3> x)
-{
-    ObjMesh mesh;
-    mesh.positions.assign(x.begin(), x.end());
-    mesh.texture_coordinates = garment.panels.uv;
-    for (size_t t = 0; t < sewn.triangles.size(); ++t) {
-        const Triangle &corner = sewn.triangles[t], &flat = sewn.corners[t];
-        mesh.polygons.push_back({corner[0], corner[1], corner[2]});
-        mesh.polygon_uvs.push_back({flat[0], flat[1], flat[2]});
-    }
-    for (size_t p = 0; p < garment.panel_names.size(); ++p)
-        begin_group(mesh, garment.panel_names[p], garment.panels.first_triangle[p]);
-    return mesh;
 }
 
 std::vector<Vec3> weld(const garment::SewnMesh& sewn, View<const Vec3> x)

@@ -9,28 +9,39 @@
 
 namespace toile::scenes {
 
+/// A garment in space, with its panels as texture and rest shape.
+struct GarmentSurface {
+    ObjMesh mesh; ///< texture coordinates are those of the panels [m], and a group names each panel
+    /// [triangles] rest shape, where it isn't the texture: seams are gathered [m]
+    std::vector<FlatTriangle> rest;
+
+    /// Mesh whose texture coordinates are `rest`, with corners of its own for each triangle.
+    ObjMesh rest_mesh() const;
+};
+
 /// Panels of a garment as meshes, and the surface that they become when their seams are welded.
 struct GarmentMesh {
     garment::PatternMesh panels;
     garment::SewnMesh sewn;
     std::vector<std::string> panel_names; ///< [panels]
+    std::vector<FlatTriangle> gathered; ///< [triangles] garment::gathered_rest(); empty: nothing is gathered
 
     /// @param edge   [m] of panels that have no edge length of their own
     /// @param least  [m] of any
     GarmentMesh(const garment::Pattern& pattern, double edge, double least = 0.0);
 
-    /// The welded surface; texture coordinates are those of the panels [m], and a group names each panel.
+    /// The welded surface.
     /// @param x  [welded vertices] [m]
-    ObjMesh surface(View<const Vec3> x) const;
+    GarmentSurface surface(View<const Vec3> x) const { return surface(sewn, x); }
+
+    /// The garment with only some of its seams welded.
+    /// @param partly  the panels with those seams
+    /// @param x       [its welded vertices] [m]
+    GarmentSurface surface(const garment::SewnMesh& partly, View<const Vec3> x) const;
 
     /// Welded vertices of the edges that have a label, in ascending order.
     std::vector<int> labelled(const garment::Pattern& pattern, const std::string& label) const;
 };
-
-/// The garment with only some of its seams welded, as in `sewn`; with the same texture coordinates and
-/// groups.
-/// @param x  [welded vertices] [m]
-ObjMesh textured_surface(const GarmentMesh& garment, const garment::SewnMesh& sewn, View<const Vec3> x);
 
 /// Mean of the vertices that are welded into one.
 /// @param x  [vertices of the panels] [m]

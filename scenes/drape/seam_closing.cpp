@@ -22,13 +22,13 @@ SeamClosing::SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x)
     sewn_ = garment::sewn_mesh(closed_);
 }
 
-ObjMesh SeamClosing::surface() const
+GarmentSurface SeamClosing::surface() const
 {
-    ObjMesh surface = textured_surface(mesh_, sewn_, toile::scenes::weld(sewn_, x_));
+    GarmentSurface surface = mesh_.surface(sewn_, toile::scenes::weld(sewn_, x_));
     for (const auto& seam : open_)
         for (const auto& [a, b] : seam)
             if (sewn_.welded_of[a] != sewn_.welded_of[b])
-                surface.lines.push_back({sewn_.welded_of[a], sewn_.welded_of[b]});
+                surface.mesh.lines.push_back({sewn_.welded_of[a], sewn_.welded_of[b]});
     return surface;
 }
 

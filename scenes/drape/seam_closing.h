@@ -20,9 +20,8 @@ public:
     /// @param x     [vertices of the panels] [m]
     SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x);
 
-    /// The panels, welded where seams are closed, with a line for every thread that is open. Texture
-    /// coordinates are those of the panels [m].
-    ObjMesh surface() const;
+    /// The panels, welded where seams are closed, with a line for every thread that is open.
+    GarmentSurface surface() const;
 
     /// Moves the panels with the surface.
     /// @param surface  [vertices of surface()] [m]

@@ -11,7 +11,7 @@ namespace {
 /// Bending rigidity [N m] of cloth that is pressed: hundreds of times that of cotton.
 constexpr double kPressedRigidity = 1e-3;
 /// Membrane of panels while they are sewn [N/m, -]: at most as stiff as jersey.
-constexpr double kSewingStretch = 60.0, kSewingShear = 20.0, kSewingStrainLimit = 1.25;
+constexpr double kSewingStretch = 60.0, kSewingShear = 20.0, kSewingStrainLimit = 1.6;
 /// Decay rate of velocities [1/s] of panels that are sewn: threads would throw them.
 constexpr double kSewingDamping = 1000.0;
 /// Threads [N/m, N].
@@ -39,7 +39,7 @@ StageScenes::StageScenes(const DrapeSettings& settings, const garment::Pattern& 
                 labels_.insert(edge.label);
 }
 
-Scene StageScenes::sew(const ObjMesh& panels) const
+Scene StageScenes::sew(const GarmentSurface& panels) const
 {
     Scene scene = scene_of("sew", panels, sewing_fabric());
     scene.gravity.setZero();
@@ -66,7 +66,8 @@ Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::
     return scene;
 }
 
-Scene StageScenes::scene_of(const std::string& stage, const ObjMesh& mesh, const scene::Fabric& fabric) const
+Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surface,
+                            const scene::Fabric& fabric) const
 {
     Scene scene;
     scene.name = settings_.name + ", " + stage;
@@ -75,8 +76,12 @@ Scene StageScenes::scene_of(const std::string& stage, const ObjMesh& mesh, const
     scene::Cloth cloth;
     cloth.name = settings_.name;
     const std::filesystem::path file = settings_.folder / (settings_.name + "_" + stage + ".obj");
-    write_obj(file, mesh);
-    watch_.begin(stage, mesh, scene.frame_duration());
+    write_obj(file, surface.mesh);
+    if (!surface.rest.empty()) {
+        cloth.rest_file = settings_.folder / (settings_.name + "_" + stage + "_rest.obj");
+        write_obj(*cloth.rest_file, surface.rest_mesh());
+    }
+    watch_.begin(stage, surface, scene.frame_duration());
     cloth.shape = file;
     cloth.weld = false;
     cloth.rest = scene::RestFrom::Uv;

@@ -26,7 +26,7 @@ public:
     /// Threads pull the seams shut, without gravity. The panels give way to the body as jersey does, and move
     /// so slowly that they stop where no force pulls.
     /// @param panels  with lines as threads
-    Scene sew(const ObjMesh& panels) const;
+    Scene sew(const GarmentSurface& panels) const;
 
     /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
     /// great bending rigidity, without gravity.
@@ -38,7 +38,8 @@ public:
     Scene hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage, bool holds_all) const;
 
 private:
-    Scene scene_of(const std::string& stage, const ObjMesh& mesh, const scene::Fabric& fabric) const;
+    Scene scene_of(const std::string& stage, const GarmentSurface& surface,
+                   const scene::Fabric& fabric) const;
     scene::Fabric damped_fabric() const;
     scene::Fabric sewing_fabric() const;
     void hold_labels(const GarmentMesh& mesh, Scene& scene, bool holds_all) const;

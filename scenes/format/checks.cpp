@@ -141,6 +141,11 @@ void check_rest(const Document& document, const std::string& key_path, const Clo
     if (is_from_uv && !std::holds_alternative<std::filesystem::path>(cloth.shape))
         document.refuse(below(key_path, "rest"),
                         "only a file has texture coordinates; remove it, or write \"shape\"");
+    if (cloth.rest_file && !is_from_uv)
+        document.refuse(below(key_path, "rest_file"),
+                        "has no effect on a rest shape that is the mesh; add \"rest\": \"uv\" or remove it");
+    if (cloth.rest_file)
+        check_extension(document, below(key_path, "rest_file"), *cloth.rest_file, {".obj"});
     if (cloth.uv_scale && !is_from_uv)
         document.refuse(below(key_path, "uv_scale"),
                         "has no effect on a rest shape that is the mesh; add \"rest\": \"uv\" or remove it");

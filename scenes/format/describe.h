@@ -176,6 +176,9 @@ void describe(V& v, Cloth& c)
     v.field("rest", c.rest,
             "Rest shape: the mesh as it is posed (\"shape\"), or each triangle's texture coordinates, flat "
             "(\"uv\"), as of garments made from patterns.");
+    v.field("rest_file", c.rest_file,
+            "OBJ with the same faces as file, whose texture coordinates are the rest shape of \"rest\": "
+            "\"uv\" in place of the file's own, as of gathers.");
     v.field("uv_scale", c.uv_scale, above_zero(1e6, "m"),
             "Metres per texture unit of \"rest\": \"uv\", before scale; unit does not apply to it. Absent: "
             "as much as makes the areas at rest and of the mesh equal; the run prints it.");

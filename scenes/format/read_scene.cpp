@@ -33,6 +33,14 @@ void resolve_motions(const scene_format::Document& document, std::vector<scene::
         }
 }
 
+void resolve_rest_files(const scene_format::Document& document, std::vector<scene::Cloth>& cloths)
+{
+    for (size_t i = 0; i < cloths.size(); ++i)
+        if (auto& file = cloths[i].rest_file)
+            *file = document.existing_file(
+                file->string(), scene_format::below(scene_format::below("cloths", i), "rest_file"));
+}
+
 } // namespace
 
 Scene read_scene(const std::filesystem::path& file)
@@ -57,6 +65,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& source)
     resolve_motions(document, scene.avatars);
     resolve_files(document, "cloths", scene.cloths);
     resolve_files(document, "solids", scene.solids);
+    resolve_rest_files(document, scene.cloths);
     return scene;
 }
 

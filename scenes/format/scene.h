@@ -157,9 +157,11 @@ struct Cloth {
     bool weld = true;                    ///< join edges of the file that lie on each other
     LengthUnit unit = LengthUnit::Metre; ///< of the file
     RestFrom rest = RestFrom::Shape;     ///< what the rest shape is taken from
-    std::optional<double> uv_scale;      ///< [m] per texture unit, before `scale`; absent: areas agree
-    double scale = 1.0;                  ///< [-]
-    Vec3 translate = Vec3::Zero();       ///< [m]
+    std::optional<std::filesystem::path>
+        rest_file; ///< OBJ with the faces of `shape`, whose texture is the rest shape; absent: its own
+    std::optional<double> uv_scale; ///< [m] per texture unit, before `scale`; absent: areas agree
+    double scale = 1.0;             ///< [-]
+    Vec3 translate = Vec3::Zero();  ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
     std::string fabric = "cotton";       ///< key of Scene::fabrics or name of a preset
     double grain_deg = 0.0;              ///< rotation of the warp direction in the cloth plane

@@ -142,6 +142,7 @@ Seam seam_of(const Document& document, const std::string& key_path, const SeamEn
     seam.flip = starts_meet ? "write \"join\": \"start-end\" in it" : "write \"join\": \"start-start\" in it";
     seam.fold_deg = entry.fold_deg;
     seam.order = entry.order;
+    seam.gather = entry.gather;
     return seam;
 }
 

@@ -13,6 +13,12 @@ struct Words<garment_format::SeamJoin> {
 };
 
 template <>
+struct Words<garment::Gather> {
+    static constexpr std::array<std::pair<const char*, garment::Gather>, 2> kAll{
+        {{"short", garment::Gather::Short}, {"long", garment::Gather::Long}}};
+};
+
+template <>
 struct Words<garment::BodySegment> {
     static constexpr std::array<std::pair<const char*, garment::BodySegment>, 6> kAll{
         {{"torso", garment::BodySegment::Torso},
@@ -86,6 +92,10 @@ void describe(V& v, SeamEntry& s)
     v.field("fold_deg", s.fold_deg, between(-180.0, 180.0, "degrees"),
             "Fold along the seam at rest, outer sides towards each other; 0: flat.");
     v.field("order", s.order, between(0, 1000), "Seams with a lower number are sewn first.");
+    v.field(
+        "gather", s.gather,
+        "Side that keeps its length where one is longer: the longer one is gathered to the shorter, or the "
+        "shorter one stretched to the longer.");
 }
 
 template <typename V>

@@ -40,6 +40,7 @@ struct SeamEntry {
     SeamJoin join = SeamJoin::StartEnd;
     double fold_deg = 0.0;
     int order = 0;
+    garment::Gather gather = garment::Gather::Short;
 };
 
 struct GarmentFile {

@@ -1,6 +1,8 @@
 #include "scenes/meshes/cloth_mesh.h"
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/mesh/clean.h"
@@ -129,6 +131,57 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
         result.file = file;
 }
 
+/// Makes the cut mesh one that can be simulated, still in the cloth's local frame.
+void prepare(const scene::Cloth& cloth, ClothMesh& result)
+{
+    if (std::holds_alternative<std::filesystem::path>(cloth.shape))
+        clean(cloth, result);
+    else
+        require_usable(result.mesh, source_of(cloth));
+}
+
+/// Subdivides, scales and rotates it.
+void place(const scene::Cloth& cloth, ClothMesh& result)
+{
+    if (cloth.subdivide > 0)
+        result.mesh = subdivide(result.mesh, cloth.subdivide);
+    const Mat3 rotation = rotation_of(cloth.rotate_deg);
+    for (ObjMesh* mesh : {&result.mesh, &result.file}) {
+        for (Vec3& p : mesh->positions)
+            p = rotation * (cloth.scale * scene::metres_per(cloth.unit) * p);
+        require_in_range(mesh->positions, source_of(cloth));
+    }
+}
+
+std::string text_of(const std::vector<int>& polygon)
+{
+    std::string text;
+    for (const int v : polygon)
+        text += (text.empty() ? "" : " ") + std::to_string(v + 1);
+    return text;
+}
+
+/// Replaces the texture of a cloth's mesh, as in its file, by that of a mesh with the same faces.
+/// @throws InvalidInput naming the first face that differs
+void take_texture(ObjMesh rest, const scene::Cloth& cloth, ObjMesh& mesh)
+{
+    const std::string source = rest_source_of(cloth), remedy = "; a rest file has the faces of the cloth's";
+    const size_t common = std::min(rest.polygons.size(), mesh.polygons.size());
+    for (size_t f = 0; f < common; ++f)
+        if (rest.polygons[f] != mesh.polygons[f])
+            throw InvalidInput(source + ":" + line_of(rest, int(f)) + ": the face has vertices " +
+                               text_of(rest.polygons[f]) + ", but " + text_of(mesh.polygons[f]) + " in " +
+                               source_of(cloth) + ":" + line_of(mesh, int(f)) + remedy);
+    if (rest.polygons.size() != mesh.polygons.size())
+        throw InvalidInput(source + ": has " +
+                           counted(std::ptrdiff_t(rest.polygons.size()), "face", "faces") + ", but " +
+                           source_of(cloth) + " has " + std::to_string(mesh.polygons.size()) + remedy);
+    mesh.texture_coordinates = std::move(rest.texture_coordinates);
+    mesh.polygon_uvs = std::move(rest.polygon_uvs);
+    mesh.polygon_lines = std::move(rest.polygon_lines);
+    mesh.first_plain_line = rest.first_plain_line;
+}
+
 } // namespace
 
 std::string source_of(const scene::Cloth& cloth)
@@ -137,28 +190,31 @@ std::string source_of(const scene::Cloth& cloth)
     return file ? file->string() : "cloth \"" + cloth.name + "\"";
 }
 
+std::string rest_source_of(const scene::Cloth& cloth)
+{
+    return cloth.rest_file ? cloth.rest_file->string() : source_of(cloth);
+}
+
 ClothMesh cloth_mesh(const scene::Cloth& cloth)
 {
     ClothMesh result;
-    ObjMesh& mesh = result.mesh = cut(cloth);
-    const Mat3 rotation = rotation_of(cloth.rotate_deg);
-    const auto place = [&](ObjMesh& placed) {
-        for (Vec3& p : placed.positions)
-            p = rotation * (cloth.scale * scene::metres_per(cloth.unit) * p);
-    };
-    if (std::holds_alternative<std::filesystem::path>(cloth.shape))
-        clean(cloth, result);
-    else
-        require_usable(mesh, source_of(cloth));
-    if (cloth.rest == scene::RestFrom::Uv)
-        require_flat_texture(mesh, source_of(cloth));
-    if (cloth.subdivide > 0)
-        mesh = subdivide(mesh, cloth.subdivide);
-    place(mesh);
-    place(result.file);
-    require_in_range(mesh.positions, source_of(cloth));
-    require_in_range(result.file.positions, source_of(cloth));
+    result.mesh = cut(cloth);
+    prepare(cloth, result);
+    if (cloth.rest == scene::RestFrom::Uv && !cloth.rest_file)
+        require_flat_texture(result.mesh, source_of(cloth));
+    place(cloth, result);
     return result;
+}
+
+ObjMesh mesh_at_rest(const scene::Cloth& cloth)
+{
+    ClothMesh result;
+    result.mesh = cut(cloth);
+    take_texture(read_obj(*cloth.rest_file), cloth, result.mesh);
+    prepare(cloth, result);
+    require_flat_texture(result.mesh, rest_source_of(cloth));
+    place(cloth, result);
+    return std::move(result.mesh);
 }
 
 } // namespace toile::scenes

@@ -39,15 +39,15 @@ void rest_on_texture(const scene::Cloth& settings, LoadedCloth& loaded,
                      const std::function<void(const std::string&)>& warn)
 {
     ClothState& state = loaded.state;
-    UvRest uv = uv_rest(settings, state.rest);
+    UvRest uv = uv_rest(settings, settings.rest_file ? mesh_at_rest(settings) : state.rest);
     if (!settings.uv_scale)
-        loaded.note = source_of(settings) + ": " + scale_note(uv);
+        loaded.note = rest_source_of(settings) + ": " + scale_note(uv);
     if (const std::string text = mismatch_warning(uv); warn && !text.empty())
-        warn(source_of(settings) + ": " + text);
+        warn(rest_source_of(settings) + ": " + text);
     state.panels = std::move(uv.triangles);
-    loaded.rest = std::make_shared<const garment::RestShape>(
-        garment::rest_shape_of_panels({state.rest.positions, state.triangles}, state.panels,
-                                      settings.grain_deg * std::numbers::pi / 180.0, source_of(settings)));
+    loaded.rest = std::make_shared<const garment::RestShape>(garment::rest_shape_of_panels(
+        {state.rest.positions, state.triangles}, state.panels, settings.grain_deg * std::numbers::pi / 180.0,
+        rest_source_of(settings)));
 }
 
 /// The selection with the cloth's numbers of vertices for those of the file.

@@ -87,7 +87,7 @@ UvRest uv_rest(const scene::Cloth& settings, const ObjMesh& mesh)
     for (FlatTriangle& triangle : rest.triangles)
         for (Vec2& corner : triangle)
             corner *= rest.uv_scale * settings.scale;
-    require_flat_in_range(rest, source_of(settings));
+    require_flat_in_range(rest, rest_source_of(settings));
 
     std::vector<double> smaller, larger;
     for (size_t t = 0; t < rest.triangles.size(); ++t) {

@@ -18,7 +18,7 @@ struct UvRest {
     double stretch_p5 = 1.0, stretch_p95 = 1.0;
 };
 
-/// @param mesh  the cloth with its unit and scale applied, as require_flat_texture() accepts it
+/// @param mesh  the cloth with its unit and scale applied, and a texture that require_flat_texture() accepts
 /// @throws InvalidInput for a scale that makes coordinates out of range
 UvRest uv_rest(const scene::Cloth& settings, const ObjMesh& mesh);
 

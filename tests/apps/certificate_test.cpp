@@ -77,16 +77,15 @@ TEST(Certificate, HasTheDocumentedKeys)
     EXPECT_TRUE(found["first_crossing"].is_null());
 }
 
-/// A sheet of 0.4 m x 0.2 m that is 1.1 times as long in space as in its texture, in decimetres. Poisson's
-/// ratio is zero, so that what is held between its ends is stretched evenly.
-TEST(Certificate, MeasuresStrainAgainstTheTextureThatIsTheRestShape)
+/// OBJ of a sheet of 0.44 m x 0.2 m.
+/// @param column  width of its 8 columns in the texture; its 4 rows are 0.5 high
+std::string stretched_sheet(double column)
 {
-    const TemporaryFolder folder;
     std::string obj;
     for (int j = 0; j <= 4; ++j)
         for (int i = 0; i <= 8; ++i)
             obj += "v " + std::to_string(0.055 * i) + " 1 " + std::to_string(-0.05 * j) + "\nvt " +
-                   std::to_string(0.5 * i) + " " + std::to_string(0.5 * j) + "\n";
+                   std::to_string(column * i) + " " + std::to_string(0.5 * j) + "\n";
     for (int j = 0; j < 4; ++j)
         for (int i = 0; i < 8; ++i) {
             const auto corner = [&](int di, int dj) {
@@ -95,7 +94,16 @@ TEST(Certificate, MeasuresStrainAgainstTheTextureThatIsTheRestShape)
             };
             obj += "f" + corner(0, 0) + corner(1, 0) + corner(1, 1) + corner(0, 1) + "\n";
         }
-    folder.write("sheet.obj", obj);
+    return obj;
+}
+
+/// A sheet that is 1.1 times as long in space as in its texture, in decimetres. Poisson's ratio is zero, so
+/// that what is held between its ends is stretched evenly.
+TEST(Certificate, MeasuresStrainAgainstTheTextureThatIsTheRestShape)
+{
+    const TemporaryFolder folder;
+    folder.write("sheet.obj", stretched_sheet(0.5));
+    folder.write("rest.obj", stretched_sheet(0.53));
     const std::string ends = R"("attachments": [
         {"cloth": "sheet", "select": {"box": {"lower": [-0.001, 0, -1], "upper": [0.001, 2, 1]}}},
         {"cloth": "sheet", "select": {"box": {"lower": [0.439, 0, -1], "upper": [0.441, 2, 1]}}}])";
@@ -115,6 +123,8 @@ TEST(Certificate, MeasuresStrainAgainstTheTextureThatIsTheRestShape)
     EXPECT_NEAR(strain(""), 0.0, 1e-6);
     EXPECT_NEAR(strain(R"(, "rest": "uv", "uv_scale": 0.1)"), 0.1, 1e-4);
     EXPECT_GE(strain(R"(, "rest": "uv")"), std::sqrt(1.1) - 1.0 - 1e-6) << "areas agree";
+    EXPECT_NEAR(strain(R"(, "rest": "uv", "uv_scale": 0.1, "rest_file": "rest.obj")"), 0.55 / 0.53 - 1.0,
+                1e-4);
 }
 
 TEST(Certificate, MeasuresTheGapOfTwoCloths)

@@ -30,6 +30,9 @@ protected:
             temporary_.write(mesh, square);
         temporary_.write("body.obj", "v 0 -1 0\nv 0 -1 9\nv 9 -1 9\nf 1 2 3\n");
         temporary_.write("s.json", scene("sheet.obj"));
+        temporary_.write("flat.obj", "v 0 0 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+        temporary_.write("rest.json", R"({"toile": 1, "frames": 1, "cloths": [{"name": "q",
+            "file": "sheet.obj", "rest": "uv", "rest_file": "flat.obj"}]})");
         temporary_.write("certificate.json", R"({"toile": 1, "frames": 1, "cloths": [{"name": "q",
             "rectangle": {"size": [0.2, 0.2], "resolution": 0.1}}]})");
         temporary_.write("sequence.json", scene("sheet_0002.obj", R"("export": [{"file": "sheet.obj"}])"));
@@ -102,6 +105,7 @@ const std::vector<Refused> kRefused{
     {{"simulate", "s.json", "--report", "twin.json"}, {"twin.json", "s.json, the scene"}},
     {{"simulate", "link.json", "--report", "out/../s.json"}, {"out/../s.json", "link.json, the scene"}},
     {{"simulate", "s.json", "--report", "sheet.obj"}, {"the report would replace", "file of cloth"}},
+    {{"simulate", "rest.json", "--report", "flat.obj"}, {"flat.obj", "the rest file of cloth \"q\""}},
     {{"simulate", "c.json", "--report", "c.bin"}, {"c.bin", "a part of", "c.gltf"}},
     {{"simulate", "gltf.json", "--report", "my skin.png"}, {"my skin.png", "a part of"}},
     {{"simulate", "s.json", "sequences.json", "--report", "."}, {"./s.json", "the scene"}},

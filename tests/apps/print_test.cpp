@@ -45,6 +45,22 @@ TEST(Print, LiesOnPanelsWhereTheyAreTheRestShape)
     EXPECT_EQ(mesh.corner_coordinates, state.panels);
 }
 
+TEST(Print, LiesOnTheClothAsItWasCutWhereItsRestIsAnother)
+{
+    scene::Cloth gathered = printed();
+    gathered.rest_file = "rest.obj";
+    scenes::ClothState state = square();
+    state.panels = {{Vec2(0, 0), Vec2(0.1, 0), Vec2(0.1, 0.2)}, {Vec2(0, 0), Vec2(0.1, 0.2), Vec2(0, 0.2)}};
+    preview::RenderMesh mesh;
+    apply_print(gathered, state, mesh);
+    ASSERT_EQ(mesh.corner_coordinates.size(), 2u);
+    EXPECT_NEAR((mesh.corner_coordinates[1][1] - Vec2(0.2, 0.2)).norm(), 0.0, 1e-15);
+
+    state.rest.polygon_uvs.clear();
+    apply_print(gathered, state, mesh);
+    EXPECT_EQ(mesh.corner_coordinates, state.panels);
+}
+
 TEST(Print, NeedsTextureCoordinates)
 {
     scenes::ClothState state = square();

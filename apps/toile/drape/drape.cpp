@@ -127,13 +127,13 @@ int drape(DrapeOptions options)
             log.error("interrupted before the garment was certified");
             return kExitFailure;
         }
-        report.verdict = verdict_of(*certificate, report.result.mesh);
+        report.verdict = verdict_of(*certificate, report.result.surface.mesh);
     }
 
     // Report it.
-    const ObjMesh& mesh = report.result.mesh;
+    const ObjMesh& mesh = report.result.surface.mesh;
     if (!mesh.positions.empty())
-        report.measures = measure_garment(mesh, pattern, settings.fabric);
+        report.measures = measure_garment(report.result.surface, pattern, settings.fabric);
     files.write_report(report, pattern, log);
     if (!mesh.positions.empty())
         files.write_picture(settings, log);

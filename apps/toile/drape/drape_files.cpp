@@ -79,7 +79,7 @@ void DrapeFiles::require_safe(const garment::Pattern& pattern) const
                                ", whose files are replaced; choose another folder by -o");
         plan.add_input(file, role);
     }
-    for (const path& file : {mesh(), scene(), report(), certificate(), picture()}) {
+    for (const path& file : {mesh(), rest_mesh(), scene(), report(), certificate(), picture()}) {
         plan.add_output(file, "a result of the drape");
         require_writable(file);
     }
@@ -106,12 +106,16 @@ void DrapeFiles::write_refusal(const DrapeVerdict& verdict) const
 void DrapeFiles::write_garment(const scenes::DrapeSettings& settings, const scenes::DrapeResult& result,
                                const RunLog& log) const
 {
-    for (const path& file : {report(), certificate(), scene(), mesh(), picture()})
+    for (const path& file : {report(), certificate(), scene(), mesh(), rest_mesh(), picture()})
         std::filesystem::remove(file);
-    if (result.mesh.positions.empty())
+    if (result.surface.mesh.positions.empty())
         return;
-    write_obj(mesh(), result.mesh);
+    write_obj(mesh(), result.surface.mesh);
     log.file(mesh());
+    if (!result.surface.rest.empty()) {
+        write_obj(rest_mesh(), result.surface.rest_mesh());
+        log.file(rest_mesh());
+    }
     if (result.outcome != scenes::DrapeOutcome::Draped)
         return;
     write_atomically(scene(), scene_text(settings, result));
@@ -134,6 +138,8 @@ std::string DrapeFiles::scene_text(const scenes::DrapeSettings& settings,
                        {"rest", "uv"},
                        {"uv_scale", 1.0},
                        {"fabric", result.scene.cloths.at(0).fabric}}};
+    if (!result.surface.rest.empty())
+        json["cloths"][0]["rest_file"] = rest_mesh().filename().string();
     for (const scene::Attachment& attachment : result.scene.attachments)
         json["attachments"].push_back(
             {{"cloth", name_},

@@ -55,6 +55,7 @@ private:
     std::filesystem::path scene() const { return folder_ / "scene.json"; }
     std::filesystem::path report() const { return folder_ / "drape.json"; }
     std::filesystem::path certificate() const { return folder_ / "certificate.json"; }
+    std::filesystem::path rest_mesh() const { return folder_ / (name_ + "_rest.obj"); }
     std::filesystem::path picture() const { return folder_ / (name_ + ".png"); }
     std::string scene_text(const scenes::DrapeSettings& settings, const scenes::DrapeResult& result) const;
 

@@ -111,8 +111,8 @@ std::string to_json(const DrapeReport& report, const garment::Pattern& pattern)
                                   {"frames", stage.frames},
                                   {"steps", stage.steps},
                                   {"vertices", stage.vertices}});
-    json["vertices"] = result.mesh.positions.size();
-    json["triangles"] = result.mesh.polygons.size();
+    json["vertices"] = result.surface.mesh.positions.size();
+    json["triangles"] = result.surface.mesh.polygons.size();
     json["pieces"] = result.pieces;
     json["border_loops"] = result.border_loops;
     json["euler_characteristic"] = result.euler_characteristic;
@@ -143,7 +143,7 @@ std::string summary_of(const DrapeReport& report)
         seconds += stage.seconds;
     char text[160];
     std::snprintf(text, sizeof text, "%s after %.1f s: ", report.verdict.word.c_str(), seconds);
-    std::string summary = text + std::to_string(result.mesh.positions.size()) + " vertices, " +
+    std::string summary = text + std::to_string(result.surface.mesh.positions.size()) + " vertices, " +
                           counted(result.pieces, "piece") + ", " +
                           counted(result.border_loops, "border loop");
     if (!result.seams.empty()) {

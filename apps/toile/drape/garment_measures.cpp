@@ -96,23 +96,26 @@ std::string panel_near(const ObjMesh& mesh, const Vec3& point)
     return nearest < 0 ? "" : panel_of_triangle(mesh, nearest);
 }
 
-GarmentMeasures measure_garment(const ObjMesh& mesh, const garment::Pattern& pattern,
+GarmentMeasures measure_garment(const scenes::GarmentSurface& surface, const garment::Pattern& pattern,
                                 const std::string& fabric)
 {
     std::map<std::string, std::string> fabric_of_panel;
     for (const garment::Panel& panel : pattern.panels)
         fabric_of_panel[panel.name] = panel.fabric.empty() ? fabric : panel.fabric;
 
-    const StrainMeter meter(texture_triangles(mesh), mesh.triangulated().triangles);
+    const ObjMesh& mesh = surface.mesh;
+    const std::vector<Triangle> triangles = mesh.triangulated().triangles;
+    const StrainMeter texture(texture_triangles(mesh), triangles);
+    const StrainMeter meter(surface.rest.empty() ? texture : StrainMeter(surface.rest, triangles));
     std::map<std::string, std::vector<StrainedTriangle>> by_fabric;
     for (int t = 0; t < meter.triangle_count(); ++t)
         by_fabric[fabric_of_panel[panel_of_triangle(mesh, t)]].push_back(
             {meter.stretches(mesh.positions, t).larger - 1.0, meter.rest_area(t), t});
 
     GarmentMeasures measures;
-    for (auto& [name, triangles] : by_fabric)
-        measures.strains.push_back(strain_of(name, std::move(triangles), mesh));
-    measures.uv = uv_stretch(meter, mesh.positions);
+    for (auto& [name, strained] : by_fabric)
+        measures.strains.push_back(strain_of(name, std::move(strained), mesh));
+    measures.uv = uv_stretch(texture, mesh.positions);
     return measures;
 }
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/obj.h"
 #include "garment/pattern/pattern.h"
+#include "scenes/drape/garment_mesh.h"
 
 namespace toile::app {
 
@@ -42,10 +42,10 @@ struct GarmentMeasures {
     UvStretch uv;
 };
 
-/// Measures a garment against its flat panels.
-/// @param mesh     triangles with texture coordinates [m]; groups: panels of the pattern
+/// Measures a garment: its strain against its rest shape, its texture against the flat panels.
+/// @param surface  of triangles
 /// @param fabric   of panels without one
-GarmentMeasures measure_garment(const ObjMesh& mesh, const garment::Pattern& pattern,
+GarmentMeasures measure_garment(const scenes::GarmentSurface& surface, const garment::Pattern& pattern,
                                 const std::string& fabric);
 
 } // namespace toile::app

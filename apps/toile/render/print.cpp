@@ -76,7 +76,8 @@ void apply_print(const scene::Cloth& cloth, const scenes::ClothState& state, pre
     if (cloth.print == scene::Print::Plain)
         return;
     std::vector<FlatTriangle> coordinates;
-    if (!state.panels.empty())
+    const bool is_gathered = cloth.rest_file && !state.rest.polygon_uvs.empty();
+    if (!state.panels.empty() && !is_gathered) // gathers compress what is printed on the flat cloth
         coordinates = state.panels;
     else if (std::holds_alternative<std::filesystem::path>(cloth.shape))
         coordinates = texture_in_metres(state.rest, state.triangles);

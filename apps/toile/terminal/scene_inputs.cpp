@@ -26,8 +26,11 @@ void add_file_of(FilePlan& plan, const Object& object, const std::string& kind)
 void add_inputs(FilePlan& plan, const scenes::Scene& scene)
 {
     plan.add_input(scene.source, "the scene");
-    for (const scene::Cloth& cloth : scene.cloths)
+    for (const scene::Cloth& cloth : scene.cloths) {
         add_file_of(plan, cloth, "cloth");
+        if (cloth.rest_file)
+            plan.add_input(*cloth.rest_file, "the rest file of cloth \"" + cloth.name + "\"");
+    }
     for (const scene::Solid& solid : scene.solids)
         add_file_of(plan, solid, "solid");
     for (const scene::Avatar& avatar : scene.avatars) {

@@ -46,7 +46,7 @@ garment::Pattern pattern_of(const std::vector<std::string>& fabrics)
 TEST(GarmentMeasures, TellStrainByFabric)
 {
     const GarmentMeasures measures =
-        measure_garment(squares({1.1, 1.0, 1.3}), pattern_of({"silk", "", "silk"}), "wool");
+        measure_garment({squares({1.1, 1.0, 1.3}), {}}, pattern_of({"silk", "", "silk"}), "wool");
     ASSERT_EQ(measures.strains.size(), 2u);
     const FabricStrain& silk = measures.strains[0];
     EXPECT_EQ(silk.fabric, "silk");
@@ -63,9 +63,9 @@ TEST(GarmentMeasures, LeaveOnePercentOfTheAreaAboveP99)
 {
     std::vector<double> stretches(200, 1.0);
     stretches[7] = 1.2; // half a percent of the area
-    EXPECT_NEAR(measure_garment(squares(stretches), pattern_of({}), "wool").strains[0].p99, 0.0, 1e-14);
+    EXPECT_NEAR(measure_garment({squares(stretches), {}}, pattern_of({}), "wool").strains[0].p99, 0.0, 1e-14);
     stretches[8] = stretches[9] = 1.1;
-    const FabricStrain strain = measure_garment(squares(stretches), pattern_of({}), "wool").strains[0];
+    const FabricStrain strain = measure_garment({squares(stretches), {}}, pattern_of({}), "wool").strains[0];
     EXPECT_NEAR(strain.p99, 0.1, 1e-14);
     EXPECT_NEAR(strain.max, 0.2, 1e-14);
     EXPECT_NEAR(strain.mean, 0.4 / 200.0, 1e-14);
@@ -74,7 +74,7 @@ TEST(GarmentMeasures, LeaveOnePercentOfTheAreaAboveP99)
 /// Sander et al. 2001 for areas 1 and 1 in the texture, 1.1 and 1 in space.
 TEST(GarmentMeasures, HaveTheStretchOfTheLiterature)
 {
-    const UvStretch uv = measure_garment(squares({1.1, 1.0}), pattern_of({}), "wool").uv;
+    const UvStretch uv = measure_garment({squares({1.1, 1.0}), {}}, pattern_of({}), "wool").uv;
     EXPECT_NEAR(uv.area_ratio, 1.05, 1e-14);
     const double squared = (0.5 * (1.1 * 1.1 + 1.0) * 1.1 + 1.0) / 2.1;
     EXPECT_NEAR(uv.l2, std::sqrt(squared * 2.0 / 2.1), 1e-14);
@@ -86,7 +86,7 @@ TEST(GarmentMeasures, HaveNoDistortionInAnEnlargedSheet)
     ObjMesh mesh = squares({1.0, 1.0});
     for (Vec3& p : mesh.positions)
         p *= 3.0;
-    const UvStretch uv = measure_garment(mesh, pattern_of({}), "wool").uv;
+    const UvStretch uv = measure_garment({mesh, {}}, pattern_of({}), "wool").uv;
     EXPECT_NEAR(uv.l2, 1.0, 1e-14);
     EXPECT_NEAR(uv.linf, 1.0, 1e-14);
     EXPECT_NEAR(uv.area_ratio, 9.0, 1e-13);
@@ -100,7 +100,7 @@ TEST(GarmentMeasures, NeverHaveAStretchBelowOne)
         ObjMesh mesh = squares({1.0, 1.0, 1.0});
         for (Vec3& p : mesh.positions)
             p = Vec3(number(random), number(random), number(random));
-        const UvStretch uv = measure_garment(mesh, pattern_of({}), "wool").uv;
+        const UvStretch uv = measure_garment({mesh, {}}, pattern_of({}), "wool").uv;
         EXPECT_GE(uv.l2, 1.0);
         EXPECT_GE(uv.linf, uv.l2);
     }

@@ -82,24 +82,24 @@ TEST_F(DrapeTest, SewsATubeAroundABodyAndHoldsIt)
     EXPECT_LE(result.rest_speed, 0.02);
 
     // It surrounds the body, and crosses nothing.
-    const TriangleMesh mesh = result.mesh.triangulated();
+    const TriangleMesh mesh = result.surface.mesh.triangulated();
     EXPECT_TRUE(collision::find_crossings(mesh.triangles, mesh.positions).empty());
     for (const Vec3& x : mesh.positions) {
         EXPECT_GT(std::hypot(x.x(), x.z()), 0.1);
         EXPECT_LT(std::hypot(x.x(), x.z()), 0.16);
     }
     // Panels are groups, each on its side of the body.
-    ASSERT_EQ(result.mesh.groups.size(), 2u);
-    EXPECT_EQ(result.mesh.groups[0], (ObjGroup{0, "back"}));
-    EXPECT_EQ(result.mesh.groups[1], (ObjGroup{int(mesh.triangles.size() / 2), "front"}));
+    ASSERT_EQ(result.surface.mesh.groups.size(), 2u);
+    EXPECT_EQ(result.surface.mesh.groups[0], (ObjGroup{0, "back"}));
+    EXPECT_EQ(result.surface.mesh.groups[1], (ObjGroup{int(mesh.triangles.size() / 2), "front"}));
     double front = 0.0, back = 0.0; // sums of z [m]
     for (int t = 0; t < int(mesh.triangles.size()); ++t)
         for (const int v : mesh.triangles[size_t(t)])
-            (t < result.mesh.groups[1].first_polygon ? back : front) += mesh.positions[size_t(v)].z();
+            (t < result.surface.mesh.groups[1].first_polygon ? back : front) += mesh.positions[size_t(v)].z();
     EXPECT_GT(front / double(mesh.triangles.size()), 0.05);
     EXPECT_LT(back / double(mesh.triangles.size()), -0.05);
     // Both panels keep their texture coordinates along the seams.
-    EXPECT_GT(result.mesh.texture_coordinates.size(), result.mesh.positions.size() + 8u);
+    EXPECT_GT(result.surface.mesh.texture_coordinates.size(), result.surface.mesh.positions.size() + 8u);
 }
 
 TEST_F(DrapeTest, EndsAtItsTimeLimitWithTheLastState)
@@ -111,11 +111,11 @@ TEST_F(DrapeTest, EndsAtItsTimeLimitWithTheLastState)
     EXPECT_EQ(result.stages.back().name, "settle");
     EXPECT_GE(result.stages.back().frames, 4);
     EXPECT_GE(result.stages.back().steps, result.stages.back().frames);
-    EXPECT_EQ(result.stages.back().vertices, int(result.mesh.positions.size()));
-    EXPECT_EQ(result.mesh.groups.size(), 2u);
+    EXPECT_EQ(result.stages.back().vertices, int(result.surface.mesh.positions.size()));
+    EXPECT_EQ(result.surface.mesh.groups.size(), 2u);
     EXPECT_EQ(result.seams.size(), 2u);
     // The tube surrounds the body by then; placed, its panels were 4 cm away from it.
-    for (const Vec3& x : result.mesh.positions)
+    for (const Vec3& x : result.surface.mesh.positions)
         EXPECT_LT(std::hypot(x.x(), x.z()), 0.135);
 
     // Before its first sample a stage loads. Only stages of a known duration tell one.
@@ -162,7 +162,7 @@ TEST_F(DrapeTest, NamesASeamThatCannotClose)
     const DrapeResult result = drape_tube(tube(0.10, "strapless_top"));
     EXPECT_EQ(result.outcome, DrapeOutcome::Tangled);
     EXPECT_NE(result.message.find("stays open by"), std::string::npos) << result.message;
-    EXPECT_FALSE(result.mesh.lines.empty());
+    EXPECT_FALSE(result.surface.mesh.lines.empty());
 }
 
 } // namespace

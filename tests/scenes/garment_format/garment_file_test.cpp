@@ -95,7 +95,7 @@ TEST_F(GarmentFile, JoinsEdgesByIndexLabelAndPart)
         "top": {"vertices": [[0, 0], [40, 0], [0, 60]], "edges": [{"endpoints": [0, 1], "label": "lower_interface"},
         {"endpoints": [1, 2]}, {"endpoints": [2, 0]}]})"));
     const Pattern pattern = read(R"("seams": [
-        {"a": ["front.1[0.5:1]"], "b": ["half.3"], "fold_deg": 90, "order": 3},
+        {"a": ["front.1[0.5:1]"], "b": ["half.3"], "fold_deg": 90, "order": 3, "gather": "long"},
         {"a": ["front.2"], "b": ["top.lower_interface"], "join": "start-start"}])");
     ASSERT_EQ(pattern.seams.size(), 2u);
     const Seam& part = pattern.seams[0];
@@ -108,12 +108,14 @@ TEST_F(GarmentFile, JoinsEdgesByIndexLabelAndPart)
     EXPECT_EQ(part.b[0].to, 0.0);
     EXPECT_EQ(part.fold_deg, 90.0);
     EXPECT_EQ(part.order, 3);
+    EXPECT_EQ(part.gather, Gather::Long);
     EXPECT_NEAR(measure_seam(pattern, part).length_a, 0.3, 1e-12);
     EXPECT_EQ(part.flip, "write \"join\": \"start-start\" in it");
     const Seam& label = pattern.seams[1];
     EXPECT_EQ(pattern.panels[size_t(label.b[0].panel)].name, "top");
     EXPECT_EQ(label.b[0].edge, 0);
     EXPECT_EQ(label.b[0].from, 0.0);
+    EXPECT_EQ(label.gather, Gather::Short);
     EXPECT_EQ(label.flip, "write \"join\": \"start-end\" in it");
 }
 
