@@ -145,7 +145,7 @@ private:
         return false;
     }
 
-    std::vector<Vec3> placed(const GarmentMesh& mesh) const
+    std::vector<Vec3> placed(const GarmentMesh& mesh)
     {
         std::vector<int> panel_of_vertex;
         panel_of_vertex.reserve(size_t(mesh.panels.vertex_count()));
@@ -153,9 +153,9 @@ private:
             panel_of_vertex.push_back(mesh.panels.panel_of_vertex(v));
         std::vector<Vec3> x = garment::place_panels(pattern_, mesh.panels.uv, panel_of_vertex,
                                                     segments_ ? &*segments_ : nullptr);
-        const double lift = shoulder_lift(mesh.panels.stitches, x, skin_);
+        result_.lift = shoulder_lift(mesh.panels.stitches, x, skin_);
         for (Vec3& p : x)
-            p.y() += lift;
+            p.y() += result_.lift;
         return x;
     }
 
@@ -225,7 +225,7 @@ private:
     bool settle(const GarmentMesh& mesh, std::vector<Vec3>& x)
     {
         const Clock clock;
-        Scene scene = stages_.hang(mesh, x, "settle", true);
+        Scene scene = stages_.settle(mesh, x);
         return simulate(scene, "settle", kSettlingTime, clock, x);
     }
 

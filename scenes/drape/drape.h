@@ -71,6 +71,7 @@ struct DrapeResult {
     std::vector<DrapeStage> stages;
     std::vector<DrapeSeam> seams;
     std::vector<DrapeSlide> slides;
+    double lift = 0.0; ///< [m] of the panels before they were sewn: shoulder_lift()
     int pieces = 0, border_loops = 0, euler_characteristic = 0;
     double rest_speed = 0.0; ///< [m/s] of the fastest vertex in the last half second
     double max_strain = 0.0; ///< [-]
@@ -81,7 +82,10 @@ struct DrapeResult {
 /// Sews a pattern around a body and drapes it.
 ///
 ///   mesh    panels at kSewingEdge and at the final edge length
-///   sew     threads pull the seams shut, without gravity, on the coarse mesh
+///   sew     panels whose shoulder seams would be pulled against the body are lifted (shoulder_lift());
+///   threads
+///           pull the seams shut, without gravity, on the coarse mesh (SeamClosing); longer sides are
+///           gathered
 ///   press   the welded coarse mesh unfolds along its seams
 ///   settle  it falls into place
 ///   drape   the same on the fine mesh, until it is at rest; labelled edges are held by springs, and released

@@ -18,9 +18,10 @@ constexpr double kSewingDamping = 1000.0;
 constexpr double kThreadStiffness = 2000.0, kThreadForce = 2.0;
 /// Friction of a garment that is pressed.
 constexpr double kPressingFriction = 0.05;
-/// Decay rate of velocities [1/s] of cloth that falls into place. A skirt that swings as a pendulum of 0.3 m
-/// is damped critically by 11.
-constexpr double kHangingDamping = 6.0;
+/// Decay rate of velocities [1/s] of cloth that falls into place, and of cloth that has. A skirt that swings
+/// as a pendulum of 0.3 m is damped critically by 11; folds that creep come to rest the sooner the less they
+/// are damped.
+constexpr double kFallingDamping = 6.0, kHangingDamping = 3.0;
 
 } // namespace
 
@@ -50,7 +51,7 @@ Scene StageScenes::sew(const GarmentSurface& panels) const
 
 Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 {
-    scene::Fabric pressed = damped_fabric();
+    scene::Fabric pressed = damped_fabric(kFallingDamping);
     pressed.bend = {kPressedRigidity, kPressedRigidity};
     Scene scene = scene_of("press", mesh.surface(x), pressed);
     scene.gravity.setZero();
@@ -58,10 +59,17 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
     return scene;
 }
 
+Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
+{
+    Scene scene = scene_of("settle", mesh.surface(x), damped_fabric(kFallingDamping));
+    hold_labels(mesh, scene, true);
+    return scene;
+}
+
 Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage,
                         bool holds_all) const
 {
-    Scene scene = scene_of(stage, mesh.surface(x), damped_fabric());
+    Scene scene = scene_of(stage, mesh.surface(x), damped_fabric(kHangingDamping));
     hold_labels(mesh, scene, holds_all);
     return scene;
 }
@@ -95,22 +103,21 @@ Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surf
     return scene;
 }
 
-scene::Fabric StageScenes::damped_fabric() const
+scene::Fabric StageScenes::damped_fabric(double damping) const
 {
     scene::Fabric fabric;
     fabric.base = fabric_;
-    fabric.damping = kHangingDamping;
+    fabric.damping = damping;
     return fabric;
 }
 
 scene::Fabric StageScenes::sewing_fabric() const
 {
     const garment::Fabric& own = garment::fabric_preset(fabric_, settings_.garment.string());
-    scene::Fabric fabric = damped_fabric();
+    scene::Fabric fabric = damped_fabric(kSewingDamping);
     fabric.stretch = {std::min(own.stretch_warp, kSewingStretch), std::min(own.stretch_weft, kSewingStretch)};
     fabric.shear = std::min({own.shear, kSewingShear, 0.5 * own.stretch_warp, 0.5 * own.stretch_weft});
     fabric.strain_limit = std::max(1.0 + own.strain_limit, kSewingStrainLimit);
-    fabric.damping = kSewingDamping;
     return fabric;
 }
 

@@ -33,14 +33,19 @@ public:
     /// @param x  [welded vertices] [m]
     Scene press(const GarmentMesh& mesh, View<const Vec3> x) const;
 
+    /// The welded garment falls into place, with all labelled edges held by springs.
+    /// @param x  [welded vertices] [m]
+    Scene settle(const GarmentMesh& mesh, View<const Vec3> x) const;
+
     /// The garment hangs on the body, in motion that is damped: rest is the same as without damping.
+    /// @param x          [welded vertices] [m]
     /// @param holds_all  labelled edges that are released in the end are held too, by springs
     Scene hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage, bool holds_all) const;
 
 private:
     Scene scene_of(const std::string& stage, const GarmentSurface& surface,
                    const scene::Fabric& fabric) const;
-    scene::Fabric damped_fabric() const;
+    scene::Fabric damped_fabric(double damping) const;
     scene::Fabric sewing_fabric() const;
     void hold_labels(const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
 

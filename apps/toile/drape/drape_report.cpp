@@ -111,6 +111,7 @@ std::string to_json(const DrapeReport& report, const garment::Pattern& pattern)
                                   {"frames", stage.frames},
                                   {"steps", stage.steps},
                                   {"vertices", stage.vertices}});
+    json["lift_m"] = result.lift;
     json["vertices"] = result.surface.mesh.positions.size();
     json["triangles"] = result.surface.mesh.polygons.size();
     json["pieces"] = result.pieces;
