@@ -77,6 +77,37 @@ PoseAt pose_at(const Motion& motion, int clip, double clip_duration, double t)
     return at;
 }
 
+double blend_duration(Avatar& avatar, const Motion& motion, double max_speed)
+{
+    constexpr int kIntervals = 64;
+    Motion blend = motion;
+    blend.pre_roll = {.hold = 0.0, .ease = 1.0, .from_bind = true};
+    const int clip = avatar.clip_index(motion.clip);
+    const auto pose = [&](int interval, std::vector<Vec3>& x) {
+        const double u = double(interval) / kIntervals;
+        avatar.pose(pose_at(blend, clip, avatar.clips()[size_t(clip)].duration, u), identity_affine(), x);
+    };
+
+    std::vector<Vec3> x(size_t(avatar.vertex_count())), next(x.size());
+    pose(0, x);
+    double largest = 0.0;
+    for (int interval = 1; interval <= kIntervals; ++interval) {
+        pose(interval, next);
+        for (size_t v = 0; v < x.size(); ++v)
+            largest = std::max(largest, (next[v] - x[v]).norm());
+        x.swap(next);
+    }
+    return kIntervals * largest / max_speed;
+}
+
+double end_time(const Motion& motion, double clip_duration)
+{
+    const PreRoll& pre_roll = motion.pre_roll;
+    const double ramp_end = pre_roll.hold + (pre_roll.from_bind ? 2.0 : 1.0) * pre_roll.ease;
+    const double shown = motion.start + ramped_time(pre_roll.ease, pre_roll.ease, motion.speed);
+    return ramp_end + std::max(0.0, clip_duration - shown) / motion.speed;
+}
+
 bool shows_one_pose(const Motion& motion)
 {
     return motion.clip.empty() || (motion.speed == 0.0 && !motion.pre_roll.from_bind);

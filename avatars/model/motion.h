@@ -41,6 +41,15 @@ void require_usable(const Motion& motion, const Avatar& avatar);
 /// is the integral of speed (3 u^2 - 2 u^3): position, velocity and acceleration are continuous at both ends.
 PoseAt pose_at(const Motion& motion, int clip, double clip_duration, double t);
 
+/// Shortest PreRoll::ease [s] for which the blend from the bind pose to the clip's pose at `start` moves no
+/// vertex of the skin faster than max_speed [m/s]; 0 if they are one pose. The fastest of a blend that lasts
+/// T has max |dx/du| / T, with u = t / T. It is measured by differences over 1/64 of the blend, to 0.1 %.
+double blend_duration(Avatar& avatar, const Motion& motion, double max_speed);
+
+/// Simulation time [s] from which on a motion that does not loop holds the last pose of its clip, or the end
+/// of the time ramp if it does so earlier. @param motion  of a positive speed
+double end_time(const Motion& motion, double clip_duration);
+
 /// True if the pose is the same at all times.
 bool shows_one_pose(const Motion& motion);
 

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "avatars/load_avatar.h"
 #include "avatars/model/motion.h"
+#include "tests/avatars/column.h"
 
 namespace toile::test {
 
@@ -70,6 +73,53 @@ TEST(PreRoll, OfZeroLengthStartsAtOnce)
     motion.pre_roll = {0.0, 0.0, true};
     EXPECT_EQ(pose_at(motion, 0, kDuration, 0.0), (PoseAt{0, 0.0, 0.0, 0}));
     EXPECT_EQ(pose_at(motion, 0, kDuration, 1.0), (PoseAt{0, 1.0, 0.0, 0}));
+}
+
+/// A turn by 90 degrees: the smoothstep is 1.5 times as fast as its mean, the farthest vertex turns fastest.
+TEST(BlendDuration, TurnsTheFarthestVertexAtTheSpeedAskedFor)
+{
+    AvatarSettings settings;
+    settings.file = column_file();
+    const std::unique_ptr<Avatar> column = load_avatar(settings);
+    Motion motion;
+    motion.clip = "bend";
+    motion.start = 1.0;
+    double radius = 0.0; // about the z axis through the tip
+    for (const Vec3& p : posed(*column, {}))
+        radius = std::max(radius, p.y() > 0.75 ? std::hypot(p.x(), p.y() - 0.5) : 0.0);
+    const double speed = 0.8; // [m/s]
+    const double expected = 1.5 * 0.5 * std::numbers::pi * radius / speed;
+    EXPECT_NEAR(blend_duration(*column, motion, speed), expected, 1e-3 * expected);
+    motion.start = 0.0;
+    EXPECT_NEAR(blend_duration(*column, motion, speed), 0.0, 1e-12) << "the bind pose";
+}
+
+TEST(BlendDuration, TurnsTheMannequinNoFaster)
+{
+    const std::unique_ptr<Avatar> mannequin = load_avatar({});
+    Motion motion;
+    motion.clip = "walk";
+    motion.pre_roll = {0.0, blend_duration(*mannequin, motion, 1.0), true};
+    const double h = 1e-3; // [s]
+    double fastest = 0.0;
+    std::vector<Vec3> before;
+    for (double t = 0.0; t < motion.pre_roll.ease; t += h) {
+        const std::vector<Vec3> x =
+            posed(*mannequin, pose_at(motion, mannequin->clip_index("walk"), kDuration, t));
+        for (size_t v = 0; v < before.size(); ++v)
+            fastest = std::max(fastest, (x[v] - before[v]).norm() / h);
+        before = x;
+    }
+    EXPECT_NEAR(fastest, 1.0, 2e-3);
+}
+
+TEST(EndTime, IsWhenTheLastPoseBegins)
+{
+    const Motion motion = rolled_in();
+    const double end = end_time(motion, kDuration);
+    EXPECT_EQ(pose_at(motion, 0, kDuration, end + 1e-9).time, kDuration);
+    EXPECT_LT(pose_at(motion, 0, kDuration, end - 1e-3).time, kDuration - 1e-3);
+    EXPECT_EQ(end_time(motion, 0.5), 4.0) << "in the ramp";
 }
 
 TEST(Motion, HoldsTheLastPoseWithoutLoop)

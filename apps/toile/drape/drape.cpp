@@ -1,6 +1,7 @@
 #include <cmath>
 #include <memory>
 
+#include "apps/toile/drape/continuation.h"
 #include "apps/toile/drape/drape_files.h"
 #include "apps/toile/drape/drape_progress.h"
 #include "apps/toile/drape/drape_report.h"
@@ -26,6 +27,7 @@ constexpr double kTimeLimit = 600.0;
 struct DrapeOptions {
     scenes::DrapeSettings settings;
     std::filesystem::path avatar;
+    ClipOptions clip;
     std::vector<double> shift;
     std::filesystem::path folder; ///< empty: out/NAME
     int threads = 0;
@@ -58,8 +60,9 @@ void complete(DrapeOptions& options, const DrapeFiles& files)
 
 /// Reads the garment, and meshes it to know that it can be sewn. A refusal is reported in the folder too.
 /// @throws InvalidInput
-garment::Pattern sewable_pattern(const scenes::DrapeSettings& settings, const DrapeFiles& files)
+garment::Pattern sewable_pattern(const DrapeOptions& options, const DrapeFiles& files)
 {
+    const scenes::DrapeSettings& settings = options.settings;
     garment::Pattern pattern;
     try {
         pattern = garment_format::read_pattern(settings.garment);
@@ -68,7 +71,7 @@ garment::Pattern sewable_pattern(const scenes::DrapeSettings& settings, const Dr
             files.write_refusal({"pattern", error.what()});
         throw;
     }
-    files.require_safe(pattern);
+    files.require_safe(pattern, options.avatar, options.clip);
     std::string word = "meshing";
     try {
         const MeshReport report = mesh_report_on(pattern, settings.edge);
@@ -109,9 +112,10 @@ int drape(DrapeOptions options)
     const scenes::DrapeSettings& settings = options.settings;
     require_valid(settings);
     const ThreadLimit threads(options.threads);
-    const DrapeFiles files(settings.garment, options.avatar, options.folder);
-    const garment::Pattern pattern = sewable_pattern(settings, files);
+    const DrapeFiles files(settings.garment, options.folder);
+    const garment::Pattern pattern = sewable_pattern(options, files);
     complete(options, files);
+    const Continuation continuation = continuation_of(settings.body, options.clip);
 
     // Drape, and certify what rests.
     const RunLog log(options.quiet);
@@ -119,7 +123,7 @@ int drape(DrapeOptions options)
     const InterruptGuard interrupt;
     DrapeReport report;
     report.result = drape_with_progress(options, files, interrupt);
-    files.write_garment(settings, report.result, log);
+    files.write_garment(continuation, report.result, log);
     report.verdict = verdict_of(report.result);
     if (report.verdict.is_draped()) {
         const std::optional<Certificate> certificate = files.write_certificate(log, interrupt);
@@ -138,8 +142,11 @@ int drape(DrapeOptions options)
     if (!mesh.positions.empty())
         files.write_picture(settings, log);
     log.result(summary_of(report));
-    if (report.verdict.is_draped())
+    if (report.verdict.is_draped()) {
+        log.result("simulate it on by: toile simulate " + files.scene().string() + " -o " +
+                   files.simulated().string());
         return kExitOk;
+    }
     log.error(report.verdict.word + ": " + report.verdict.message);
     return kExitFailure;
 }
@@ -155,6 +162,13 @@ Command add_drape(CLI::App& parser)
     add.add_option("garment", options->settings.garment, "Garment file or panel JSON")->required();
     add.add_option("--avatar", options->avatar,
                    "Body, .obj, .glb, .gltf or .fbx, in its bind pose; without it the built-in mannequin");
+    add.add_option("--clip", options->clip.clip,
+                   "Clip of the body, or of --motion, that the written scene plays");
+    CLI::Option* motion = add.add_option("--motion", options->clip.motion,
+                                         "Clip from a .bvh, .fbx, .glb or .gltf file for the written scene");
+    add.add_option("--map", options->clip.map, "Joints of --motion: names, cmu or a .json file")
+        ->capture_default_str()
+        ->needs(motion);
     add.add_option("--fabric", options->settings.fabric, "Preset for panels without a fabric")
         ->capture_default_str();
     add.add_option("--edge", options->settings.edge, "Edge length of the final mesh [m]")

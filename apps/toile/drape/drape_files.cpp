@@ -45,6 +45,42 @@ bool is_within(const path& file, const path& folder)
     return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
+using Inputs = std::vector<std::pair<path, std::string>>; ///< files with their roles for messages
+
+/// Adds a file, and the files that it refers to. @param file  may be empty
+void add_model(Inputs& inputs, const path& file, const std::string& role)
+{
+    if (file.empty())
+        return;
+    inputs.emplace_back(file, role);
+    if (avatars::is_gltf(file))
+        for (const path& part : avatars::files_of_gltf(file))
+            inputs.emplace_back(part, "a part of " + role);
+}
+
+/// The body and its motion as a scene file has them. Paths are absolute.
+Json json_of(const scene::Avatar& body)
+{
+    Json avatar = {{"name", body.name}};
+    if (const auto* file = std::get_if<path>(&body.shape))
+        avatar["file"] = std::filesystem::absolute(*file).string();
+    else
+        avatar["mannequin"] = Json::object();
+    if (!body.clip.empty())
+        avatar["clip"] = body.clip;
+    if (body.motion) {
+        const scene::AvatarMotion& motion = *body.motion;
+        avatar["motion"] = {{"file", std::filesystem::absolute(motion.file).string()}};
+        if (!motion.clip.empty())
+            avatar["motion"]["clip"] = motion.clip;
+        avatar["motion"]["map"] =
+            motion.is_mapped_by_file() ? std::filesystem::absolute(motion.map).string() : motion.map;
+    }
+    if (!body.clip.empty() || body.motion)
+        avatar["preroll"] = {{"ease", body.preroll.ease}, {"from_bind", body.preroll.from_bind}};
+    return avatar;
+}
+
 /// Whether a file is a report of this program, which may be replaced.
 bool is_report(const path& file)
 {
@@ -55,22 +91,21 @@ bool is_report(const path& file)
 
 } // namespace
 
-DrapeFiles::DrapeFiles(path garment, path avatar, path folder)
-    : garment_(std::move(garment)), avatar_(std::move(avatar)), name_(name_of(garment_)),
-      folder_(folder.empty() ? path("out") / name_ : std::move(folder))
+DrapeFiles::DrapeFiles(const path& garment, path folder)
+    : name_(name_of(garment)), folder_(folder.empty() ? path("out") / name_ : std::move(folder))
 {
 }
 
-void DrapeFiles::require_safe(const garment::Pattern& pattern) const
+void DrapeFiles::require_safe(const garment::Pattern& pattern, const path& avatar,
+                              const ClipOptions& clip) const
 {
-    std::vector<std::pair<path, std::string>> inputs;
+    Inputs inputs;
     for (const path& file : pattern.files)
         inputs.emplace_back(file, "the pattern");
-    if (!avatar_.empty())
-        inputs.emplace_back(avatar_, "the avatar");
-    if (avatars::is_gltf(avatar_))
-        for (const path& part : avatars::files_of_gltf(avatar_))
-            inputs.emplace_back(part, "a part of the avatar");
+    add_model(inputs, avatar, "the avatar");
+    add_model(inputs, clip.motion, "the motion");
+    if (clip.is_mapped_by_file())
+        inputs.emplace_back(clip.map, "the map of joints");
 
     FilePlan plan;
     for (const auto& [file, role] : inputs) {
@@ -103,7 +138,7 @@ void DrapeFiles::write_refusal(const DrapeVerdict& verdict) const
     write_atomically(report(), to_json(verdict));
 }
 
-void DrapeFiles::write_garment(const scenes::DrapeSettings& settings, const scenes::DrapeResult& result,
+void DrapeFiles::write_garment(const Continuation& continuation, const scenes::DrapeResult& result,
                                const RunLog& log) const
 {
     for (const path& file : {report(), certificate(), scene(), mesh(), rest_mesh(), picture()})
@@ -118,20 +153,14 @@ void DrapeFiles::write_garment(const scenes::DrapeSettings& settings, const scen
     }
     if (result.outcome != scenes::DrapeOutcome::Draped)
         return;
-    write_atomically(scene(), scene_text(settings, result));
+    write_atomically(scene(), scene_text(continuation, result));
     log.file(scene());
 }
 
-std::string DrapeFiles::scene_text(const scenes::DrapeSettings& settings,
-                                   const scenes::DrapeResult& result) const
+std::string DrapeFiles::scene_text(const Continuation& continuation, const scenes::DrapeResult& result) const
 {
-    Json json = {{"toile", 1}, {"name", name_ + ", draped"}, {"frames", 60}};
-    Json avatar = {{"name", settings.body.name}};
-    if (avatar_.empty())
-        avatar["mannequin"] = Json::object();
-    else
-        avatar["file"] = std::filesystem::absolute(avatar_).string();
-    json["avatars"] = {avatar};
+    Json json = {{"toile", 1}, {"name", name_ + ", draped"}, {"frames", continuation.frames}};
+    json["avatars"] = {json_of(continuation.body)};
     json["cloths"] = {{{"name", name_},
                        {"file", mesh().filename().string()},
                        {"weld", false},

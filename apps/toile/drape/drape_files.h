@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/toile/check/certificate.h"
+#include "apps/toile/drape/continuation.h"
 #include "apps/toile/drape/drape_report.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
@@ -17,16 +18,20 @@ namespace toile::app {
 /// Files of one drape.
 class DrapeFiles {
 public:
-    /// @param avatar  file of the body; empty: the mannequin
     /// @param folder  of the results; empty: out/NAME
-    DrapeFiles(std::filesystem::path garment, std::filesystem::path avatar, std::filesystem::path folder);
+    DrapeFiles(const std::filesystem::path& garment, std::filesystem::path folder);
 
     const std::string& name() const { return name_; } ///< of the garment: letters, digits, _ and -
     std::filesystem::path stages() const { return folder_ / "stages"; }
 
+    std::filesystem::path scene() const { return folder_ / "scene.json"; }
+    std::filesystem::path simulated() const { return folder_ / "simulated"; } ///< not written by a drape
+
     /// Refuses results that would replace what is read, or could not be written.
+    /// @param avatar  file of the body; empty: the mannequin
     /// @throws InvalidInput naming both files
-    void require_safe(const garment::Pattern& pattern) const;
+    void require_safe(const garment::Pattern& pattern, const std::filesystem::path& avatar,
+                      const ClipOptions& clip) const;
 
     /// Keeps other runs out of the folder while it lives. @throws as FolderLock
     exports::FolderLock lock(const RunLog& log) const;
@@ -35,9 +40,9 @@ public:
     /// file than such a report. Other results stay as they are.
     void write_refusal(const DrapeVerdict& verdict) const;
 
-    /// Writes the mesh, and, for a garment at rest, the scene that simulates it on for two seconds. Removes
-    /// all other results of an earlier drape.
-    void write_garment(const scenes::DrapeSettings& settings, const scenes::DrapeResult& result,
+    /// Writes the mesh, and, for a garment at rest, the scene that simulates it on. Removes all other results
+    /// of an earlier drape.
+    void write_garment(const Continuation& continuation, const scenes::DrapeResult& result,
                        const RunLog& log) const;
 
     /// Certifies and writes what write_garment() has written, at rest in the first pose of the body, as
@@ -52,14 +57,12 @@ public:
 
 private:
     std::filesystem::path mesh() const { return folder_ / (name_ + ".obj"); }
-    std::filesystem::path scene() const { return folder_ / "scene.json"; }
     std::filesystem::path report() const { return folder_ / "drape.json"; }
     std::filesystem::path certificate() const { return folder_ / "certificate.json"; }
     std::filesystem::path rest_mesh() const { return folder_ / (name_ + "_rest.obj"); }
     std::filesystem::path picture() const { return folder_ / (name_ + ".png"); }
-    std::string scene_text(const scenes::DrapeSettings& settings, const scenes::DrapeResult& result) const;
+    std::string scene_text(const Continuation& continuation, const scenes::DrapeResult& result) const;
 
-    std::filesystem::path garment_, avatar_;
     std::string name_;
     std::filesystem::path folder_;
 };

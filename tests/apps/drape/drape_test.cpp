@@ -6,6 +6,7 @@
 
 #include "core/mesh/obj.h"
 #include "export/folder_lock.h"
+#include "scenes/format/read_scene.h"
 #include "tests/apps/program.h"
 
 /// toile drape: what it writes, and what it refuses.
@@ -71,13 +72,13 @@ double mean_z(const ObjMesh& mesh, int begin, int end)
     return sum / count;
 }
 
-/// One run of the script does all: it reads, meshes, drapes, simulates and certifies.
+/// One run of the script does all: it reads, meshes, drapes, simulates and certifies a skirt that walks off.
 TEST_F(Drape, PassesTheAcceptanceOfASkirt)
 {
     const std::string source = TOILE_SOURCE_DIR;
     const Finished script =
         run_shell("export TOILE EDGE=0.025 OUT=out\nbash " + source + "/tests/acceptance/drape.sh " + source +
-                      "/assets/a_line_skirt.garment.json mannequin",
+                      "/assets/a_line_skirt.garment.json mannequin --clip walk",
                   folder_);
     ASSERT_EQ(script.exit_code, 0) << script.output << script.errors;
     EXPECT_EQ(std::count(script.output.begin(), script.output.end(), '\n'), 7) << script.output;
@@ -89,6 +90,15 @@ TEST_F(Drape, PassesTheAcceptanceOfASkirt)
     EXPECT_EQ(mesh.groups[2].name, "band");
     EXPECT_GT(mean_z(mesh, mesh.groups[0].first_polygon, mesh.groups[1].first_polygon), 0.05);
     EXPECT_LT(mean_z(mesh, mesh.groups[1].first_polygon, mesh.groups[2].first_polygon), -0.05);
+
+    const scenes::Scene scene = scenes::read_scene(file("out/scene.json"));
+    EXPECT_EQ(scene.avatars.at(0).clip, "walk");
+    EXPECT_TRUE(scene.avatars[0].preroll.from_bind);
+    EXPECT_GE(scene.avatars[0].preroll.ease, 0.5);
+    EXPECT_EQ(scene.attachments.size(), 1u) << "of the waist";
+    EXPECT_EQ(scene.cloths.at(0).name, "a_line_skirt");
+    EXPECT_NE(bytes_of(file("out/drape.err")).find("toile simulate out/scene.json -o out/simulated\n"),
+              std::string::npos);
 
     const Json report = json_in("out/drape.json"), certificate = json_in("out/certificate.json");
     EXPECT_EQ(report["vertices"], mesh.positions.size());
@@ -172,6 +182,9 @@ TEST_F(Drape, RefusesOptionsBeforeAnythingIsWritten)
     expect_refusal({"tube.json", "--edge", "nan"}, {"--edge nan"});
     expect_refusal({"tube.json", "--time-limit", "0"}, {"--time-limit 0", "positive"});
     expect_refusal({"tube.json", "--time-limt", "5"}, {"did you mean --time-limit?"});
+    expect_refusal({"tube.json", "--clip", "wolk"}, {"mannequin", "did you mean 'walk'?", "'turn'"});
+    expect_refusal({"tube.json", "--map", "cmu"}, {"--map", "--motion"});
+    expect_refusal({"tube.json", "--motion", "none.bvh"}, {"none.bvh: no such file"});
     expect_refusal({"none.json"}, {"none.json"});
 }
 
@@ -186,6 +199,7 @@ TEST_F(Drape, ReplacesNothingThatItReads)
 {
     const std::string body = "v 0 -1 0\nv 0 -1 9\nv 9 -1 9\nf 1 2 3\n";
     std::filesystem::create_directories(file("stages/deep"));
+    std::filesystem::create_directories(file("m"));
     for (const char* name : {"drape.json", "scene.json", "stages/deep/tube.json"})
         temporary_.write(name, tube());
     for (const char* name : {"drape.obj", "stages/body.obj"})
@@ -203,6 +217,9 @@ TEST_F(Drape, ReplacesNothingThatItReads)
     expect_refusal({"drape.json", "-o", "x/..", "--avatar", "drape.obj"}, {"drape."});
     expect_refusal({"tube.json", "-o", ".", "--avatar", "stages/body.obj"}, {"stages", "the avatar"});
     expect_refusal({"tube.json", "-o", ".", "--avatar", "c.gltf"}, {"tube.png", "a part of the avatar"});
+
+    temporary_.write("m/tube.obj", "a motion");
+    expect_refusal({"tube.json", "-o", "m", "--motion", "m/tube.obj"}, {"tube.obj", "the motion"});
 
     // A garment that can't be read may name a file that is called like the report.
     temporary_.write("h.garment.json",
