@@ -73,17 +73,30 @@ public:
         result_.euler_characteristic = fine.sewn.topology.euler_characteristic;
         result_.stages.push_back({"mesh", clock.seconds(), 0, fine.panels.vertex_count()});
 
-        std::vector<Vec3> x = placed(coarse);
-        if (!sew(coarse, x))
-            return std::move(result_);
-        std::vector<Vec3> welded = weld(coarse.sewn, x);
-        if (!press(coarse, welded) || !settle(coarse, welded))
-            return std::move(result_);
-        drape(fine, weld(fine.sewn, finer.apply(coarse.panels, unweld(coarse.sewn, welded))));
+        try {
+            put_on(coarse, fine, finer);
+        } catch (const InvalidInput& error) {
+            // The start of a stage can't be repaired: the garment lies in the body, or is too small for it.
+            const bool is_sewn = result_.stages.size() > 1;
+            result_.outcome = is_sewn ? DrapeOutcome::Tangled : DrapeOutcome::Placement;
+            result_.message = (is_sewn ? "sewn, the garment does not fit around the body: "
+                                       : "the panels can't be sewn from where they are placed: ") +
+                              std::string(error.what());
+        }
         return std::move(result_);
     }
 
 private:
+    void put_on(const GarmentMesh& coarse, const GarmentMesh& fine, const garment::Resampling& finer)
+    {
+        std::vector<Vec3> x = placed(coarse);
+        if (!sew(coarse, x))
+            return;
+        std::vector<Vec3> welded = weld(coarse.sewn, x);
+        if (press(coarse, welded) && settle(coarse, welded))
+            drape(fine, weld(fine.sewn, finer.apply(coarse.panels, unweld(coarse.sewn, welded))));
+    }
+
     /// What the pattern asks for and a drape does not do.
     static std::vector<std::string> not_used(const garment::Pattern& pattern)
     {

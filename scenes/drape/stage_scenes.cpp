@@ -16,8 +16,6 @@ constexpr double kSewingStretch = 60.0, kSewingShear = 20.0, kSewingStrainLimit 
 constexpr double kSewingDamping = 1000.0;
 /// Threads [N/m, N].
 constexpr double kThreadStiffness = 2000.0, kThreadForce = 2.0;
-/// Friction of a garment that is pressed.
-constexpr double kPressingFriction = 0.05;
 /// Decay rate of velocities [1/s] of cloth that falls into place, and of cloth that has. A skirt that swings
 /// as a pendulum of 0.3 m is damped critically by 11; folds that creep come to rest the sooner the less they
 /// are damped.
@@ -54,8 +52,7 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
     scene::Fabric pressed = damped_fabric(kFallingDamping);
     pressed.bend = {kPressedRigidity, kPressedRigidity};
     Scene scene = scene_of("press", mesh.surface(x), pressed);
-    scene.gravity.setZero();
-    scene.contact.friction = kPressingFriction;
+    hold_labels(mesh, scene, true);
     return scene;
 }
 

@@ -29,11 +29,12 @@ public:
     Scene sew(const GarmentSurface& panels) const;
 
     /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
-    /// great bending rigidity, without gravity.
+    /// great bending rigidity. Its weight keeps gathers from turning it over, and labelled edges are held by
+    /// springs.
     /// @param x  [welded vertices] [m]
     Scene press(const GarmentMesh& mesh, View<const Vec3> x) const;
 
-    /// The welded garment falls into place, with all labelled edges held by springs.
+    /// The welded garment falls into place, with labelled edges held likewise.
     /// @param x  [welded vertices] [m]
     Scene settle(const GarmentMesh& mesh, View<const Vec3> x) const;
 

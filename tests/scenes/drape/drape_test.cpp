@@ -138,11 +138,20 @@ TEST_F(DrapeTest, DrapesAPanelWithoutSeams)
 
 TEST_F(DrapeTest, NamesASeamThatCannotClose)
 {
-    // 20 cm around half of 63.
-    const DrapeResult result = drape_tube(tube(0.10, "strapless_top"));
+    // Two panels of 16 cm around 63.
+    const DrapeResult result = drape_tube(tube(0.16, "strapless_top"));
     EXPECT_EQ(result.outcome, DrapeOutcome::Tangled);
     EXPECT_NE(result.message.find("stays open by"), std::string::npos) << result.message;
     EXPECT_FALSE(result.surface.mesh.lines.empty());
+}
+
+TEST_F(DrapeTest, SaysThatASewnGarmentIsTooSmall)
+{
+    // Two panels of 8 cm around 63.
+    const DrapeResult result = drape_tube(tube(0.08, "strapless_top"));
+    EXPECT_EQ(result.outcome, DrapeOutcome::Tangled);
+    EXPECT_NE(result.message.find("sewn, the garment does not fit"), std::string::npos) << result.message;
+    EXPECT_FALSE(result.surface.mesh.positions.empty());
 }
 
 } // namespace
