@@ -12,10 +12,14 @@ namespace {
 constexpr double kPressedRigidity = 1e-3;
 /// Membrane of panels while they are sewn [N/m, -]: at most as stiff as jersey.
 constexpr double kSewingStretch = 60.0, kSewingShear = 20.0, kSewingStrainLimit = 1.6;
-/// Decay rate of velocities [1/s] of panels that are sewn: threads would throw them.
-constexpr double kSewingDamping = 1000.0;
+/// Decay rate of velocities [1/s] of garments that are sewn and pressed. Threads would throw panels, and
+/// gathers of great rigidity would turn a skirt over; flaps of centimetres still unfold at once.
+constexpr double kViscousDamping = 1000.0;
+/// Friction of a garment that is pressed: a waistband has to find its waist.
+constexpr double kPressingFriction = 0.05;
 /// Threads [N/m, N].
 constexpr double kThreadStiffness = 2000.0, kThreadForce = 2.0;
+constexpr double kVelocityTolerance = 0.05; ///< [m/s]
 /// Decay rate of velocities [1/s] of cloth that falls into place, and of cloth that has. A skirt that swings
 /// as a pendulum of 0.3 m is damped critically by 11; folds that creep come to rest the sooner the less they
 /// are damped.
@@ -49,10 +53,11 @@ Scene StageScenes::sew(const GarmentSurface& panels) const
 
 Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 {
-    scene::Fabric pressed = damped_fabric(kFallingDamping);
+    scene::Fabric pressed = damped_fabric(kViscousDamping);
     pressed.bend = {kPressedRigidity, kPressedRigidity};
     Scene scene = scene_of("press", mesh.surface(x), pressed);
-    hold_labels(mesh, scene, true);
+    scene.gravity.setZero();
+    scene.contact.friction = kPressingFriction;
     return scene;
 }
 
@@ -94,7 +99,8 @@ Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surf
     cloth.fabric = stage;
     scene.fabrics[stage] = fabric;
     scene.cloths = {cloth};
-    scene.solver.quality = scene::Quality::Preview;
+    scene.solver.quality = scene::Quality::Standard;
+    scene.solver.velocity_tolerance = kVelocityTolerance;
     scene.solver.integrator = Integrator::ImplicitEuler;
     scene.solver.sleep.enabled = false; // asleep, it would have neither speed nor strain
     return scene;
@@ -111,7 +117,7 @@ scene::Fabric StageScenes::damped_fabric(double damping) const
 scene::Fabric StageScenes::sewing_fabric() const
 {
     const garment::Fabric& own = garment::fabric_preset(fabric_, settings_.garment.string());
-    scene::Fabric fabric = damped_fabric(kSewingDamping);
+    scene::Fabric fabric = damped_fabric(kViscousDamping);
     fabric.stretch = {std::min(own.stretch_warp, kSewingStretch), std::min(own.stretch_weft, kSewingStretch)};
     fabric.shear = std::min({own.shear, kSewingShear, 0.5 * own.stretch_warp, 0.5 * own.stretch_weft});
     fabric.strain_limit = std::max(1.0 + own.strain_limit, kSewingStrainLimit);

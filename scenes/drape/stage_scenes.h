@@ -29,12 +29,11 @@ public:
     Scene sew(const GarmentSurface& panels) const;
 
     /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
-    /// great bending rigidity. Its weight keeps gathers from turning it over, and labelled edges are held by
-    /// springs.
+    /// great bending rigidity, without gravity.
     /// @param x  [welded vertices] [m]
     Scene press(const GarmentMesh& mesh, View<const Vec3> x) const;
 
-    /// The welded garment falls into place, with labelled edges held likewise.
+    /// The welded garment falls into place, with labelled edges held by springs.
     /// @param x  [welded vertices] [m]
     Scene settle(const GarmentMesh& mesh, View<const Vec3> x) const;
 
