@@ -38,7 +38,8 @@ bool equal_without_case(const std::string& a, const std::string& b)
 std::pair<CmuJoints, int> find_joints_named(const CmuNames& names, const Skeleton& skeleton)
 {
     std::pair<CmuJoints, int> result;
-    auto& [found, missing] = result;
+    CmuJoints& found = result.first;
+    int& missing = result.second;
     const auto find = [&](const std::string& name) {
         for (int j = 0; j < skeleton.size(); ++j)
             if (equal_without_case(skeleton.joints()[size_t(j)].name, name))

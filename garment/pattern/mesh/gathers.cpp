@@ -255,7 +255,7 @@ Mat2 gram_matrix(const std::array<double, 3>& lengths)
 Mat2 rest_gram_matrix(const GatheredTriangle& triangle)
 {
     TOILE_ASSERT(triangle.sewn_count() < 3); // narrow panels have shorter edges: none is a single triangle
-    const Mat2 compatible = gram_matrix(compatible_lengths(triangle));
+    Mat2 compatible = gram_matrix(compatible_lengths(triangle));
     const Mat2 F = mean_deformation(triangle);
     const double area = F.determinant() * std::abs(signed_area(triangle.flat));
     if (compatible.determinant() >= 4.0 * std::pow(kMinAreaRatio * area, 2))
