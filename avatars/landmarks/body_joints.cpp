@@ -65,15 +65,6 @@ int find_part(const std::vector<JointName>& names, std::optional<Side> side,
     return -1;
 }
 
-std::vector<int> path_from_root(const Skeleton& skeleton, int joint)
-{
-    std::vector<int> path;
-    for (; joint >= 0; joint = skeleton.joints()[size_t(joint)].parent)
-        path.push_back(joint);
-    std::reverse(path.begin(), path.end());
-    return path;
-}
-
 /// A limb: the joints below the one at which it leaves the trunk, to one of its tips.
 struct Chain {
     int parent = -1;
@@ -122,6 +113,15 @@ BodyJoints::Limb limb_of(const Skeleton& skeleton, const std::vector<int>& chain
 }
 
 } // namespace
+
+std::vector<int> path_from_root(const Skeleton& skeleton, int joint)
+{
+    std::vector<int> path;
+    for (; joint >= 0; joint = skeleton.joints()[size_t(joint)].parent)
+        path.push_back(joint);
+    std::reverse(path.begin(), path.end());
+    return path;
+}
 
 bool BodyJoints::is_whole() const { return missing().empty(); }
 

@@ -36,6 +36,9 @@ BodyJoints joints_by_name(const Skeleton& skeleton);
 /// @param position  [joints] in the bind pose, Y up [m]
 BodyJoints joints_by_tree(const Skeleton& skeleton, const std::vector<Vec3>& position);
 
+/// Joints from the root to `joint`, both included.
+std::vector<int> path_from_root(const Skeleton& skeleton, int joint);
+
 /// 1 for a joint and all that follow it. [joints]
 std::vector<char> subtree(const Skeleton& skeleton, int root);
 

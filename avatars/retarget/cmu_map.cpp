@@ -10,15 +10,6 @@ namespace toile::avatars {
 
 namespace {
 
-std::vector<int> path_from_root(const Skeleton& skeleton, int joint)
-{
-    std::vector<int> path;
-    for (; joint >= 0; joint = skeleton.joints()[size_t(joint)].parent)
-        path.push_back(joint);
-    std::reverse(path.begin(), path.end());
-    return path;
-}
-
 /// Joint that carries the whole body: the first one with skin on the way to both legs, else the last one.
 /// Joints above it only place the body.
 int pelvis_of(const RiggedModel& body, const BodyJoints& joints)
