@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/compute/types.h"
 #include "scenes/drape/garment_mesh.h"
 #include "scenes/format/scene.h"
 #include "scenes/world/world_options.h"
@@ -28,31 +29,35 @@ inline constexpr double kMaxSlide = 0.05;
 
 /// A moment of a drape.
 struct DrapeProgress {
-    std::string stage;
+    std::string stage;     ///< with the garment, where there are several: "tee, sew"
     double time = 0.0;     ///< [s] simulated in the stage; 0: its scene is being loaded
     double duration = 0.0; ///< [s] to be simulated in it; 0: it ends by what happens
     double seconds = 0.0;  ///< [s] of wall time since it began
 };
 
-struct DrapeSettings {
-    std::filesystem::path garment; ///< garment file or panel JSON
-    scene::Avatar body;            ///< in the pose of its first sample
+struct DrapeGarment {
+    std::filesystem::path file;    ///< garment file or panel JSON
+    std::string name;              ///< in files and messages: letters, digits, _ and -; no other has it
     std::string fabric = "cotton"; ///< of panels without one
-    double edge = 0.01;            ///< [m] of the final mesh
-    Vec3 shift = Vec3::Zero();     ///< [m] added to the placement of the panels
-    double max_motion = 20.0;      ///< [s] of simulated time until it has to be at rest
+};
+
+struct DrapeSettings {
+    std::vector<DrapeGarment> garments; ///< one or more, innermost first
+    scene::Avatar body;                 ///< in the pose of its first sample
+    double edge = 0.01;                 ///< [m] of the final meshes
+    Vec3 shift = Vec3::Zero();          ///< [m] added to the placement of the panels
+    double max_motion = 20.0;           ///< [s] of simulated time until a garment has to be at rest
     double time_limit = std::numeric_limits<double>::infinity(); ///< [s] of wall time
     std::function<void(const DrapeProgress&)> progress;          ///< called after every sample; may be empty
-    std::filesystem::path folder; ///< of the scenes and meshes of its stages; exists
-    std::string name;             ///< of the garment in files and messages: letters, digits, _ and -
+    std::filesystem::path folder;                                ///< of the meshes of its stages; exists
 };
 
 struct DrapeStage {
     std::string name; ///< mesh, sew, press, settle, drape
     double seconds = 0.0;
     int frames = 0;
-    int vertices = 0;
-    int steps = 0; ///< time steps
+    int vertices = 0; ///< of the garment
+    int steps = 0;    ///< time steps
 };
 
 struct DrapeSeam {
@@ -65,21 +70,27 @@ struct DrapeSlide {
     double slid = 0.0; ///< [m] that the mean of the edge sank after it was released
 };
 
-struct DrapeResult {
-    DrapeOutcome outcome = DrapeOutcome::Draped;
-    std::string message; ///< one line, unless it is draped
+struct DrapedGarment {
+    std::string name;
     std::vector<DrapeStage> stages;
     std::vector<DrapeSeam> seams;
     std::vector<DrapeSlide> slides;
     double lift = 0.0; ///< [m] of the panels before they were sewn: shoulder_lift()
     int pieces = 0, border_loops = 0, euler_characteristic = 0;
-    double rest_speed = 0.0; ///< [m/s] of the fastest vertex in the last half second
-    double max_strain = 0.0; ///< [-]
-    GarmentSurface surface;  ///< as it ended; if seams are open, with lines as threads
-    Scene scene;             ///< that simulates the garment on from there
+    GarmentSurface surface; ///< as it ended; if seams are open, with lines as threads; empty: not begun
 };
 
-/// Sews a pattern around a body and drapes it.
+struct DrapeResult {
+    DrapeOutcome outcome = DrapeOutcome::Draped;
+    std::string message;                 ///< one line, unless it is draped
+    std::vector<DrapedGarment> garments; ///< that were begun, in the order of the settings
+    double rest_speed = 0.0;             ///< [m/s] of the fastest vertex in the last half second
+    double max_strain = 0.0;             ///< [-]
+    Scene scene;                         ///< that simulates the garments on from there
+};
+
+/// Sews patterns around a body and drapes them, one after the other. A garment is sewn over those below it as
+/// they lie; where it is draped, they move too.
 ///
 ///   mesh    panels at kSewingEdge and at the final edge length
 ///   sew     panels whose shoulder seams would be pulled against the body are lifted (shoulder_lift());
@@ -91,7 +102,7 @@ struct DrapeResult {
 ///   drape   the same on the fine mesh, until it is at rest; labelled edges are held by springs, and released
 ///           but for the waist and strapless tops
 ///
-/// Every stage is a scene that is written to the folder before it runs.
+/// The meshes of every stage are written to the folder before it runs.
 /// @throws InvalidInput for a pattern, fabric or body that does not work; Cancelled as World
 DrapeResult drape(const DrapeSettings& settings, const WorldOptions& options);
 

@@ -1,5 +1,6 @@
 #include "scenes/drape/drape_watch.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -21,30 +22,27 @@ DrapeWatch::DrapeWatch(const DrapeSettings& settings, const WorldOptions& option
     options_.goes_on = [this, asked = options.goes_on] { return (!asked || asked()) && !is_out_of_time(); };
 }
 
-DrapeResult DrapeWatch::run(const std::function<DrapeResult()>& work, DrapeResult& unfinished) const
+void DrapeWatch::run(const std::function<void()>& work, DrapeResult& result) const
 {
     const Cancellation::Scope cancellation(options_.goes_on);
-    DrapeResult result;
     try {
-        result = work();
+        work();
     } catch (const Cancelled&) {
         if (!is_out_of_time())
             throw;
-        result = std::move(unfinished);
         end_early(result);
     }
-    if (result.surface.mesh.positions.empty() || result.outcome == DrapeOutcome::Solver)
-        result.surface = state_;
-    return result;
+    for (size_t g = 0; g < state_.size(); ++g)
+        result.garments[g].surface = state_[g];
 }
 
-void DrapeWatch::begin(const std::string& stage, GarmentSurface surface, double frame)
+void DrapeWatch::begin(const std::string& stage, std::vector<GarmentSurface> surfaces, double frame)
 {
     stage_ = stage;
     stage_start_ = Clock::now();
     frame_ = frame;
     frames_ = stage_steps_ = 0;
-    state_ = std::move(surface);
+    state_ = std::move(surfaces);
     tell(0.0, 0.0);
 }
 
@@ -56,8 +54,8 @@ StepReport DrapeWatch::advance(World& world, double duration)
     steps_ += report.steps;
     if (report.status == StepReport::Status::NonFinite)
         return report;
-    const std::vector<Vec3>& x = world.cloths()[0].positions;
-    state_.mesh.positions.assign(x.begin(), x.end());
+    for (size_t g = 0; g < state_.size(); ++g)
+        state_[g].mesh.positions = world.cloths()[g].positions;
     tell(frames_ * frame_, duration);
     return report;
 }
@@ -69,27 +67,33 @@ bool DrapeWatch::is_out_of_time() const
     return std::chrono::duration<double>(Clock::now() - start_).count() > settings_.time_limit;
 }
 
-/// Class by the stage under way, which is added to the stages.
+/// Class by the stage under way, which is added to those of its garment.
 void DrapeWatch::end_early(DrapeResult& result) const
 {
-    if (stage_.empty())
-        result.outcome = DrapeOutcome::Meshing;
-    else
-        result.outcome = stage_ == "sew" ? DrapeOutcome::Tangled : DrapeOutcome::NotAtRest;
+    const bool has_begun = !stage_.empty() && state_.size() == result.garments.size();
     result.message = "the time limit of " + short_text(settings_.time_limit) + " s ended it ";
-    if (stage_.empty()) {
+    if (!has_begun) {
+        result.outcome = DrapeOutcome::Meshing;
         result.message += "before it was sewn";
         return;
     }
-    result.message += "in stage " + stage_ + ", after " + short_text(frames_ * frame_) + " s of its motion";
-    result.stages.push_back(
-        {stage_, seconds_of_stage(), frames_, int(state_.mesh.positions.size()), stage_steps_});
+    result.outcome = stage_ == "sew" ? DrapeOutcome::Tangled : DrapeOutcome::NotAtRest;
+    result.message += "in stage " + place() + ", after " + short_text(frames_ * frame_) + " s of its motion";
+    result.garments.back().stages.push_back(
+        {stage_, seconds_of_stage(), frames_, int(state_.back().mesh.positions.size()), stage_steps_});
+}
+
+std::string DrapeWatch::place() const
+{
+    if (settings_.garments.size() == 1)
+        return stage_;
+    return settings_.garments[state_.size() - 1].name + ", " + stage_;
 }
 
 void DrapeWatch::tell(double time, double duration) const
 {
     if (settings_.progress)
-        settings_.progress({stage_, time, duration, seconds_of_stage()});
+        settings_.progress({place(), time, duration, seconds_of_stage()});
 }
 
 double DrapeWatch::seconds_of_stage() const

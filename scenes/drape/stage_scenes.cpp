@@ -1,6 +1,9 @@
 #include "scenes/drape/stage_scenes.h"
 
 #include <algorithm>
+#include <numeric>
+#include <set>
+#include <utility>
 
 #include "garment/fabric/fabric.h"
 
@@ -25,6 +28,14 @@ constexpr double kVelocityTolerance = 0.05; ///< [m/s]
 /// are damped.
 constexpr double kFallingDamping = 6.0, kHangingDamping = 3.0;
 
+scene::Fabric damped_fabric(const Garment& garment, double damping)
+{
+    scene::Fabric fabric;
+    fabric.base = garment.fabric;
+    fabric.damping = damping;
+    return fabric;
+}
+
 } // namespace
 
 bool stays_attached(const std::string& label)
@@ -32,30 +43,26 @@ bool stays_attached(const std::string& label)
     return label == "lower_interface" || label == "strapless_top";
 }
 
-StageScenes::StageScenes(const DrapeSettings& settings, const garment::Pattern& pattern,
-                         const std::string& fabric, DrapeWatch& watch)
-    : settings_(settings), pattern_(pattern), fabric_(fabric), watch_(watch)
+StageScenes::StageScenes(const DrapeSettings& settings, const Garment& garment,
+                         const std::vector<WornGarment>& worn, DrapeWatch& watch)
+    : settings_(settings), garment_(garment), worn_(worn), watch_(watch)
 {
-    for (const garment::Panel& panel : pattern.panels)
-        for (const garment::PanelEdge& edge : panel.edges)
-            if (!edge.label.empty())
-                labels_.insert(edge.label);
 }
 
 Scene StageScenes::sew(const GarmentSurface& panels) const
 {
-    Scene scene = scene_of("sew", panels, sewing_fabric());
+    Scene scene = still_scene_of("sew", panels, sewing_fabric());
     scene.gravity.setZero();
     scene.contact.friction = 0.0;
-    scene.cloths[0].sewing = scene::Sewing{kThreadStiffness, kThreadForce};
+    scene.cloths.back().sewing = scene::Sewing{kThreadStiffness, kThreadForce};
     return scene;
 }
 
 Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 {
-    scene::Fabric pressed = damped_fabric(kViscousDamping);
+    scene::Fabric pressed = damped_fabric(garment_, kViscousDamping);
     pressed.bend = {kPressedRigidity, kPressedRigidity};
-    Scene scene = scene_of("press", mesh.surface(x), pressed);
+    Scene scene = still_scene_of("press", mesh.surface(x), pressed);
     scene.gravity.setZero();
     scene.contact.friction = kPressingFriction;
     return scene;
@@ -63,42 +70,54 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 
 Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 {
-    Scene scene = scene_of("settle", mesh.surface(x), damped_fabric(kFallingDamping));
-    hold_labels(mesh, scene, true);
+    Scene scene = still_scene_of("settle", mesh.surface(x), damped_fabric(garment_, kFallingDamping));
+    hold_labels(garment_, mesh, scene, true);
     return scene;
 }
 
 Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage,
                         bool holds_all) const
 {
-    Scene scene = scene_of(stage, mesh.surface(x), damped_fabric(kHangingDamping));
-    hold_labels(mesh, scene, holds_all);
+    Scene scene = scene_of(stage, mesh.surface(x), damped_fabric(garment_, kHangingDamping));
+    for (const WornGarment& worn : worn_)
+        hold_labels(worn.garment, worn.mesh, scene, false);
+    hold_labels(garment_, mesh, scene, holds_all);
+    return scene;
+}
+
+/// The garments below keep the shape that they have.
+Scene StageScenes::still_scene_of(const std::string& stage, const GarmentSurface& surface,
+                                  const scene::Fabric& fabric) const
+{
+    Scene scene = scene_of(stage, surface, fabric);
+    for (const WornGarment& worn : worn_) {
+        std::vector<int> all(worn.x.size());
+        std::iota(all.begin(), all.end(), 0);
+        scene::Attachment attachment;
+        attachment.cloth = worn.garment.name();
+        attachment.select.by = std::move(all);
+        scene.attachments.push_back(attachment);
+    }
     return scene;
 }
 
 Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surface,
                             const scene::Fabric& fabric) const
 {
+    const std::string name = garment_.name() + "_" + stage;
     Scene scene;
-    scene.name = settings_.name + ", " + stage;
-    scene.source = settings_.folder / (stage + ".json");
+    scene.name = garment_.name() + ", " + stage;
+    scene.source = settings_.folder / (name + ".json");
     scene.avatars = {settings_.body};
-    scene::Cloth cloth;
-    cloth.name = settings_.name;
-    const std::filesystem::path file = settings_.folder / (settings_.name + "_" + stage + ".obj");
-    write_obj(file, surface.mesh);
-    if (!surface.rest.empty()) {
-        cloth.rest_file = settings_.folder / (settings_.name + "_" + stage + "_rest.obj");
-        write_obj(*cloth.rest_file, surface.rest_mesh());
+    std::vector<GarmentSurface> surfaces;
+    for (const WornGarment& worn : worn_) {
+        surfaces.push_back(worn.surface());
+        add_cloth(scene, worn.garment, name + "_over_" + worn.garment.name(), surfaces.back(),
+                  damped_fabric(worn.garment, kHangingDamping));
     }
-    watch_.begin(stage, surface, scene.frame_duration());
-    cloth.shape = file;
-    cloth.weld = false;
-    cloth.rest = scene::RestFrom::Uv;
-    cloth.uv_scale = 1.0;
-    cloth.fabric = stage;
-    scene.fabrics[stage] = fabric;
-    scene.cloths = {cloth};
+    surfaces.push_back(surface);
+    add_cloth(scene, garment_, name, surface, fabric);
+    watch_.begin(stage, std::move(surfaces), scene.frame_duration());
     scene.solver.quality = scene::Quality::Standard;
     scene.solver.velocity_tolerance = kVelocityTolerance;
     scene.solver.integrator = Integrator::ImplicitEuler;
@@ -106,18 +125,32 @@ Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surf
     return scene;
 }
 
-scene::Fabric StageScenes::damped_fabric(double damping) const
+/// @param file_name  without extension
+void StageScenes::add_cloth(Scene& scene, const Garment& garment, const std::string& file_name,
+                            const GarmentSurface& surface, const scene::Fabric& fabric) const
 {
-    scene::Fabric fabric;
-    fabric.base = fabric_;
-    fabric.damping = damping;
-    return fabric;
+    scene::Cloth cloth;
+    cloth.name = garment.name();
+    const std::filesystem::path file = settings_.folder / (file_name + ".obj");
+    write_obj(file, surface.mesh);
+    if (!surface.rest.empty()) {
+        cloth.rest_file = settings_.folder / (file_name + "_rest.obj");
+        write_obj(*cloth.rest_file, surface.rest_mesh());
+    }
+    cloth.shape = file;
+    cloth.weld = false;
+    cloth.rest = scene::RestFrom::Uv;
+    cloth.uv_scale = 1.0;
+    cloth.fabric = file_name;
+    cloth.layer = int(scene.cloths.size());
+    scene.fabrics[file_name] = fabric;
+    scene.cloths.push_back(cloth);
 }
 
 scene::Fabric StageScenes::sewing_fabric() const
 {
-    const garment::Fabric& own = garment::fabric_preset(fabric_, settings_.garment.string());
-    scene::Fabric fabric = damped_fabric(kViscousDamping);
+    const garment::Fabric& own = garment::fabric_preset(garment_.fabric, garment_.settings.file.string());
+    scene::Fabric fabric = damped_fabric(garment_, kViscousDamping);
     fabric.stretch = {std::min(own.stretch_warp, kSewingStretch), std::min(own.stretch_weft, kSewingStretch)};
     fabric.shear = std::min({own.shear, kSewingShear, 0.5 * own.stretch_warp, 0.5 * own.stretch_weft});
     fabric.strain_limit = std::max(1.0 + own.strain_limit, kSewingStrainLimit);
@@ -125,19 +158,20 @@ scene::Fabric StageScenes::sewing_fabric() const
 }
 
 /// A vertex of two edges follows the one that stays attached.
-void StageScenes::hold_labels(const GarmentMesh& mesh, Scene& scene, bool holds_all) const
+void StageScenes::hold_labels(const Garment& garment, const GarmentMesh& mesh, Scene& scene,
+                              bool holds_all) const
 {
     std::set<int> held;
     for (const bool stays : {true, false})
-        for (const std::string& label : labels_) {
+        for (const std::string& label : garment.labels()) {
             if (stays_attached(label) != stays || (!stays && !holds_all))
                 continue;
-            std::vector<int> vertices = mesh.labelled(pattern_, label);
+            std::vector<int> vertices = mesh.labelled(garment.pattern, label);
             std::erase_if(vertices, [&](int v) { return !held.insert(v).second; });
             if (vertices.empty())
                 continue;
             scene::Attachment attachment;
-            attachment.cloth = settings_.name;
+            attachment.cloth = garment.name();
             attachment.select.by = std::move(vertices);
             attachment.to = settings_.body.name;
             scene.attachments.push_back(attachment);

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <set>
 #include <string>
+#include <vector>
 
 #include "scenes/drape/drape.h"
 #include "scenes/drape/drape_watch.h"
-#include "scenes/drape/garment_mesh.h"
+#include "scenes/drape/garment.h"
 
 namespace toile::scenes {
 
@@ -16,12 +16,10 @@ bool stays_attached(const std::string& label);
 class StageScenes {
 public:
     /// All are kept by reference.
-    /// @param fabric  preset
-    /// @param watch   is told when a stage begins
-    StageScenes(const DrapeSettings& settings, const garment::Pattern& pattern, const std::string& fabric,
+    /// @param worn   [garments below] they do not move but where the garment hangs
+    /// @param watch  is told when a stage begins
+    StageScenes(const DrapeSettings& settings, const Garment& garment, const std::vector<WornGarment>& worn,
                 DrapeWatch& watch);
-
-    const std::set<std::string>& labels() const { return labels_; } ///< of the pattern's edges
 
     /// Threads pull the seams shut, without gravity. The panels give way to the body as jersey does, and move
     /// so slowly that they stop where no force pulls.
@@ -37,7 +35,8 @@ public:
     /// @param x  [welded vertices] [m]
     Scene settle(const GarmentMesh& mesh, View<const Vec3> x) const;
 
-    /// The garment hangs on the body, in motion that is damped: rest is the same as without damping.
+    /// The garment hangs on the body and those below it, in motion that is damped: rest is the same as
+    /// without damping.
     /// @param x          [welded vertices] [m]
     /// @param holds_all  labelled edges that are released in the end are held too, by springs
     Scene hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage, bool holds_all) const;
@@ -45,15 +44,17 @@ public:
 private:
     Scene scene_of(const std::string& stage, const GarmentSurface& surface,
                    const scene::Fabric& fabric) const;
-    scene::Fabric damped_fabric(double damping) const;
+    Scene still_scene_of(const std::string& stage, const GarmentSurface& surface,
+                         const scene::Fabric& fabric) const;
+    void add_cloth(Scene& scene, const Garment& garment, const std::string& file_name,
+                   const GarmentSurface& surface, const scene::Fabric& fabric) const;
     scene::Fabric sewing_fabric() const;
-    void hold_labels(const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
+    void hold_labels(const Garment& garment, const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
 
     const DrapeSettings& settings_;
-    const garment::Pattern& pattern_;
-    const std::string& fabric_;
+    const Garment& garment_;
+    const std::vector<WornGarment>& worn_;
     DrapeWatch& watch_;
-    std::set<std::string> labels_;
 };
 
 } // namespace toile::scenes

@@ -1,4 +1,4 @@
-#include <cmath>
+#include <algorithm>
 #include <memory>
 
 #include "apps/toile/drape/continuation.h"
@@ -26,6 +26,8 @@ constexpr double kTimeLimit = 600.0;
 
 struct DrapeOptions {
     scenes::DrapeSettings settings;
+    std::vector<std::filesystem::path> garments;
+    std::vector<std::string> fabrics = {scenes::DrapeGarment{}.fabric};
     std::filesystem::path avatar;
     ClipOptions clip;
     std::vector<double> shift;
@@ -34,12 +36,17 @@ struct DrapeOptions {
     bool quiet = false;
 };
 
-void require_valid(const scenes::DrapeSettings& settings)
+void require_valid(const DrapeOptions& options)
 {
-    require_edge_option(settings.edge);
-    garment::fabric_preset(settings.fabric, "--fabric");
-    if (!(settings.time_limit > 0.0))
-        throw InvalidInput("--time-limit " + short_text(settings.time_limit) +
+    require_edge_option(options.settings.edge);
+    for (const std::string& fabric : options.fabrics)
+        garment::fabric_preset(fabric, "--fabric");
+    if (options.fabrics.size() != 1 && options.fabrics.size() != options.garments.size())
+        throw InvalidInput("--fabric: names " + std::to_string(options.fabrics.size()) + " fabrics for " +
+                           std::to_string(options.garments.size()) +
+                           " garments; give one for all or one for each");
+    if (!(options.settings.time_limit > 0.0))
+        throw InvalidInput("--time-limit " + short_text(options.settings.time_limit) +
                            ": must be a positive number of seconds");
 }
 
@@ -47,7 +54,10 @@ void require_valid(const scenes::DrapeSettings& settings)
 void complete(DrapeOptions& options, const DrapeFiles& files)
 {
     scenes::DrapeSettings& settings = options.settings;
-    settings.name = files.name();
+    for (size_t g = 0; g < options.garments.size(); ++g)
+        settings.garments.push_back(
+            {options.garments[g], files.names()[g],
+             options.fabrics.size() == 1 ? options.fabrics.front() : options.fabrics[g]});
     settings.folder = files.stages();
     settings.body.name = "body";
     if (options.avatar.empty())
@@ -58,23 +68,25 @@ void complete(DrapeOptions& options, const DrapeFiles& files)
         settings.shift = Vec3(options.shift[0], options.shift[1], options.shift[2]);
 }
 
-/// Reads the garment, and meshes it to know that it can be sewn. A refusal is reported in the folder too.
-/// @throws InvalidInput
-garment::Pattern sewable_pattern(const DrapeOptions& options, const DrapeFiles& files)
+/// A refusal is reported in the folder too. @throws InvalidInput
+garment::Pattern read_pattern(const std::filesystem::path& file, const DrapeFiles& files)
 {
-    const scenes::DrapeSettings& settings = options.settings;
-    garment::Pattern pattern;
     try {
-        pattern = garment_format::read_pattern(settings.garment);
+        return garment_format::read_pattern(file);
     } catch (const InvalidInput& error) {
-        if (std::filesystem::exists(settings.garment))
+        if (std::filesystem::exists(file))
             files.write_refusal({"pattern", error.what()});
         throw;
     }
-    files.require_safe(pattern, options.avatar, options.clip);
+}
+
+/// Meshes the pattern to know that it can be sewn. A refusal is reported in the folder too.
+/// @throws InvalidInput
+void require_sewable(const garment::Pattern& pattern, double edge, const DrapeFiles& files)
+{
     std::string word = "meshing";
     try {
-        const MeshReport report = mesh_report_on(pattern, settings.edge);
+        const MeshReport report = mesh_report_on(pattern, edge);
         if (const std::string failure = failure_of(report); !failure.empty()) {
             word = report.outcome();
             throw InvalidInput(failure);
@@ -83,7 +95,18 @@ garment::Pattern sewable_pattern(const DrapeOptions& options, const DrapeFiles& 
         files.write_refusal({word, error.what()});
         throw;
     }
-    return pattern;
+}
+
+/// Reads the garments, and makes sure that they can be sewn. @throws InvalidInput
+std::vector<garment::Pattern> sewable_patterns(const DrapeOptions& options, const DrapeFiles& files)
+{
+    std::vector<garment::Pattern> patterns;
+    for (const std::filesystem::path& file : options.garments)
+        patterns.push_back(read_pattern(file, files));
+    files.require_safe(patterns, options.avatar, options.clip);
+    for (const garment::Pattern& pattern : patterns)
+        require_sewable(pattern, options.settings.edge, files);
+    return patterns;
 }
 
 /// Drapes with a progress line. What the drape refuses of the garment is reported in the folder too.
@@ -101,20 +124,22 @@ scenes::DrapeResult drape_with_progress(DrapeOptions& options, const DrapeFiles&
         return scenes::drape(options.settings, world);
     } catch (const InvalidInput& error) {
         // Errors begin with the file at fault: the garment, or the avatar, which is no class of garments.
-        if (std::string(error.what()).starts_with(options.settings.garment.string()))
-            files.write_refusal({"pattern", error.what()});
+        const std::string text = error.what();
+        if (std::any_of(options.garments.begin(), options.garments.end(),
+                        [&](const auto& file) { return text.starts_with(file.string()); }))
+            files.write_refusal({"pattern", text});
         throw;
     }
 }
 
 int drape(DrapeOptions options)
 {
-    const scenes::DrapeSettings& settings = options.settings;
-    require_valid(settings);
+    require_valid(options);
     const ThreadLimit threads(options.threads);
-    const DrapeFiles files(settings.garment, options.folder);
-    const garment::Pattern pattern = sewable_pattern(options, files);
+    const DrapeFiles files(options.garments, options.folder);
+    const std::vector<garment::Pattern> patterns = sewable_patterns(options, files);
     complete(options, files);
+    const scenes::DrapeSettings& settings = options.settings;
     const Continuation continuation = continuation_of(settings.body, options.clip);
 
     // Drape, and certify what rests.
@@ -128,19 +153,20 @@ int drape(DrapeOptions options)
     if (report.verdict.is_draped()) {
         const std::optional<Certificate> certificate = files.write_certificate(log, interrupt);
         if (!certificate) {
-            log.error("interrupted before the garment was certified");
+            log.error("interrupted before the drape was certified");
             return kExitFailure;
         }
-        report.verdict = verdict_of(*certificate, report.result.surface.mesh);
+        report.verdict = verdict_of(*certificate, report.result.garments);
     }
 
     // Report it.
-    const ObjMesh& mesh = report.result.surface.mesh;
-    if (!mesh.positions.empty())
-        report.measures = measure_garment(report.result.surface, pattern, settings.fabric);
-    files.write_report(report, pattern, log);
-    if (!mesh.positions.empty())
-        files.write_picture(settings, log);
+    for (size_t g = 0; g < report.result.garments.size(); ++g) {
+        const scenes::GarmentSurface& surface = report.result.garments[g].surface;
+        if (!surface.mesh.positions.empty())
+            report.measures.push_back(measure_garment(surface, patterns[g], settings.garments[g].fabric));
+    }
+    files.write_report(report, patterns, log);
+    files.write_picture(settings, log);
     log.result(summary_of(report));
     if (report.verdict.is_draped()) {
         log.result("simulate it on by: toile simulate " + files.scene().string() + " -o " +
@@ -156,10 +182,10 @@ int drape(DrapeOptions options)
 Command add_drape(CLI::App& parser)
 {
     Command command;
-    command.options = parser.add_subcommand("drape", "Sew a pattern around a body and drape it");
+    command.options = parser.add_subcommand("drape", "Sew patterns around a body and drape them");
     auto options = std::make_shared<DrapeOptions>();
     CLI::App& add = *command.options;
-    add.add_option("garment", options->settings.garment, "Garment file or panel JSON")->required();
+    add.add_option("garments", options->garments, "Garment files or panel JSON, innermost first")->required();
     add.add_option("--avatar", options->avatar,
                    "Body, .obj, .glb, .gltf or .fbx, in its bind pose; without it the built-in mannequin");
     add.add_option("--clip", options->clip.clip,
@@ -169,9 +195,12 @@ Command add_drape(CLI::App& parser)
     add.add_option("--map", options->clip.map, "Joints of --motion: names, cmu or a .json file")
         ->capture_default_str()
         ->needs(motion);
-    add.add_option("--fabric", options->settings.fabric, "Preset for panels without a fabric")
+    add.add_option("--fabric", options->fabrics,
+                   "Preset for panels without a fabric: one for all garments, or one for each, by commas")
+        ->delimiter(',')
+        ->allow_extra_args(false)
         ->capture_default_str();
-    add.add_option("--edge", options->settings.edge, "Edge length of the final mesh [m]")
+    add.add_option("--edge", options->settings.edge, "Edge length of the final meshes [m]")
         ->capture_default_str();
     add.add_option("--shift", options->shift, "x,y,z added to the placement of the panels [m]")
         ->delimiter(',')

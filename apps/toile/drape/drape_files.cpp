@@ -1,6 +1,7 @@
 #include "apps/toile/drape/drape_files.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
 
@@ -25,6 +26,14 @@ using std::filesystem::path;
 
 /// Size of the picture [pixels]: upright, as bodies are.
 constexpr int kPictureWidth = 720, kPictureHeight = 960;
+
+/// Color of a garment, by its number: the first has that of cloth without one.
+Vec3 color_of(size_t garment)
+{
+    static const std::array<Vec3, 4> colors = {scene::Cloth{}.color, Vec3(0.72, 0.34, 0.26),
+                                               Vec3(0.42, 0.56, 0.38), Vec3(0.80, 0.66, 0.38)};
+    return colors[garment % colors.size()];
+}
 
 /// Name of the garment: that of its file, with what can't name a cloth replaced.
 std::string name_of(const path& file)
@@ -91,17 +100,43 @@ bool is_report(const path& file)
 
 } // namespace
 
-DrapeFiles::DrapeFiles(const path& garment, path folder)
-    : name_(name_of(garment)), folder_(folder.empty() ? path("out") / name_ : std::move(folder))
+DrapeFiles::DrapeFiles(const std::vector<path>& garments, path folder)
 {
+    for (const path& file : garments) {
+        const std::string name = name_of(file);
+        std::string unique = name;
+        for (int copy = 2; std::find(names_.begin(), names_.end(), unique) != names_.end(); ++copy)
+            unique = name + "_" + std::to_string(copy);
+        names_.push_back(unique);
+    }
+    folder_ = folder.empty() ? path("out") / name() : std::move(folder);
 }
 
-void DrapeFiles::require_safe(const garment::Pattern& pattern, const path& avatar,
+std::string DrapeFiles::name() const
+{
+    std::string name = names_.front();
+    for (size_t g = 1; g < names_.size(); ++g)
+        name += "_" + names_[g];
+    return name;
+}
+
+std::vector<path> DrapeFiles::results() const
+{
+    std::vector<path> files = {report(), certificate(), scene(), picture()};
+    for (const std::string& garment : names_) {
+        files.push_back(mesh(garment));
+        files.push_back(rest_mesh(garment));
+    }
+    return files;
+}
+
+void DrapeFiles::require_safe(const std::vector<garment::Pattern>& patterns, const path& avatar,
                               const ClipOptions& clip) const
 {
     Inputs inputs;
-    for (const path& file : pattern.files)
-        inputs.emplace_back(file, "the pattern");
+    for (const garment::Pattern& pattern : patterns)
+        for (const path& file : pattern.files)
+            inputs.emplace_back(file, "the pattern");
     add_model(inputs, avatar, "the avatar");
     add_model(inputs, clip.motion, "the motion");
     if (clip.is_mapped_by_file())
@@ -114,7 +149,7 @@ void DrapeFiles::require_safe(const garment::Pattern& pattern, const path& avata
                                ", whose files are replaced; choose another folder by -o");
         plan.add_input(file, role);
     }
-    for (const path& file : {mesh(), rest_mesh(), scene(), report(), certificate(), picture()}) {
+    for (const path& file : results()) {
         plan.add_output(file, "a result of the drape");
         require_writable(file);
     }
@@ -141,15 +176,17 @@ void DrapeFiles::write_refusal(const DrapeVerdict& verdict) const
 void DrapeFiles::write_garment(const Continuation& continuation, const scenes::DrapeResult& result,
                                const RunLog& log) const
 {
-    for (const path& file : {report(), certificate(), scene(), mesh(), rest_mesh(), picture()})
+    for (const path& file : results())
         std::filesystem::remove(file);
-    if (result.surface.mesh.positions.empty())
-        return;
-    write_obj(mesh(), result.surface.mesh);
-    log.file(mesh());
-    if (!result.surface.rest.empty()) {
-        write_obj(rest_mesh(), result.surface.rest_mesh());
-        log.file(rest_mesh());
+    for (const scenes::DrapedGarment& garment : result.garments) {
+        if (garment.surface.mesh.positions.empty())
+            continue;
+        write_obj(mesh(garment.name), garment.surface.mesh);
+        log.file(mesh(garment.name));
+        if (garment.surface.rest.empty())
+            continue;
+        write_obj(rest_mesh(garment.name), garment.surface.rest_mesh());
+        log.file(rest_mesh(garment.name));
     }
     if (result.outcome != scenes::DrapeOutcome::Draped)
         return;
@@ -159,19 +196,25 @@ void DrapeFiles::write_garment(const Continuation& continuation, const scenes::D
 
 std::string DrapeFiles::scene_text(const Continuation& continuation, const scenes::DrapeResult& result) const
 {
-    Json json = {{"toile", 1}, {"name", name_ + ", draped"}, {"frames", continuation.frames}};
+    Json json = {{"toile", 1}, {"name", name() + ", draped"}, {"frames", continuation.frames}};
     json["avatars"] = {json_of(continuation.body)};
-    json["cloths"] = {{{"name", name_},
-                       {"file", mesh().filename().string()},
-                       {"weld", false},
-                       {"rest", "uv"},
-                       {"uv_scale", 1.0},
-                       {"fabric", result.scene.cloths.at(0).fabric}}};
-    if (!result.surface.rest.empty())
-        json["cloths"][0]["rest_file"] = rest_mesh().filename().string();
+    for (size_t g = 0; g < result.garments.size(); ++g) {
+        const scenes::DrapedGarment& garment = result.garments[g];
+        Json cloth = {{"name", garment.name}, {"file", mesh(garment.name).filename().string()},
+                      {"weld", false},        {"rest", "uv"},
+                      {"uv_scale", 1.0},      {"fabric", result.scene.cloths.at(g).fabric}};
+        if (!garment.surface.rest.empty())
+            cloth["rest_file"] = rest_mesh(garment.name).filename().string();
+        if (g > 0) {
+            const Vec3 color = color_of(g);
+            cloth["layer"] = g;
+            cloth["color"] = {color.x(), color.y(), color.z()};
+        }
+        json["cloths"].push_back(cloth);
+    }
     for (const scene::Attachment& attachment : result.scene.attachments)
         json["attachments"].push_back(
-            {{"cloth", name_},
+            {{"cloth", attachment.cloth},
              {"select", {{"vertices", std::get<std::vector<int>>(attachment.select.by)}}},
              {"to", attachment.to}});
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -183,8 +226,10 @@ std::optional<Certificate> DrapeFiles::write_certificate(const RunLog& log,
     scenes::Scene scene_at_rest = scenes::read_scene(scene());
     scene_at_rest.frames = 1;
     const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene_at_rest);
-    std::optional<Certificate> certified =
-        certify(scene_at_rest, {{&surfaces.at(0), mesh(), mesh()}}, {}, log, interrupt);
+    std::vector<CachedCloth> checked;
+    for (size_t g = 0; g < names_.size(); ++g)
+        checked.push_back({&surfaces.at(g), mesh(names_[g]), mesh(names_[g])});
+    std::optional<Certificate> certified = certify(scene_at_rest, checked, {}, log, interrupt);
     if (!certified)
         return std::nullopt;
     write_atomically(certificate(), app::to_json(*certified));
@@ -192,10 +237,10 @@ std::optional<Certificate> DrapeFiles::write_certificate(const RunLog& log,
     return certified;
 }
 
-void DrapeFiles::write_report(const DrapeReport& drape, const garment::Pattern& pattern,
+void DrapeFiles::write_report(const DrapeReport& drape, const std::vector<garment::Pattern>& patterns,
                               const RunLog& log) const
 {
-    write_atomically(report(), to_json(drape, pattern));
+    write_atomically(report(), to_json(drape, patterns));
     log.file(report());
 }
 
@@ -206,13 +251,22 @@ void DrapeFiles::write_picture(const scenes::DrapeSettings& settings, const RunL
     shown.avatars = {settings.body};
     shown.render.width = kPictureWidth;
     shown.render.height = kPictureHeight;
-    scene::Cloth cloth;
-    cloth.name = name_;
-    cloth.shape = mesh();
-    cloth.weld = false;
-    shown.cloths = {cloth};
+    std::vector<path> meshes;
+    for (size_t g = 0; g < names_.size(); ++g) {
+        if (!std::filesystem::exists(mesh(names_[g])))
+            continue;
+        scene::Cloth cloth;
+        cloth.name = names_[g];
+        cloth.shape = mesh(names_[g]);
+        cloth.weld = false;
+        cloth.color = color_of(g);
+        shown.cloths.push_back(cloth);
+        meshes.push_back(mesh(names_[g]));
+    }
+    if (meshes.empty())
+        return;
 
-    Film film = Film::of_caches(shown, {mesh()}, name_);
+    Film film = Film::of_caches(shown, meshes, "");
     film.put_floor_below_avatars();
     film.choose({0});
     preview::write_png(picture(), film.picture(0));

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/toile/check/certificate.h"
 #include "apps/toile/drape/continuation.h"
@@ -18,10 +19,13 @@ namespace toile::app {
 /// Files of one drape.
 class DrapeFiles {
 public:
-    /// @param folder  of the results; empty: out/NAME
-    DrapeFiles(const std::filesystem::path& garment, std::filesystem::path folder);
+    /// @param garments  one or more
+    /// @param folder    of the results; empty: out/NAME
+    DrapeFiles(const std::vector<std::filesystem::path>& garments, std::filesystem::path folder);
 
-    const std::string& name() const { return name_; } ///< of the garment: letters, digits, _ and -
+    /// [garments] letters, digits, _ and -; no two are equal
+    const std::vector<std::string>& names() const { return names_; }
+    std::string name() const; ///< of all
     std::filesystem::path stages() const { return folder_ / "stages"; }
 
     std::filesystem::path scene() const { return folder_ / "scene.json"; }
@@ -30,7 +34,7 @@ public:
     /// Refuses results that would replace what is read, or could not be written.
     /// @param avatar  file of the body; empty: the mannequin
     /// @throws InvalidInput naming both files
-    void require_safe(const garment::Pattern& pattern, const std::filesystem::path& avatar,
+    void require_safe(const std::vector<garment::Pattern>& patterns, const std::filesystem::path& avatar,
                       const ClipOptions& clip) const;
 
     /// Keeps other runs out of the folder while it lives. @throws as FolderLock
@@ -40,8 +44,8 @@ public:
     /// file than such a report. Other results stay as they are.
     void write_refusal(const DrapeVerdict& verdict) const;
 
-    /// Writes the mesh, and, for a garment at rest, the scene that simulates it on. Removes all other results
-    /// of an earlier drape.
+    /// Writes the meshes, and, for garments at rest, the scene that simulates them on. Removes all other
+    /// results of an earlier drape.
     void write_garment(const Continuation& continuation, const scenes::DrapeResult& result,
                        const RunLog& log) const;
 
@@ -50,20 +54,25 @@ public:
     /// @return none if interrupted; nothing was written then
     std::optional<Certificate> write_certificate(const RunLog& log, const InterruptGuard& interrupt) const;
 
-    void write_report(const DrapeReport& report, const garment::Pattern& pattern, const RunLog& log) const;
+    void write_report(const DrapeReport& report, const std::vector<garment::Pattern>& patterns,
+                      const RunLog& log) const;
 
-    /// Writes a picture of the mesh on the body, from the front at an angle of 30 degrees.
+    /// Writes a picture of the meshes on the body, from the front at an angle of 30 degrees.
     void write_picture(const scenes::DrapeSettings& settings, const RunLog& log) const;
 
 private:
-    std::filesystem::path mesh() const { return folder_ / (name_ + ".obj"); }
+    std::filesystem::path mesh(const std::string& garment) const { return folder_ / (garment + ".obj"); }
+    std::filesystem::path rest_mesh(const std::string& garment) const
+    {
+        return folder_ / (garment + "_rest.obj");
+    }
     std::filesystem::path report() const { return folder_ / "drape.json"; }
     std::filesystem::path certificate() const { return folder_ / "certificate.json"; }
-    std::filesystem::path rest_mesh() const { return folder_ / (name_ + "_rest.obj"); }
-    std::filesystem::path picture() const { return folder_ / (name_ + ".png"); }
+    std::filesystem::path picture() const { return folder_ / (name() + ".png"); }
+    std::vector<std::filesystem::path> results() const;
     std::string scene_text(const Continuation& continuation, const scenes::DrapeResult& result) const;
 
-    std::string name_;
+    std::vector<std::string> names_;
     std::filesystem::path folder_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/toile/check/certificate.h"
 #include "apps/toile/drape/garment_measures.h"
@@ -21,20 +21,20 @@ struct DrapeVerdict {
 /// Class of a result that has no certificate.
 DrapeVerdict verdict_of(const scenes::DrapeResult& result);
 
-/// Class of a garment at rest by its certificate: "draped" if it holds, else "solver", with the condition
+/// Class of garments at rest by their certificate: "draped" if it holds, else "solver", with the condition
 /// that failed and the panel where.
-DrapeVerdict verdict_of(const Certificate& certificate, const ObjMesh& garment);
+DrapeVerdict verdict_of(const Certificate& certificate, const std::vector<scenes::DrapedGarment>& garments);
 
-/// What `toile drape` says about a garment.
+/// What `toile drape` says about garments.
 struct DrapeReport {
     DrapeVerdict verdict;
     scenes::DrapeResult result;
-    std::optional<GarmentMeasures> measures; ///< none without a mesh
+    std::vector<GarmentMeasures> measures; ///< [garments of the result that have a mesh]
 };
 
 /// Report as JSON. docs/reference/commands.md explains the keys.
-/// @param pattern  that was draped
-std::string to_json(const DrapeReport& report, const garment::Pattern& pattern);
+/// @param patterns  of the garments
+std::string to_json(const DrapeReport& report, const std::vector<garment::Pattern>& patterns);
 
 /// Report on input that was refused.
 std::string to_json(const DrapeVerdict& verdict);

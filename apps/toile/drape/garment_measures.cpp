@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "apps/toile/check/strain.h"
@@ -82,18 +81,20 @@ std::string panel_of_triangle(const ObjMesh& mesh, int triangle)
     return next == mesh.groups.begin() ? "" : std::prev(next)->name;
 }
 
-std::string panel_near(const ObjMesh& mesh, const Vec3& point)
+NearPanel panel_near(const ObjMesh& mesh, const Vec3& point)
 {
-    int nearest = -1;
-    double least = std::numeric_limits<double>::infinity();
+    NearPanel nearest;
+    int triangle = -1;
     for (int t = 0; t < int(mesh.polygons.size()); ++t) {
-        const double distance = (centroid(mesh, t) - point).squaredNorm();
-        if (distance >= least)
+        const double distance = (centroid(mesh, t) - point).norm();
+        if (distance >= nearest.distance)
             continue;
-        least = distance;
-        nearest = t;
+        nearest.distance = distance;
+        triangle = t;
     }
-    return nearest < 0 ? "" : panel_of_triangle(mesh, nearest);
+    if (triangle >= 0)
+        nearest.name = panel_of_triangle(mesh, triangle);
+    return nearest;
 }
 
 GarmentMeasures measure_garment(const scenes::GarmentSurface& surface, const garment::Pattern& pattern,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,14 @@ namespace toile::app {
 /// Name of the panel (group) of a triangle of a mesh of triangles; empty: it has no groups there.
 std::string panel_of_triangle(const ObjMesh& mesh, int triangle);
 
-/// Panel of the triangle whose centroid is nearest to a point; empty for a mesh without triangles.
+struct NearPanel {
+    std::string name;                                          ///< empty for a mesh without triangles
+    double distance = std::numeric_limits<double>::infinity(); ///< [m]
+};
+
+/// Panel of the triangle whose centroid is nearest to a point.
 /// @param point  [m]
-std::string panel_near(const ObjMesh& mesh, const Vec3& point);
+NearPanel panel_near(const ObjMesh& mesh, const Vec3& point);
 
 /// Largest principal strains [-] of all triangles in one fabric.
 struct FabricStrain {

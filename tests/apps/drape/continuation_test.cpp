@@ -36,11 +36,13 @@ protected:
     scenes::Scene written(const Continuation& continuation) const
     {
         scenes::DrapeResult result;
-        result.surface.mesh.positions = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()};
-        result.surface.mesh.polygons = {{0, 1, 2}};
+        result.garments.resize(1);
+        result.garments[0].name = "g";
+        result.garments[0].surface.mesh.positions = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()};
+        result.garments[0].surface.mesh.polygons = {{0, 1, 2}};
         result.scene.cloths.resize(1);
         result.scene.cloths[0].fabric = "cotton";
-        DrapeFiles files("g.json", folder_);
+        DrapeFiles files({"g.json"}, folder_);
         files.write_garment(continuation, result, RunLog(true));
         return scenes::read_scene(files.scene());
     }

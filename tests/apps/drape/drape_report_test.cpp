@@ -11,7 +11,7 @@ using namespace app;
 namespace {
 
 /// Two triangles, front at z = 1 and back at z = -1.
-ObjMesh two_panels()
+std::vector<scenes::DrapedGarment> two_panels()
 {
     ObjMesh mesh;
     for (const double z : {1.0, -1.0}) {
@@ -20,7 +20,9 @@ ObjMesh two_panels()
         mesh.positions.insert(mesh.positions.end(), {Vec3(0, 0, z), Vec3(1, 0, z), Vec3(0, 1, z)});
         mesh.polygons.push_back({first, first + 1, first + 2});
     }
-    return mesh;
+    std::vector<scenes::DrapedGarment> garments(1);
+    garments[0].surface.mesh = mesh;
+    return garments;
 }
 
 /// The certificate of one frame.
@@ -100,8 +102,9 @@ TEST(DrapeReport, HasNoGapForSeamsThatWereNotSewn)
 
     DrapeReport report;
     report.verdict = {"tangled", "why"};
-    report.result.seams = {{"first", 0.001}};
-    const auto json = nlohmann::json::parse(to_json(report, pattern));
+    report.result.garments.resize(1);
+    report.result.garments[0].seams = {{"first", 0.001}};
+    const auto json = nlohmann::json::parse(to_json(report, {pattern}));
     EXPECT_EQ(json["class"], "tangled");
     EXPECT_EQ(json["message"], "why");
     EXPECT_EQ(json["seams"][0]["gap_before_weld_m"], 0.001);
@@ -109,6 +112,43 @@ TEST(DrapeReport, HasNoGapForSeamsThatWereNotSewn)
     EXPECT_TRUE(json["seams"][1]["gap_before_weld_m"].is_null());
     EXPECT_NEAR(json["seams"][1]["ratio"], 2.0, 1e-12);
     EXPECT_FALSE(json.contains("strain")) << "there is no mesh";
+}
+
+TEST(DrapeReport, ListsSeveralGarments)
+{
+    DrapeReport report;
+    report.verdict = {"not at rest", "skirt: why"};
+    report.result.garments.resize(2);
+    report.result.garments[0].name = "skirt";
+    report.result.garments[0].stages = {{"sew", 1.5, 2, 30, 4}};
+    report.result.garments[1].name = "tee";
+    report.result.garments[1].stages = {{"mesh", 0.25, 0, 40, 0}};
+    const auto json = nlohmann::json::parse(to_json(report, std::vector<garment::Pattern>(2)));
+    ASSERT_EQ(json["garments"].size(), 2u);
+    EXPECT_EQ(json["garments"][0]["name"], "skirt");
+    EXPECT_EQ(json["garments"][0]["stages"][0]["frames"], 2);
+    EXPECT_EQ(json["garments"][1]["stages"][0]["seconds"], 0.25);
+    EXPECT_FALSE(json.contains("stages"));
+    const std::string summary = summary_of(report);
+    EXPECT_TRUE(summary.starts_with("not at rest after 1.8 s:\nskirt: ")) << summary;
+    EXPECT_NE(summary.find("\ntee: "), std::string::npos) << summary;
+}
+
+/// The panel of a defect is named with its garment where there are several.
+TEST(DrapeVerdict, NamesTheGarment)
+{
+    std::vector<scenes::DrapedGarment> garments = two_panels();
+    garments.push_back(garments[0]);
+    garments[0].name = "skirt";
+    garments[1].name = "tee";
+    for (Vec3& x : garments[1].surface.mesh.positions)
+        x.y() += 1.0;
+    FrameFindings found;
+    found.strain = 0.3;
+    found.strain_point = Vec3(0, 1.3, -1);
+    found.is_overstretched = true;
+    const std::string message = verdict_of(certificate_of(found), garments).message;
+    EXPECT_NE(message.find("in panel \"back\" of tee"), std::string::npos) << message;
 }
 
 } // namespace

@@ -127,6 +127,27 @@ TEST_F(Drape, PassesTheAcceptanceOfASkirt)
     EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x02\xd0\0\0\x03\xc0", 8)) << "720 x 960";
 }
 
+/// The files of a garment are named by it, those of the outfit by all. One of the same name gets a number.
+TEST_F(Drape, WritesSeveralGarments)
+{
+    temporary_.write("tube.json", tube());
+    const Finished finished = drape({"tube.json", "tube.json", "--edge", "0.05", "--fabric", "denim,jersey",
+                                     "--time-limit", "0.001", "-o", "out", "--quiet"});
+    EXPECT_EQ(finished.exit_code, 1);
+    EXPECT_NE(finished.errors.find("the time limit of 0.001 s"), std::string::npos) << finished.errors;
+    EXPECT_TRUE(std::filesystem::exists(file("out/tube.obj")));
+    EXPECT_FALSE(std::filesystem::exists(file("out/tube_2.obj"))) << "not begun";
+    EXPECT_TRUE(std::filesystem::exists(file("out/tube_tube_2.png")));
+    const Json report = json_in("out/drape.json");
+    ASSERT_EQ(report["garments"].size(), 1u);
+    EXPECT_EQ(report["garments"][0]["name"], "tube");
+    EXPECT_TRUE(report["garments"][0]["strain"].contains("denim"));
+
+    expect_refusal({"tube.json", "tube.json", "--fabric", "denim,jersey,cotton"},
+                   {"--fabric: names 3 fabrics for 2 garments; give one for all or one for each"});
+    expect_refusal({"tube.json", "--fabric", "denim,jersy"}, {"--fabric", "did you mean \"jersey\"?"});
+}
+
 TEST_F(Drape, EndsAtItsTimeLimitWithItsLastState)
 {
     temporary_.write("tube.json", tube());

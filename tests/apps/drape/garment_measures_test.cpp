@@ -112,8 +112,8 @@ TEST(GarmentMeasures, NameThePanelOfATriangleAndOfAPlace)
     EXPECT_EQ(panel_of_triangle(mesh, 0), "0");
     EXPECT_EQ(panel_of_triangle(mesh, 1), "0");
     EXPECT_EQ(panel_of_triangle(mesh, 5), "2");
-    EXPECT_EQ(panel_near(mesh, Vec3(0.0, 0.5, 2.6)), "1");
-    EXPECT_EQ(panel_near({}, Vec3::Zero()), "");
+    EXPECT_EQ(panel_near(mesh, Vec3(0.0, 0.5, 2.6)).name, "1");
+    EXPECT_EQ(panel_near({}, Vec3::Zero()).name, "");
 }
 
 } // namespace

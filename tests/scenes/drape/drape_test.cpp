@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "collision/check/find_crossings.h"
 #include "scenes/drape/seam_closing.h"
@@ -18,18 +23,21 @@ namespace {
 
 class DrapeTest : public ::testing::Test {
 protected:
-    DrapeResult drape_tube(const std::string& pattern)
+    DrapeResult drape_tube(const std::string& pattern) { return drape_tubes({{"tube", pattern}}); }
+
+    /// @param patterns  by name
+    DrapeResult drape_tubes(const std::vector<std::pair<std::string, std::string>>& patterns)
     {
-        const std::filesystem::path file = folder_.path() / "tube.json";
-        std::ofstream(file) << pattern;
         DrapeSettings settings;
-        settings.garment = file;
+        for (const auto& [name, pattern] : patterns) {
+            const std::filesystem::path file = folder_.path() / (name + ".json");
+            std::ofstream(file) << pattern;
+            settings.garments.push_back({file, name, "jersey"});
+        }
         settings.body.name = "body";
         settings.body.shape = scene::Capsule{0.1, 0.4};
-        settings.fabric = "jersey";
         settings.edge = 0.03;
         settings.folder = folder_.path();
-        settings.name = "tube";
         settings.max_motion = max_motion_;
         settings.progress = [&](const DrapeProgress& now) {
             moments_.push_back(now);
@@ -52,34 +60,97 @@ TEST_F(DrapeTest, SewsATubeAroundABodyAndHoldsIt)
 {
     const DrapeResult result = drape_tube(tube(0.36, "strapless_top"));
     EXPECT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
-    EXPECT_EQ(result.pieces, 1);
-    EXPECT_EQ(result.border_loops, 2);
-    EXPECT_EQ(result.euler_characteristic, 0);
-    ASSERT_EQ(result.seams.size(), 2u);
-    for (const DrapeSeam& seam : result.seams)
+    EXPECT_EQ(result.garments[0].pieces, 1);
+    EXPECT_EQ(result.garments[0].border_loops, 2);
+    EXPECT_EQ(result.garments[0].euler_characteristic, 0);
+    ASSERT_EQ(result.garments[0].seams.size(), 2u);
+    for (const DrapeSeam& seam : result.garments[0].seams)
         EXPECT_LT(seam.gap, SeamClosing::kMaxGap) << seam.name;
     EXPECT_LT(result.max_strain, 0.05);
     EXPECT_LE(result.rest_speed, 0.02);
 
     // It surrounds the body, and crosses nothing.
-    const TriangleMesh mesh = result.surface.mesh.triangulated();
+    const TriangleMesh mesh = result.garments[0].surface.mesh.triangulated();
     EXPECT_TRUE(collision::find_crossings(mesh.triangles, mesh.positions).empty());
     for (const Vec3& x : mesh.positions) {
         EXPECT_GT(std::hypot(x.x(), x.z()), 0.1);
         EXPECT_LT(std::hypot(x.x(), x.z()), 0.16);
     }
     // Panels are groups, each on its side of the body.
-    ASSERT_EQ(result.surface.mesh.groups.size(), 2u);
-    EXPECT_EQ(result.surface.mesh.groups[0], (ObjGroup{0, "back"}));
-    EXPECT_EQ(result.surface.mesh.groups[1], (ObjGroup{int(mesh.triangles.size() / 2), "front"}));
+    ASSERT_EQ(result.garments[0].surface.mesh.groups.size(), 2u);
+    EXPECT_EQ(result.garments[0].surface.mesh.groups[0], (ObjGroup{0, "back"}));
+    EXPECT_EQ(result.garments[0].surface.mesh.groups[1], (ObjGroup{int(mesh.triangles.size() / 2), "front"}));
     double front = 0.0, back = 0.0; // sums of z [m]
     for (int t = 0; t < int(mesh.triangles.size()); ++t)
         for (const int v : mesh.triangles[size_t(t)])
-            (t < result.surface.mesh.groups[1].first_polygon ? back : front) += mesh.positions[size_t(v)].z();
+            (t < result.garments[0].surface.mesh.groups[1].first_polygon ? back : front) +=
+                mesh.positions[size_t(v)].z();
     EXPECT_GT(front / double(mesh.triangles.size()), 0.05);
     EXPECT_LT(back / double(mesh.triangles.size()), -0.05);
     // Both panels keep their texture coordinates along the seams.
-    EXPECT_GT(result.surface.mesh.texture_coordinates.size(), result.surface.mesh.positions.size() + 8u);
+    EXPECT_GT(result.garments[0].surface.mesh.texture_coordinates.size(),
+              result.garments[0].surface.mesh.positions.size() + 8u);
+}
+
+/// Distance of vertices from the axis of the body [m], mean of those in each of 12 sectors about it.
+std::array<double, 12> sector_radii(View<const Vec3> x)
+{
+    std::array<double, 12> sums{}, counts{};
+    for (const Vec3& p : x) {
+        const double turn = std::atan2(p.x(), p.z()) / (2.0 * std::numbers::pi) + 0.5;
+        const size_t sector = std::min(size_t(12.0 * turn), size_t(11));
+        sums[sector] += std::hypot(p.x(), p.z());
+        counts[sector] += 1.0;
+    }
+    for (size_t s = 0; s < sums.size(); ++s)
+        sums[s] /= counts[s];
+    return sums;
+}
+
+/// Both tubes are as narrow as the body: the second has to lie on the first everywhere.
+TEST_F(DrapeTest, SewsASecondTubeOverTheFirst)
+{
+    const DrapeResult result =
+        drape_tubes({{"inner", tube(0.33, "strapless_top")}, {"outer", tube(0.33, "strapless_top", 0.145)}});
+    EXPECT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    ASSERT_EQ(result.garments.size(), 2u);
+    TriangleMesh both = result.garments[0].surface.mesh.triangulated();
+    const TriangleMesh outer = result.garments[1].surface.mesh.triangulated();
+    const std::array<double, 12> radii = sector_radii(both.positions),
+                                 outer_radii = sector_radii(outer.positions);
+    for (size_t sector = 0; sector < radii.size(); ++sector)
+        EXPECT_GT(outer_radii[sector], radii[sector] + 0.0002) << sector;
+
+    const int first = int(both.positions.size());
+    both.positions.insert(both.positions.end(), outer.positions.begin(), outer.positions.end());
+    for (const Triangle& t : outer.triangles)
+        both.triangles.push_back(t + Triangle::Constant(first));
+    EXPECT_TRUE(collision::find_crossings(both.triangles, both.positions).empty());
+
+    // The scene holds both, each by its own label.
+    ASSERT_EQ(result.scene.cloths.size(), 2u);
+    EXPECT_EQ(result.scene.cloths[0].name, "inner");
+    EXPECT_EQ(result.scene.cloths[1].name, "outer");
+    ASSERT_EQ(result.scene.attachments.size(), 2u);
+    EXPECT_EQ(result.scene.attachments[0].cloth, "inner");
+    EXPECT_EQ(result.scene.attachments[1].cloth, "outer");
+    EXPECT_EQ(moments_.front().stage, "inner, sew");
+    EXPECT_EQ(moments_.back().stage, "outer, drape");
+}
+
+/// The time limit passes in the second garment, whose state is kept beside that of the first.
+TEST_F(DrapeTest, KeepsBothTubesAtItsTimeLimit)
+{
+    last_stage_ = "outer, settle";
+    const DrapeResult result =
+        drape_tubes({{"inner", tube(0.36, "strapless_top")}, {"outer", tube(0.42, "strapless_top", 0.16)}});
+    EXPECT_EQ(result.outcome, DrapeOutcome::NotAtRest);
+    EXPECT_NE(result.message.find("in stage outer, settle, after "), std::string::npos) << result.message;
+    ASSERT_EQ(result.garments.size(), 2u);
+    EXPECT_EQ(result.garments[0].stages.back().name, "drape");
+    EXPECT_EQ(result.garments[1].stages.back().name, "settle");
+    for (const DrapedGarment& garment : result.garments)
+        EXPECT_EQ(garment.stages.back().vertices, int(garment.surface.mesh.positions.size())) << garment.name;
 }
 
 TEST_F(DrapeTest, EndsAtItsTimeLimitWithTheLastState)
@@ -88,14 +159,15 @@ TEST_F(DrapeTest, EndsAtItsTimeLimitWithTheLastState)
     const DrapeResult result = drape_tube(tube(0.36, "strapless_top"));
     EXPECT_EQ(result.outcome, DrapeOutcome::NotAtRest);
     EXPECT_NE(result.message.find("in stage settle, after "), std::string::npos) << result.message;
-    EXPECT_EQ(result.stages.back().name, "settle");
-    EXPECT_GE(result.stages.back().frames, 4);
-    EXPECT_GE(result.stages.back().steps, result.stages.back().frames);
-    EXPECT_EQ(result.stages.back().vertices, int(result.surface.mesh.positions.size()));
-    EXPECT_EQ(result.surface.mesh.groups.size(), 2u);
-    EXPECT_EQ(result.seams.size(), 2u);
+    EXPECT_EQ(result.garments[0].stages.back().name, "settle");
+    EXPECT_GE(result.garments[0].stages.back().frames, 4);
+    EXPECT_GE(result.garments[0].stages.back().steps, result.garments[0].stages.back().frames);
+    EXPECT_EQ(result.garments[0].stages.back().vertices,
+              int(result.garments[0].surface.mesh.positions.size()));
+    EXPECT_EQ(result.garments[0].surface.mesh.groups.size(), 2u);
+    EXPECT_EQ(result.garments[0].seams.size(), 2u);
     // The tube surrounds the body by then; placed, its panels were 4 cm away from it.
-    for (const Vec3& x : result.surface.mesh.positions)
+    for (const Vec3& x : result.garments[0].surface.mesh.positions)
         EXPECT_LT(std::hypot(x.x(), x.z()), 0.135);
 
     // Before its first sample a stage loads. Only stages of a known duration tell one.
@@ -119,9 +191,9 @@ TEST_F(DrapeTest, SaysThatALooseTubeSlidOff)
 {
     const DrapeResult result = drape_tube(tube(0.40, "top"));
     EXPECT_EQ(result.outcome, DrapeOutcome::SlidOff) << result.message;
-    ASSERT_EQ(result.slides.size(), 1u);
-    EXPECT_EQ(result.slides[0].label, "top");
-    EXPECT_GT(result.slides[0].slid, kMaxSlide);
+    ASSERT_EQ(result.garments[0].slides.size(), 1u);
+    EXPECT_EQ(result.garments[0].slides[0].label, "top");
+    EXPECT_GT(result.garments[0].slides[0].slid, kMaxSlide);
 }
 
 TEST_F(DrapeTest, DrapesAPanelWithoutSeams)
@@ -132,8 +204,8 @@ TEST_F(DrapeTest, DrapesAPanelWithoutSeams)
     max_motion_ = 0.2;
     const DrapeResult result = drape_tube(pattern);
     EXPECT_EQ(result.outcome, DrapeOutcome::NotAtRest) << result.message; // the panels fall beside the body
-    EXPECT_EQ(result.pieces, 2);
-    EXPECT_TRUE(result.seams.empty());
+    EXPECT_EQ(result.garments[0].pieces, 2);
+    EXPECT_TRUE(result.garments[0].seams.empty());
 }
 
 TEST_F(DrapeTest, NamesASeamThatCannotClose)
@@ -142,7 +214,7 @@ TEST_F(DrapeTest, NamesASeamThatCannotClose)
     const DrapeResult result = drape_tube(tube(0.16, "strapless_top"));
     EXPECT_EQ(result.outcome, DrapeOutcome::Tangled);
     EXPECT_NE(result.message.find("stays open by"), std::string::npos) << result.message;
-    EXPECT_FALSE(result.surface.mesh.lines.empty());
+    EXPECT_FALSE(result.garments[0].surface.mesh.lines.empty());
 }
 
 TEST_F(DrapeTest, SaysThatPanelsStartInTheBody)
@@ -151,7 +223,7 @@ TEST_F(DrapeTest, SaysThatPanelsStartInTheBody)
     EXPECT_EQ(result.outcome, DrapeOutcome::Placement);
     EXPECT_NE(result.message.find("can't be sewn from where they are placed"), std::string::npos)
         << result.message;
-    EXPECT_FALSE(result.surface.mesh.positions.empty());
+    EXPECT_FALSE(result.garments[0].surface.mesh.positions.empty());
 }
 
 } // namespace
