@@ -1,6 +1,6 @@
 # make demo, make test: everything from a fresh clone. The build itself is CMake's (CMakePresets.json).
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench sanitize fuzz build install format lint clean packages lint-packages fuzz-packages
+.PHONY: help demo gallery test bench sanitize fuzz build install format lint clean packages lint-packages fuzz-packages
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -21,10 +21,15 @@ configure = cmake --preset $(1) --log-level=WARNING --no-warn-unused-cli -DCMAKE
 help: ## Show this list
 	@sed -nE 's/^([a-z]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
 
-demo: packages ## Drape a tablecloth and a skirt; pictures and caches go to out/ (GPU=1: with kernels for GPUs)
+demo: packages ## Drape a table, and a mannequin that walks; pictures and caches go to out/ (GPU=1: with kernels for GPUs)
 	@$(call configure,default,-DTOILE_CUDA=$(DEMO_CUDA))
 	@cmake --build --preset default --target toile -j $(JOBS)
 	@cmake/setup/demo.sh $(TOILE)
+
+gallery: packages ## Make the pictures of docs/guide/gallery.md again (an hour on 2 cores; reads TOILE_DATA_DIR)
+	@$(call configure,default,-DTOILE_CUDA=$(DEMO_CUDA))
+	@cmake --build --preset default --target toile -j $(JOBS)
+	@cmake/setup/gallery.sh $(TOILE)
 
 test: build ## Build everything, and run every test
 	@ctest --preset default -j $(JOBS)
