@@ -106,8 +106,8 @@ private:
                 texts.push_back(seam.name +
                                 ": fold_deg and order are not used: seams are sewn at once, flat");
         for (const garment::Panel& panel : pattern.panels)
-            if (panel.layer != 0 || panel.grain_deg != 0.0)
-                texts.push_back("panel \"" + panel.name + "\": layer and grain_deg are not used");
+            if (panel.layer != 0)
+                texts.push_back("panel \"" + panel.name + "\": layer is not used");
         return texts;
     }
 

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "core/base/assert.h"
+#include "garment/pattern/mesh/material_coordinates.h"
 #include "garment/pattern/seam_measure.h"
 
 namespace toile::garment {
@@ -279,9 +280,8 @@ FlatTriangle shape_of(const GatheredTriangle& triangle, const Mat2& gram)
     return shape;
 }
 
-} // namespace
-
-std::vector<FlatTriangle> gathered_rest(const Pattern& pattern, const PatternMesh& mesh)
+/// @param mesh  at rest, before gathering
+std::vector<FlatTriangle> gather(const Pattern& pattern, const PatternMesh& mesh)
 {
     const std::vector<SewnEdge> edges = sewn_edges(pattern, mesh);
     const std::vector<std::optional<Mat2>> strains = vertex_strains(mesh, edges);
@@ -309,6 +309,15 @@ std::vector<FlatTriangle> gathered_rest(const Pattern& pattern, const PatternMes
         rest.push_back(shape_of(triangle, rest_gram_matrix(triangle)));
     }
     return rest;
+}
+
+} // namespace
+
+std::vector<FlatTriangle> gathered_rest(const Pattern& pattern, const PatternMesh& mesh)
+{
+    PatternMesh at_rest = mesh;
+    at_rest.uv = material_coordinates(pattern, mesh);
+    return gather(pattern, at_rest);
 }
 
 } // namespace toile::garment
