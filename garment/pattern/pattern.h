@@ -61,6 +61,8 @@ struct Panel {
     std::string fabric;                ///< name of a preset; empty: the garment's
     std::optional<double> edge_length; ///< [m] of the mesh's edges; absent: the garment's
     double grain_deg = 0.0;            ///< warp from the panel's y axis, counter-clockwise in its own plane
+    double shrink_warp = 1.0;          ///< [-] length at rest over that of the cut panel, along the warp
+    double shrink_weft = 1.0;          ///< [-] along the weft
     int layer = 0;                     ///< higher is further outside where panels lie on each other
 };
 

@@ -79,6 +79,8 @@ void set_panel(const PanelSettings& settings, garment::Panel& panel)
     panel.fabric = settings.fabric.value_or("");
     panel.edge_length = settings.edge;
     panel.grain_deg = settings.grain_deg;
+    panel.shrink_warp = settings.shrink.warp.value_or(1.0);
+    panel.shrink_weft = settings.shrink.weft.value_or(1.0);
     panel.place = settings.place;
     panel.layer = settings.layer;
 }

@@ -68,6 +68,8 @@ void describe(V& v, PanelSettings& p)
             "Target edge length of the mesh; absent: the garment's.");
     v.field("grain_deg", p.grain_deg, scene_format::kAngle,
             "Warp from the panel's vertical, counter-clockwise in the drawing.");
+    v.pair("shrink", p.shrink, between(0.5, 1.5),
+           "Length at rest over that of the panel as it is cut and sewn, e.g. 0.95; absent: 1.");
     v.field(
         "copies", p.copies, between(1, 16),
         "Number of panels cut from this one: NAME, NAME_2, NAME_3 and so on, each 1 cm outside of the one "

@@ -24,6 +24,7 @@ struct PanelSettings {
     std::optional<std::string> fabric; ///< name of a preset
     std::optional<double> edge;        ///< [m] of the mesh's edges
     double grain_deg = 0.0;
+    scene::WarpWeft shrink; ///< [-] absent: 1
     int copies = 1;
     bool mirror = false; ///< every second copy is a mirror image
     std::optional<garment::BodyPlacement> place;

@@ -20,10 +20,11 @@ inline constexpr double kEvenSides = 1e-3;
 ///
 /// H [-] is the least strain with d^T H d = log(target length / own length) along the sewn edges d at the
 /// vertex; w is 1 on the seam, 1/2 one vertex from it, 0 beyond. Sewn edges have exactly their target length,
-/// the same on both sides. Triangles that share an edge agree about its length, so that cloth can buckle into
-/// the shape without strain. A triangle that these lengths would collapse is deformed by the mean of its H.
-/// The warp of a triangle keeps its direction. Without gathers the result is material_coordinates(), bit for
-/// bit.
+/// the same on both sides. Sides of panels that shrink are compared as they are then; they
+/// meet where they were sewn before. Triangles that share an edge agree about its length, so that cloth can
+/// buckle into the shape without strain. A triangle that these lengths would collapse is deformed by the mean
+/// of its H. The warp of a triangle keeps its direction. Without gathers the result is
+/// material_coordinates(), bit for bit.
 ///
 /// @return [triangles] corners in the order of mesh.triangles, warp upwards, about the centroid that they
 /// have

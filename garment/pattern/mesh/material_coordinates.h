@@ -6,11 +6,14 @@
 
 namespace toile::garment {
 
+/// Whether a panel is smaller or larger at rest than it is cut.
+bool shrinks(const Panel& panel);
+
 /// Vertices of panels at rest in the axes of their weave: u along the weft, v along the warp.
 ///
-///   m = R(-grain) uv,   R(a) the rotation by a, counter-clockwise
+///   m = diag(shrink_weft, shrink_warp) R(-grain) uv,   R(a) the rotation by a, counter-clockwise
 ///
-/// Panels whose warp is vertical keep their coordinates, bit for bit.
+/// Panels whose warp is vertical and that do not shrink keep their coordinates, bit for bit.
 /// @return [vertices] [m]
 std::vector<Vec2> material_coordinates(const Pattern& pattern, const PatternMesh& mesh);
 

@@ -71,11 +71,13 @@ TEST_F(GarmentFile, SetsUnits)
 TEST_F(GarmentFile, SetsPanels)
 {
     const Pattern pattern = read(R"("panels": {"front": {"fabric": "denim", "edge": 0.008, "grain_deg": 45,
-        "layer": 2, "place": {"at": "left_arm", "angle_deg": 30, "height": 0.9, "distance": 0.05, "wrap": false}}})");
+        "shrink": {"warp": 0.95}, "layer": 2, "place": {"at": "left_arm", "angle_deg": 30, "height": 0.9, "distance": 0.05, "wrap": false}}})");
     const Panel& front = panel_of(pattern, "front");
     EXPECT_EQ(front.fabric, "denim");
     EXPECT_EQ(front.edge_length, 0.008);
     EXPECT_EQ(front.grain_deg, 45.0);
+    EXPECT_EQ(front.shrink_warp, 0.95);
+    EXPECT_EQ(front.shrink_weft, 1.0);
     EXPECT_EQ(front.layer, 2);
     ASSERT_TRUE(front.place);
     EXPECT_EQ(front.place->at, BodySegment::LeftArm);
@@ -238,6 +240,10 @@ TEST_F(GarmentFile, NamesMistakes)
          "panels.front.fabric: no fabric is named \"demin\"; did you mean \"denim\"?"},
         {R"("panels": {"front": {"edge": 5}})",
          "panels.front.edge: 5 is out of range; give a number from 0.0005 to 1 m"},
+        {R"("panels": {"front": {"shrink": {"warp": 5}}})",
+         "panels.front.shrink.warp: 5 is out of range; give a number from 0.5 to 1.5"},
+        {R"("panels": {"front": {"shrink": {"wrap": 0.9}}})",
+         "panels.front.shrink.wrap: unknown key; did you mean \"warp\"?"},
         {R"("panels": {"front": {"mirror": true}})",
          "panels.front.mirror: has no effect on a panel that is cut once; write \"copies\": 2"},
         {R"("panels": {"front": {"copies": 2}, "front_2": {"copies": 2}})",

@@ -40,6 +40,20 @@ TEST(MaterialCoordinates, HaveTheWarpUpwards)
         EXPECT_EQ(material[size_t(v)], mesh.uv[size_t(v)]);
 }
 
+TEST(MaterialCoordinates, ShrinkAlongTheGrain)
+{
+    Pattern pattern = pattern_of(rectangle("front", 0.2, 0.3));
+    pattern.panels[0].grain_deg = 20.0;
+    pattern.panels[0].shrink_warp = 0.9;
+    pattern.panels[0].shrink_weft = 0.95;
+    const PatternMesh mesh = mesh_pattern(pattern, {0.05, {}, {}});
+    const std::vector<Vec2> material = material_coordinates(pattern, mesh);
+    for (size_t v = 0; v < material.size(); ++v) {
+        EXPECT_NEAR(material[v].x(), 0.95 * weft(20.0).dot(mesh.uv[v]), 1e-15);
+        EXPECT_NEAR(material[v].y(), 0.9 * warp(20.0).dot(mesh.uv[v]), 1e-15);
+    }
+}
+
 /// Gathers neither depend on the grain, nor does it bend their triangles.
 TEST(MaterialCoordinates, TurnGatheredTriangles)
 {
