@@ -89,11 +89,19 @@ struct Seam {
     Gather gather = Gather::Short; ///< length of the sewn line, where one side is longer
 };
 
+/// Elastic sewn along edges, which gathers the cloth as it contracts.
+struct Elastic {
+    std::vector<EdgePart> edges;
+    double ratio = 0.8;      ///< [-] of its length at rest over that of the edges
+    double stiffness = 20.0; ///< [N] tension per unit of its strain
+};
+
 struct Pattern {
     std::string source; ///< file, for messages
     std::string description;
     std::vector<Panel> panels;
     std::vector<Seam> seams;
+    std::vector<Elastic> elastics;
     std::vector<std::filesystem::path> files; ///< that it was read from
 };
 

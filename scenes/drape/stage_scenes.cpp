@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "garment/fabric/fabric.h"
+#include "scenes/drape/elastics.h"
 
 namespace toile::scenes {
 
@@ -64,6 +65,7 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 {
     Scene scene = scene_of("settle", mesh.surface(x), damped_fabric(kFallingDamping));
+    scene.cloths[0].elastics = elastics_of(pattern_, mesh);
     hold_labels(mesh, scene, true);
     return scene;
 }
@@ -72,6 +74,7 @@ Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::
                         bool holds_all) const
 {
     Scene scene = scene_of(stage, mesh.surface(x), damped_fabric(kHangingDamping));
+    scene.cloths[0].elastics = elastics_of(pattern_, mesh);
     hold_labels(mesh, scene, holds_all);
     return scene;
 }

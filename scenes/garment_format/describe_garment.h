@@ -101,6 +101,18 @@ void describe(V& v, SeamEntry& s)
 }
 
 template <typename V>
+void describe(V& v, ElasticEntry& e)
+{
+    using scene_format::between;
+    v.required("edges", e.edges,
+               "Edges that it runs along, each by itself: PANEL.EDGE, or a part, PANEL.EDGE[0.2:0.6], to the "
+               "nearest vertices of the mesh. Of a seam, name one side.");
+    v.required("ratio", e.ratio, between(0.2, 1.0), "Length of the elastic at rest over that of the edges.");
+    v.required("stiffness", e.stiffness, scene_format::above_zero(1e5, "N"),
+               "Tension per unit of strain of the elastic; it does not push.");
+}
+
+template <typename V>
 void describe(V& v, GarmentFile& g)
 {
     v.version("toile_garment", 1, "Version of the format.");
@@ -109,6 +121,9 @@ void describe(V& v, GarmentFile& g)
     v.field("panels", g.panels, "Settings of panels, by name.");
     v.field("seams", g.seams,
             "Seams besides the patterns' stitches. One between the same two edges replaces the stitch.");
+    v.field("elastics", g.elastics,
+            "Elastics along edges, which gather the cloth as they contract, from the moment it falls into "
+            "place on.");
 }
 
 } // namespace toile::garment_format

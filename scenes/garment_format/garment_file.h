@@ -44,11 +44,19 @@ struct SeamEntry {
     garment::Gather gather = garment::Gather::Short;
 };
 
+/// An elastic as written.
+struct ElasticEntry {
+    std::vector<std::string> edges;
+    double ratio = 0.8;      ///< [-]
+    double stiffness = 20.0; ///< [N]
+};
+
 struct GarmentFile {
     std::string description;
     std::vector<PatternFile> patterns;
     std::map<std::string, PanelSettings> panels; ///< by name
     std::vector<SeamEntry> seams;
+    std::vector<ElasticEntry> elastics;
 };
 
 } // namespace toile::garment_format

@@ -169,6 +169,9 @@ std::string DrapeFiles::scene_text(const Continuation& continuation, const scene
                        {"fabric", result.scene.cloths.at(0).fabric}}};
     if (!result.surface.rest.empty())
         json["cloths"][0]["rest_file"] = rest_mesh().filename().string();
+    for (const scene::Elastic& elastic : result.scene.cloths.at(0).elastics)
+        json["cloths"][0]["elastics"].push_back(
+            {{"vertices", elastic.vertices}, {"ratio", elastic.ratio}, {"stiffness", elastic.stiffness}});
     for (const scene::Attachment& attachment : result.scene.attachments)
         json["attachments"].push_back(
             {{"cloth", name_},
