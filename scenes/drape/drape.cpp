@@ -102,12 +102,8 @@ private:
     {
         std::vector<std::string> texts;
         for (const garment::Seam& seam : pattern.seams)
-            if (seam.fold_deg != 0.0 || seam.order != 0)
-                texts.push_back(seam.name +
-                                ": fold_deg and order are not used: seams are sewn at once, flat");
-        for (const garment::Panel& panel : pattern.panels)
-            if (panel.layer != 0)
-                texts.push_back("panel \"" + panel.name + "\": layer is not used");
+            if (seam.fold_deg != 0.0)
+                texts.push_back(seam.name + ": fold_deg is not used: seams are sewn flat");
         return texts;
     }
 
@@ -185,7 +181,7 @@ private:
     bool sew(const GarmentMesh& mesh, std::vector<Vec3>& x)
     {
         const Clock clock;
-        SeamClosing seams(mesh, std::move(x));
+        SeamClosing seams(mesh, std::move(x), orders_of(pattern_));
         int frames = 0;
         bool goes_on = true;
         while (goes_on && !seams.are_closed()) {
@@ -200,10 +196,10 @@ private:
             result_.seams.push_back({pattern_.seams[s].name, gaps[s]});
         if (seams.are_closed())
             return true;
-        const auto widest = std::max_element(gaps.begin(), gaps.end());
+        const auto widest = size_t(seams.widest());
         result_.outcome = DrapeOutcome::Tangled;
-        result_.message = pattern_.seams[size_t(widest - gaps.begin())].name + " stays open by " +
-                          std::to_string(1000.0 * *widest) + " mm";
+        result_.message =
+            pattern_.seams[widest].name + " stays open by " + std::to_string(1000.0 * gaps[widest]) + " mm";
         result_.surface = seams.surface();
         return false;
     }
