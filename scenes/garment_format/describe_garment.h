@@ -79,7 +79,7 @@ void describe(V& v, PanelSettings& p)
             "right change places in their labels. Their edges count backwards: 0 is the last.");
     v.field("place", p.place, "Where it starts on the body; absent: where the pattern puts it.");
     v.field("layer", p.layer, between(-100, 100),
-            "Order of panels that lie on each other; higher is further outside.");
+            "Order of panels that lie on each other; each starts 1 cm outside of the layer below.");
 }
 
 template <typename V>
