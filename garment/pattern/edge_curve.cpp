@@ -114,4 +114,9 @@ double signed_area(const Panel& panel)
     return 0.5 * twice;
 }
 
+Vec3 outward(const Panel& panel)
+{
+    return (signed_area(panel) < 0.0 ? -1.0 : 1.0) * panel.placement.linear().col(2);
+}
+
 } // namespace toile::garment

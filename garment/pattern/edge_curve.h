@@ -26,4 +26,7 @@ private:
 /// Signed area of a panel [m^2]: positive if its loop runs counter-clockwise in its own plane.
 double signed_area(const Panel& panel);
 
+/// Normal of the panel's loop where it is placed, which points away from the body. World [-]
+Vec3 outward(const Panel& panel);
+
 } // namespace toile::garment

@@ -61,6 +61,8 @@ struct Panel {
     std::string fabric;                ///< name of a preset; empty: the garment's
     std::optional<double> edge_length; ///< [m] of the mesh's edges; absent: the garment's
     double grain_deg = 0.0;            ///< warp from the panel's y axis, counter-clockwise in its own plane
+    double shrink_warp = 1.0;          ///< [-] length at rest over that of the cut panel, along the warp
+    double shrink_weft = 1.0;          ///< [-] along the weft
     int layer = 0;                     ///< higher is further outside where panels lie on each other
 };
 
@@ -87,11 +89,19 @@ struct Seam {
     Gather gather = Gather::Short; ///< length of the sewn line, where one side is longer
 };
 
+/// Elastic sewn along edges, which gathers the cloth as it contracts.
+struct Elastic {
+    std::vector<EdgePart> edges;
+    double ratio = 0.8;      ///< [-] of its length at rest over that of the edges
+    double stiffness = 20.0; ///< [N] tension per unit of its strain
+};
+
 struct Pattern {
     std::string source; ///< file, for messages
     std::string description;
     std::vector<Panel> panels;
     std::vector<Seam> seams;
+    std::vector<Elastic> elastics;
     std::vector<std::filesystem::path> files; ///< that it was read from
 };
 

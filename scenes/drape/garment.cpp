@@ -47,11 +47,8 @@ std::vector<std::string> Garment::not_used() const
 {
     std::vector<std::string> texts;
     for (const garment::Seam& seam : pattern.seams)
-        if (seam.fold_deg != 0.0 || seam.order != 0)
-            texts.push_back(seam.name + ": fold_deg and order are not used: seams are sewn at once, flat");
-    for (const garment::Panel& panel : pattern.panels)
-        if (panel.layer != 0 || panel.grain_deg != 0.0)
-            texts.push_back("panel \"" + panel.name + "\": layer and grain_deg are not used");
+        if (seam.fold_deg != 0.0)
+            texts.push_back(seam.name + ": fold_deg is not used: seams are sewn flat");
     return texts;
 }
 

@@ -117,7 +117,7 @@ bool GarmentDraping::is_finite(const StepReport& report)
 bool GarmentDraping::sew(const GarmentMesh& mesh, std::vector<Vec3>& x)
 {
     const Clock clock;
-    SeamClosing seams(mesh, std::move(x));
+    SeamClosing seams(mesh, std::move(x), orders_of(garment_.pattern));
     int frames = 0;
     bool goes_on = true;
     while (goes_on && !seams.are_closed()) {
@@ -132,9 +132,9 @@ bool GarmentDraping::sew(const GarmentMesh& mesh, std::vector<Vec3>& x)
         result_.garments[number_].seams.push_back({garment_.pattern.seams[s].name, gaps[s]});
     if (seams.are_closed())
         return true;
-    const auto widest = std::max_element(gaps.begin(), gaps.end());
-    fail(DrapeOutcome::Tangled, garment_.pattern.seams[size_t(widest - gaps.begin())].name +
-                                    " stays open by " + std::to_string(1000.0 * *widest) + " mm");
+    const auto widest = size_t(seams.widest());
+    fail(DrapeOutcome::Tangled, garment_.pattern.seams[widest].name + " stays open by " +
+                                    std::to_string(1000.0 * gaps[widest]) + " mm");
     return false;
 }
 

@@ -34,9 +34,9 @@ GarmentMesh::GarmentMesh(const garment::Pattern& pattern, double edge, double le
 {
     for (const garment::Panel& panel : pattern.panels)
         panel_names.push_back(panel.name);
-    gathered = garment::gathered_rest(pattern, panels);
-    if (is_texture(gathered, panels))
-        gathered.clear();
+    rest = garment::gathered_rest(pattern, panels);
+    if (is_texture(rest, panels))
+        rest.clear();
 }
 
 GarmentSurface GarmentMesh::surface(const garment::SewnMesh& partly, View<const Vec3> x) const
@@ -52,7 +52,7 @@ GarmentSurface GarmentMesh::surface(const garment::SewnMesh& partly, View<const 
     }
     for (size_t p = 0; p < panel_names.size(); ++p)
         begin_group(mesh, panel_names[p], panels.first_triangle[p]);
-    surface.rest = gathered;
+    surface.rest = rest;
     for (size_t t = 0; t < surface.rest.size(); ++t)
         if (partly.is_turned[size_t(panels.panel_of_triangle(int(t)))])
             std::swap(surface.rest[t][1], surface.rest[t][2]);

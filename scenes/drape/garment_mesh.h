@@ -12,7 +12,8 @@ namespace toile::scenes {
 /// A garment in space, with its panels as texture and rest shape.
 struct GarmentSurface {
     ObjMesh mesh; ///< texture coordinates are those of the panels [m], and a group names each panel
-    /// [triangles] rest shape, where it isn't the texture: seams are gathered [m]
+    /// [triangles] rest shape with the warp upwards, where it isn't the texture: seams are gathered, or
+    /// panels have a grain [m]
     std::vector<FlatTriangle> rest;
 
     /// Mesh whose texture coordinates are `rest`, with corners of its own for each triangle.
@@ -24,7 +25,7 @@ struct GarmentMesh {
     garment::PatternMesh panels;
     garment::SewnMesh sewn;
     std::vector<std::string> panel_names; ///< [panels]
-    std::vector<FlatTriangle> gathered; ///< [triangles] garment::gathered_rest(); empty: nothing is gathered
+    std::vector<FlatTriangle> rest;       ///< [triangles] garment::gathered_rest(); empty: the texture
 
     /// @param edge   [m] of panels that have no edge length of their own
     /// @param least  [m] of any

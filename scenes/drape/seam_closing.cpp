@@ -11,22 +11,44 @@ double length(const std::array<int, 2>& thread, View<const Vec3> x)
     return (x[thread[0]] - x[thread[1]]).norm();
 }
 
+double longest(const std::vector<std::array<int, 2>>& threads, View<const Vec3> x)
+{
+    double most = 0.0;
+    for (const auto& thread : threads)
+        most = std::max(most, length(thread, x));
+    return most;
+}
+
 } // namespace
 
-SeamClosing::SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x)
-    : mesh_(mesh), closed_(mesh.panels), open_(mesh.panels.stitches), x_(std::move(x)),
-      welded_gap_(open_.size(), 0.0)
+SeamClosing::SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x, std::vector<int> order)
+    : mesh_(mesh), order_(std::move(order)), closed_(mesh.panels), open_(mesh.panels.stitches),
+      x_(std::move(x)), welded_gap_(open_.size(), 0.0)
 {
+    order_.resize(open_.size(), 0);
     for (auto& seam : closed_.stitches)
         seam.clear();
     sewn_ = garment::sewn_mesh(closed_);
 }
 
+std::vector<size_t> SeamClosing::active() const
+{
+    std::vector<size_t> seams;
+    for (size_t s = 0; s < open_.size(); ++s) {
+        if (open_[s].empty() || (!seams.empty() && order_[s] > order_[seams[0]]))
+            continue;
+        if (!seams.empty() && order_[s] < order_[seams[0]])
+            seams.clear();
+        seams.push_back(s);
+    }
+    return seams;
+}
+
 GarmentSurface SeamClosing::surface() const
 {
     GarmentSurface surface = mesh_.surface(sewn_, toile::scenes::weld(sewn_, x_));
-    for (const auto& seam : open_)
-        for (const auto& [a, b] : seam)
+    for (const size_t s : active())
+        for (const auto& [a, b] : open_[s])
             if (sewn_.welded_of[a] != sewn_.welded_of[b])
                 surface.mesh.lines.push_back({sewn_.welded_of[a], sewn_.welded_of[b]});
     return surface;
@@ -37,7 +59,7 @@ void SeamClosing::move(View<const Vec3> surface) { x_ = unweld(sewn_, surface); 
 int SeamClosing::weld()
 {
     int count = 0;
-    for (size_t s = 0; s < open_.size(); ++s) {
+    for (const size_t s : active()) {
         const auto first_short =
             std::stable_partition(open_[s].begin(), open_[s].end(),
                                   [&](const auto& thread) { return length(thread, x_) > kMaxGap; });
@@ -60,28 +82,47 @@ bool SeamClosing::are_closed() const
 
 bool SeamClosing::can_weld() const
 {
-    return std::all_of(open_.begin(), open_.end(), [&](const auto& seam) {
-        return std::all_of(seam.begin(), seam.end(),
-                           [&](const auto& thread) { return length(thread, x_) <= kMaxGap; });
-    });
+    for (const size_t s : active())
+        if (longest(open_[s], x_) > kMaxGap)
+            return false;
+    return true;
 }
 
 double SeamClosing::open_length() const
 {
     double sum = 0.0;
-    for (const auto& seam : open_)
-        for (const auto& thread : seam)
+    for (const size_t s : active())
+        for (const auto& thread : open_[s])
             sum += length(thread, x_);
     return sum;
+}
+
+int SeamClosing::widest() const
+{
+    int widest = -1;
+    double most = -1.0;
+    for (const size_t s : active())
+        if (const double gap = longest(open_[s], x_); gap > most) {
+            most = gap;
+            widest = int(s);
+        }
+    return widest;
 }
 
 std::vector<double> SeamClosing::gaps() const
 {
     std::vector<double> gaps = welded_gap_;
     for (size_t s = 0; s < open_.size(); ++s)
-        for (const auto& thread : open_[s])
-            gaps[s] = std::max(gaps[s], length(thread, x_));
+        gaps[s] = std::max(gaps[s], longest(open_[s], x_));
     return gaps;
+}
+
+std::vector<int> orders_of(const garment::Pattern& pattern)
+{
+    std::vector<int> orders;
+    for (const garment::Seam& seam : pattern.seams)
+        orders.push_back(seam.order);
+    return orders;
 }
 
 } // namespace toile::scenes

@@ -11,29 +11,33 @@ namespace toile::scenes {
 /// Threads that have become short are welded before the others are pulled on: until then the sheets beside
 /// them are strangers to each other, and contact keeps them apart where their edges have wound around each
 /// other.
+///
+/// Seams of the lowest order that is open are active: the threads of others neither pull nor are welded.
 class SeamClosing {
 public:
     /// Gap of threads that are welded [m].
     static constexpr double kMaxGap = 0.002;
 
-    /// @param mesh  kept by reference
-    /// @param x     [vertices of the panels] [m]
-    SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x);
+    /// @param mesh   kept by reference
+    /// @param x      [vertices of the panels] [m]
+    /// @param order  [seams] lower ones are sewn first; empty: all at once
+    SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x, std::vector<int> order = {});
 
-    /// The panels, welded where seams are closed, with a line for every thread that is open.
+    /// The panels, welded where seams are closed, with a line for every active thread.
     GarmentSurface surface() const;
 
     /// Moves the panels with the surface.
     /// @param surface  [vertices of surface()] [m]
     void move(View<const Vec3> surface);
 
-    /// Welds open threads shorter than kMaxGap. Changes the vertices of surface(); positions stay.
+    /// Welds active threads shorter than kMaxGap. Changes the vertices of surface(); positions stay.
     /// @return number of threads
     int weld();
 
     bool are_closed() const;    ///< all seams
-    bool can_weld() const;      ///< all threads that are open
-    double open_length() const; ///< sum of the lengths of open threads [m]
+    bool can_weld() const;      ///< all active threads
+    double open_length() const; ///< sum of the lengths of active threads [m]
+    int widest() const;         ///< active seam with the longest thread; -1: all are closed
 
     const std::vector<Vec3>& positions() const { return x_; } ///< [vertices of the panels] [m]
 
@@ -41,12 +45,21 @@ public:
     std::vector<double> gaps() const;
 
 private:
+    using Threads = std::vector<std::array<int, 2>>;
+
+    /// Seams that are active. They stay so until all of them are closed.
+    std::vector<size_t> active() const;
+
     const GarmentMesh& mesh_;
-    garment::PatternMesh closed_;                       ///< the panels with the threads that are welded
-    garment::SewnMesh sewn_;                            ///< of closed_
-    std::vector<std::vector<std::array<int, 2>>> open_; ///< [seams][threads]
+    std::vector<int> order_;      ///< [seams]
+    garment::PatternMesh closed_; ///< the panels with the threads that are welded
+    garment::SewnMesh sewn_;      ///< of closed_
+    std::vector<Threads> open_;   ///< [seams]
     std::vector<Vec3> x_;
     std::vector<double> welded_gap_; ///< [seams] longest when it was welded [m]
 };
+
+/// Order of each seam of a pattern.
+std::vector<int> orders_of(const garment::Pattern& pattern);
 
 } // namespace toile::scenes

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "garment/fabric/fabric.h"
+#include "scenes/drape/elastics.h"
 
 namespace toile::scenes {
 
@@ -71,6 +72,7 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 {
     Scene scene = still_scene_of("settle", mesh.surface(x), damped_fabric(garment_, kFallingDamping));
+    scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
     hold_labels(garment_, mesh, scene, true);
     return scene;
 }
@@ -79,8 +81,11 @@ Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::
                         bool holds_all) const
 {
     Scene scene = scene_of(stage, mesh.surface(x), damped_fabric(garment_, kHangingDamping));
-    for (const WornGarment& worn : worn_)
-        hold_labels(worn.garment, worn.mesh, scene, false);
+    for (size_t g = 0; g < worn_.size(); ++g) {
+        scene.cloths[g].elastics = elastics_of(worn_[g].garment.pattern, worn_[g].mesh);
+        hold_labels(worn_[g].garment, worn_[g].mesh, scene, false);
+    }
+    scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
     hold_labels(garment_, mesh, scene, holds_all);
     return scene;
 }

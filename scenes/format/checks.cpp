@@ -158,6 +158,22 @@ void check_print(const Document& document, const std::string& key_path, const Cl
                         "is the former name of print, which is given too; remove it");
 }
 
+void check_elastics(const Document& document, const std::string& key_path, const Cloth& cloth,
+                    SolverMethod method)
+{
+    if (cloth.elastics.empty())
+        return;
+    if (cloth.subdivide > 0)
+        document.refuse(key_path, "run along edges of the file, which subdivide splits; remove one of them");
+    if (replaces_minimiser(method))
+        document.refuse(key_path, "are unknown to solver.method " + as_written(word_of(method)) +
+                                      "; choose another method, or remove them");
+    for (size_t i = 0; i < cloth.elastics.size(); ++i)
+        if (cloth.elastics[i].vertices.size() < 2)
+            document.refuse(below(below(key_path, i), "vertices"),
+                            "an elastic runs along edges; name two vertices at least");
+}
+
 void check_cloths(const Document& document, const scenes::Scene& scene)
 {
     if (scene.cloths.empty() && scene.solids.empty())
@@ -174,6 +190,7 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
             check_skirt(document, below(key_path, "skirt"), *skirt);
         check_rest(document, key_path, cloth);
         check_print(document, key_path, cloth);
+        check_elastics(document, below(key_path, "elastics"), cloth, scene.solver.method);
         if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMaxVertices)
             document.refuse(key_path,
                             "resolution and subdivide make more than 5 million vertices; choose a " +

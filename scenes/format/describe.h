@@ -160,6 +160,17 @@ void describe(V& v, Sewing& s)
 }
 
 template <typename V>
+void describe(V& v, Elastic& e)
+{
+    v.required("vertices", e.vertices, between(0, 1e8),
+               "Indices into the cloth's mesh, counted from 0: a path along its edges. A closed one ends with "
+               "its first.");
+    v.required("ratio", e.ratio, between(0.2, 1.0), "Length of the elastic at rest over that of the edges.");
+    v.required("stiffness", e.stiffness, above_zero(1e5, "N"),
+               "Tension per unit of strain of the elastic; it does not push.");
+}
+
+template <typename V>
 void describe(V& v, Cloth& c)
 {
     v.required("name", c.name, "Name, for attachments, messages and the cache's file.");
@@ -193,6 +204,9 @@ void describe(V& v, Cloth& c)
     v.field(
         "sewing", c.sewing,
         "Threads that pull together the vertices that lines (l) of the file join, as of panels to be sewn.");
+    v.field("elastics", c.elastics,
+            "Elastics along edges of the mesh, which gather the cloth as they contract. Not with subdivide, "
+            "xpbd and vbd, nor on a GPU.");
     v.field("layer", c.layer, between(-100, 100),
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");

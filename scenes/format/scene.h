@@ -150,6 +150,13 @@ struct Sewing {
     double max_force = 0.5;    ///< [N] of each
 };
 
+/// Elastic that gathers the cloth along edges of its mesh.
+struct Elastic {
+    std::vector<int> vertices; ///< along edges; the first again in the end of a closed one
+    double ratio = 0.8;        ///< [-] of its length at rest over that of the edges
+    double stiffness = 20.0;   ///< [N] tension per unit of its strain
+};
+
 struct Cloth {
     std::string name;
     ClothShape shape;
@@ -167,6 +174,7 @@ struct Cloth {
     double grain_deg = 0.0;              ///< rotation of the warp direction in the cloth plane
     std::optional<double> thickness;     ///< [m] replaces the fabric's
     std::optional<Sewing> sewing;        ///< absent: lines of the file are left out
+    std::vector<Elastic> elastics;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     Print print = Print::Plain;          ///< in pictures

@@ -79,6 +79,8 @@ void set_panel(const PanelSettings& settings, garment::Panel& panel)
     panel.fabric = settings.fabric.value_or("");
     panel.edge_length = settings.edge;
     panel.grain_deg = settings.grain_deg;
+    panel.shrink_warp = settings.shrink.warp.value_or(1.0);
+    panel.shrink_weft = settings.shrink.weft.value_or(1.0);
     panel.place = settings.place;
     panel.layer = settings.layer;
 }
@@ -173,6 +175,16 @@ void add_seams(const Document& document, const GarmentFile& file, Pattern& patte
     pattern.seams.insert(pattern.seams.end(), added.begin(), added.end());
 }
 
+void add_elastics(const Document& document, const GarmentFile& file, Pattern& pattern)
+{
+    for (size_t i = 0; i < file.elastics.size(); ++i) {
+        const ElasticEntry& entry = file.elastics[i];
+        pattern.elastics.push_back(
+            {chain_of(document, below(below("elastics", i), "edges"), entry.edges, pattern), entry.ratio,
+             entry.stiffness});
+    }
+}
+
 } // namespace
 
 Pattern assemble(const Document& document, const GarmentFile& file, const std::vector<Pattern>& parts)
@@ -191,6 +203,7 @@ Pattern assemble(const Document& document, const GarmentFile& file, const std::v
     check_settings(document, file, original_count, pattern);
     set_panels(file, original_count, pattern);
     add_seams(document, file, pattern);
+    add_elastics(document, file, pattern);
     return pattern;
 }
 

@@ -65,12 +65,6 @@ EdgePart mirrored(const EdgePart& part, const Panel& panel)
     return {part.panel, int(panel.edges.size()) - 1 - part.edge, 1.0 - part.from, 1.0 - part.to};
 }
 
-/// Normal of the panel's loop in the world.
-Vec3 outward(const Panel& panel)
-{
-    return (garment::signed_area(panel) < 0.0 ? -1.0 : 1.0) * panel.placement.linear().col(2);
-}
-
 Panel copy_of(const Panel& panel, int k, const Cut& cut)
 {
     Panel copy = panel;

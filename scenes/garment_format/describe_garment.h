@@ -68,6 +68,8 @@ void describe(V& v, PanelSettings& p)
             "Target edge length of the mesh; absent: the garment's.");
     v.field("grain_deg", p.grain_deg, scene_format::kAngle,
             "Warp from the panel's vertical, counter-clockwise in the drawing.");
+    v.pair("shrink", p.shrink, between(0.5, 1.5),
+           "Length at rest over that of the panel as it is cut and sewn, e.g. 0.95; absent: 1.");
     v.field(
         "copies", p.copies, between(1, 16),
         "Number of panels cut from this one: NAME, NAME_2, NAME_3 and so on, each 1 cm outside of the one "
@@ -77,7 +79,7 @@ void describe(V& v, PanelSettings& p)
             "right change places in their labels. Their edges count backwards: 0 is the last.");
     v.field("place", p.place, "Where it starts on the body; absent: where the pattern puts it.");
     v.field("layer", p.layer, between(-100, 100),
-            "Order of panels that lie on each other; higher is further outside.");
+            "Order of panels that lie on each other; each starts 1 cm outside of the layer below.");
 }
 
 template <typename V>
@@ -99,6 +101,18 @@ void describe(V& v, SeamEntry& s)
 }
 
 template <typename V>
+void describe(V& v, ElasticEntry& e)
+{
+    using scene_format::between;
+    v.required("edges", e.edges,
+               "Edges that it runs along, each by itself: PANEL.EDGE, or a part, PANEL.EDGE[0.2:0.6], to the "
+               "nearest vertices of the mesh. Of a seam, name one side.");
+    v.required("ratio", e.ratio, between(0.2, 1.0), "Length of the elastic at rest over that of the edges.");
+    v.required("stiffness", e.stiffness, scene_format::above_zero(1e5, "N"),
+               "Tension per unit of strain of the elastic; it does not push.");
+}
+
+template <typename V>
 void describe(V& v, GarmentFile& g)
 {
     v.version("toile_garment", 1, "Version of the format.");
@@ -107,6 +121,9 @@ void describe(V& v, GarmentFile& g)
     v.field("panels", g.panels, "Settings of panels, by name.");
     v.field("seams", g.seams,
             "Seams besides the patterns' stitches. One between the same two edges replaces the stitch.");
+    v.field("elastics", g.elastics,
+            "Elastics along edges, which gather the cloth as they contract, from the moment it falls into "
+            "place on.");
 }
 
 } // namespace toile::garment_format

@@ -24,6 +24,7 @@ struct PanelSettings {
     std::optional<std::string> fabric; ///< name of a preset
     std::optional<double> edge;        ///< [m] of the mesh's edges
     double grain_deg = 0.0;
+    scene::WarpWeft shrink; ///< [-] absent: 1
     int copies = 1;
     bool mirror = false; ///< every second copy is a mirror image
     std::optional<garment::BodyPlacement> place;
@@ -43,11 +44,19 @@ struct SeamEntry {
     garment::Gather gather = garment::Gather::Short;
 };
 
+/// An elastic as written.
+struct ElasticEntry {
+    std::vector<std::string> edges;
+    double ratio = 0.8;      ///< [-]
+    double stiffness = 20.0; ///< [N]
+};
+
 struct GarmentFile {
     std::string description;
     std::vector<PatternFile> patterns;
     std::map<std::string, PanelSettings> panels; ///< by name
     std::vector<SeamEntry> seams;
+    std::vector<ElasticEntry> elastics;
 };
 
 } // namespace toile::garment_format

@@ -1,5 +1,9 @@
 #include "scenes/surfaces/cloth_state.h"
 
+#include <algorithm>
+
+#include "core/base/error.h"
+
 namespace toile::scenes {
 
 std::vector<Vec3> ClothState::to_file(View<const Vec3> x) const
@@ -29,6 +33,18 @@ std::vector<Vec3> ClothState::from_file(View<const Vec3> x) const
 int ClothState::file_vertex(int vertex) const
 {
     return vertex < int(numbers.file_vertex.size()) ? numbers.file_vertex[size_t(vertex)] : vertex;
+}
+
+int ClothState::vertex_of_file(int number, const std::string& location) const
+{
+    const int count = int(numbers.vertex.empty() ? rest.positions.size() : numbers.vertex.size());
+    if (number < 0 || number >= count)
+        throw InvalidInput(location + ": vertex " + std::to_string(number) + " is out of range; \"" + name +
+                           "\" has vertices 0 to " + std::to_string(count - 1));
+    if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), number))
+        throw InvalidInput(location + ": vertex " + std::to_string(number) + " of \"" + name +
+                           "\" has no face; name vertices of the surface");
+    return numbers.vertex.empty() ? number : numbers.vertex[size_t(number)];
 }
 
 std::vector<unsigned char> ClothState::attached(double t) const

@@ -33,6 +33,10 @@ struct ClothState {
     std::vector<Vec3> from_file(View<const Vec3> x) const;
     /// Number in the file of a vertex of the cloth.
     int file_vertex(int vertex) const;
+    /// Vertex of the cloth with a number in the file.
+    /// @param location  begins messages
+    /// @throws InvalidInput for a number that is out of range, or of a vertex without a face
+    int vertex_of_file(int number, const std::string& location) const;
 
     struct Attachment {
         std::vector<int> vertices;

@@ -10,6 +10,7 @@
 #include "scenes/format/scene_fabric.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/meshes/rigid_motion.h"
+#include "scenes/surfaces/cloth_elastics.h"
 #include "scenes/surfaces/load_solid.h"
 #include "scenes/surfaces/uv_rest.h"
 
@@ -56,17 +57,8 @@ scene::Selection in_cloth(scene::Selection select, const ClothState& cloth, cons
     auto* vertices = std::get_if<std::vector<int>>(&select.by);
     if (vertices == nullptr)
         return select;
-    const FileNumbers& numbers = cloth.numbers;
-    const int count = int(numbers.vertex.empty() ? cloth.rest.positions.size() : numbers.vertex.size());
-    for (int& v : *vertices) {
-        if (v < 0 || v >= count)
-            throw InvalidInput(location + ": vertex " + std::to_string(v) + " is out of range; \"" +
-                               cloth.name + "\" has vertices 0 to " + std::to_string(count - 1));
-        if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), v))
-            throw InvalidInput(location + ": vertex " + std::to_string(v) + " of \"" + cloth.name +
-                               "\" has no face; attach vertices of the surface");
-        v = numbers.vertex.empty() ? v : numbers.vertex[size_t(v)];
-    }
+    for (int& v : *vertices)
+        v = cloth.vertex_of_file(v, location);
     return select;
 }
 
@@ -104,6 +96,14 @@ ClothState::Attachment load_attachment(const scene::Attachment& attachment, cons
     return loaded;
 }
 
+/// Name of a cloth's list of elastics in errors: skirt.json: cloths[0].elastics.
+std::string elastics_location(const Scene& scene, const scene::Cloth& cloth)
+{
+    const auto is_it = [&](const scene::Cloth& other) { return other.name == cloth.name; };
+    const auto index = std::find_if(scene.cloths.begin(), scene.cloths.end(), is_it) - scene.cloths.begin();
+    return scene.source.string() + ": cloths[" + std::to_string(index) + "].elastics";
+}
+
 bool is_selected_near(const Scene& scene, const std::string& avatar)
 {
     return std::any_of(scene.attachments.begin(), scene.attachments.end(), [&](const auto& attachment) {
@@ -134,6 +134,8 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
         rest_on_texture(settings, loaded, warn);
     else
         loaded.rest = rest_shape_of(state.rest.positions, state.triangles, settings);
+    loaded.elastics =
+        elastic_springs(settings.elastics, state, *loaded.rest, elastics_location(scene, settings));
     for (ObjMesh* placed : {&state.rest, &state.file})
         for (Vec3& p : placed->positions)
             p += settings.translate;

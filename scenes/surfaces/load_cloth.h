@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "garment/energy/rest_shape.h"
+#include "garment/seam/elastics.h"
 #include "scenes/colliders/collider.h"
 #include "scenes/surfaces/cloth_state.h"
 
@@ -15,6 +16,7 @@ namespace toile::scenes {
 struct LoadedCloth {
     ClothState state; ///< in the start placement, with its attachments in the order of the scene
     std::shared_ptr<const garment::RestShape> rest;
+    std::vector<garment::Elastics::Spring> elastics;
     std::string note; ///< what was chosen for the scene, with the name of the mesh; empty: nothing
 };
 

@@ -98,6 +98,7 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
         options.note(loaded.note);
     state_ = std::move(loaded.state);
     rest_ = std::move(loaded.rest);
+    elastics_ = std::move(loaded.elastics);
     masses_ = rest_->vertex_areas();
     for (double& mass : masses_)
         mass *= state_.fabric.areal_density;
@@ -160,6 +161,8 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     add_elasticity(outer == OuterMethod::Newton, energies);
     add_springs(energies);
     add_sewing(energies);
+    if (!elastics_.empty())
+        energies.push_back(std::make_shared<garment::Elastics>(elastics_));
 
     const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
     garment::StretchTension::Settings tension{fabric.strain_limit, stiffness};

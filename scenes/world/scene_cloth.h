@@ -12,6 +12,7 @@
 #include "garment/energy/cloth_model.h"
 #include "garment/energy/springs.h"
 #include "garment/energy/strain_limit/strain_limit.h"
+#include "garment/seam/elastics.h"
 #include "scenes/colliders/attachment_constraint.h"
 #include "scenes/surfaces/cloth_state.h"
 #include "scenes/world/world_options.h"
@@ -98,6 +99,7 @@ private:
     scene::Wind wind_;
     garment::Gusts gusts_;
     scene::Sewing sewing_;
+    std::vector<garment::Elastics::Spring> elastics_;
     std::vector<double> masses_;
     std::vector<AttachmentConstraint> attachments_;
     std::shared_ptr<const garment::RestShape> rest_;

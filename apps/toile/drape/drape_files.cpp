@@ -205,6 +205,9 @@ std::string DrapeFiles::scene_text(const Continuation& continuation, const scene
                       {"uv_scale", 1.0},      {"fabric", result.scene.cloths.at(g).fabric}};
         if (!garment.surface.rest.empty())
             cloth["rest_file"] = rest_mesh(garment.name).filename().string();
+        for (const scene::Elastic& elastic : result.scene.cloths[g].elastics)
+            cloth["elastics"].push_back(
+                {{"vertices", elastic.vertices}, {"ratio", elastic.ratio}, {"stiffness", elastic.stiffness}});
         if (g > 0) {
             const Vec3 color = color_of(g);
             cloth["layer"] = g;

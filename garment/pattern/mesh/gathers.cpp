@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "core/base/assert.h"
+#include "garment/pattern/mesh/material_coordinates.h"
 #include "garment/pattern/seam_measure.h"
 
 namespace toile::garment {
@@ -84,14 +85,63 @@ std::vector<std::array<Ends, 2>> sewn_pairs(const std::vector<std::array<int, 2>
     return pairs;
 }
 
-/// Side of a seam that keeps its length; none if both are equally long.
-std::optional<int> kept_side(const Pattern& pattern, const Seam& seam)
+using SidesOfEdge = std::array<SewnEdge, 2>; ///< both sides of an edge of the sewn surface
+
+/// @param pairs  sewn_pairs()
+std::vector<SidesOfEdge> sides_of(const std::vector<std::array<Ends, 2>>& pairs, const PatternMesh& mesh)
+{
+    std::vector<SidesOfEdge> edges;
+    for (const auto& pair : pairs) {
+        SidesOfEdge& sides = edges.emplace_back();
+        for (int k = 0; k < 2; ++k) {
+            const Vec2 e = mesh.uv[pair[k][1]] - mesh.uv[pair[k][0]];
+            sides[k] = {pair[k], e.normalized(), e.norm(), e.norm()};
+        }
+    }
+    return edges;
+}
+
+bool has_shrinking_panel(const Pattern& pattern, const Seam& seam)
+{
+    for (const auto* side : {&seam.a, &seam.b})
+        for (const EdgePart& part : *side)
+            if (shrinks(pattern.panels[size_t(part.panel)]))
+                return true;
+    return false;
+}
+
+/// Lengths of the sides of a seam, and whether they are sewn as they are.
+struct SideLengths {
+    double a = 0.0, b = 0.0; ///< [m]
+    bool are_even = true;
+};
+
+SideLengths cut_lengths(const Pattern& pattern, const Seam& seam)
 {
     const SeamMeasure measure = measure_seam(pattern, seam);
-    if (measure.ratio() < 1.0 + kEvenSides)
+    return {measure.length_a, measure.length_b, measure.ratio() < 1.0 + kEvenSides};
+}
+
+/// Sides that shrink by one ratio in all can do so by different ones along the seam.
+SideLengths shrunk_lengths(const std::vector<SidesOfEdge>& edges)
+{
+    SideLengths lengths;
+    for (const auto& [a, b] : edges) {
+        lengths.a += a.length;
+        lengths.b += b.length;
+        lengths.are_even = lengths.are_even &&
+                           std::max(a.length, b.length) < (1.0 + kEvenSides) * std::min(a.length, b.length);
+    }
+    return lengths;
+}
+
+/// Side of a seam that keeps its length; none if both are equally long.
+std::optional<int> kept_side(const SideLengths& lengths, Gather gather)
+{
+    if (lengths.are_even)
         return std::nullopt;
-    const int shorter = measure.length_a < measure.length_b ? 0 : 1;
-    return seam.gather == Gather::Short ? shorter : 1 - shorter;
+    const int shorter = lengths.a < lengths.b ? 0 : 1;
+    return gather == Gather::Short ? shorter : 1 - shorter;
 }
 
 std::vector<SewnEdge> sewn_edges(const Pattern& pattern, const PatternMesh& mesh)
@@ -100,13 +150,12 @@ std::vector<SewnEdge> sewn_edges(const Pattern& pattern, const PatternMesh& mesh
     const std::vector<bool> stitched = are_stitched(mesh);
     std::vector<SewnEdge> edges;
     for (size_t s = 0; s < mesh.stitches.size(); ++s) {
-        const std::optional<int> kept = kept_side(pattern, pattern.seams[s]);
-        for (const auto& pair : sewn_pairs(mesh.stitches[s], next, stitched)) {
-            std::array<SewnEdge, 2> sides;
-            for (int k = 0; k < 2; ++k) {
-                const Vec2 e = mesh.uv[pair[k][1]] - mesh.uv[pair[k][0]];
-                sides[k] = {pair[k], e.normalized(), e.norm(), e.norm()};
-            }
+        const Seam& seam = pattern.seams[s];
+        std::vector<SidesOfEdge> seam_edges = sides_of(sewn_pairs(mesh.stitches[s], next, stitched), mesh);
+        const std::optional<int> kept = kept_side(
+            has_shrinking_panel(pattern, seam) ? shrunk_lengths(seam_edges) : cut_lengths(pattern, seam),
+            seam.gather);
+        for (SidesOfEdge& sides : seam_edges) {
             if (kept)
                 sides[1 - *kept].target = sides[*kept].length;
             edges.insert(edges.end(), sides.begin(), sides.end());
@@ -279,9 +328,8 @@ FlatTriangle shape_of(const GatheredTriangle& triangle, const Mat2& gram)
     return shape;
 }
 
-} // namespace
-
-std::vector<FlatTriangle> gathered_rest(const Pattern& pattern, const PatternMesh& mesh)
+/// @param mesh  at rest, before gathering
+std::vector<FlatTriangle> gather(const Pattern& pattern, const PatternMesh& mesh)
 {
     const std::vector<SewnEdge> edges = sewn_edges(pattern, mesh);
     const std::vector<std::optional<Mat2>> strains = vertex_strains(mesh, edges);
@@ -309,6 +357,15 @@ std::vector<FlatTriangle> gathered_rest(const Pattern& pattern, const PatternMes
         rest.push_back(shape_of(triangle, rest_gram_matrix(triangle)));
     }
     return rest;
+}
+
+} // namespace
+
+std::vector<FlatTriangle> gathered_rest(const Pattern& pattern, const PatternMesh& mesh)
+{
+    PatternMesh at_rest = mesh;
+    at_rest.uv = material_coordinates(pattern, mesh);
+    return gather(pattern, at_rest);
 }
 
 } // namespace toile::garment

@@ -11,8 +11,8 @@ namespace toile::garment {
 /// differ by its digits.
 inline constexpr double kEvenSides = 1e-3;
 
-/// Rest shape of the triangles of a pattern in which longer sides of seams are gathered to the shorter ones,
-/// or the shorter stretched (Seam::gather).
+/// Rest shape of the triangles of a pattern in the axes of its weave (material_coordinates()), in which
+/// longer sides of seams are gathered to the shorter ones, or the shorter stretched (Seam::gather).
 ///
 /// The squared rest length of an edge between vertices a and b is
 ///
@@ -20,12 +20,15 @@ inline constexpr double kEvenSides = 1e-3;
 ///
 /// H [-] is the least strain with d^T H d = log(target length / own length) along the sewn edges d at the
 /// vertex; w is 1 on the seam, 1/2 one vertex from it, 0 beyond. Sewn edges have exactly their target length,
-/// the same on both sides. Triangles that share an edge agree about its length, so that cloth can buckle into
-/// the shape without strain. A triangle that these lengths would collapse is deformed by the mean of its H.
-/// The warp of a triangle keeps its direction. Without gathers the result is mesh.uv, bit for bit.
+/// the same on both sides. Sides of panels that shrink are compared as they are then; they
+/// meet where they were sewn before. Triangles that share an edge agree about its length, so that cloth can
+/// buckle into the shape without strain. A triangle that these lengths would collapse is deformed by the mean
+/// of its H. The warp of a triangle keeps its direction. Without gathers the result is
+/// material_coordinates(), bit for bit.
 ///
-/// @return [triangles] corners in the panel's plane, in the order of mesh.triangles, about the centroid that
-///         they have in mesh.uv [m]; areas have the sign that they have there
+/// @return [triangles] corners in the order of mesh.triangles, warp upwards, about the centroid that they
+/// have
+///         in material_coordinates() [m]; areas have the sign that they have there
 std::vector<FlatTriangle> gathered_rest(const Pattern& pattern, const PatternMesh& mesh);
 
 } // namespace toile::garment

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -64,10 +65,13 @@ struct Range {
 /// A panel with `place`, before its vertices are mapped.
 class PlacedPanel {
 public:
-    /// @param points  of the panel [m]
-    PlacedPanel(const Panel& panel, const std::vector<Vec2>& points, const ArrangementSegments& body)
+    /// @param points    of the panel [m]
+    /// @param distance  added to that of `place` [m]
+    PlacedPanel(const Panel& panel, const std::vector<Vec2>& points, double distance,
+                const ArrangementSegments& body)
         : place_(*panel.place), segment_(body[size_t(panel.place->at)]), axes_(axes_of(panel, body))
     {
+        place_.distance += distance;
         for (const Vec2& x : points) {
             along_.extend(axes_.along.dot(x));
             right_.extend(axes_.right.dot(x));
@@ -123,6 +127,18 @@ private:
     Range along_, right_; ///< of the panel [m]
 };
 
+/// Distances of the panels from where they would start without layers. [panels] [m]
+std::vector<double> layer_distances(const Pattern& pattern)
+{
+    int lowest = std::numeric_limits<int>::max();
+    for (const Panel& panel : pattern.panels)
+        lowest = std::min(lowest, panel.layer);
+    std::vector<double> distances;
+    for (const Panel& panel : pattern.panels)
+        distances.push_back(kLayerDistance * (panel.layer - lowest));
+    return distances;
+}
+
 [[noreturn]] void refuse_without_body(const Pattern& pattern, const Panel& panel)
 {
     throw InvalidInput(pattern.source + ": panel " + panel.name +
@@ -142,13 +158,18 @@ std::vector<Vec3> place_panels(const Pattern& pattern, View<const Vec2> uv, View
         points[size_t(panel_of_vertex[v])].push_back(uv[v]);
         x[size_t(v)] = pattern.panels[size_t(panel_of_vertex[v])].placement * Vec3(uv[v].x(), uv[v].y(), 0.0);
     }
+    const std::vector<double> distances = layer_distances(pattern);
+    for (size_t p = 0; p < pattern.panels.size(); ++p)
+        if (distances[p] > 0.0)
+            for (const int v : vertices[p])
+                x[size_t(v)] += distances[p] * outward(pattern.panels[p]);
 
     std::map<size_t, PlacedPanel> placed;
     for (size_t p = 0; p < pattern.panels.size(); ++p)
         if (const Panel& panel = pattern.panels[p]; panel.place && !points[p].empty()) {
             if (!body)
                 refuse_without_body(pattern, panel);
-            placed.emplace(p, PlacedPanel(panel, points[p], *body));
+            placed.emplace(p, PlacedPanel(panel, points[p], distances[p], *body));
         }
     for (const auto& [p, panel] : placed) {
         double min_length = 0.0;

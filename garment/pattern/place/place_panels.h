@@ -11,6 +11,9 @@ namespace toile::garment {
 /// Segments of one body in one pose, by BodySegment.
 using ArrangementSegments = std::array<AxisSegment, 6>;
 
+/// Distance between panels of successive layers where sewing starts [m].
+inline constexpr double kLayerDistance = 0.01;
+
 /// Places the vertices of meshed panels where sewing starts. A panel without `place` lies flat, by its
 /// placement. One with `place` is bent around its segment of the body, or lies flat beside it:
 ///
@@ -23,6 +26,8 @@ using ArrangementSegments = std::array<AxisSegment, 6>;
 ///     directions does which the placement turns nearest to it: sleeves are drafted lying as often as
 ///     upright.
 ///
+/// Panels start kLayerDistance further outside for each layer above the lowest of the pattern, so that those
+/// which lie on each other do not start in one place.
 /// @param uv               [vertices] in the panels' planes [m]
 /// @param panel_of_vertex  [vertices] index into Pattern::panels
 /// @param body             by BodySegment; may be null if no panel has `place`

@@ -52,8 +52,7 @@ void add_samples(const Panel& panel, std::vector<Sample>& samples)
         low = low.cwiseMin(x);
         high = high.cwiseMax(x);
     }
-    const double side = signed_area(panel) < 0.0 ? -1.0 : 1.0;
-    const Vec3 outwards = side * panel.placement.linear().col(2);
+    const Vec3 outwards = outward(panel);
     for (double u = low.x() + 0.5 * kGrid; u < high.x(); u += kGrid)
         for (double v = low.y() + 0.5 * kGrid; v < high.y(); v += kGrid)
             if (is_inside({u, v}, border))

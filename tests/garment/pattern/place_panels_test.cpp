@@ -220,6 +220,38 @@ TEST(PlacePanels, PanelsWithoutPlaceLieWhereThePatternPutsThem)
     EXPECT_LT((x.back() - Vec3(1, 2.1, 2.8)).norm(), 1e-12);
 }
 
+TEST(PlacePanels, StartFurtherOutsideByTheirLayer)
+{
+    const ArrangementSegments segments = body();
+    // Three copies: two flat ones, of which one has its outer side behind, and one around the body.
+    Sheet sheet(0.2, 0.1, std::nullopt), back(0.2, 0.1, std::nullopt, true);
+    Panel around = sheet.pattern.panels[0];
+    around.place = BodyPlacement{};
+    sheet.pattern.panels.push_back(back.pattern.panels[0]);
+    sheet.pattern.panels.push_back(around);
+    const auto placed = [&](std::array<int, 3> layers) {
+        std::vector<Vec2> uv;
+        std::vector<int> panel;
+        for (int p = 0; p < 3; ++p) {
+            sheet.pattern.panels[size_t(p)].layer = layers[size_t(p)];
+            uv.insert(uv.end(), sheet.uv.begin(), sheet.uv.end());
+            panel.insert(panel.end(), sheet.uv.size(), p);
+        }
+        return place_panels(sheet.pattern, uv, panel, &segments);
+    };
+    const size_t n = sheet.uv.size();
+    const std::vector<Vec3> without = placed({0, 0, 0}), same = placed({3, 3, 3}),
+                            layered = placed({2, 4, 3});
+    EXPECT_EQ(without, same) << "layers are relative";
+    for (size_t v = 0; v < n; ++v) {
+        EXPECT_EQ(layered[v], without[v]) << "the lowest stays";
+        EXPECT_LT((layered[n + v] - without[n + v] - Vec3(0, 0, -0.02)).norm(), 1e-12);
+        EXPECT_NEAR(distance(segments[0].skin, layered[2 * n + v]) -
+                        distance(segments[0].skin, without[2 * n + v]),
+                    0.01, 1e-3);
+    }
+}
+
 TEST(PlacePanels, LyingSleeveKeepsItsLengthAlongTheArm)
 {
     const ArrangementSegments segments = body();

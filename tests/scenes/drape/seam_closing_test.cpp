@@ -97,6 +97,44 @@ TEST_F(SeamClosingTest, ClosesInRoundsAndTellsTheWidestThreadThatWasWelded)
     EXPECT_EQ(closed.groups.size(), 2u);
 }
 
+TEST_F(SeamClosingTest, SewsSeamsOfALowerOrderFirst)
+{
+    const size_t first = mesh_->panels.stitches[1].size(), last = mesh_->panels.stitches[0].size();
+    SeamClosing seams(*mesh_, apart_, {7, 2});
+    EXPECT_EQ(seams.surface().mesh.lines.size(), first) << "only these pull";
+    EXPECT_EQ(seams.widest(), 1);
+
+    // The last seam closes by itself, and waits for the first all the same.
+    std::vector<double> gaps(last, 0.001);
+    seams.move(with_gaps(0, gaps));
+    EXPECT_FALSE(seams.can_weld());
+    EXPECT_EQ(seams.weld(), 0);
+
+    // Half of the first seam: the last one waits on.
+    std::vector<Vec3> x = seams.positions();
+    for (size_t i = 0; i < first; ++i) {
+        const auto [a, b] = mesh_->panels.stitches[1][i];
+        x[size_t(b)] = x[size_t(a)] + Vec3(0.0, i < 2 ? 0.001 : 0.5, 0.0);
+    }
+    seams.move(x);
+    EXPECT_EQ(seams.weld(), 2);
+    EXPECT_EQ(seams.surface().mesh.lines.size(), first - 2);
+
+    x = seams.positions();
+    for (const auto& [a, b] : mesh_->panels.stitches[1])
+        x[size_t(b)] = x[size_t(a)];
+    garment::PatternMesh partly = mesh_->panels;
+    partly.stitches[0].clear();
+    partly.stitches[1] = {mesh_->panels.stitches[1][0], mesh_->panels.stitches[1][1]};
+    seams.move(weld(garment::sewn_mesh(partly), x));
+    EXPECT_TRUE(seams.can_weld());
+    EXPECT_EQ(seams.weld(), int(first) - 2);
+    EXPECT_FALSE(seams.are_closed());
+    EXPECT_EQ(seams.widest(), 0);
+    EXPECT_EQ(seams.surface().mesh.lines.size(), last) << "now the others pull";
+    EXPECT_GT(seams.weld(), 0);
+}
+
 } // namespace
 
 } // namespace toile::test

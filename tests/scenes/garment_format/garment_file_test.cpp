@@ -68,14 +68,33 @@ TEST_F(GarmentFile, SetsUnits)
     EXPECT_NEAR(signed_area(pattern.panels[0]), 16.0 * 24.0 * 0.0254 * 0.0254, 1e-12);
 }
 
+TEST_F(GarmentFile, SetsElastics)
+{
+    const Pattern pattern = read(R"("elastics": [{"edges": ["back.2", "front.2[0.25:0.75]"], "ratio": 0.7,
+        "stiffness": 12}])");
+    ASSERT_EQ(pattern.elastics.size(), 1u);
+    const Elastic& elastic = pattern.elastics[0];
+    EXPECT_EQ(elastic.ratio, 0.7);
+    EXPECT_EQ(elastic.stiffness, 12.0);
+    ASSERT_EQ(elastic.edges.size(), 2u);
+    EXPECT_EQ(pattern.panels[size_t(elastic.edges[0].panel)].name, "back");
+    EXPECT_EQ(elastic.edges[0].to, 1.0);
+    EXPECT_EQ(pattern.panels[size_t(elastic.edges[1].panel)].name, "front");
+    EXPECT_EQ(elastic.edges[1].edge, 2);
+    EXPECT_EQ(elastic.edges[1].from, 0.25);
+    EXPECT_EQ(elastic.edges[1].to, 0.75);
+}
+
 TEST_F(GarmentFile, SetsPanels)
 {
     const Pattern pattern = read(R"("panels": {"front": {"fabric": "denim", "edge": 0.008, "grain_deg": 45,
-        "layer": 2, "place": {"at": "left_arm", "angle_deg": 30, "height": 0.9, "distance": 0.05, "wrap": false}}})");
+        "shrink": {"warp": 0.95}, "layer": 2, "place": {"at": "left_arm", "angle_deg": 30, "height": 0.9, "distance": 0.05, "wrap": false}}})");
     const Panel& front = panel_of(pattern, "front");
     EXPECT_EQ(front.fabric, "denim");
     EXPECT_EQ(front.edge_length, 0.008);
     EXPECT_EQ(front.grain_deg, 45.0);
+    EXPECT_EQ(front.shrink_warp, 0.95);
+    EXPECT_EQ(front.shrink_weft, 1.0);
     EXPECT_EQ(front.layer, 2);
     ASSERT_TRUE(front.place);
     EXPECT_EQ(front.place->at, BodySegment::LeftArm);
@@ -232,12 +251,24 @@ TEST_F(GarmentFile, NamesMistakes)
     const std::vector<std::pair<std::string, std::string>> mistakes{
         {R"("panel": {})", "panel: unknown key; did you mean \"panels\"?"},
         {R"("folds": [])",
-         "folds: unknown key; known are toile_garment, description, patterns, panels and seams"},
+         "folds: unknown key; known are toile_garment, description, patterns, panels, seams and elastics"},
         {R"("panels": {"frnt": {}})", "panels.frnt: no panel is named \"frnt\"; did you mean \"front\"?"},
         {R"("panels": {"front": {"fabric": "demin"}})",
          "panels.front.fabric: no fabric is named \"demin\"; did you mean \"denim\"?"},
         {R"("panels": {"front": {"edge": 5}})",
          "panels.front.edge: 5 is out of range; give a number from 0.0005 to 1 m"},
+        {R"("elastics": [{"edges": ["frnt.0"], "ratio": 0.5, "stiffness": 9}])",
+         "elastics[0].edges[0]: no panel is named \"frnt\"; did you mean \"front\"?"},
+        {R"("elastics": [{"edges": [], "ratio": 0.5, "stiffness": 9}])",
+         "elastics[0].edges: names no edge; write [\"PANEL.EDGE\"]"},
+        {R"("elastics": [{"edges": ["front.0"], "ratio": 0.1, "stiffness": 9}])",
+         "elastics[0].ratio: 0.1 is out of range; give a number from 0.2 to 1"},
+        {R"("elastics": [{"edges": ["front.0"], "ratio": 0.5}])",
+         "elastics[0]: the key \"stiffness\" is missing; add it"},
+        {R"("panels": {"front": {"shrink": {"warp": 5}}})",
+         "panels.front.shrink.warp: 5 is out of range; give a number from 0.5 to 1.5"},
+        {R"("panels": {"front": {"shrink": {"wrap": 0.9}}})",
+         "panels.front.shrink.wrap: unknown key; did you mean \"warp\"?"},
         {R"("panels": {"front": {"mirror": true}})",
          "panels.front.mirror: has no effect on a panel that is cut once; write \"copies\": 2"},
         {R"("panels": {"front": {"copies": 2}, "front_2": {"copies": 2}})",

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "garment/pattern/mesh/material_coordinates.h"
 #include "tests/garment/pattern/mesh/patterns.h"
 
 namespace toile::garment::test {
@@ -193,6 +194,52 @@ TEST(Gathers, AreNoneWhereSidesAreEven)
         for (int t = 0; t < mesh.triangle_count(); ++t)
             EXPECT_EQ(rest[t], flat_triangle(mesh, t));
     }
+}
+
+TEST(Gathers, AreMadeBySidesThatShrinkApart)
+{
+    // Both sides have 0.3 m as they are cut, and the band 0.27 m at rest.
+    Pattern pattern = band_and_skirt(0.3, 0.3);
+    pattern.panels[0].shrink_weft = 0.9;
+    for (const Gather gather : {Gather::Short, Gather::Long}) {
+        pattern.seams[0].gather = gather;
+        const PatternMesh mesh = mesh_of(pattern);
+        const std::vector<FlatTriangle> rest = gathered_rest(pattern, mesh);
+        expect_equal_sides(mesh, rest, {0, 0}, {1, 2});
+        for (const double length : along(mesh, rest, 1, 2))
+            EXPECT_NEAR(length, (gather == Gather::Short ? 0.27 : 0.3) / 15.0, 1e-12);
+        for (const double length : along(mesh, rest, 0, 2))
+            EXPECT_NEAR(length, 0.27 / 15.0, 1e-12) << "the free side of the band";
+        for (const double length : along(mesh, rest, 1, 0))
+            EXPECT_NEAR(length, 0.3 / 15.0, 1e-12) << "the hem";
+    }
+}
+
+TEST(Gathers, AreNoneWhereBothSidesShrinkAlike)
+{
+    // The warp of one lies along the seam, the weft of the other.
+    Pattern pattern = band_and_skirt(0.3, 0.3);
+    pattern.panels[0].grain_deg = 90.0;
+    pattern.panels[0].shrink_warp = pattern.panels[1].shrink_weft = 0.9;
+    const PatternMesh mesh = mesh_of(pattern);
+    const std::vector<FlatTriangle> rest = gathered_rest(pattern, mesh);
+    const std::vector<Vec2> material = material_coordinates(pattern, mesh);
+    for (int t = 0; t < mesh.triangle_count(); ++t)
+        for (int k = 0; k < 3; ++k)
+            EXPECT_EQ(rest[size_t(t)][size_t(k)], material[size_t(mesh.triangles[t][k])]);
+    expect_equal_sides(mesh, rest, {0, 0}, {1, 2});
+}
+
+TEST(Gathers, VanishWhereTheLongerSideShrinksToTheShorter)
+{
+    Pattern pattern = band_and_skirt(0.2, 0.25);
+    pattern.panels[1].shrink_weft = 0.8;
+    const PatternMesh mesh = mesh_of(pattern);
+    const std::vector<FlatTriangle> rest = gathered_rest(pattern, mesh);
+    const std::vector<Vec2> material = material_coordinates(pattern, mesh);
+    for (int t = 0; t < mesh.triangle_count(); ++t)
+        for (int k = 0; k < 3; ++k)
+            EXPECT_EQ(rest[size_t(t)][size_t(k)], material[size_t(mesh.triangles[t][k])]);
 }
 
 TEST(Gathers, GoUpToTheTipOfADart)
