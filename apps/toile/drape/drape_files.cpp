@@ -13,6 +13,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
+#include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/surfaces/load_cloth.h"
 
@@ -118,6 +119,10 @@ void DrapeFiles::require_safe(const garment::Pattern& pattern, const path& avata
         plan.add_output(file, "a result of the drape");
         require_writable(file);
     }
+    for (const path& file : fit().all()) {
+        plan.add_output(file, "a result of the drape");
+        require_writable(file);
+    }
     require_writable_folder(stages());
 }
 
@@ -142,6 +147,8 @@ void DrapeFiles::write_garment(const Continuation& continuation, const scenes::D
                                const RunLog& log) const
 {
     for (const path& file : {report(), certificate(), scene(), mesh(), rest_mesh(), picture()})
+        std::filesystem::remove(file);
+    for (const path& file : fit().all())
         std::filesystem::remove(file);
     if (result.surface.mesh.positions.empty())
         return;
@@ -197,6 +204,16 @@ void DrapeFiles::write_report(const DrapeReport& drape, const garment::Pattern& 
 {
     write_atomically(report(), to_json(drape, pattern));
     log.file(report());
+}
+
+void DrapeFiles::write_fit(const scenes::DrapeResult& result, const garment::Pattern& pattern,
+                           const scenes::DrapeSettings& settings, const RunLog& log) const
+{
+    const scenes::SceneBody body(settings.body);
+    const auto* file = std::get_if<path>(&settings.body.shape);
+    const GarmentFit garment = fit_of(fitted_garment(name_, result.surface, pattern, settings.fabric),
+                                      body.surface(), file ? file->string() : settings.body.name);
+    fit().write({garment}, body.surface(), log);
 }
 
 void DrapeFiles::write_picture(const scenes::DrapeSettings& settings, const RunLog& log) const

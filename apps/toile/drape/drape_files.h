@@ -7,6 +7,7 @@
 #include "apps/toile/check/certificate.h"
 #include "apps/toile/drape/continuation.h"
 #include "apps/toile/drape/drape_report.h"
+#include "apps/toile/fit/fit_files.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
 #include "export/folder_lock.h"
@@ -52,6 +53,10 @@ public:
 
     void write_report(const DrapeReport& report, const garment::Pattern& pattern, const RunLog& log) const;
 
+    /// Measures how the garment at rest fits the body, and writes it (FitFiles).
+    void write_fit(const scenes::DrapeResult& result, const garment::Pattern& pattern,
+                   const scenes::DrapeSettings& settings, const RunLog& log) const;
+
     /// Writes a picture of the mesh on the body, from the front at an angle of 30 degrees.
     void write_picture(const scenes::DrapeSettings& settings, const RunLog& log) const;
 
@@ -61,6 +66,7 @@ private:
     std::filesystem::path certificate() const { return folder_ / "certificate.json"; }
     std::filesystem::path rest_mesh() const { return folder_ / (name_ + "_rest.obj"); }
     std::filesystem::path picture() const { return folder_ / (name_ + ".png"); }
+    FitFiles fit() const { return {folder_, {name_}}; }
     std::string scene_text(const Continuation& continuation, const scenes::DrapeResult& result) const;
 
     std::string name_;
