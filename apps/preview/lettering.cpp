@@ -10,24 +10,26 @@ namespace {
 
 constexpr std::array<std::uint8_t, 3> kInk{60, 64, 72};
 
-// Letters of 5 x 7 dots: 35 bits, row by row, the upper left dot first.
+// Letters of 5 x 9 dots: 45 bits, row by row, the upper left dot first. The last two rows are below the line.
 constexpr std::string_view kMarkNames = ".,-+%/<>()";
-constexpr std::array<std::uint64_t, 10> kMarks{0x00000018c, 0x000003188, 0x0000f0000, 0x0084f9080,
-                                               0x672222273, 0x044222110, 0x088882082, 0x208208888,
-                                               0x088842082, 0x208210888};
-constexpr std::array<std::uint64_t, 10> kDigits{0x3a33ae62e, 0x11842108e, 0x3a213221f, 0x3a213062e,
-                                                0x08ca97c42, 0x7e1e0862e, 0x3a10f462e, 0x7c2211084,
-                                                0x3a317462e, 0x3a317842e};
+constexpr std::array<std::uint64_t, 10> kMarks{0x000000063000, 0x000000063088, 0x00003c000000, 0x00213e420000,
+                                               0x19c88889cc00, 0x011088844000, 0x022220820800, 0x082082222000,
+                                               0x022210820800, 0x082084222000};
+constexpr std::array<std::uint64_t, 10> kDigits{
+    0x0e8ceb98b800, 0x046108423800, 0x0e884c887c00, 0x0e884c18b800, 0x0232a5f10800,
+    0x1f878218b800, 0x0e843d18b800, 0x1f0884421000, 0x0e8c5d18b800, 0x0e8c5e10b800};
 constexpr std::array<std::uint64_t, 26> kSmall{
-    0x000e0be2f, 0x421e8c63e, 0x000e8c22e, 0x042f8c62f, 0x000e8fe0e, 0x191e42108, 0x01f18bc2e,
-    0x421e8c631, 0x100c2108e, 0x080610a4c, 0x4212a6292, 0x30842108e, 0x001aad6b5, 0x001e8c631,
-    0x000e8c62e, 0x001e8fa10, 0x000f8bc21, 0x0016cc210, 0x000f8383e, 0x211e42126, 0x00118c66d,
-    0x00118c544, 0x00118d6aa, 0x001151151, 0x02318bc2e, 0x001f1111f};
+    0x000382f8bc00, 0x1087a318f800, 0x0003a308b800, 0x010be318bc00, 0x0003a3f83800, 0x064790842000,
+    0x0003e318bc2e, 0x1087a318c400, 0x040308423800, 0x020184210a4c, 0x1084a98a4800, 0x0c2108423800,
+    0x0006ab5ad400, 0x0007a318c400, 0x0003a318b800, 0x0007a318fa10, 0x0003e318bc21, 0x0005b3084000,
+    0x0003e0e0f800, 0x084790849800, 0x00046319b400, 0x000463151000, 0x0004635aa800, 0x000454454400,
+    0x00046318bc2e, 0x0007c4447c00};
 constexpr std::array<std::uint64_t, 26> kCapitals{
-    0x3a31fc631, 0x7a31f463e, 0x3a308422e, 0x7a318c63e, 0x7e10f421f, 0x7e10f4210, 0x3a30bc62e,
-    0x4631fc631, 0x38842108e, 0x1c4210a4c, 0x4654c5251, 0x42108421f, 0x4775ac631, 0x47359c631,
-    0x3a318c62e, 0x7a31f4210, 0x3a318d64d, 0x7a31f5251, 0x3e107043e, 0x7c8421084, 0x46318c62e,
-    0x46318c544, 0x4631ad771, 0x462a22a31, 0x462a21084, 0x7c222221f};
+    0x0e8c7f18c400, 0x1e8c7d18f800, 0x0e8c2108b800, 0x1e8c6318f800, 0x1f843d087c00, 0x1f843d084000,
+    0x0e8c2f18b800, 0x118c7f18c400, 0x0e2108423800, 0x071084293000, 0x119531494400, 0x108421087c00,
+    0x11dd6b18c400, 0x11cd6718c400, 0x0e8c6318b800, 0x1e8c7d084000, 0x0e8c63593400, 0x1e8c7d494400,
+    0x0f841c10f800, 0x1f2108421000, 0x118c6318b800, 0x118c63151000, 0x118c6b5dc400, 0x118a88a8c400,
+    0x118a88421000, 0x1f0888887c00};
 
 std::uint64_t dots_of(char letter)
 {

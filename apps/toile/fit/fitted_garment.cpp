@@ -1,6 +1,7 @@
 #include "apps/toile/fit/fitted_garment.h"
 
 #include <map>
+#include <utility>
 
 namespace toile::app {
 
@@ -28,6 +29,20 @@ FittedGarment fitted_garment(const std::string& name, const scenes::GarmentSurfa
             garment.fabrics.push_back(garment::fabric_preset(chosen, pattern.source));
         garment.fabric_of_triangle.push_back(at->second);
     }
+    return garment;
+}
+
+FittedGarment fitted_garment(const scenes::LoadedCloth& cloth, std::vector<Vec3> x)
+{
+    FittedGarment garment;
+    garment.name = cloth.state.name;
+    garment.mesh = {std::move(x), cloth.state.triangles};
+    // Panels have the warp along y, and x against the weft, as rest_shape_of_panels() takes them.
+    const auto in_panel = [](const Vec2& uv) { return Vec2(-uv.y(), uv.x()); };
+    for (const Mat2& edges : cloth.rest->edges)
+        garment.rest.push_back({Vec2(0.0, 0.0), in_panel(edges.col(0)), in_panel(edges.col(1))});
+    garment.fabrics = {cloth.state.fabric};
+    garment.fabric_of_triangle.assign(garment.mesh.triangles.size(), 0);
     return garment;
 }
 

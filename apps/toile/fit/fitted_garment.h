@@ -8,6 +8,7 @@
 #include "garment/fabric/fabric.h"
 #include "garment/pattern/pattern.h"
 #include "scenes/drape/garment_mesh.h"
+#include "scenes/surfaces/load_cloth.h"
 
 namespace toile::app {
 
@@ -24,5 +25,9 @@ struct FittedGarment {
 /// @param fabric   preset of panels without one
 FittedGarment fitted_garment(const std::string& name, const scenes::GarmentSurface& surface,
                              const garment::Pattern& pattern, const std::string& fabric);
+
+/// A cloth of a scene.
+/// @param x  [vertices] [m]
+FittedGarment fitted_garment(const scenes::LoadedCloth& cloth, std::vector<Vec3> x);
 
 } // namespace toile::app

@@ -14,19 +14,35 @@ using avatars::SectionLoop;
 using avatars::SectionPlane;
 
 const std::string kAroundOthers = "the garment goes around other parts of the body too";
+/// Angle [rad] that open cloth takes at least of the part of the body that it lies along: sleeves beside a
+/// trunk take less.
+constexpr double kAlong = std::numbers::pi / 3.0;
 constexpr double kLowering = 0.005; ///< [m] between the levels at which a thigh is tried
 
-/// Times that a curve goes around a point of its plane, of either sense.
-int turns(const SectionLoop& curve, const Vec3& point, const SectionPlane& plane)
+/// Angle [rad] by which the first `segments` segments of a closed line go around a point of its plane.
+double angle_around(const SectionLoop& curve, size_t segments, const Vec3& point, const SectionPlane& plane)
 {
     const Vec2 center = plane.project(point);
     double angle = 0.0;
-    for (size_t i = 0; i < curve.points.size(); ++i) {
+    for (size_t i = 0; i < segments; ++i) {
         const Vec2 a = plane.project(curve.points[i]) - center,
                    b = plane.project(curve.points[(i + 1) % curve.points.size()]) - center;
         angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
     }
-    return int(std::lround(std::abs(angle) / (2.0 * std::numbers::pi)));
+    return std::abs(angle);
+}
+
+/// Times that a curve goes around a point of its plane.
+int turns(const SectionLoop& curve, const Vec3& point, const SectionPlane& plane)
+{
+    const double angle = angle_around(curve, curve.points.size(), point, plane);
+    return int(std::lround(angle / (2.0 * std::numbers::pi)));
+}
+
+/// True for a curve that ends at borders and lies along a part of the body, such as the front of a waistcoat.
+bool lies_along(const SectionLoop& curve, const Vec3& middle, const SectionPlane& plane)
+{
+    return !curve.is_closed() && angle_around(curve, curve.points.size() - 1, middle, plane) > kAlong;
 }
 
 /// Length at rest of the line in which a plane cuts a triangle [m].
@@ -76,12 +92,10 @@ GirthFit fit(const TriangleMesh& garment, const std::vector<FlatTriangle>& rest,
     GirthFit fit{girth, 0.0, std::nullopt, "no cloth goes around it"};
     const std::vector<Vec3> others = other_parts(body, girth);
     for (const SectionLoop& curve : avatars::cut(garment, girth.plane)) {
-        if (turns(curve, girth.skin.center, girth.plane) == 0)
+        if (lies_along(curve, girth.skin.center, girth.plane))
+            fit.not_covered = "the garment ends or is open there";
+        if (!curve.is_closed() || turns(curve, girth.skin.center, girth.plane) == 0)
             continue;
-        if (!curve.is_closed()) {
-            fit.not_covered = "the garment is open there";
-            continue;
-        }
         if (std::any_of(others.begin(), others.end(),
                         [&](const Vec3& other) { return turns(curve, other, girth.plane) != 0; })) {
             fit.not_covered = kAroundOthers;
@@ -118,7 +132,8 @@ std::optional<avatars::Girth> lowered(avatars::Girth girth, const TriangleMesh& 
 std::optional<GirthFit> fit_below_fork(const TriangleMesh& garment, const std::vector<FlatTriangle>& rest,
                                        const TriangleMesh& body, const avatars::Girth& thigh)
 {
-    for (double by = kLowering; by <= kMaxLowered + 1e-9; by += kLowering) {
+    for (int k = 1; k * kLowering <= kMaxLowered; ++k) {
+        const double by = k * kLowering;
         const std::optional<avatars::Girth> lower = lowered(thigh, body, by);
         if (!lower)
             break;

@@ -84,7 +84,13 @@ TEST(GarmentGirth, IsNoneWhereTheGarmentDoesNotSurroundTheBody)
     EXPECT_EQ(beside.not_covered, "no cloth goes around it");
     const GirthFit open = fit_at(kMiddle, tube(0.2, true), body);
     EXPECT_FALSE(open.garment);
-    EXPECT_EQ(open.not_covered, "the garment is open there");
+    EXPECT_EQ(open.not_covered, "the garment ends or is open there");
+    TriangleMesh halves = tube(0.2); // a front and a back, open at the armholes
+    std::erase_if(halves.triangles,
+                  [&](const Triangle& t) { return std::abs(halves.positions[size_t(t[0])].x()) > 0.18; });
+    const GirthFit armholes = fit_at(kMiddle, halves, body);
+    EXPECT_FALSE(armholes.garment);
+    EXPECT_EQ(armholes.not_covered, "the garment ends or is open there");
 }
 
 /// A skirt has no ease at a thigh; trousers have.

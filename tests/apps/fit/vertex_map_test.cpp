@@ -144,6 +144,28 @@ TEST(FittedGarment, HasTheFabricsOfItsPanels)
     EXPECT_THROW(fitted_garment("tube", surface, pattern, "slik"), InvalidInput);
 }
 
+/// Warp along the vertical, as rest shapes of surfaces have it: jersey is stiffer that way.
+TEST(FittedGarment, OfASceneHasTheGrainOfItsRestShape)
+{
+    const TriangleMesh mesh = tube(0.2);
+    scenes::LoadedCloth cloth;
+    cloth.state.name = "tube";
+    cloth.state.triangles = mesh.triangles;
+    cloth.state.fabric = garment::fabric_preset("jersey", "test");
+    cloth.rest = std::make_shared<const garment::RestShape>(
+        garment::rest_shape_of_surface(mesh, Vec3::UnitY(), 0.0, "tube"));
+    std::vector<Vec3> longer = mesh.positions, wider = mesh.positions;
+    for (Vec3& x : longer)
+        x.y() *= 1.1;
+    for (Vec3& x : wider)
+        x = Vec3(1.1 * x.x(), x.y(), 1.1 * x.z());
+    const FittedGarment garment = fitted_garment(cloth, longer);
+    EXPECT_EQ(garment.name, "tube");
+    expect_everywhere(tension_map(garment).values, 60.0 * 0.1);
+    expect_everywhere(tension_map(fitted_garment(cloth, wider)).values, 40.0 * 0.1);
+    expect_everywhere(strain_map(fitted_garment(cloth, mesh.positions)).values, 0.0);
+}
+
 TEST(Quantile, IsTheValueBelowWhichAFractionLies)
 {
     EXPECT_EQ(quantile({}, 0.5), 0.0);

@@ -130,7 +130,7 @@ TEST(Lettering, HasADifferentShapeForEachLetterAndStaysInThePicture)
     Image minus(kLetterWidth, kLetterHeight);
     draw_text(minus, 0, 0, 1, "-");
     for (int y = 0; y < kLetterHeight; ++y)
-        EXPECT_EQ(minus.pixel(1, y)[0] != 0, y == kLetterHeight / 2);
+        EXPECT_EQ(minus.pixel(1, y)[0] != 0, y == (kLetterHeight - kBelowLine) / 2);
     Image small(5, 5), same(5, 5);
     draw_text(small, -100, -3, 4, "8");
     draw_text(small, 5, 5, 4, "8");
