@@ -90,9 +90,10 @@ MAY_INCLUDE |= {
     "apps/toile/check": BELOW_APPS + ["apps/toile/terminal"],
     "apps/toile/render": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/preview"],
     "apps/toile/simulate": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check"],
+    "apps/toile/fit": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/preview"],
     "apps/toile/pattern": BELOW_APPS + ["apps/toile/terminal"],
     "apps/toile/drape": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/toile/render",
-                                      "apps/toile/pattern", "apps/preview"],
+                                      "apps/toile/fit", "apps/toile/pattern", "apps/preview"],
     "apps/toile": BELOW_APPS + ["apps/toile/terminal"],
     "python": BELOW_APPS,
     # Nothing that ships includes research.

@@ -11,6 +11,7 @@ std::vector<toile::app::Command> add_commands(CLI::App& parser)
             add_drape(parser),
             add_render(parser),
             add_check(parser),
+            add_fit(parser),
             add_info(parser),
             add_measure(parser),
             add_pattern(parser),

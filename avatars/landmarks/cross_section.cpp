@@ -13,11 +13,21 @@ namespace toile::avatars {
 
 namespace {
 
+/// Way over a triangle to the cut of another of its edges.
+struct Link {
+    int cut, triangle;
+};
+
 /// An edge of the surface that the plane cuts, and the cuts of its triangles' other edges.
 struct Cut {
     Vec3 point = Vec3::Zero();
-    std::vector<int> next; ///< [1 or 2, more where triangles share the edge] indices of cuts
+    std::vector<Link> next; ///< [1 or 2, more where triangles share the edge]
     bool visited = false;
+};
+
+struct Curve {
+    std::vector<Vec3> points;
+    std::vector<int> triangles; ///< as of SectionLoop
 };
 
 /// The cuts of a plane, linked by the triangles between them.
@@ -28,13 +38,13 @@ public:
         std::vector<double> height(mesh.positions.size());
         for (size_t v = 0; v < height.size(); ++v)
             height[v] = plane.normal.dot(mesh.positions[v] - plane.point);
-        for (const Triangle& t : mesh.triangles)
+        for (int t = 0; t < mesh.triangle_count(); ++t)
             add(mesh, height, t);
     }
 
-    std::vector<std::vector<Vec3>> curves()
+    std::vector<Curve> curves()
     {
-        std::vector<std::vector<Vec3>> curves;
+        std::vector<Curve> curves;
         // Curves that end at borders first: from an end, so that they are whole.
         for (const size_t links : {1u, 2u})
             for (size_t c = 0; c < cuts_.size(); ++c)
@@ -44,8 +54,9 @@ public:
     }
 
 private:
-    void add(const TriangleMesh& mesh, const std::vector<double>& height, const Triangle& t)
+    void add(const TriangleMesh& mesh, const std::vector<double>& height, int triangle)
     {
+        const Triangle& t = mesh.triangles[size_t(triangle)];
         int ends[2], found = 0;
         for (int k = 0; k < 3; ++k) {
             const int a = t[k], b = t[(k + 1) % 3];
@@ -54,8 +65,8 @@ private:
         }
         if (found != 2)
             return;
-        cuts_[size_t(ends[0])].next.push_back(ends[1]);
-        cuts_[size_t(ends[1])].next.push_back(ends[0]);
+        cuts_[size_t(ends[0])].next.push_back({ends[1], triangle});
+        cuts_[size_t(ends[1])].next.push_back({ends[0], triangle});
     }
 
     int cut_of(const TriangleMesh& mesh, const std::vector<double>& height, int a, int b)
@@ -70,16 +81,21 @@ private:
         return at->second;
     }
 
-    std::vector<Vec3> walk(int from)
+    Curve walk(int from)
     {
-        std::vector<Vec3> curve;
+        Curve curve;
         for (int at = from; at >= 0;) {
             Cut& cut = cuts_[size_t(at)];
             cut.visited = true;
-            curve.push_back(cut.point);
-            const auto next = std::find_if(cut.next.begin(), cut.next.end(),
-                                           [&](int other) { return !cuts_[size_t(other)].visited; });
-            at = next == cut.next.end() ? -1 : *next;
+            curve.points.push_back(cut.point);
+            auto next = std::find_if(cut.next.begin(), cut.next.end(),
+                                     [&](const Link& link) { return !cuts_[size_t(link.cut)].visited; });
+            const bool goes_on = next != cut.next.end();
+            if (!goes_on)
+                next = std::find_if(cut.next.begin(), cut.next.end(),
+                                    [&](const Link& link) { return link.cut == from; });
+            curve.triangles.push_back(next == cut.next.end() ? -1 : next->triangle);
+            at = goes_on ? next->cut : -1;
         }
         return curve;
     }
@@ -121,9 +137,12 @@ SectionLoop loop_through(std::vector<Vec3> points, const SectionPlane& plane)
 std::vector<SectionLoop> cut(const TriangleMesh& mesh, const SectionPlane& plane)
 {
     std::vector<SectionLoop> loops;
-    for (std::vector<Vec3>& points : Cuts(mesh, plane).curves())
-        if (points.size() >= 3)
-            loops.push_back(loop_through(std::move(points), plane));
+    for (Curve& curve : Cuts(mesh, plane).curves()) {
+        if (curve.points.size() < 3)
+            continue;
+        loops.push_back(loop_through(std::move(curve.points), plane));
+        loops.back().triangles = std::move(curve.triangles);
+    }
     std::stable_sort(loops.begin(), loops.end(),
                      [](const SectionLoop& a, const SectionLoop& b) { return a.area > b.area; });
     return loops;

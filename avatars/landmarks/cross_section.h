@@ -22,11 +22,15 @@ struct SectionPlane {
 
 /// Closed curve in which a plane cuts a surface.
 struct SectionLoop {
-    std::vector<Vec3> points;   ///< [3 or more] around the curve [m]
+    std::vector<Vec3> points; ///< [3 or more] around the curve [m]
+    /// [points] that lie between each point and the next; -1: the chord of a curve that ends at a border.
+    /// Empty for a loop that was not cut.
+    std::vector<int> triangles;
     Vec3 center = Vec3::Zero(); ///< of the enclosed area [m]
     double area = 0.0;          ///< [m^2] not negative
     Bounds box{};
 
+    bool is_closed() const { return triangles.empty() || triangles.back() >= 0; }
     double width(int axis) const { return box.upper[axis] - box.lower[axis]; }
 };
 

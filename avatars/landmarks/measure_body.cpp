@@ -48,7 +48,59 @@ public:
         return std::move(result_);
     }
 
+    std::vector<Girth> tapes() const
+    {
+        std::vector<Girth> tapes;
+        const auto add = [&](const char* key, const char* side, const SectionPlane& plane, SectionLoop skin,
+                             double length) {
+            tapes.push_back(in_world({key, side, length, plane, std::move(skin)}));
+        };
+        for (const auto& [key, y] :
+             {std::pair("bust", bust_), {"underbust", underbust_}, {"waist", waist_}, {"hips", hips_}})
+            add(key, "", horizontal(y), trunk_slice(body_, y), girth(y));
+        const SectionPlane plane = horizontal(thigh_level());
+        for (SectionLoop& thigh : thighs())
+            add("leg_circ", thigh.center.x() > body_.crotch.x() ? "left" : "right", plane, thigh,
+                closed_length(thigh.points));
+        for (const Side side : {kLeft, kRight})
+            if (const UprightBody::Arm& arm = body_.arm[side]; !arm.wrist_axis.isZero()) {
+                const SectionPlane across = SectionPlane::through(arm.wrist, arm.wrist_axis);
+                add("wrist", side == kLeft ? "left" : "right", across, around(arm.wrist, across),
+                    arm.wrist_tape);
+            }
+        return tapes;
+    }
+
 private:
+    /// From the body's own frame.
+    Girth in_world(Girth tape) const
+    {
+        const Mat3& world_from_body = body_.world_from_body;
+        for (Vec3* x : {&tape.plane.point, &tape.plane.normal, &tape.plane.u, &tape.plane.v})
+            *x = world_from_body * *x;
+        for (Vec3& x : tape.skin.points)
+            x = world_from_body * x;
+        tape.skin = loop_through(std::move(tape.skin.points), tape.plane);
+        return tape;
+    }
+
+    /// Curve whose middle is nearest to a point of the plane.
+    SectionLoop around(const Vec3& point, const SectionPlane& plane) const
+    {
+        const std::vector<SectionLoop> loops = cut(body_.mesh, plane);
+        return *std::min_element(loops.begin(), loops.end(), [&](const SectionLoop& a, const SectionLoop& b) {
+            return (a.center - point).squaredNorm() < (b.center - point).squaredNorm();
+        });
+    }
+
+    double thigh_level() const { return body_.crotch.y() - 0.01; }
+    std::vector<SectionLoop> thighs() const
+    {
+        std::vector<SectionLoop> legs = cut(body_.mesh, horizontal(thigh_level()));
+        legs.resize(std::min<size_t>(legs.size(), 2));
+        return legs;
+    }
+
     void add(const char* key, double value, const char* meaning)
     {
         result_.push_back({key, value, false, meaning});
@@ -142,12 +194,10 @@ private:
         add("underbust", girth(underbust_), "tape where the trunk begins to widen to the bust");
         add("waist", girth(waist_), "tape at the lowest level within 0.5 % of the smallest girth");
         add("hips", girth(hips_), "tape at the largest girth near the seat");
-        double thighs = 0.0;
-        const double y = body_.crotch.y() - 0.01;
-        std::vector<SectionLoop> legs = cut(body_.mesh, horizontal(y));
-        for (size_t k = 0; k < 2 && k < legs.size(); ++k)
-            thighs += 0.5 * closed_length(legs[k].points);
-        add("leg_circ", thighs, "around a thigh 1 cm below the crotch, mean of both");
+        double around_thighs = 0.0;
+        for (const SectionLoop& thigh : thighs())
+            around_thighs += 0.5 * closed_length(thigh.points);
+        add("leg_circ", around_thighs, "around a thigh 1 cm below the crotch, mean of both");
         add("wrist", 0.5 * (body_.arm[kLeft].wrist_tape + body_.arm[kRight].wrist_tape),
             "tape at the thinnest slice across the forearm, mean of both");
     }
@@ -360,5 +410,7 @@ private:
 std::vector<std::string> unmeasured_keys() { return {"bum_points"}; }
 
 std::vector<Measurement> measure_body(const UprightBody& body) { return Tape(body).all(); }
+
+std::vector<Girth> measure_girths(const UprightBody& body) { return Tape(body).tapes(); }
 
 } // namespace toile::avatars

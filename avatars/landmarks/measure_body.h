@@ -25,4 +25,17 @@ std::vector<std::string> unmeasured_keys();
 /// girth, the hips at the largest near the hindmost point of the seat.
 std::vector<Measurement> measure_body(const UprightBody& body);
 
+/// A girth of a body, and where its tape lies.
+struct Girth {
+    std::string key;     ///< of the measurement
+    std::string side;    ///< "left", "right"; empty: around the trunk
+    double length = 0.0; ///< [m] of the tape
+    SectionPlane plane;  ///< of the slice, in the frame of the mesh that find_upright_body() was given
+    SectionLoop skin;    ///< in that plane, around the part that is measured
+};
+
+/// Girths among the measurements: bust, underbust, waist, hips, and those of both thighs and wrists, if they
+/// were found.
+std::vector<Girth> measure_girths(const UprightBody& body);
+
 } // namespace toile::avatars

@@ -243,8 +243,10 @@ private:
         follow_arm(side, name);
         if (is_given(name + "_shoulder"))
             arm.shoulder = given(name + "_shoulder");
-        if (is_given(name + "_wrist"))
+        if (is_given(name + "_wrist")) {
             arm.wrist = given(name + "_wrist");
+            arm.wrist_axis.setZero();
+        }
     }
 
     /// Width of the trunk to one side at a level.
@@ -303,6 +305,7 @@ private:
         require_limb(forearm);
         const int thinnest = forearm.end_of_forearm();
         arm.wrist = forearm.center[size_t(thinnest)];
+        arm.wrist_axis = (whole.center[size_t(wrist)] - arm.elbow).normalized();
         arm.wrist_tape = forearm.around[size_t(thinnest)];
 
         // The upper arm's axis, prolonged to above the armpit.

@@ -31,6 +31,7 @@ struct UprightBody {
         Vec3 shoulder = Vec3::Zero();     ///< on the arm's axis, above the armpit
         Vec3 elbow = Vec3::Zero();        ///< on the arm's axis
         Vec3 wrist = Vec3::Zero();        ///< on the arm's axis, where it is thinnest
+        Vec3 wrist_axis = Vec3::Zero();   ///< normal of the slice there, unit; zero: the wrist was given
         double wrist_tape = 0.0;          ///< around it [m]
     };
     struct Leg {

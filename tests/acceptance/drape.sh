@@ -51,7 +51,8 @@ has() {
 # results   what a drape has to leave
 results() {
     has "$out/drape.json" '"class": "draped"' && has "$out/certificate.json" '"holds": true' &&
-        has "$out/$name.obj" '^g ' && has "$out/scene.json" '"rest": "uv"' && has "$out/$name.png" PNG
+        has "$out/$name.obj" '^g ' && has "$out/scene.json" '"rest": "uv"' && has "$out/$name.png" PNG &&
+        has "$out/fit.json" '"colour_range"'
 }
 
 # reported KEY   its number in drape.json

@@ -167,6 +167,8 @@ int drape(DrapeOptions options)
     }
     files.write_report(report, patterns, log);
     files.write_picture(settings, log);
+    if (report.result.outcome == scenes::DrapeOutcome::Draped)
+        files.write_fit(report.result, patterns, settings, log);
     log.result(summary_of(report));
     if (report.verdict.is_draped()) {
         log.result("simulate it on by: toile simulate " + files.scene().string() + " -o " +

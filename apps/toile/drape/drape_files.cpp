@@ -14,6 +14,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
+#include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/surfaces/load_cloth.h"
 
@@ -122,7 +123,8 @@ std::string DrapeFiles::name() const
 
 std::vector<path> DrapeFiles::results() const
 {
-    std::vector<path> files = {report(), certificate(), scene(), picture()};
+    std::vector<path> files = fit().all();
+    files.insert(files.end(), {report(), certificate(), scene(), picture()});
     for (const std::string& garment : names_) {
         files.push_back(mesh(garment));
         files.push_back(rest_mesh(garment));
@@ -245,6 +247,20 @@ void DrapeFiles::write_report(const DrapeReport& drape, const std::vector<garmen
 {
     write_atomically(report(), to_json(drape, patterns));
     log.file(report());
+}
+
+void DrapeFiles::write_fit(const scenes::DrapeResult& result, const std::vector<garment::Pattern>& patterns,
+                           const scenes::DrapeSettings& settings, const RunLog& log) const
+{
+    const scenes::SceneBody body(settings.body);
+    const auto* file = std::get_if<path>(&settings.body.shape);
+    const std::string source = file ? file->string() : settings.body.name;
+    std::vector<GarmentFit> fits;
+    for (size_t g = 0; g < result.garments.size(); ++g)
+        fits.push_back(fit_of(fitted_garment(names_[g], result.garments[g].surface, patterns[g],
+                                             settings.garments[g].fabric),
+                              body.surface(), source));
+    fit().write(fits, body.surface(), log);
 }
 
 void DrapeFiles::write_picture(const scenes::DrapeSettings& settings, const RunLog& log) const

@@ -8,6 +8,7 @@
 #include "apps/toile/check/certificate.h"
 #include "apps/toile/drape/continuation.h"
 #include "apps/toile/drape/drape_report.h"
+#include "apps/toile/fit/fit_files.h"
 #include "apps/toile/terminal/interrupt.h"
 #include "apps/toile/terminal/run_log.h"
 #include "export/folder_lock.h"
@@ -57,6 +58,10 @@ public:
     void write_report(const DrapeReport& report, const std::vector<garment::Pattern>& patterns,
                       const RunLog& log) const;
 
+    /// Measures how the garments at rest fit the body, and writes it (FitFiles).
+    void write_fit(const scenes::DrapeResult& result, const std::vector<garment::Pattern>& patterns,
+                   const scenes::DrapeSettings& settings, const RunLog& log) const;
+
     /// Writes a picture of the meshes on the body, from the front at an angle of 30 degrees.
     void write_picture(const scenes::DrapeSettings& settings, const RunLog& log) const;
 
@@ -70,6 +75,7 @@ private:
     std::filesystem::path certificate() const { return folder_ / "certificate.json"; }
     std::filesystem::path picture() const { return folder_ / (name() + ".png"); }
     std::vector<std::filesystem::path> results() const;
+    FitFiles fit() const { return {folder_, names_}; }
     std::string scene_text(const Continuation& continuation, const scenes::DrapeResult& result) const;
 
     std::vector<std::string> names_;

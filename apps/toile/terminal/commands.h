@@ -23,6 +23,7 @@ Command add_simulate(CLI::App& parser, const scenes::BaselineMethods* baselines)
 Command add_render(CLI::App& parser);
 Command add_check(CLI::App& parser);
 Command add_drape(CLI::App& parser);
+Command add_fit(CLI::App& parser);
 Command add_info(CLI::App& parser);
 Command add_measure(CLI::App& parser);
 Command add_pattern(CLI::App& parser);

@@ -57,6 +57,25 @@ protected:
     }
 
     Json json_in(const std::string& name) const { return Json::parse(bytes_of(file(name))); }
+
+    /// The skirt goes around the hips, and around both thighs at once.
+    void expect_fit_of_skirt(size_t vertices) const
+    {
+        const Json fit = json_in("out/fit.json")["garments"][0];
+        EXPECT_EQ(fit["name"], "a_line_skirt");
+        for (const Json& girth : fit["girths"]) {
+            EXPECT_EQ(girth.contains("ease_m"), girth["key"] == "hips" || girth["key"] == "waist") << girth;
+            if (girth.contains("ease_m")) {
+                EXPECT_GT(girth["ease_m"], 0.0) << girth;
+                EXPECT_NEAR(girth["garment_draped_m"], girth["garment_m"], 0.03) << girth;
+            }
+        }
+        const std::string table = bytes_of(file("out/a_line_skirt_fit.csv"));
+        EXPECT_EQ(size_t(std::count(table.begin(), table.end(), '\n')), vertices + 1);
+        EXPECT_GT(fit["maps"][2]["min"], 0.0) << "no vertex is in the body";
+        for (const char* map : {"tension", "strain", "gap"})
+            EXPECT_EQ(bytes_of(file(std::string("out/a_line_skirt_") + map + ".png")).substr(1, 3), "PNG");
+    }
 };
 
 /// Mean of the corners of some polygons [m]; the body looks along z.
@@ -121,6 +140,8 @@ TEST_F(Drape, PassesTheAcceptanceOfASkirt)
     EXPECT_LT(strain["mean"], strain["p99"]);
     EXPECT_GE(report["uv_distortion"]["l2_stretch"], 1.0);
     EXPECT_LT(report["uv_distortion"]["l2_stretch"], 1.001);
+
+    expect_fit_of_skirt(mesh.positions.size());
 
     const std::string png = bytes_of(file("out/a_line_skirt.png"));
     EXPECT_EQ(png.substr(1, 3), "PNG");

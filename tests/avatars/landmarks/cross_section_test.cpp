@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <Eigen/Geometry>
 
 #include "avatars/landmarks/cross_section.h"
 
@@ -83,6 +86,28 @@ TEST(CrossSection, CurveThatEndsAtABorderIsWhole)
     ASSERT_EQ(loops.size(), 1u);
     EXPECT_NEAR(loops[0].width(0), 10.0, 1e-12);
     EXPECT_EQ(loops[0].points.size(), 21u);
+    EXPECT_FALSE(loops[0].is_closed());
+    EXPECT_EQ(loops[0].triangles.size(), 21u);
+    EXPECT_EQ(std::count(loops[0].triangles.begin(), loops[0].triangles.end(), -1), 1) << "the chord";
+}
+
+TEST(CrossSection, NamesTheTriangleBetweenTwoPoints)
+{
+    const TriangleMesh mesh = torus();
+    for (const SectionLoop& loop : cut(mesh, SectionPlane::through(Vec3(0.0, 1e-4, 0.0), Vec3::UnitY()))) {
+        EXPECT_TRUE(loop.is_closed());
+        ASSERT_EQ(loop.triangles.size(), loop.points.size());
+        for (size_t i = 0; i < loop.points.size(); ++i) {
+            const Triangle& t = mesh.triangles[size_t(loop.triangles[i])];
+            const Vec3 middle = 0.5 * (loop.points[i] + loop.points[(i + 1) % loop.points.size()]);
+            const Vec3 &a = mesh.positions[size_t(t[0])], &b = mesh.positions[size_t(t[1])],
+                       &c = mesh.positions[size_t(t[2])];
+            const double parts = (b - middle).cross(c - middle).norm() +
+                                 (c - middle).cross(a - middle).norm() +
+                                 (a - middle).cross(b - middle).norm();
+            EXPECT_NEAR(parts, (b - a).cross(c - a).norm(), 1e-12) << "inside of it";
+        }
+    }
 }
 
 } // namespace toile::test

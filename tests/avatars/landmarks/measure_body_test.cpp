@@ -77,6 +77,42 @@ TEST(MeasureBody, DoesNotDependOnWhereTheBodyStandsAndScalesWithIt)
     }
 }
 
+/// Tapes lie on the skin, in the frame of the file, and are as long as the measurements say.
+TEST(MeasureBody, GirthsHaveTheirPlaceOnTheBody)
+{
+    TriangleMesh body = bind_pose(*load_body("mannequin"));
+    for (Vec3& x : body.positions)
+        x = Vec3(x.z(), x.y() + 0.3, -x.x()) + Vec3(0.0, 0.0, 1.0);
+    const UprightBody upright = find_upright_body(body, {}, "mannequin");
+    std::map<std::string, double> measured, tapes, count;
+    for (const Measurement& m : measure_body(upright))
+        measured[m.key] = m.value;
+    for (const Girth& girth : measure_girths(upright)) {
+        const bool is_trunk = girth.side.empty();
+        EXPECT_EQ(is_trunk, girth.key != "leg_circ" && girth.key != "wrist");
+        tapes[girth.key] += is_trunk ? girth.length : 0.5 * girth.length;
+        ++count[girth.key];
+        ASSERT_GE(girth.skin.points.size(), 3u) << girth.key;
+        const double tape = girth.key == "leg_circ"
+                                ? closed_length(girth.skin.points)
+                                : closed_length(convex_hull(girth.skin.points, girth.plane));
+        EXPECT_NEAR(tape, girth.length, 1e-12) << girth.key;
+        for (const Vec3& x : girth.skin.points) {
+            EXPECT_NEAR(girth.plane.normal.dot(x - girth.plane.point), 0.0, 1e-12);
+            double nearest = 1e300;
+            for (const Vec3& v : body.positions)
+                nearest = std::min(nearest, (v - x).norm());
+            EXPECT_LT(nearest, 0.02) << girth.key << ": on the skin where it stands";
+        }
+        if (!is_trunk) // the body faces +X now, its left is -Z
+            EXPECT_EQ(girth.skin.center.z() < 1.0, girth.side == "left") << girth.key;
+    }
+    for (const char* key : {"bust", "underbust", "waist", "hips", "leg_circ", "wrist"}) {
+        EXPECT_NEAR(tapes.at(key), measured.at(key), 1e-12) << key;
+        EXPECT_EQ(count.at(key), key == std::string("leg_circ") || key == std::string("wrist") ? 2 : 1);
+    }
+}
+
 TEST(MeasureBody, EveryBodyHasFiniteMeasurementsInPlausibleOrder)
 {
     if (!has_data())

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mesh/obj.h"
+#include "core/mesh/triangle_mesh.h"
+#include "garment/fabric/fabric.h"
+#include "garment/pattern/pattern.h"
+#include "scenes/drape/garment_mesh.h"
+#include "scenes/surfaces/load_cloth.h"
+
+namespace toile::app {
+
+/// A garment on a body.
+struct FittedGarment {
+    std::string name;
+    TriangleMesh mesh;              ///< [m]
+    std::vector<FlatTriangle> rest; ///< [triangles] corners in the flat panels [m]
+    std::vector<garment::Fabric> fabrics;
+    std::vector<int> fabric_of_triangle; ///< [triangles] into fabrics
+};
+
+/// @param surface  with a texture; the panels of its groups are those of the pattern
+/// @param fabric   preset of panels without one
+FittedGarment fitted_garment(const std::string& name, const scenes::GarmentSurface& surface,
+                             const garment::Pattern& pattern, const std::string& fabric);
+
+/// A cloth of a scene.
+/// @param x  [vertices] [m]
+FittedGarment fitted_garment(const scenes::LoadedCloth& cloth, std::vector<Vec3> x);
+
+} // namespace toile::app
