@@ -160,6 +160,15 @@ void describe(V& v, Sewing& s)
 }
 
 template <typename V>
+void describe(V& v, Fold& f)
+{
+    v.required("vertices", f.vertices, between(0, 1e9), "Vertices of the file along edges of its mesh.");
+    v.required("angle_deg", f.angle_deg, kFoldAngle,
+               "Angle between the faces at rest, outer sides towards each other; 0: flat.");
+    v.field("stiffness", f.stiffness, kFoldStiffness, "Moment per length of the fold and radian of opening.");
+}
+
+template <typename V>
 void describe(V& v, Cloth& c)
 {
     v.required("name", c.name, "Name, for attachments, messages and the cache's file.");
@@ -193,6 +202,9 @@ void describe(V& v, Cloth& c)
     v.field(
         "sewing", c.sewing,
         "Threads that pull together the vertices that lines (l) of the file join, as of panels to be sewn.");
+    v.field("folds", c.folds,
+            "Lines along which the cloth is folded at rest, as pleats are. It bends there by their stiffness "
+            "alone. Not with subdivide, xpbd and vbd.");
     v.field("layer", c.layer, between(-100, 100),
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");

@@ -12,6 +12,7 @@
 #include "core/pd/preconditioner/contact_preconditioner.h"
 #include "core/pd/step/bdf2.h"
 #include "core/pd/step/step_stop.h"
+#include "garment/energy/fold/fold_edge.h"
 
 /// Contents of a scene file: plain values, checked on reading, nothing loaded yet.
 ///
@@ -150,6 +151,13 @@ struct Sewing {
     double max_force = 0.5;    ///< [N] of each
 };
 
+/// Line along which cloth is folded at rest.
+struct Fold {
+    std::vector<int> vertices;                  ///< [2 or more] of the file, along edges of its mesh
+    double angle_deg = 0.0;                     ///< outer sides towards each other
+    double stiffness = garment::kFoldStiffness; ///< [N] moment per length of the fold and radian
+};
+
 struct Cloth {
     std::string name;
     ClothShape shape;
@@ -163,10 +171,11 @@ struct Cloth {
     double scale = 1.0;             ///< [-]
     Vec3 translate = Vec3::Zero();  ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
-    std::string fabric = "cotton";       ///< key of Scene::fabrics or name of a preset
-    double grain_deg = 0.0;              ///< rotation of the warp direction in the cloth plane
-    std::optional<double> thickness;     ///< [m] replaces the fabric's
-    std::optional<Sewing> sewing;        ///< absent: lines of the file are left out
+    std::string fabric = "cotton";   ///< key of Scene::fabrics or name of a preset
+    double grain_deg = 0.0;          ///< rotation of the warp direction in the cloth plane
+    std::optional<double> thickness; ///< [m] replaces the fabric's
+    std::optional<Sewing> sewing;    ///< absent: lines of the file are left out
+    std::vector<Fold> folds;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     Print print = Print::Plain;          ///< in pictures

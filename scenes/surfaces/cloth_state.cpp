@@ -1,5 +1,9 @@
 #include "scenes/surfaces/cloth_state.h"
 
+#include <algorithm>
+
+#include "core/base/error.h"
+
 namespace toile::scenes {
 
 std::vector<Vec3> ClothState::to_file(View<const Vec3> x) const
@@ -24,6 +28,18 @@ std::vector<Vec3> ClothState::from_file(View<const Vec3> x) const
     for (const int v : numbers.file_vertex)
         out.push_back(x[v]);
     return out;
+}
+
+int ClothState::vertex_of_file(int file_vertex, const std::string& location, const std::string& remedy) const
+{
+    const int count = int(numbers.vertex.empty() ? rest.positions.size() : numbers.vertex.size());
+    if (file_vertex < 0 || file_vertex >= count)
+        throw InvalidInput(location + ": vertex " + std::to_string(file_vertex) + " is out of range; \"" +
+                           name + "\" has vertices 0 to " + std::to_string(count - 1));
+    if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), file_vertex))
+        throw InvalidInput(location + ": vertex " + std::to_string(file_vertex) + " of \"" + name +
+                           "\" has no face; " + remedy);
+    return numbers.vertex.empty() ? file_vertex : numbers.vertex[size_t(file_vertex)];
 }
 
 int ClothState::file_vertex(int vertex) const

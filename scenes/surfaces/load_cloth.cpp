@@ -10,6 +10,7 @@
 #include "scenes/format/scene_fabric.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/meshes/rigid_motion.h"
+#include "scenes/surfaces/fold_edges.h"
 #include "scenes/surfaces/load_solid.h"
 #include "scenes/surfaces/uv_rest.h"
 
@@ -56,17 +57,8 @@ scene::Selection in_cloth(scene::Selection select, const ClothState& cloth, cons
     auto* vertices = std::get_if<std::vector<int>>(&select.by);
     if (vertices == nullptr)
         return select;
-    const FileNumbers& numbers = cloth.numbers;
-    const int count = int(numbers.vertex.empty() ? cloth.rest.positions.size() : numbers.vertex.size());
-    for (int& v : *vertices) {
-        if (v < 0 || v >= count)
-            throw InvalidInput(location + ": vertex " + std::to_string(v) + " is out of range; \"" +
-                               cloth.name + "\" has vertices 0 to " + std::to_string(count - 1));
-        if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), v))
-            throw InvalidInput(location + ": vertex " + std::to_string(v) + " of \"" + cloth.name +
-                               "\" has no face; attach vertices of the surface");
-        v = numbers.vertex.empty() ? v : numbers.vertex[size_t(v)];
-    }
+    for (int& v : *vertices)
+        v = cloth.vertex_of_file(v, location, "attach vertices of the surface");
     return select;
 }
 
@@ -138,6 +130,7 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
         for (Vec3& p : placed->positions)
             p += settings.translate;
     state.positions = state.rest.positions;
+    loaded.folds = fold_edges(scene, settings, state, loaded.rest->topology);
     for (size_t i = 0; i < scene.attachments.size(); ++i)
         if (scene.attachments[i].cloth == settings.name) {
             const std::string location = attachment_location(scene, i);

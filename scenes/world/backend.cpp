@@ -45,6 +45,9 @@ std::string why_not_on_gpu(const Scene& scene)
                            scene_format::word_of(solver.contact_preconditioner));
     if (!scene.solids.empty())
         return "solids run on the CPU only";
+    for (const scene::Cloth& cloth : scene.cloths)
+        if (!cloth.folds.empty())
+            return "folds of cloth run on the CPU only";
     return {};
 }
 
