@@ -46,6 +46,7 @@ MAY_INCLUDE = {
     "garment/fabric": CORE,
     "garment/energy": CORE,
     "garment/energy/air": CORE + ["garment/energy"],
+    "garment/energy/fold": CORE + ["garment/energy"],
     "garment/energy/strain_limit": CORE + ["garment/energy"],
     "garment/pattern": CORE + ["garment/energy", "quadrature2d"],
     "garment/pattern/place": CORE + ["garment/pattern"],

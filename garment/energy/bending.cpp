@@ -100,7 +100,7 @@ void add_block(const Bending::Term& term, SparseMatrix& K)
 } // namespace
 
 std::vector<Bending::Term> Bending::terms(const RestShape& rest, const Settings& settings,
-                                          const std::string& source)
+                                          const std::string& source, const std::vector<int>& hinges)
 {
     require_valid(settings, source);
     const Vec3 rigidity(settings.warp, 2.0 * std::sqrt(settings.warp * settings.weft), settings.weft);
@@ -110,7 +110,7 @@ std::vector<Bending::Term> Bending::terms(const RestShape& rest, const Settings&
     const double largest = kMaxRelativeStiffness * std::max(settings.warp, settings.weft) / mean_area;
 
     std::vector<Term> terms;
-    std::vector<CurvatureStencil> stencils = curvature_stencils(rest);
+    std::vector<CurvatureStencil> stencils = curvature_stencils(rest, hinges);
     for (size_t t = 0; t < stencils.size(); ++t) {
         if (stencils[t].vertex.empty())
             continue;
@@ -125,10 +125,10 @@ std::vector<Bending::Term> Bending::terms(const RestShape& rest, const Settings&
 }
 
 Bending::Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings,
-                 const std::string& source)
+                 const std::string& source, const std::vector<int>& hinges)
 {
     const int n = rest->vertex_count();
-    const std::vector<Term> terms = Bending::terms(*rest, settings, source);
+    const std::vector<Term> terms = Bending::terms(*rest, settings, source, hinges);
     K_ = pattern_of(terms, n);
     for (const Term& term : terms)
         add_block(term, K_);

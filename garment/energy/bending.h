@@ -18,7 +18,8 @@ namespace toile::garment {
 /// isometry argument on hinges; a hinge's prefactor depends on the mesh (up to a factor 3), this operator
 /// converges on any triangulation.
 ///
-/// The rest shape is flat: cloth is cut from a plane.
+/// The rest shape is flat: cloth is cut from a plane. Across hinges it does not bend at all, and no moment
+/// acts there: the folds of FoldLines alone hold them.
 class Bending : public Energy {
 public:
     struct Settings {
@@ -26,9 +27,10 @@ public:
         double weft = 5e-6; ///< [N m] D_v
     };
 
+    /// @param hinges  inner edges, as indices into Topology::edges
     /// @throws InvalidInput naming `source` and a rigidity that is negative or not finite.
-    Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings,
-            const std::string& source);
+    Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings, const std::string& source,
+            const std::vector<int>& hinges = {});
 
     /// Leaves bending out of H if it is far below the diagonal of the membrane's part [vertices] [N/m] at
     /// every vertex. The membrane's majoriser then covers bending at least ten times over. Without the second
@@ -53,8 +55,8 @@ public:
 
     /// Contributions of all triangles with neighbours; their sum is K.
     /// @throws InvalidInput as the constructor does.
-    static std::vector<Term> terms(const RestShape& rest, const Settings& settings,
-                                   const std::string& source);
+    static std::vector<Term> terms(const RestShape& rest, const Settings& settings, const std::string& source,
+                                   const std::vector<int>& hinges = {});
 
 private:
     SparseMatrix K_;

@@ -23,12 +23,30 @@ std::array<Vec2, 3> flat_corners(const RestShape& rest, int t)
     return {Vec2(0.0, 0.0), Vec2(rest.edges[t].col(0)), Vec2(rest.edges[t].col(1))};
 }
 
-/// Triangle across edge k of t, or -1 at the border.
-int neighbour(const RestShape& rest, int t, int k)
-{
-    const Edge& edge = rest.topology.edges[rest.topology.triangle_edge[t][k]];
-    return edge.triangle[0] == t ? edge.triangle[1] : edge.triangle[0];
-}
+/// Neighbours of triangles; hinges are borders.
+class Neighbours {
+public:
+    Neighbours(const RestShape& rest, const std::vector<int>& hinges)
+        : topology_(rest.topology), is_hinge_(rest.topology.edges.size(), false)
+    {
+        for (const int edge : hinges)
+            is_hinge_[edge] = true;
+    }
+
+    /// Triangle across edge k of t, or -1 at the border.
+    int across(int t, int k) const
+    {
+        const int e = topology_.triangle_edge[t][k];
+        const Edge& edge = topology_.edges[e];
+        if (is_hinge_[e])
+            return -1;
+        return edge.triangle[0] == t ? edge.triangle[1] : edge.triangle[0];
+    }
+
+private:
+    const Topology& topology_;
+    std::vector<bool> is_hinge_; ///< [edges]
+};
 
 /// Index in triangle s of the edge that is edge k of its neighbour t.
 int shared_edge(const RestShape& rest, int t, int k, int s)
@@ -76,7 +94,7 @@ struct Fit {
 
 Vec3 monomials(const Vec2& q) { return {0.5 * q.x() * q.x(), q.x() * q.y(), 0.5 * q.y() * q.y()}; }
 
-Fit fit_triangle(const RestShape& rest, int t)
+Fit fit_triangle(const RestShape& rest, const Neighbours& neighbours, int t)
 {
     const std::array<Vec2, 3> corner = flat_corners(rest, t);
     const Mat2 to_barycentric = rest.edges_inv[t];
@@ -91,7 +109,7 @@ Fit fit_triangle(const RestShape& rest, int t)
         result.hessian.col(k) =
             edge.norm() / rest.areas[t] * Vec3(m.x() * m.x(), m.x() * m.y(), m.y() * m.y());
 
-        const int s = neighbour(rest, t, k);
+        const int s = neighbours.across(t, k);
         if (s < 0) {
             deviations.row(k) = rest.areas[t] * Vec3(m.x() * m.x(), 2.0 * m.x() * m.y(), m.y() * m.y());
             continue;
@@ -163,13 +181,14 @@ private:
     std::vector<Vec3> columns_;
 };
 
-CurvatureStencil assemble(const RestShape& rest, const std::vector<Fit>& fits, int t)
+CurvatureStencil assemble(const RestShape& rest, const Neighbours& neighbours, const std::vector<Fit>& fits,
+                          int t)
 {
     const Fit& fit = fits[t];
     StencilSum sum;
     for (int k = 0; k < 3; ++k) {
         const Vec3 hessian = fit.hessian.col(k);
-        const int s = neighbour(rest, t, k);
+        const int s = neighbours.across(t, k);
         const double fraction = s < 0 ? 1.0 : 0.5;
         for (int j = 0; j < 3; ++j)
             sum.add(fraction * fit.slopes(k, j) * hessian, fit.deviation[j]);
@@ -186,17 +205,18 @@ CurvatureStencil assemble(const RestShape& rest, const std::vector<Fit>& fits, i
 
 } // namespace
 
-std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest)
+std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest, const std::vector<int>& hinges)
 {
+    const Neighbours neighbours(rest, hinges);
     const int triangles = int(rest.triangles.size());
     std::vector<Fit> fits;
     std::vector<CurvatureStencil> stencils;
     fits.reserve(triangles);
     stencils.reserve(triangles);
     for (int t = 0; t < triangles; ++t)
-        fits.push_back(fit_triangle(rest, t));
+        fits.push_back(fit_triangle(rest, neighbours, t));
     for (int t = 0; t < triangles; ++t)
-        stencils.push_back(assemble(rest, fits, t));
+        stencils.push_back(assemble(rest, neighbours, fits, t));
     return stencils;
 }
 

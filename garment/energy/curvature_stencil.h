@@ -27,6 +27,8 @@ struct CurvatureStencil {
 ///
 /// The result is within 1 % on the same meshes and converges (docs/journal/bending.md). At the border phi is
 /// the fit's own slope, and the fit has no curvature across the border: the moment-free edge.
-std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest);
+/// @param hinges  inner edges, as indices into Topology::edges, that are borders to the stencils of both
+/// sides
+std::vector<CurvatureStencil> curvature_stencils(const RestShape& rest, const std::vector<int>& hinges = {});
 
 } // namespace toile::garment

@@ -151,6 +151,23 @@ void check_rest(const Document& document, const std::string& key_path, const Clo
                         "has no effect on a rest shape that is the mesh; add \"rest\": \"uv\" or remove it");
 }
 
+void check_folds(const Document& document, const std::string& key_path, const Cloth& cloth,
+                 SolverMethod method)
+{
+    for (size_t i = 0; i < cloth.folds.size(); ++i)
+        if (const size_t count = cloth.folds[i].vertices.size(); count < 2)
+            document.refuse(below(below(below(key_path, "folds"), i), "vertices"),
+                            std::to_string(count) + (count == 1 ? " vertex" : " vertices") +
+                                "; a fold needs two or more");
+    if (!cloth.folds.empty() && cloth.subdivide > 0)
+        document.refuse(below(key_path, "subdivide"),
+                        "splits the edges that folds run along; remove it, or the folds");
+    if (!cloth.folds.empty() && replaces_minimiser(method))
+        document.refuse(below(key_path, "folds"), as_written(word_of(method)) +
+                                                      " has no folds; choose another solver.method, or " +
+                                                      "remove them");
+}
+
 void check_print(const Document& document, const std::string& key_path, const Cloth& cloth)
 {
     if (cloth.pattern && cloth.print != Print::Plain && cloth.print != *cloth.pattern)
@@ -189,6 +206,7 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
         if (const auto* skirt = std::get_if<Skirt>(&cloth.shape))
             check_skirt(document, below(key_path, "skirt"), *skirt);
         check_rest(document, key_path, cloth);
+        check_folds(document, key_path, cloth, scene.solver.method);
         check_print(document, key_path, cloth);
         check_elastics(document, below(key_path, "elastics"), cloth, scene.solver.method);
         if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMaxVertices)

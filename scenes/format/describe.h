@@ -171,6 +171,15 @@ void describe(V& v, Elastic& e)
 }
 
 template <typename V>
+void describe(V& v, Fold& f)
+{
+    v.required("vertices", f.vertices, between(0, 1e9), "Vertices of the file along edges of its mesh.");
+    v.required("angle_deg", f.angle_deg, kFoldAngle,
+               "Angle between the faces at rest, outer sides towards each other; 0: flat.");
+    v.field("stiffness", f.stiffness, kFoldStiffness, "Moment per length of the fold and radian of opening.");
+}
+
+template <typename V>
 void describe(V& v, Cloth& c)
 {
     v.required("name", c.name, "Name, for attachments, messages and the cache's file.");
@@ -207,6 +216,9 @@ void describe(V& v, Cloth& c)
     v.field("elastics", c.elastics,
             "Elastics along edges of the mesh, which gather the cloth as they contract. Not with subdivide, "
             "xpbd and vbd, nor on a GPU.");
+    v.field("folds", c.folds,
+            "Lines along which the cloth is folded at rest, as pleats are. It bends there by their stiffness "
+            "alone. Not with subdivide, xpbd and vbd.");
     v.field("layer", c.layer, between(-100, 100),
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");

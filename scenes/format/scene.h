@@ -12,6 +12,7 @@
 #include "core/pd/preconditioner/contact_preconditioner.h"
 #include "core/pd/step/bdf2.h"
 #include "core/pd/step/step_stop.h"
+#include "garment/energy/fold/fold_edge.h"
 
 /// Contents of a scene file: plain values, checked on reading, nothing loaded yet.
 ///
@@ -157,6 +158,13 @@ struct Elastic {
     double stiffness = 20.0;   ///< [N] tension per unit of its strain
 };
 
+/// Line along which cloth is folded at rest.
+struct Fold {
+    std::vector<int> vertices;                  ///< [2 or more] of the file, along edges of its mesh
+    double angle_deg = 0.0;                     ///< outer sides towards each other
+    double stiffness = garment::kFoldStiffness; ///< [N] moment per length of the fold and radian
+};
+
 struct Cloth {
     std::string name;
     ClothShape shape;
@@ -175,6 +183,7 @@ struct Cloth {
     std::optional<double> thickness;     ///< [m] replaces the fabric's
     std::optional<Sewing> sewing;        ///< absent: lines of the file are left out
     std::vector<Elastic> elastics;
+    std::vector<Fold> folds;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     Print print = Print::Plain;          ///< in pictures

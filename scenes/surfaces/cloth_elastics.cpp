@@ -10,6 +10,8 @@ namespace toile::scenes {
 
 namespace {
 
+const std::string kRemedy = "name vertices of the surface";
+
 /// Lengths of the edges of a cloth at rest, by their vertices in ascending order. [m]
 class EdgeLengths {
 public:
@@ -62,8 +64,8 @@ std::vector<garment::Elastics::Spring> elastic_springs(const std::vector<scene::
         const scene::Elastic& elastic = elastics[i];
         const std::string location = key_path + "[" + std::to_string(i) + "].vertices";
         for (size_t k = 0; k + 1 < elastic.vertices.size(); ++k) {
-            const int a = cloth.vertex_of_file(elastic.vertices[k], location),
-                      b = cloth.vertex_of_file(elastic.vertices[k + 1], location);
+            const int a = cloth.vertex_of_file(elastic.vertices[k], location, kRemedy),
+                      b = cloth.vertex_of_file(elastic.vertices[k + 1], location, kRemedy);
             const double length = lengths(a, b);
             if (!(length > 0.0))
                 throw InvalidInput(location + ": vertices " + std::to_string(elastic.vertices[k]) + " and " +

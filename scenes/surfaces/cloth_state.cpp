@@ -30,21 +30,21 @@ std::vector<Vec3> ClothState::from_file(View<const Vec3> x) const
     return out;
 }
 
+int ClothState::vertex_of_file(int file_vertex, const std::string& location, const std::string& remedy) const
+{
+    const int count = int(numbers.vertex.empty() ? rest.positions.size() : numbers.vertex.size());
+    if (file_vertex < 0 || file_vertex >= count)
+        throw InvalidInput(location + ": vertex " + std::to_string(file_vertex) + " is out of range; \"" +
+                           name + "\" has vertices 0 to " + std::to_string(count - 1));
+    if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), file_vertex))
+        throw InvalidInput(location + ": vertex " + std::to_string(file_vertex) + " of \"" + name +
+                           "\" has no face; " + remedy);
+    return numbers.vertex.empty() ? file_vertex : numbers.vertex[size_t(file_vertex)];
+}
+
 int ClothState::file_vertex(int vertex) const
 {
     return vertex < int(numbers.file_vertex.size()) ? numbers.file_vertex[size_t(vertex)] : vertex;
-}
-
-int ClothState::vertex_of_file(int number, const std::string& location) const
-{
-    const int count = int(numbers.vertex.empty() ? rest.positions.size() : numbers.vertex.size());
-    if (number < 0 || number >= count)
-        throw InvalidInput(location + ": vertex " + std::to_string(number) + " is out of range; \"" + name +
-                           "\" has vertices 0 to " + std::to_string(count - 1));
-    if (std::binary_search(numbers.loose.begin(), numbers.loose.end(), number))
-        throw InvalidInput(location + ": vertex " + std::to_string(number) + " of \"" + name +
-                           "\" has no face; name vertices of the surface");
-    return numbers.vertex.empty() ? number : numbers.vertex[size_t(number)];
 }
 
 std::vector<unsigned char> ClothState::attached(double t) const

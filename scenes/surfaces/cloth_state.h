@@ -31,12 +31,13 @@ struct ClothState {
     std::vector<Vec3> to_file(View<const Vec3> x) const;
     /// [vertices] positions of the cloth for those of file_mesh() [m].
     std::vector<Vec3> from_file(View<const Vec3> x) const;
+    /// Vertex of the cloth that one of the file is.
+    /// @param location  for errors
+    /// @param remedy    for a vertex without a face: what to do with vertices of the surface
+    /// @throws InvalidInput for one that does not exist or has no face
+    int vertex_of_file(int file_vertex, const std::string& location, const std::string& remedy) const;
     /// Number in the file of a vertex of the cloth.
     int file_vertex(int vertex) const;
-    /// Vertex of the cloth with a number in the file.
-    /// @param location  begins messages
-    /// @throws InvalidInput for a number that is out of range, or of a vertex without a face
-    int vertex_of_file(int number, const std::string& location) const;
 
     struct Attachment {
         std::vector<int> vertices;

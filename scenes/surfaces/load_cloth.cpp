@@ -11,6 +11,7 @@
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/meshes/rigid_motion.h"
 #include "scenes/surfaces/cloth_elastics.h"
+#include "scenes/surfaces/fold_edges.h"
 #include "scenes/surfaces/load_solid.h"
 #include "scenes/surfaces/uv_rest.h"
 
@@ -58,7 +59,7 @@ scene::Selection in_cloth(scene::Selection select, const ClothState& cloth, cons
     if (vertices == nullptr)
         return select;
     for (int& v : *vertices)
-        v = cloth.vertex_of_file(v, location);
+        v = cloth.vertex_of_file(v, location, "attach vertices of the surface");
     return select;
 }
 
@@ -140,6 +141,7 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
         for (Vec3& p : placed->positions)
             p += settings.translate;
     state.positions = state.rest.positions;
+    loaded.folds = fold_edges(scene, settings, state, loaded.rest->topology);
     for (size_t i = 0; i < scene.attachments.size(); ++i)
         if (scene.attachments[i].cloth == settings.name) {
             const std::string location = attachment_location(scene, i);

@@ -45,9 +45,12 @@ std::string why_not_on_gpu(const Scene& scene)
                            scene_format::word_of(solver.contact_preconditioner));
     if (!scene.solids.empty())
         return "solids run on the CPU only";
-    for (const scene::Cloth& cloth : scene.cloths)
+    for (const scene::Cloth& cloth : scene.cloths) {
         if (!cloth.elastics.empty())
             return "elastics run on the CPU only";
+        if (!cloth.folds.empty())
+            return "folds of cloth run on the CPU only";
+    }
     return {};
 }
 

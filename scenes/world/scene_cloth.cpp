@@ -99,6 +99,7 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     state_ = std::move(loaded.state);
     rest_ = std::move(loaded.rest);
     elastics_ = std::move(loaded.elastics);
+    folds_ = std::move(loaded.folds);
     masses_ = rest_->vertex_areas();
     for (double& mass : masses_)
         mass *= state_.fabric.areal_density;
@@ -144,7 +145,7 @@ void SceneCloth::add_elasticity(bool has_internal_friction, std::vector<std::sha
     const garment::Bending::Settings rigidity{fabric.bend_warp, fabric.bend_weft};
     if (!(rigidity.warp > 0.0 || rigidity.weft > 0.0))
         return;
-    const auto bending = std::make_shared<garment::Bending>(rest_, rigidity, source_);
+    const auto bending = std::make_shared<garment::Bending>(rest_, rigidity, source_, fold_hinges());
     bending->leave_to(hessian_diagonal(*membrane_, vertex_count()));
     energies.push_back(bending);
     const garment::BendDamping::Settings damping{rigidity, fabric.bend_damping, fabric.bend_friction};
@@ -159,6 +160,7 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     const garment::Fabric& fabric = state_.fabric;
     std::vector<std::shared_ptr<Energy>> energies;
     add_elasticity(outer == OuterMethod::Newton, energies);
+    add_folds(energies);
     add_springs(energies);
     add_sewing(energies);
     if (!elastics_.empty())
@@ -179,6 +181,23 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     strain_limit_->set_tension(tension_);
     energies.push_back(tension_);
     return energies;
+}
+
+/// Edges across which cloth does not bend but by its folds.
+std::vector<int> SceneCloth::fold_hinges() const
+{
+    std::vector<int> hinges;
+    for (const garment::FoldEdge& fold : folds_)
+        hinges.push_back(fold.edge);
+    return hinges;
+}
+
+void SceneCloth::add_folds(std::vector<std::shared_ptr<Energy>>& energies)
+{
+    if (folds_.empty())
+        return;
+    fold_lines_ = std::make_shared<garment::FoldLines>(*rest_, folds_, state_.positions, source_);
+    energies.push_back(fold_lines_);
 }
 
 void SceneCloth::add_springs(std::vector<std::shared_ptr<Energy>>& energies)
@@ -226,6 +245,8 @@ void SceneCloth::begin_step(View<const Vec3> x, double dt)
         membrane_->begin_step(x, dt);
     if (bend_damping_)
         bend_damping_->begin_step(x, dt);
+    if (fold_lines_)
+        fold_lines_->begin_step(x);
     if (tension_)
         tension_->begin_step(x);
 }
@@ -236,6 +257,8 @@ void SceneCloth::forget()
 {
     if (tension_)
         tension_->forget();
+    if (fold_lines_)
+        fold_lines_->restart(state_.positions);
 }
 
 std::vector<char> SceneCloth::fixed_in_world() const

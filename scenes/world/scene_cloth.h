@@ -10,6 +10,7 @@
 #include "garment/energy/air/gusts.h"
 #include "garment/energy/bend_damping.h"
 #include "garment/energy/cloth_model.h"
+#include "garment/energy/fold/fold_lines.h"
 #include "garment/energy/springs.h"
 #include "garment/energy/strain_limit/strain_limit.h"
 #include "garment/seam/elastics.h"
@@ -90,6 +91,8 @@ public:
 private:
     void add_attachments(const Scene& scene, const std::vector<Collider>& colliders);
     void add_elasticity(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
+    std::vector<int> fold_hinges() const;
+    void add_folds(std::vector<std::shared_ptr<Energy>>& energies);
     void add_springs(std::vector<std::shared_ptr<Energy>>& energies);
     void add_sewing(std::vector<std::shared_ptr<Energy>>& energies) const;
 
@@ -105,7 +108,9 @@ private:
     std::shared_ptr<const garment::RestShape> rest_;
     std::shared_ptr<garment::Membrane> membrane_;        ///< null for a baseline method
     std::shared_ptr<garment::BendDamping> bend_damping_; ///< null without internal friction
-    std::shared_ptr<garment::Springs> springs_;          ///< null without attachments by springs
+    std::vector<garment::FoldEdge> folds_;
+    std::shared_ptr<garment::FoldLines> fold_lines_; ///< null without folds
+    std::shared_ptr<garment::Springs> springs_;      ///< null without attachments by springs
     std::unique_ptr<garment::Aerodynamics> air_;
     std::shared_ptr<garment::StretchTension> tension_; ///< null for a baseline method
     std::unique_ptr<garment::StrainLimit> strain_limit_;
