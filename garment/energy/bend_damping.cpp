@@ -38,6 +38,12 @@ Altitude altitude_of(const RestShape& rest, int t, int first, int second, int ap
     return altitude;
 }
 
+/// Roots of the rigidities across warp and weft.
+Vec2 root_of(const Bending::Settings& rigidity)
+{
+    return {std::sqrt(rigidity.warp), std::sqrt(rigidity.weft)};
+}
+
 void require_valid(const BendDamping::Settings& s, const std::string& source)
 {
     if (!(s.time >= 0.0) || !std::isfinite(s.time))
@@ -50,9 +56,10 @@ void require_valid(const BendDamping::Settings& s, const std::string& source)
 
 } // namespace
 
-BendDamping::BendDamping(const RestShape& rest, const Settings& settings, const std::string& source)
+BendDamping::BendDamping(const RestShape& rest, const ByFabric<Settings>& settings, const std::string& source)
 {
-    require_valid(settings, source);
+    for (const Settings& fabric : settings.settings)
+        require_valid(fabric, source);
     for (const Edge& edge : rest.topology.edges) {
         if (edge.is_border() || rest.is_sliver(edge.triangle[0]) || rest.is_sliver(edge.triangle[1]))
             continue;
@@ -63,8 +70,9 @@ BendDamping::BendDamping(const RestShape& rest, const Settings& settings, const 
         const double area = rest.areas[edge.triangle[0]] + rest.areas[edge.triangle[1]];
         const double length = 2.0 * rest.areas[edge.triangle[0]] / over_a.height;
         const Vec2 across = 0.5 * (over_a.across.cwiseAbs2() + over_b.across.cwiseAbs2());
-        const double root =
-            across.dot(Vec2(std::sqrt(settings.rigidity.warp), std::sqrt(settings.rigidity.weft)));
+        const Settings &a_settings = settings.at(edge.triangle[0]),
+                       &b_settings = settings.at(edge.triangle[1]);
+        const double root = across.dot(0.5 * (root_of(a_settings.rigidity) + root_of(b_settings.rigidity)));
         const double rigidity = root * root;
 
         Hinge hinge;
@@ -72,8 +80,8 @@ BendDamping::BendDamping(const RestShape& rest, const Settings& settings, const 
         const double wa = 1.0 / over_a.height, wb = 1.0 / over_b.height;
         hinge.weight = {(over_a.foot - 1.0) * wa + (over_b.foot - 1.0) * wb,
                         -over_a.foot * wa - over_b.foot * wb, wa, wb};
-        hinge.viscous = 3.0 * rigidity * length * length / area * settings.time;
-        hinge.dry = settings.friction * rigidity * length;
+        hinge.viscous = 3.0 * rigidity * length * length / area * (0.5 * (a_settings.time + b_settings.time));
+        hinge.dry = 0.5 * (a_settings.friction + b_settings.friction) * rigidity * length;
         hinge.slip_rate = kSlipRate * area / (3.0 * length);
         hinges_.push_back(hinge);
     }

@@ -32,8 +32,9 @@ public:
         bool is_active() const { return time > 0.0 || friction > 0.0; }
     };
 
+    /// Edges between two fabrics have the mean of their settings.
     /// @throws InvalidInput naming `source` and a setting that is negative or not finite.
-    BendDamping(const RestShape& rest, const Settings& settings, const std::string& source);
+    BendDamping(const RestShape& rest, const ByFabric<Settings>& settings, const std::string& source);
 
     /// Begins a step of dt seconds at x [vertices].
     void begin_step(View<const Vec3> x, double dt);

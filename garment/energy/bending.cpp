@@ -99,15 +99,18 @@ void add_block(const Bending::Term& term, SparseMatrix& K)
 
 } // namespace
 
-std::vector<Bending::Term> Bending::terms(const RestShape& rest, const Settings& settings,
+std::vector<Bending::Term> Bending::terms(const RestShape& rest, const ByFabric<Settings>& settings,
                                           const std::string& source, const std::vector<int>& hinges)
 {
-    require_valid(settings, source);
-    const Vec3 rigidity(settings.warp, 2.0 * std::sqrt(settings.warp * settings.weft), settings.weft);
+    double stiffest = 0.0; // [N m]
+    for (const Settings& fabric : settings.settings) {
+        require_valid(fabric, source);
+        stiffest = std::max({stiffest, fabric.warp, fabric.weft});
+    }
     double mean_area = 0.0;
     for (const double area : rest.areas)
         mean_area += area / double(rest.areas.size());
-    const double largest = kMaxRelativeStiffness * std::max(settings.warp, settings.weft) / mean_area;
+    const double largest = kMaxRelativeStiffness * stiffest / mean_area;
 
     std::vector<Term> terms;
     std::vector<CurvatureStencil> stencils = curvature_stencils(rest, hinges);
@@ -115,7 +118,8 @@ std::vector<Bending::Term> Bending::terms(const RestShape& rest, const Settings&
         if (stencils[t].vertex.empty())
             continue;
         // Limit the largest diagonal entry of the block rows^T stiffness rows.
-        Vec3 stiffness = rest.areas[t] * rigidity;
+        const auto& [warp, weft] = settings.at(int(t));
+        Vec3 stiffness = rest.areas[t] * Vec3(warp, 2.0 * std::sqrt(warp * weft), weft);
         const double peak = (stiffness.transpose() * stencils[t].weights.cwiseAbs2()).maxCoeff();
         if (peak > largest)
             stiffness *= largest / peak;
@@ -124,7 +128,7 @@ std::vector<Bending::Term> Bending::terms(const RestShape& rest, const Settings&
     return terms;
 }
 
-Bending::Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings,
+Bending::Bending(const std::shared_ptr<const RestShape>& rest, const ByFabric<Settings>& settings,
                  const std::string& source, const std::vector<int>& hinges)
 {
     const int n = rest->vertex_count();

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/pd/energy/energy.h"
+#include "garment/energy/by_fabric.h"
 #include "garment/energy/curvature_stencil.h"
 #include "garment/energy/rest_shape.h"
 
@@ -29,8 +30,8 @@ public:
 
     /// @param hinges  inner edges, as indices into Topology::edges
     /// @throws InvalidInput naming `source` and a rigidity that is negative or not finite.
-    Bending(const std::shared_ptr<const RestShape>& rest, const Settings& settings, const std::string& source,
-            const std::vector<int>& hinges = {});
+    Bending(const std::shared_ptr<const RestShape>& rest, const ByFabric<Settings>& settings,
+            const std::string& source, const std::vector<int>& hinges = {});
 
     /// Leaves bending out of H if it is far below the diagonal of the membrane's part [vertices] [N/m] at
     /// every vertex. The membrane's majoriser then covers bending at least ten times over. Without the second
@@ -55,8 +56,8 @@ public:
 
     /// Contributions of all triangles with neighbours; their sum is K.
     /// @throws InvalidInput as the constructor does.
-    static std::vector<Term> terms(const RestShape& rest, const Settings& settings, const std::string& source,
-                                   const std::vector<int>& hinges = {});
+    static std::vector<Term> terms(const RestShape& rest, const ByFabric<Settings>& settings,
+                                   const std::string& source, const std::vector<int>& hinges = {});
 
 private:
     SparseMatrix K_;

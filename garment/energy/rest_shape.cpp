@@ -60,6 +60,41 @@ std::vector<double> RestShape::vertex_areas() const
     return result;
 }
 
+RestShape part_of(const RestShape& rest, const std::vector<int>& triangles)
+{
+    RestShape part;
+    std::vector<int> number(rest.triangles.size(), -1); // in the part
+    for (const int t : triangles) {
+        number[size_t(t)] = int(part.triangles.size());
+        part.triangles.push_back(rest.triangles[size_t(t)]);
+        part.edges.push_back(rest.edges[size_t(t)]);
+        part.edges_inv.push_back(rest.edges_inv[size_t(t)]);
+        part.areas.push_back(rest.areas[size_t(t)]);
+    }
+    part.topology.corners_of_vertex = corners_of_vertices(part.triangles, rest.vertex_count());
+    part.topology.triangle_edge.resize(triangles.size());
+    for (size_t e = 0; e < rest.topology.edges.size(); ++e) {
+        const Edge& whole = rest.topology.edges[e];
+        Edge edge;
+        int count = 0;
+        for (int side = 0; side < 2; ++side) {
+            if (whole.triangle[side] < 0 || number[size_t(whole.triangle[side])] < 0)
+                continue;
+            if (count == 0) // triangle[0] runs along the edge
+                edge.vertex = side == 0 ? whole.vertex : std::array{whole.vertex[1], whole.vertex[0]};
+            edge.triangle[count] = number[size_t(whole.triangle[side])];
+            edge.opposite[count++] = whole.opposite[side];
+            const std::array<int, 3>& edges = rest.topology.triangle_edge[size_t(whole.triangle[side])];
+            const auto k = size_t(std::find(edges.begin(), edges.end(), int(e)) - edges.begin());
+            part.topology.triangle_edge[size_t(edge.triangle[count - 1])][k] =
+                int(part.topology.edges.size());
+        }
+        if (count > 0)
+            part.topology.edges.push_back(edge);
+    }
+    return part;
+}
+
 RestShape rest_shape_of_pattern(const std::vector<Vec2>& uv, const std::vector<Triangle>& triangles,
                                 const std::string& source)
 {

@@ -44,6 +44,10 @@ struct RestShape {
     std::vector<double> vertex_areas() const;
 };
 
+/// Some triangles of a rest shape, with all its vertices.
+/// @param triangles  ascending
+RestShape part_of(const RestShape& rest, const std::vector<int>& triangles);
+
 /// Rest shape of a flat pattern.
 /// @param uv  [vertices] pattern coordinates in material axes [m]
 /// @throws InvalidInput naming `source` and the first unusable triangle or edge (require_usable,

@@ -2,32 +2,24 @@
 
 #include <algorithm>
 
-#include "core/base/error.h"
 #include "scenes/garment_format/read_garment.h"
 
 namespace toile::scenes {
 
 namespace {
 
-std::string common_fabric(const garment::Pattern& pattern, const DrapeGarment& settings)
+std::string main_fabric(const garment::Pattern& pattern, const DrapeGarment& settings)
 {
-    std::string common;
-    for (const garment::Panel& panel : pattern.panels) {
-        const std::string& fabric = panel.fabric.empty() ? settings.fabric : panel.fabric;
-        if (common.empty())
-            common = fabric;
-        if (fabric != common)
-            throw InvalidInput(settings.file.string() + ": panel \"" + panel.name + "\" is of " + fabric +
-                               " and others of " + common +
-                               "; a garment can be draped in one fabric, give all panels the same");
-    }
-    return common;
+    for (const garment::Panel& panel : pattern.panels)
+        if (panel.fabric.empty())
+            return settings.fabric;
+    return pattern.panels.front().fabric;
 }
 
 } // namespace
 
 Garment::Garment(const DrapeGarment& from, const Vec3& shift)
-    : settings(from), pattern(garment_format::read_pattern(from.file)), fabric(common_fabric(pattern, from))
+    : settings(from), pattern(garment_format::read_pattern(from.file)), fabric(main_fabric(pattern, from))
 {
     for (garment::Panel& panel : pattern.panels)
         panel.placement.pretranslate(shift);
@@ -41,6 +33,15 @@ std::set<std::string> Garment::labels() const
             if (!edge.label.empty())
                 labels.insert(edge.label);
     return labels;
+}
+
+std::map<std::string, std::string> Garment::panel_fabrics() const
+{
+    std::map<std::string, std::string> fabrics;
+    for (const garment::Panel& panel : pattern.panels)
+        if (!panel.fabric.empty() && panel.fabric != fabric)
+            fabrics[panel.name] = panel.fabric;
+    return fabrics;
 }
 
 std::vector<std::string> Garment::not_used() const

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,16 +15,19 @@ namespace toile::scenes {
 struct Garment {
     const DrapeGarment& settings;
     garment::Pattern pattern; ///< placed
-    std::string fabric;       ///< preset, of all panels
+    std::string fabric;       ///< preset of panels without one, or of the first if all have one
 
     /// Reads the pattern.
     /// @param settings  kept by reference
     /// @param shift     [m] added to the placement of the panels
-    /// @throws InvalidInput for a file that can't be read, and panels of several fabrics
+    /// @throws InvalidInput for a file that can't be read
     Garment(const DrapeGarment& settings, const Vec3& shift);
 
     const std::string& name() const { return settings.name; }
     std::set<std::string> labels() const; ///< of edges
+
+    /// Presets of panels that differ from `fabric`, by panel.
+    std::map<std::string, std::string> panel_fabrics() const;
 
     /// What the pattern asks for and a drape does not do, a sentence each.
     std::vector<std::string> not_used() const;

@@ -23,6 +23,14 @@ std::vector<Vec3> all_positions(const World& world)
     return x;
 }
 
+/// Replaces fabrics of a stage by presets.
+void take_own_fabrics(const Garment& garment, scene::Cloth& cloth)
+{
+    cloth.fabric = garment.fabric;
+    for (const auto& [panel, preset] : garment.panel_fabrics())
+        cloth.groups[panel].fabric = preset;
+}
+
 constexpr double kSewingEdge = 0.02; ///< [m]
 /// Time [s] for a garment to be pressed, and to fall into place on the coarse mesh.
 constexpr double kPressingTime = 0.5, kSettlingTime = 1.0;
@@ -202,8 +210,8 @@ void GarmentDraping::drape(WornGarment garment)
             break;
         result_.scene = scene;
         for (size_t g = 0; g < worn_.size(); ++g)
-            result_.scene.cloths[g].fabric = worn_[g].garment.fabric;
-        result_.scene.cloths.back().fabric = garment_.fabric;
+            take_own_fabrics(worn_[g].garment, result_.scene.cloths[g]);
+        take_own_fabrics(garment_, result_.scene.cloths.back());
     }
     end_stage("drape", clock, frames, int(garment.x.size()));
     measure_slides(garment, number_);

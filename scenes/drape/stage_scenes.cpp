@@ -29,13 +29,33 @@ constexpr double kVelocityTolerance = 0.05; ///< [m/s]
 /// are damped.
 constexpr double kFallingDamping = 6.0, kHangingDamping = 3.0;
 
-scene::Fabric damped_fabric(const Garment& garment, double damping)
+scene::Fabric damped_fabric(const std::string& preset, double damping)
 {
     scene::Fabric fabric;
-    fabric.base = garment.fabric;
+    fabric.base = preset;
     fabric.damping = damping;
     return fabric;
 }
+
+scene::Fabric sewing_fabric(const std::string& preset)
+{
+    const garment::Fabric& own = garment::fabric_preset(preset, "drape");
+    scene::Fabric fabric = damped_fabric(preset, kViscousDamping);
+    fabric.stretch = {std::min(own.stretch_warp, kSewingStretch), std::min(own.stretch_weft, kSewingStretch)};
+    fabric.shear = std::min({own.shear, kSewingShear, 0.5 * own.stretch_warp, 0.5 * own.stretch_weft});
+    fabric.strain_limit = std::max(1.0 + own.strain_limit, kSewingStrainLimit);
+    return fabric;
+}
+
+scene::Fabric pressed_fabric(const std::string& preset)
+{
+    scene::Fabric fabric = damped_fabric(preset, kViscousDamping);
+    fabric.bend = {kPressedRigidity, kPressedRigidity};
+    return fabric;
+}
+
+scene::Fabric falling_fabric(const std::string& preset) { return damped_fabric(preset, kFallingDamping); }
+scene::Fabric hanging_fabric(const std::string& preset) { return damped_fabric(preset, kHangingDamping); }
 
 } // namespace
 
@@ -52,7 +72,7 @@ StageScenes::StageScenes(const DrapeSettings& settings, const Garment& garment,
 
 Scene StageScenes::sew(const GarmentSurface& panels) const
 {
-    Scene scene = still_scene_of("sew", panels, sewing_fabric());
+    Scene scene = still_scene_of("sew", panels, sewing_fabric);
     scene.gravity.setZero();
     scene.contact.friction = 0.0;
     scene.cloths.back().sewing = scene::Sewing{kThreadStiffness, kThreadForce};
@@ -61,9 +81,7 @@ Scene StageScenes::sew(const GarmentSurface& panels) const
 
 Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 {
-    scene::Fabric pressed = damped_fabric(garment_, kViscousDamping);
-    pressed.bend = {kPressedRigidity, kPressedRigidity};
-    Scene scene = still_scene_of("press", mesh.surface(x), pressed);
+    Scene scene = still_scene_of("press", mesh.surface(x), pressed_fabric);
     scene.gravity.setZero();
     scene.contact.friction = kPressingFriction;
     return scene;
@@ -71,7 +89,7 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
 
 Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 {
-    Scene scene = still_scene_of("settle", mesh.surface(x), damped_fabric(garment_, kFallingDamping));
+    Scene scene = still_scene_of("settle", mesh.surface(x), falling_fabric);
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
     hold_labels(garment_, mesh, scene, true);
     return scene;
@@ -80,7 +98,7 @@ Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage,
                         bool holds_all) const
 {
-    Scene scene = scene_of(stage, mesh.surface(x), damped_fabric(garment_, kHangingDamping));
+    Scene scene = scene_of(stage, mesh.surface(x), hanging_fabric);
     for (size_t g = 0; g < worn_.size(); ++g) {
         scene.cloths[g].elastics = elastics_of(worn_[g].garment.pattern, worn_[g].mesh);
         hold_labels(worn_[g].garment, worn_[g].mesh, scene, false);
@@ -92,7 +110,7 @@ Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::
 
 /// The garments below keep the shape that they have.
 Scene StageScenes::still_scene_of(const std::string& stage, const GarmentSurface& surface,
-                                  const scene::Fabric& fabric) const
+                                  FabricInStage* fabric) const
 {
     Scene scene = scene_of(stage, surface, fabric);
     for (const WornGarment& worn : worn_) {
@@ -107,7 +125,7 @@ Scene StageScenes::still_scene_of(const std::string& stage, const GarmentSurface
 }
 
 Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surface,
-                            const scene::Fabric& fabric) const
+                            FabricInStage* fabric) const
 {
     const std::string name = garment_.name() + "_" + stage;
     Scene scene;
@@ -118,7 +136,7 @@ Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surf
     for (const WornGarment& worn : worn_) {
         surfaces.push_back(worn.surface());
         add_cloth(scene, worn.garment, name + "_over_" + worn.garment.name(), surfaces.back(),
-                  damped_fabric(worn.garment, kHangingDamping));
+                  hanging_fabric);
     }
     surfaces.push_back(surface);
     add_cloth(scene, garment_, name, surface, fabric);
@@ -132,7 +150,7 @@ Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surf
 
 /// @param file_name  without extension
 void StageScenes::add_cloth(Scene& scene, const Garment& garment, const std::string& file_name,
-                            const GarmentSurface& surface, const scene::Fabric& fabric) const
+                            const GarmentSurface& surface, FabricInStage* fabric) const
 {
     scene::Cloth cloth;
     cloth.name = garment.name();
@@ -148,18 +166,13 @@ void StageScenes::add_cloth(Scene& scene, const Garment& garment, const std::str
     cloth.uv_scale = 1.0;
     cloth.fabric = file_name;
     cloth.layer = int(scene.cloths.size());
-    scene.fabrics[file_name] = fabric;
+    scene.fabrics[file_name] = fabric(garment.fabric);
+    for (const auto& [panel, preset] : garment.panel_fabrics()) {
+        const std::string name = file_name + "_" + preset;
+        scene.fabrics[name] = fabric(preset);
+        cloth.groups[panel].fabric = name;
+    }
     scene.cloths.push_back(cloth);
-}
-
-scene::Fabric StageScenes::sewing_fabric() const
-{
-    const garment::Fabric& own = garment::fabric_preset(garment_.fabric, garment_.settings.file.string());
-    scene::Fabric fabric = damped_fabric(garment_, kViscousDamping);
-    fabric.stretch = {std::min(own.stretch_warp, kSewingStretch), std::min(own.stretch_weft, kSewingStretch)};
-    fabric.shear = std::min({own.shear, kSewingShear, 0.5 * own.stretch_warp, 0.5 * own.stretch_weft});
-    fabric.strain_limit = std::max(1.0 + own.strain_limit, kSewingStrainLimit);
-    return fabric;
 }
 
 /// A vertex of two edges follows the one that stays attached.

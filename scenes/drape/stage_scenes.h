@@ -42,13 +42,14 @@ public:
     Scene hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage, bool holds_all) const;
 
 private:
-    Scene scene_of(const std::string& stage, const GarmentSurface& surface,
-                   const scene::Fabric& fabric) const;
+    /// What becomes of a preset in a stage.
+    using FabricInStage = scene::Fabric(const std::string& preset);
+
+    Scene scene_of(const std::string& stage, const GarmentSurface& surface, FabricInStage* fabric) const;
     Scene still_scene_of(const std::string& stage, const GarmentSurface& surface,
-                         const scene::Fabric& fabric) const;
+                         FabricInStage* fabric) const;
     void add_cloth(Scene& scene, const Garment& garment, const std::string& file_name,
-                   const GarmentSurface& surface, const scene::Fabric& fabric) const;
-    scene::Fabric sewing_fabric() const;
+                   const GarmentSurface& surface, FabricInStage* fabric) const;
     void hold_labels(const Garment& garment, const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
 
     const DrapeSettings& settings_;

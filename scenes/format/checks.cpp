@@ -191,6 +191,18 @@ void check_elastics(const Document& document, const std::string& key_path, const
                             "an elastic runs along edges; name two vertices at least");
 }
 
+void check_groups(const Document& document, const std::string& key_path, const Cloth& cloth,
+                  SolverMethod method)
+{
+    if (cloth.groups.empty())
+        return;
+    if (!std::holds_alternative<std::filesystem::path>(cloth.shape))
+        document.refuse(key_path, "only a file has groups; remove them, or give the cloth as a file");
+    if (replaces_minimiser(method))
+        document.refuse(key_path, "solver.method " + as_written(word_of(method)) +
+                                      " takes one fabric; choose another method, or remove them");
+}
+
 void check_cloths(const Document& document, const scenes::Scene& scene)
 {
     if (scene.cloths.empty() && scene.solids.empty())
@@ -208,6 +220,7 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
         check_rest(document, key_path, cloth);
         check_folds(document, key_path, cloth, scene.solver.method);
         check_print(document, key_path, cloth);
+        check_groups(document, below(key_path, "groups"), cloth, scene.solver.method);
         check_elastics(document, below(key_path, "elastics"), cloth, scene.solver.method);
         if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMaxVertices)
             document.refuse(key_path,
@@ -265,6 +278,11 @@ void check_fabrics(const Document& document, const scenes::Scene& scene)
     for (size_t i = 0; i < scene.cloths.size(); ++i) {
         require_known(document, below(below("cloths", i), "fabric"), "fabric", scene.cloths[i].fabric, known);
         static_cast<void>(scenes::fabric_of(scene, scene.cloths[i]));
+        for (const auto& [name, group] : scene.cloths[i].groups) {
+            require_known(document, below(below(below(below("cloths", i), "groups"), name), "fabric"),
+                          "fabric", group.fabric, known);
+            static_cast<void>(scenes::fabric_of(scene, group));
+        }
     }
 }
 

@@ -162,9 +162,10 @@ void describe(V& v, Sewing& s)
 template <typename V>
 void describe(V& v, Elastic& e)
 {
-    v.required("vertices", e.vertices, between(0, 1e8),
-               "Indices into the cloth's mesh, counted from 0: a path along its edges. A closed one ends with "
-               "its first.");
+    v.required(
+        "vertices", e.vertices, between(0, 1e8),
+        "Indices into the cloth's mesh, counted from 0: a path along its edges. A closed one ends with "
+        "its first.");
     v.required("ratio", e.ratio, between(0.2, 1.0), "Length of the elastic at rest over that of the edges.");
     v.required("stiffness", e.stiffness, above_zero(1e5, "N"),
                "Tension per unit of strain of the elastic; it does not push.");
@@ -177,6 +178,12 @@ void describe(V& v, Fold& f)
     v.required("angle_deg", f.angle_deg, kFoldAngle,
                "Angle between the faces at rest, outer sides towards each other; 0: flat.");
     v.field("stiffness", f.stiffness, kFoldStiffness, "Moment per length of the fold and radian of opening.");
+}
+
+template <typename V>
+void describe(V& v, ClothGroup& g)
+{
+    v.required("fabric", g.fabric, "A key of fabrics or the name of a preset.");
 }
 
 template <typename V>
@@ -206,6 +213,9 @@ void describe(V& v, Cloth& c)
     v.field("translate", c.translate, kPosition, "Moves the cloth, after scale and rotate_deg.");
     v.field("rotate_deg", c.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
     v.field("fabric", c.fabric, "A key of fabrics or the name of a preset.");
+    v.field("groups", c.groups,
+            "Fabrics of groups (g) of the file, by name, where they differ. Thickness, friction and damping "
+            "are those of the cloth's fabric. Not with xpbd and vbd, nor on a GPU.");
     v.field("grain_deg", c.grain_deg, kAngle,
             "Rotation of the warp in the cloth's plane, from the X axis of flat cloth and the vertical of "
             "garments; with \"rest\": \"uv\" in the texture's plane, counter-clockwise from its v axis.");

@@ -165,6 +165,11 @@ struct Fold {
     double stiffness = garment::kFoldStiffness; ///< [N] moment per length of the fold and radian
 };
 
+/// Settings of a group of a cloth's file.
+struct ClothGroup {
+    std::string fabric; ///< key of Scene::fabrics or name of a preset
+};
+
 struct Cloth {
     std::string name;
     ClothShape shape;
@@ -178,10 +183,11 @@ struct Cloth {
     double scale = 1.0;             ///< [-]
     Vec3 translate = Vec3::Zero();  ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
-    std::string fabric = "cotton";       ///< key of Scene::fabrics or name of a preset
-    double grain_deg = 0.0;              ///< rotation of the warp direction in the cloth plane
-    std::optional<double> thickness;     ///< [m] replaces the fabric's
-    std::optional<Sewing> sewing;        ///< absent: lines of the file are left out
+    std::string fabric = "cotton";            ///< key of Scene::fabrics or name of a preset
+    double grain_deg = 0.0;                   ///< rotation of the warp direction in the cloth plane
+    std::optional<double> thickness;          ///< [m] replaces the fabric's
+    std::optional<Sewing> sewing;             ///< absent: lines of the file are left out
+    std::map<std::string, ClothGroup> groups; ///< by name; other triangles are of `fabric`
     std::vector<Elastic> elastics;
     std::vector<Fold> folds;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start

@@ -33,17 +33,29 @@ garment::Fabric custom_fabric(const std::string& name, const scene::Fabric& sett
     return fabric;
 }
 
+/// @param name  a key of the scene's fabrics, or that of a preset
+garment::Fabric fabric_named(const Scene& scene, const std::string& name)
+{
+    const std::string source = scene.source.string();
+    const auto custom = scene.fabrics.find(name);
+    return custom != scene.fabrics.end() ? custom_fabric(custom->first, custom->second, source)
+                                         : garment::fabric_preset(name, source);
+}
+
 } // namespace
 
 garment::Fabric fabric_of(const Scene& scene, const scene::Cloth& cloth)
 {
-    const std::string source = scene.source.string();
-    const auto custom = scene.fabrics.find(cloth.fabric);
-    garment::Fabric fabric = custom != scene.fabrics.end()
-                                 ? custom_fabric(custom->first, custom->second, source)
-                                 : garment::fabric_preset(cloth.fabric, source);
+    garment::Fabric fabric = fabric_named(scene, cloth.fabric);
     replace(fabric.thickness, cloth.thickness);
-    fabric.validate(source);
+    fabric.validate(scene.source.string());
+    return fabric;
+}
+
+garment::Fabric fabric_of(const Scene& scene, const scene::ClothGroup& group)
+{
+    const garment::Fabric fabric = fabric_named(scene, group.fabric);
+    fabric.validate(scene.source.string());
     return fabric;
 }
 

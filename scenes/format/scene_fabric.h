@@ -11,4 +11,7 @@ namespace toile::scenes {
 ///         stiffer than stretch allows).
 garment::Fabric fabric_of(const Scene& scene, const scene::Cloth& cloth);
 
+/// Fabric of a group of a cloth. @throws as fabric_of()
+garment::Fabric fabric_of(const Scene& scene, const scene::ClothGroup& group);
+
 } // namespace toile::scenes

@@ -47,6 +47,14 @@ int ClothState::file_vertex(int vertex) const
     return vertex < int(numbers.file_vertex.size()) ? numbers.file_vertex[size_t(vertex)] : vertex;
 }
 
+std::vector<std::vector<int>> ClothState::triangles_by_fabric() const
+{
+    std::vector<std::vector<int>> of_fabric(1 + group_fabrics.size());
+    for (int t = 0; t < int(triangles.size()); ++t)
+        of_fabric[fabric_of_triangle.empty() ? 0 : size_t(fabric_of_triangle[size_t(t)])].push_back(t);
+    return of_fabric;
+}
+
 std::vector<unsigned char> ClothState::attached(double t) const
 {
     std::vector<unsigned char> attached(rest.positions.size(), 0);

@@ -18,7 +18,13 @@ struct ClothState {
     ObjMesh rest; ///< start placement, faces and texture coordinates as simulated
     /// [triangles] rest shape, each corner in the plane of its panel [m]; empty: the triangles of `rest`.
     std::vector<FlatTriangle> panels;
-    garment::Fabric fabric; ///< of a solid: none, and a strain limit of 0
+    garment::Fabric fabric;                     ///< of a solid: none, and a strain limit of 0
+    std::vector<garment::Fabric> group_fabrics; ///< of groups that have their own
+    /// [triangles] 0: `fabric`; k: group_fabrics[k - 1]. Empty: all are of `fabric`.
+    std::vector<int> fabric_of_triangle;
+
+    /// Triangles in each fabric, ascending. [1 + group_fabrics] the first of `fabric`
+    std::vector<std::vector<int>> triangles_by_fabric() const;
 
     FileNumbers numbers; ///< of the file's vertices; empty: those of `rest` come first, in its order
     ObjMesh file;        ///< the file's mesh in the start placement; empty: `rest` has its vertices and more

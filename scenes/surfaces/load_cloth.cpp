@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <numbers>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/long_work.h"
@@ -50,6 +52,36 @@ void rest_on_texture(const scene::Cloth& settings, LoadedCloth& loaded,
     loaded.rest = std::make_shared<const garment::RestShape>(garment::rest_shape_of_panels(
         {state.rest.positions, state.triangles}, state.panels, settings.grain_deg * std::numbers::pi / 180.0,
         rest_source_of(settings)));
+}
+
+/// Gives the triangles of groups their own fabrics.
+/// @throws InvalidInput for a group that the file does not have
+void take_groups(const Scene& scene, const scene::Cloth& settings, ClothState& state)
+{
+    if (settings.groups.empty())
+        return;
+    std::map<std::string, int> number; // of the fabrics
+    for (const auto& [name, group] : settings.groups) {
+        state.group_fabrics.push_back(fabric_of(scene, group));
+        number[name] = int(state.group_fabrics.size());
+    }
+    std::set<std::string> found;
+    auto group = state.rest.groups.begin();
+    std::string name;
+    for (int f = 0; f < int(state.rest.polygons.size()); ++f) {
+        for (; group != state.rest.groups.end() && group->first_polygon == f; ++group)
+            found.insert(name = group->name);
+        const auto own = number.find(name);
+        state.fabric_of_triangle.insert(state.fabric_of_triangle.end(), state.rest.triangles_of(f).size(),
+                                        own == number.end() ? 0 : own->second);
+    }
+    for (const auto& [asked, group_settings] : settings.groups)
+        if (!found.contains(asked)) {
+            const std::string nearest = nearest_word(asked, {found.begin(), found.end()});
+            throw InvalidInput(
+                source_of(settings) + ": has no group \"" + asked + "\" for cloth \"" + settings.name + "\"" +
+                (nearest.empty() ? "; name those of its g lines" : "; did you mean \"" + nearest + "\"?"));
+        }
 }
 
 /// The selection with the cloth's numbers of vertices for those of the file.
@@ -131,6 +163,7 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
     state.numbers = std::move(mesh.numbers);
     state.file = std::move(mesh.file);
     state.triangles = state.rest.triangulated().triangles;
+    take_groups(scene, settings, state);
     if (settings.rest == scene::RestFrom::Uv)
         rest_on_texture(settings, loaded, warn);
     else

@@ -100,15 +100,11 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     rest_ = std::move(loaded.rest);
     elastics_ = std::move(loaded.elastics);
     folds_ = std::move(loaded.folds);
-    masses_ = rest_->vertex_areas();
-    for (double& mass : masses_)
-        mass *= state_.fabric.areal_density;
+    parts_ = scenes::fabric_parts(state_, rest_, source_);
+    masses_ = masses_of(parts_);
     add_attachments(scene, colliders);
 
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
-    garment::StrainLimit::Settings limit;
-    limit.limit = state_.fabric.strain_limit;
-    strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, limit, source_);
 }
 
 void SceneCloth::add_attachments(const Scene& scene, const std::vector<Collider>& colliders)
@@ -129,57 +125,91 @@ void SceneCloth::add_attachments(const Scene& scene, const std::vector<Collider>
     require_one_owner(attachments_, state_);
 }
 
-/// Membrane, bending, and the internal friction of both. Implicit Euler's own losses hide that friction, and
-/// the fixed matrix of the other minimisers does not know it.
-void SceneCloth::add_elasticity(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies)
+/// Membranes with their internal friction, which implicit Euler's own losses hide, and the fixed matrix of
+/// other minimisers than Newton's does not know.
+void SceneCloth::add_membranes(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies)
 {
-    const garment::Fabric& fabric = state_.fabric;
-    garment::Membrane::Settings stretch{fabric.stretch_warp, fabric.stretch_weft, fabric.shear};
-    if (has_internal_friction) {
-        stretch.stretch_damping = fabric.stretch_damping;
-        stretch.shear_damping = fabric.shear_damping;
+    for (FabricPart& part : parts_) {
+        const garment::Fabric& fabric = part.fabric;
+        garment::Membrane::Settings stretch{fabric.stretch_warp, fabric.stretch_weft, fabric.shear};
+        if (has_internal_friction) {
+            stretch.stretch_damping = fabric.stretch_damping;
+            stretch.shear_damping = fabric.shear_damping;
+        }
+        part.membrane = std::make_shared<garment::Membrane>(part.rest, stretch, source_);
+        energies.push_back(part.membrane);
     }
-    membrane_ = std::make_shared<garment::Membrane>(rest_, stretch, source_);
-    energies.push_back(membrane_);
+}
 
-    const garment::Bending::Settings rigidity{fabric.bend_warp, fabric.bend_weft};
-    if (!(rigidity.warp > 0.0 || rigidity.weft > 0.0))
+/// Bending across all fabrics, with its internal friction. After add_membranes().
+void SceneCloth::add_bending(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies)
+{
+    std::vector<garment::Bending::Settings> rigidities;
+    std::vector<garment::BendDamping::Settings> dampings;
+    bool is_rigid = false, is_damped = false;
+    const auto add = [&](const garment::Fabric& fabric) {
+        rigidities.push_back({fabric.bend_warp, fabric.bend_weft});
+        dampings.push_back({rigidities.back(), fabric.bend_damping, fabric.bend_friction});
+        is_rigid = is_rigid || fabric.bend_warp > 0.0 || fabric.bend_weft > 0.0;
+        is_damped = is_damped || dampings.back().is_active();
+    };
+    add(state_.fabric);
+    for (const garment::Fabric& fabric : state_.group_fabrics)
+        add(fabric);
+    if (!is_rigid)
         return;
-    const auto bending = std::make_shared<garment::Bending>(rest_, rigidity, source_, fold_hinges());
-    bending->leave_to(hessian_diagonal(*membrane_, vertex_count()));
+    const auto bending = std::make_shared<garment::Bending>(
+        rest_, garment::ByFabric(std::move(rigidities), state_.fabric_of_triangle), source_, fold_hinges());
+    std::vector<double> diagonal(size_t(vertex_count()), 0.0);
+    for (const FabricPart& part : parts_) {
+        const std::vector<double> of_part = hessian_diagonal(*part.membrane, vertex_count());
+        for (size_t v = 0; v < diagonal.size(); ++v)
+            diagonal[v] += of_part[v];
+    }
+    bending->leave_to(diagonal);
     energies.push_back(bending);
-    const garment::BendDamping::Settings damping{rigidity, fabric.bend_damping, fabric.bend_friction};
-    if (!has_internal_friction || !damping.is_active())
+    if (!has_internal_friction || !is_damped)
         return;
-    bend_damping_ = std::make_shared<garment::BendDamping>(*rest_, damping, source_);
+    bend_damping_ = std::make_shared<garment::BendDamping>(
+        *rest_, garment::ByFabric(std::move(dampings), state_.fabric_of_triangle), source_);
     energies.push_back(bend_damping_);
+}
+
+/// Tensions at the strain limits.
+void SceneCloth::add_tensions(OuterMethod outer, std::vector<std::shared_ptr<Energy>>& energies)
+{
+    for (FabricPart& part : parts_) {
+        const garment::Fabric& fabric = part.fabric;
+        const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+        garment::StretchTension::Settings tension{fabric.strain_limit, stiffness};
+        if (outer == OuterMethod::Newton) {
+            part.strain_limit = std::make_unique<garment::StrainLimit>(
+                part.rest, garment::StrainLimit::Settings{fabric.strain_limit, kYielding}, source_);
+            // That of cloth of even width, as long as the diagonal, which hangs by a whole edge across the
+            // wind.
+            const double pressure =
+                fabric.areal_density * gravity_.norm() + air_->pressure(wind_.velocity.norm());
+            const double load = pressure * size_at_rest(state_, *rest_);
+            tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, load);
+        }
+        part.tension = std::make_shared<garment::StretchTension>(part.rest, tension);
+        part.strain_limit->set_tension(part.tension);
+        energies.push_back(part.tension);
+    }
 }
 
 std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer)
 {
-    const garment::Fabric& fabric = state_.fabric;
+    const bool has_internal_friction = outer == OuterMethod::Newton;
     std::vector<std::shared_ptr<Energy>> energies;
-    add_elasticity(outer == OuterMethod::Newton, energies);
+    add_membranes(has_internal_friction, energies);
+    add_bending(has_internal_friction, energies);
     add_folds(energies);
     add_springs(energies);
     add_sewing(energies);
     if (!elastics_.empty())
         energies.push_back(std::make_shared<garment::Elastics>(elastics_));
-
-    const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
-    garment::StretchTension::Settings tension{fabric.strain_limit, stiffness};
-    if (outer == OuterMethod::Newton) {
-        strain_limit_ = std::make_unique<garment::StrainLimit>(
-            rest_, garment::StrainLimit::Settings{fabric.strain_limit, kYielding}, source_);
-        // That of cloth of even width, as long as the diagonal, which hangs by a whole edge across the wind.
-        const double pressure =
-            fabric.areal_density * gravity_.norm() + air_->pressure(wind_.velocity.norm());
-        const double load = pressure * size_at_rest(state_, *rest_);
-        tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, load);
-    }
-    tension_ = std::make_shared<garment::StretchTension>(rest_, tension);
-    strain_limit_->set_tension(tension_);
-    energies.push_back(tension_);
+    add_tensions(outer, energies);
     return energies;
 }
 
@@ -241,22 +271,25 @@ garment::ClothModel SceneCloth::model() const
 
 void SceneCloth::begin_step(View<const Vec3> x, double dt)
 {
-    if (membrane_)
-        membrane_->begin_step(x, dt);
+    for (const FabricPart& part : parts_)
+        if (part.membrane)
+            part.membrane->begin_step(x, dt);
     if (bend_damping_)
         bend_damping_->begin_step(x, dt);
     if (fold_lines_)
         fold_lines_->begin_step(x);
-    if (tension_)
-        tension_->begin_step(x);
+    for (const FabricPart& part : parts_)
+        if (part.tension)
+            part.tension->begin_step(x);
 }
 
 void SceneCloth::take(View<const Vec3> x) { state_.positions.assign(x.begin(), x.end()); }
 
 void SceneCloth::forget()
 {
-    if (tension_)
-        tension_->forget();
+    for (const FabricPart& part : parts_)
+        if (part.tension)
+            part.tension->forget();
     if (fold_lines_)
         fold_lines_->restart(state_.positions);
 }

@@ -12,10 +12,10 @@
 #include "garment/energy/cloth_model.h"
 #include "garment/energy/fold/fold_lines.h"
 #include "garment/energy/springs.h"
-#include "garment/energy/strain_limit/strain_limit.h"
 #include "garment/seam/elastics.h"
 #include "scenes/colliders/attachment_constraint.h"
 #include "scenes/surfaces/cloth_state.h"
+#include "scenes/world/fabric_parts.h"
 #include "scenes/world/world_options.h"
 
 namespace toile::garment {
@@ -85,12 +85,13 @@ public:
     /// True if something other than contact moves it at time t [s].
     bool is_disturbed(double t) const;
 
-    garment::StrainLimit& strain_limit() { return *strain_limit_; }
-    const garment::StrainLimit& strain_limit() const { return *strain_limit_; }
+    const std::vector<FabricPart>& fabric_parts() const { return parts_; }
 
 private:
     void add_attachments(const Scene& scene, const std::vector<Collider>& colliders);
-    void add_elasticity(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
+    void add_membranes(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
+    void add_bending(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
+    void add_tensions(OuterMethod outer, std::vector<std::shared_ptr<Energy>>& energies);
     std::vector<int> fold_hinges() const;
     void add_folds(std::vector<std::shared_ptr<Energy>>& energies);
     void add_springs(std::vector<std::shared_ptr<Energy>>& energies);
@@ -106,14 +107,12 @@ private:
     std::vector<double> masses_;
     std::vector<AttachmentConstraint> attachments_;
     std::shared_ptr<const garment::RestShape> rest_;
-    std::shared_ptr<garment::Membrane> membrane_;        ///< null for a baseline method
+    std::vector<FabricPart> parts_;
     std::shared_ptr<garment::BendDamping> bend_damping_; ///< null without internal friction
     std::vector<garment::FoldEdge> folds_;
     std::shared_ptr<garment::FoldLines> fold_lines_; ///< null without folds
     std::shared_ptr<garment::Springs> springs_;      ///< null without attachments by springs
     std::unique_ptr<garment::Aerodynamics> air_;
-    std::shared_ptr<garment::StretchTension> tension_; ///< null for a baseline method
-    std::unique_ptr<garment::StrainLimit> strain_limit_;
     std::vector<Vec3> gusts_at_; ///< [vertices] [m/s]; empty in steady wind
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <nlohmann/json.hpp>
 
@@ -148,6 +149,33 @@ TEST(Check, MeasuresStrain)
 }
 
 /// The same strain, of cloth that is attached as a whole, is what it is attached to that causes it.
+/// 20 % are within the limit of jersey, but not of cotton; the place is that of the cotton, though jersey is
+/// strained more.
+TEST(Check, MeasuresGroupsByTheirOwnFabric)
+{
+    const TemporaryFolder folder;
+    // Two squares side by side, each a group.
+    const auto mesh = [](double first, double second) {
+        std::string text;
+        for (const double x : {0.0, first, first + second})
+            text += "v " + std::to_string(x) + " 1 0\nv " + std::to_string(x) + " 1 -1\n";
+        return text + "g a\nf 1 3 4 2\ng b\nf 3 5 6 4\n";
+    };
+    folder.write("rest.obj", mesh(1.0, 1.0));
+    folder.write("scene.json", R"({"toile": 1, "frames": 1, "cloths": [{"name": "sheet", "file": "rest.obj",
+        "fabric": "jersey", "groups": {"b": {"fabric": "cotton"}}}]})");
+    for (const auto& [first, second, holds] : {std::tuple(1.2, 1.0, true), std::tuple(1.22, 1.2, false)}) {
+        folder.write("sheet.obj", mesh(first, second));
+        const Finished run = run_toile(
+            {"check", "sheet.obj", "--scene", "scene.json", "-o", "check.json", "--quiet"}, folder.path());
+        EXPECT_EQ(run.exit_code, holds ? 0 : 1) << run.errors;
+        if (!holds) {
+            EXPECT_NE(run.errors.find("strain 20 %, with a limit of 11 %, near (1."), std::string::npos)
+                << run.errors;
+        }
+    }
+}
+
 TEST(Check, ReportsStrainBetweenAttachedVerticesApart)
 {
     const TemporaryFolder folder;

@@ -150,7 +150,7 @@ TEST(BendDamping, DissipatesByTheCurvatureThatFrictionHolds)
     // of hinges across the roll turns by its spacing times k.
     const Sheet regular = make_sheet(Vec2(0.3, 0.1), 30, 1);
     const double rigidity = 3e-6, friction = 12.0, radius = 0.1;
-    BendDamping damping(*regular.rest(), {{rigidity, rigidity}, 0.0, friction}, "sheet");
+    BendDamping damping(*regular.rest(), BendDamping::Settings{{rigidity, rigidity}, 0.0, friction}, "sheet");
     damping.begin_step(regular.flat(), kDt);
     const double expected = friction * rigidity / radius * 0.3 * 0.1;
     EXPECT_NEAR(value_of(damping, rolled(regular, radius)), expected, 0.05 * expected);

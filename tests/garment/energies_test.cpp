@@ -123,7 +123,8 @@ TEST(Bending, AddsNothingToHWhenTheMembraneDominates)
     const Sheet sheet = make_sheet(Vec2(0.2, 0.2), 10, 10);
     const auto rest = sheet.rest();
     const std::vector<double> diagonal = hessian_diagonal(*membrane_of(rest), rest->vertex_count());
-    Bending cotton(rest, {2e-6, 2e-6}, "cotton"), board(rest, {1.0, 1.0}, "board");
+    Bending cotton(rest, Bending::Settings{2e-6, 2e-6}, "cotton"),
+        board(rest, Bending::Settings{1.0, 1.0}, "board");
     EXPECT_TRUE(cotton.leave_to(diagonal));
     EXPECT_FALSE(board.leave_to(diagonal));
     EXPECT_EQ(hessian_diagonal(cotton, rest->vertex_count()), std::vector<double>(rest->vertex_count(), 0.0));

@@ -17,7 +17,7 @@ double relative_energy(const Vec2& size, int columns, int rows, Pattern pattern)
 {
     constexpr double kRigidity = 1e-5, kTwist = 0.5; // [N m], [1/m]
     const Sheet sheet = make_sheet(size, columns, rows, pattern);
-    Bending bending(sheet.rest(), {kRigidity, kRigidity}, "strip");
+    Bending bending(sheet.rest(), Bending::Settings{kRigidity, kRigidity}, "strip");
     std::vector<Vec3> x = sheet.flat();
     for (size_t i = 0; i < x.size(); ++i)
         x[i] = Vec3(0.0, kTwist * sheet.uv[i].x() * (sheet.uv[i].y() - 0.5 * size.y()), 0.0);

@@ -50,9 +50,10 @@ std::string reason_of(const FrameFindings& found, const CertificateLimits& limit
         std::snprintf(text, sizeof text, "%.3g %% of the area at rest", 1e2 * found.area);
         add(text);
     }
-    if (found.is_overstretched) {
-        std::snprintf(text, sizeof text, "strain %.3g %% ", 1e2 * found.strain);
-        add(text + near_text(found.strain_point));
+    if (found.overstretch) {
+        std::snprintf(text, sizeof text, "strain %.3g %%, with a limit of %.3g %%, ",
+                      1e2 * found.overstretch->strain, 1e2 * found.overstretch->limit);
+        add(text + near_text(found.overstretch->point));
     }
     return reason;
 }
@@ -107,6 +108,8 @@ void Certificate::add(const FrameFindings& found)
     passages += found.passages;
     if (!first_passage)
         first_passage = found.passage;
+    if (!first_overstretch)
+        first_overstretch = found.overstretch;
     if (found.gap && (!min_gap || *found.gap < *min_gap)) {
         min_gap = found.gap;
         min_gap_frame = frame;

@@ -60,7 +60,13 @@ struct FrameFindings {
     double strain = 0.0;                   ///< [-] maximum of all cloths
     Vec3 strain_point = Vec3::Zero();      ///< [m] middle of that triangle
     double attached_strain = 0.0;          ///< [-] of triangles with three attached vertices
-    bool is_overstretched = false;         ///< a cloth exceeded its limit
+    /// A triangle that exceeds the limit of its fabric.
+    struct Overstretch {
+        double strain = 0.0;       ///< [-]
+        double limit = 0.0;        ///< [-] the margin included
+        Vec3 point = Vec3::Zero(); ///< [m] its middle
+    };
+    std::optional<Overstretch> overstretch; ///< that with the largest excess
     double area = 1.0; ///< [-] smallest area of a cloth relative to that at rest, at most 1
 };
 
@@ -98,6 +104,7 @@ struct Certificate {
     int pinched_frames = 0;
     std::optional<FrameFindings::CrossingSite> first_pinch;
     std::optional<FrameFindings::CrossingSite> first_crossing;
+    std::optional<FrameFindings::Overstretch> first_overstretch;
     long passages = 0;
     std::optional<FrameFindings::PassageSite> first_passage;
     std::optional<double> min_gap; ///< [m] 0 where cloth crosses cloth

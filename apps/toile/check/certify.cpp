@@ -32,19 +32,43 @@ double area_of(View<const Vec3> x, View<const Triangle> triangles)
     return 0.5 * twice;
 }
 
-StrainMeter strain_meter_of(const scenes::ClothState& cloth)
+/// Triangles of one fabric.
+struct StrainPart {
+    std::vector<Triangle> triangles;
+    StrainMeter meter;
+    double limit; ///< [-] the margin included
+};
+
+/// @param margin  [-] beyond the fabrics' limits
+std::vector<StrainPart> strain_parts_of(const scenes::ClothState& cloth, double margin)
 {
-    return cloth.panels.empty() ? StrainMeter(cloth.rest.positions, cloth.triangles)
-                                : StrainMeter(cloth.panels, cloth.triangles);
+    const auto part = [&](const std::vector<int>& numbers, double limit) {
+        std::vector<Triangle> triangles;
+        std::vector<FlatTriangle> panels;
+        for (const int t : numbers) {
+            triangles.push_back(cloth.triangles[size_t(t)]);
+            if (!cloth.panels.empty())
+                panels.push_back(cloth.panels[size_t(t)]);
+        }
+        StrainMeter meter =
+            panels.empty() ? StrainMeter(cloth.rest.positions, triangles) : StrainMeter(panels, triangles);
+        return StrainPart{std::move(triangles), std::move(meter), limit + margin};
+    };
+    const std::vector<std::vector<int>> numbers = cloth.triangles_by_fabric();
+    std::vector<StrainPart> parts;
+    for (size_t f = 0; f < numbers.size(); ++f)
+        if (!numbers[f].empty())
+            parts.push_back(
+                part(numbers[f], (f == 0 ? cloth.fabric : cloth.group_fabrics[f - 1]).strain_limit));
+    return parts;
 }
 
-/// A cloth with its strain meter and samples.
+/// A cloth with its strain meters and samples.
 struct MeasuredCloth {
     const scenes::ClothState& state;
     exports::PointCache cache;
-    StrainMeter strain;
+    std::vector<StrainPart> strain; ///< by fabric
     collision::ClothSamples samples;
-    double strain_limit;                                   ///< [-] the margin included
     int first_vertex, first_triangle;                      ///< in the arrays of all cloths
     std::vector<collision::PenetrationMeter::Sides> sides; ///< [avatars]
 };
@@ -94,9 +118,8 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
         longest_ = std::max(longest_, cache.frame_count());
         cloths_.push_back({cloth,
                            std::move(cache),
-                           strain_meter_of(cloth),
+                           strain_parts_of(cloth, limits.strain_margin),
                            collision::ClothSamples(cloth.triangles, vertex_count),
-                           cloth.fabric.strain_limit + limits.strain_margin,
                            int(rest.size()),
                            int(triangles_.size()),
                            {}});
@@ -166,6 +189,26 @@ void Examiner::pose_avatars(int frame, double time, FrameFindings& found)
     }
 }
 
+/// @param x, attached  [vertices of its cloth]
+void measure_strain(const StrainPart& part, View<const Vec3> x, View<const unsigned char> attached,
+                    FrameFindings& found)
+{
+    const StrainMeter::Largest strain = part.meter.largest(x, attached);
+    found.attached_strain = std::max(found.attached_strain, strain.of_attached);
+    if (strain.free_triangle < 0)
+        return;
+    const Triangle& t = part.triangles[size_t(strain.free_triangle)];
+    const Vec3 point = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0;
+    if (strain.of_free > found.strain) {
+        found.strain = strain.of_free;
+        found.strain_point = point;
+    }
+    const auto excess = [](const FrameFindings::Overstretch& at) { return at.strain - at.limit; };
+    const FrameFindings::Overstretch here{strain.of_free, part.limit, point};
+    if (excess(here) > (found.overstretch ? excess(*found.overstretch) : 0.0))
+        found.overstretch = here;
+}
+
 void Examiner::measure_each(double time, FrameFindings& found)
 {
     for (MeasuredCloth& cloth : cloths_) {
@@ -178,15 +221,13 @@ void Examiner::measure_each(double time, FrameFindings& found)
             found.penetration_point = depth.point;
         }
         found.pinched_depth = std::max(found.pinched_depth, depth.pinched);
-        const StrainMeter::Largest strain = cloth.strain.largest(x, cloth.state.attached(time));
-        if (strain.of_free > found.strain) {
-            const Triangle& t = cloth.state.triangles[size_t(strain.free_triangle)];
-            found.strain = strain.of_free;
-            found.strain_point = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0;
+        double rest_area = 0.0;
+        const std::vector<unsigned char> attached = cloth.state.attached(time);
+        for (const StrainPart& part : cloth.strain) {
+            measure_strain(part, x, attached, found);
+            rest_area += part.meter.rest_area();
         }
-        found.attached_strain = std::max(found.attached_strain, strain.of_attached);
-        found.area = std::min(found.area, area_of(x, cloth.state.triangles) / cloth.strain.rest_area());
-        found.is_overstretched = found.is_overstretched || strain.of_free > cloth.strain_limit;
+        found.area = std::min(found.area, area_of(x, cloth.state.triangles) / rest_area);
     }
 }
 
@@ -264,7 +305,7 @@ void describe(Certificate& certificate, const scenes::Scene& scene, const std::v
     certificate.frames_left_out = examiner.longest() - examiner.frame_count();
     for (size_t i = 0; i < cloths.size(); ++i)
         certificate.cloths.push_back({cloths[i].cloth->name, cloths[i].file,
-                                      examiner.cloths()[i].strain_limit,
+                                      cloths[i].cloth->fabric.strain_limit + certificate.limits.strain_margin,
                                       int(cloths[i].cloth->file_mesh().positions.size()),
                                       int(cloths[i].cloth->file_mesh().polygons.size())});
     for (const std::string& name : surface_names(scene))

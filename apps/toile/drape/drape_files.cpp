@@ -207,6 +207,8 @@ std::string DrapeFiles::scene_text(const Continuation& continuation, const scene
                       {"uv_scale", 1.0},      {"fabric", result.scene.cloths.at(g).fabric}};
         if (!garment.surface.rest.empty())
             cloth["rest_file"] = rest_mesh(garment.name).filename().string();
+        for (const auto& [panel, group] : result.scene.cloths[g].groups)
+            cloth["groups"][panel] = {{"fabric", group.fabric}};
         for (const scene::Elastic& elastic : result.scene.cloths[g].elastics)
             cloth["elastics"].push_back(
                 {{"vertices", elastic.vertices}, {"ratio", elastic.ratio}, {"stiffness", elastic.stiffness}});
@@ -257,9 +259,9 @@ void DrapeFiles::write_fit(const scenes::DrapeResult& result, const std::vector<
     const std::string source = file ? file->string() : settings.body.name;
     std::vector<GarmentFit> fits;
     for (size_t g = 0; g < result.garments.size(); ++g)
-        fits.push_back(fit_of(fitted_garment(names_[g], result.garments[g].surface, patterns[g],
-                                             settings.garments[g].fabric),
-                              body.surface(), source));
+        fits.push_back(fit_of(
+            fitted_garment(names_[g], result.garments[g].surface, patterns[g], settings.garments[g].fabric),
+            body.surface(), source));
     fit().write(fits, body.surface(), log);
 }
 

@@ -42,7 +42,7 @@ std::optional<Vec3> defect_point(const Certificate& certificate)
         return certificate.first_crossing->point;
     if (certificate.worst.penetration > certificate.limits.penetration)
         return certificate.worst.penetration_point;
-    return certificate.worst.strain > 0.0 ? std::optional(certificate.worst.strain_point) : std::nullopt;
+    return certificate.first_overstretch ? std::optional(certificate.first_overstretch->point) : std::nullopt;
 }
 
 /// Panel at a point, for messages; empty if there is none.

@@ -47,9 +47,7 @@ TEST(DrapeVerdict, IsDrapedIfTheCertificateHolds)
 TEST(DrapeVerdict, NamesConditionPlaceAndPanelOfStrain)
 {
     FrameFindings found;
-    found.strain = 0.3;
-    found.strain_point = Vec3(0.1, 0.2, -1);
-    found.is_overstretched = true;
+    found.overstretch = {0.3, 0.11, Vec3(0.1, 0.2, -1)};
     const DrapeVerdict verdict = verdict_of(certificate_of(found), two_panels());
     EXPECT_EQ(verdict.word, "solver");
     for (const char* part : {"strain 30 %", "near (0.100, 0.200, -1.000) m", "in panel \"back\""})
@@ -60,9 +58,7 @@ TEST(DrapeVerdict, NamesConditionPlaceAndPanelOfStrain)
 TEST(DrapeVerdict, NamesThePanelOfTheFirstCondition)
 {
     FrameFindings found;
-    found.strain = 0.3;
-    found.strain_point = Vec3(0, 0, -1);
-    found.is_overstretched = true;
+    found.overstretch = {0.3, 0.11, Vec3(0, 0, -1)};
     found.penetration = 0.004;
     found.penetration_point = Vec3(0, 0, 1);
     std::string message = verdict_of(certificate_of(found), two_panels()).message;
@@ -144,9 +140,7 @@ TEST(DrapeVerdict, NamesTheGarment)
     for (Vec3& x : garments[1].surface.mesh.positions)
         x.y() += 1.0;
     FrameFindings found;
-    found.strain = 0.3;
-    found.strain_point = Vec3(0, 1.3, -1);
-    found.is_overstretched = true;
+    found.overstretch = {0.3, 0.11, Vec3(0, 1.3, -1)};
     const std::string message = verdict_of(certificate_of(found), garments).message;
     EXPECT_NE(message.find("in panel \"back\" of tee"), std::string::npos) << message;
 }

@@ -169,6 +169,26 @@ TEST_F(Drape, WritesSeveralGarments)
     expect_refusal({"tube.json", "--fabric", "denim,jersy"}, {"--fabric", "did you mean \"jersey\"?"});
 }
 
+/// A panel in a fabric of its own: strain is reported by fabric, and the written scene has both.
+TEST_F(Drape, KeepsTheFabricsOfPanels)
+{
+    temporary_.write("tube.panels.json", tube(0.5));
+    temporary_.write("tube.garment.json", R"({"toile_garment": 1, "patterns": [{"file": "tube.panels.json"}],
+        "panels": {"back": {"fabric": "denim"}},
+        "elastics": [{"edges": ["front.2", "back.2"], "ratio": 0.6, "stiffness": 40}]})");
+    const Finished finished =
+        drape({"tube.garment.json", "--edge", "0.04", "--fabric", "jersey", "-o", "out", "--quiet"});
+    ASSERT_EQ(finished.exit_code, 0) << finished.errors;
+    const scenes::Scene scene = scenes::read_scene(file("out/scene.json"));
+    EXPECT_EQ(scene.cloths.at(0).fabric, "jersey");
+    ASSERT_EQ(scene.cloths[0].groups.size(), 1u);
+    EXPECT_EQ(scene.cloths[0].groups.at("back").fabric, "denim");
+    const Json strain = json_in("out/drape.json")["strain"];
+    EXPECT_EQ(strain.size(), 2u);
+    EXPECT_EQ(strain["denim"]["max_panel"], "back");
+    EXPECT_EQ(strain["jersey"]["max_panel"], "front");
+}
+
 TEST_F(Drape, EndsAtItsTimeLimitWithItsLastState)
 {
     temporary_.write("tube.json", tube());

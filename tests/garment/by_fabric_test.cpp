@@ -1,0 +1,98 @@
+#include "garment/energy/by_fabric.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "garment/energy/bend_damping.h"
+#include "garment/energy/bending.h"
+#include "garment/energy/rest_shape.h"
+#include "tests/garment/sheets.h"
+
+/// Energies of cloth of several fabrics, and the parts of its rest shape.
+namespace toile::test {
+
+using namespace garment;
+
+namespace {
+
+/// A sheet of 1 m whose triangles alternate between two fabrics in blocks.
+struct Patchwork {
+    std::shared_ptr<const RestShape> rest;
+    std::vector<int> fabric;              ///< [triangles]
+    std::vector<std::vector<int>> groups; ///< [fabrics]
+
+    Patchwork()
+    {
+        constexpr int kCells = 8;
+        std::vector<Vec2> uv;
+        std::vector<Triangle> triangles;
+        for (int j = 0; j <= kCells; ++j)
+            for (int i = 0; i <= kCells; ++i)
+                uv.emplace_back(double(i) / kCells, double(j) / kCells);
+        groups.resize(2);
+        for (int j = 0; j < kCells; ++j)
+            for (int i = 0; i < kCells; ++i) {
+                const int a = j * (kCells + 1) + i, b = a + kCells + 1;
+                for (const Triangle& t : {Triangle(a, a + 1, b + 1), Triangle(a, b + 1, b)}) {
+                    fabric.push_back((i / 3 + j / 3) % 2);
+                    groups[size_t(fabric.back())].push_back(int(triangles.size()));
+                    triangles.push_back(t);
+                }
+            }
+        rest = std::make_shared<const RestShape>(rest_shape_of_pattern(uv, triangles, "patchwork"));
+    }
+};
+
+double distance(const SparseMatrix& a, const SparseMatrix& b) { return SparseMatrix(a - b).norm(); }
+
+/// The energy is a sum over triangles: K(a, b) = a K(1, 0) + b K(0, 1).
+TEST(ByFabric, BendingIsTheSumOfItsFabrics)
+{
+    const Patchwork sheet;
+    const auto matrix = [&](double first, double second) {
+        const ByFabric<Bending::Settings> settings({{first, first}, {second, second}}, sheet.fabric);
+        return Bending(sheet.rest, settings, "test").matrix();
+    };
+    const SparseMatrix sum = 2.0 * matrix(1e-5, 0.0) + 3.0 * matrix(0.0, 1e-5);
+    EXPECT_LT(distance(matrix(2e-5, 3e-5), sum), 1e-9 * sum.norm());
+    EXPECT_EQ(
+        distance(matrix(2e-5, 2e-5), Bending(sheet.rest, Bending::Settings{2e-5, 2e-5}, "test").matrix()),
+        0.0);
+}
+
+TEST(ByFabric, PartsKeepTrianglesAndEdges)
+{
+    const Patchwork sheet;
+    int inner = 0, cut = 0;
+    for (const std::vector<int>& group : sheet.groups) {
+        const RestShape part = part_of(*sheet.rest, group);
+        ASSERT_EQ(part.triangles.size(), group.size());
+        EXPECT_EQ(part.vertex_count(), sheet.rest->vertex_count());
+        for (size_t t = 0; t < group.size(); ++t)
+            EXPECT_EQ(part.triangles[t], sheet.rest->triangles[size_t(group[t])]);
+        for (int e = 0; e < int(part.topology.edges.size()); ++e) {
+            const Edge& edge = part.topology.edges[size_t(e)];
+            (edge.is_border() ? cut : inner) += 1;
+            for (int side = 0; side < (edge.is_border() ? 1 : 2); ++side) {
+                const Triangle& t = part.triangles[size_t(edge.triangle[size_t(side)])];
+                const std::array<int, 3>& edges =
+                    part.topology.triangle_edge[size_t(edge.triangle[size_t(side)])];
+                const int k = int(std::find(edges.begin(), edges.end(), e) - edges.begin());
+                ASSERT_LT(k, 3);
+                EXPECT_EQ(t[k], edge.vertex[size_t(side)]);
+                EXPECT_EQ(t[(k + 1) % 3], edge.vertex[size_t(1 - side)]);
+                EXPECT_EQ(t[(k + 2) % 3], edge.opposite[size_t(side)]);
+            }
+        }
+    }
+    // Every inner edge of the sheet is inside one part, or at the border of both.
+    int inner_of_sheet = 0, border_of_sheet = 0;
+    for (const Edge& edge : sheet.rest->topology.edges)
+        (edge.is_border() ? border_of_sheet : inner_of_sheet) += 1;
+    EXPECT_EQ(2 * inner + cut, 2 * inner_of_sheet + border_of_sheet);
+    EXPECT_GT(cut, border_of_sheet);
+}
+
+} // namespace
+} // namespace toile::test
