@@ -162,9 +162,10 @@ void describe(V& v, Sewing& s)
 template <typename V>
 void describe(V& v, Elastic& e)
 {
-    v.required("vertices", e.vertices, between(0, 1e8),
-               "Indices into the cloth's mesh, counted from 0: a path along its edges. A closed one ends with "
-               "its first.");
+    v.required(
+        "vertices", e.vertices, between(0, 1e8),
+        "Indices into the cloth's mesh, counted from 0: a path along its edges. A closed one ends with "
+        "its first.");
     v.required("ratio", e.ratio, between(0.2, 1.0), "Length of the elastic at rest over that of the edges.");
     v.required("stiffness", e.stiffness, above_zero(1e5, "N"),
                "Tension per unit of strain of the elastic; it does not push.");

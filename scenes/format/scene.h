@@ -170,10 +170,10 @@ struct Cloth {
     double scale = 1.0;             ///< [-]
     Vec3 translate = Vec3::Zero();  ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
-    std::string fabric = "cotton";       ///< key of Scene::fabrics or name of a preset
-    double grain_deg = 0.0;              ///< rotation of the warp direction in the cloth plane
-    std::optional<double> thickness;     ///< [m] replaces the fabric's
-    std::optional<Sewing> sewing;        ///< absent: lines of the file are left out
+    std::string fabric = "cotton";   ///< key of Scene::fabrics or name of a preset
+    double grain_deg = 0.0;          ///< rotation of the warp direction in the cloth plane
+    std::optional<double> thickness; ///< [m] replaces the fabric's
+    std::optional<Sewing> sewing;    ///< absent: lines of the file are left out
     std::vector<Elastic> elastics;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
