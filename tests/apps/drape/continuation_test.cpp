@@ -33,7 +33,8 @@ std::string bvh_in_front(int centimetres)
 class Continued : public FileTest {
 protected:
     /// The scene that a drape writes for it.
-    scenes::Scene written(const Continuation& continuation) const
+    scenes::Scene written(const Continuation& continuation,
+                          const std::vector<scene::Elastic>& elastics = {}) const
     {
         scenes::DrapeResult result;
         result.garments.resize(1);
@@ -42,6 +43,7 @@ protected:
         result.garments[0].surface.mesh.polygons = {{0, 1, 2}};
         result.scene.cloths.resize(1);
         result.scene.cloths[0].fabric = "cotton";
+        result.scene.cloths[0].elastics = elastics;
         DrapeFiles files({"g.json"}, folder_);
         files.write_garment(continuation, result, RunLog(true));
         return scenes::read_scene(files.scene());
@@ -54,6 +56,18 @@ TEST_F(Continued, StandsStillWithoutAClip)
     EXPECT_EQ(scene.avatars.at(0).clip, "");
     EXPECT_FALSE(scene.avatars[0].preroll.from_bind);
     EXPECT_EQ(scene.frames, 60);
+}
+
+TEST_F(Continued, KeepsElastics)
+{
+    EXPECT_TRUE(written(continuation_of(column(), {})).cloths.at(0).elastics.empty());
+    const scenes::Scene scene =
+        written(continuation_of(column(), {}), {{{0, 1, 2}, 0.7, 12.5}, {{2, 0}, 1.0, 3.0}});
+    ASSERT_EQ(scene.cloths.at(0).elastics.size(), 2u);
+    EXPECT_EQ(scene.cloths[0].elastics[0].vertices, (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(scene.cloths[0].elastics[0].ratio, 0.7);
+    EXPECT_EQ(scene.cloths[0].elastics[0].stiffness, 12.5);
+    EXPECT_EQ(scene.cloths[0].elastics[1].vertices, (std::vector<int>{2, 0}));
 }
 
 /// 0.5 s of blend and 0.5 s of ramp, in which 0.25 s of the clip pass: it ends at 1 + 1.75 s, sample 82.5.

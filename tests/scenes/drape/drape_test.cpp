@@ -23,17 +23,36 @@ namespace {
 
 class DrapeTest : public ::testing::Test {
 protected:
-    DrapeResult drape_tube(const std::string& pattern) { return drape_tubes({{"tube", pattern}}); }
+    /// @param keys  of a garment file; empty: the pattern by itself
+    DrapeResult drape_tube(const std::string& pattern, const std::string& keys = "")
+    {
+        std::filesystem::path file = write("tube.json", pattern);
+        if (!keys.empty())
+            file = write("tube.garment.json",
+                         R"({"toile_garment": 1, "patterns": [{"file": "tube.json"}], )" + keys + "}");
+        return drape_files({{"tube", file}});
+    }
 
     /// @param patterns  by name
     DrapeResult drape_tubes(const std::vector<std::pair<std::string, std::string>>& patterns)
     {
+        std::vector<std::pair<std::string, std::filesystem::path>> files;
+        for (const auto& [name, pattern] : patterns)
+            files.emplace_back(name, write(name + ".json", pattern));
+        return drape_files(files);
+    }
+
+    std::filesystem::path write(const std::string& name, const std::string& text) const
+    {
+        std::ofstream(folder_.path() / name) << text;
+        return folder_.path() / name;
+    }
+
+    DrapeResult drape_files(const std::vector<std::pair<std::string, std::filesystem::path>>& files)
+    {
         DrapeSettings settings;
-        for (const auto& [name, pattern] : patterns) {
-            const std::filesystem::path file = folder_.path() / (name + ".json");
-            std::ofstream(file) << pattern;
+        for (const auto& [name, file] : files)
             settings.garments.push_back({file, name, "jersey"});
-        }
         settings.body.name = "body";
         settings.body.shape = scene::Capsule{0.1, 0.4};
         settings.edge = 0.03;
@@ -151,6 +170,66 @@ TEST_F(DrapeTest, KeepsBothTubesAtItsTimeLimit)
     EXPECT_EQ(result.garments[1].stages.back().name, "settle");
     for (const DrapedGarment& garment : result.garments)
         EXPECT_EQ(garment.stages.back().vertices, int(garment.surface.mesh.positions.size())) << garment.name;
+}
+
+/// Length of the lower edge of a draped tube [m].
+double hem_length(const DrapeResult& result)
+{
+    const ObjMesh& mesh = result.garments[0].surface.mesh;
+    double length = 0.0;
+    for (size_t t = 0; t < mesh.polygons.size(); ++t)
+        for (size_t k = 0; k < 3; ++k) {
+            const size_t next = (k + 1) % 3;
+            const auto is_low = [&](size_t corner) {
+                return mesh.texture_coordinates[size_t(mesh.polygon_uvs[t][corner])].y() < -0.0999;
+            };
+            if (is_low(k) && is_low(next))
+                length += (mesh.positions[size_t(mesh.polygons[t][k])] -
+                           mesh.positions[size_t(mesh.polygons[t][next])])
+                              .norm();
+        }
+    return length;
+}
+
+TEST_F(DrapeTest, GathersAHemByAnElasticAndWritesIt)
+{
+    const DrapeResult loose = drape_tube(tube(0.36, "strapless_top")),
+                      tight = drape_tube(tube(0.36, "strapless_top"), R"("elastics":
+                          [{"edges": ["front.0", "back.0"], "ratio": 0.8, "stiffness": 20}])");
+    EXPECT_EQ(tight.outcome, DrapeOutcome::Draped) << tight.message;
+    EXPECT_NEAR(hem_length(loose), 0.72, 0.01);
+    // The elastic has 0.576 m at rest and the body under it 0.628 m.
+    EXPECT_LT(hem_length(tight), 0.67);
+    EXPECT_GT(hem_length(tight), 0.61);
+
+    EXPECT_TRUE(loose.scene.cloths[0].elastics.empty());
+    ASSERT_EQ(tight.scene.cloths[0].elastics.size(), 2u);
+    for (const scene::Elastic& elastic : tight.scene.cloths[0].elastics) {
+        EXPECT_EQ(elastic.ratio, 0.8);
+        EXPECT_EQ(elastic.stiffness, 20.0);
+        EXPECT_EQ(elastic.vertices.size(), 13u) << "0.36 m in parts of 3 cm";
+    }
+}
+
+TEST_F(DrapeTest, SewsSeamsInTheirOrder)
+{
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("seams": [
+        {"a": ["front.1"], "b": ["back.3"], "order": 2}, {"a": ["front.3"], "b": ["back.1"], "order": 1}])");
+    EXPECT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    ASSERT_EQ(result.garments[0].seams.size(), 2u);
+    for (const DrapeSeam& seam : result.garments[0].seams)
+        EXPECT_LT(seam.gap, SeamClosing::kMaxGap) << seam.name;
+}
+
+TEST_F(DrapeTest, ShrinksATubeOntoTheBody)
+{
+    // 0.648 m around 0.628 m, and 0.72 m before.
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("panels":
+        {"front": {"shrink": {"weft": 0.9}}, "back": {"shrink": {"weft": 0.9}}})");
+    EXPECT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    EXPECT_NEAR(hem_length(result), 0.648, 0.012);
+    EXPECT_LT(result.max_strain, 0.05) << "measured against the shrunk shape";
+    EXPECT_FALSE(result.garments[0].surface.rest.empty());
 }
 
 TEST_F(DrapeTest, EndsAtItsTimeLimitWithTheLastState)
