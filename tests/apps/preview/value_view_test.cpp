@@ -120,11 +120,11 @@ TEST(ColourBar, HasTheEndsOfTheScaleAtTopAndBottom)
 TEST(Lettering, HasADifferentShapeForEachLetterAndStaysInThePicture)
 {
     const std::string letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.,-+%/<>()";
-    std::set<std::vector<std::uint8_t>> shapes;
+    std::set<std::string> shapes;
     for (const char letter : letters) {
         Image image(kLetterWidth, kLetterHeight);
         draw_text(image, 0, 0, 1, std::string(1, letter));
-        shapes.insert(image.rgb);
+        shapes.insert(std::string(image.rgb.begin(), image.rgb.end()));
     }
     EXPECT_EQ(shapes.size(), letters.size());
     Image minus(kLetterWidth, kLetterHeight);
