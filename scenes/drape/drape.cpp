@@ -26,6 +26,8 @@ namespace {
 constexpr double kSewingEdge = 0.02; ///< [m]
 /// Time [s] for a garment to be pressed, and to fall into place on the coarse mesh.
 constexpr double kPressingTime = 0.5, kSettlingTime = 1.0;
+/// Longest time [s] for panels to fold.
+constexpr double kFoldingTime = 4.0;
 /// Frames in which threads become no shorter than by this ratio, after which pulling on ends.
 constexpr int kVainFrames = 5;
 constexpr double kProgress = 0.98;
@@ -90,7 +92,7 @@ private:
     void put_on(const GarmentMesh& coarse, const GarmentMesh& fine, const garment::Resampling& finer)
     {
         std::vector<Vec3> x = placed(coarse);
-        if (!sew(coarse, x))
+        if (!fold(coarse, x) || !sew(coarse, x))
             return;
         std::vector<Vec3> welded = weld(coarse.sewn, x);
         if (press(coarse, welded) && settle(coarse, welded))
@@ -102,9 +104,8 @@ private:
     {
         std::vector<std::string> texts;
         for (const garment::Seam& seam : pattern.seams)
-            if (seam.fold_deg != 0.0 || seam.order != 0)
-                texts.push_back(seam.name +
-                                ": fold_deg and order are not used: seams are sewn at once, flat");
+            if (seam.order != 0)
+                texts.push_back(seam.name + ": order is not used: seams are sewn at once");
         for (const garment::Panel& panel : pattern.panels)
             if (panel.layer != 0 || panel.grain_deg != 0.0)
                 texts.push_back("panel \"" + panel.name + "\": layer and grain_deg are not used");
@@ -179,6 +180,26 @@ private:
         result_.outcome = DrapeOutcome::Solver;
         result_.message = report.message;
         return false;
+    }
+
+    /// Folds the panels where the pattern has folds. x [vertices of the panels]
+    bool fold(const GarmentMesh& mesh, std::vector<Vec3>& x)
+    {
+        if (pattern_.folds.empty())
+            return true;
+        const Clock clock;
+        const Scene scene = stages_.fold(SeamClosing(mesh, x).panels());
+        World world(scene, options_);
+        RestWatch rest(scene.frame_duration());
+        int frames = 0;
+        for (; frames < kFoldingTime * scene.fps && !rest.is_at_rest(); ++frames) {
+            if (!is_finite(watch_.advance(world)))
+                return false;
+            rest.add(world.cloths()[0].positions);
+        }
+        x.assign(world.cloths()[0].positions.begin(), world.cloths()[0].positions.end());
+        result_.stages.push_back({"fold", clock.seconds(), frames, int(x.size()), watch_.take_steps()});
+        return true;
     }
 
     /// Pulls the seams shut. x [vertices of the panels] in: placed; out: sewn.

@@ -6,6 +6,7 @@
 #include "core/mesh/obj.h"
 #include "garment/pattern/mesh/pattern_mesh.h"
 #include "garment/pattern/mesh/sewn_mesh.h"
+#include "scenes/drape/garment_folds.h"
 
 namespace toile::scenes {
 
@@ -14,6 +15,7 @@ struct GarmentSurface {
     ObjMesh mesh; ///< texture coordinates are those of the panels [m], and a group names each panel
     /// [triangles] rest shape, where it isn't the texture: seams are gathered [m]
     std::vector<FlatTriangle> rest;
+    std::vector<scene::Fold> folds;
 
     /// Mesh whose texture coordinates are `rest`, with corners of its own for each triangle.
     ObjMesh rest_mesh() const;
@@ -25,6 +27,7 @@ struct GarmentMesh {
     garment::SewnMesh sewn;
     std::vector<std::string> panel_names; ///< [panels]
     std::vector<FlatTriangle> gathered; ///< [triangles] garment::gathered_rest(); empty: nothing is gathered
+    GarmentFolds folds;
 
     /// @param edge   [m] of panels that have no edge length of their own
     /// @param least  [m] of any

@@ -22,9 +22,11 @@ SeamClosing::SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x)
     sewn_ = garment::sewn_mesh(closed_);
 }
 
+GarmentSurface SeamClosing::panels() const { return mesh_.surface(sewn_, toile::scenes::weld(sewn_, x_)); }
+
 GarmentSurface SeamClosing::surface() const
 {
-    GarmentSurface surface = mesh_.surface(sewn_, toile::scenes::weld(sewn_, x_));
+    GarmentSurface surface = panels();
     for (const auto& seam : open_)
         for (const auto& [a, b] : seam)
             if (sewn_.welded_of[a] != sewn_.welded_of[b])

@@ -20,6 +20,9 @@ public:
     /// @param x     [vertices of the panels] [m]
     SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x);
 
+    /// The panels, welded where seams are closed.
+    GarmentSurface panels() const;
+
     /// The panels, welded where seams are closed, with a line for every thread that is open.
     GarmentSurface surface() const;
 

@@ -15,6 +15,8 @@ constexpr double kSewingStretch = 60.0, kSewingShear = 20.0, kSewingStrainLimit 
 /// Decay rate of velocities [1/s] of garments that are sewn and pressed. Threads would throw panels, and
 /// gathers of great rigidity would turn a skirt over; flaps of centimetres still unfold at once.
 constexpr double kViscousDamping = 1000.0;
+/// Decay rate of velocities [1/s] of panels that are folded: narrow pleats draw whole panels together.
+constexpr double kFoldingDamping = 30.0;
 /// Friction of a garment that is pressed: a waistband has to find its waist.
 constexpr double kPressingFriction = 0.05;
 /// Threads [N/m, N].
@@ -40,6 +42,14 @@ StageScenes::StageScenes(const DrapeSettings& settings, const garment::Pattern& 
         for (const garment::PanelEdge& edge : panel.edges)
             if (!edge.label.empty())
                 labels_.insert(edge.label);
+}
+
+Scene StageScenes::fold(const GarmentSurface& panels) const
+{
+    Scene scene = scene_of("fold", panels, damped_fabric(kFoldingDamping));
+    scene.gravity.setZero();
+    scene.contact.friction = 0.0;
+    return scene;
 }
 
 Scene StageScenes::sew(const GarmentSurface& panels) const
@@ -97,6 +107,7 @@ Scene StageScenes::scene_of(const std::string& stage, const GarmentSurface& surf
     cloth.rest = scene::RestFrom::Uv;
     cloth.uv_scale = 1.0;
     cloth.fabric = stage;
+    cloth.folds = surface.folds;
     scene.fabrics[stage] = fabric;
     scene.cloths = {cloth};
     scene.solver.quality = scene::Quality::Standard;

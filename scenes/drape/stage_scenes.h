@@ -23,6 +23,9 @@ public:
 
     const std::set<std::string>& labels() const { return labels_; } ///< of the pattern's edges
 
+    /// The panels fold along their folds, without gravity.
+    Scene fold(const GarmentSurface& panels) const;
+
     /// Threads pull the seams shut, without gravity. The panels give way to the body as jersey does, and move
     /// so slowly that they stop where no force pulls.
     /// @param panels  with lines as threads

@@ -169,6 +169,9 @@ std::string DrapeFiles::scene_text(const Continuation& continuation, const scene
                        {"fabric", result.scene.cloths.at(0).fabric}}};
     if (!result.surface.rest.empty())
         json["cloths"][0]["rest_file"] = rest_mesh().filename().string();
+    for (const scene::Fold& fold : result.surface.folds)
+        json["cloths"][0]["folds"].push_back(
+            {{"vertices", fold.vertices}, {"angle_deg", fold.angle_deg}, {"stiffness", fold.stiffness}});
     for (const scene::Attachment& attachment : result.scene.attachments)
         json["attachments"].push_back(
             {{"cloth", name_},
