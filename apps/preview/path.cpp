@@ -14,6 +14,10 @@ namespace {
 /// hits the surface itself in single precision; more lets light in under a hem.
 constexpr double kStepOff = 2e-5;
 
+/// Cosine of the angle between a triangle and the smooth normal of a corner from which on the corner lies on
+/// a sharp fold, as of a pleat, and is shaded as the triangle is [-]: 60 degrees.
+constexpr double kSharp = 0.5;
+
 /// The floor is opaque up to the first distance and fades into the background at the second, in scene
 /// diagonals around the scene's centre [-].
 constexpr double kFadeStart = 0.9, kFadeEnd = 3.2;
@@ -107,15 +111,18 @@ SurfacePoint PathTracer::surface_point(const Vec3& origin, const Vec3& direction
     const Triangle& corner = mesh.triangles[size_t(hit.triangle)];
     const Vec3 weight(1.0 - hit.u - hit.v, hit.u, hit.v);
     const auto position = [&](int k) -> const Vec3& { return mesh.positions[size_t(corner[k])]; };
-    const auto normal = [&](int k) -> const Vec3& { return normals[size_t(corner[k])]; };
+    const Vec3 facet = (position(1) - position(0)).cross(position(2) - position(0)).normalized();
+    const auto normal = [&](int k) -> const Vec3& {
+        const Vec3& smooth = normals[size_t(corner[k])];
+        return smooth.dot(facet) < kSharp ? facet : smooth;
+    };
 
     SurfacePoint at;
     at.material = &mesh.material;
     at.position = origin + hit.t * direction;
-    at.facet_normal = (position(1) - position(0)).cross(position(2) - position(0)).normalized();
-    const bool is_front = at.facet_normal.dot(direction) < 0.0;
+    const bool is_front = facet.dot(direction) < 0.0;
     const double side = is_front ? 1.0 : -1.0;
-    at.facet_normal *= side;
+    at.facet_normal = side * facet;
     at.normal = side * (weight[0] * normal(0) + weight[1] * normal(1) + weight[2] * normal(2));
     if (!(at.normal.norm() > 1e-9))
         at.normal = at.facet_normal;

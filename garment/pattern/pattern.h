@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "core/compute/types.h"
+#include "garment/energy/fold/fold_edge.h"
 
 /// Sewing pattern: flat panels with curved edges, the seams between them, and where each panel starts.
 namespace toile::garment {
@@ -96,12 +97,22 @@ struct Elastic {
     double stiffness = 20.0; ///< [N] tension per unit of its strain
 };
 
+/// Line on a panel along which its cloth is folded at rest, as a pleat is.
+struct PanelFold {
+    int panel = 0;                     ///< index into Pattern::panels
+    std::vector<Vec2> points;          ///< [2 or more] in the panel's plane [m]
+    double angle_deg = 0.0;            ///< outer sides towards each other
+    double stiffness = kFoldStiffness; ///< [N] moment per length of the fold and radian
+    std::string name;                  ///< for messages: how the file calls it
+};
+
 struct Pattern {
     std::string source; ///< file, for messages
     std::string description;
     std::vector<Panel> panels;
     std::vector<Seam> seams;
     std::vector<Elastic> elastics;
+    std::vector<PanelFold> folds;
     std::vector<std::filesystem::path> files; ///< that it was read from
 };
 

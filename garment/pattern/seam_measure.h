@@ -18,7 +18,8 @@ struct SeamMeasure {
 
 /// Two curves x(s), y(s) that are sewn have a correlation near 1: they differ by a translation. `crossed`
 /// tells that the correlation of the other joining is higher by more than 1, of 2 possible. Seams of less
-/// than 3 cm are never called crossed: small ones at armpits and waists truly start so.
+/// than 3 cm are never called crossed: small ones at armpits and waists truly start so. Neither are those
+/// whose sides meet in the tip of a dart or pleat.
 SeamMeasure measure_seam(const Pattern& pattern, const Seam& seam);
 
 } // namespace toile::garment

@@ -10,26 +10,12 @@
 
 namespace toile::scenes {
 
-namespace {
-
-std::vector<Garment> read_garments(const DrapeSettings& settings, const WorldOptions& options)
-{
-    std::vector<Garment> garments;
-    for (const DrapeGarment& garment : settings.garments) {
-        garments.emplace_back(garment, settings.shift);
-        for (const std::string& text : garments.back().not_used())
-            if (options.warn)
-                options.warn(garment.file.string() + ": " + text);
-    }
-    return garments;
-}
-
-} // namespace
-
 DrapeResult drape(const DrapeSettings& settings, const WorldOptions& options)
 {
     DrapeWatch watch(settings, options);
-    const std::vector<Garment> garments = read_garments(settings, options);
+    std::vector<Garment> garments;
+    for (const DrapeGarment& garment : settings.garments)
+        garments.emplace_back(garment, settings.shift);
     const bool needs_segments = std::any_of(garments.begin(), garments.end(), [](const Garment& garment) {
         return garment.is_placed_by_segments();
     });

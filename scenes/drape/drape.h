@@ -53,7 +53,7 @@ struct DrapeSettings {
 };
 
 struct DrapeStage {
-    std::string name; ///< mesh, sew, press, settle, drape
+    std::string name; ///< mesh, fold, sew, press, settle, drape
     double seconds = 0.0;
     int frames = 0;
     int vertices = 0; ///< of the garment
@@ -93,6 +93,7 @@ struct DrapeResult {
 /// they lie; where it is draped, they move too.
 ///
 ///   mesh    panels at kSewingEdge and at the final edge length
+///   fold    the coarse panels fold along the lines of their folds, without gravity; only with folds
 ///   sew     panels whose shoulder seams would be pulled against the body are lifted (shoulder_lift());
 ///   threads
 ///           pull the seams shut, without gravity, on the coarse mesh (SeamClosing); longer sides are

@@ -44,15 +44,6 @@ std::map<std::string, std::string> Garment::panel_fabrics() const
     return fabrics;
 }
 
-std::vector<std::string> Garment::not_used() const
-{
-    std::vector<std::string> texts;
-    for (const garment::Seam& seam : pattern.seams)
-        if (seam.fold_deg != 0.0)
-            texts.push_back(seam.name + ": fold_deg is not used: seams are sewn flat");
-    return texts;
-}
-
 bool Garment::is_placed_by_segments() const
 {
     return std::any_of(pattern.panels.begin(), pattern.panels.end(),

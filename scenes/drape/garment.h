@@ -29,9 +29,6 @@ struct Garment {
     /// Presets of panels that differ from `fabric`, by panel.
     std::map<std::string, std::string> panel_fabrics() const;
 
-    /// What the pattern asks for and a drape does not do, a sentence each.
-    std::vector<std::string> not_used() const;
-
     bool is_placed_by_segments() const; ///< some of its panels are
 };
 

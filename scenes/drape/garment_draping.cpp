@@ -34,6 +34,8 @@ void take_own_fabrics(const Garment& garment, scene::Cloth& cloth)
 constexpr double kSewingEdge = 0.02; ///< [m]
 /// Time [s] for a garment to be pressed, and to fall into place on the coarse mesh.
 constexpr double kPressingTime = 0.5, kSettlingTime = 1.0;
+/// Longest time [s] for panels to fold.
+constexpr double kFoldingTime = 4.0;
 /// Frames in which threads become no shorter than by this ratio, after which pulling on ends.
 constexpr int kVainFrames = 5;
 constexpr double kProgress = 0.98;
@@ -77,7 +79,7 @@ void GarmentDraping::run()
 void GarmentDraping::put_on(const GarmentMesh& coarse, GarmentMesh fine)
 {
     std::vector<Vec3> x = placed(coarse);
-    if (!sew(coarse, x))
+    if (!fold(coarse, x) || !sew(coarse, x))
         return;
     std::vector<Vec3> welded = weld(coarse.sewn, x);
     if (!press(coarse, welded) || !settle(coarse, welded))
@@ -119,6 +121,27 @@ bool GarmentDraping::is_finite(const StepReport& report)
         return true;
     fail(DrapeOutcome::Solver, report.message);
     return false;
+}
+
+/// Folds the panels where the pattern has folds. x [vertices of the panels]
+bool GarmentDraping::fold(const GarmentMesh& mesh, std::vector<Vec3>& x)
+{
+    if (garment_.pattern.folds.empty())
+        return true;
+    const Clock clock;
+    const Scene scene = stages_.fold(SeamClosing(mesh, x).panels());
+    World world(scene, watch_.options());
+    RestWatch rest(scene.frame_duration());
+    int frames = 0;
+    for (; frames < kFoldingTime * scene.fps && !rest.is_at_rest(); ++frames) {
+        if (!is_finite(watch_.advance(world)))
+            return false;
+        rest.add(positions(world));
+    }
+    const View<const Vec3> now = positions(world);
+    x.assign(now.begin(), now.end());
+    end_stage("fold", clock, frames, int(x.size()));
+    return true;
 }
 
 /// Pulls the seams shut. x [vertices of the panels] in: placed; out: sewn.

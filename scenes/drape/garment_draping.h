@@ -41,6 +41,7 @@ private:
     bool lies_around_body();
     std::vector<Vec3> placed(const GarmentMesh& mesh);
     bool is_finite(const StepReport& report);
+    bool fold(const GarmentMesh& mesh, std::vector<Vec3>& x);
     bool sew(const GarmentMesh& mesh, std::vector<Vec3>& x);
     bool pull(SeamClosing& seams, int& frames);
     bool press(const GarmentMesh& mesh, std::vector<Vec3>& x);

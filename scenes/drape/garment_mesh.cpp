@@ -30,7 +30,7 @@ bool is_texture(const std::vector<FlatTriangle>& rest, const garment::PatternMes
 } // namespace
 
 GarmentMesh::GarmentMesh(const garment::Pattern& pattern, double edge, double least)
-    : panels(mesh_panels(pattern, edge, least)), sewn(garment::sewn_mesh(panels))
+    : panels(mesh_panels(pattern, edge, least)), sewn(garment::sewn_mesh(panels)), folds(pattern)
 {
     for (const garment::Panel& panel : pattern.panels)
         panel_names.push_back(panel.name);
@@ -56,6 +56,7 @@ GarmentSurface GarmentMesh::surface(const garment::SewnMesh& partly, View<const 
     for (size_t t = 0; t < surface.rest.size(); ++t)
         if (partly.is_turned[size_t(panels.panel_of_triangle(int(t)))])
             std::swap(surface.rest[t][1], surface.rest[t][2]);
+    surface.folds = folds.on(panels, partly);
     return surface;
 }
 

@@ -6,6 +6,7 @@
 #include "core/mesh/obj.h"
 #include "garment/pattern/mesh/pattern_mesh.h"
 #include "garment/pattern/mesh/sewn_mesh.h"
+#include "scenes/drape/garment_folds.h"
 
 namespace toile::scenes {
 
@@ -15,6 +16,7 @@ struct GarmentSurface {
     /// [triangles] rest shape with the warp upwards, where it isn't the texture: seams are gathered, or
     /// panels have a grain [m]
     std::vector<FlatTriangle> rest;
+    std::vector<scene::Fold> folds;
 
     /// Mesh whose texture coordinates are `rest`, with corners of its own for each triangle.
     ObjMesh rest_mesh() const;
@@ -26,6 +28,7 @@ struct GarmentMesh {
     garment::SewnMesh sewn;
     std::vector<std::string> panel_names; ///< [panels]
     std::vector<FlatTriangle> rest;       ///< [triangles] garment::gathered_rest(); empty: the texture
+    GarmentFolds folds;
 
     /// @param edge   [m] of panels that have no edge length of their own
     /// @param least  [m] of any

@@ -44,9 +44,11 @@ std::vector<size_t> SeamClosing::active() const
     return seams;
 }
 
+GarmentSurface SeamClosing::panels() const { return mesh_.surface(sewn_, toile::scenes::weld(sewn_, x_)); }
+
 GarmentSurface SeamClosing::surface() const
 {
-    GarmentSurface surface = mesh_.surface(sewn_, toile::scenes::weld(sewn_, x_));
+    GarmentSurface surface = panels();
     for (const size_t s : active())
         for (const auto& [a, b] : open_[s])
             if (sewn_.welded_of[a] != sewn_.welded_of[b])

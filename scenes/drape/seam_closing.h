@@ -23,6 +23,9 @@ public:
     /// @param order  [seams] lower ones are sewn first; empty: all at once
     SeamClosing(const GarmentMesh& mesh, std::vector<Vec3> x, std::vector<int> order = {});
 
+    /// The panels, welded where seams are closed.
+    GarmentSurface panels() const;
+
     /// The panels, welded where seams are closed, with a line for every active thread.
     GarmentSurface surface() const;
 

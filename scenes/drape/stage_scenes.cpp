@@ -19,6 +19,8 @@ constexpr double kSewingStretch = 60.0, kSewingShear = 20.0, kSewingStrainLimit 
 /// Decay rate of velocities [1/s] of garments that are sewn and pressed. Threads would throw panels, and
 /// gathers of great rigidity would turn a skirt over; flaps of centimetres still unfold at once.
 constexpr double kViscousDamping = 1000.0;
+/// Decay rate of velocities [1/s] of panels that are folded: narrow pleats draw whole panels together.
+constexpr double kFoldingDamping = 30.0;
 /// Friction of a garment that is pressed: a waistband has to find its waist.
 constexpr double kPressingFriction = 0.05;
 /// Threads [N/m, N].
@@ -54,6 +56,7 @@ scene::Fabric pressed_fabric(const std::string& preset)
     return fabric;
 }
 
+scene::Fabric folding_fabric(const std::string& preset) { return damped_fabric(preset, kFoldingDamping); }
 scene::Fabric falling_fabric(const std::string& preset) { return damped_fabric(preset, kFallingDamping); }
 scene::Fabric hanging_fabric(const std::string& preset) { return damped_fabric(preset, kHangingDamping); }
 
@@ -68,6 +71,14 @@ StageScenes::StageScenes(const DrapeSettings& settings, const Garment& garment,
                          const std::vector<WornGarment>& worn, DrapeWatch& watch)
     : settings_(settings), garment_(garment), worn_(worn), watch_(watch)
 {
+}
+
+Scene StageScenes::fold(const GarmentSurface& panels) const
+{
+    Scene scene = still_scene_of("fold", panels, folding_fabric);
+    scene.gravity.setZero();
+    scene.contact.friction = 0.0;
+    return scene;
 }
 
 Scene StageScenes::sew(const GarmentSurface& panels) const
@@ -165,6 +176,7 @@ void StageScenes::add_cloth(Scene& scene, const Garment& garment, const std::str
     cloth.rest = scene::RestFrom::Uv;
     cloth.uv_scale = 1.0;
     cloth.fabric = file_name;
+    cloth.folds = surface.folds;
     cloth.layer = int(scene.cloths.size());
     scene.fabrics[file_name] = fabric(garment.fabric);
     for (const auto& [panel, preset] : garment.panel_fabrics()) {

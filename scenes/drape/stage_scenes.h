@@ -21,6 +21,9 @@ public:
     StageScenes(const DrapeSettings& settings, const Garment& garment, const std::vector<WornGarment>& worn,
                 DrapeWatch& watch);
 
+    /// The panels fold along their folds, without gravity.
+    Scene fold(const GarmentSurface& panels) const;
+
     /// Threads pull the seams shut, without gravity. The panels give way to the body as jersey does, and move
     /// so slowly that they stop where no force pulls.
     /// @param panels  with lines as threads

@@ -8,6 +8,7 @@
 #include "scenes/format/names.h"
 #include "scenes/garment_format/copies.h"
 #include "scenes/garment_format/edge_name.h"
+#include "scenes/garment_format/panel_folds.h"
 
 namespace toile::garment_format {
 namespace {
@@ -204,6 +205,7 @@ Pattern assemble(const Document& document, const GarmentFile& file, const std::v
     set_panels(file, original_count, pattern);
     add_seams(document, file, pattern);
     add_elastics(document, file, pattern);
+    add_folds(document, file, pattern);
     return pattern;
 }
 

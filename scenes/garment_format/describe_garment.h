@@ -91,8 +91,8 @@ void describe(V& v, SeamEntry& s)
                "arc length, PANEL.EDGE[0.2:0.6]; [1:0] runs backwards.");
     v.required("b", s.b, "Edges of the other side.");
     v.field("join", s.join, "Whether the start of a meets the end of b, or its start.");
-    v.field("fold_deg", s.fold_deg, between(-180.0, 180.0, "degrees"),
-            "Fold along the seam at rest, outer sides towards each other; 0: flat.");
+    v.field("fold_deg", s.fold_deg, scene_format::kFoldAngle,
+            "Fold along the seam at rest, once it is sewn, outer sides towards each other; 0: flat.");
     v.field("order", s.order, between(0, 1000), "Seams with a lower number are sewn first.");
     v.field(
         "gather", s.gather,
@@ -113,6 +113,22 @@ void describe(V& v, ElasticEntry& e)
 }
 
 template <typename V>
+void describe(V& v, FoldEntry& f)
+{
+    using scene_format::between;
+    v.field("panel", f.panel, "Panel that line lies on. Copies of it are folded alike.");
+    v.field("line", f.line, between(-100.0, 100.0, "m"),
+            "Points [x, y] in the panel's plane; ends on the outline are put on its points.");
+    v.field("between", f.between,
+            "In place of panel and line: two points of a panel's edges, PANEL.EDGE[0.25], by arc length. The "
+            "fold is straight.");
+    v.required("angle_deg", f.angle_deg, scene_format::kFoldAngle,
+               "Angle of the fold at rest, outer sides towards each other.");
+    v.field("stiffness", f.stiffness, scene_format::kFoldStiffness,
+            "Moment per length of the fold and radian of opening.");
+}
+
+template <typename V>
 void describe(V& v, GarmentFile& g)
 {
     v.version("toile_garment", 1, "Version of the format.");
@@ -124,6 +140,7 @@ void describe(V& v, GarmentFile& g)
     v.field("elastics", g.elastics,
             "Elastics along edges, which gather the cloth as they contract, from the moment it falls into "
             "place on.");
+    v.field("folds", g.folds, "Lines along which panels are folded before they are sewn, as pleats are.");
 }
 
 } // namespace toile::garment_format

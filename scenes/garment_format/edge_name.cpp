@@ -17,47 +17,58 @@ using scene_format::Document;
 struct EdgeName {
     std::string panel;
     std::string edge;
-    double from = 0.0;
-    double to = 1.0;
+    std::string bracket; ///< "[0.2:0.6]" or empty
 };
 
-[[noreturn]] void refuse_form(const Document& document, const std::string& key_path, const std::string& name)
-{
-    document.refuse(key_path, as_written(name) +
-                                  " names no edge; write PANEL.EDGE, with an index or a label, "
-                                  "or PANEL.EDGE[0.2:0.6]");
-}
+constexpr const char* kFormOfPart =
+    " names no edge; write PANEL.EDGE, with an index or a label, or PANEL.EDGE[0.2:0.6]";
+constexpr const char* kFormOfPoint = " names no point of an edge; write PANEL.EDGE[0.25], with an index or a "
+                                     "label and a fraction of its length";
 
-/// @param range  "[0.2:0.6]"
-void parse_range(const Document& document, const std::string& key_path, const std::string& name,
-                 const std::string& range, EdgeName& parts)
+/// @param bracket  "[0.2:0.6]"
+void read_range(const Document& document, const std::string& key_path, const std::string& name,
+                const std::string& bracket, garment::EdgePart& part)
 {
-    const size_t colon = range.find(':');
-    if (range.back() != ']' || colon == std::string::npos)
-        refuse_form(document, key_path, name);
-    const std::optional<double> from = number_in(range.substr(1, colon - 1));
-    const std::optional<double> to = number_in(range.substr(colon + 1, range.size() - colon - 2));
+    const size_t colon = bracket.find(':');
+    if (bracket.back() != ']' || colon == std::string::npos)
+        document.refuse(key_path, as_written(name) + kFormOfPart);
+    const std::optional<double> from = number_in(bracket.substr(1, colon - 1));
+    const std::optional<double> to = number_in(bracket.substr(colon + 1, bracket.size() - colon - 2));
     if (!from || !to)
-        refuse_form(document, key_path, name);
+        document.refuse(key_path, as_written(name) + kFormOfPart);
     if (std::min(*from, *to) < 0.0 || std::max(*from, *to) > 1.0 || *from == *to)
         document.refuse(key_path, as_written(name) +
                                       " is no part of an edge; give two different fractions of "
                                       "its length, from 0 to 1");
-    parts.from = *from;
-    parts.to = *to;
+    part.from = *from;
+    part.to = *to;
 }
 
-EdgeName parse(const Document& document, const std::string& key_path, const std::string& name)
+/// @param bracket  "[0.25]" or empty
+double fraction_in(const Document& document, const std::string& key_path, const std::string& name,
+                   const std::string& bracket)
+{
+    std::optional<double> fraction;
+    if (bracket.size() > 2 && bracket.back() == ']')
+        fraction = number_in(bracket.substr(1, bracket.size() - 2));
+    if (!fraction)
+        document.refuse(key_path, as_written(name) + kFormOfPoint);
+    if (!(*fraction >= 0.0 && *fraction <= 1.0))
+        document.refuse(key_path, as_written(name) + " lies beyond its edge; give a fraction from 0 to 1");
+    return *fraction;
+}
+
+/// @param form  of names, for messages
+EdgeName parse(const Document& document, const std::string& key_path, const std::string& name,
+               const char* form)
 {
     const size_t bracket = name.find('[');
     const std::string edge = name.substr(0, bracket);
     const size_t dot = edge.rfind('.');
     if (dot == std::string::npos || dot == 0 || dot + 1 == edge.size())
-        refuse_form(document, key_path, name);
-    EdgeName parts{edge.substr(0, dot), edge.substr(dot + 1)};
-    if (bracket != std::string::npos)
-        parse_range(document, key_path, name, name.substr(bracket), parts);
-    return parts;
+        document.refuse(key_path, as_written(name) + form);
+    return {edge.substr(0, dot), edge.substr(dot + 1),
+            bracket == std::string::npos ? "" : name.substr(bracket)};
 }
 
 /// Index of the edge with a label.
@@ -98,17 +109,37 @@ int edge_of(const Document& document, const std::string& key_path, const EdgeNam
     return int(*index);
 }
 
+int panel_of(const Document& document, const std::string& key_path, const EdgeName& name,
+             const garment::Pattern& pattern)
+{
+    const std::vector<std::string> panels = scene_format::names_of(pattern.panels);
+    scene_format::require_known(document, key_path, "panel", name.panel, panels);
+    return int(std::find(panels.begin(), panels.end(), name.panel) - panels.begin());
+}
+
 } // namespace
 
 garment::EdgePart edge_part_of(const Document& document, const std::string& key_path, const std::string& name,
                                const garment::Pattern& pattern)
 {
-    const EdgeName parts = parse(document, key_path, name);
-    const std::vector<std::string> panels = scene_format::names_of(pattern.panels);
-    scene_format::require_known(document, key_path, "panel", parts.panel, panels);
-    const auto panel = int(std::find(panels.begin(), panels.end(), parts.panel) - panels.begin());
-    const int edge = edge_of(document, key_path, parts, pattern.panels[size_t(panel)]);
-    return {panel, edge, parts.from, parts.to};
+    const EdgeName parts = parse(document, key_path, name, kFormOfPart);
+    garment::EdgePart part;
+    if (!parts.bracket.empty())
+        read_range(document, key_path, name, parts.bracket, part);
+    part.panel = panel_of(document, key_path, parts, pattern);
+    part.edge = edge_of(document, key_path, parts, pattern.panels[size_t(part.panel)]);
+    return part;
+}
+
+EdgePoint edge_point_of(const Document& document, const std::string& key_path, const std::string& name,
+                        const garment::Pattern& pattern)
+{
+    const EdgeName parts = parse(document, key_path, name, kFormOfPoint);
+    EdgePoint point;
+    point.fraction = fraction_in(document, key_path, name, parts.bracket);
+    point.panel = panel_of(document, key_path, parts, pattern);
+    point.edge = edge_of(document, key_path, parts, pattern.panels[size_t(point.panel)]);
+    return point;
 }
 
 } // namespace toile::garment_format

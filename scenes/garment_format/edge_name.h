@@ -12,4 +12,16 @@ namespace toile::garment_format {
 garment::EdgePart edge_part_of(const scene_format::Document& document, const std::string& key_path,
                                const std::string& name, const garment::Pattern& pattern);
 
+/// Point of an edge.
+struct EdgePoint {
+    int panel = 0;         ///< index into Pattern::panels
+    int edge = 0;          ///< index into Panel::edges
+    double fraction = 0.0; ///< [-] of the edge's length
+};
+
+/// Point of an edge named by PANEL.EDGE[0.25].
+/// @throws InvalidInput as edge_part_of()
+EdgePoint edge_point_of(const scene_format::Document& document, const std::string& key_path,
+                        const std::string& name, const garment::Pattern& pattern);
+
 } // namespace toile::garment_format

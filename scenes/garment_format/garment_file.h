@@ -51,12 +51,22 @@ struct ElasticEntry {
     double stiffness = 20.0; ///< [N]
 };
 
+/// A fold as written, by `line` or `between`.
+struct FoldEntry {
+    std::optional<std::string> panel; ///< of the line
+    std::vector<Vec2> line;           ///< [2 or more] in the panel's plane [m]
+    std::vector<std::string> between; ///< [2] points of a panel's edges
+    double angle_deg = 0.0;
+    double stiffness = garment::kFoldStiffness; ///< [N]
+};
+
 struct GarmentFile {
     std::string description;
     std::vector<PatternFile> patterns;
     std::map<std::string, PanelSettings> panels; ///< by name
     std::vector<SeamEntry> seams;
     std::vector<ElasticEntry> elastics;
+    std::vector<FoldEntry> folds;
 };
 
 } // namespace toile::garment_format

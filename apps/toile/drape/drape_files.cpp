@@ -212,6 +212,9 @@ std::string DrapeFiles::scene_text(const Continuation& continuation, const scene
         for (const scene::Elastic& elastic : result.scene.cloths[g].elastics)
             cloth["elastics"].push_back(
                 {{"vertices", elastic.vertices}, {"ratio", elastic.ratio}, {"stiffness", elastic.stiffness}});
+        for (const scene::Fold& fold : garment.surface.folds)
+            cloth["folds"].push_back(
+                {{"vertices", fold.vertices}, {"angle_deg", fold.angle_deg}, {"stiffness", fold.stiffness}});
         if (g > 0) {
             const Vec3 color = color_of(g);
             cloth["layer"] = g;

@@ -4,10 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-
 #include "core/base/error.h"
-#include "core/compute/parallel.h"
 
 namespace toile::garment {
 
@@ -67,13 +64,6 @@ int corner_of(const RestShape& rest, int triangle, int edge)
 {
     const std::array<int, 3>& edges = rest.topology.triangle_edge[triangle];
     return int(std::find(edges.begin(), edges.end(), edge) - edges.begin());
-}
-
-void cut_negative_eigenvalues(Block& H)
-{
-    const Eigen::SelfAdjointEigenSolver<Block> eigen(H);
-    H = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-        eigen.eigenvectors().transpose();
 }
 
 } // namespace
@@ -169,19 +159,15 @@ void FoldLines::add_couplings(std::vector<std::pair<int, int>>& couplings) const
 
 void FoldLines::add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K)
 {
-    block_.resize(folds_.size());
-    parallel_for(kCpu, "fold_lines/curvature", int(folds_.size()), [&](int f) {
-        const Fold& fold = folds_[f];
+    for (const Fold& fold : folds_) {
         const DihedralDerivatives angle = dihedral_derivatives(fold.corners(x));
-        const double change = fold.angle_near_start(x) - fold.rest_angle;
-        block_[f] = fold.stiffness * (angle.gradient * angle.gradient.transpose() + change * angle.hessian);
-        if (definiteness == Definiteness::Projected)
-            cut_negative_eigenvalues(block_[f]);
-    });
-    for (size_t f = 0; f < folds_.size(); ++f)
+        Block block = angle.gradient * angle.gradient.transpose();
+        if (definiteness == Definiteness::Exact)
+            block += (fold.angle_near_start(x) - fold.rest_angle) * angle.hessian;
         for (int i = 0; i < 4; ++i)
             for (int j = 0; j < 4; ++j)
-                K.block(folds_[f].vertex[i], folds_[f].vertex[j]) += block_[f].block<3, 3>(3 * i, 3 * j);
+                K.block(fold.vertex[i], fold.vertex[j]) += fold.stiffness * block.block<3, 3>(3 * i, 3 * j);
+    }
 }
 
 } // namespace toile::garment

@@ -44,6 +44,8 @@ public:
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
     void add_constant_curvature(Triplets&) const override {}
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
+
+    /// Positive semi-definite it is Gauss and Newton's: without the second derivative of the angle.
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
 
 private:
@@ -64,7 +66,6 @@ private:
     static Fold fold_of(const RestShape& rest, const FoldEdge& edge);
 
     std::vector<Fold> folds_;
-    std::vector<Eigen::Matrix<double, 12, 12>> block_; ///< [folds] scratch [N/m]
 };
 
 } // namespace toile::garment

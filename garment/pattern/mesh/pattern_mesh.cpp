@@ -283,6 +283,15 @@ std::vector<std::vector<int>> line_vertices_of(const PatternMesh& mesh, const st
     return result;
 }
 
+/// Lines that edges of the mesh follow: those of the settings, then the pattern's folds.
+std::vector<InnerLine> lines_of(const Pattern& pattern, const PatternMeshSettings& settings)
+{
+    std::vector<InnerLine> lines = settings.lines;
+    for (const PanelFold& fold : pattern.folds)
+        lines.push_back({fold.panel, fold.points, fold.name});
+    return lines;
+}
+
 /// Splits edges, given by vertices of the mesh, in their panels.
 void split_edges(const std::vector<std::array<int, 2>>& edges, const PatternMesh& mesh,
                  std::vector<PanelMesher>& panels)
@@ -314,8 +323,9 @@ PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& sett
     OutlineTargets targets{targets_of(pattern, settings, sizes), {}, {}};
     for (const auto& panel : curves)
         targets.free_intervals.emplace_back(panel.size(), 1);
-    const std::vector<LineEnds> line_ends = place_lines(pattern, curves, settings.lines);
-    targets.marks = marks_of(curves, settings.lines, line_ends);
+    const std::vector<InnerLine> lines = lines_of(pattern, settings);
+    const std::vector<LineEnds> line_ends = place_lines(pattern, curves, lines);
+    targets.marks = marks_of(curves, lines, line_ends);
 
     OutlinePoints points = divide_until_simple(pattern, curves, sizes, targets);
     while (divide_closing_edges(points, targets))
@@ -325,7 +335,7 @@ PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& sett
     std::vector<LinedFrame> frames;
     for (int p = 0; p < int(curves.size()); ++p) {
         frames.push_back(lined_frame(pattern, p, polygon_of(curves[p], points.fractions[p]),
-                                     points.fractions[p], settings.lines, line_ends, targets.edge[p]));
+                                     points.fractions[p], lines, line_ends, targets.edge[p]));
         panels.push_back(PanelMesher::of(frames[p].frame, sizes[p].area, targets.edge[p]));
     }
 
@@ -339,7 +349,10 @@ PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& sett
         split_edges(edges, mesh, panels);
         mesh = assemble(panels, points, targets.edge);
     }
-    mesh.line_vertices = line_vertices_of(mesh, settings.lines, frames);
+    mesh.line_vertices = line_vertices_of(mesh, lines, frames);
+    const auto first_fold = mesh.line_vertices.begin() + std::ptrdiff_t(settings.lines.size());
+    mesh.fold_vertices.assign(first_fold, mesh.line_vertices.end());
+    mesh.line_vertices.erase(first_fold, mesh.line_vertices.end());
     return mesh;
 }
 

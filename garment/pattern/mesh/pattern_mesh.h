@@ -36,6 +36,7 @@ struct PatternMesh {
     std::vector<std::vector<std::array<int, 2>>> stitches;
 
     std::vector<std::vector<int>> line_vertices; ///< [lines][2 or more] along each line
+    std::vector<std::vector<int>> fold_vertices; ///< [folds of the pattern][2 or more] along each
 
     std::vector<double> edge; ///< [panels] target of edge lengths [m]; less than asked for in narrow panels
 
@@ -57,8 +58,8 @@ struct PatternMeshSettings {
     double edge = 0.01;              ///< [m] target of edge lengths; none is much longer
     std::vector<double> panel_edges; ///< [panels] targets of their own [m]; empty: `edge` for all
 
-    /// They cross neither each other nor the outline. Ends nearer to the outline than 1/1000 of its length
-    /// are put on it, and so on what is sewn to it.
+    /// Lines besides the folds of the pattern. They cross neither each other, nor folds, nor the outline.
+    /// Ends nearer to the outline than 1/1000 of its length are put on it, and so on what is sewn to it.
     std::vector<InnerLine> lines;
 };
 

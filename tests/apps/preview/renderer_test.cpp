@@ -67,6 +67,32 @@ TEST(Renderer, DarkensTheFloorWhereTheSunIsHidden)
               0.8 * brightness(pixel_at(image, camera.project(open))));
 }
 
+/// A sheet that is folded onto itself looks as two sheets do, whether they share the vertices of the fold.
+TEST(Renderer, ShadesASharpFoldAsTwoFacets)
+{
+    RenderMesh folded, apart;
+    folded.positions = {Vec3(-1, -1, 0), Vec3(1, -1, 0),       Vec3(1, 1, 0),
+                        Vec3(-1, 1, 0),  Vec3(-0.9, -1, -0.2), Vec3(-0.9, 1, -0.2)};
+    folded.triangles = {Triangle(0, 1, 2), Triangle(0, 2, 3), Triangle(2, 1, 4), Triangle(2, 4, 5)};
+    apart = folded;
+    apart.positions.insert(apart.positions.end(), {folded.positions[1], folded.positions[2]});
+    apart.triangles = {Triangle(0, 1, 2), Triangle(0, 2, 3), Triangle(7, 6, 4), Triangle(7, 4, 5)};
+    const RenderScene one{.meshes = {folded}, .ground_height = {}},
+        two{.meshes = {apart}, .ground_height = {}};
+    const Camera camera = camera_for(one, 20.0, 10.0);
+    const Image joined = Renderer(one, kSmall).render(camera),
+                separate = Renderer(two, kSmall).render(camera);
+    int difference = 0, most = 0;
+    for (int y = 0; y < joined.height; ++y)
+        for (int x = 0; x < joined.width; ++x) {
+            const int change = std::abs(brightness(joined.pixel(x, y)) - brightness(separate.pixel(x, y)));
+            difference += change;
+            most = std::max(most, change);
+        }
+    EXPECT_LT(most, 60);
+    EXPECT_LT(difference, 3 * joined.width * joined.height);
+}
+
 TEST(Renderer, ShowsEachSideInItsColor)
 {
     RenderMesh sheet = square(Vec3::Zero(), false);

@@ -63,6 +63,20 @@ TEST(SeamMeasure, TellsSwappedEnds)
     EXPECT_FALSE(measure_seam(pattern, pattern.seams[0]).crossed);
 }
 
+/// Before it is folded, a pleat's sides run away from each other.
+TEST(SeamMeasure, CallsNoPleatCrossed)
+{
+    Pattern pattern;
+    pattern.panels = {rectangle("front", 0.4, 0.6)};
+    pattern.seams = {seam({0, 2, 0.5, 0.3}, {0, 2, 0.5, 0.7})};
+    EXPECT_FALSE(measure_seam(pattern, pattern.seams[0]).crossed);
+    pattern.seams = {seam({0, 2, 0.3, 0.5}, {0, 2, 0.7, 0.5})};
+    EXPECT_FALSE(measure_seam(pattern, pattern.seams[0]).crossed);
+    // Without a common point it is as it was.
+    pattern.seams = {seam({0, 2, 0.45, 0.3}, {0, 2, 0.5, 0.7})};
+    EXPECT_TRUE(measure_seam(pattern, pattern.seams[0]).crossed);
+}
+
 TEST(SewnSides, AreTwoForATubeAndOneForAMoebiusStrip)
 {
     Pattern pattern = tube();

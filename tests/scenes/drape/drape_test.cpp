@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "collision/check/find_crossings.h"
+#include "core/mesh/topology.h"
+#include "garment/energy/fold/dihedral_angle.h"
 #include "scenes/drape/seam_closing.h"
 #include "tests/scenes/drape/tube_pattern.h"
 #include "tests/support/temporary_folder.h"
@@ -230,6 +232,54 @@ TEST_F(DrapeTest, ShrinksATubeOntoTheBody)
     EXPECT_NEAR(hem_length(result), 0.648, 0.012);
     EXPECT_LT(result.max_strain, 0.05) << "measured against the shrunk shape";
     EXPECT_FALSE(result.garments[0].surface.rest.empty());
+}
+
+/// Angle of a surface's fold, mean over its edges [rad].
+double mean_angle(const GarmentSurface& surface, const scene::Fold& fold)
+{
+    const TriangleMesh mesh = surface.mesh.triangulated();
+    const Topology topology = build_topology(mesh.triangles, int(mesh.positions.size()), "tube");
+    double sum = 0.0;
+    for (size_t i = 0; i + 1 < fold.vertices.size(); ++i) {
+        const auto edge = std::find_if(topology.edges.begin(), topology.edges.end(), [&](const Edge& e) {
+            return std::minmax(e.vertex[0], e.vertex[1]) ==
+                   std::minmax(fold.vertices[i], fold.vertices[i + 1]);
+        });
+        const auto at = [&](int v) -> const Vec3& { return mesh.positions[size_t(v)]; };
+        sum += garment::dihedral_angle(
+            {at(edge->vertex[0]), at(edge->vertex[1]), at(edge->opposite[0]), at(edge->opposite[1])});
+    }
+    return sum / double(fold.vertices.size() - 1);
+}
+
+/// Two ridges away from the body, on a panel and along a seam.
+TEST_F(DrapeTest, FoldsPanelsBeforeTheyAreSewnAndSeamsOnceTheyAre)
+{
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"(
+        "seams": [{"a": ["front.1"], "b": ["back.3"], "fold_deg": -100}],
+        "folds": [{"between": ["front.0[0.5]", "front.2[0.5]"], "angle_deg": -80}])");
+    ASSERT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    std::vector<std::string> stages;
+    for (const DrapeStage& stage : result.garments[0].stages)
+        stages.push_back(stage.name);
+    EXPECT_EQ(stages, (std::vector<std::string>{"mesh", "fold", "sew", "press", "settle", "drape"}));
+
+    const std::vector<scene::Fold>& folds = result.garments[0].surface.folds;
+    ASSERT_GT(folds.size(), 4u);
+    EXPECT_EQ(result.scene.cloths[0].folds.size(), folds.size());
+    EXPECT_NEAR(mean_angle(result.garments[0].surface, folds[0]) * 180.0 / EIGEN_PI, -80.0, 10.0);
+    double seam = 0.0;
+    for (size_t f = 1; f < folds.size(); ++f)
+        seam += mean_angle(result.garments[0].surface, folds[f]) / double(folds.size() - 1);
+    EXPECT_NEAR(seam * 180.0 / EIGEN_PI, -100.0, 10.0);
+}
+
+TEST_F(DrapeTest, HasNoStageForFoldsWhereThereAreNone)
+{
+    last_stage_ = "sew";
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"));
+    EXPECT_EQ(moments_.front().stage, "sew");
+    EXPECT_TRUE(result.garments[0].surface.folds.empty());
 }
 
 TEST_F(DrapeTest, EndsAtItsTimeLimitWithTheLastState)

@@ -107,11 +107,11 @@ TEST_F(FoldEdges, AreRefusedWhereTheyDoNotExist)
     EXPECT_EQ(complaint(fold("[10, 15]")),
               at + ".vertices[1]: an edge at the border joins vertices 10 and 15; cloth folds between two "
                    "faces, name edges inside");
-    EXPECT_EQ(complaint(fold("[11, 12, 11]")), at + ": the edge from vertex 11 to 12 is in it twice; an edge "
+    EXPECT_EQ(complaint(fold("[11, 12, 11]")), at + ": the edge from vertex 12 to 11 is in it twice; an edge "
                                                     "is folded once");
     EXPECT_EQ(
         complaint(R"([{"vertices": [11, 12], "angle_deg": 90}, {"vertices": [13, 12, 11], "angle_deg": 9}])"),
-        "scene.json: cloths[0].folds[1]: the edge from vertex 11 to 12 is in folds[0] too; an edge is "
+        "scene.json: cloths[0].folds[1]: the edge from vertex 12 to 11 is in folds[0] too; an edge is "
         "folded once");
 }
 
