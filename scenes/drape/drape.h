@@ -31,7 +31,7 @@ inline constexpr double kMaxSlide = 0.05;
 struct DrapeProgress {
     std::string stage;     ///< with the garment, where there are several: "tee, sew"
     double time = 0.0;     ///< [s] simulated in the stage; 0: its scene is being loaded
-    double duration = 0.0; ///< [s] to be simulated in it; 0: it ends by what happens
+    double duration = 0.0; ///< [s] to be simulated in it at most; 0: it ends by what happens
     double seconds = 0.0;  ///< [s] of wall time since it began
 };
 

@@ -33,7 +33,9 @@ void take_own_fabrics(const Garment& garment, scene::Cloth& cloth)
 
 constexpr double kSewingEdge = 0.02; ///< [m]
 /// Time [s] for a garment to be pressed, and to fall into place on the coarse mesh.
-constexpr double kPressingTime = 0.5, kSettlingTime = 1.0;
+constexpr double kPressingTime = 0.5, kFallingTime = 1.0;
+/// Longest time [s] for it to come to rest there: a fine mesh moves less the better the start.
+constexpr double kSettlingTime = 8.0;
 /// Longest time [s] for panels to fold.
 constexpr double kFoldingTime = 4.0;
 /// Frames in which threads become no shorter than by this ratio, after which pulling on ends.
@@ -129,17 +131,9 @@ bool GarmentDraping::fold(const GarmentMesh& mesh, std::vector<Vec3>& x)
     if (garment_.pattern.folds.empty())
         return true;
     const Clock clock;
-    const Scene scene = stages_.fold(SeamClosing(mesh, x).panels());
-    World world(scene, watch_.options());
-    RestWatch rest(scene.frame_duration());
     int frames = 0;
-    for (; frames < kFoldingTime * scene.fps && !rest.is_at_rest(); ++frames) {
-        if (!is_finite(watch_.advance(world)))
-            return false;
-        rest.add(positions(world));
-    }
-    const View<const Vec3> now = positions(world);
-    x.assign(now.begin(), now.end());
+    if (!simulate(stages_.fold(SeamClosing(mesh, x).panels()), kFoldingTime, frames, x))
+        return false;
     end_stage("fold", clock, frames, int(x.size()));
     return true;
 }
@@ -190,29 +184,38 @@ bool GarmentDraping::pull(SeamClosing& seams, int& frames)
 bool GarmentDraping::press(const GarmentMesh& mesh, std::vector<Vec3>& x)
 {
     const Clock clock;
-    Scene scene = stages_.press(mesh, x);
-    return simulate(scene, "press", kPressingTime, clock, x);
+    int frames = 0;
+    if (!simulate(stages_.press(mesh, x), kPressingTime, frames, x))
+        return false;
+    end_stage("press", clock, frames, int(x.size()));
+    return true;
 }
 
 /// Lets the welded coarse garment fall into place. x [welded vertices]
 bool GarmentDraping::settle(const GarmentMesh& mesh, std::vector<Vec3>& x)
 {
     const Clock clock;
-    Scene scene = stages_.settle(mesh, x);
-    return simulate(scene, "settle", kSettlingTime, clock, x);
+    int frames = 0;
+    if (!simulate(stages_.fall(mesh, x), kFallingTime, frames, x) ||
+        !simulate(stages_.settle(mesh, x), kSettlingTime, frames, x))
+        return false;
+    end_stage("settle", clock, frames, int(x.size()));
+    return true;
 }
 
-bool GarmentDraping::simulate(Scene& scene, const std::string& stage, double duration, const Clock& clock,
-                              std::vector<Vec3>& x)
+/// Simulates until the garment rests, for `duration` seconds at most.
+bool GarmentDraping::simulate(const Scene& scene, double duration, int& frames, std::vector<Vec3>& x)
 {
-    scene.frames = int(duration * scene.fps);
     World world(scene, watch_.options());
-    for (int frame = 0; frame < scene.frames; ++frame)
+    RestWatch rest(scene.frame_duration());
+    for (int frame = 0; frame < int(duration * scene.fps) && !rest.is_at_rest(); ++frame) {
         if (!is_finite(watch_.advance(world, duration)))
             return false;
+        ++frames;
+        rest.add(positions(world));
+    }
     const View<const Vec3> now = positions(world);
     x.assign(now.begin(), now.end());
-    end_stage(stage, clock, scene.frames, int(x.size()));
     return true;
 }
 

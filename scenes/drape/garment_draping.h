@@ -46,8 +46,7 @@ private:
     bool pull(SeamClosing& seams, int& frames);
     bool press(const GarmentMesh& mesh, std::vector<Vec3>& x);
     bool settle(const GarmentMesh& mesh, std::vector<Vec3>& x);
-    bool simulate(Scene& scene, const std::string& stage, double duration, const Clock& clock,
-                  std::vector<Vec3>& x);
+    bool simulate(const Scene& scene, double duration, int& frames, std::vector<Vec3>& x);
     void drape(WornGarment garment);
     bool come_to_rest(const Scene& scene, WornGarment& garment, bool is_held, int& frames);
     void measure_slides(const WornGarment& worn, size_t number);

@@ -48,6 +48,8 @@ std::string why_not_on_gpu(const Scene& scene)
     for (const scene::Cloth& cloth : scene.cloths) {
         if (!cloth.groups.empty())
             return "cloth of several fabrics runs on the CPU only";
+        if (cloth.sewing)
+            return "threads that sew run on the CPU only";
         if (!cloth.elastics.empty())
             return "elastics run on the CPU only";
         if (!cloth.folds.empty())

@@ -35,6 +35,16 @@ TEST(Backend, NamesFeaturesThatNeedTheCpu)
     EXPECT_EQ(why_not_on_gpu(
                   scene_with(R"("solids": [{"name": "ball", "sphere": {"radius": 0.1}, "density": 500}], )")),
               "solids run on the CPU only");
+
+    Scene cloth = scene_with("");
+    cloth.cloths[0].sewing = scene::Sewing{};
+    EXPECT_EQ(why_not_on_gpu(cloth), "threads that sew run on the CPU only");
+    cloth.cloths[0].sewing.reset();
+    cloth.cloths[0].elastics.resize(1);
+    EXPECT_EQ(why_not_on_gpu(cloth), "elastics run on the CPU only");
+    cloth.cloths[0].elastics.clear();
+    cloth.cloths[0].folds.resize(1);
+    EXPECT_EQ(why_not_on_gpu(cloth), "folds of cloth run on the CPU only");
 }
 
 TEST(Backend, RefusesASceneThatNeedsTheCpu)
