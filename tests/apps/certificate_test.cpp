@@ -237,7 +237,7 @@ TEST(Certificate, SaysWhereClothIsDeepAndStretched)
     };
     EXPECT_LT(distance(found["max_penetration_point_m"], Vec3(0, 0.1, 0)), 0.05) << "within one triangle";
     EXPECT_LT(distance(found["max_strain_point_m"], corner), 0.15);
-    for (const char* part : {"mm deep in an avatar near (", "% near (-0."})
+    for (const char* part : {"mm deep in an avatar near (", "%, with a limit of 11.1 %, near (-0."})
         EXPECT_NE(run.errors.find(part), std::string::npos) << run.errors;
 }
 

@@ -170,7 +170,7 @@ TEST(Check, MeasuresGroupsByTheirOwnFabric)
             {"check", "sheet.obj", "--scene", "scene.json", "-o", "check.json", "--quiet"}, folder.path());
         EXPECT_EQ(run.exit_code, holds ? 0 : 1) << run.errors;
         if (!holds) {
-            EXPECT_NE(run.errors.find("strain 20 %, with a limit of 11 %, near (1."), std::string::npos)
+            EXPECT_NE(run.errors.find("strain 20 %, with a limit of 11.1 %, near (2."), std::string::npos)
                 << run.errors;
         }
     }

@@ -30,8 +30,8 @@ public:
     /// Begins a step at x [vertices], for the continuous angle.
     void begin_step(View<const Vec3> x);
 
-    /// Forgets earlier steps: angles are those from -pi to pi. An edge that is folded flat, to 1e-3 rad, is so
-    /// to the side to which it is folded at rest.
+    /// Forgets earlier steps: angles are those from -pi to pi. An edge that is folded flat, to 1e-3 rad, is
+    /// so to the side to which it is folded at rest.
     void restart(View<const Vec3> x);
 
     /// Angle of a fold at the start of the step [rad].
