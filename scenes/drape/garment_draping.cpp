@@ -33,9 +33,7 @@ void take_own_fabrics(const Garment& garment, scene::Cloth& cloth)
 
 constexpr double kSewingEdge = 0.02; ///< [m]
 /// Time [s] for a garment to be pressed, and to fall into place on the coarse mesh.
-constexpr double kPressingTime = 0.5, kFallingTime = 1.0;
-/// Longest time [s] for it to come to rest there: a fine mesh moves less the better the start.
-constexpr double kSettlingTime = 8.0;
+constexpr double kPressingTime = 0.5, kSettlingTime = 1.0;
 /// Longest time [s] for panels to fold.
 constexpr double kFoldingTime = 4.0;
 /// Frames in which threads become no shorter than by this ratio, after which pulling on ends.
@@ -196,8 +194,7 @@ bool GarmentDraping::settle(const GarmentMesh& mesh, std::vector<Vec3>& x)
 {
     const Clock clock;
     int frames = 0;
-    if (!simulate(stages_.fall(mesh, x), kFallingTime, frames, x) ||
-        !simulate(stages_.settle(mesh, x), kSettlingTime, frames, x))
+    if (!simulate(stages_.settle(mesh, x), kSettlingTime, frames, x))
         return false;
     end_stage("settle", clock, frames, int(x.size()));
     return true;

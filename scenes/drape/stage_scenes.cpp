@@ -98,19 +98,9 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
     return scene;
 }
 
-Scene StageScenes::fall(const GarmentMesh& mesh, View<const Vec3> x) const
-{
-    return settling(mesh, x, falling_fabric);
-}
-
 Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 {
-    return settling(mesh, x, hanging_fabric);
-}
-
-Scene StageScenes::settling(const GarmentMesh& mesh, View<const Vec3> x, FabricInStage* fabric) const
-{
-    Scene scene = still_scene_of("settle", mesh.surface(x), fabric);
+    Scene scene = still_scene_of("settle", mesh.surface(x), falling_fabric);
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
     hold_labels(garment_, mesh, scene, true);
     return scene;

@@ -36,10 +36,6 @@ public:
 
     /// The welded garment falls into place, with labelled edges held by springs.
     /// @param x  [welded vertices] [m]
-    Scene fall(const GarmentMesh& mesh, View<const Vec3> x) const;
-
-    /// It comes to rest there, damped as where it hangs in the end.
-    /// @param x  [welded vertices] [m]
     Scene settle(const GarmentMesh& mesh, View<const Vec3> x) const;
 
     /// The garment hangs on the body and those below it, in motion that is damped: rest is the same as
@@ -52,7 +48,6 @@ private:
     /// What becomes of a preset in a stage.
     using FabricInStage = scene::Fabric(const std::string& preset);
 
-    Scene settling(const GarmentMesh& mesh, View<const Vec3> x, FabricInStage* fabric) const;
     Scene scene_of(const std::string& stage, const GarmentSurface& surface, FabricInStage* fabric) const;
     Scene still_scene_of(const std::string& stage, const GarmentSurface& surface,
                          FabricInStage* fabric) const;
