@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/mesh/topology.h"
@@ -10,9 +11,10 @@
 namespace toile::scenes {
 
 /// Edges of a cloth's folds, in their order.
-/// @throws InvalidInput in one line that names scene, fold and vertex, for vertices that do not exist or that
+/// @param key_path  of the list, for messages
+/// @throws InvalidInput in one line that names fold and vertex, for vertices that do not exist or that
 ///         no edge joins, edges at the border, and edges in two folds
-std::vector<garment::FoldEdge> fold_edges(const Scene& scene, const scene::Cloth& settings,
-                                          const ClothState& cloth, const Topology& topology);
+std::vector<garment::FoldEdge> fold_edges(const std::vector<scene::Fold>& folds, const ClothState& cloth,
+                                          const Topology& topology, const std::string& key_path);
 
 } // namespace toile::scenes

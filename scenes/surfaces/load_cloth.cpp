@@ -129,12 +129,12 @@ ClothState::Attachment load_attachment(const scene::Attachment& attachment, cons
     return loaded;
 }
 
-/// Name of a cloth's list of elastics in errors: skirt.json: cloths[0].elastics.
-std::string elastics_location(const Scene& scene, const scene::Cloth& cloth)
+/// Name of a cloth in errors: skirt.json: cloths[0].
+std::string cloth_location(const Scene& scene, const scene::Cloth& cloth)
 {
     const auto is_it = [&](const scene::Cloth& other) { return other.name == cloth.name; };
     const auto index = std::find_if(scene.cloths.begin(), scene.cloths.end(), is_it) - scene.cloths.begin();
-    return scene.source.string() + ": cloths[" + std::to_string(index) + "].elastics";
+    return scene.source.string() + ": cloths[" + std::to_string(index) + "]";
 }
 
 bool is_selected_near(const Scene& scene, const std::string& avatar)
@@ -168,13 +168,13 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
         rest_on_texture(settings, loaded, warn);
     else
         loaded.rest = rest_shape_of(state.rest.positions, state.triangles, settings);
-    loaded.elastics =
-        elastic_springs(settings.elastics, state, *loaded.rest, elastics_location(scene, settings));
+    const std::string location = cloth_location(scene, settings);
+    loaded.elastics = elastic_springs(settings.elastics, state, *loaded.rest, location + ".elastics");
     for (ObjMesh* placed : {&state.rest, &state.file})
         for (Vec3& p : placed->positions)
             p += settings.translate;
     state.positions = state.rest.positions;
-    loaded.folds = fold_edges(scene, settings, state, loaded.rest->topology);
+    loaded.folds = fold_edges(settings.folds, state, loaded.rest->topology, location + ".folds");
     for (size_t i = 0; i < scene.attachments.size(); ++i)
         if (scene.attachments[i].cloth == settings.name) {
             const std::string location = attachment_location(scene, i);
