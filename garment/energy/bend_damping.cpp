@@ -56,12 +56,18 @@ void require_valid(const BendDamping::Settings& s, const std::string& source)
 
 } // namespace
 
-BendDamping::BendDamping(const RestShape& rest, const ByFabric<Settings>& settings, const std::string& source)
+BendDamping::BendDamping(const RestShape& rest, const ByFabric<Settings>& settings, const std::string& source,
+                         const std::vector<int>& hinges)
 {
     for (const Settings& fabric : settings.settings)
         require_valid(fabric, source);
-    for (const Edge& edge : rest.topology.edges) {
-        if (edge.is_border() || rest.is_sliver(edge.triangle[0]) || rest.is_sliver(edge.triangle[1]))
+    std::vector<bool> is_hinge(rest.topology.edges.size(), false);
+    for (const int edge : hinges)
+        is_hinge[size_t(edge)] = true;
+    for (size_t e = 0; e < rest.topology.edges.size(); ++e) {
+        const Edge& edge = rest.topology.edges[e];
+        if (is_hinge[e] || edge.is_border() || rest.is_sliver(edge.triangle[0]) ||
+            rest.is_sliver(edge.triangle[1]))
             continue;
         const auto [v0, v1] = edge.vertex;
         const auto [a, b] = edge.opposite;

@@ -32,9 +32,11 @@ public:
         bool is_active() const { return time > 0.0 || friction > 0.0; }
     };
 
+    /// @param hinges  edges without friction, as of Bending: indices into Topology::edges
     /// Edges between two fabrics have the mean of their settings.
     /// @throws InvalidInput naming `source` and a setting that is negative or not finite.
-    BendDamping(const RestShape& rest, const ByFabric<Settings>& settings, const std::string& source);
+    BendDamping(const RestShape& rest, const ByFabric<Settings>& settings, const std::string& source,
+                const std::vector<int>& hinges = {});
 
     /// Begins a step of dt seconds at x [vertices].
     void begin_step(View<const Vec3> x, double dt);

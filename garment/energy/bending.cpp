@@ -102,15 +102,11 @@ void add_block(const Bending::Term& term, SparseMatrix& K)
 std::vector<Bending::Term> Bending::terms(const RestShape& rest, const ByFabric<Settings>& settings,
                                           const std::string& source, const std::vector<int>& hinges)
 {
-    double stiffest = 0.0; // [N m]
-    for (const Settings& fabric : settings.settings) {
+    for (const Settings& fabric : settings.settings)
         require_valid(fabric, source);
-        stiffest = std::max({stiffest, fabric.warp, fabric.weft});
-    }
     double mean_area = 0.0;
     for (const double area : rest.areas)
         mean_area += area / double(rest.areas.size());
-    const double largest = kMaxRelativeStiffness * stiffest / mean_area;
 
     std::vector<Term> terms;
     std::vector<CurvatureStencil> stencils = curvature_stencils(rest, hinges);
@@ -120,6 +116,7 @@ std::vector<Bending::Term> Bending::terms(const RestShape& rest, const ByFabric<
         // Limit the largest diagonal entry of the block rows^T stiffness rows.
         const auto& [warp, weft] = settings.at(int(t));
         Vec3 stiffness = rest.areas[t] * Vec3(warp, 2.0 * std::sqrt(warp * weft), weft);
+        const double largest = kMaxRelativeStiffness * std::max(warp, weft) / mean_area;
         const double peak = (stiffness.transpose() * stencils[t].weights.cwiseAbs2()).maxCoeff();
         if (peak > largest)
             stiffness *= largest / peak;

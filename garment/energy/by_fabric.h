@@ -17,10 +17,11 @@ struct ByFabric {
     {
     }
 
-    const Settings& at(int triangle) const
+    int fabric_of(int triangle) const
     {
-        return settings[fabric_of_triangle.empty() ? 0 : size_t(fabric_of_triangle[size_t(triangle)])];
+        return fabric_of_triangle.empty() ? 0 : fabric_of_triangle[size_t(triangle)];
     }
+    const Settings& at(int triangle) const { return settings[size_t(fabric_of(triangle))]; }
 };
 
 } // namespace toile::garment

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,7 +85,7 @@ struct DrapeResult {
     DrapeOutcome outcome = DrapeOutcome::Draped;
     std::string message;                 ///< one line, unless it is draped
     std::vector<DrapedGarment> garments; ///< that were begun, in the order of the settings
-    double rest_speed = 0.0;             ///< [m/s] of the fastest vertex in the last half second
+    std::optional<double> rest_speed;    ///< [m/s] of the fastest vertex in the last half second of "drape"
     double max_strain = 0.0;             ///< [-]
     Scene scene;                         ///< that simulates the garments on from there
 };
@@ -94,9 +95,8 @@ struct DrapeResult {
 ///
 ///   mesh    panels at kSewingEdge and at the final edge length
 ///   fold    the coarse panels fold along the lines of their folds, without gravity; only with folds
-///   sew     panels whose shoulder seams would be pulled against the body are lifted (shoulder_lift());
-///   threads
-///           pull the seams shut, without gravity, on the coarse mesh (SeamClosing); longer sides are
+///   sew     panels whose shoulder seams would be pulled against the body are lifted (shoulder_lift()); then
+///           threads pull the seams shut, without gravity, on the coarse mesh (SeamClosing); longer sides are
 ///           gathered
 ///   press   the welded coarse mesh unfolds along its seams
 ///   settle  it falls into place

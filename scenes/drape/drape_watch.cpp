@@ -77,7 +77,7 @@ void DrapeWatch::end_early(DrapeResult& result) const
         result.message += "before it was sewn";
         return;
     }
-    result.outcome = stage_ == "sew" ? DrapeOutcome::Tangled : DrapeOutcome::NotAtRest;
+    result.outcome = stage_ == "fold" || stage_ == "sew" ? DrapeOutcome::Tangled : DrapeOutcome::NotAtRest;
     result.message += "in stage " + place() + ", after " + short_text(frames_ * frame_) + " s of its motion";
     result.garments.back().stages.push_back(
         {stage_, seconds_of_stage(), frames_, int(state_.back().mesh.positions.size()), stage_steps_});

@@ -49,6 +49,7 @@ GarmentDraping::GarmentDraping(const DrapeSettings& settings, const Garment& gar
 {
     result_.garments.emplace_back();
     result_.garments.back().name = garment.name();
+    result_.rest_speed.reset();
 }
 
 void GarmentDraping::run()
@@ -68,7 +69,9 @@ void GarmentDraping::run()
         put_on(coarse, std::move(fine));
     } catch (const InvalidInput& error) {
         // The start of a stage can't be repaired: the garment lies in the body, or is too small for it.
-        const bool is_sewn = result_.garments[number_].stages.size() > 1;
+        const std::vector<DrapeStage>& ended = result_.garments[number_].stages;
+        const bool is_sewn =
+            std::any_of(ended.begin(), ended.end(), [](auto& stage) { return stage.name == "sew"; });
         fail(is_sewn ? DrapeOutcome::Tangled : DrapeOutcome::Placement,
              (is_sewn ? "sewn, the garment does not fit around the body: "
                       : "the panels can't be sewn from where they are placed: ") +
@@ -228,7 +231,7 @@ void GarmentDraping::drape(WornGarment garment)
         if (!holds_all && !has_released)
             break;
         garment.held = garment.x;
-        const Scene scene = stages_.hang(garment.mesh, garment.x, holds_all ? "drape" : "release", holds_all);
+        const Scene scene = stages_.hang(garment.mesh, garment.x, holds_all);
         if (!come_to_rest(scene, garment, holds_all && has_released, frames))
             break;
         result_.scene = scene;
@@ -237,7 +240,8 @@ void GarmentDraping::drape(WornGarment garment)
         take_own_fabrics(garment_, result_.scene.cloths.back());
     }
     end_stage("drape", clock, frames, int(garment.x.size()));
-    measure_slides(garment, number_);
+    if (result_.outcome == DrapeOutcome::Draped)
+        measure_slides(garment, number_);
     worn_.push_back(std::move(garment));
 }
 
@@ -247,8 +251,9 @@ bool GarmentDraping::come_to_rest(const Scene& scene, WornGarment& garment, bool
     World world(scene, watch_.options());
     RestWatch rest(scene.frame_duration());
     StepReport report;
-    while (!rest.is_at_rest() && result_.outcome == DrapeOutcome::Draped &&
-           frames < settings_.max_motion * scene.fps) {
+    for (int frame = 0; !rest.is_at_rest() && result_.outcome == DrapeOutcome::Draped &&
+                        frame < settings_.max_motion * scene.fps;
+         ++frame) {
         report = watch_.advance(world);
         if (!is_finite(report))
             return false;
@@ -257,12 +262,12 @@ bool GarmentDraping::come_to_rest(const Scene& scene, WornGarment& garment, bool
             worn_[g].x = world.cloths()[g].positions;
         garment.x = world.cloths()[number_].positions;
         rest.add(all_positions(world));
+        result_.rest_speed = rest.speed();
         for (size_t g = 0; g < worn_.size(); ++g)
             measure_slides(worn_[g], g);
         if (!is_held)
             measure_slides(garment, number_);
     }
-    result_.rest_speed = rest.speed();
     result_.max_strain = report.max_strain;
     if (result_.outcome == DrapeOutcome::Draped && !rest.is_at_rest())
         fail(DrapeOutcome::NotAtRest, "its fastest vertex moves at " + std::to_string(rest.speed()) +
@@ -291,6 +296,8 @@ void GarmentDraping::measure_slides(const WornGarment& worn, size_t number)
 /// @param text  what is wrong with the garment of this number
 void GarmentDraping::fail(DrapeOutcome outcome, const std::string& text, size_t number)
 {
+    if (result_.outcome != DrapeOutcome::Draped)
+        return;
     result_.outcome = outcome;
     result_.message = settings_.garments.size() == 1 ? text : result_.garments[number].name + ": " + text;
 }

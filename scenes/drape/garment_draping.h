@@ -18,7 +18,7 @@ namespace toile::scenes {
 class GarmentDraping {
 public:
     /// All are kept by reference.
-    /// @param worn    gets the garment if it comes to rest
+    /// @param worn    gets the garment when it hangs
     /// @param result  gets the garment, and how its drape ended
     GarmentDraping(const DrapeSettings& settings, const Garment& garment, const DressedBody& body,
                    std::vector<WornGarment>& worn, DrapeWatch& watch, DrapeResult& result);

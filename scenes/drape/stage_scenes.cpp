@@ -106,10 +106,9 @@ Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
     return scene;
 }
 
-Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage,
-                        bool holds_all) const
+Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all) const
 {
-    Scene scene = scene_of(stage, mesh.surface(x), hanging_fabric);
+    Scene scene = scene_of("drape", mesh.surface(x), hanging_fabric);
     for (size_t g = 0; g < worn_.size(); ++g) {
         scene.cloths[g].elastics = elastics_of(worn_[g].garment.pattern, worn_[g].mesh);
         hold_labels(worn_[g].garment, worn_[g].mesh, scene, false);

@@ -42,7 +42,7 @@ public:
     /// without damping.
     /// @param x          [welded vertices] [m]
     /// @param holds_all  labelled edges that are released in the end are held too, by springs
-    Scene hang(const GarmentMesh& mesh, View<const Vec3> x, const std::string& stage, bool holds_all) const;
+    Scene hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all) const;
 
 private:
     /// What becomes of a preset in a stage.

@@ -228,7 +228,7 @@ void describe(V& v, Cloth& c)
             "xpbd and vbd, nor on a GPU.");
     v.field("folds", c.folds,
             "Lines along which the cloth is folded at rest, as pleats are. It bends there by their stiffness "
-            "alone. Not with subdivide, xpbd and vbd.");
+            "alone. Not with subdivide, xpbd and vbd, nor on a GPU.");
     v.field("layer", c.layer, between(-100, 100),
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");

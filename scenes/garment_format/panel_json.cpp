@@ -254,12 +254,12 @@ std::vector<std::string> ordered_names(const Json& pattern)
     return names;
 }
 
-/// Names stand in messages and in groups of OBJ files, which spaces would end.
+/// Names stand in messages and in groups of OBJ files, which spaces and # would end.
 void require_plain_name(const Document& document, const std::string& name)
 {
     const bool has_space =
         std::any_of(name.begin(), name.end(), [](unsigned char c) { return c <= ' ' || c == 0x7f; });
-    if (name.empty() || has_space || name.find('[') != std::string::npos)
+    if (name.empty() || has_space || name.find_first_of("[#\\") != std::string::npos)
         document.refuse("pattern.panels",
                         as_written(name) + " can't name a panel; use letters, digits, _ and -");
 }

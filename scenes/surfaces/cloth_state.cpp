@@ -47,6 +47,13 @@ int ClothState::file_vertex(int vertex) const
     return vertex < int(numbers.file_vertex.size()) ? numbers.file_vertex[size_t(vertex)] : vertex;
 }
 
+std::vector<garment::Fabric> ClothState::fabrics() const
+{
+    std::vector<garment::Fabric> fabrics{fabric};
+    fabrics.insert(fabrics.end(), group_fabrics.begin(), group_fabrics.end());
+    return fabrics;
+}
+
 std::vector<std::vector<int>> ClothState::triangles_by_fabric() const
 {
     std::vector<std::vector<int>> of_fabric(1 + group_fabrics.size());

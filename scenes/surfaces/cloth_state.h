@@ -23,7 +23,8 @@ struct ClothState {
     /// [triangles] 0: `fabric`; k: group_fabrics[k - 1]. Empty: all are of `fabric`.
     std::vector<int> fabric_of_triangle;
 
-    /// Triangles in each fabric, ascending. [1 + group_fabrics] the first of `fabric`
+    std::vector<garment::Fabric> fabrics() const; ///< `fabric`, then group_fabrics
+    /// Triangles in each of fabrics(), ascending.
     std::vector<std::vector<int>> triangles_by_fabric() const;
 
     FileNumbers numbers; ///< of the file's vertices; empty: those of `rest` come first, in its order

@@ -173,30 +173,24 @@ void ClothGroup::judge(double t_t1, const std::vector<Collider>& colliders, Step
 /// Finds the triangles beyond their limit, given the largest strain of any.
 void ClothGroup::find_strained(double t_t1, const std::vector<Collider>& colliders, StepReport& report) const
 {
-    for (int c = 0; c < int(cloths_.size()); ++c)
-        for (const FabricPart& of : cloths_[c].fabric_parts())
-            find_strained(c, *of.strain_limit, t_t1, colliders, report);
-}
-
-/// @param limit  of a part of the cloth
-void ClothGroup::find_strained(int c, const garment::StrainLimit& limit, double t_t1,
-                               const std::vector<Collider>& colliders, StepReport& report) const
-{
-    if (report.max_strain <= limit.settings().limit + garment::kStrainMargin)
-        return;
-    const View<const Vec3> x = part(body_->positions(), c);
-    const std::vector<unsigned char> attached = cloths_[c].state().attached(t_t1);
-    const garment::StrainLimit::Excess excess = limit.excess(x, garment::kStrainMargin, attached);
-    const auto place = [&](int triangle) {
-        const Triangle& t = limit.rest().triangles[triangle];
-        const auto held = std::find_if(t.begin(), t.end(), [&](int v) { return attached[v] != 0; });
-        return held == t.end() ? place_of(first_[c] + t[0], colliders)
-                               : place_of(first_[c] + *held, colliders) + ", which is attached";
-    };
-    if (excess.count > 0)
-        report.yielded.merge({excess.count, place(excess.triangle)});
-    if (excess.held > 0)
-        report.pulled.merge({excess.held, place(excess.first_held)});
+    for (int c = 0; c < int(cloths_.size()); ++c) {
+        const garment::StrainLimit& limit = cloths_[c].strain_limit();
+        if (report.max_strain <= limit.least_limit() + garment::kStrainMargin)
+            continue;
+        const View<const Vec3> x = part(body_->positions(), c);
+        const std::vector<unsigned char> attached = cloths_[c].state().attached(t_t1);
+        const garment::StrainLimit::Excess excess = limit.excess(x, garment::kStrainMargin, attached);
+        const auto place = [&](int triangle) {
+            const Triangle& t = cloths_[c].state().triangles[triangle];
+            const auto held = std::find_if(t.begin(), t.end(), [&](int v) { return attached[v] != 0; });
+            return held == t.end() ? place_of(first_[c] + t[0], colliders)
+                                   : place_of(first_[c] + *held, colliders) + ", which is attached";
+        };
+        if (excess.count > 0)
+            report.yielded.merge({excess.count, place(excess.triangle)});
+        if (excess.held > 0)
+            report.pulled.merge({excess.held, place(excess.first_held)});
+    }
 }
 
 /// Finds exactly held vertices that are off their targets.

@@ -91,8 +91,6 @@ private:
     std::string names() const;
     void judge(double t_t1, const std::vector<Collider>& colliders, StepReport& report);
     void find_strained(double t_t1, const std::vector<Collider>& colliders, StepReport& report) const;
-    void find_strained(int c, const garment::StrainLimit& limit, double t_t1,
-                       const std::vector<Collider>& colliders, StepReport& report) const;
     void find_displaced(const std::vector<Collider>& colliders, StepReport& report) const;
     std::string place_of(int vertex, const std::vector<Collider>& colliders) const;
     void watch_rest(bool is_stuck, double dt);

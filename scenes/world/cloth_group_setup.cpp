@@ -50,8 +50,7 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
         rigid_contact_ = std::make_unique<RigidActiveSet>(*contact_, solids_->bodies(), first_.back());
     std::vector<garment::JointStrainLimit::Part> limits;
     for (size_t i = 0; i < cloths_.size(); ++i)
-        for (const FabricPart& part : cloths_[i].fabric_parts())
-            limits.push_back({part.strain_limit.get(), first_[i], cloths_[i].vertex_count()});
+        limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
     limits_ = std::make_unique<garment::JointStrainLimit>(std::move(limits));
     if (space != nullptr)
         limits_->on_device(*space); // otherwise the first step would upload it

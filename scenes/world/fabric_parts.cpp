@@ -5,24 +5,18 @@
 namespace toile::scenes {
 
 std::vector<FabricPart> fabric_parts(const ClothState& cloth,
-                                     const std::shared_ptr<const garment::RestShape>& rest,
-                                     const std::string& source)
+                                     const std::shared_ptr<const garment::RestShape>& rest)
 {
+    if (cloth.fabric_of_triangle.empty())
+        return {{cloth.fabric, rest, {}}};
     std::vector<FabricPart> parts;
-    const auto add = [&](const garment::Fabric& fabric, std::shared_ptr<const garment::RestShape> of) {
-        garment::StrainLimit::Settings limit;
-        limit.limit = fabric.strain_limit;
-        parts.push_back({fabric, of, {}, {}, std::make_unique<garment::StrainLimit>(of, limit, source)});
-    };
-    if (cloth.fabric_of_triangle.empty()) {
-        add(cloth.fabric, rest);
-        return parts;
-    }
     const std::vector<std::vector<int>> triangles = cloth.triangles_by_fabric();
     for (size_t f = 0; f < triangles.size(); ++f)
         if (!triangles[f].empty())
-            add(f == 0 ? cloth.fabric : cloth.group_fabrics[f - 1],
-                std::make_shared<const garment::RestShape>(garment::part_of(*rest, triangles[f])));
+            parts.push_back(
+                {cloth.fabrics()[f],
+                 std::make_shared<const garment::RestShape>(garment::part_of(*rest, triangles[f])),
+                 {}});
     return parts;
 }
 

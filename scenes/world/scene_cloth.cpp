@@ -100,11 +100,12 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     rest_ = std::move(loaded.rest);
     elastics_ = std::move(loaded.elastics);
     folds_ = std::move(loaded.folds);
-    parts_ = scenes::fabric_parts(state_, rest_, source_);
+    parts_ = fabric_parts(state_, rest_);
     masses_ = masses_of(parts_);
     add_attachments(scene, colliders);
 
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
+    strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, strain_limits({}), source_);
 }
 
 void SceneCloth::add_attachments(const Scene& scene, const std::vector<Collider>& colliders)
@@ -147,15 +148,12 @@ void SceneCloth::add_bending(bool has_internal_friction, std::vector<std::shared
     std::vector<garment::Bending::Settings> rigidities;
     std::vector<garment::BendDamping::Settings> dampings;
     bool is_rigid = false, is_damped = false;
-    const auto add = [&](const garment::Fabric& fabric) {
+    for (const garment::Fabric& fabric : state_.fabrics()) {
         rigidities.push_back({fabric.bend_warp, fabric.bend_weft});
         dampings.push_back({rigidities.back(), fabric.bend_damping, fabric.bend_friction});
         is_rigid = is_rigid || fabric.bend_warp > 0.0 || fabric.bend_weft > 0.0;
         is_damped = is_damped || dampings.back().is_active();
-    };
-    add(state_.fabric);
-    for (const garment::Fabric& fabric : state_.group_fabrics)
-        add(fabric);
+    }
     if (!is_rigid)
         return;
     const auto bending = std::make_shared<garment::Bending>(
@@ -171,31 +169,43 @@ void SceneCloth::add_bending(bool has_internal_friction, std::vector<std::shared
     if (!has_internal_friction || !is_damped)
         return;
     bend_damping_ = std::make_shared<garment::BendDamping>(
-        *rest_, garment::ByFabric(std::move(dampings), state_.fabric_of_triangle), source_);
+        *rest_, garment::ByFabric(std::move(dampings), state_.fabric_of_triangle), source_, fold_hinges());
     energies.push_back(bend_damping_);
 }
 
-/// Tensions at the strain limits.
-void SceneCloth::add_tensions(OuterMethod outer, std::vector<std::shared_ptr<Energy>>& energies)
+garment::ByFabric<garment::StrainLimit::Settings>
+SceneCloth::strain_limits(const garment::StrainLimit::Settings& settings) const
 {
-    for (FabricPart& part : parts_) {
-        const garment::Fabric& fabric = part.fabric;
-        const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
-        garment::StretchTension::Settings tension{fabric.strain_limit, stiffness};
-        if (outer == OuterMethod::Newton) {
-            part.strain_limit = std::make_unique<garment::StrainLimit>(
-                part.rest, garment::StrainLimit::Settings{fabric.strain_limit, kYielding}, source_);
-            // That of cloth of even width, as long as the diagonal, which hangs by a whole edge across the
-            // wind.
-            const double pressure =
-                fabric.areal_density * gravity_.norm() + air_->pressure(wind_.velocity.norm());
-            const double load = pressure * size_at_rest(state_, *rest_);
-            tension = garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, load);
-        }
-        part.tension = std::make_shared<garment::StretchTension>(part.rest, tension);
-        part.strain_limit->set_tension(part.tension);
-        energies.push_back(part.tension);
+    std::vector<garment::StrainLimit::Settings> limits;
+    for (const garment::Fabric& fabric : state_.fabrics()) {
+        limits.push_back(settings);
+        limits.back().limit = fabric.strain_limit;
     }
+    return {std::move(limits), state_.fabric_of_triangle};
+}
+
+/// Tension at the strain limit.
+void SceneCloth::add_tension(OuterMethod outer, std::vector<std::shared_ptr<Energy>>& energies)
+{
+    const bool is_elastic = outer == OuterMethod::Newton;
+    if (is_elastic)
+        strain_limit_ =
+            std::make_unique<garment::StrainLimit>(rest_, strain_limits({.tolerance = kYielding}), source_);
+    std::vector<garment::StretchTension::Settings> tensions;
+    for (const garment::Fabric& fabric : state_.fabrics()) {
+        const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+        // That of cloth of even width, as long as the diagonal, which hangs by a whole edge across the wind.
+        const double pressure =
+            fabric.areal_density * gravity_.norm() + air_->pressure(wind_.velocity.norm());
+        const double load = pressure * size_at_rest(state_, *rest_);
+        tensions.push_back(
+            is_elastic ? garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, load)
+                       : garment::StretchTension::Settings{fabric.strain_limit, stiffness});
+    }
+    tension_ = std::make_shared<garment::StretchTension>(
+        rest_, garment::ByFabric(std::move(tensions), state_.fabric_of_triangle));
+    strain_limit_->set_tension(tension_);
+    energies.push_back(tension_);
 }
 
 std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer)
@@ -209,7 +219,7 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     add_sewing(energies);
     if (!elastics_.empty())
         energies.push_back(std::make_shared<garment::Elastics>(elastics_));
-    add_tensions(outer, energies);
+    add_tension(outer, energies);
     return energies;
 }
 
@@ -278,18 +288,16 @@ void SceneCloth::begin_step(View<const Vec3> x, double dt)
         bend_damping_->begin_step(x, dt);
     if (fold_lines_)
         fold_lines_->begin_step(x);
-    for (const FabricPart& part : parts_)
-        if (part.tension)
-            part.tension->begin_step(x);
+    if (tension_)
+        tension_->begin_step(x);
 }
 
 void SceneCloth::take(View<const Vec3> x) { state_.positions.assign(x.begin(), x.end()); }
 
 void SceneCloth::forget()
 {
-    for (const FabricPart& part : parts_)
-        if (part.tension)
-            part.tension->forget();
+    if (tension_)
+        tension_->forget();
     if (fold_lines_)
         fold_lines_->restart(state_.positions);
 }

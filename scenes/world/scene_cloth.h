@@ -12,6 +12,7 @@
 #include "garment/energy/cloth_model.h"
 #include "garment/energy/fold/fold_lines.h"
 #include "garment/energy/springs.h"
+#include "garment/energy/strain_limit/strain_limit.h"
 #include "garment/seam/elastics.h"
 #include "scenes/colliders/attachment_constraint.h"
 #include "scenes/surfaces/cloth_state.h"
@@ -85,13 +86,17 @@ public:
     /// True if something other than contact moves it at time t [s].
     bool is_disturbed(double t) const;
 
-    const std::vector<FabricPart>& fabric_parts() const { return parts_; }
+    garment::StrainLimit& strain_limit() { return *strain_limit_; }
+    const garment::StrainLimit& strain_limit() const { return *strain_limit_; }
 
 private:
     void add_attachments(const Scene& scene, const std::vector<Collider>& colliders);
     void add_membranes(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
     void add_bending(bool has_internal_friction, std::vector<std::shared_ptr<Energy>>& energies);
-    void add_tensions(OuterMethod outer, std::vector<std::shared_ptr<Energy>>& energies);
+    /// @param settings  their limit is replaced
+    garment::ByFabric<garment::StrainLimit::Settings>
+    strain_limits(const garment::StrainLimit::Settings& settings) const;
+    void add_tension(OuterMethod outer, std::vector<std::shared_ptr<Energy>>& energies);
     std::vector<int> fold_hinges() const;
     void add_folds(std::vector<std::shared_ptr<Energy>>& energies);
     void add_springs(std::vector<std::shared_ptr<Energy>>& energies);
@@ -113,6 +118,8 @@ private:
     std::shared_ptr<garment::FoldLines> fold_lines_; ///< null without folds
     std::shared_ptr<garment::Springs> springs_;      ///< null without attachments by springs
     std::unique_ptr<garment::Aerodynamics> air_;
+    std::shared_ptr<garment::StretchTension> tension_; ///< null for a baseline method
+    std::unique_ptr<garment::StrainLimit> strain_limit_;
     std::vector<Vec3> gusts_at_; ///< [vertices] [m/s]; empty in steady wind
 };
 

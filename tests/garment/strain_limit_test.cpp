@@ -100,7 +100,7 @@ TEST(StrainLimit, LimitsAStretchedSheet)
 TEST(JointStrainLimit, LimitsClothStretchedByContact)
 {
     HeavySheet heavy;
-    StrainLimit other(heavy.rest, {kLimit, kTolerance, 1000}, "other");
+    StrainLimit other(heavy.rest, StrainLimit::Settings{kLimit, kTolerance, 1000}, "other");
     const int n = heavy.rest->vertex_count();
     JointStrainLimit joint({{&heavy.patient, 0, n}, {&other, n, n}});
     std::vector<Vec3> x = heavy.sheet.flat();
@@ -247,7 +247,7 @@ TEST(StrainLimit, RefusesALimitThatIsNotPositive)
     const auto rest = make_sheet(Vec2(0.1, 0.1), 1, 1).rest();
     for (const double limit : {0.0, -0.1, std::nan(""), std::numeric_limits<double>::infinity()})
         try {
-            StrainLimit strain_limit(rest, {limit}, "silk");
+            StrainLimit strain_limit(rest, StrainLimit::Settings{limit}, "silk");
             ADD_FAILURE() << limit << " was accepted";
         } catch (const InvalidInput& error) {
             EXPECT_EQ(std::string(error.what()).find("silk: strain limit "), 0u) << error.what();

@@ -20,7 +20,7 @@ constexpr double kStiffness = 250.0; // [N/m]
 
 StretchTension tension_of(const Sheet& sheet)
 {
-    return StretchTension(sheet.rest(), {kLimit, kStiffness, 1.0});
+    return StretchTension(sheet.rest(), StretchTension::Settings{kLimit, kStiffness, 1.0});
 }
 
 /// Positions stretched along u by the factor `stretch`, with waves across.

@@ -79,7 +79,7 @@ struct Certificate {
     struct Cloth {
         std::string name;
         std::filesystem::path cache;
-        double strain_limit; ///< [-] of the fabric, the margin included
+        double strain_limit; ///< [-] largest of its fabrics, the margin included
         int vertices, faces; ///< faces as in the mesh's file
     };
 

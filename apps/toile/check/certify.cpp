@@ -58,8 +58,7 @@ std::vector<StrainPart> strain_parts_of(const scenes::ClothState& cloth, double 
     std::vector<StrainPart> parts;
     for (size_t f = 0; f < numbers.size(); ++f)
         if (!numbers[f].empty())
-            parts.push_back(
-                part(numbers[f], (f == 0 ? cloth.fabric : cloth.group_fabrics[f - 1]).strain_limit));
+            parts.push_back(part(numbers[f], cloth.fabrics()[f].strain_limit));
     return parts;
 }
 
@@ -298,6 +297,15 @@ Certificate blank_certificate(const scenes::Scene& scene, const CertificateLimit
     return certificate;
 }
 
+/// [-] of all fabrics of a cloth
+double largest_limit(const scenes::ClothState& cloth)
+{
+    double largest = 0.0;
+    for (const garment::Fabric& fabric : cloth.fabrics())
+        largest = std::max(largest, fabric.strain_limit);
+    return largest;
+}
+
 /// States what is examined and what is left out.
 void describe(Certificate& certificate, const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
               const Examiner& examiner)
@@ -305,7 +313,7 @@ void describe(Certificate& certificate, const scenes::Scene& scene, const std::v
     certificate.frames_left_out = examiner.longest() - examiner.frame_count();
     for (size_t i = 0; i < cloths.size(); ++i)
         certificate.cloths.push_back({cloths[i].cloth->name, cloths[i].file,
-                                      cloths[i].cloth->fabric.strain_limit + certificate.limits.strain_margin,
+                                      largest_limit(*cloths[i].cloth) + certificate.limits.strain_margin,
                                       int(cloths[i].cloth->file_mesh().positions.size()),
                                       int(cloths[i].cloth->file_mesh().polygons.size())});
     for (const std::string& name : surface_names(scene))

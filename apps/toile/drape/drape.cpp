@@ -168,7 +168,11 @@ int drape(DrapeOptions options)
     files.write_report(report, patterns, log);
     files.write_picture(settings, log);
     if (report.result.outcome == scenes::DrapeOutcome::Draped)
-        files.write_fit(report.result, patterns, settings, log);
+        try {
+            files.write_fit(report.result, patterns, settings, log);
+        } catch (const InvalidInput& error) {
+            log.note(std::string("the fit was not measured: ") + error.what());
+        }
     log.result(summary_of(report));
     if (report.verdict.is_draped()) {
         log.result("simulate it on by: toile simulate " + files.scene().string() + " -o " +

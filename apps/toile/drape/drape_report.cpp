@@ -182,7 +182,7 @@ std::string to_json(const DrapeReport& report, const std::vector<garment::Patter
 {
     const std::vector<scenes::DrapedGarment>& garments = report.result.garments;
     Json json = {{"class", report.verdict.word}, {"message", report.verdict.message}};
-    json["rest_speed_m_s"] = report.result.rest_speed;
+    json["rest_speed_m_s"] = report.result.rest_speed ? Json(*report.result.rest_speed) : Json(nullptr);
     for (size_t g = 0; g < garments.size(); ++g) {
         const Json garment = garment_json(garments[g], patterns[g],
                                           g < report.measures.size() ? &report.measures[g] : nullptr);

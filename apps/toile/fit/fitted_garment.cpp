@@ -41,9 +41,7 @@ FittedGarment fitted_garment(const scenes::LoadedCloth& cloth, std::vector<Vec3>
     const auto in_panel = [](const Vec2& uv) { return Vec2(-uv.y(), uv.x()); };
     for (const Mat2& edges : cloth.rest->edges)
         garment.rest.push_back({Vec2(0.0, 0.0), in_panel(edges.col(0)), in_panel(edges.col(1))});
-    garment.fabrics = {cloth.state.fabric};
-    garment.fabrics.insert(garment.fabrics.end(), cloth.state.group_fabrics.begin(),
-                           cloth.state.group_fabrics.end());
+    garment.fabrics = cloth.state.fabrics();
     garment.fabric_of_triangle = cloth.state.fabric_of_triangle;
     garment.fabric_of_triangle.resize(garment.mesh.triangles.size(), 0);
     return garment;

@@ -33,7 +33,7 @@ void JointStrainLimit::project(View<Vec3> x, View<const double> inverse_masses,
     for (const Part& part : parts_)
         part.limit->keep(x.subview(part.first, part.count));
     const auto has_sweep = [](const Part& part, int sweep) {
-        return part.limit->violates() && sweep < part.limit->settings().max_sweeps;
+        return part.limit->violates() && sweep < part.limit->max_sweeps();
     };
     const auto any_has = [&](int sweep) {
         return std::any_of(parts_.begin(), parts_.end(),

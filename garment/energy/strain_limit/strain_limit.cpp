@@ -28,17 +28,22 @@ constexpr size_t kNeighbourhood = 18;
 
 } // namespace
 
-StrainLimit::StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings,
+StrainLimit::StrainLimit(std::shared_ptr<const RestShape> rest, const ByFabric<Settings>& settings,
                          const std::string& source)
-    : rest_(std::move(rest)), settings_(settings),
-      limits_(2, {1.0 + settings.limit, 1.0 + settings.limit + settings.tolerance}),
+    : rest_(std::move(rest)), least_limit_(std::numeric_limits<double>::infinity()),
       rank_(rest_->triangles.size()), violates_(rest_->triangles.size())
 {
-    if (!(settings.limit > 0.0) || !std::isfinite(settings.limit))
-        throw InvalidInput(source + ": strain limit " + std::to_string(settings.limit) + " must be positive");
-    limits_[1].tolerated = std::numeric_limits<double>::infinity();
+    for (const Settings& fabric : settings.settings) {
+        if (!(fabric.limit > 0.0) || !std::isfinite(fabric.limit))
+            throw InvalidInput(source + ": strain limit " + std::to_string(fabric.limit) +
+                               " must be positive");
+        least_limit_ = std::min(least_limit_, fabric.limit);
+        max_sweeps_ = std::max(max_sweeps_, fabric.max_sweeps);
+        limits_.push_back({1.0 + fabric.limit, 1.0 + fabric.limit + fabric.tolerance});
+        limits_.push_back({1.0 + fabric.limit, std::numeric_limits<double>::infinity()});
+    }
     for (int t = 0; t < int(rest_->triangles.size()); ++t) {
-        kind_.push_back(rest_->is_sliver(t) ? 1 : 0);
+        kind_.push_back(2 * settings.fabric_of(t) + (rest_->is_sliver(t) ? 1 : 0));
         has_slivers_ = has_slivers_ || rest_->is_sliver(t);
     }
     for (const auto& colour : colour_triangles(rest_->triangles, rest_->vertex_count())) {
@@ -71,13 +76,12 @@ double StrainLimit::max_strain(View<const Vec3> x) const
 StrainLimit::Excess StrainLimit::excess(View<const Vec3> x, double margin,
                                         View<const unsigned char> held) const
 {
-    const double tolerated = 1.0 + settings_.limit + margin;
     Excess excess;
     for (int t = 0; t < int(kind_.size()); ++t) {
-        if (kind_[t] != 0)
+        if (kind_[t] % 2 != 0)
             continue;
         const double stretch = triangles().stretch(t, x);
-        if (!(stretch > tolerated))
+        if (!(stretch > limits_[kind_[t]].allowed + margin))
             continue;
         const Triangle& corner = rest_->triangles[t];
         if (!held.empty() && held[corner[0]] != 0 && held[corner[1]] != 0 && held[corner[2]] != 0) {

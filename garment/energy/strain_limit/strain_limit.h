@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/pd/step/body.h"
+#include "garment/energy/by_fabric.h"
 #include "garment/energy/rest_shape.h"
 #include "garment/energy/strain_limit/strain_limit_kernels.h"
 #include "garment/energy/strain_limit/stretch_tension.h"
@@ -36,7 +37,8 @@ public:
     static constexpr int kSweepsWithContact = 30;
 
     /// @throws InvalidInput naming `source` if the limit is not positive.
-    StrainLimit(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source);
+    StrainLimit(std::shared_ptr<const RestShape> rest, const ByFabric<Settings>& settings,
+                const std::string& source);
 
     /// Sets the tension that observe() updates at every minimiser before clamping. On a GPU DeviceBody does
     /// so.
@@ -72,7 +74,8 @@ public:
     Excess excess(View<const Vec3> x, double margin, View<const unsigned char> held) const;
 
     const RestShape& rest() const { return *rest_; }
-    const Settings& settings() const { return settings_; }
+    double least_limit() const { return least_limit_; } ///< [-] of all fabrics
+    int max_sweeps() const { return max_sweeps_; }      ///< of all fabrics
     LimitedTriangles triangles() const;
     int colour_count() const { return int(first_of_colour_.size()) - 1; }
     View<const int> triangles_of(int colour) const; ///< ascending
@@ -82,10 +85,12 @@ private:
     void check_near_violating(View<const Vec3> x);
 
     std::shared_ptr<const RestShape> rest_;
-    Settings settings_;
+    double least_limit_ = 0.0;
+    int max_sweeps_ = 0;
     std::shared_ptr<StretchTension> tension_;
-    std::vector<StretchLimits> limits_; ///< of triangles, of slivers; slivers are left to the membrane
-    std::vector<int> kind_;             ///< [triangles] into limits_
+    /// Of triangles and slivers of the first fabric, then of the next; slivers are left to the membrane.
+    std::vector<StretchLimits> limits_;
+    std::vector<int> kind_; ///< [triangles] into limits_
     bool has_slivers_ = false;
     std::vector<int> order_;              ///< [triangles] colour by colour
     std::vector<int> first_of_colour_{0}; ///< [colours + 1] into order_

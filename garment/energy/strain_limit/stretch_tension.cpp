@@ -8,15 +8,18 @@
 
 namespace toile::garment {
 
-StretchTension::StretchTension(std::shared_ptr<const RestShape> rest, const Settings& settings)
-    : rest_(std::move(rest)), limits_(2, {1.0 + settings.limit, 1.0 + settings.watched * settings.limit,
-                                          settings.stiffness, settings.max_tension}),
-      tension_(rest_->triangles.size(), Mat2::Zero()), near_(rest_->triangles.size()),
+StretchTension::StretchTension(std::shared_ptr<const RestShape> rest, const ByFabric<Settings>& settings)
+    : rest_(std::move(rest)), tension_(rest_->triangles.size(), Mat2::Zero()), near_(rest_->triangles.size()),
       rotated_tension_(rest_->triangles.size(), Mat32::Zero())
 {
-    limits_[1].watched = std::numeric_limits<double>::infinity();
+    for (const Settings& fabric : settings.settings) {
+        limits_.push_back(
+            {1.0 + fabric.limit, 1.0 + fabric.watched * fabric.limit, fabric.stiffness, fabric.max_tension});
+        limits_.push_back(limits_.back());
+        limits_.back().watched = std::numeric_limits<double>::infinity();
+    }
     for (int t = 0; t < int(rest_->triangles.size()); ++t)
-        kind_.push_back(rest_->is_sliver(t) ? 1 : 0);
+        kind_.push_back(2 * settings.fabric_of(t) + (rest_->is_sliver(t) ? 1 : 0));
 }
 
 TensionTriangles StretchTension::triangles() const

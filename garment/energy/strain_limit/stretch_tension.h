@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/pd/energy/energy.h"
+#include "garment/energy/by_fabric.h"
 #include "garment/energy/rest_shape.h"
 #include "garment/energy/strain_limit/stretch_tension_kernels.h"
 #include "garment/energy/stretch_curvature.h"
@@ -53,7 +54,7 @@ public:
         static constexpr double kExcess = 0.005;
     };
 
-    StretchTension(std::shared_ptr<const RestShape> rest, const Settings& settings);
+    StretchTension(std::shared_ptr<const RestShape> rest, const ByFabric<Settings>& settings);
 
     std::string_view name() const override { return "garment/stretch_tension"; }
     void add_hessian(Triplets&) const override {}
@@ -80,8 +81,9 @@ public:
 
 private:
     std::shared_ptr<const RestShape> rest_;
-    std::vector<TensionLimits> limits_; ///< of triangles, of slivers; slivers are left to the membrane
-    std::vector<int> kind_;             ///< [triangles] into limits_
+    /// Of triangles and slivers of the first fabric, then of the next; slivers are left to the membrane.
+    std::vector<TensionLimits> limits_;
+    std::vector<int> kind_; ///< [triangles] into limits_
     bool is_on_device_ = false;
     int forgotten_ = 0;
     std::vector<Mat2> tension_;                      ///< [triangles] T_t / k in material axes

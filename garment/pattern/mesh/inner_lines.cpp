@@ -50,6 +50,15 @@ double snapped(double fraction)
     return fraction > 1.0 - kSameCorner ? 1.0 : fraction;
 }
 
+/// Sorts fractions of an edge, and keeps one of those that are the same point.
+void sort_apart(std::vector<double>& fractions)
+{
+    std::sort(fractions.begin(), fractions.end());
+    fractions.erase(std::unique(fractions.begin(), fractions.end(),
+                                [](double a, double b) { return b - a < kSameCorner; }),
+                    fractions.end());
+}
+
 double length_of(const std::vector<EdgeCurve>& curves)
 {
     double length = 0.0;
@@ -64,11 +73,16 @@ void require_plausible(const Pattern& pattern, const InnerLine& line, double out
     if (line.points.size() < 2)
         throw InvalidInput(place_of(pattern, line) + " has " + std::to_string(line.points.size()) +
                            " points; it needs two or more");
-    for (size_t i = 0; i + 1 < line.points.size(); ++i)
-        if (const double length = (line.points[i + 1] - line.points[i]).norm(); !(length < outline))
+    for (size_t i = 0; i + 1 < line.points.size(); ++i) {
+        const double length = (line.points[i + 1] - line.points[i]).norm();
+        if (length <= kSameCorner * outline)
+            throw InvalidInput(place_of(pattern, line) + ": points " + std::to_string(i) + " and " +
+                               std::to_string(i + 1) + " are the same; remove one of them");
+        if (!(length < outline))
             throw InvalidInput(place_of(pattern, line) + ": " + std::to_string(length) + " m from point " +
                                std::to_string(i) + " to the next; the whole outline has " +
                                std::to_string(outline) + " m");
+    }
 }
 
 std::optional<LineEnd> end_on_outline(const std::vector<EdgeCurve>& curves, const Vec2& x)
@@ -212,7 +226,7 @@ marks_of(const PatternCurves& curves, const std::vector<InnerLine>& lines, const
                 marks[lines[l].panel][end->edge].push_back(end->fraction);
     for (auto& panel : marks)
         for (auto& edge : panel)
-            std::sort(edge.begin(), edge.end());
+            sort_apart(edge);
     return marks;
 }
 

@@ -53,7 +53,7 @@ struct HeavySheet {
     }
     StrainLimit limit(int max_sweeps, double limit = kLimit) const
     {
-        return StrainLimit(rest, {limit, kTolerance, max_sweeps}, "sheet");
+        return StrainLimit(rest, StrainLimit::Settings{limit, kTolerance, max_sweeps}, "sheet");
     }
 };
 
@@ -194,7 +194,7 @@ TEST_F(DeviceStrainLimitTest, RevertsProjectionsThatIncreaseTheStrain)
     const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}, {0, 4, 1}};
     const auto rest = std::make_shared<const RestShape>(rest_shape_of_pattern(uv, triangles, "test"));
     ASSERT_TRUE(rest->is_sliver(2));
-    StrainLimit cpu(rest, {kLimit}, "test");
+    StrainLimit cpu(rest, StrainLimit::Settings{kLimit}, "test");
     DeviceStrainLimit gpu(space());
     gpu.add(cpu, 0);
     std::vector<Vec3> x;

@@ -88,7 +88,7 @@ TEST_F(DrapeTest, SewsATubeAroundABodyAndHoldsIt)
     for (const DrapeSeam& seam : result.garments[0].seams)
         EXPECT_LT(seam.gap, SeamClosing::kMaxGap) << seam.name;
     EXPECT_LT(result.max_strain, 0.05);
-    EXPECT_LE(result.rest_speed, 0.02);
+    EXPECT_LE(result.rest_speed.value(), 0.02);
 
     // It surrounds the body, and crosses nothing.
     const TriangleMesh mesh = result.garments[0].surface.mesh.triangulated();

@@ -100,7 +100,7 @@ TEST_F(GroupFabrics, HaveTheirOwnMassAndLimit)
     ASSERT_EQ(loaded.state.group_fabrics.size(), 1u);
     EXPECT_EQ(loaded.state.triangles_by_fabric()[1].size(), size_t(2 * kRows * kColumns / 2));
 
-    const std::vector<FabricPart> parts = fabric_parts(loaded.state, loaded.rest, "test");
+    const std::vector<FabricPart> parts = fabric_parts(loaded.state, loaded.rest);
     ASSERT_EQ(parts.size(), 2u);
     const std::vector<double> masses = masses_of(parts);
     EXPECT_NEAR(std::accumulate(masses.begin(), masses.end(), 0.0), 0.05 * 0.1 + 0.05 * 0.3, 1e-12);

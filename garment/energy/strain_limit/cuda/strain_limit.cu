@@ -32,7 +32,7 @@ DeviceStrainLimit::DeviceStrainLimit(const CudaSpace& space)
 void DeviceStrainLimit::add(const StrainLimit& limit, int first_vertex)
 {
     TOILE_ASSERT(first_vertex >= int(host_.cloth.size()));
-    max_sweeps_ = std::max(max_sweeps_, limit.settings().max_sweeps);
+    max_sweeps_ = std::max(max_sweeps_, limit.max_sweeps());
     append(limit, first_vertex);
     upload();
 }
