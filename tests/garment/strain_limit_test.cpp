@@ -34,9 +34,9 @@ struct HeavySheet {
     Sheet sheet = make_sheet(Vec2(0.3, 0.2), 12, 8, Pattern::Irregular);
     std::shared_ptr<const RestShape> rest = sheet.rest();
     std::vector<double> masses = masses_of(*rest, 0.2);
-    StrainLimit limit{rest, {kLimit}, "sheet"};
-    StrainLimit patient{
-        rest, {kLimit, kTolerance, 1000}, "sheet"}; ///< with enough sweeps to propagate corrections far
+    StrainLimit limit{rest, StrainLimit::Settings{kLimit}, "sheet"};
+    StrainLimit patient{rest, StrainLimit::Settings{kLimit, kTolerance, 1000},
+                        "sheet"}; ///< with enough sweeps to propagate corrections far
 
     HeavySheet()
     {

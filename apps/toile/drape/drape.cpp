@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "apps/toile/drape/continuation.h"
@@ -23,6 +24,8 @@ namespace {
 
 /// Default of --time-limit [s].
 constexpr double kTimeLimit = 600.0;
+/// Of each number of --shift [m].
+constexpr double kMaxShift = 1000.0;
 
 struct DrapeOptions {
     scenes::DrapeSettings settings;
@@ -44,7 +47,12 @@ void require_valid(const DrapeOptions& options)
     if (options.fabrics.size() != 1 && options.fabrics.size() != options.garments.size())
         throw InvalidInput("--fabric: names " + std::to_string(options.fabrics.size()) + " fabrics for " +
                            std::to_string(options.garments.size()) +
-                           " garments; give one for all or one for each");
+                           (options.garments.size() == 1 ? " garment" : " garments") +
+                           "; give one for all or one for each");
+    for (const double metres : options.shift)
+        if (!(std::abs(metres) <= kMaxShift))
+            throw InvalidInput("--shift " + short_text(metres) + ": must be three numbers from " +
+                               short_text(-kMaxShift) + " to " + short_text(kMaxShift) + " m");
     if (!(options.settings.time_limit > 0.0))
         throw InvalidInput("--time-limit " + short_text(options.settings.time_limit) +
                            ": must be a positive number of seconds");

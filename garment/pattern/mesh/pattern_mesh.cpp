@@ -316,6 +316,31 @@ int owner(const std::vector<int>& first, int item)
 int PatternMesh::panel_of_vertex(int vertex) const { return owner(first_vertex, vertex); }
 int PatternMesh::panel_of_triangle(int triangle) const { return owner(first_triangle, triangle); }
 
+namespace {
+
+/// Lines and outlines that nearly touch leave triangles without height between them.
+void require_height(const Pattern& pattern, const PatternMesh& mesh)
+{
+    constexpr double kLeastHeight = 1e-5; // of the longest edge
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        const Triangle& corner = mesh.triangles[size_t(t)];
+        const Vec2 &a = mesh.uv[size_t(corner[0])], &b = mesh.uv[size_t(corner[1])],
+                   &c = mesh.uv[size_t(corner[2])];
+        const Vec2 ab = b - a, ac = c - a;
+        const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()});
+        if (std::abs(ab.x() * ac.y() - ab.y() * ac.x()) > kLeastHeight * longest)
+            continue;
+        char place[64];
+        std::snprintf(place, sizeof place, "(%.4g, %.4g) m", a.x(), a.y());
+        throw InvalidInput(pattern.source + ": panel \"" +
+                           pattern.panels[size_t(mesh.panel_of_triangle(t))].name +
+                           "\": lines or edges touch near " + place +
+                           " but do not meet in a point; move them apart, or let both end there");
+    }
+}
+
+} // namespace
+
 PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& settings)
 {
     const PatternCurves curves = outline_curves(pattern);
@@ -349,6 +374,7 @@ PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& sett
         split_edges(edges, mesh, panels);
         mesh = assemble(panels, points, targets.edge);
     }
+    require_height(pattern, mesh);
     mesh.line_vertices = line_vertices_of(mesh, lines, frames);
     const auto first_fold = mesh.line_vertices.begin() + std::ptrdiff_t(settings.lines.size());
     mesh.fold_vertices.assign(first_fold, mesh.line_vertices.end());

@@ -166,6 +166,8 @@ TEST_F(Drape, WritesSeveralGarments)
 
     expect_refusal({"tube.json", "tube.json", "--fabric", "denim,jersey,cotton"},
                    {"--fabric: names 3 fabrics for 2 garments; give one for all or one for each"});
+    expect_refusal({"tube.json", "--fabric", "denim,jersey"}, {"--fabric: names 2 fabrics for 1 garment;"});
+    expect_refusal({"tube.json", "--shift", "nan,0,0"}, {"--shift nan: must be three numbers from -1000"});
     expect_refusal({"tube.json", "--fabric", "denim,jersy"}, {"--fabric", "did you mean \"jersey\"?"});
 }
 

@@ -251,7 +251,7 @@ TEST_F(DeviceStretchTensionTest, LimitsASheetOnTwoPinsAsOnTheCpu)
         std::make_shared<StretchTension>(heavy.rest(), StretchTension::Settings{0.06, 30.0, 1.0});
     const auto on_gpu =
         std::make_shared<StretchTension>(heavy.rest(), StretchTension::Settings{0.06, 30.0, 1.0});
-    OnlyObserves limit(heavy.rest(), {0.06}, "sheet");
+    OnlyObserves limit(heavy.rest(), StrainLimit::Settings{0.06}, "sheet");
     limit.set_tension(on_cpu);
     Body::Settings settings;
     settings.tolerance = 1e-5;

@@ -250,6 +250,8 @@ TEST(PanelJsonErrors, NamePanelsAndEdges)
          "bad.json: panel \"p\", edge 0: an arc of radius 0.15 m cannot join ends that are 0.4 m apart; use "
          "at least "
          "half that distance"},
+        {panel_json(panel_text("ba#nd", 40, 60)),
+         "bad.json: pattern.panels: \"ba#nd\" can't name a panel; use letters, digits, _ and -"},
         {panel_json(panel_text("my panel", 40, 60)),
          "bad.json: pattern.panels: \"my panel\" can't name a panel; use letters, digits, _ and -"},
         {with(triangle, R"([{"endpoints": [0, 1]}, {"endpoints": [1, 2]}])"),

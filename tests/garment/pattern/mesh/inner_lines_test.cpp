@@ -111,6 +111,14 @@ TEST(InnerLine, IsRefusedWhereItCrosses)
                 HasSubstr("from point 0 to the next"));
     EXPECT_THAT(error_of(pattern, {{0, {{0.1, 0.1}, {std::nan(""), 0.1}}, "pocket"}}),
                 HasSubstr("nan m from point 0"));
+    EXPECT_THAT(error_of(pattern, {{0, {{0.1, 0.1}, {0.1, 0.1}}, "pocket"}}),
+                HasSubstr("line \"pocket\": points 0 and 1 are the same; remove one of them"));
+    EXPECT_THAT(error_of(pattern, {{0, {{0.1, 0.1}, {0.2, 0.1}, {0.2, 0.1}}, "pocket"}}),
+                HasSubstr("points 1 and 2 are the same"));
+    EXPECT_EQ(error_of(pattern, {fold, {0, {{0.1, 0.0}, {0.2, 0.3}}, "pleat"}}), "")
+        << "both begin at one point of the outline";
+    EXPECT_THAT(error_of(pattern, {fold, {0, {{0.1 + 1e-12, 0.2}, {0.2, 0.2}}, "pleat"}}),
+                HasSubstr("lines or edges touch near (0.1, 0.2"));
     EXPECT_THAT(error_of(pattern, {{3, {{0.1, 0.1}, {0.2, 0.1}}, "pocket"}}),
                 HasSubstr("panel 3 does not exist"));
 }
