@@ -51,8 +51,9 @@ void require_valid(const DrapeOptions& options)
                            "; give one for all or one for each");
     for (const double metres : options.shift)
         if (!(std::abs(metres) <= kMaxShift))
-            throw InvalidInput("--shift " + short_text(metres) + ": must be three numbers from " +
-                               short_text(-kMaxShift) + " to " + short_text(kMaxShift) + " m");
+            throw InvalidInput("--shift " + short_text(metres) + ": must be three numbers from -" +
+                               std::to_string(int(kMaxShift)) + " to " + std::to_string(int(kMaxShift)) +
+                               " m");
     if (!(options.settings.time_limit > 0.0))
         throw InvalidInput("--time-limit " + short_text(options.settings.time_limit) +
                            ": must be a positive number of seconds");
