@@ -179,7 +179,9 @@ void StageScenes::add_cloth(Scene& scene, const Garment& garment, const std::str
     cloth.layer = int(scene.cloths.size());
     scene.fabrics[file_name] = fabric(garment.fabric);
     for (const auto& [panel, preset] : garment.panel_fabrics()) {
-        const std::string name = file_name + "_" + preset;
+        std::string name = file_name;
+        name += '_';
+        name += preset;
         scene.fabrics[name] = fabric(preset);
         cloth.groups[panel].fabric = name;
     }
