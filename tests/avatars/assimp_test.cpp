@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -46,8 +47,7 @@ std::string collada(const std::string& times, const std::string& values, const s
 RiggedModel import(const std::string& content, const std::string& extension = ".dae")
 {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    const std::filesystem::path file =
-        std::filesystem::path(testing::TempDir()) / ("toile_" + std::string(test->name()) + extension);
+    const std::filesystem::path file = process_folder() / ("toile_" + std::string(test->name()) + extension);
     std::ofstream(file) << content;
     return import_rigged_model(file);
 }

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/avatars/column.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -70,7 +71,7 @@ struct GltfSample {
     {
         std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
         std::replace(name.begin(), name.end(), '/', '_');
-        std::filesystem::path file = std::filesystem::path(testing::TempDir()) / ("toile_" + name + ".gltf");
+        std::filesystem::path file = process_folder() / (name + ".gltf");
         std::ofstream(file, std::ios::binary) << text;
         return file;
     }

@@ -9,6 +9,7 @@
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "tests/avatars/column.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -49,7 +50,7 @@ AvatarSettings edited_column(const std::string& name, const std::string& from, c
     EXPECT_NE(at, std::string::npos) << from;
     text.replace(at, from.size(), to);
     AvatarSettings settings;
-    settings.file = std::filesystem::path(testing::TempDir()) / name;
+    settings.file = process_folder() / name;
     std::ofstream(settings.file) << text;
     return settings;
 }
@@ -128,7 +129,7 @@ TEST(Import, KeepsTheVertexOrderOfAnObj)
     ObjMesh mesh;
     mesh.positions = {{0, 0, 3}, {1, 0, 0}, {0, 2, 0}, {5, 5, 5}};
     mesh.polygons = {{2, 0, 1}};
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "toile_order.obj";
+    const std::filesystem::path file = process_folder() / "toile_order.obj";
     write_obj(file, mesh);
     const auto avatar = load(file);
     EXPECT_TRUE(avatar->is_static());
@@ -176,7 +177,7 @@ TEST(Import, RefusesAnObjWithoutASurface)
              {"v 0 0 0\n", "no triangles"},
              {"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 1 1 2\n", "no triangle has an area"}}) {
         AvatarSettings settings;
-        settings.file = std::filesystem::path(testing::TempDir()) / "toile_no_surface.obj";
+        settings.file = process_folder() / "toile_no_surface.obj";
         std::ofstream(settings.file) << obj;
         expect_line(refusal(settings), {"toile_no_surface.obj", says, "an avatar needs a surface"});
     }

@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/base/error.h"
 #include "tests/export/export_fixtures.h"
 
 namespace toile::test {

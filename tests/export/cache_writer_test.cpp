@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include "tests/export/export_fixtures.h"
+#include "tests/support/refusal.h"
 
 namespace toile::test {
 

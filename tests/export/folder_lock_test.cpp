@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "tests/export/export_fixtures.h"
+#include "tests/support/refusal.h"
 
 namespace toile::test {
 

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include "tests/export/export_fixtures.h"
+#include "tests/support/refusal.h"
 
 namespace toile::test {
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/export/export_fixtures.h"
+#include "tests/support/refusal.h"
 
 namespace toile::test {
 

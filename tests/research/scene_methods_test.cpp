@@ -8,6 +8,7 @@
 #include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/world/world.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 /// Equivalence of all methods that a scene can name: with tight tolerances the cloth ends where the direct

@@ -9,6 +9,7 @@
 #include "scenes/world/world.h"
 #include "tests/collision/shapes_for_tests.h"
 #include "tests/support/jointed_body.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace toile::test {

@@ -9,8 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-
 namespace toile::test {
 
 inline std::string bytes_of(const std::filesystem::path& file)
@@ -57,6 +55,13 @@ private:
     std::filesystem::path path_;
 };
 
+/// Folder of this process, removed at its end: tests that write files of one name may run side by side.
+inline const std::filesystem::path& process_folder()
+{
+    static const TemporaryFolder folder;
+    return folder.path();
+}
+
 /// Fixture with a private folder.
 class FileTest : public ::testing::Test {
 protected:
@@ -65,17 +70,5 @@ protected:
     const TemporaryFolder temporary_;
     const std::filesystem::path folder_ = temporary_.path();
 };
-
-/// Message of the InvalidInput that `action` throws; empty if it throws none.
-template <typename Action>
-std::string refusal(const Action& action)
-{
-    try {
-        action();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return {};
-}
 
 } // namespace toile::test

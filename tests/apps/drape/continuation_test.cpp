@@ -2,6 +2,7 @@
 
 #include "apps/toile/drape/drape_files.h"
 #include "scenes/format/read_scene.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 /// What the scene of a draped garment plays.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/apps/preview/render_fixtures.h"
+#include "tests/support/refusal.h"
 
 namespace toile::test {
 

@@ -4,6 +4,7 @@
 #include <png.h>
 
 #include "tests/apps/preview/render_fixtures.h"
+#include "tests/support/refusal.h"
 
 namespace toile::test {
 

@@ -31,16 +31,4 @@ inline TriangleMesh bind_pose(avatars::Avatar& avatar)
     return mesh;
 }
 
-/// Message of the InvalidInput that `run` throws; empty if it throws none.
-template <typename Run>
-std::string refusal_of(const Run& run)
-{
-    try {
-        run();
-        return {};
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-}
-
 } // namespace toile::test

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/avatars/landmarks/bodies.h"
+#include "tests/support/refusal.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -200,8 +202,7 @@ TEST(BodySegments, WhatIsNoBodyIsRefusedInOneLine)
           std::pair("garments/mh_woman_skirt.obj", "two legs can't be found"),
           std::pair("avatars/rigged_simple.gltf",
                     "left arm, right arm, left leg, right leg, neck, head can't be found")}) {
-        const std::string message =
-            refusal_of([&] { find_segments(*load_body(name), {}, identity_affine()); });
+        const std::string message = refusal([&] { find_segments(*load_body(name), {}, identity_affine()); });
         EXPECT_NE(message.find(part), std::string::npos) << name << ": " << message;
         EXPECT_NE(message.find(name), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
@@ -221,7 +222,7 @@ TEST(BodySegments, GivenLandmarksReplaceThoseFound)
         EXPECT_EQ(of(told, BodyPart::LeftArm).end, of(found, BodyPart::LeftArm).end);
     }
     // Told that it faces its left, the body is taken at its word: its limbs are no longer beside each other.
-    EXPECT_NE(refusal_of([&] {
+    EXPECT_NE(refusal([&] {
                   find_segments(*load_body("bodies/gc_mean_all.obj"), {}, identity_affine(),
                                 {{"front", {1, 0, 0}}});
               }),
@@ -248,10 +249,10 @@ TEST(BodySegments, GivenLandmarksReplaceThoseFound)
 
 TEST(BodySegments, LandmarkFilesAreChecked)
 {
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "landmarks.json";
+    const std::filesystem::path file = process_folder() / "landmarks.json";
     const auto read = [&](const std::string& text) {
         std::ofstream(file) << text;
-        return refusal_of([&] { read_landmarks(file); });
+        return refusal([&] { read_landmarks(file); });
     };
     EXPECT_EQ(read(R"({"crotch": [0, 0.8, 0.02], "front": [0, 0, 1]})"), "");
     EXPECT_EQ(read_landmarks(file).at("crotch"), Vec3(0, 0.8, 0.02));
@@ -262,7 +263,7 @@ TEST(BodySegments, LandmarkFilesAreChecked)
     EXPECT_NE(read(R"({"front": [0, 1, 0]})").find("vertical"), std::string::npos);
     EXPECT_NE(read("[1, 2]").find("no JSON object"), std::string::npos);
     EXPECT_NE(read("{").find("no JSON object"), std::string::npos);
-    EXPECT_NE(refusal_of([] { read_landmarks("nowhere.json"); }).find("can't be read"), std::string::npos);
+    EXPECT_NE(refusal([] { read_landmarks("nowhere.json"); }).find("can't be read"), std::string::npos);
 }
 
 } // namespace toile::test

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "tests/avatars/column.h"
 #include "tests/avatars/retarget/figures.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -17,7 +18,7 @@ namespace {
 
 std::filesystem::path temporary_file(const std::string& name, const std::string& content)
 {
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / ("toile_motion_" + name);
+    const std::filesystem::path file = process_folder() / ("toile_motion_" + name);
     std::ofstream(file) << content;
     return file;
 }

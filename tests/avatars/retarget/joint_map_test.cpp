@@ -7,6 +7,8 @@
 
 #include "core/base/error.h"
 #include "tests/avatars/retarget/figures.h"
+#include "tests/support/refusal.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -88,20 +90,9 @@ std::string source_of(const std::string& joint, const SkinnedAvatar& body, const
     return source < 0 ? "" : motion.skeleton.joints()[size_t(source)].name;
 }
 
-template <typename Call>
-std::string refusal_of(const Call& call)
-{
-    try {
-        call();
-        return "";
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-}
-
 std::filesystem::path map_file(const std::string& content)
 {
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "toile_joint_map.json";
+    const std::filesystem::path file = process_folder() / "toile_joint_map.json";
     std::ofstream(file) << content;
     return file;
 }
@@ -142,7 +133,7 @@ TEST(JointMap, NamesTheJointThatACmuSkeletonLacks)
     SkinnedAvatar body = body_on(mixamo(), "mixamorig:Hips");
     const SkeletalMotion motion{"walk.fbx", mixamo(), {}};
     EXPECT_EQ(
-        refusal_of([&] { map_from_cmu(body, motion); }),
+        refusal([&] { map_from_cmu(body, motion); }),
         "walk.fbx: has no joint 'Hips' of the CMU skeletons; write \"map\": \"names\", or a JSON file that "
         "maps its joints");
 }
@@ -161,7 +152,7 @@ TEST(JointMap, RefusesBadMapsInOneLine)
     const SkinnedAvatar body = body_on(mixamo(), "mixamorig:Hips");
     const SkeletalMotion motion{"walk.bvh", cmu_of_joints(), {}};
     const auto said = [&](const std::string& content) {
-        return refusal_of([&] { read_joint_map(map_file(content), body, motion); });
+        return refusal([&] { read_joint_map(map_file(content), body, motion); });
     };
     EXPECT_NE(said("[]").find("toile_joint_map.json: is no map of joints; write {"), std::string::npos);
     EXPECT_NE(said("{}").find("is no map of joints"), std::string::npos);
@@ -172,7 +163,7 @@ TEST(JointMap, RefusesBadMapsInOneLine)
                   .find("\"mixamorig:LeftLeg\": walk.bvh has no joint 'LeftKnees'; did you mean 'LeftKnee'?"),
               std::string::npos);
     EXPECT_NE(said(R"({"mixamorig:LeftLeg": 3})").find("3 is no name"), std::string::npos);
-    EXPECT_NE(refusal_of([&] { read_joint_map("nowhere.json", body, motion); }).find("can't be read"),
+    EXPECT_NE(refusal([&] { read_joint_map("nowhere.json", body, motion); }).find("can't be read"),
               std::string::npos);
 }
 

@@ -1,4 +1,5 @@
 #include "core/base/file_plan.h"
+#include "tests/support/refusal.h"
 
 #include <gmock/gmock.h>
 

@@ -22,6 +22,7 @@
 #include "core/base/stages.h"
 #include "core/compute/parallel.h"
 #include "core/compute/types.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -60,35 +61,6 @@ uint64_t bits(double value)
     std::memcpy(&pattern, &value, sizeof value);
     return pattern;
 }
-
-std::string content_of(const std::filesystem::path& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// New empty folder, removed at the end of the test.
-class ScratchFolder {
-public:
-    ScratchFolder()
-        : path_(std::filesystem::path(testing::TempDir()) / ("toile-backend-" + std::to_string(::getpid())))
-    {
-        std::filesystem::create_directories(path_);
-    }
-    ~ScratchFolder() { std::filesystem::remove_all(path_); }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    long file_count() const
-    {
-        return std::distance(std::filesystem::directory_iterator(path_),
-                             std::filesystem::directory_iterator());
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 /// Limits the bytes per file that this process can write until the end of the scope, like a full disk.
 class FileSizeLimit {
@@ -328,11 +300,11 @@ TEST(NearestWord, PrefersTheFirstOfEquallyNear) { EXPECT_EQ(nearest_word("warp",
 
 TEST(WriteAtomically, CreatesFoldersAndReplacesTheOldContent)
 {
-    const ScratchFolder folder;
-    const std::filesystem::path file = folder / "a/b/mesh.obj";
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "a/b/mesh.obj";
     write_atomically(file, "old and longer");
     write_atomically(file, std::string_view("new\0", 4));
-    EXPECT_EQ(content_of(file), std::string("new\0", 4));
+    EXPECT_EQ(bytes_of(file), std::string("new\0", 4));
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.parent_path()),
                             std::filesystem::directory_iterator()),
               1);
@@ -340,8 +312,8 @@ TEST(WriteAtomically, CreatesFoldersAndReplacesTheOldContent)
 
 TEST(WriteAtomically, LeavesTheOldFileWhenTheDiskIsFull)
 {
-    const ScratchFolder folder;
-    const std::filesystem::path file = folder / "cache.pc2";
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "cache.pc2";
     write_atomically(file, "old");
     std::string message;
     {
@@ -349,30 +321,30 @@ TEST(WriteAtomically, LeavesTheOldFileWhenTheDiskIsFull)
         message = message_of<DeviceError>([&] { write_atomically(file, std::string(100000, 'x')); });
     }
     EXPECT_EQ(message, file.string() + ": writing broke off (File too large)");
-    EXPECT_EQ(content_of(file), "old");
-    EXPECT_EQ(folder.file_count(), 1);
+    EXPECT_EQ(bytes_of(file), "old");
+    EXPECT_EQ(folder.snapshot().size(), 1u);
 }
 
 TEST(WriteAtomically, RefusesANameThatAFolderHas)
 {
-    const ScratchFolder folder;
-    const std::filesystem::path taken = folder / "taken";
+    const TemporaryFolder folder;
+    const std::filesystem::path taken = folder.path() / "taken";
     std::filesystem::create_directories(taken);
     const std::string message = message_of<InvalidInput>([&] { write_atomically(taken, "text"); });
     EXPECT_EQ(message, taken.string() + ": can't be replaced (Is a directory); choose another name");
     EXPECT_TRUE(std::filesystem::is_directory(taken));
-    EXPECT_EQ(folder.file_count(), 1);
+    EXPECT_EQ(folder.snapshot().size(), 1u);
 }
 
 TEST(WriteAtomically, RefusesAFolderThatCannotBeCreated)
 {
-    const ScratchFolder folder;
-    write_atomically(folder / "file", "old");
-    const std::filesystem::path file = folder / "file/below.obj";
+    const TemporaryFolder folder;
+    write_atomically(folder.path() / "file", "old");
+    const std::filesystem::path file = folder.path() / "file/below.obj";
     const std::string message = message_of<InvalidInput>([&] { write_atomically(file, "text"); });
     EXPECT_EQ(message,
               file.string() + ": its folder can't be created (Not a directory); choose a writable folder");
-    EXPECT_EQ(content_of(folder / "file"), "old");
+    EXPECT_EQ(bytes_of(folder.path() / "file"), "old");
 }
 
 } // namespace toile::test

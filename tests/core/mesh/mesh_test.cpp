@@ -12,6 +12,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/mesh/weld.h"
 #include "tests/core/mesh/meshes.h"
+#include "tests/support/refusal.h"
 
 namespace toile::test {
 

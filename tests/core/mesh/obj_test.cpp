@@ -4,12 +4,12 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/triangle_mesh.h"
 #include "tests/core/mesh/meshes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -20,8 +20,7 @@ using test::message_of;
 /// OBJ file of the given text, removed at the end of the test.
 class ObjFile {
 public:
-    explicit ObjFile(const std::string& text = {})
-        : path_(std::filesystem::path(testing::TempDir()) / ("toile-" + std::to_string(::getpid()) + ".obj"))
+    explicit ObjFile(const std::string& text = {}) : path_(process_folder() / "mesh.obj")
     {
         std::ofstream(path_, std::ios::binary) << text;
     }

@@ -9,6 +9,7 @@
 #include "core/linear/direct_solver.h"
 #include "core/quadrature/quadrature_solver.h"
 #include "tests/core/quadrature/quadrature_problems.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace toile::test {

@@ -4,6 +4,7 @@
 
 #include "garment/pattern/check_panel.h"
 #include "tests/garment/pattern/panels.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace toile::test {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/garment/pattern/panels.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace toile::test {

@@ -4,6 +4,7 @@
 
 #include "research/benchmarks/accuracy/exact.h"
 #include "research/benchmarks/accuracy/run.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::research::accuracy {
 namespace {
@@ -38,7 +39,7 @@ TEST(ExactAccuracy, HasTheLoadThatBucklesAStripEdgeOn)
 TEST(Accuracy, HoldsWhereTheAnswerIsExact)
 {
     int count = 0;
-    for (const Case& trial : make_cases(testing::TempDir(), true)) {
+    for (const Case& trial : make_cases(test::process_folder(), true)) {
         if (trial.reference || trial.name == "cotton square dropped on a box")
             continue;
         SCOPED_TRACE(trial.name);
@@ -52,7 +53,7 @@ TEST(Accuracy, HoldsWhereTheAnswerIsExact)
 
 TEST(Accuracy, MeasuresAgainstAConvergedRun)
 {
-    for (Case& trial : make_cases(testing::TempDir(), true))
+    for (Case& trial : make_cases(test::process_folder(), true))
         if (trial.reference) {
             EXPECT_EQ(frames_of(trial), 2 * (trial.scene.frames - 1));
             trial.reference->solver.substeps = trial.scene.solver.substeps;
@@ -75,7 +76,7 @@ TEST(Accuracy, QuotesNamesWithCommas)
 TEST(Accuracy, EndsWhenAsked)
 {
     int frames = 0;
-    const Result result = run(make_cases(testing::TempDir(), true)[0], {}, [&] { return ++frames < 3; });
+    const Result result = run(make_cases(test::process_folder(), true)[0], {}, [&] { return ++frames < 3; });
     EXPECT_EQ(frames, 3);
     EXPECT_FALSE(result.holds);
 }
@@ -83,7 +84,7 @@ TEST(Accuracy, EndsWhenAsked)
 TEST(Accuracy, NamesEveryCaseOnce)
 {
     std::set<std::string> names;
-    for (const Case& trial : make_cases(testing::TempDir(), false))
+    for (const Case& trial : make_cases(test::process_folder(), false))
         EXPECT_TRUE(names.insert(trial.name).second) << trial.name;
     EXPECT_GE(names.size(), 16u);
 }

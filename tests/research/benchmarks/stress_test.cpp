@@ -4,6 +4,7 @@
 #include <set>
 
 #include "research/benchmarks/stress/table.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::research::stress {
 namespace {
@@ -37,7 +38,7 @@ constexpr double kMaxCreep = 2e-2;
 
 std::vector<Result> run_quick_cases(scene::SolverMethod method)
 {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "toile-stress-meshes";
+    const std::filesystem::path folder = test::process_folder() / "toile-stress-meshes";
     std::vector<Result> results;
     for (Case& trial : make_cases(Size::Quick, folder)) {
         trial.scene.solver.method = method;
@@ -71,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Solver, StressCases,
 TEST(Stress, NamesEveryCaseOnce)
 {
     std::set<std::string> names;
-    for (const Case& trial : make_cases(Size::Full, testing::TempDir()))
+    for (const Case& trial : make_cases(Size::Full, test::process_folder()))
         EXPECT_TRUE(names.insert(trial.name).second) << trial.name;
     EXPECT_GT(names.size(), 30u);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "collision/check/find_crossings.h"
+#include "core/base/error.h"
 #include "core/mesh/topology.h"
 #include "garment/energy/fold/dihedral_angle.h"
 #include "scenes/drape/seam_closing.h"

@@ -5,6 +5,7 @@
 #include "scenes/surfaces/load_cloth.h"
 #include "scenes/world/backend.h"
 #include "tests/scenes/folds/folded_strip.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 /// Folds of a scene: the edges that they name, and what is refused.

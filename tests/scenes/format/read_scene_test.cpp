@@ -8,6 +8,7 @@
 
 #include "scenes/format/scene_fabric.h"
 #include "scenes/format/validate.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -55,7 +56,7 @@ TEST(ReadScene, AcceptsTheFormerNameOfPrintWithAWarning)
 /// Files of motions and of their maps are looked for beside the scene.
 TEST(ReadScene, FindsMotionsAndMapsBesideTheScene)
 {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "toile_motions";
+    const std::filesystem::path folder = process_folder() / "toile_motions";
     std::filesystem::create_directories(folder);
     for (const char* name : {"walk.bvh", "map.json"})
         std::ofstream(folder / name) << "-";

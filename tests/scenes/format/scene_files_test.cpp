@@ -8,6 +8,7 @@
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "scenes/format/read_scene.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace toile::test {

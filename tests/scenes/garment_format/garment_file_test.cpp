@@ -5,6 +5,7 @@
 #include "garment/pattern/seam_side.h"
 #include "garment/pattern/sewn_sides.h"
 #include "tests/scenes/garment_format/texts.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 /// The garment file: patterns, settings of panels, copies and mirror images, seams.

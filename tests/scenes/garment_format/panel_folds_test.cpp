@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/scenes/garment_format/texts.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 /// Folds of panels in garment files.

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "scenes/garment_format/read_garment.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace toile::test {

@@ -7,6 +7,7 @@
 #include "scenes/format/read_scene.h"
 #include "scenes/surfaces/load_cloth.h"
 #include "scenes/world/world.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 /// Rest shapes from the texture coordinates of a file of their own.

@@ -14,6 +14,7 @@
 #include "scenes/surfaces/load_cloth.h"
 #include "scenes/world/scene_cloth.h"
 #include "scenes/world/world.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 /// Rest shapes from texture coordinates.
