@@ -48,7 +48,7 @@ Next:
   - Play a cache in Blender: import the OBJ beside the PC2, add a Mesh Cache modifier, format PC2.
   - Change a number in scenes/demo/tablecloth.json and run
       $toile simulate scenes/demo/tablecloth.json -o out/mine
-  - Sew a pattern of your own: $toile drape PATTERN --avatar BODY (docs/guide/patterns.md)
+  - Sew a pattern of your own: $toile drape PATTERN --avatar BODY (docs/guide/draping.md)
   - See what the program can do: $toile --help
 TEXT
 command -v ffmpeg >/dev/null || echo "  - Install ffmpeg and run 'make demo' again for MP4 films."
