@@ -23,9 +23,10 @@ Candidates::Candidates(View<const Triangle> triangles, const SurfaceEdges& edges
     rebuild();
 }
 
-void Candidates::update(View<const unsigned char> selected)
+void Candidates::update(View<const unsigned char> selected, Prescribed prescribed)
 {
     selected_ = selected;
+    prescribed_ = prescribed;
     refit();
     if (tree_.surface(box_margin_) > kWornOut * built_surface_)
         rebuild();

@@ -14,16 +14,19 @@ namespace toile::collision {
 class Candidates {
 public:
     /// Builds the tree. triangles, edges and rigid must outlive this.
-    /// @param rigid  see NearPairs: pairs of prescribed primitives are not visited
+    /// @param rigid  see NearPairs
     Candidates(View<const Triangle> triangles, const SurfaceEdges& edges, View<const Vec3> positions,
                View<const int> rigid);
 
     /// Sets positions and trajectories of the vertices. See NearPairs::find.
     void place(View<const Vec3> x, const Trajectories& trajectories, double margin);
 
+    /// Whether selected vertices that are prescribed count as selected.
+    enum class Prescribed { kPassive, kSelectable };
+
     /// Updates the boxes for visit(), and rebuilds a worn-out tree.
     /// @param selected  [vertices] see Trajectories
-    void update(View<const unsigned char> selected);
+    void update(View<const unsigned char> selected, Prescribed prescribed);
 
     /// True if some vertex moves differently from the others.
     bool is_moving() const { return is_moving_; }
@@ -39,8 +42,8 @@ public:
     }
 
     /// Calls try_edges(e, f) and try_triangle(v, t) for the task's candidates, including primitives with
-    /// common vertices. If update() was given `selected`, candidates without a selected vertex are skipped,
-    /// and those whose selected vertices are all prescribed.
+    /// common vertices. If update() was given `selected`, candidates without a selected vertex are skipped.
+    /// Passive prescribed vertices are not selected, nor are candidates of them alone visited.
     /// Over all tasks each pair occurs at most once.
     template <typename TryEdges, typename TryTriangle>
     void visit(int task, const TryEdges& try_edges, const TryTriangle& try_triangle) const
@@ -69,7 +72,7 @@ private:
     template <typename Vertices>
     bool is_wanted(const Vertices& vertices) const
     {
-        if (!rigid_.empty() && rigid_[vertices[0]] == kPrescribed)
+        if (prescribed_ == Prescribed::kPassive && !rigid_.empty() && rigid_[vertices[0]] == kPrescribed)
             return false;
         return selected_.empty() ||
                std::any_of(vertices.begin(), vertices.end(), [&](int v) { return selected_[v] != 0; });
@@ -94,6 +97,7 @@ private:
     bool is_moving_ = false;
     float box_margin_ = 0.0f; ///< [m] half the margin plus rounding of single precision
     View<const unsigned char> selected_;
+    Prescribed prescribed_ = Prescribed::kPassive;
     std::vector<Box> leaf_boxes_;
     std::vector<unsigned char> leaf_is_wanted_;
     std::vector<BoxTree::NodePair> tasks_;

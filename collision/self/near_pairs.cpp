@@ -48,7 +48,7 @@ private:
     };
 
     void keep();
-    void search(View<const unsigned char> selected, View<const unsigned char> out_of_bounds);
+    void search(View<const unsigned char> selected, Candidates::Prescribed prescribed);
     void query_kept();
     void query_kept(View<const KeptPairs::Pair> kept, bool is_edge_edge);
     View<Found> begin_tasks(int count);
@@ -129,12 +129,13 @@ void NearPairs::Search::find(View<const Vec3> x, const Trajectories& trajectorie
     x_ = x;
     trajectories_ = trajectories;
     margin_ = margin;
+    out_of_bounds_ = {};
     if (plan == Plan::kKeep)
         keep();
     candidates_.place(x, trajectories, margin);
     task_count_ = 0;
     if (plan == Plan::kSearch)
-        search(trajectories.selected, {});
+        search(trajectories.selected, Candidates::Prescribed::kPassive);
     else
         query_kept();
     order();
@@ -149,7 +150,7 @@ void NearPairs::Search::keep()
     const double margin = std::exchange(margin_, kept_.wide(margin_));
     candidates_.place(x_, trajectories_, margin_);
     task_count_ = 0;
-    search({}, {});
+    search({}, Candidates::Prescribed::kPassive);
     order();
     take(vertex_triangle_, false, kept_.change_vertex_triangle());
     take(edge_edge_, true, kept_.change_edge_edge());
@@ -184,11 +185,10 @@ View<NearPairs::Search::Found> NearPairs::Search::begin_tasks(int count)
 }
 
 /// Finds the records of pairs, task by task.
-/// @param selected, out_of_bounds  [vertices] only pairs with a vertex marked in each; empty: no restriction
-void NearPairs::Search::search(View<const unsigned char> selected, View<const unsigned char> out_of_bounds)
+/// @param selected, prescribed  see Candidates::update
+void NearPairs::Search::search(View<const unsigned char> selected, Candidates::Prescribed prescribed)
 {
-    out_of_bounds_ = out_of_bounds;
-    candidates_.update(selected);
+    candidates_.update(selected, prescribed);
     const View<Found> found = begin_tasks(candidates_.task_count());
     parallel_for(
         kCpu, "collision/cloth_pairs", found.size(),
@@ -200,16 +200,20 @@ void NearPairs::Search::search(View<const unsigned char> selected, View<const un
         1);
 }
 
-/// Selects from the kept pairs, and searches around out-of-bounds vertices only.
+/// Selects from the kept pairs, and searches around out-of-bounds vertices only. Those of bodies meet cloth
+/// that is not out of bounds.
 void NearPairs::Search::query_kept()
 {
     const StageScope stage("collision/cloth_kept");
-    out_of_bounds_ = {};
     query_kept(kept_.vertex_triangle(), false);
     query_kept(kept_.edge_edge(), true);
-    if (kept_.has_out_of_bounds())
-        search(trajectories_.selected.empty() ? kept_.out_of_bounds() : trajectories_.selected,
-               kept_.out_of_bounds());
+    if (!kept_.has_out_of_bounds())
+        return;
+    out_of_bounds_ = kept_.out_of_bounds();
+    if (trajectories_.selected.empty())
+        search(out_of_bounds_, Candidates::Prescribed::kSelectable);
+    else
+        search(trajectories_.selected, Candidates::Prescribed::kPassive);
 }
 
 void NearPairs::Search::query_kept(View<const KeptPairs::Pair> kept, bool is_edge_edge)

@@ -1,5 +1,6 @@
 #include "collision/self/kept_pairs.h"
 
+#include <algorithm>
 #include <tuple>
 
 #include <gtest/gtest.h>
@@ -122,6 +123,32 @@ TEST_F(KeptPairsOfLayers, AreNotKeptWhenClothMovesFast)
     }
     EXPECT_EQ(stages_.calls("collision/cloth_keep"), 0);
     EXPECT_EQ(stages_.calls("collision/cloth_kept"), 0);
+}
+
+/// A fast body meets cloth that moves no more than the rest.
+TEST_F(KeptPairsOfLayers, IncludeThoseOfFastBodiesWithSlowCloth)
+{
+    std::vector<int> rigid(soup_.x.size(), -1);
+    for (size_t v = 0; v < rigid.size(); v += 2)
+        rigid[v] = kPrescribed;
+    NearPairs near(soup_.triangles, soup_.x, rigid);
+    size_t of_fast_bodies = 0;
+    for (int i = 0; i < 20; ++i) {
+        move(1e-5, 0.0);
+        std::vector<unsigned char> is_fast(rigid.size(), 0);
+        for (int k = 0; k < 10; ++k) {
+            const int v = 2 * random_.below(int(rigid.size() / 2));
+            is_fast[v] = 1;
+            soup_.motion[v] += kEdge * random_.point();
+        }
+        near.find(soup_.x, soup_.trajectories(), kMargin, found_);
+        expect_same_bits(found_, find_anew(soup_, soup_.trajectories(), kMargin, rigid));
+        for (const NearPair& pair : found_)
+            of_fast_bodies +=
+                std::any_of(pair.vertex.begin(), pair.vertex.end(), [&](int v) { return is_fast[v] != 0; });
+    }
+    EXPECT_GT(of_fast_bodies, 100u);
+    EXPECT_GT(stages_.calls("collision/cloth_kept"), 10);
 }
 
 /// Collapsed and repeated triangles, rigid bodies, margins that grow after a list was made.
