@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <string>
+#include <type_traits>
 
 namespace toile::exports {
 
@@ -27,6 +30,30 @@ T get(const char* bytes)
     if constexpr (kOrder != std::endian::native)
         word = __builtin_bswap32(word);
     return std::bit_cast<T>(word);
+}
+
+/// Reads an integer or float of any size, little endian.
+template <typename T>
+T take(const char* bytes)
+{
+    static_assert(std::is_arithmetic_v<T>);
+    char word[sizeof(T)];
+    std::memcpy(word, bytes, sizeof word);
+    if constexpr (std::endian::native != std::endian::little)
+        std::reverse(word, word + sizeof word);
+    return std::bit_cast<T>(word);
+}
+
+/// Appends an integer or float of any size to bytes, little endian.
+template <typename T>
+void append(std::string& bytes, T value)
+{
+    static_assert(std::is_arithmetic_v<T>);
+    char word[sizeof value];
+    std::memcpy(word, &value, sizeof value);
+    if constexpr (std::endian::native != std::endian::little)
+        std::reverse(word, word + sizeof value);
+    bytes.append(word, sizeof word);
 }
 
 } // namespace toile::exports

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/extension.h"
+#include "export/alembic/abc_cache.h"
 
 namespace toile::exports {
 
@@ -14,10 +15,12 @@ CacheFormat cache_format(const std::filesystem::path& file)
         return CacheFormat::Pc2;
     if (extension == ".mdd")
         return CacheFormat::Mdd;
+    if (is_abc(file))
+        return CacheFormat::Abc;
     if (extension == ".obj")
         return CacheFormat::Obj;
     throw InvalidInput(file.string() + ": unknown cache extension '" + extension +
-                       "'; use .pc2, .mdd or .obj");
+                       "'; use .pc2, .mdd, .abc or .obj");
 }
 
 } // namespace toile::exports

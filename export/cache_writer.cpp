@@ -5,6 +5,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "export/alembic/abc_writer.h"
 #include "export/cache_format.h"
 #include "export/mdd_writer.h"
 #include "export/obj_writer.h"
@@ -37,16 +38,20 @@ void require_sane(const path& file, const CacheLayout& layout)
 void require_faces(const path& file, const CacheLayout& layout)
 {
     if (layout.faces.polygons.empty())
-        throw InvalidInput(file.string() + ": an OBJ needs faces and the layout has none; use .pc2 or .mdd");
-    if (layout.start_frame < 0.0)
-        throw InvalidInput(file.string() + ": start frame " + std::to_string(layout.start_frame) +
-                           " can't number an OBJ; it must be 0 or more");
+        throw InvalidInput(file.string() + ": needs faces and the layout has none; use .pc2 or .mdd");
     for (const std::vector<int>& polygon : layout.faces.polygons)
         for (const int v : polygon)
             if (v < 0 || v >= layout.vertex_count)
                 throw InvalidInput(file.string() + ": a face uses vertex " + std::to_string(v) +
                                    "; the cache has vertices 0 to " +
                                    std::to_string(layout.vertex_count - 1));
+}
+
+void require_numbers(const path& file, const CacheLayout& layout)
+{
+    if (layout.start_frame < 0.0)
+        throw InvalidInput(file.string() + ": start frame " + std::to_string(layout.start_frame) +
+                           " can't number an OBJ; it must be 0 or more");
 }
 
 std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& layout)
@@ -56,10 +61,14 @@ std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& la
         return std::make_unique<Pc2Writer>(file, partial_beside(file), layout);
     case CacheFormat::Mdd:
         return std::make_unique<MddWriter>(file, layout);
+    case CacheFormat::Abc:
+        require_faces(file, layout);
+        return std::make_unique<AbcWriter>(file, layout);
     case CacheFormat::Obj:
         break;
     }
     require_faces(file, layout);
+    require_numbers(file, layout);
     if (layout.frame_count > 1 || ObjSequence::has_digits_placeholder(file))
         return std::make_unique<ObjSequenceWriter>(file, layout);
     return std::make_unique<ObjWriter>(file, layout);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "export/alembic/abc_cache.h"
 #include "export/binary_file.h"
 #include "export/byte_order.h"
 #include "export/cache_format.h"
@@ -194,6 +195,8 @@ PointCache read_cache(const path& file)
         return PointCache(std::make_unique<Pc2Source>(file));
     case CacheFormat::Mdd:
         return PointCache(std::make_unique<MddSource>(file));
+    case CacheFormat::Abc:
+        return PointCache(open_abc(file));
     case CacheFormat::Obj:
         break;
     }

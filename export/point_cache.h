@@ -23,7 +23,7 @@ public:
         int frame_count = 0;
         std::optional<double> fps; ///< [frames/s] empty if the format has no rate or there is a single frame
         double start_frame = 0.0;
-        ObjMesh mesh; ///< of an OBJ: the first frame with its faces
+        ObjMesh mesh; ///< of an OBJ or Alembic: the first frame with its faces
     };
 
     explicit PointCache(std::unique_ptr<const Source> source) : source_(std::move(source)) {}
@@ -33,7 +33,7 @@ public:
     std::optional<double> fps() const { return source_->fps; }
     double start_frame() const { return source_->start_frame; }
 
-    /// Faces of an OBJ (sequence), or null: PC2 and MDD have positions only.
+    /// Faces of an OBJ (sequence) or Alembic mesh, or null: PC2 and MDD have positions only.
     const ObjMesh* mesh() const { return source_->mesh.polygons.empty() ? nullptr : &source_->mesh; }
 
     /// Positions of frame `index` in [0, frame_count()). Safe to call from several threads.
@@ -44,8 +44,9 @@ private:
     std::shared_ptr<const Source> source_;
 };
 
-/// Opens a .pc2, .mdd, .obj or an OBJ sequence: skirt_####.obj, or skirt.obj if only skirt_0000.obj and so on
-/// exist. Sizes are checked here against the header, so frame() finds every byte it needs.
+/// Opens a .pc2, .mdd, .abc (open_abc()), .obj or an OBJ sequence: skirt_####.obj, or skirt.obj if only
+/// skirt_0000.obj and so on exist. Sizes are checked here against the header, so frame() finds every byte it
+/// needs.
 /// @throws InvalidInput naming the file, the byte or line, the fault and a remedy.
 PointCache read_cache(const std::filesystem::path& file);
 

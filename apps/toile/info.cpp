@@ -14,6 +14,7 @@
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "core/mesh/vtk.h"
+#include "export/alembic/abc_cache.h"
 #include "export/point_cache.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
@@ -202,6 +203,22 @@ void print_cache(const std::filesystem::path& file)
     print_extent("extent of the last frame", cache.frame(cache.frame_count() - 1));
 }
 
+/// Each mesh of an archive, or the one named behind #.
+void print_archive(const std::filesystem::path& file)
+{
+    if (!std::filesystem::is_regular_file(file))
+        return print_cache(file);
+    for (const std::string& mesh : exports::abc_mesh_paths(file)) {
+        const std::filesystem::path named = file.string() + "#" + mesh;
+        print("mesh", mesh);
+        const exports::PointCache cache = exports::read_cache(named);
+        print("polygons", cache.mesh()->polygons.size());
+        print("texture coordinates", cache.mesh()->texture_coordinates.size());
+        print("groups", cache.mesh()->groups.size());
+        print_cache(named);
+    }
+}
+
 void print_scene(const std::filesystem::path& file)
 {
     const scenes::Scene scene = scenes::read_scene(file);
@@ -220,17 +237,18 @@ void print_scene(const std::filesystem::path& file)
 int info(const std::filesystem::path& file)
 {
     static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
-        {".obj", print_obj},     {".vtk", print_tets},   {".glb", print_avatar},
-        {".gltf", print_avatar}, {".fbx", print_avatar}, {".bvh", print_motion_file},
-        {".pc2", print_cache},   {".mdd", print_cache},  {".json", print_scene}};
-    if (!std::filesystem::is_regular_file(file))
+        {".obj", print_obj},     {".vtk", print_tets},        {".glb", print_avatar}, {".gltf", print_avatar},
+        {".fbx", print_avatar},  {".bvh", print_motion_file}, {".pc2", print_cache},  {".mdd", print_cache},
+        {".abc", print_archive}, {".json", print_scene}};
+    const bool is_in_archive = exports::is_abc(file);
+    if (!std::filesystem::is_regular_file(is_in_archive ? exports::archive_of(file) : file))
         throw InvalidInput(file.string() + ": can't be found; name a file");
-    const auto printer = kPrinters.find(lower_case_extension(file));
+    const auto printer = kPrinters.find(is_in_archive ? ".abc" : lower_case_extension(file));
     if (printer == kPrinters.end())
         throw InvalidInput(
             file.string() +
-            ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .bvh, .pc2, .mdd " +
-            "and .json (scene)");
+            ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .bvh, .pc2, .mdd, " +
+            ".abc and .json (scene)");
     printer->second(file);
     return kExitOk;
 }

@@ -14,6 +14,7 @@ std::vector<toile::app::Command> add_commands(CLI::App& parser)
             add_fit(parser),
             add_info(parser),
             add_measure(parser),
+            add_convert(parser),
             add_pattern(parser),
             add_schema(parser)};
 }

@@ -410,7 +410,7 @@ void describe(V& v, Solver& s)
 template <typename V>
 void describe(V& v, Export& e)
 {
-    v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd or .obj.");
+    v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd, .obj or .abc.");
     v.field("cloth", e.cloth, "Name of the cloth or solid; may be left out when there is only one.");
 }
 

@@ -56,7 +56,7 @@ TEST_F(CacheWriterTest, WritesMddByteForByte)
 
 TEST_F(CacheWriterTest, LeavesTheOldCacheIntactUntilItFinishes)
 {
-    for (const std::string name : {"a.pc2", "a.mdd", "a.obj"}) {
+    for (const std::string name : {"a.pc2", "a.mdd", "a.obj", "a.abc"}) {
         write_bytes(file(name), "precious");
         const auto writer = make_cache_writer(file(name), cache_layout(quad_mesh(), 1));
         writer->write(0, frame_positions(0, 7));
@@ -70,7 +70,7 @@ TEST_F(CacheWriterTest, LeavesTheOldCacheIntactUntilItFinishes)
 
 TEST_F(CacheWriterTest, RefusesToFinishShortAndNamesThePartialFile)
 {
-    for (const std::string name : {"a.pc2", "a.mdd", "a.obj"}) {
+    for (const std::string name : {"a.pc2", "a.mdd", "a.obj", "a.abc"}) {
         const auto writer = make_cache_writer(file(name), cache_layout(quad_mesh(), 3));
         write_frames(*writer, 0, 2, 7);
         const std::string message = refusal([&] { writer->finish(); });
@@ -125,7 +125,7 @@ TEST_F(CacheWriterTest, RefusesLayoutsThatMakeNoCache)
     layout = good;
     layout.vertex_count = 5;
     EXPECT_THAT(message("a.obj", layout), HasSubstr("uses vertex 5"));
-    EXPECT_THAT(message("a.pc3", good), HasSubstr("use .pc2, .mdd or .obj"));
+    EXPECT_THAT(message("a.pc3", good), HasSubstr("use .pc2, .mdd, .abc or .obj"));
     EXPECT_TRUE(std::filesystem::is_empty(folder_)) << "a refused layout leaves nothing behind";
 }
 
@@ -148,7 +148,7 @@ TEST_F(CacheWriterTest, KeepsThePartialOfAKilledRunUntilTheFirstFrame)
 
 TEST_F(CacheWriterTest, CompletesUnderAPartialNameThatCanBeRead)
 {
-    for (const std::string name : {"a.pc2", "a.mdd", "a.obj"}) {
+    for (const std::string name : {"a.pc2", "a.mdd", "a.obj", "a.abc"}) {
         write_bytes(file(name), "precious");
         const auto writer = make_cache_writer(file(name), cache_layout(quad_mesh(), 1));
         write_frames(*writer, 0, 1, 7);

@@ -37,7 +37,7 @@ protected:
 
 TEST_F(PointCacheTest, ReadsEveryFrameInVertexOrder)
 {
-    for (const std::string name : {"a.pc2", "a.mdd", "a.obj"}) {
+    for (const std::string name : {"a.pc2", "a.mdd", "a.obj", "a.abc"}) {
         const PointCache cache = read_cache(write_cache(name));
         ASSERT_EQ(cache.frame_count(), 4) << name;
         EXPECT_EQ(cache.vertex_count(), 7) << name;
@@ -92,7 +92,7 @@ TEST_F(PointCacheTest, NamesTheLineOfABrokenObj)
 TEST_F(PointCacheTest, NamesAMissingFileAndAnUnknownExtension)
 {
     EXPECT_THAT(refusal([&] { read_cache(file("none.pc2")); }), HasSubstr("none.pc2: can't be opened"));
-    EXPECT_THAT(refusal([&] { read_cache(file("a.abc")); }), HasSubstr("use .pc2, .mdd or .obj"));
+    EXPECT_THAT(refusal([&] { read_cache(file("a.mc")); }), HasSubstr("use .pc2, .mdd, .abc or .obj"));
 }
 
 } // namespace

@@ -19,7 +19,7 @@ std::string name_of(const std::filesystem::path& cache)
 {
     if (exports::ObjSequence::has_digits_placeholder(cache))
         return exports::ObjSequence(cache).stem();
-    static const std::set<std::string> kEndings{".pc2", ".mdd", ".obj", ".partial"};
+    static const std::set<std::string> kEndings{".pc2", ".mdd", ".obj", ".abc", ".partial"};
     std::filesystem::path name = cache.filename();
     while (kEndings.contains(lower_case_extension(name)))
         name = name.stem();

@@ -23,7 +23,12 @@ namespace {
 
 using std::filesystem::path;
 
-bool is_obj(const path& cache) { return exports::cache_format(cache) == exports::CacheFormat::Obj; }
+/// Whether a cache holds the faces that it plays on.
+bool has_faces(const path& cache)
+{
+    const exports::CacheFormat format = exports::cache_format(cache);
+    return format == exports::CacheFormat::Obj || format == exports::CacheFormat::Abc;
+}
 
 void add_output_and_partial(FilePlan& plan, const path& file, const std::string& role)
 {
@@ -37,7 +42,8 @@ struct SequenceFiles {
 };
 std::optional<SequenceFiles> sequence_of(const path& cache, int frame_count)
 {
-    if (!is_obj(cache) || (frame_count == 1 && !exports::ObjSequence::has_digits_placeholder(cache)))
+    if (exports::cache_format(cache) != exports::CacheFormat::Obj ||
+        (frame_count == 1 && !exports::ObjSequence::has_digits_placeholder(cache)))
         return std::nullopt;
     const exports::ObjSequence finished(cache);
     return SequenceFiles{finished, exports::ObjSequence(cache.parent_path() / (finished.stem() + ".partial") /
@@ -125,7 +131,7 @@ std::vector<SurfaceFile> start_meshes_of(const SceneJob& job)
         const auto is_same = [&](const SurfaceFile& other) {
             return other.file == mesh.file && other.surface == mesh.surface;
         };
-        if (!is_obj(cache.file) && std::none_of(caches.begin(), caches.end(), is_same) &&
+        if (!has_faces(cache.file) && std::none_of(caches.begin(), caches.end(), is_same) &&
             std::none_of(meshes.begin(), meshes.end(), is_same))
             meshes.push_back(mesh);
     }

@@ -21,6 +21,7 @@ struct Command {
 /// @param baselines  methods that scenes may select, borrowed; null: none
 Command add_simulate(CLI::App& parser, const scenes::BaselineMethods* baselines);
 Command add_render(CLI::App& parser);
+Command add_convert(CLI::App& parser);
 Command add_check(CLI::App& parser);
 Command add_drape(CLI::App& parser);
 Command add_fit(CLI::App& parser);

@@ -1,0 +1,239 @@
+#include "export/alembic/abc_cache.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/extension.h"
+#include "export/alembic/abc_reader.h"
+#include "export/alembic/abc_transform.h"
+#include "export/byte_order.h"
+
+namespace toile::exports {
+
+namespace {
+
+bool is_mesh(const AbcReadObject& object) { return object.is("PolyMesh") || object.is("SubD"); }
+
+/// Where the path of a mesh in an archive begins, at its #; the end if there is none.
+size_t hash_in(const std::string& path)
+{
+    const size_t at = path.rfind(".abc#");
+    return at == std::string::npos ? path.size() : at + 4;
+}
+
+std::vector<int> meshes_of(const AbcReader& reader)
+{
+    std::vector<int> meshes;
+    for (size_t k = 0; k < reader.objects().size(); ++k)
+        if (is_mesh(reader.objects()[k]))
+            meshes.push_back(int(k));
+    return meshes;
+}
+
+/// Index of the mesh with this path; of the only one if the path is empty.
+int mesh_in(const AbcReader& reader, const std::string& path)
+{
+    const std::vector<int> meshes = meshes_of(reader);
+    std::string known;
+    for (const int mesh : meshes)
+        known += (known.empty() ? "" : ", ") + reader.objects()[size_t(mesh)].path;
+    for (const int mesh : meshes)
+        if (reader.objects()[size_t(mesh)].path == path || (path.empty() && meshes.size() == 1))
+            return mesh;
+    if (meshes.empty())
+        reader.refuse("", "has no mesh");
+    reader.refuse(path, path.empty() ? "has several meshes; name one behind #: " + known
+                                     : "is no mesh of it; its meshes are " + known);
+}
+
+template <typename T>
+std::vector<T> values_of(const std::string& bytes)
+{
+    std::vector<T> values;
+    values.reserve(bytes.size() / sizeof(T));
+    for (size_t k = 0; k + sizeof(T) <= bytes.size(); k += sizeof(T))
+        values.push_back(take<T>(&bytes[k]));
+    return values;
+}
+
+class AbcSource final : public PointCache::Source {
+public:
+    AbcSource(const std::filesystem::path& file, const std::string& mesh_path)
+        : reader_(file), object_(mesh_in(reader_, mesh_path)), transform_(reader_, object_)
+    {
+        positions_ = required("P", AbcType::Float32, 3);
+        frame_count = positions_.samples;
+        vertex_count = int(reader_.sample(positions_, 0).size() / kPoint);
+        read_times();
+        read_faces();
+        read_texture();
+        read_groups();
+    }
+
+    std::vector<Vec3> frame(int index) const override
+    {
+        const std::vector<float> values = values_of<float>(reader_.sample(positions_, index));
+        if (values.size() != 3 * size_t(vertex_count))
+            refuse("has " + std::to_string(values.size() / 3) + " points in sample " + std::to_string(index) +
+                   " and " + std::to_string(vertex_count) + " in the first; a cache can't change its points");
+        std::vector<Vec3> x;
+        x.reserve(size_t(vertex_count));
+        for (size_t k = 0; k < values.size(); k += 3)
+            x.push_back(Vec3(values[k], values[k + 1], values[k + 2]));
+        transform_.apply(time_of(times_, index), x);
+        return x;
+    }
+
+private:
+    static constexpr size_t kPoint = 3 * sizeof(float);
+
+    const AbcReadObject& object() const { return reader_.objects()[size_t(object_)]; }
+    [[noreturn]] void refuse(const std::string& why) const { reader_.refuse(object().path, why); }
+
+    AbcReadProperty required(const std::string& name, AbcType type, int extent) const
+    {
+        const auto property = reader_.find(object().properties, {".geom", name});
+        if (!property || property->type != int(type) || property->extent != extent || property->samples < 1)
+            refuse("has no \"" + name + "\" of the type that the format prescribes; export it again");
+        return *property;
+    }
+
+    /// Samples at regular times have a rate.
+    void read_times()
+    {
+        if (size_t(positions_.time_sampling) >= reader_.time_samplings().size())
+            refuse("names times that the archive does not have");
+        times_ = reader_.time_samplings()[size_t(positions_.time_sampling)];
+        if (frame_count < 2)
+            return;
+        const double first = time_of(times_, 0);
+        const double step = (time_of(times_, frame_count - 1) - first) / (frame_count - 1);
+        for (int k = 1; k < frame_count; ++k)
+            if (!(std::fabs(time_of(times_, k) - first - k * step) < 1e-6 * step))
+                return;
+        fps = 1.0 / step;
+        start_frame = first / step;
+    }
+
+    std::vector<std::int32_t> constant_integers(const std::string& name) const
+    {
+        const AbcReadProperty property = required(name, AbcType::Int32, 1);
+        if (property.last_changed > 0)
+            refuse("changes its faces; a cache needs a mesh of constant topology");
+        return values_of<std::int32_t>(reader_.sample(property, 0));
+    }
+
+    /// Turns the faces, which are clockwise.
+    void read_faces()
+    {
+        const std::vector<std::int32_t> counts = constant_integers(".faceCounts");
+        const std::vector<std::int32_t> indices = constant_integers(".faceIndices");
+        for (const std::int32_t v : indices)
+            if (v < 0 || v >= vertex_count)
+                refuse("has a face of point " + std::to_string(v) + "; its points are 0 to " +
+                       std::to_string(vertex_count - 1));
+        size_t first = 0;
+        for (const std::int32_t count : counts) {
+            if (count < 3 || size_t(count) > indices.size() - first)
+                refuse("has a face of " + std::to_string(count) + " corners where " +
+                       std::to_string(indices.size() - first) + " are left");
+            std::vector<int>& polygon = mesh.polygons.emplace_back(indices.begin() + long(first),
+                                                                   indices.begin() + long(first) + count);
+            std::reverse(polygon.begin(), polygon.end());
+            first += size_t(count);
+        }
+        if (mesh.polygons.empty() || first != indices.size())
+            refuse("has faces of " + std::to_string(first) + " corners together and " +
+                   std::to_string(indices.size()) + " corners");
+        mesh.positions = frame(0);
+    }
+
+    /// Texture coordinates per corner, with indices or without.
+    void read_texture()
+    {
+        auto values = reader_.find(object().properties, {".geom", "uv", ".vals"});
+        const auto indices = reader_.find(object().properties, {".geom", "uv", ".indices"});
+        if (!values)
+            values = reader_.find(object().properties, {".geom", "uv"});
+        if (!values || values->samples < 1 || values->type != int(AbcType::Float32) || values->extent != 2)
+            return;
+        const std::vector<float> numbers = values_of<float>(reader_.sample(*values, 0));
+        std::vector<std::uint32_t> at;
+        if (indices && indices->samples > 0 && indices->type == int(AbcType::Uint32))
+            at = values_of<std::uint32_t>(reader_.sample(*indices, 0));
+        else
+            for (size_t k = 0; k < numbers.size() / 2; ++k)
+                at.push_back(std::uint32_t(k));
+        size_t corners = 0;
+        for (const std::vector<int>& polygon : mesh.polygons)
+            corners += polygon.size();
+        const auto is_beyond = [&](std::uint32_t k) { return k >= numbers.size() / 2; };
+        if (at.size() != corners || std::any_of(at.begin(), at.end(), is_beyond))
+            return; // not of corners
+        for (size_t k = 0; k + 1 < numbers.size(); k += 2)
+            mesh.texture_coordinates.push_back(Vec2(numbers[k], numbers[k + 1]));
+        auto next = at.begin();
+        for (const std::vector<int>& polygon : mesh.polygons) {
+            std::vector<int>& uvs = mesh.polygon_uvs.emplace_back(next, next + long(polygon.size()));
+            std::reverse(uvs.begin(), uvs.end());
+            next += long(polygon.size());
+        }
+    }
+
+    /// Face sets as groups.
+    void read_groups()
+    {
+        std::vector<std::string> set_of(mesh.polygons.size());
+        for (const AbcReadObject& set : reader_.objects()) {
+            if (set.parent != object_ || !set.is("FaceSet"))
+                continue;
+            const auto faces = reader_.find(set.properties, {".faceset", ".faces"});
+            if (!faces || faces->samples < 1 || faces->type != int(AbcType::Int32))
+                continue;
+            for (const std::int32_t polygon : values_of<std::int32_t>(reader_.sample(*faces, 0)))
+                if (polygon >= 0 && size_t(polygon) < set_of.size())
+                    set_of[size_t(polygon)] = set.path.substr(set.path.rfind('/') + 1);
+        }
+        for (size_t k = 0; k < set_of.size(); ++k)
+            if (set_of[k] != (k == 0 ? std::string() : set_of[k - 1]))
+                begin_group(mesh, set_of[k], int(k));
+    }
+
+    AbcReader reader_;
+    int object_;
+    AbcTransform transform_;
+    AbcReadProperty positions_;
+    AbcTimes times_;
+};
+
+} // namespace
+
+bool is_abc(const std::filesystem::path& file) { return lower_case_extension(archive_of(file)) == ".abc"; }
+
+std::filesystem::path archive_of(const std::filesystem::path& file)
+{
+    const std::string text = file.string();
+    return text.substr(0, hash_in(text));
+}
+
+std::vector<std::string> abc_mesh_paths(const std::filesystem::path& archive)
+{
+    const AbcReader reader(archive);
+    std::vector<std::string> paths;
+    for (const int mesh : meshes_of(reader))
+        paths.push_back(reader.objects()[size_t(mesh)].path);
+    return paths;
+}
+
+std::unique_ptr<const PointCache::Source> open_abc(const std::filesystem::path& file)
+{
+    const std::string text = file.string();
+    const size_t hash = hash_in(text);
+    return std::make_unique<AbcSource>(archive_of(file), hash < text.size() ? text.substr(hash + 1) : "");
+}
+
+} // namespace toile::exports

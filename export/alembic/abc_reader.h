@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "export/alembic/abc_property.h"
+#include "export/alembic/ogawa_reader.h"
+
+namespace toile::exports {
+
+/// Times of the samples of a property [s].
+struct AbcTimes {
+    double cycle = 1.0;         ///< [s] from one cycle of samples to the next
+    std::vector<double> starts; ///< [samples of a cycle]
+};
+
+/// A property of an archive that is read.
+struct AbcReadProperty {
+    std::string name, metadata;
+    bool is_compound = false;
+    AbcProperty::Kind kind = AbcProperty::Kind::Array;
+    int type = 0;   ///< AbcType, or another one of the format
+    int extent = 0; ///< numbers per value
+    int samples = 0;
+    int first_changed = 0, last_changed = 0;
+    int time_sampling = 0;
+    OgawaNode group = kOgawaNothing;
+    std::vector<OgawaNode> nodes; ///< of the group, if it is no compound
+};
+
+/// An object of an archive that is read.
+struct AbcReadObject {
+    std::string path; ///< names of all objects above and its own, each after a slash
+    std::string metadata;
+    int parent = -1; ///< in AbcReader::objects()
+    OgawaNode properties = kOgawaNothing;
+
+    bool is(const std::string& type) const; ///< of a schema, such as PolyMesh
+};
+
+/// Objects and properties of an Alembic archive, of our own or of other programs.
+class AbcReader {
+public:
+    /// @throws InvalidInput naming file and byte
+    explicit AbcReader(const std::filesystem::path& file);
+
+    const std::vector<AbcReadObject>& objects() const { return objects_; } ///< parents first
+    const std::vector<AbcTimes>& time_samplings() const { return times_; }
+
+    std::vector<AbcReadProperty> properties(OgawaNode compound) const;
+
+    /// A property by the names of its compounds and its own; empty if there is none.
+    std::optional<AbcReadProperty> find(OgawaNode compound, const std::vector<std::string>& names) const;
+
+    /// Bytes of a sample: all values, little endian.
+    /// @param index  [0, samples)
+    std::string sample(const AbcReadProperty& property, int index) const;
+
+    /// Refuses the file, naming the path of an object.
+    [[noreturn]] void refuse(const std::string& path, const std::string& why) const;
+
+private:
+    void read_times(OgawaNode node);
+    void read_metadata(OgawaNode node);
+    void read_objects(OgawaNode group, int parent, int depth);
+
+    OgawaReader file_;
+    std::vector<std::string> metadata_; ///< by the numbers in headers
+    std::vector<AbcTimes> times_;
+    std::vector<AbcReadObject> objects_;
+};
+
+} // namespace toile::exports

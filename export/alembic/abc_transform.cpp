@@ -1,0 +1,139 @@
+#include "export/alembic/abc_transform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "export/byte_order.h"
+
+namespace toile::exports {
+
+namespace {
+
+using Eigen::Matrix4d;
+
+/// Operations of Alembic's transforms, in the upper half of their byte.
+enum Operation { kScale, kTranslate, kRotate, kMatrix, kRotateX, kRotateY, kRotateZ };
+
+int value_count(int operation)
+{
+    constexpr int kCounts[] = {3, 3, 4, 16, 1, 1, 1};
+    return kCounts[operation];
+}
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+/// Matrix of an operation on column vectors.
+Matrix4d matrix_of(int operation, const double* values)
+{
+    const auto rotation = [](double degrees, const Vec3& axis) {
+        Matrix4d matrix = Matrix4d::Identity();
+        if (axis.norm() > 0.0)
+            matrix.topLeftCorner<3, 3>() =
+                Eigen::AngleAxisd(radians(degrees), axis.normalized()).toRotationMatrix();
+        return matrix;
+    };
+    Matrix4d matrix = Matrix4d::Identity();
+    switch (operation) {
+    case kScale:
+        matrix.diagonal().head<3>() = Vec3(values[0], values[1], values[2]);
+        return matrix;
+    case kTranslate:
+        matrix.topRightCorner<3, 1>() = Vec3(values[0], values[1], values[2]);
+        return matrix;
+    case kRotate:
+        return rotation(values[3], {values[0], values[1], values[2]});
+    case kMatrix: // rows of a matrix on row vectors: columns of that on column vectors
+        return Eigen::Map<const Matrix4d>(values);
+    default:
+        return rotation(values[0], Vec3::Unit(operation - kRotateX));
+    }
+}
+
+} // namespace
+
+double time_of(const AbcTimes& times, int index)
+{
+    const int count = std::max(int(times.starts.size()), 1);
+    const double start = times.starts.empty() ? 0.0 : times.starts[size_t(index % count)];
+    return index < count ? start : start + (index / count) * times.cycle;
+}
+
+AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader)
+{
+    for (int at = object; at >= 0; at = reader.objects()[size_t(at)].parent) {
+        const AbcReadObject& level = reader.objects()[size_t(at)];
+        const auto operations = reader.find(level.properties, {".xform", ".ops"});
+        const auto values = reader.find(level.properties, {".xform", ".vals"});
+        if (operations && operations->samples > 0 && values && values->samples > 0) {
+            Level& added = levels_.emplace_back();
+            added.path = level.path;
+            int count = 0;
+            for (const char code : reader.sample(*operations, 0)) {
+                const int operation = static_cast<unsigned char>(code) >> 4;
+                if (operation > kRotateZ)
+                    reader.refuse(level.path,
+                                  "its transform has the unknown operation " + std::to_string(operation));
+                added.operations.push_back(operation);
+                count += value_count(operation);
+            }
+            added.values = *values;
+            if (size_t(values->time_sampling) < reader.time_samplings().size())
+                added.times = reader.time_samplings()[size_t(values->time_sampling)];
+            if (values->type != int(AbcType::Float64) ||
+                reader.sample(*values, 0).size() != sizeof(double) * size_t(count))
+                reader.refuse(level.path, "its transform has not " + std::to_string(count) +
+                                              " numbers of 8 bytes, as its operations need");
+        }
+        const auto inherits = reader.find(level.properties, {".xform", ".inherits"});
+        if (inherits && inherits->samples > 0 && reader.sample(*inherits, 0) == std::string(1, '\0'))
+            break;
+    }
+}
+
+Matrix4d AbcTransform::matrix(const Level& level, int sample) const
+{
+    const std::string bytes = reader_.sample(level.values, sample);
+    std::vector<double> values;
+    for (size_t k = 0; k + sizeof(double) <= bytes.size(); k += sizeof(double))
+        values.push_back(take<double>(&bytes[k]));
+    Matrix4d matrix = Matrix4d::Identity();
+    size_t first = 0;
+    for (const int operation : level.operations) {
+        const size_t end = first + size_t(value_count(operation));
+        if (end > values.size())
+            reader_.refuse(level.path, "sample " + std::to_string(sample) + " of its transform is cut short");
+        matrix = matrix * matrix_of(operation, &values[first]);
+        first = end;
+    }
+    return matrix;
+}
+
+Matrix4d AbcTransform::matrix_at(const Level& level, double t) const
+{
+    int after = 0;
+    while (after < level.values.samples && time_of(level.times, after) < t)
+        ++after;
+    if (after == 0 || after == level.values.samples)
+        return matrix(level, std::min(after, level.values.samples - 1));
+    const double t0 = time_of(level.times, after - 1), t1 = time_of(level.times, after);
+    const double part = (t - t0) / (t1 - t0);
+    return (1.0 - part) * matrix(level, after - 1) + part * matrix(level, after);
+}
+
+void AbcTransform::apply(double t, View<Vec3> points) const
+{
+    if (levels_.empty())
+        return;
+    Matrix4d all = Matrix4d::Identity();
+    for (const Level& level : levels_)
+        all = matrix_at(level, t) * all;
+    const Eigen::Affine3d transform(all);
+    for (Vec3& point : points)
+        point = transform * point;
+}
+
+} // namespace toile::exports

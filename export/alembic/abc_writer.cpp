@@ -1,0 +1,42 @@
+#include "export/alembic/abc_writer.h"
+
+#include <utility>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "export/binary_file.h"
+
+namespace toile::exports {
+
+AbcWriter::AbcWriter(std::filesystem::path file, const CacheLayout& layout)
+    : file_(std::move(file)), partial_(partial_beside(file_)), order_(file_, layout), layout_(layout)
+{
+    require_writable(partial_);
+    if (layout.resume_at > 0)
+        throw InvalidInput(file_.string() + ": an Alembic archive can't be continued; start the run anew, or "
+                                            "write a .pc2");
+}
+
+void AbcWriter::write(int frame, View<const Vec3> positions)
+{
+    order_.require_next(frame, positions);
+    if (!archive_)
+        archive_.emplace(partial_, AbcArchive::Layout{layout_.fps,
+                                                      layout_.start_frame,
+                                                      "toile",
+                                                      {file_.stem().string()},
+                                                      {std::exchange(layout_.faces, {})}});
+    archive_->write({{positions.begin(), positions.end()}});
+    order_.advance();
+}
+
+std::filesystem::path AbcWriter::complete()
+{
+    order_.require_complete(partial_);
+    archive_->complete();
+    return partial_;
+}
+
+void AbcWriter::publish() { move_into_place(partial_, file_); }
+
+} // namespace toile::exports

@@ -1,0 +1,56 @@
+"""Writes moving_quad.abc beside this file with the official library: pip install alembic3d
+
+A quad and a triangle of five points under two transforms. The outer one moves by 1 m along X a frame and is
+turned by 90 degrees about Z; the inner one is scaled by 2. Point k is at (k, frame, 0) in its own frame.
+Texture coordinates are stored per corner, without indices; the triangle is the face set "tip".
+"""
+
+import pathlib
+
+import imath
+from alembic3d import Abc, AbcGeom, AbcCoreAbstract
+
+FRAMES, FPS, START = 4, 24.0, 10.0
+
+
+def points(frame):
+    array = imath.V3fArray(5)
+    for k in range(5):
+        array[k] = imath.V3f(k, frame, 0)
+    return array
+
+
+def integers(values):
+    array = imath.IntArray(len(values))
+    for k, value in enumerate(values):
+        array[k] = value
+    return array
+
+
+def texture():
+    array = imath.V2fArray(7)
+    for k in range(7):
+        array[k] = imath.V2f(k, 0.5 * k)
+    return array
+
+
+archive = Abc.OArchive(str(pathlib.Path(__file__).with_name("moving_quad.abc")))
+times = archive.addTimeSampling(AbcCoreAbstract.TimeSampling(1.0 / FPS, START / FPS))
+outer = AbcGeom.OXform(archive.getTop(), "outer", times)
+inner = AbcGeom.OXform(outer, "inner")
+mesh = AbcGeom.OPolyMesh(inner, "cloth", times)
+
+inner_sample = AbcGeom.XformSample()
+inner_sample.setScale(imath.V3d(2, 2, 2))
+inner.getSchema().set(inner_sample)
+for frame in range(FRAMES):
+    outer_sample = AbcGeom.XformSample()
+    outer_sample.setTranslation(imath.V3d(frame, 0, 0))
+    outer_sample.setZRotation(90.0)
+    outer.getSchema().set(outer_sample)
+    sample = AbcGeom.OPolyMeshSchemaSample(points(frame), integers([3, 2, 1, 0, 4, 3, 0]), integers([4, 3]))
+    if frame == 0:
+        sample.setUVs(AbcGeom.OV2fGeomParamSample(texture(), AbcGeom.GeometryScope.kFacevaryingScope))
+    mesh.getSchema().set(sample)
+faces = mesh.getSchema().createFaceSet("tip")
+faces.getSchema().set(AbcGeom.OFaceSetSchemaSample(integers([1])))
