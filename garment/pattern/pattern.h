@@ -106,6 +106,19 @@ struct PanelFold {
     std::string name;                  ///< for messages: how the file calls it
 };
 
+/// Point of a panel.
+struct PanelPoint {
+    int panel = 0;             ///< index into Pattern::panels
+    Vec2 point = Vec2::Zero(); ///< in the panel's plane [m]
+};
+
+/// Tack or button: two points that are pulled together and then held.
+struct Closure {
+    PanelPoint a, b;
+    double close_at = 0.0; ///< [s] after gravity begins to act on the garment; 0: once it is sewn
+    std::string name;      ///< for messages: how the file calls it
+};
+
 struct Pattern {
     std::string source; ///< file, for messages
     std::string description;
@@ -113,6 +126,7 @@ struct Pattern {
     std::vector<Seam> seams;
     std::vector<Elastic> elastics;
     std::vector<PanelFold> folds;
+    std::vector<Closure> closures;
     std::vector<std::filesystem::path> files; ///< that it was read from
 };
 

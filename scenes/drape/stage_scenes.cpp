@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "garment/fabric/fabric.h"
+#include "scenes/drape/closures.h"
 #include "scenes/drape/elastics.h"
 
 namespace toile::scenes {
@@ -95,6 +96,8 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
     Scene scene = still_scene_of("press", mesh.surface(x), pressed_fabric);
     scene.gravity.setZero();
     scene.contact.friction = kPressingFriction;
+    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh);
+    std::erase_if(scene.cloths.back().tacks, [](const scene::Tack& tack) { return tack.close_at > 0.0; });
     return scene;
 }
 
@@ -102,18 +105,25 @@ Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 {
     Scene scene = still_scene_of("settle", mesh.surface(x), falling_fabric);
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
+    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh);
     hold_labels(garment_, mesh, scene, true);
     return scene;
 }
 
-Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all) const
+Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all, double time) const
 {
     Scene scene = scene_of("drape", mesh.surface(x), hanging_fabric);
     for (size_t g = 0; g < worn_.size(); ++g) {
         scene.cloths[g].elastics = elastics_of(worn_[g].garment.pattern, worn_[g].mesh);
+        scene.cloths[g].tacks = tacks_of(worn_[g].garment.pattern, worn_[g].mesh);
+        for (scene::Tack& tack : scene.cloths[g].tacks)
+            tack.close_at = 0.0; // it has closed
         hold_labels(worn_[g].garment, worn_[g].mesh, scene, false);
     }
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
+    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh);
+    for (scene::Tack& tack : scene.cloths.back().tacks)
+        tack.close_at = std::max(0.0, tack.close_at - time);
     hold_labels(garment_, mesh, scene, holds_all);
     return scene;
 }

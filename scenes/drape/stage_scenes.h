@@ -30,7 +30,7 @@ public:
     Scene sew(const GarmentSurface& panels) const;
 
     /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
-    /// great bending rigidity, without gravity.
+    /// great bending rigidity, without gravity. Closures without a time close.
     /// @param x  [welded vertices] [m]
     Scene press(const GarmentMesh& mesh, View<const Vec3> x) const;
 
@@ -42,7 +42,8 @@ public:
     /// without damping.
     /// @param x          [welded vertices] [m]
     /// @param holds_all  labelled edges that are released in the end are held too, by springs
-    Scene hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all) const;
+    /// @param time       that gravity has acted on the garment [s]
+    Scene hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all, double time) const;
 
 private:
     /// What becomes of a preset in a stage.

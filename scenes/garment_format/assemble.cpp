@@ -6,6 +6,7 @@
 
 #include "garment/fabric/fabric.h"
 #include "scenes/format/names.h"
+#include "scenes/garment_format/closures.h"
 #include "scenes/garment_format/copies.h"
 #include "scenes/garment_format/edge_name.h"
 #include "scenes/garment_format/panel_folds.h"
@@ -206,6 +207,7 @@ Pattern assemble(const Document& document, const GarmentFile& file, const std::v
     add_seams(document, file, pattern);
     add_elastics(document, file, pattern);
     add_folds(document, file, pattern);
+    add_closures(document, file, pattern);
     return pattern;
 }
 

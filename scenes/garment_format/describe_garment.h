@@ -129,6 +129,18 @@ void describe(V& v, FoldEntry& f)
 }
 
 template <typename V>
+void describe(V& v, ClosureEntry& c)
+{
+    v.required(
+        "a", c.a,
+        "Point of a panel: PANEL.EDGE[0.25], by a fraction of the edge's length, or PANEL[0.1,0.2], by "
+        "metres in the panel's plane; the nearest vertex of the mesh.");
+    v.required("b", c.b, "Point that it is pulled to.");
+    v.field("close_at", c.close_at, scene_format::between(0.0, 60.0, "s"),
+            "Time from when the garment falls into place to when it begins to close; 0: once it is sewn.");
+}
+
+template <typename V>
 void describe(V& v, GarmentFile& g)
 {
     v.version("toile_garment", 1, "Version of the format.");
@@ -141,6 +153,9 @@ void describe(V& v, GarmentFile& g)
             "Elastics along edges, which gather the cloth as they contract, from the moment it falls into "
             "place on.");
     v.field("folds", g.folds, "Lines along which panels are folded before they are sewn, as pleats are.");
+    v.field("closures", g.closures,
+            "Tacks and buttons: pairs of points that are pulled together at 0.2 m/s and then held. Those "
+            "between panels with as many copies are repeated.");
 }
 
 } // namespace toile::garment_format

@@ -60,6 +60,13 @@ struct FoldEntry {
     double stiffness = garment::kFoldStiffness; ///< [N]
 };
 
+/// A tack or button as written, by two points of panels.
+struct ClosureEntry {
+    std::string a;
+    std::string b;
+    double close_at = 0.0; ///< [s]
+};
+
 struct GarmentFile {
     std::string description;
     std::vector<PatternFile> patterns;
@@ -67,6 +74,7 @@ struct GarmentFile {
     std::vector<SeamEntry> seams;
     std::vector<ElasticEntry> elastics;
     std::vector<FoldEntry> folds;
+    std::vector<ClosureEntry> closures;
 };
 
 } // namespace toile::garment_format

@@ -213,6 +213,31 @@ TEST_F(DrapeTest, GathersAHemByAnElasticAndWritesIt)
     }
 }
 
+/// The hem is drawn together in front of the body, where nothing is between both points.
+TEST_F(DrapeTest, ClosesButtonsAndWritesThem)
+{
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("closures": [
+        {"a": "front.0[0.25]", "b": "front.0[0.75]"},
+        {"a": "front[-0.06,-0.05]", "b": "front[0.06,-0.05]", "close_at": 1.2}])");
+    ASSERT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    ASSERT_EQ(result.garments[0].closures.size(), 2u);
+    for (const DrapeClosure& closure : result.garments[0].closures)
+        EXPECT_LT(closure.gap, 0.002) << closure.name;
+    EXPECT_EQ(result.garments[0].closures[1].name, "closures[1]");
+
+    // What holds them is in the scene, closed from its start.
+    const std::vector<scene::Tack>& tacks = result.scene.cloths[0].tacks;
+    ASSERT_EQ(tacks.size(), 2u);
+    const std::vector<Vec3>& x = result.garments[0].surface.mesh.positions;
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(tacks[i].close_at, 0.0);
+        EXPECT_NEAR((x[size_t(tacks[i].a)] - x[size_t(tacks[i].b)]).norm(),
+                    result.garments[0].closures[i].gap, 1e-12);
+    }
+    // The drape went on until the second had closed: settling takes a second at most.
+    EXPECT_GT(result.garments[0].stages.back().frames, 0.2 * 30);
+}
+
 TEST_F(DrapeTest, SewsSeamsInTheirOrder)
 {
     const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("seams": [

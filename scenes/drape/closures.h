@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "scenes/drape/garment_mesh.h"
+#include "scenes/format/scene.h"
+
+namespace toile::scenes {
+
+/// Vertex of the panels' mesh that is nearest to a point of a panel.
+int nearest_vertex(const garment::PatternMesh& mesh, const garment::PanelPoint& point);
+
+/// Closures of a pattern as tacks between welded vertices, with the times that the pattern gives. Those whose
+/// ends are one vertex are left out.
+std::vector<scene::Tack> tacks_of(const garment::Pattern& pattern, const GarmentMesh& mesh);
+
+/// Distance of the ends of each closure of a pattern [m].
+/// @param x  [welded vertices] [m]
+std::vector<double> closure_gaps(const garment::Pattern& pattern, const GarmentMesh& mesh,
+                                 View<const Vec3> x);
+
+} // namespace toile::scenes
