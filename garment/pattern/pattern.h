@@ -119,6 +119,13 @@ struct Closure {
     std::string name;      ///< for messages: how the file calls it
 };
 
+/// What is held softly on the body.
+struct BodyAttachment {
+    std::vector<EdgePart> edges;
+    std::vector<PanelPoint> points;
+    bool is_released = false; ///< once the garment rests
+};
+
 struct Pattern {
     std::string source; ///< file, for messages
     std::string description;
@@ -127,6 +134,7 @@ struct Pattern {
     std::vector<Elastic> elastics;
     std::vector<PanelFold> folds;
     std::vector<Closure> closures;
+    std::vector<BodyAttachment> attachments;
     std::vector<std::filesystem::path> files; ///< that it was read from
 };
 

@@ -15,7 +15,8 @@ size_t nearest(const std::vector<garment::EdgeVertex>& edge, double fraction)
                   edge.begin());
 }
 
-/// Welded vertices along a part of an edge; two at least.
+} // namespace
+
 std::vector<int> path_along(const garment::EdgePart& part, const GarmentMesh& mesh)
 {
     const auto& edge = mesh.panels.edge_vertices[size_t(part.panel)][size_t(part.edge)];
@@ -30,8 +31,6 @@ std::vector<int> path_along(const garment::EdgePart& part, const GarmentMesh& me
         path.push_back(mesh.sewn.welded_of[size_t(edge[i].vertex)]);
     return path;
 }
-
-} // namespace
 
 std::vector<scene::Elastic> elastics_of(const garment::Pattern& pattern, const GarmentMesh& mesh)
 {

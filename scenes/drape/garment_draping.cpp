@@ -239,8 +239,10 @@ void GarmentDraping::drape(WornGarment garment)
 {
     const Clock clock;
     const std::set<std::string> labels = garment_.labels();
+    const auto& attachments = garment_.pattern.attachments;
     const bool has_released =
-        std::any_of(labels.begin(), labels.end(), [](auto& label) { return !stays_attached(label); });
+        std::any_of(labels.begin(), labels.end(), [](auto& label) { return !stays_attached(label); }) ||
+        std::any_of(attachments.begin(), attachments.end(), [](auto& held) { return held.is_released; });
     int frames = 0;
     for (const bool holds_all : {true, false}) {
         if (!holds_all && !has_released)

@@ -61,6 +61,18 @@ scene::Fabric folding_fabric(const std::string& preset) { return damped_fabric(p
 scene::Fabric falling_fabric(const std::string& preset) { return damped_fabric(preset, kFallingDamping); }
 scene::Fabric hanging_fabric(const std::string& preset) { return damped_fabric(preset, kHangingDamping); }
 
+/// Welded vertices that an attachment holds, ascending.
+std::vector<int> vertices_of(const garment::BodyAttachment& attachment, const GarmentMesh& mesh)
+{
+    std::set<int> vertices;
+    for (const garment::EdgePart& part : attachment.edges)
+        for (const int v : path_along(part, mesh))
+            vertices.insert(v);
+    for (const garment::PanelPoint& point : attachment.points)
+        vertices.insert(mesh.sewn.welded_of[size_t(nearest_vertex(mesh.panels, point))]);
+    return {vertices.begin(), vertices.end()};
+}
+
 } // namespace
 
 bool stays_attached(const std::string& label)
@@ -106,7 +118,7 @@ Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
     Scene scene = still_scene_of("settle", mesh.surface(x), falling_fabric);
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
     scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh);
-    hold_labels(garment_, mesh, scene, true);
+    hold(garment_, mesh, scene, true);
     return scene;
 }
 
@@ -118,13 +130,13 @@ Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_
         scene.cloths[g].tacks = tacks_of(worn_[g].garment.pattern, worn_[g].mesh);
         for (scene::Tack& tack : scene.cloths[g].tacks)
             tack.close_at = 0.0; // it has closed
-        hold_labels(worn_[g].garment, worn_[g].mesh, scene, false);
+        hold(worn_[g].garment, worn_[g].mesh, scene, false);
     }
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
     scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh);
     for (scene::Tack& tack : scene.cloths.back().tacks)
         tack.close_at = std::max(0.0, tack.close_at - time);
-    hold_labels(garment_, mesh, scene, holds_all);
+    hold(garment_, mesh, scene, holds_all);
     return scene;
 }
 
@@ -199,24 +211,29 @@ void StageScenes::add_cloth(Scene& scene, const Garment& garment, const std::str
 }
 
 /// A vertex of two edges follows the one that stays attached.
-void StageScenes::hold_labels(const Garment& garment, const GarmentMesh& mesh, Scene& scene,
-                              bool holds_all) const
+void StageScenes::hold(const Garment& garment, const GarmentMesh& mesh, Scene& scene, bool holds_all) const
 {
     std::set<int> held;
-    for (const bool stays : {true, false})
-        for (const std::string& label : garment.labels()) {
-            if (stays_attached(label) != stays || (!stays && !holds_all))
-                continue;
-            std::vector<int> vertices = mesh.labelled(garment.pattern, label);
-            std::erase_if(vertices, [&](int v) { return !held.insert(v).second; });
-            if (vertices.empty())
-                continue;
-            scene::Attachment attachment;
-            attachment.cloth = garment.name();
-            attachment.select.by = std::move(vertices);
-            attachment.to = settings_.body.name;
-            scene.attachments.push_back(attachment);
-        }
+    const auto attach = [&](std::vector<int> vertices) {
+        std::erase_if(vertices, [&](int v) { return !held.insert(v).second; });
+        if (vertices.empty())
+            return;
+        scene::Attachment attachment;
+        attachment.cloth = garment.name();
+        attachment.select.by = std::move(vertices);
+        attachment.to = settings_.body.name;
+        scene.attachments.push_back(attachment);
+    };
+    for (const bool stays : {true, false}) {
+        if (!stays && !holds_all)
+            break;
+        for (const std::string& label : garment.labels())
+            if (stays_attached(label) == stays)
+                attach(mesh.labelled(garment.pattern, label));
+        for (const garment::BodyAttachment& attachment : garment.pattern.attachments)
+            if (attachment.is_released != stays)
+                attach(vertices_of(attachment, mesh));
+    }
 }
 
 } // namespace toile::scenes

@@ -54,7 +54,7 @@ private:
                          FabricInStage* fabric) const;
     void add_cloth(Scene& scene, const Garment& garment, const std::string& file_name,
                    const GarmentSurface& surface, FabricInStage* fabric) const;
-    void hold_labels(const Garment& garment, const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
+    void hold(const Garment& garment, const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
 
     const DrapeSettings& settings_;
     const Garment& garment_;

@@ -10,6 +10,7 @@
 #include "scenes/garment_format/copies.h"
 #include "scenes/garment_format/edge_name.h"
 #include "scenes/garment_format/panel_folds.h"
+#include "scenes/garment_format/panel_point.h"
 
 namespace toile::garment_format {
 namespace {
@@ -187,6 +188,24 @@ void add_elastics(const Document& document, const GarmentFile& file, Pattern& pa
     }
 }
 
+void add_attachments(const Document& document, const GarmentFile& file, Pattern& pattern)
+{
+    for (size_t i = 0; i < file.attach.size(); ++i) {
+        const AttachEntry& entry = file.attach[i];
+        const std::string key_path = below("attach", i);
+        garment::BodyAttachment attachment;
+        if (entry.edges.empty() && entry.points.empty())
+            document.refuse(key_path, "holds nothing; name \"edges\" or \"points\"");
+        if (!entry.edges.empty())
+            attachment.edges = chain_of(document, below(key_path, "edges"), entry.edges, pattern);
+        for (size_t k = 0; k < entry.points.size(); ++k)
+            attachment.points.push_back(
+                panel_point_of(document, below(below(key_path, "points"), k), entry.points[k], pattern));
+        attachment.is_released = entry.release;
+        pattern.attachments.push_back(std::move(attachment));
+    }
+}
+
 } // namespace
 
 Pattern assemble(const Document& document, const GarmentFile& file, const std::vector<Pattern>& parts)
@@ -208,6 +227,7 @@ Pattern assemble(const Document& document, const GarmentFile& file, const std::v
     add_elastics(document, file, pattern);
     add_folds(document, file, pattern);
     add_closures(document, file, pattern);
+    add_attachments(document, file, pattern);
     return pattern;
 }
 

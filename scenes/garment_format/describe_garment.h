@@ -141,6 +141,15 @@ void describe(V& v, ClosureEntry& c)
 }
 
 template <typename V>
+void describe(V& v, AttachEntry& a)
+{
+    v.field("edges", a.edges, "Edges, PANEL.EDGE, or parts of them, PANEL.EDGE[0.2:0.6].");
+    v.field("points", a.points, "Points of panels, PANEL.EDGE[0.25] or PANEL[0.1,0.2].");
+    v.field("release", a.release,
+            "Release them once the garment rests; otherwise the written scene holds them.");
+}
+
+template <typename V>
 void describe(V& v, GarmentFile& g)
 {
     v.version("toile_garment", 1, "Version of the format.");
@@ -156,6 +165,9 @@ void describe(V& v, GarmentFile& g)
     v.field("closures", g.closures,
             "Tacks and buttons: pairs of points that are pulled together at 0.2 m/s and then held. Those "
             "between panels with as many copies are repeated.");
+    v.field("attach", g.attach,
+            "Edges and points that springs of 300 N/m a vertex hold on the body while the garment falls into "
+            "place and rests.");
 }
 
 } // namespace toile::garment_format

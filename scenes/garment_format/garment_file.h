@@ -67,6 +67,13 @@ struct ClosureEntry {
     double close_at = 0.0; ///< [s]
 };
 
+/// What is held on the body, as written.
+struct AttachEntry {
+    std::vector<std::string> edges;
+    std::vector<std::string> points;
+    bool release = false;
+};
+
 struct GarmentFile {
     std::string description;
     std::vector<PatternFile> patterns;
@@ -75,6 +82,7 @@ struct GarmentFile {
     std::vector<ElasticEntry> elastics;
     std::vector<FoldEntry> folds;
     std::vector<ClosureEntry> closures;
+    std::vector<AttachEntry> attach;
 };
 
 } // namespace toile::garment_format

@@ -238,6 +238,31 @@ TEST_F(DrapeTest, ClosesButtonsAndWritesThem)
     EXPECT_GT(result.garments[0].stages.back().frames, 0.2 * 30);
 }
 
+/// A loose tube, which slides off where nothing holds it.
+TEST_F(DrapeTest, HoldsWhatIsAttachedAndWritesIt)
+{
+    const DrapeResult result = drape_tube(tube(0.40, ""), R"("attach": [
+        {"edges": ["front.2", "back.2[0.25:0.75]"]}, {"points": ["back.0[0.5]"], "release": true}])");
+    ASSERT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    ASSERT_EQ(result.scene.attachments.size(), 1u) << "the other one was released";
+    EXPECT_EQ(result.scene.attachments[0].to, "body");
+    const auto& vertices = std::get<std::vector<int>>(result.scene.attachments[0].select.by);
+    EXPECT_EQ(vertices.size(), 22u) << "14 intervals of 40 cm, and 6 of their middle half";
+    double mean = 0.0;
+    for (const int v : vertices)
+        mean += result.garments[0].surface.mesh.positions[size_t(v)].y() / double(vertices.size());
+    EXPECT_NEAR(mean, 0.1, 0.01) << "where the upper edge started";
+}
+
+TEST_F(DrapeTest, ReleasesWhatIsAttachedForAWhile)
+{
+    max_motion_ = 1.0;
+    const DrapeResult result =
+        drape_tube(tube(0.40, ""), R"("attach": [{"edges": ["front.2", "back.2"], "release": true}])");
+    EXPECT_EQ(result.outcome, DrapeOutcome::NotAtRest) << "it falls once it is released";
+    EXPECT_GT(result.rest_speed.value(), 0.1);
+}
+
 TEST_F(DrapeTest, SewsSeamsInTheirOrder)
 {
     const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("seams": [

@@ -3,7 +3,7 @@
 #include "tests/scenes/garment_format/texts.h"
 #include "tests/support/temporary_folder.h"
 
-/// Tacks and buttons in garment files.
+/// Points of panels in garment files: tacks and buttons, and what is held on the body.
 namespace toile::test {
 
 using namespace garment;
@@ -95,6 +95,50 @@ TEST_F(Closures, AreRefusedInOneLine)
     };
     for (const auto& [closure, message] : mistakes)
         EXPECT_EQ(complaint(closure), "t.garment.json: " + message) << closure;
+}
+
+class Attachments : public Closures {
+protected:
+    Pattern read_attach(const std::string& attach) const
+    {
+        return read_pattern(folder_.write(
+            "t.garment.json",
+            R"({"toile_garment": 1, "patterns": [{"file": "tube.json"}], "attach": [)" + attach + "]}"));
+    }
+    std::string complaint_about(const std::string& attach) const
+    {
+        const std::string text = refusal([&] { static_cast<void>(read_attach(attach)); });
+        return text.substr(std::min(text.size(), folder_.path().string().size() + 1));
+    }
+};
+
+TEST_F(Attachments, NameEdgesAndPoints)
+{
+    const Pattern pattern = read_attach(
+        R"({"edges": ["front.2[0.2:0.6]", "back.2"]}, {"points": ["back[0.1,0.3]"], "release": true})");
+    ASSERT_EQ(pattern.attachments.size(), 2u);
+    ASSERT_EQ(pattern.attachments[0].edges.size(), 2u);
+    EXPECT_EQ(pattern.attachments[0].edges[0].edge, 2);
+    EXPECT_EQ(pattern.attachments[0].edges[0].to, 0.6);
+    EXPECT_FALSE(pattern.attachments[0].is_released);
+    ASSERT_EQ(pattern.attachments[1].points.size(), 1u);
+    EXPECT_EQ(pattern.attachments[1].points[0].point, Vec2(0.1, 0.3));
+    EXPECT_TRUE(pattern.attachments[1].is_released);
+}
+
+TEST_F(Attachments, AreRefusedInOneLine)
+{
+    const std::vector<std::pair<std::string, std::string>> mistakes{
+        {R"({"release": true})", "attach[0]: holds nothing; name \"edges\" or \"points\""},
+        {R"({"edges": ["front.7"]})",
+         "attach[0].edges[0]: panel \"front\" has no edge 7; its edges are 0 to 3"},
+        {R"({"points": ["front[0,0]", "bck[0,0]"]})",
+         "attach[0].points[1]: no panel is named \"bck\"; did you mean \"back\"?"},
+        {R"({"edges": ["front.2"], "release": 1})",
+         "attach[0].release: 1 is not a boolean; write true or false"},
+    };
+    for (const auto& [entry, message] : mistakes)
+        EXPECT_EQ(complaint_about(entry), "t.garment.json: " + message) << entry;
 }
 
 } // namespace
