@@ -13,13 +13,15 @@ int nearest_vertex(const garment::PatternMesh& mesh, const garment::PanelPoint& 
     return nearest;
 }
 
-std::vector<scene::Tack> tacks_of(const garment::Pattern& pattern, const GarmentMesh& mesh)
+std::vector<scene::Tack> tacks_of(const garment::Pattern& pattern, const garment::PatternMesh& mesh,
+                                  const garment::SewnMesh& partly)
 {
+    const auto welded = [&](const garment::PanelPoint& point) {
+        return partly.welded_of[size_t(nearest_vertex(mesh, point))];
+    };
     std::vector<scene::Tack> tacks;
     for (const garment::Closure& closure : pattern.closures) {
-        const scene::Tack tack{mesh.sewn.welded_of[size_t(nearest_vertex(mesh.panels, closure.a))],
-                               mesh.sewn.welded_of[size_t(nearest_vertex(mesh.panels, closure.b))],
-                               closure.close_at};
+        const scene::Tack tack{welded(closure.a), welded(closure.b), closure.close_at};
         if (tack.a != tack.b)
             tacks.push_back(tack);
     }

@@ -12,7 +12,9 @@ int nearest_vertex(const garment::PatternMesh& mesh, const garment::PanelPoint& 
 
 /// Closures of a pattern as tacks between welded vertices, with the times that the pattern gives. Those whose
 /// ends are one vertex are left out.
-std::vector<scene::Tack> tacks_of(const garment::Pattern& pattern, const GarmentMesh& mesh);
+/// @param partly  the mesh with some or all of its seams welded
+std::vector<scene::Tack> tacks_of(const garment::Pattern& pattern, const garment::PatternMesh& mesh,
+                                  const garment::SewnMesh& partly);
 
 /// Distance of the ends of each closure of a pattern [m].
 /// @param x  [welded vertices] [m]

@@ -103,8 +103,8 @@ struct DrapeResult {
 ///   fold    the coarse panels fold along the lines of their folds, without gravity; only with folds
 ///   sew     panels whose shoulder seams would be pulled against the body are lifted (shoulder_lift()); then
 ///           threads pull the seams shut, without gravity, on the coarse mesh (SeamClosing); longer sides are
-///           gathered
-///   press   the welded coarse mesh unfolds along its seams, and closures without a time close
+///           gathered. Closures without a time close too
+///   press   the welded coarse mesh unfolds along its seams
 ///   settle  it falls into place
 ///   drape   the same on the fine mesh, until it is at rest; labelled edges are held by springs, and released
 ///           but for the waist and strapless tops

@@ -180,7 +180,7 @@ bool GarmentDraping::sew(const GarmentMesh& mesh, std::vector<Vec3>& x)
 /// Pulls on the open threads until all can be welded or none gets shorter.
 bool GarmentDraping::pull(SeamClosing& seams, int& frames)
 {
-    World world(stages_.sew(seams.surface()), watch_.options());
+    World world(stages_.sew(seams.surface(), seams.tacks(garment_.pattern)), watch_.options());
     double shortest = std::numeric_limits<double>::infinity();
     for (int in_vain = 0; in_vain < kVainFrames && !seams.can_weld(); ++in_vain, ++frames) {
         if (!is_finite(watch_.advance(world)))

@@ -61,6 +61,13 @@ scene::Fabric folding_fabric(const std::string& preset) { return damped_fabric(p
 scene::Fabric falling_fabric(const std::string& preset) { return damped_fabric(preset, kFallingDamping); }
 scene::Fabric hanging_fabric(const std::string& preset) { return damped_fabric(preset, kHangingDamping); }
 
+/// Those that close while the garment is sewn.
+std::vector<scene::Tack> immediate(std::vector<scene::Tack> tacks)
+{
+    std::erase_if(tacks, [](const scene::Tack& tack) { return tack.close_at > 0.0; });
+    return tacks;
+}
+
 /// Welded vertices that an attachment holds, ascending.
 std::vector<int> vertices_of(const garment::BodyAttachment& attachment, const GarmentMesh& mesh)
 {
@@ -94,12 +101,13 @@ Scene StageScenes::fold(const GarmentSurface& panels) const
     return scene;
 }
 
-Scene StageScenes::sew(const GarmentSurface& panels) const
+Scene StageScenes::sew(const GarmentSurface& panels, std::vector<scene::Tack> tacks) const
 {
     Scene scene = still_scene_of("sew", panels, sewing_fabric);
     scene.gravity.setZero();
     scene.contact.friction = 0.0;
     scene.cloths.back().sewing = scene::Sewing{kThreadStiffness, kThreadForce};
+    scene.cloths.back().tacks = immediate(std::move(tacks));
     return scene;
 }
 
@@ -108,8 +116,7 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
     Scene scene = still_scene_of("press", mesh.surface(x), pressed_fabric);
     scene.gravity.setZero();
     scene.contact.friction = kPressingFriction;
-    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh);
-    std::erase_if(scene.cloths.back().tacks, [](const scene::Tack& tack) { return tack.close_at > 0.0; });
+    scene.cloths.back().tacks = immediate(tacks_of(garment_.pattern, mesh.panels, mesh.sewn));
     return scene;
 }
 
@@ -117,7 +124,7 @@ Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 {
     Scene scene = still_scene_of("settle", mesh.surface(x), falling_fabric);
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
-    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh);
+    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh.panels, mesh.sewn);
     hold(garment_, mesh, scene, true);
     return scene;
 }
@@ -127,13 +134,13 @@ Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_
     Scene scene = scene_of("drape", mesh.surface(x), hanging_fabric);
     for (size_t g = 0; g < worn_.size(); ++g) {
         scene.cloths[g].elastics = elastics_of(worn_[g].garment.pattern, worn_[g].mesh);
-        scene.cloths[g].tacks = tacks_of(worn_[g].garment.pattern, worn_[g].mesh);
+        scene.cloths[g].tacks = tacks_of(worn_[g].garment.pattern, worn_[g].mesh.panels, worn_[g].mesh.sewn);
         for (scene::Tack& tack : scene.cloths[g].tacks)
             tack.close_at = 0.0; // it has closed
         hold(worn_[g].garment, worn_[g].mesh, scene, false);
     }
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
-    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh);
+    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh.panels, mesh.sewn);
     for (scene::Tack& tack : scene.cloths.back().tacks)
         tack.close_at = std::max(0.0, tack.close_at - time);
     hold(garment_, mesh, scene, holds_all);

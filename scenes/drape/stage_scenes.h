@@ -27,10 +27,11 @@ public:
     /// Threads pull the seams shut, without gravity. The panels give way to the body as jersey does, and move
     /// so slowly that they stop where no force pulls.
     /// @param panels  with lines as threads
-    Scene sew(const GarmentSurface& panels) const;
+    /// @param tacks  of its vertices; those without a time close
+    Scene sew(const GarmentSurface& panels, std::vector<scene::Tack> tacks) const;
 
     /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
-    /// great bending rigidity, without gravity. Closures without a time close.
+    /// great bending rigidity, without gravity.
     /// @param x  [welded vertices] [m]
     Scene press(const GarmentMesh& mesh, View<const Vec3> x) const;
 

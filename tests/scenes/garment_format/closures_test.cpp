@@ -135,7 +135,7 @@ TEST_F(Attachments, AreRefusedInOneLine)
         {R"({"points": ["front[0,0]", "bck[0,0]"]})",
          "attach[0].points[1]: no panel is named \"bck\"; did you mean \"back\"?"},
         {R"({"edges": ["front.2"], "release": 1})",
-         "attach[0].release: 1 is not a boolean; write true or false"},
+         "attach[0].release: 1 is neither true nor false; write one of the two"},
     };
     for (const auto& [entry, message] : mistakes)
         EXPECT_EQ(complaint_about(entry), "t.garment.json: " + message) << entry;
