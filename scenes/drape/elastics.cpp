@@ -19,7 +19,7 @@ size_t nearest(const std::vector<garment::EdgeVertex>& edge, double fraction)
 
 std::vector<int> path_along(const garment::EdgePart& part, const GarmentMesh& mesh)
 {
-    const auto& edge = mesh.panels.edge_vertices[size_t(part.panel)][size_t(part.edge)];
+    const auto& edge = mesh.panels.vertices_along(part.panel, part.edge);
     size_t first = nearest(edge, std::min(part.from, part.to)),
            last = nearest(edge, std::max(part.from, part.to));
     if (first == last && last + 1 < edge.size())

@@ -60,6 +60,13 @@ void describe(V& v, PatternFile& p)
 }
 
 template <typename V>
+void describe(V& v, LineEntry& l)
+{
+    v.required("points", l.points, scene_format::between(-100.0, 100.0, "m"),
+               "Corners [x, y] in the panel's plane; the last is the first of a closed line.");
+}
+
+template <typename V>
 void describe(V& v, PanelSettings& p)
 {
     using scene_format::between;
@@ -80,6 +87,9 @@ void describe(V& v, PanelSettings& p)
     v.field("place", p.place, "Where it starts on the body; absent: where the pattern puts it.");
     v.field("layer", p.layer, between(-100, 100),
             "Order of panels that lie on each other; each starts 1 cm outside of the layer below.");
+    v.field(
+        "lines", p.lines,
+        "Lines inside of the panel, by name, which seams may name as PANEL.LINE: pockets are sewn there.");
 }
 
 template <typename V>
@@ -88,7 +98,8 @@ void describe(V& v, SeamEntry& s)
     using scene_format::between;
     v.required("a", s.a,
                "Edges of one side, in order: PANEL.EDGE, where EDGE is an index or a label, or a part by "
-               "arc length, PANEL.EDGE[0.2:0.6]; [1:0] runs backwards.");
+               "arc length, PANEL.EDGE[0.2:0.6]; [1:0] runs backwards. Likewise PANEL.LINE, for a line "
+               "inside of a panel.");
     v.required("b", s.b, "Edges of the other side.");
     v.field("join", s.join, "Whether the start of a meets the end of b, or its start.");
     v.field("fold_deg", s.fold_deg, scene_format::kFoldAngle,
@@ -137,7 +148,8 @@ void describe(V& v, ClosureEntry& c)
         "metres in the panel's plane; the nearest vertex of the mesh.");
     v.required("b", c.b, "Point that it is pulled to.");
     v.field("close_at", c.close_at, scene_format::between(0.0, 60.0, "s"),
-            "Time from when the garment falls into place to when it begins to close; 0: once it is sewn.");
+            "Time from when the garment falls into place to when it begins to close; 0: it closes while the "
+            "garment is sewn.");
 }
 
 template <typename V>

@@ -19,6 +19,11 @@ struct PatternFile {
     std::optional<scene::LengthUnit> unit; ///< absent: what the file says
 };
 
+/// A line inside of a panel, as written.
+struct LineEntry {
+    std::vector<Vec2> points; ///< [m]
+};
+
 /// How a panel is cut and where it starts.
 struct PanelSettings {
     std::optional<std::string> fabric; ///< name of a preset
@@ -29,6 +34,7 @@ struct PanelSettings {
     bool mirror = false; ///< every second copy is a mirror image
     std::optional<garment::BodyPlacement> place;
     int layer = 0;
+    std::map<std::string, LineEntry> lines; ///< by name
 };
 
 /// Ends of a seam's sides that meet.

@@ -81,6 +81,7 @@ public:
         for (int p = 0; p < panel_count; ++p) {
             outline(p, std::string("fill=\"none\" stroke=\"") + kInk +
                            "\" stroke-width=\"1\" stroke-linejoin=\"round\"");
+            inner_lines(p);
             panel_text(p);
             for (int e = 0; e < int(panel(p).edges.size()); ++e)
                 edge_text(p, e);
@@ -169,6 +170,18 @@ private:
         for (const garment::PanelEdge& edge : panel(p).edges)
             data += curve_data(p, edge);
         text_ += svg::path(data + "Z", attributes);
+    }
+
+    /// Lines inside of a panel, dashed.
+    void inner_lines(int p)
+    {
+        for (const garment::PanelLine& line : panel(p).lines) {
+            std::string data;
+            for (const Vec2& point : line.points)
+                data += (data.empty() ? "M" : "L") + svg::point(layout_.on_sheet(p, point)) + " ";
+            text_ += svg::path(data, std::string("fill=\"none\" stroke=\"") + kInk +
+                                         "\" stroke-width=\"1\" stroke-dasharray=\"5 3\"");
+        }
     }
 
     /// Points around a panel on the sheet.

@@ -263,6 +263,39 @@ TEST_F(DrapeTest, ReleasesWhatIsAttachedForAWhile)
     EXPECT_GT(result.rest_speed.value(), 0.1);
 }
 
+/// A patch of 9 cm on the front of the tube, sewn along three of its sides.
+TEST_F(DrapeTest, SewsAPocketOntoAPanel)
+{
+    write("pocket.json", R"({"pattern": {"panels": {"pocket": {
+        "vertices": [[0, 0], [0.09, 0], [0.09, 0.09], [0, 0.09]],
+        "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}],
+        "rotation": [0, 0, 0], "translation": [-0.04, -0.05, 0.16]}}, "stitches": []},
+        "properties": {"units_in_meter": 1}})");
+    write("tube.json", tube(0.36, "strapless_top"));
+    const DrapeResult result = drape_files({{"tube", write("tube.garment.json", R"({"toile_garment": 1,
+        "patterns": [{"file": "tube.json"}, {"file": "pocket.json"}],
+        "panels": {"front": {"lines": {"place": {"points":
+            [[-0.04, 0.04], [-0.04, -0.05], [0.05, -0.05], [0.05, 0.04]]}}}},
+        "seams": [{"a": ["front.place"], "b": ["pocket.3", "pocket.0", "pocket.1"], "join": "start-start"}]})")}});
+    ASSERT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    const DrapedGarment& garment = result.garments[0];
+    EXPECT_EQ(garment.pieces, 1);
+    EXPECT_EQ(garment.border_loops, 3);
+    ASSERT_EQ(garment.seams.size(), 3u);
+    for (const DrapeSeam& seam : garment.seams)
+        EXPECT_LT(seam.gap, SeamClosing::kMaxGap) << seam.name;
+
+    // The pocket lies outside of the panel, and nothing crosses.
+    const TriangleMesh mesh = garment.surface.mesh.triangulated();
+    EXPECT_TRUE(collision::find_crossings(mesh.triangles, mesh.positions).empty());
+    double farthest = 0.0;
+    for (const Vec3& x : mesh.positions)
+        farthest = std::max(farthest, std::hypot(x.x(), x.z()));
+    EXPECT_LT(farthest, 0.16);
+    const int branching = int(surface_topology(mesh.triangles).non_manifold_edges.size());
+    EXPECT_EQ(branching, 9) << "three sides of three edges";
+}
+
 TEST_F(DrapeTest, SewsSeamsInTheirOrder)
 {
     const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("seams": [
