@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "garment/pattern/place/placement_shift.h"
-#include "scenes/drape/closures.h"
+#include "scenes/drape/notions.h"
 #include "scenes/drape/rest_watch.h"
 #include "scenes/drape/seam_lift.h"
 #include "scenes/world/world.h"

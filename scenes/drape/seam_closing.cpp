@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenes/drape/closures.h"
+#include "scenes/drape/notions.h"
 
 namespace toile::scenes {
 

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "garment/fabric/fabric.h"
-#include "scenes/drape/closures.h"
-#include "scenes/drape/elastics.h"
+#include "scenes/drape/notions.h"
 
 namespace toile::scenes {
 

@@ -145,7 +145,7 @@ void describe(V& v, ClosureEntry& c)
     v.required(
         "a", c.a,
         "Point of a panel: PANEL.EDGE[0.25], by a fraction of the edge's length, or PANEL[0.1,0.2], by "
-        "metres in the panel's plane; the nearest vertex of the mesh.");
+        "metres in the panel's plane.");
     v.required("b", c.b, "Point that it is pulled to.");
     v.field("close_at", c.close_at, scene_format::between(0.0, 60.0, "s"),
             "Time from when the garment falls into place to when it begins to close; 0: it closes while the "
