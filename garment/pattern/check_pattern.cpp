@@ -108,12 +108,13 @@ private:
     int id(const EdgePart& part, double fraction)
     {
         constexpr double kSteps = 1e6; // fractions closer than that are the same
-        const PanelEdge& edge = pattern_.panels[size_t(part.panel)].edges[size_t(part.edge)];
+        const Panel& panel = pattern_.panels[size_t(part.panel)];
         const long step = std::lround(fraction * kSteps);
-        const std::array<long, 3> key = step == 0 ? std::array<long, 3>{part.panel, -1, edge.start}
-                                        : step == long(kSteps)
-                                            ? std::array<long, 3>{part.panel, -1, edge.end}
-                                            : std::array<long, 3>{part.panel, part.edge, step};
+        std::array<long, 3> key{part.panel, part.edge, step};
+        if (line_of(panel, part.edge) == nullptr && (step == 0 || step == long(kSteps))) {
+            const PanelEdge& edge = panel.edges[size_t(part.edge)];
+            key = {part.panel, -1, step == 0 ? edge.start : edge.end};
+        }
         const auto [entry, is_new] = ids_.try_emplace(key, int(parents_.size()));
         if (is_new)
             parents_.push_back(entry->second);
@@ -145,8 +146,10 @@ void require_chain(const Pattern& pattern, const Seam& seam, const std::vector<E
                        "(EDGE[1:0] runs backwards), or make two seams");
 }
 
-const std::string& label_of(const Pattern& pattern, const EdgePart& part)
+std::string label_of(const Pattern& pattern, const EdgePart& part)
 {
+    if (line_of(pattern.panels[size_t(part.panel)], part.edge))
+        return "";
     return pattern.panels[size_t(part.panel)].edges[size_t(part.edge)].label;
 }
 
@@ -154,8 +157,7 @@ void require_one_label(const Pattern& pattern, const Seam& seam)
 {
     if (seam.a.size() != 1 || seam.b.size() != 1)
         return;
-    const std::string& a = label_of(pattern, seam.a[0]);
-    const std::string& b = label_of(pattern, seam.b[0]);
+    const std::string a = label_of(pattern, seam.a[0]), b = label_of(pattern, seam.b[0]);
     if (!a.empty() && !b.empty() && a != b)
         refuse(pattern, seam,
                name_of(pattern, seam.a[0]) + " is labelled \"" + a + "\", but " +
@@ -179,7 +181,9 @@ void require_gatherable(const Pattern& pattern, const Seam& seam)
 
 std::string name_of(const Pattern& pattern, const EdgePart& part)
 {
-    std::string name = pattern.panels[size_t(part.panel)].name + " edge " + std::to_string(part.edge);
+    const Panel& panel = pattern.panels[size_t(part.panel)];
+    const PanelLine* line = line_of(panel, part.edge);
+    std::string name = panel.name + (line ? " line " + line->name : " edge " + std::to_string(part.edge));
     if (std::min(part.from, part.to) > 0.0 || std::max(part.from, part.to) < 1.0)
         name.append("[").append(short_text(part.from)).append(":").append(short_text(part.to)).append("]");
     return name;

@@ -4,7 +4,7 @@
 
 namespace toile::garment {
 
-/// Panel and edge of a part as messages name it: front edge 3.
+/// Panel and edge of a part as messages name it: front edge 3, front line pocket.
 std::string name_of(const Pattern& pattern, const EdgePart& part);
 
 /// Checks that a pattern can be cut and sewn: every panel (check_panel.h), its size, and the seams. Indices

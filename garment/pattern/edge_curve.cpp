@@ -66,6 +66,11 @@ bool is_straight(const PanelEdge& edge)
 
 EdgeCurve::EdgeCurve(const Panel& panel, int edge)
 {
+    if (const PanelLine* line = line_of(panel, edge)) {
+        points_ = line->points;
+        measure();
+        return;
+    }
     const PanelEdge& side = panel.edges[edge];
     const Vec2& start = panel.corners[side.start];
     const Vec2& end = panel.corners[side.end];
@@ -78,10 +83,22 @@ EdgeCurve::EdgeCurve(const Panel& panel, int edge)
                                " m apart; use at least half that distance");
     }
     points_ = std::visit([&](const auto& curve) { return sample(start, end, curve); }, side.curve);
+    measure();
+}
 
+void EdgeCurve::measure()
+{
     lengths_.push_back(0.0);
     for (size_t i = 1; i < points_.size(); ++i)
         lengths_.push_back(lengths_.back() + (points_[i] - points_[i - 1]).norm());
+}
+
+std::vector<double> EdgeCurve::corner_fractions() const
+{
+    std::vector<double> fractions;
+    for (size_t i = 1; i + 1 < lengths_.size(); ++i)
+        fractions.push_back(lengths_[i] / length());
+    return fractions;
 }
 
 Vec2 EdgeCurve::at(double fraction) const

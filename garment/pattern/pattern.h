@@ -47,11 +47,18 @@ struct BodyPlacement {
     bool wrap = true;       ///< bent onto the cylinder; otherwise flat
 };
 
+/// Line inside of a panel, to which others may be sewn, as pockets are.
+struct PanelLine {
+    std::string name;
+    std::vector<Vec2> points; ///< [2 or more] in the panel's plane; the last is the first of a closed one [m]
+};
+
 /// Piece of cloth, cut along its edges.
 struct Panel {
     std::string name;
     std::vector<Vec2> corners;    ///< [m] in the panel's plane, x right, y up
     std::vector<PanelEdge> edges; ///< one closed loop: each ends where the next starts
+    std::vector<PanelLine> lines; ///< of different names
     std::string label;            ///< part of the body that it covers, such as body, arm, leg; may be empty
 
     /// World from panel: where the panel starts, flat, before it is sewn. The normal of its loop, counter-
@@ -67,10 +74,16 @@ struct Panel {
     int layer = 0;                     ///< higher is further outside where panels lie on each other
 };
 
+/// Line that an index of edges stands for: those past Panel::edges are Panel::lines. Null for an edge.
+inline const PanelLine* line_of(const Panel& panel, int edge)
+{
+    return edge < int(panel.edges.size()) ? nullptr : &panel.lines[size_t(edge) - panel.edges.size()];
+}
+
 /// Part of a panel's edge, by arc length. from > to runs against the edge.
 struct EdgePart {
     int panel = 0;     ///< index into Pattern::panels
-    int edge = 0;      ///< index into Panel::edges
+    int edge = 0;      ///< index into Panel::edges, or past them into Panel::lines
     double from = 0.0; ///< [-] fraction of the edge's length at which the part starts
     double to = 1.0;   ///< [-] at which it ends
 };
@@ -106,6 +119,26 @@ struct PanelFold {
     std::string name;                  ///< for messages: how the file calls it
 };
 
+/// Point of a panel.
+struct PanelPoint {
+    int panel = 0;             ///< index into Pattern::panels
+    Vec2 point = Vec2::Zero(); ///< in the panel's plane [m]
+};
+
+/// Tack or button: two points that are pulled together and then held.
+struct Closure {
+    PanelPoint a, b;
+    double close_at = 0.0; ///< [s] after gravity begins to act on the garment; 0: while it is sewn
+    std::string name;      ///< for messages: how the file calls it
+};
+
+/// What is held softly on the body.
+struct BodyAttachment {
+    std::vector<EdgePart> edges;
+    std::vector<PanelPoint> points;
+    bool is_released = false; ///< once the garment rests
+};
+
 struct Pattern {
     std::string source; ///< file, for messages
     std::string description;
@@ -113,6 +146,8 @@ struct Pattern {
     std::vector<Seam> seams;
     std::vector<Elastic> elastics;
     std::vector<PanelFold> folds;
+    std::vector<Closure> closures;
+    std::vector<BodyAttachment> attachments;
     std::vector<std::filesystem::path> files; ///< that it was read from
 };
 

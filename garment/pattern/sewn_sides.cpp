@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "garment/pattern/edge_curve.h"
+
 namespace toile::garment {
 namespace {
 
@@ -15,14 +17,16 @@ struct Link {
 
 bool runs_forward(const EdgePart& part) { return part.to >= part.from; }
 
-/// Every pair of panels along the seams' sides. Chains make several links.
+/// Every pair of panels along the seams' sides. Chains make several links. Cloth goes on at both sides of a
+/// line inside of a panel: what is sewn there has either side out.
 std::vector<Link> links_of(const Pattern& pattern)
 {
     std::vector<Link> links;
     for (size_t s = 0; s < pattern.seams.size(); ++s)
         for (const EdgePart& a : pattern.seams[s].a)
             for (const EdgePart& b : pattern.seams[s].b)
-                links.push_back({a.panel, b.panel, int(s), runs_forward(a) == runs_forward(b)});
+                if (!is_on_line(pattern, a) && !is_on_line(pattern, b))
+                    links.push_back({a.panel, b.panel, int(s), runs_forward(a) == runs_forward(b)});
     return links;
 }
 

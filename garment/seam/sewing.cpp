@@ -5,7 +5,7 @@
 namespace toile::garment {
 
 Sewing::Sewing(std::vector<Thread> threads, const Settings& settings)
-    : threads_(std::move(threads)), settings_(settings)
+    : threads_(std::move(threads)), lengths_(threads_.size(), 0.0), settings_(settings)
 {
     if (!(settings.stiffness > 0.0) || !(settings.max_force > 0.0))
         throw InvalidInput("sewing: stiffness and max_force must be positive");
@@ -22,17 +22,29 @@ void Sewing::add_hessian(Triplets& H) const
     }
 }
 
+/// [N/m]
+double Sewing::tension_over_distance(double distance, double length) const
+{
+    const double stretch = distance - length;
+    if (stretch > settings_.max_force / settings_.stiffness)
+        return settings_.max_force / distance;
+    return length == 0.0 ? settings_.stiffness : settings_.stiffness * stretch / distance;
+}
+
 double Sewing::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
     const double k = settings_.stiffness, bend = settings_.max_force / k;
     double value = 0.0;
-    for (const auto& [a, b] : threads_) {
+    for (size_t j = 0; j < threads_.size(); ++j) {
+        const auto& [a, b] = threads_[j];
         const Vec3 gap = x[a] - x[b];
-        const double length = gap.norm();
-        const Vec3 force = (length <= bend ? k : settings_.max_force / length) * gap;
+        const double distance = gap.norm(), stretch = distance - lengths_[j];
+        if (stretch < 0.0)
+            continue;
+        const Vec3 force = tension_over_distance(distance, lengths_[j]) * gap;
         gradient[a] += force;
         gradient[b] -= force;
-        value += length <= bend ? 0.5 * k * length * length : settings_.max_force * (length - 0.5 * bend);
+        value += stretch <= bend ? 0.5 * k * stretch * stretch : settings_.max_force * (stretch - 0.5 * bend);
     }
     return value;
 }
@@ -43,17 +55,23 @@ void Sewing::add_couplings(std::vector<std::pair<int, int>>& couplings) const
         couplings.emplace_back(a, b);
 }
 
-/// A bounded thread resists rotation alone. Both forms are positive semi-definite.
+/// A thread resists stretch below its bound, and rotation by its tension. Both are positive semi-definite.
 void Sewing::add_curvature(View<const Vec3> x, Definiteness, BlockWindow K)
 {
-    const double bend = settings_.max_force / settings_.stiffness;
-    for (const auto& [a, b] : threads_) {
+    const double k = settings_.stiffness, bend = settings_.max_force / k;
+    for (size_t j = 0; j < threads_.size(); ++j) {
+        const auto& [a, b] = threads_[j];
         const Vec3 gap = x[a] - x[b];
-        const double length = gap.norm();
-        Mat3 block = settings_.stiffness * Mat3::Identity();
-        if (length > bend) {
-            const Vec3 direction = gap / length;
-            block = settings_.max_force / length * (Mat3::Identity() - direction * direction.transpose());
+        const double distance = gap.norm(), stretch = distance - lengths_[j];
+        if (stretch < 0.0)
+            continue;
+        Mat3 block = k * Mat3::Identity();
+        if (stretch > bend || lengths_[j] > 0.0) {
+            const Vec3 direction = gap / distance;
+            const Mat3 along = direction * direction.transpose();
+            block = tension_over_distance(distance, lengths_[j]) * (Mat3::Identity() - along);
+            if (stretch <= bend)
+                block += k * along;
         }
         K.block(a, a) += block;
         K.block(b, b) += block;

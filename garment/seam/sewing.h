@@ -6,12 +6,13 @@
 
 namespace toile::garment {
 
-/// Threads that pull the edges of panels together: springs of zero rest length between pairs of vertices.
-/// Their force is bounded, so that panels that start far apart do not fly.
+/// Threads that pull the edges of panels together: springs between pairs of vertices, which are slack up to
+/// their length l_j. Their force is bounded, so that panels that start far apart do not fly.
 ///
-///   W = sum_j  k h(|x_a - x_b|),   h(r) = r^2 / 2  for r <= r_0,  r_0 (r - r_0 / 2)  beyond     [Huber 1964]
+///   W = sum_j  k h(|x_a - x_b| - l_j),
+///   h(r) = 0  for r <= 0,   r^2 / 2  for r <= r_0,   r_0 (r - r_0 / 2)  beyond     [Huber 1964]
 ///
-/// with r_0 = max_force / k.
+/// with r_0 = max_force / k. All l_j are 0 unless set_length() changes them.
 class Sewing : public Energy {
 public:
     struct Settings {
@@ -34,8 +35,15 @@ public:
 
     const std::vector<Thread>& threads() const { return threads_; }
 
+    double length(int thread) const { return lengths_[size_t(thread)]; } ///< [m]
+    /// @param length  [m] 0 or more; infinite: the thread does not pull
+    void set_length(int thread, double length) { lengths_[size_t(thread)] = length; }
+
 private:
+    double tension_over_distance(double distance, double length) const;
+
     std::vector<Thread> threads_;
+    std::vector<double> lengths_; ///< [threads] [m]
     Settings settings_;
 };
 

@@ -71,11 +71,17 @@ struct DrapeSlide {
     double slid = 0.0; ///< [m] that the mean of the edge sank after it was released
 };
 
+struct DrapeClosure {
+    std::string name;
+    double gap = 0.0; ///< [m] between its ends where the garment ended
+};
+
 struct DrapedGarment {
     std::string name;
     std::vector<DrapeStage> stages;
     std::vector<DrapeSeam> seams;
     std::vector<DrapeSlide> slides;
+    std::vector<DrapeClosure> closures;
     double lift = 0.0; ///< [m] of the panels before they were sewn: shoulder_lift()
     int pieces = 0, border_loops = 0, euler_characteristic = 0;
     GarmentSurface surface; ///< as it ended; if seams are open, with lines as threads; empty: not begun
@@ -97,7 +103,7 @@ struct DrapeResult {
 ///   fold    the coarse panels fold along the lines of their folds, without gravity; only with folds
 ///   sew     panels whose shoulder seams would be pulled against the body are lifted (shoulder_lift()); then
 ///           threads pull the seams shut, without gravity, on the coarse mesh (SeamClosing); longer sides are
-///           gathered
+///           gathered. Closures without a time close too
 ///   press   the welded coarse mesh unfolds along its seams
 ///   settle  it falls into place
 ///   drape   the same on the fine mesh, until it is at rest; labelled edges are held by springs, and released

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "garment/pattern/place/placement_shift.h"
+#include "scenes/drape/notions.h"
 #include "scenes/drape/rest_watch.h"
 #include "scenes/drape/seam_lift.h"
 #include "scenes/world/world.h"
@@ -23,9 +24,21 @@ std::vector<Vec3> all_positions(const World& world)
     return x;
 }
 
-/// Replaces fabrics of a stage by presets.
-void take_own_fabrics(const Garment& garment, scene::Cloth& cloth)
+/// Time at which the last tack has begun to close, and moves what it will [s]; 0 if all hold from the start.
+double last_closing(const Scene& scene)
 {
+    double last = 0.0;
+    for (const scene::Tack& tack : scene.cloths.back().tacks)
+        if (tack.close_at > 0.0)
+            last = std::max(last, tack.close_at + RestWatch::kDuration);
+    return last;
+}
+
+/// Replaces fabrics of a stage by presets, and lets tacks hold from the start.
+void take_lasting_settings(const Garment& garment, scene::Cloth& cloth)
+{
+    for (scene::Tack& tack : cloth.tacks)
+        tack.close_at = 0.0;
     cloth.fabric = garment.fabric;
     for (const auto& [panel, preset] : garment.panel_fabrics())
         cloth.groups[panel].fabric = preset;
@@ -167,7 +180,7 @@ bool GarmentDraping::sew(const GarmentMesh& mesh, std::vector<Vec3>& x)
 /// Pulls on the open threads until all can be welded or none gets shorter.
 bool GarmentDraping::pull(SeamClosing& seams, int& frames)
 {
-    World world(stages_.sew(seams.surface()), watch_.options());
+    World world(stages_.sew(seams.surface(), seams.tacks(garment_.pattern)), watch_.options());
     double shortest = std::numeric_limits<double>::infinity();
     for (int in_vain = 0; in_vain < kVainFrames && !seams.can_weld(); ++in_vain, ++frames) {
         if (!is_finite(watch_.advance(world)))
@@ -197,8 +210,10 @@ bool GarmentDraping::settle(const GarmentMesh& mesh, std::vector<Vec3>& x)
 {
     const Clock clock;
     int frames = 0;
-    if (!simulate(stages_.settle(mesh, x), kSettlingTime, frames, x))
+    const Scene scene = stages_.settle(mesh, x);
+    if (!simulate(scene, kSettlingTime, frames, x))
         return false;
+    gravity_time_ = frames * scene.frame_duration();
     end_stage("settle", clock, frames, int(x.size()));
     return true;
 }
@@ -224,25 +239,28 @@ void GarmentDraping::drape(WornGarment garment)
 {
     const Clock clock;
     const std::set<std::string> labels = garment_.labels();
+    const auto& attachments = garment_.pattern.attachments;
     const bool has_released =
-        std::any_of(labels.begin(), labels.end(), [](auto& label) { return !stays_attached(label); });
+        std::any_of(labels.begin(), labels.end(), [](auto& label) { return !stays_attached(label); }) ||
+        std::any_of(attachments.begin(), attachments.end(), [](auto& held) { return held.is_released; });
     int frames = 0;
     for (const bool holds_all : {true, false}) {
         if (!holds_all && !has_released)
             break;
         garment.held = garment.x;
-        const Scene scene = stages_.hang(garment.mesh, garment.x, holds_all);
+        const Scene scene = stages_.hang(garment.mesh, garment.x, holds_all, gravity_time_);
         if (!come_to_rest(scene, garment, holds_all && has_released, frames))
             break;
         result_.scene = scene;
         for (size_t g = 0; g < worn_.size(); ++g)
-            take_own_fabrics(worn_[g].garment, result_.scene.cloths[g]);
-        take_own_fabrics(garment_, result_.scene.cloths.back());
+            take_lasting_settings(worn_[g].garment, result_.scene.cloths[g]);
+        take_lasting_settings(garment_, result_.scene.cloths.back());
     }
     end_stage("drape", clock, frames, int(garment.x.size()));
     if (result_.outcome == DrapeOutcome::Draped)
         measure_slides(garment, number_);
     worn_.push_back(std::move(garment));
+    measure_closures();
 }
 
 /// @param is_held  by labels that will be released
@@ -251,13 +269,16 @@ bool GarmentDraping::come_to_rest(const Scene& scene, WornGarment& garment, bool
     World world(scene, watch_.options());
     RestWatch rest(scene.frame_duration());
     StepReport report;
-    for (int frame = 0; !rest.is_at_rest() && result_.outcome == DrapeOutcome::Draped &&
-                        frame < settings_.max_motion * scene.fps;
+    const double closing = last_closing(scene);
+    for (int frame = 0;
+         (!rest.is_at_rest() || frame < closing * scene.fps) && result_.outcome == DrapeOutcome::Draped &&
+         frame < (closing + settings_.max_motion) * scene.fps;
          ++frame) {
         report = watch_.advance(world);
         if (!is_finite(report))
             return false;
         ++frames;
+        gravity_time_ += scene.frame_duration();
         for (size_t g = 0; g < worn_.size(); ++g)
             worn_[g].x = world.cloths()[g].positions;
         garment.x = world.cloths()[number_].positions;
@@ -290,6 +311,18 @@ void GarmentDraping::measure_slides(const WornGarment& worn, size_t number)
         if (sank > kMaxSlide)
             fail(DrapeOutcome::SlidOff,
                  "the edge \"" + label + "\" sank by " + std::to_string(100.0 * sank) + " cm", number);
+    }
+}
+
+/// Measures the gaps of the closures of all garments.
+void GarmentDraping::measure_closures()
+{
+    for (size_t g = 0; g < worn_.size(); ++g) {
+        const garment::Pattern& pattern = worn_[g].garment.pattern;
+        const std::vector<double> gaps = closure_gaps(pattern, worn_[g].mesh, worn_[g].x);
+        result_.garments[g].closures.clear();
+        for (size_t i = 0; i < gaps.size(); ++i)
+            result_.garments[g].closures.push_back({pattern.closures[i].name, gaps[i]});
     }
 }
 

@@ -50,6 +50,7 @@ private:
     void drape(WornGarment garment);
     bool come_to_rest(const Scene& scene, WornGarment& garment, bool is_held, int& frames);
     void measure_slides(const WornGarment& worn, size_t number);
+    void measure_closures();
     void fail(DrapeOutcome outcome, const std::string& text) { fail(outcome, text, number_); }
     void fail(DrapeOutcome outcome, const std::string& text, size_t number);
     void end_stage(const std::string& name, const Clock& clock, int frames, int vertices);
@@ -61,7 +62,8 @@ private:
     std::vector<WornGarment>& worn_;
     DrapeWatch& watch_;
     DrapeResult& result_;
-    size_t number_; ///< of the garment
+    size_t number_;             ///< of the garment
+    double gravity_time_ = 0.0; ///< [s] that gravity has acted on it
     StageScenes stages_;
 };
 

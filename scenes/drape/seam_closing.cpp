@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scenes/drape/notions.h"
+
 namespace toile::scenes {
 
 namespace {
@@ -54,6 +56,11 @@ GarmentSurface SeamClosing::surface() const
             if (sewn_.welded_of[a] != sewn_.welded_of[b])
                 surface.mesh.lines.push_back({sewn_.welded_of[a], sewn_.welded_of[b]});
     return surface;
+}
+
+std::vector<scene::Tack> SeamClosing::tacks(const garment::Pattern& pattern) const
+{
+    return tacks_of(pattern, mesh_.panels, sewn_);
 }
 
 void SeamClosing::move(View<const Vec3> surface) { x_ = unweld(sewn_, surface); }

@@ -29,6 +29,9 @@ public:
     /// The panels, welded where seams are closed, with a line for every active thread.
     GarmentSurface surface() const;
 
+    /// Closures of the pattern as tacks between vertices of surface().
+    std::vector<scene::Tack> tacks(const garment::Pattern& pattern) const;
+
     /// Moves the panels with the surface.
     /// @param surface  [vertices of surface()] [m]
     void move(View<const Vec3> surface);

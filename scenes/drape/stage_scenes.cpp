@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "garment/fabric/fabric.h"
-#include "scenes/drape/elastics.h"
+#include "scenes/drape/notions.h"
 
 namespace toile::scenes {
 
@@ -60,6 +60,25 @@ scene::Fabric folding_fabric(const std::string& preset) { return damped_fabric(p
 scene::Fabric falling_fabric(const std::string& preset) { return damped_fabric(preset, kFallingDamping); }
 scene::Fabric hanging_fabric(const std::string& preset) { return damped_fabric(preset, kHangingDamping); }
 
+/// Those that close while the garment is sewn.
+std::vector<scene::Tack> immediate(std::vector<scene::Tack> tacks)
+{
+    std::erase_if(tacks, [](const scene::Tack& tack) { return tack.close_at > 0.0; });
+    return tacks;
+}
+
+/// Welded vertices that an attachment holds, ascending.
+std::vector<int> vertices_of(const garment::BodyAttachment& attachment, const GarmentMesh& mesh)
+{
+    std::set<int> vertices;
+    for (const garment::EdgePart& part : attachment.edges)
+        for (const int v : path_along(part, mesh))
+            vertices.insert(v);
+    for (const garment::PanelPoint& point : attachment.points)
+        vertices.insert(mesh.sewn.welded_of[size_t(nearest_vertex(mesh.panels, point))]);
+    return {vertices.begin(), vertices.end()};
+}
+
 } // namespace
 
 bool stays_attached(const std::string& label)
@@ -81,12 +100,13 @@ Scene StageScenes::fold(const GarmentSurface& panels) const
     return scene;
 }
 
-Scene StageScenes::sew(const GarmentSurface& panels) const
+Scene StageScenes::sew(const GarmentSurface& panels, std::vector<scene::Tack> tacks) const
 {
     Scene scene = still_scene_of("sew", panels, sewing_fabric);
     scene.gravity.setZero();
     scene.contact.friction = 0.0;
     scene.cloths.back().sewing = scene::Sewing{kThreadStiffness, kThreadForce};
+    scene.cloths.back().tacks = immediate(std::move(tacks));
     return scene;
 }
 
@@ -95,6 +115,7 @@ Scene StageScenes::press(const GarmentMesh& mesh, View<const Vec3> x) const
     Scene scene = still_scene_of("press", mesh.surface(x), pressed_fabric);
     scene.gravity.setZero();
     scene.contact.friction = kPressingFriction;
+    scene.cloths.back().tacks = immediate(tacks_of(garment_.pattern, mesh.panels, mesh.sewn));
     return scene;
 }
 
@@ -102,19 +123,26 @@ Scene StageScenes::settle(const GarmentMesh& mesh, View<const Vec3> x) const
 {
     Scene scene = still_scene_of("settle", mesh.surface(x), falling_fabric);
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
-    hold_labels(garment_, mesh, scene, true);
+    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh.panels, mesh.sewn);
+    hold(garment_, mesh, scene, true);
     return scene;
 }
 
-Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all) const
+Scene StageScenes::hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all, double time) const
 {
     Scene scene = scene_of("drape", mesh.surface(x), hanging_fabric);
     for (size_t g = 0; g < worn_.size(); ++g) {
         scene.cloths[g].elastics = elastics_of(worn_[g].garment.pattern, worn_[g].mesh);
-        hold_labels(worn_[g].garment, worn_[g].mesh, scene, false);
+        scene.cloths[g].tacks = tacks_of(worn_[g].garment.pattern, worn_[g].mesh.panels, worn_[g].mesh.sewn);
+        for (scene::Tack& tack : scene.cloths[g].tacks)
+            tack.close_at = 0.0; // it has closed
+        hold(worn_[g].garment, worn_[g].mesh, scene, false);
     }
     scene.cloths.back().elastics = elastics_of(garment_.pattern, mesh);
-    hold_labels(garment_, mesh, scene, holds_all);
+    scene.cloths.back().tacks = tacks_of(garment_.pattern, mesh.panels, mesh.sewn);
+    for (scene::Tack& tack : scene.cloths.back().tacks)
+        tack.close_at = std::max(0.0, tack.close_at - time);
+    hold(garment_, mesh, scene, holds_all);
     return scene;
 }
 
@@ -189,24 +217,29 @@ void StageScenes::add_cloth(Scene& scene, const Garment& garment, const std::str
 }
 
 /// A vertex of two edges follows the one that stays attached.
-void StageScenes::hold_labels(const Garment& garment, const GarmentMesh& mesh, Scene& scene,
-                              bool holds_all) const
+void StageScenes::hold(const Garment& garment, const GarmentMesh& mesh, Scene& scene, bool holds_all) const
 {
     std::set<int> held;
-    for (const bool stays : {true, false})
-        for (const std::string& label : garment.labels()) {
-            if (stays_attached(label) != stays || (!stays && !holds_all))
-                continue;
-            std::vector<int> vertices = mesh.labelled(garment.pattern, label);
-            std::erase_if(vertices, [&](int v) { return !held.insert(v).second; });
-            if (vertices.empty())
-                continue;
-            scene::Attachment attachment;
-            attachment.cloth = garment.name();
-            attachment.select.by = std::move(vertices);
-            attachment.to = settings_.body.name;
-            scene.attachments.push_back(attachment);
-        }
+    const auto attach = [&](std::vector<int> vertices) {
+        std::erase_if(vertices, [&](int v) { return !held.insert(v).second; });
+        if (vertices.empty())
+            return;
+        scene::Attachment attachment;
+        attachment.cloth = garment.name();
+        attachment.select.by = std::move(vertices);
+        attachment.to = settings_.body.name;
+        scene.attachments.push_back(attachment);
+    };
+    for (const bool stays : {true, false}) {
+        if (!stays && !holds_all)
+            break;
+        for (const std::string& label : garment.labels())
+            if (stays_attached(label) == stays)
+                attach(mesh.labelled(garment.pattern, label));
+        for (const garment::BodyAttachment& attachment : garment.pattern.attachments)
+            if (attachment.is_released != stays)
+                attach(vertices_of(attachment, mesh));
+    }
 }
 
 } // namespace toile::scenes

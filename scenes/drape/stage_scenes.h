@@ -27,7 +27,8 @@ public:
     /// Threads pull the seams shut, without gravity. The panels give way to the body as jersey does, and move
     /// so slowly that they stop where no force pulls.
     /// @param panels  with lines as threads
-    Scene sew(const GarmentSurface& panels) const;
+    /// @param tacks  of its vertices; those without a time close
+    Scene sew(const GarmentSurface& panels, std::vector<scene::Tack> tacks) const;
 
     /// Unfolds the seams, along which panels lie on each other when they meet, as an iron does: cloth of
     /// great bending rigidity, without gravity.
@@ -42,7 +43,8 @@ public:
     /// without damping.
     /// @param x          [welded vertices] [m]
     /// @param holds_all  labelled edges that are released in the end are held too, by springs
-    Scene hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all) const;
+    /// @param time       that gravity has acted on the garment [s]
+    Scene hang(const GarmentMesh& mesh, View<const Vec3> x, bool holds_all, double time) const;
 
 private:
     /// What becomes of a preset in a stage.
@@ -53,7 +55,7 @@ private:
                          FabricInStage* fabric) const;
     void add_cloth(Scene& scene, const Garment& garment, const std::string& file_name,
                    const GarmentSurface& surface, FabricInStage* fabric) const;
-    void hold_labels(const Garment& garment, const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
+    void hold(const Garment& garment, const GarmentMesh& mesh, Scene& scene, bool holds_all) const;
 
     const DrapeSettings& settings_;
     const Garment& garment_;

@@ -191,6 +191,14 @@ void check_elastics(const Document& document, const std::string& key_path, const
                             "an elastic runs along edges; name two vertices at least");
 }
 
+void check_tacks(const Document& document, const std::string& key_path, const Cloth& cloth,
+                 SolverMethod method)
+{
+    if (!cloth.tacks.empty() && replaces_minimiser(method))
+        document.refuse(key_path, "are unknown to solver.method " + as_written(word_of(method)) +
+                                      "; choose another method, or remove them");
+}
+
 void check_groups(const Document& document, const std::string& key_path, const Cloth& cloth,
                   SolverMethod method)
 {
@@ -222,6 +230,7 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
         check_print(document, key_path, cloth);
         check_groups(document, below(key_path, "groups"), cloth, scene.solver.method);
         check_elastics(document, below(key_path, "elastics"), cloth, scene.solver.method);
+        check_tacks(document, below(key_path, "tacks"), cloth, scene.solver.method);
         if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMaxVertices)
             document.refuse(key_path,
                             "resolution and subdivide make more than 5 million vertices; choose a " +

@@ -181,6 +181,15 @@ void describe(V& v, Fold& f)
 }
 
 template <typename V>
+void describe(V& v, Tack& t)
+{
+    v.required("a", t.a, between(0, 1e8), "Vertex of the file, counted from 0.");
+    v.required("b", t.b, between(0, 1e8), "Vertex that it is pulled to.");
+    v.field("close_at", t.close_at, kTime,
+            "Time at which it begins to close; 0: from the start, settling too.");
+}
+
+template <typename V>
 void describe(V& v, ClothGroup& g)
 {
     v.required("fabric", g.fabric, "A key of fabrics or the name of a preset.");
@@ -229,6 +238,9 @@ void describe(V& v, Cloth& c)
     v.field("folds", c.folds,
             "Lines along which the cloth is folded at rest, as pleats are. It bends there by their stiffness "
             "alone. Not with subdivide, xpbd and vbd, nor on a GPU.");
+    v.field("tacks", c.tacks,
+            "Pairs of points that are pulled together at 0.2 m/s and then held, as by tacks or buttons. Not "
+            "with xpbd and vbd, nor on a GPU.");
     v.field("layer", c.layer, between(-100, 100),
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");

@@ -165,6 +165,12 @@ struct Fold {
     double stiffness = garment::kFoldStiffness; ///< [N] moment per length of the fold and radian
 };
 
+/// Two points of a cloth that are pulled together and then held, as by a few stitches or a button.
+struct Tack {
+    int a = 0, b = 0;      ///< vertices of the file
+    double close_at = 0.0; ///< [s] from sample 0 on; 0: from the start, settling too
+};
+
 /// Settings of a group of a cloth's file.
 struct ClothGroup {
     std::string fabric; ///< key of Scene::fabrics or name of a preset
@@ -190,6 +196,7 @@ struct Cloth {
     std::map<std::string, ClothGroup> groups; ///< by name; other triangles are of `fabric`
     std::vector<Elastic> elastics;
     std::vector<Fold> folds;
+    std::vector<Tack> tacks;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     Print print = Print::Plain;          ///< in pictures

@@ -4,11 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/number.h"
 #include "garment/fabric/fabric.h"
+#include "garment/pattern/edge_curve.h"
 #include "scenes/format/names.h"
+#include "scenes/garment_format/closures.h"
 #include "scenes/garment_format/copies.h"
 #include "scenes/garment_format/edge_name.h"
 #include "scenes/garment_format/panel_folds.h"
+#include "scenes/garment_format/panel_point.h"
 
 namespace toile::garment_format {
 namespace {
@@ -84,6 +88,9 @@ void set_panel(const PanelSettings& settings, garment::Panel& panel)
     panel.shrink_weft = settings.shrink.weft.value_or(1.0);
     panel.place = settings.place;
     panel.layer = settings.layer;
+    panel.lines.clear();
+    for (const auto& [name, line] : settings.lines)
+        panel.lines.push_back({name, line.points});
 }
 
 /// Settings of panels from `first` on.
@@ -94,6 +101,26 @@ void set_panels(const GarmentFile& file, size_t first, Pattern& pattern)
             set_panel(settings->second, pattern.panels[i]);
 }
 
+/// Names of lines are told apart from those of edges. Whether lines lie in their panels is left to the
+/// mesher.
+void check_lines(const Document& document, const std::string& key_path, const PanelSettings& settings,
+                 const garment::Panel& panel)
+{
+    for (const auto& [name, line] : settings.lines) {
+        const auto has_name = [&](const garment::PanelEdge& edge) { return edge.label == name; };
+        if (whole_number_in(name) || std::any_of(panel.edges.begin(), panel.edges.end(), has_name))
+            document.refuse(below(key_path, name),
+                            "is the name of an edge of " + as_written(panel.name) + "; choose another");
+        if (name.empty() || name.find_first_of(".[") != std::string::npos)
+            document.refuse(below(key_path, name), "can't be named in seams; choose letters and digits");
+        if (line.points.size() < 2)
+            document.refuse(below(below(key_path, name), "points"),
+                            std::to_string(line.points.size()) +
+                                (line.points.size() == 1 ? " point" : " points") +
+                                "; a line needs two or more");
+    }
+}
+
 /// @param original_count  panels of the files; the others are copies
 void check_settings(const Document& document, const GarmentFile& file, size_t original_count,
                     const Pattern& pattern)
@@ -102,6 +129,8 @@ void check_settings(const Document& document, const GarmentFile& file, size_t or
     for (const auto& [name, settings] : file.panels) {
         const std::string key_path = below("panels", name);
         scene_format::require_known(document, key_path, "panel", name, names);
+        check_lines(document, below(key_path, "lines"), settings,
+                    pattern.panels[size_t(std::find(names.begin(), names.end(), name) - names.begin())]);
         if (settings.fabric)
             require_preset(document, below(key_path, "fabric"), *settings.fabric);
         const auto index = size_t(std::find(names.begin(), names.end(), name) - names.begin());
@@ -145,6 +174,11 @@ Seam seam_of(const Document& document, const std::string& key_path, const SeamEn
     seam.flip = starts_meet ? "write \"join\": \"start-end\" in it" : "write \"join\": \"start-start\" in it";
     seam.fold_deg = entry.fold_deg;
     seam.order = entry.order;
+    for (const std::vector<EdgePart>* side : {&seam.a, &seam.b})
+        for (const EdgePart& part : *side)
+            if (entry.fold_deg != 0.0 && is_on_line(pattern, part))
+                document.refuse(below(key_path, "fold_deg"),
+                                "has no effect on a seam on a line inside of a panel; remove it");
     seam.gather = entry.gather;
     return seam;
 }
@@ -186,6 +220,24 @@ void add_elastics(const Document& document, const GarmentFile& file, Pattern& pa
     }
 }
 
+void add_attachments(const Document& document, const GarmentFile& file, Pattern& pattern)
+{
+    for (size_t i = 0; i < file.attach.size(); ++i) {
+        const AttachEntry& entry = file.attach[i];
+        const std::string key_path = below("attach", i);
+        garment::BodyAttachment attachment;
+        if (entry.edges.empty() && entry.points.empty())
+            document.refuse(key_path, "holds nothing; name \"edges\" or \"points\"");
+        if (!entry.edges.empty())
+            attachment.edges = chain_of(document, below(key_path, "edges"), entry.edges, pattern);
+        for (size_t k = 0; k < entry.points.size(); ++k)
+            attachment.points.push_back(
+                panel_point_of(document, below(below(key_path, "points"), k), entry.points[k], pattern));
+        attachment.is_released = entry.release;
+        pattern.attachments.push_back(std::move(attachment));
+    }
+}
+
 } // namespace
 
 Pattern assemble(const Document& document, const GarmentFile& file, const std::vector<Pattern>& parts)
@@ -206,6 +258,8 @@ Pattern assemble(const Document& document, const GarmentFile& file, const std::v
     add_seams(document, file, pattern);
     add_elastics(document, file, pattern);
     add_folds(document, file, pattern);
+    add_closures(document, file, pattern);
+    add_attachments(document, file, pattern);
     return pattern;
 }
 

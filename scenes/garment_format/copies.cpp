@@ -62,6 +62,8 @@ garment::PanelEdge mirrored(const garment::PanelEdge& edge)
 /// Part of the mirror image that lies where `part` did.
 EdgePart mirrored(const EdgePart& part, const Panel& panel)
 {
+    if (line_of(panel, part.edge))
+        return part;
     return {part.panel, int(panel.edges.size()) - 1 - part.edge, 1.0 - part.from, 1.0 - part.to};
 }
 
@@ -116,6 +118,9 @@ Panel mirror_image(const Panel& panel)
         corner = mirrored(corner);
     std::transform(panel.edges.rbegin(), panel.edges.rend(), image.edges.begin(),
                    [](const garment::PanelEdge& edge) { return mirrored(edge); });
+    for (garment::PanelLine& line : image.lines)
+        for (Vec2& point : line.points)
+            point = mirrored(point);
     image.label = mirrored(panel.label);
     image.grain_deg = -panel.grain_deg;
 

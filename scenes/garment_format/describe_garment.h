@@ -60,6 +60,13 @@ void describe(V& v, PatternFile& p)
 }
 
 template <typename V>
+void describe(V& v, LineEntry& l)
+{
+    v.required("points", l.points, scene_format::between(-100.0, 100.0, "m"),
+               "Corners [x, y] in the panel's plane; the last is the first of a closed line.");
+}
+
+template <typename V>
 void describe(V& v, PanelSettings& p)
 {
     using scene_format::between;
@@ -80,6 +87,9 @@ void describe(V& v, PanelSettings& p)
     v.field("place", p.place, "Where it starts on the body; absent: where the pattern puts it.");
     v.field("layer", p.layer, between(-100, 100),
             "Order of panels that lie on each other; each starts 1 cm outside of the layer below.");
+    v.field(
+        "lines", p.lines,
+        "Lines inside of the panel, by name, which seams may name as PANEL.LINE: pockets are sewn there.");
 }
 
 template <typename V>
@@ -88,7 +98,8 @@ void describe(V& v, SeamEntry& s)
     using scene_format::between;
     v.required("a", s.a,
                "Edges of one side, in order: PANEL.EDGE, where EDGE is an index or a label, or a part by "
-               "arc length, PANEL.EDGE[0.2:0.6]; [1:0] runs backwards.");
+               "arc length, PANEL.EDGE[0.2:0.6]; [1:0] runs backwards. Likewise PANEL.LINE, for a line "
+               "inside of a panel.");
     v.required("b", s.b, "Edges of the other side.");
     v.field("join", s.join, "Whether the start of a meets the end of b, or its start.");
     v.field("fold_deg", s.fold_deg, scene_format::kFoldAngle,
@@ -129,6 +140,28 @@ void describe(V& v, FoldEntry& f)
 }
 
 template <typename V>
+void describe(V& v, ClosureEntry& c)
+{
+    v.required(
+        "a", c.a,
+        "Point of a panel: PANEL.EDGE[0.25], by a fraction of the edge's length, or PANEL[0.1,0.2], by "
+        "metres in the panel's plane.");
+    v.required("b", c.b, "Point that it is pulled to.");
+    v.field("close_at", c.close_at, scene_format::between(0.0, 60.0, "s"),
+            "Time from when the garment falls into place to when it begins to close; 0: it closes while the "
+            "garment is sewn.");
+}
+
+template <typename V>
+void describe(V& v, AttachEntry& a)
+{
+    v.field("edges", a.edges, "Edges, PANEL.EDGE, or parts of them, PANEL.EDGE[0.2:0.6].");
+    v.field("points", a.points, "Points of panels, PANEL.EDGE[0.25] or PANEL[0.1,0.2].");
+    v.field("release", a.release,
+            "Release them once the garment rests; otherwise the written scene holds them.");
+}
+
+template <typename V>
 void describe(V& v, GarmentFile& g)
 {
     v.version("toile_garment", 1, "Version of the format.");
@@ -141,6 +174,12 @@ void describe(V& v, GarmentFile& g)
             "Elastics along edges, which gather the cloth as they contract, from the moment it falls into "
             "place on.");
     v.field("folds", g.folds, "Lines along which panels are folded before they are sewn, as pleats are.");
+    v.field("closures", g.closures,
+            "Tacks and buttons: pairs of points that are pulled together at 0.2 m/s and then held. Those "
+            "between panels with as many copies are repeated.");
+    v.field("attach", g.attach,
+            "Edges and points that springs of 300 N/m a vertex hold on the body while the garment falls into "
+            "place and rests.");
 }
 
 } // namespace toile::garment_format

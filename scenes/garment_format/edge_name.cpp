@@ -71,7 +71,7 @@ EdgeName parse(const Document& document, const std::string& key_path, const std:
             bracket == std::string::npos ? "" : name.substr(bracket)};
 }
 
-/// Index of the edge with a label.
+/// Index of the edge with a label, or of the line with a name.
 int labelled_edge(const Document& document, const std::string& key_path, const EdgeName& name,
                   const garment::Panel& panel)
 {
@@ -82,6 +82,11 @@ int labelled_edge(const Document& document, const std::string& key_path, const E
             indices.push_back(std::to_string(e));
         if (!panel.edges[e].label.empty())
             labels.push_back(panel.edges[e].label);
+    }
+    for (size_t l = 0; l < panel.lines.size(); ++l) {
+        if (panel.lines[l].name == name.edge)
+            return int(panel.edges.size() + l);
+        labels.push_back(panel.lines[l].name);
     }
     if (indices.size() > 1)
         document.refuse(key_path, as_written(name.edge) + " is the label of edges " +

@@ -5,7 +5,7 @@
 
 namespace toile::garment_format {
 
-/// Part of an edge named by PANEL.EDGE or PANEL.EDGE[from:to].
+/// Part of an edge, or of a line inside of a panel, named by PANEL.EDGE or PANEL.EDGE[from:to].
 /// @param key_path  where the name stands, for messages
 /// @throws InvalidInput, with the nearest name, for a panel or edge that does not exist, a label of several
 ///         edges, and fractions outside 0 to 1 or of no length

@@ -19,6 +19,11 @@ struct PatternFile {
     std::optional<scene::LengthUnit> unit; ///< absent: what the file says
 };
 
+/// A line inside of a panel, as written.
+struct LineEntry {
+    std::vector<Vec2> points; ///< [m]
+};
+
 /// How a panel is cut and where it starts.
 struct PanelSettings {
     std::optional<std::string> fabric; ///< name of a preset
@@ -29,6 +34,7 @@ struct PanelSettings {
     bool mirror = false; ///< every second copy is a mirror image
     std::optional<garment::BodyPlacement> place;
     int layer = 0;
+    std::map<std::string, LineEntry> lines; ///< by name
 };
 
 /// Ends of a seam's sides that meet.
@@ -60,6 +66,20 @@ struct FoldEntry {
     double stiffness = garment::kFoldStiffness; ///< [N]
 };
 
+/// A tack or button as written, by two points of panels.
+struct ClosureEntry {
+    std::string a;
+    std::string b;
+    double close_at = 0.0; ///< [s]
+};
+
+/// What is held on the body, as written.
+struct AttachEntry {
+    std::vector<std::string> edges;
+    std::vector<std::string> points;
+    bool release = false;
+};
+
 struct GarmentFile {
     std::string description;
     std::vector<PatternFile> patterns;
@@ -67,6 +87,8 @@ struct GarmentFile {
     std::vector<SeamEntry> seams;
     std::vector<ElasticEntry> elastics;
     std::vector<FoldEntry> folds;
+    std::vector<ClosureEntry> closures;
+    std::vector<AttachEntry> attach;
 };
 
 } // namespace toile::garment_format

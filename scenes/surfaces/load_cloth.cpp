@@ -137,6 +137,26 @@ std::string cloth_location(const Scene& scene, const scene::Cloth& cloth)
     return scene.source.string() + ": cloths[" + std::to_string(index) + "]";
 }
 
+/// @param key_path  of the list, for messages
+/// @throws InvalidInput for vertices that do not exist, and two that are one in the cloth
+std::vector<garment::Tacks::Tack> tacks_of(const std::vector<scene::Tack>& tacks, const ClothState& cloth,
+                                           const std::string& key_path)
+{
+    std::vector<garment::Tacks::Tack> result;
+    for (size_t i = 0; i < tacks.size(); ++i) {
+        const std::string location = key_path + "[" + std::to_string(i) + "]";
+        const auto vertex = [&](int number, const char* key) {
+            return cloth.vertex_of_file(number, location + key, "tack vertices of the surface");
+        };
+        result.push_back({vertex(tacks[i].a, ".a"), vertex(tacks[i].b, ".b"), tacks[i].close_at});
+        if (result.back().a == result.back().b)
+            throw InvalidInput(location + ": vertices " + std::to_string(tacks[i].a) + " and " +
+                               std::to_string(tacks[i].b) + " are one point of \"" + cloth.name +
+                               "\"; name two");
+    }
+    return result;
+}
+
 bool is_selected_near(const Scene& scene, const std::string& avatar)
 {
     return std::any_of(scene.attachments.begin(), scene.attachments.end(), [&](const auto& attachment) {
@@ -175,6 +195,7 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
             p += settings.translate;
     state.positions = state.rest.positions;
     loaded.folds = fold_edges(settings.folds, state, loaded.rest->topology, location + ".folds");
+    loaded.tacks = tacks_of(settings.tacks, state, location + ".tacks");
     for (size_t i = 0; i < scene.attachments.size(); ++i)
         if (scene.attachments[i].cloth == settings.name) {
             const std::string location = attachment_location(scene, i);

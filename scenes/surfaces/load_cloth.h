@@ -8,6 +8,7 @@
 #include "garment/energy/fold/fold_edge.h"
 #include "garment/energy/rest_shape.h"
 #include "garment/seam/elastics.h"
+#include "garment/seam/tacks.h"
 #include "scenes/colliders/collider.h"
 #include "scenes/surfaces/cloth_state.h"
 
@@ -19,13 +20,14 @@ struct LoadedCloth {
     std::shared_ptr<const garment::RestShape> rest;
     std::vector<garment::Elastics::Spring> elastics;
     std::vector<garment::FoldEdge> folds;
+    std::vector<garment::Tacks::Tack> tacks;
     std::string note; ///< what was chosen for the scene, with the name of the mesh; empty: nothing
 };
 
 /// Reads or cuts a cloth and selects its attached vertices.
 /// @param colliders  those that attachments select near to, or more
 /// @param warn       receives what was changed in the mesh; may be empty
-/// @throws InvalidInput for a mesh, fabric, fold or selection that does not work
+/// @throws InvalidInput for a mesh, fabric, fold, tack or selection that does not work
 LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
                        const std::vector<Collider>& colliders,
                        const std::function<void(const std::string&)>& warn);

@@ -100,6 +100,8 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
     rest_ = std::move(loaded.rest);
     elastics_ = std::move(loaded.elastics);
     folds_ = std::move(loaded.folds);
+    if (!loaded.tacks.empty())
+        tacks_ = std::make_unique<garment::Tacks>(loaded.tacks);
     parts_ = fabric_parts(state_, rest_);
     masses_ = masses_of(parts_);
     add_attachments(scene, colliders);
@@ -219,6 +221,8 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     add_sewing(energies);
     if (!elastics_.empty())
         energies.push_back(std::make_shared<garment::Elastics>(elastics_));
+    if (tacks_)
+        energies.push_back(tacks_->threads());
     add_tension(outer, energies);
     return energies;
 }
@@ -279,8 +283,10 @@ garment::ClothModel SceneCloth::model() const
     return cloth;
 }
 
-void SceneCloth::begin_step(View<const Vec3> x, double dt)
+void SceneCloth::begin_step(View<const Vec3> x, double dt, double t_t1)
 {
+    if (tacks_)
+        tacks_->begin_step(t_t1, x);
     for (const FabricPart& part : parts_)
         if (part.membrane)
             part.membrane->begin_step(x, dt);
@@ -375,7 +381,7 @@ void SceneCloth::accelerate(double dt, double t_t1, View<const Vec3> x, View<con
 
 bool SceneCloth::is_disturbed(double t) const
 {
-    return wind_.velocity.norm() > 0.0 ||
+    return wind_.velocity.norm() > 0.0 || (tacks_ && tacks_->are_closing(t)) ||
            std::any_of(attachments_.begin(), attachments_.end(),
                        [&](const AttachmentConstraint& attachment) { return attachment.changes_at(t); });
 }

@@ -14,6 +14,7 @@
 #include "garment/energy/springs.h"
 #include "garment/energy/strain_limit/strain_limit.h"
 #include "garment/seam/elastics.h"
+#include "garment/seam/tacks.h"
 #include "scenes/colliders/attachment_constraint.h"
 #include "scenes/surfaces/cloth_state.h"
 #include "scenes/world/fabric_parts.h"
@@ -74,8 +75,8 @@ public:
     /// Sets accelerations by gravity, damping and air [m/s^2], for a step of dt [s] that ends at t_t1 [s].
     void accelerate(double dt, double t_t1, View<const Vec3> x, View<const Vec3> v, View<Vec3> acceleration);
 
-    /// Begins a step of dt [s] at x for energies that depend on its start.
-    void begin_step(View<const Vec3> x, double dt);
+    /// Begins a step of dt [s] at x, which ends at t_t1 [s], for energies that depend on its start.
+    void begin_step(View<const Vec3> x, double dt, double t_t1);
 
     /// Sets the positions of state().
     void take(View<const Vec3> x);
@@ -109,6 +110,7 @@ private:
     garment::Gusts gusts_;
     scene::Sewing sewing_;
     std::vector<garment::Elastics::Spring> elastics_;
+    std::unique_ptr<garment::Tacks> tacks_; ///< null without tacks
     std::vector<double> masses_;
     std::vector<AttachmentConstraint> attachments_;
     std::shared_ptr<const garment::RestShape> rest_;

@@ -66,6 +66,23 @@ TEST_F(PatternShow, PrintsPanelsEdgesAndSeams)
     EXPECT_EQ(finished.output.find("twisted"), std::string::npos);
 }
 
+TEST_F(PatternShow, DrawsClosuresAndLinesInside)
+{
+    temporary_.write("t.garment.json", R"({"toile_garment": 1, "patterns": [{"file": "tube.json"}],
+        "panels": {"front": {"lines": {"dart": {"points": [[0.1, 0.2], [0.1, 0.3]]}}}},
+        "closures": [{"a": "front[0.1,0.1]", "b": "back.0[0.5]"}]})");
+    const std::string picture = drawing("t.garment.json"), plain = drawing("tube.json");
+    const auto count = [](const std::string& text, const std::string& word) {
+        int found = 0;
+        for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+            ++found;
+        return found;
+    };
+    EXPECT_EQ(count(picture, "class=\"closure\""), 2);
+    EXPECT_EQ(count(picture, "stroke-dasharray"), 1);
+    EXPECT_EQ(count(plain, "class=\"closure\"") + count(plain, "stroke-dasharray"), 0);
+}
+
 TEST_F(PatternShow, PrintsJson)
 {
     const Finished finished = show({"tube.json", "--json"});

@@ -212,6 +212,8 @@ std::string DrapeFiles::scene_text(const Continuation& continuation, const scene
         for (const scene::Elastic& elastic : result.scene.cloths[g].elastics)
             cloth["elastics"].push_back(
                 {{"vertices", elastic.vertices}, {"ratio", elastic.ratio}, {"stiffness", elastic.stiffness}});
+        for (const scene::Tack& tack : result.scene.cloths[g].tacks)
+            cloth["tacks"].push_back({{"a", tack.a}, {"b", tack.b}});
         for (const scene::Fold& fold : garment.surface.folds)
             cloth["folds"].push_back(
                 {{"vertices", fold.vertices}, {"angle_deg", fold.angle_deg}, {"stiffness", fold.stiffness}});

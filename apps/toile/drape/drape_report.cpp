@@ -116,6 +116,9 @@ Json garment_json(const scenes::DrapedGarment& garment, const garment::Pattern& 
     json["border_loops"] = garment.border_loops;
     json["euler_characteristic"] = garment.euler_characteristic;
     json["seams"] = seams_json(pattern, garment.seams);
+    json["closures"] = Json::array();
+    for (const scenes::DrapeClosure& closure : garment.closures)
+        json["closures"].push_back({{"name", closure.name}, {"gap_m", closure.gap}});
     json["slid_m"] = Json::object();
     for (const scenes::DrapeSlide& slide : garment.slides)
         json["slid_m"][slide.label] = slide.slid;

@@ -19,18 +19,19 @@ using garment::Panel;
 namespace {
 
 // Millimetres on the sheet.
-constexpr double kMargin = 34.0;     // about panels
-constexpr double kHeader = 58.0;     // above them
-constexpr double kFooterLine = 16.0; // of a twisted seam
-constexpr double kSeamWidth = 6.0;   // stroke of a sewn edge
-constexpr double kBadgeRadius = 7.5; // of a seam's number
-constexpr double kBadgeInset = 12.0; // of it from its edge
-constexpr double kShort = 20.0;      // length of a sewn edge whose number would lie on its neighbours
-constexpr double kShortInset = 26.0; // of that number
-constexpr double kLabelOffset = 8.0; // of an edge's index from its edge
-constexpr double kArrow = 6.5;       // of a seam's direction
-constexpr double kRatioRoom = 70.0;  // length of a sewn edge that has room for its gather
-constexpr double kStrip = 45.0;      // radius of the largest circle in a strip
+constexpr double kMargin = 34.0;      // about panels
+constexpr double kHeader = 58.0;      // above them
+constexpr double kFooterLine = 16.0;  // of a twisted seam
+constexpr double kSeamWidth = 6.0;    // stroke of a sewn edge
+constexpr double kBadgeRadius = 7.5;  // of a seam's number
+constexpr double kBadgeInset = 12.0;  // of it from its edge
+constexpr double kShort = 20.0;       // length of a sewn edge whose number would lie on its neighbours
+constexpr double kShortInset = 26.0;  // of that number
+constexpr double kLabelOffset = 8.0;  // of an edge's index from its edge
+constexpr double kArrow = 6.5;        // of a seam's direction
+constexpr double kRatioRoom = 70.0;   // length of a sewn edge that has room for its gather
+constexpr double kButtonRadius = 4.0; // of a closure's end
+constexpr double kStrip = 45.0;       // radius of the largest circle in a strip
 
 /// Gathers from this ratio on are written at the longer side.
 constexpr double kShownRatio = 1.05;
@@ -80,12 +81,14 @@ public:
         for (int p = 0; p < panel_count; ++p) {
             outline(p, std::string("fill=\"none\" stroke=\"") + kInk +
                            "\" stroke-width=\"1\" stroke-linejoin=\"round\"");
+            inner_lines(p);
             panel_text(p);
             for (int e = 0; e < int(panel(p).edges.size()); ++e)
                 edge_text(p, e);
         }
         for (size_t s = 0; s < report_.seams.size(); ++s)
             seam_badges(int(s));
+        closures();
         twists();
         return text_ + "</svg>\n";
     }
@@ -167,6 +170,18 @@ private:
         for (const garment::PanelEdge& edge : panel(p).edges)
             data += curve_data(p, edge);
         text_ += svg::path(data + "Z", attributes);
+    }
+
+    /// Lines inside of a panel, dashed.
+    void inner_lines(int p)
+    {
+        for (const garment::PanelLine& line : panel(p).lines) {
+            std::string data;
+            for (const Vec2& point : line.points)
+                data += (data.empty() ? "M" : "L") + svg::point(layout_.on_sheet(p, point)) + " ";
+            text_ += svg::path(data, std::string("fill=\"none\" stroke=\"") + kInk +
+                                         "\" stroke-width=\"1\" stroke-dasharray=\"5 3\"");
+        }
     }
 
     /// Points around a panel on the sheet.
@@ -325,6 +340,23 @@ private:
                  "\" r=\"" + svg::number(kBadgeRadius) + "\" fill=\"" + seam_colour(seam) +
                  "\" stroke=\"#ffffff\"/>\n";
         text_ += svg::text(centre, std::to_string(seam), {9.0, "#ffffff", "middle", true});
+    }
+
+    /// Both ends of each closure as crossed circles with its number.
+    void closures()
+    {
+        for (size_t c = 0; c < report_.pattern.closures.size(); ++c)
+            for (const garment::PanelPoint* end :
+                 {&report_.pattern.closures[c].a, &report_.pattern.closures[c].b}) {
+                const Vec2 at = layout_.on_sheet(end->panel, end->point);
+                const Vec2 across(kButtonRadius, 0.0), down(0.0, kButtonRadius);
+                text_ += "<circle class=\"closure\" cx=\"" + svg::number(at.x()) + "\" cy=\"" +
+                         svg::number(at.y()) + "\" r=\"" + svg::number(kButtonRadius) +
+                         "\" fill=\"#ffffff\" stroke=\"" + kInk + "\"/>\n";
+                text_ += svg::line(at - across, at + across, kInk, 0.7);
+                text_ += svg::line(at - down, at + down, kInk, 0.7);
+                text_ += svg::text(at + 2.0 * across, std::to_string(c), {8.0, kInk, "start", true});
+            }
     }
 
     void twists()

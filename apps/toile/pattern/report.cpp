@@ -193,7 +193,8 @@ PatternReport report_on(Pattern pattern)
         report.seams.push_back(facts);
         for (const std::vector<EdgePart>* side : {&seam.a, &seam.b})
             for (const EdgePart& part : *side)
-                report.panels[size_t(part.panel)].edges[size_t(part.edge)].seams.push_back(int(s));
+                if (!is_on_line(pattern, part))
+                    report.panels[size_t(part.panel)].edges[size_t(part.edge)].seams.push_back(int(s));
     }
     report.pattern = std::move(pattern);
     return report;
@@ -207,7 +208,9 @@ std::string sides_text(const Pattern& pattern, const Seam& seam)
 
 std::string name_in_garment_file(const Pattern& pattern, const EdgePart& part)
 {
-    std::string name = pattern.panels[size_t(part.panel)].name + "." + std::to_string(part.edge);
+    const Panel& panel = pattern.panels[size_t(part.panel)];
+    const garment::PanelLine* line = line_of(panel, part.edge);
+    std::string name = panel.name + "." + (line ? line->name : std::to_string(part.edge));
     if (part.from != 0.0 || part.to != 1.0)
         name.append("[").append(short_text(part.from)).append(":").append(short_text(part.to)).append("]");
     return name;

@@ -34,7 +34,7 @@ using Ends = std::array<int, 2>; ///< vertices of an edge, ascending
 
 Ends ends_of(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Edge of an outline that is sewn.
+/// Edge of an outline or a line that is sewn.
 struct SewnEdge {
     Ends ends;
     Vec2 direction;      ///< [-] unit
@@ -45,14 +45,19 @@ struct SewnEdge {
     double log_stretch() const { return std::log(target / length); }
 };
 
-/// [vertices] next one along the outline of its panel; -1 inside.
-std::vector<int> next_on_outline(const PatternMesh& mesh)
+/// [vertices] next one along the outline of its panel, or along a line inside of it; -1 elsewhere.
+std::vector<int> next_along(const PatternMesh& mesh)
 {
     std::vector<int> next(size_t(mesh.vertex_count()), -1);
     for (const auto& panel : mesh.edge_vertices)
         for (const auto& edge : panel)
             for (size_t i = 0; i + 1 < edge.size(); ++i)
                 next[edge[i].vertex] = edge[i + 1].vertex;
+    for (const auto& panel : mesh.panel_lines)
+        for (const auto& line : panel)
+            for (size_t i = 0; i + 1 < line.size(); ++i)
+                if (next[line[i].vertex] < 0)
+                    next[line[i].vertex] = line[i + 1].vertex;
     return next;
 }
 
@@ -146,7 +151,7 @@ std::optional<int> kept_side(const SideLengths& lengths, Gather gather)
 
 std::vector<SewnEdge> sewn_edges(const Pattern& pattern, const PatternMesh& mesh)
 {
-    const std::vector<int> next = next_on_outline(mesh);
+    const std::vector<int> next = next_along(mesh);
     const std::vector<bool> stitched = are_stitched(mesh);
     std::vector<SewnEdge> edges;
     for (size_t s = 0; s < mesh.stitches.size(); ++s) {

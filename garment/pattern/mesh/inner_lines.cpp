@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "core/base/error.h"
@@ -126,35 +127,82 @@ std::vector<Vec2> corners_of(const InnerLine& line, const LineEnds& ends,
     return corners;
 }
 
-/// Adds a line's points to a frame. One that goes from outline to outline gets a point at least.
+/// Points along a line from corner to corner. One that goes from outline to outline gets a point between them
+/// at least.
+std::vector<Vec2> divide(const std::vector<Vec2>& corners, double target)
+{
+    std::vector<Vec2> points{corners.front()};
+    const int least = corners.size() == 2 ? 2 : 1;
+    for (size_t i = 0; i + 1 < corners.size(); ++i) {
+        const Vec2 &a = corners[i], &b = corners[i + 1];
+        const int count = std::max(least, int(std::ceil((b - a).norm() / target)));
+        for (int k = 1; k < count; ++k)
+            points.push_back(a + (b - a) * k / count);
+        points.push_back(b);
+    }
+    return points;
+}
+
+/// Adds a line's points to a frame.
+/// @param divided  points along it; empty: by the target
 std::vector<int> add_line(const InnerLine& line, const LineEnds& ends,
-                          const std::vector<std::vector<double>>& fractions, double target, PanelFrame& frame)
+                          const std::vector<std::vector<double>>& fractions, std::vector<Vec2> divided,
+                          double target, PanelFrame& frame)
 {
     const std::array end_points{ends[0] ? outline_point(fractions, *ends[0]) : -1,
                                 ends[1] ? outline_point(fractions, *ends[1]) : -1};
     const std::vector<Vec2> corners = corners_of(line, ends, end_points, frame.points);
+    if (divided.empty())
+        divided = divide(corners, target);
     const bool is_closed = !ends[0] && corners.front() == corners.back();
     const auto add_point = [&](const Vec2& x) {
         frame.points.push_back(x);
         return int(frame.points.size()) - 1;
     };
 
-    std::vector<int> result{ends[0] ? end_points[0] : add_point(corners[0])};
-    for (size_t i = 0; i + 1 < corners.size(); ++i) {
-        const Vec2 &a = corners[i], &b = corners[i + 1];
-        const int least = corners.size() == 2 ? 2 : 1;
-        const int count = std::max(least, int(std::ceil((b - a).norm() / target)));
-        for (int k = 1; k < count; ++k)
-            result.push_back(add_point(a + (b - a) * k / count));
-        const bool is_last = i + 2 == corners.size();
-        if (is_last && ends[1])
-            result.push_back(end_points[1]);
-        else
-            result.push_back(is_last && is_closed ? result.front() : add_point(b));
-    }
+    std::vector<int> result{ends[0] ? end_points[0] : add_point(corners.front())};
+    for (size_t i = 1; i + 1 < divided.size(); ++i)
+        result.push_back(add_point(divided[i]));
+    if (ends[1])
+        result.push_back(end_points[1]);
+    else
+        result.push_back(is_closed ? result.front() : add_point(corners.back()));
     for (size_t i = 0; i + 1 < result.size(); ++i)
         frame.inner_edges.push_back({result[i], result[i + 1]});
     return result;
+}
+
+/// Points of closures and attachments of a pattern.
+std::vector<PanelPoint> points_of(const Pattern& pattern)
+{
+    std::vector<PanelPoint> points;
+    for (const Closure& closure : pattern.closures)
+        points.insert(points.end(), {closure.a, closure.b});
+    for (const BodyAttachment& attachment : pattern.attachments)
+        points.insert(points.end(), attachment.points.begin(), attachment.points.end());
+    return points;
+}
+
+/// Distance of a point from the edges and points of a frame [m].
+double distance_to(const PanelFrame& frame, const Vec2& x)
+{
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Vec2& point : frame.points)
+        nearest = std::min(nearest, (point - x).norm());
+    for (const auto& [i, k] : edges_of(frame)) {
+        const Vec2 a = frame.points[i], ab = frame.points[k] - a;
+        const double t = std::clamp((x - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+        nearest = std::min(nearest, (x - a - t * ab).norm());
+    }
+    return nearest;
+}
+
+void add_points(const Pattern& pattern, int panel, double target, PanelFrame& frame)
+{
+    constexpr double kMinDistance = 0.5; // over the target
+    for (const PanelPoint& point : points_of(pattern))
+        if (point.panel == panel && distance_to(frame, point.point) > kMinDistance * target)
+            frame.points.push_back(point.point);
 }
 
 bool is_inside(const std::vector<Vec2>& polygon, const Vec2& x)
@@ -214,16 +262,22 @@ std::vector<LineEnds> place_lines(const Pattern& pattern, const PatternCurves& c
     return result;
 }
 
-std::vector<std::vector<std::vector<double>>>
-marks_of(const PatternCurves& curves, const std::vector<InnerLine>& lines, const std::vector<LineEnds>& ends)
+std::vector<std::vector<std::vector<double>>> marks_of(const Pattern& pattern, const PatternCurves& curves,
+                                                       const std::vector<InnerLine>& lines,
+                                                       const std::vector<LineEnds>& ends)
 {
     std::vector<std::vector<std::vector<double>>> marks;
     for (const auto& panel : curves)
         marks.emplace_back(panel.size());
+    const auto mark = [&](int panel, const std::optional<LineEnd>& end) {
+        if (end && end->fraction > 0.0 && end->fraction < 1.0)
+            marks[panel][end->edge].push_back(end->fraction);
+    };
     for (size_t l = 0; l < lines.size(); ++l)
         for (const auto& end : ends[l])
-            if (end && end->fraction > 0.0 && end->fraction < 1.0)
-                marks[lines[l].panel][end->edge].push_back(end->fraction);
+            mark(lines[l].panel, end);
+    for (const PanelPoint& point : points_of(pattern))
+        mark(point.panel, end_on_outline(curves[point.panel], point.point));
     for (auto& panel : marks)
         for (auto& edge : panel)
             sort_apart(edge);
@@ -232,7 +286,8 @@ marks_of(const PatternCurves& curves, const std::vector<InnerLine>& lines, const
 
 LinedFrame lined_frame(const Pattern& pattern, int panel, const std::vector<Vec2>& polygon,
                        const std::vector<std::vector<double>>& fractions, const std::vector<InnerLine>& lines,
-                       const std::vector<LineEnds>& ends, double target)
+                       const std::vector<LineEnds>& ends, const std::vector<std::vector<Vec2>>& divided,
+                       double target)
 {
     LinedFrame result;
     result.frame.points = polygon;
@@ -240,7 +295,8 @@ LinedFrame lined_frame(const Pattern& pattern, int panel, const std::vector<Vec2
     result.lines.resize(lines.size());
     for (size_t l = 0; l < lines.size(); ++l)
         if (lines[l].panel == panel)
-            result.lines[l] = add_line(lines[l], ends[l], fractions, target, result.frame);
+            result.lines[l] = add_line(lines[l], ends[l], fractions, divided[l], target, result.frame);
+    add_points(pattern, panel, target, result.frame);
     if (result.frame.inner_edges.empty())
         return result;
     require_no_crossing(pattern, lines, result);

@@ -26,11 +26,14 @@ using LineEnds = std::array<std::optional<LineEnd>, 2>;
 std::vector<LineEnds> place_lines(const Pattern& pattern, const PatternCurves& curves,
                                   const std::vector<InnerLine>& lines);
 
-/// Fractions of edges at which lines end. [panels][edges], ascending
-std::vector<std::vector<std::vector<double>>>
-marks_of(const PatternCurves& curves, const std::vector<InnerLine>& lines, const std::vector<LineEnds>& ends);
+/// Fractions of edges at which lines end, and where closures and attachments have points. [panels][edges],
+/// ascending
+std::vector<std::vector<std::vector<double>>> marks_of(const Pattern& pattern, const PatternCurves& curves,
+                                                       const std::vector<InnerLine>& lines,
+                                                       const std::vector<LineEnds>& ends);
 
-/// Frame of a panel: its outline and its lines, divided.
+/// Frame of a panel: its outline and its lines, divided, and points of closures and attachments inside. Those
+/// nearer than half the target to an edge or point are left out.
 struct LinedFrame {
     PanelFrame frame;
     std::vector<std::vector<int>>
@@ -39,10 +42,12 @@ struct LinedFrame {
 
 /// @param polygon    outline of the panel at its points, along the loop [m]
 /// @param fractions  [edges] of its points
+/// @param divided    [lines] points along a line that is divided already [m]; empty: by the target
 /// @param target     [m] length of edges
 /// @throws InvalidInput for a line that crosses the outline, another line or itself, or lies outside
 LinedFrame lined_frame(const Pattern& pattern, int panel, const std::vector<Vec2>& polygon,
                        const std::vector<std::vector<double>>& fractions, const std::vector<InnerLine>& lines,
-                       const std::vector<LineEnds>& ends, double target);
+                       const std::vector<LineEnds>& ends, const std::vector<std::vector<Vec2>>& divided,
+                       double target);
 
 } // namespace toile::garment

@@ -50,7 +50,7 @@ void require_part(const Pattern& pattern, const Seam& seam, const EdgePart& part
         throw InvalidInput(place + ": panel " + std::to_string(part.panel) +
                            " does not exist; the pattern has " + std::to_string(pattern.panels.size()));
     const Panel& panel = pattern.panels[part.panel];
-    if (part.edge < 0 || part.edge >= int(panel.edges.size()))
+    if (part.edge < 0 || part.edge >= int(panel.edges.size() + panel.lines.size()))
         throw InvalidInput(place + ": panel " + quoted(panel.name) + " has no edge " +
                            std::to_string(part.edge) + "; it has " + std::to_string(panel.edges.size()));
     const bool inside = std::min(part.from, part.to) >= 0.0 && std::max(part.from, part.to) <= 1.0;
@@ -272,6 +272,14 @@ std::vector<std::array<OutlinePoint, 2>> pairs_along(const std::vector<std::arra
 
 } // namespace
 
+PatternCurves with_lines(const Pattern& pattern, PatternCurves curves)
+{
+    for (size_t p = 0; p < curves.size(); ++p)
+        for (size_t l = 0; l < pattern.panels[p].lines.size(); ++l)
+            curves[p].emplace_back(pattern.panels[p], int(pattern.panels[p].edges.size() + l));
+    return curves;
+}
+
 OutlinePoints divide_outlines(const Pattern& pattern, const PatternCurves& curves,
                               const OutlineTargets& targets)
 {
@@ -290,8 +298,9 @@ OutlinePoints divide_outlines(const Pattern& pattern, const PatternCurves& curve
     OutlinePoints points;
     for (size_t p = 0; p < curves.size(); ++p) {
         points.fractions.emplace_back();
+        points.line_fractions.emplace_back();
         for (size_t e = 0; e < curves[p].size(); ++e)
-            points.fractions[p].push_back(
+            (e < pattern.panels[p].edges.size() ? points.fractions : points.line_fractions)[p].push_back(
                 place_points(int(p), int(e),
                              cover_edge(pattern, int(p), int(e), std::move(stretches[p][e]),
                                         curves[p][e].length(), targets),

@@ -10,7 +10,7 @@ namespace toile::garment {
 
 /// Points of a panel that a mesh of it has to keep.
 struct PanelFrame {
-    std::vector<Vec2> points; ///< the outline, counter-clockwise and simple, then those of lines inside [m]
+    std::vector<Vec2> points; ///< the outline, counter-clockwise and simple, then those inside [m]
     int outline_count = 0;    ///< how many of them are on the outline, at least 3
     std::vector<std::array<int, 2>> inner_edges; ///< of lines inside: pairs of points, which cross nothing
 };

@@ -26,7 +26,8 @@ double distance_to_segment(const Vec2& x, const Vec2& a, const Vec2& b)
     return (x - a - t * ab).norm();
 }
 
-/// Mean length of the frame's edges at each of its points, at most the target. [points] [m]
+/// Mean length of the frame's edges at each of its points, at most the target; that where there are none.
+/// [points] [m]
 std::vector<double> spacing_of(const PanelFrame& frame, double edge)
 {
     std::vector<double> sum(frame.points.size(), 0.0), count = sum;
@@ -36,7 +37,7 @@ std::vector<double> spacing_of(const PanelFrame& frame, double edge)
             count[i] += 1.0;
         }
     for (size_t i = 0; i < sum.size(); ++i)
-        sum[i] = std::min(edge, sum[i] / count[i]);
+        sum[i] = count[i] > 0.0 ? std::min(edge, sum[i] / count[i]) : edge;
     return sum;
 }
 

@@ -110,14 +110,14 @@ bool is_good_polygon(const std::vector<Vec2>& polygon, double area)
     return polygon.size() >= 3 && polygon_area(polygon) * area > 0.0 && !find_crossing(polygon);
 }
 
-/// Points on the outlines, with smaller targets for panels whose curves need them to stay simple.
+/// Points on the outlines and lines, with smaller targets for panels whose curves need them to stay simple.
 OutlinePoints divide_until_simple(const Pattern& pattern, const PatternCurves& curves,
                                   const std::vector<PanelSize>& sizes, OutlineTargets& targets)
 {
     constexpr int kHalvings = 8;
     for (int i = 0;; ++i) {
         require_affordable(pattern, sizes, targets.edge);
-        OutlinePoints points = divide_outlines(pattern, curves, targets);
+        OutlinePoints points = divide_outlines(pattern, with_lines(pattern, curves), targets);
         bool is_simple = true;
         for (size_t p = 0; p < curves.size(); ++p) {
             if (is_good_polygon(polygon_of(curves[p], points.fractions[p]), sizes[p].area))
@@ -181,7 +181,7 @@ std::vector<std::array<int, 2>> stitches_of(const std::vector<std::array<Outline
                                             const PatternMesh& mesh)
 {
     const auto vertex = [&](const OutlinePoint& at) {
-        return mesh.edge_vertices[at.panel][at.edge][at.point].vertex;
+        return mesh.vertices_along(at.panel, at.edge)[size_t(at.point)].vertex;
     };
     std::vector<std::array<int, 2>> pairs;
     for (const auto& [a, b] : seam)
@@ -191,7 +191,23 @@ std::vector<std::array<int, 2>> stitches_of(const std::vector<std::array<Outline
     return pairs;
 }
 
-PatternMesh assemble(const std::vector<PanelMesher>& panels, const OutlinePoints& points,
+/// Vertices along the lines of a panel.
+/// @param lines  [lines] their points
+/// @param first  vertex of the panel
+std::vector<std::vector<EdgeVertex>> number_lines(const std::vector<std::vector<double>>& fractions,
+                                                  const std::vector<std::vector<int>>& lines, int first)
+{
+    std::vector<std::vector<EdgeVertex>> result;
+    for (size_t l = 0; l < fractions.size(); ++l) {
+        result.emplace_back();
+        for (size_t i = 0; i < fractions[l].size(); ++i)
+            result.back().push_back({first + lines[l][i], fractions[l][i]});
+    }
+    return result;
+}
+
+PatternMesh assemble(const std::vector<PanelMesher>& panels, const std::vector<LinedFrame>& frames,
+                     const std::vector<int>& first_lines, const OutlinePoints& points,
                      const std::vector<double>& targets)
 {
     PatternMesh mesh;
@@ -200,6 +216,11 @@ PatternMesh assemble(const std::vector<PanelMesher>& panels, const OutlinePoints
     mesh.edge = targets;
     for (size_t p = 0; p < panels.size(); ++p) {
         mesh.edge_vertices.push_back(number_edges(points.fractions[p], mesh.vertex_count()));
+        mesh.panel_lines.push_back(number_lines(
+            points.line_fractions[p],
+            {frames[p].lines.begin() + first_lines[p],
+             frames[p].lines.begin() + first_lines[p] + std::ptrdiff_t(points.line_fractions[p].size())},
+            mesh.vertex_count()));
         panels[p].append_to(mesh);
     }
     for (const auto& seam : points.seams)
@@ -207,7 +228,7 @@ PatternMesh assemble(const std::vector<PanelMesher>& panels, const OutlinePoints
     return mesh;
 }
 
-/// Pattern mesh of the outlines alone, for welding.
+/// Pattern mesh of the outlines and lines alone, for welding.
 PatternMesh outlines_of(const OutlinePoints& points)
 {
     PatternMesh mesh;
@@ -216,6 +237,14 @@ PatternMesh outlines_of(const OutlinePoints& points)
         mesh.edge_vertices.push_back(number_edges(panel, mesh.vertex_count()));
         for (const auto& edge : panel)
             mesh.uv.resize(mesh.uv.size() + edge.size() - 1, Vec2::Zero());
+        mesh.panel_lines.emplace_back();
+        for (const auto& line : points.line_fractions[mesh.first_vertex.size() - 1]) {
+            mesh.panel_lines.back().emplace_back();
+            for (const double fraction : line) {
+                mesh.panel_lines.back().back().push_back({mesh.vertex_count(), fraction});
+                mesh.uv.push_back(Vec2::Zero());
+            }
+        }
         mesh.first_vertex.push_back(mesh.vertex_count());
     }
     for (const auto& seam : points.seams)
@@ -233,6 +262,8 @@ std::vector<std::vector<std::set<int>>> sewn_intervals(const OutlinePoints& poin
         for (size_t i = 0; i + 1 < seam.size(); ++i)
             for (int side = 0; side < 2; ++side) {
                 const OutlinePoint &low = seam[i][side], &high = seam[i + 1][side];
+                if (size_t(low.edge) >= result[low.panel].size())
+                    continue; // a line
                 if (low.panel == high.panel && low.edge == high.edge && std::abs(low.point - high.point) == 1)
                     result[low.panel][low.edge].insert(std::min(low.point, high.point));
             }
@@ -283,13 +314,53 @@ std::vector<std::vector<int>> line_vertices_of(const PatternMesh& mesh, const st
     return result;
 }
 
-/// Lines that edges of the mesh follow: those of the settings, then the pattern's folds.
+/// Lines that edges of the mesh follow: those of the settings, then the pattern's folds, then those of
+/// panels.
 std::vector<InnerLine> lines_of(const Pattern& pattern, const PatternMeshSettings& settings)
 {
     std::vector<InnerLine> lines = settings.lines;
     for (const PanelFold& fold : pattern.folds)
         lines.push_back({fold.panel, fold.points, fold.name});
+    for (int p = 0; p < int(pattern.panels.size()); ++p)
+        for (const PanelLine& line : pattern.panels[p].lines)
+            lines.push_back({p, line.points, line.name});
     return lines;
+}
+
+/// Index of the first line of each panel in lines_of(). [panels]
+std::vector<int> first_lines_of(const Pattern& pattern, const PatternMeshSettings& settings)
+{
+    std::vector<int> first;
+    int next = int(settings.lines.size() + pattern.folds.size());
+    for (const Panel& panel : pattern.panels) {
+        first.push_back(next);
+        next += int(panel.lines.size());
+    }
+    return first;
+}
+
+/// Points along the lines of panels. [lines_of()] empty for others [m]
+std::vector<std::vector<Vec2>> divided_lines(const PatternCurves& curves, const OutlinePoints& points,
+                                             size_t line_count, const std::vector<int>& first_lines)
+{
+    std::vector<std::vector<Vec2>> divided(line_count);
+    for (size_t p = 0; p < curves.size(); ++p)
+        for (size_t l = 0; l < points.line_fractions[p].size(); ++l)
+            for (const double fraction : points.line_fractions[p][l])
+                divided[size_t(first_lines[p]) + l].push_back(
+                    curves[p][points.fractions[p].size() + l].at(fraction));
+    return divided;
+}
+
+/// [seams] whether it is on a line inside of a panel
+std::vector<bool> inner_seams(const Pattern& pattern)
+{
+    std::vector<bool> inner;
+    const auto on_line = [&](const EdgePart& part) { return is_on_line(pattern, part); };
+    for (const Seam& seam : pattern.seams)
+        inner.push_back(std::any_of(seam.a.begin(), seam.a.end(), on_line) ||
+                        std::any_of(seam.b.begin(), seam.b.end(), on_line));
+    return inner;
 }
 
 /// Splits edges, given by vertices of the mesh, in their panels.
@@ -346,38 +417,45 @@ PatternMesh mesh_pattern(const Pattern& pattern, const PatternMeshSettings& sett
     const PatternCurves curves = outline_curves(pattern);
     const std::vector<PanelSize> sizes = sizes_of(pattern, curves);
     OutlineTargets targets{targets_of(pattern, settings, sizes), {}, {}};
-    for (const auto& panel : curves)
-        targets.free_intervals.emplace_back(panel.size(), 1);
     const std::vector<InnerLine> lines = lines_of(pattern, settings);
     const std::vector<LineEnds> line_ends = place_lines(pattern, curves, lines);
-    targets.marks = marks_of(curves, lines, line_ends);
+    const std::vector<int> first_lines = first_lines_of(pattern, settings);
+    const PatternCurves lined = with_lines(pattern, curves);
+    targets.marks = marks_of(pattern, curves, lines, line_ends);
+    for (size_t p = 0; p < lined.size(); ++p) {
+        targets.free_intervals.emplace_back(lined[p].size(), 1);
+        for (size_t e = curves[p].size(); e < lined[p].size(); ++e)
+            targets.marks[p].push_back(lined[p][e].corner_fractions());
+    }
 
     OutlinePoints points = divide_until_simple(pattern, curves, sizes, targets);
     while (divide_closing_edges(points, targets))
         points = divide_until_simple(pattern, curves, sizes, targets);
 
+    const std::vector<std::vector<Vec2>> divided = divided_lines(lined, points, lines.size(), first_lines);
     std::vector<PanelMesher> panels;
     std::vector<LinedFrame> frames;
     for (int p = 0; p < int(curves.size()); ++p) {
         frames.push_back(lined_frame(pattern, p, polygon_of(curves[p], points.fractions[p]),
-                                     points.fractions[p], lines, line_ends, targets.edge[p]));
+                                     points.fractions[p], lines, line_ends, divided, targets.edge[p]));
         panels.push_back(PanelMesher::of(frames[p].frame, sizes[p].area, targets.edge[p]));
     }
 
     // An edge inside of one panel may have the ends of an edge of another, across a corner that both share.
     constexpr int kMaxRounds = 10;
-    PatternMesh mesh = assemble(panels, points, targets.edge);
+    PatternMesh mesh = assemble(panels, frames, first_lines, points, targets.edge);
     for (int round = 0; round < kMaxRounds; ++round) {
         const auto edges = edges_to_split(mesh);
         if (edges.empty())
             break;
         split_edges(edges, mesh, panels);
-        mesh = assemble(panels, points, targets.edge);
+        mesh = assemble(panels, frames, first_lines, points, targets.edge);
     }
     require_height(pattern, mesh);
+    mesh.is_inner_seam = inner_seams(pattern);
     mesh.line_vertices = line_vertices_of(mesh, lines, frames);
     const auto first_fold = mesh.line_vertices.begin() + std::ptrdiff_t(settings.lines.size());
-    mesh.fold_vertices.assign(first_fold, mesh.line_vertices.end());
+    mesh.fold_vertices.assign(first_fold, first_fold + std::ptrdiff_t(pattern.folds.size()));
     mesh.line_vertices.erase(first_fold, mesh.line_vertices.end());
     return mesh;
 }

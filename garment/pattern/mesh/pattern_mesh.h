@@ -30,15 +30,29 @@ struct PatternMesh {
     /// [panels][edges][2 or more] from the edge's start to its end
     std::vector<std::vector<std::vector<EdgeVertex>>> edge_vertices;
 
+    /// [panels][lines][2 or more] of Panel::lines, likewise
+    std::vector<std::vector<std::vector<EdgeVertex>>> panel_lines;
+
     /// [seams][pairs] vertices of `a` and `b` to join, from the start of the seam to its end. A vertex that
     /// meets itself, as the tip of a dart does, is left out. Where a chain goes on at another vertex, there
     /// are two pairs.
     std::vector<std::vector<std::array<int, 2>>> stitches;
 
+    std::vector<bool> is_inner_seam; ///< [seams] whether it is on a line inside of a panel
+
     std::vector<std::vector<int>> line_vertices; ///< [lines][2 or more] along each line
     std::vector<std::vector<int>> fold_vertices; ///< [folds of the pattern][2 or more] along each
 
     std::vector<double> edge; ///< [panels] target of edge lengths [m]; less than asked for in narrow panels
+
+    /// Vertices along an edge of a panel, or a line of it.
+    /// @param number  EdgePart::edge
+    const std::vector<EdgeVertex>& vertices_along(int panel, int number) const
+    {
+        const size_t edges = edge_vertices[size_t(panel)].size();
+        return size_t(number) < edges ? edge_vertices[size_t(panel)][size_t(number)]
+                                      : panel_lines[size_t(panel)][size_t(number) - edges];
+    }
 
     int vertex_count() const { return int(uv.size()); }
     int triangle_count() const { return int(triangles.size()); }
@@ -58,8 +72,9 @@ struct PatternMeshSettings {
     double edge = 0.01;              ///< [m] target of edge lengths; none is much longer
     std::vector<double> panel_edges; ///< [panels] targets of their own [m]; empty: `edge` for all
 
-    /// Lines besides the folds of the pattern. They cross neither each other, nor folds, nor the outline.
-    /// Ends nearer to the outline than 1/1000 of its length are put on it, and so on what is sewn to it.
+    /// Lines besides those of the panels and the folds of the pattern. They cross neither each other, nor
+    /// folds, nor the outline. Ends nearer to the outline than 1/1000 of its length are put on it, and so on
+    /// what is sewn to it.
     std::vector<InnerLine> lines;
 };
 

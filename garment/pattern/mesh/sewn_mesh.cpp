@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "core/base/disjoint_sets.h"
@@ -107,6 +108,27 @@ void weld_triangles(const PatternMesh& mesh, SewnMesh& sewn)
     }
 }
 
+/// Surface topology without the seams on lines inside of panels, where three triangles share an edge; but for
+/// pieces and Euler characteristic.
+SurfaceTopology topology_of(const PatternMesh& mesh, const std::vector<Triangle>& welded)
+{
+    SurfaceTopology topology = surface_topology(welded);
+    if (std::find(mesh.is_inner_seam.begin(), mesh.is_inner_seam.end(), true) == mesh.is_inner_seam.end())
+        return topology;
+    PatternMesh apart = mesh;
+    for (size_t s = 0; s < apart.stitches.size(); ++s)
+        if (mesh.is_inner_seam[s])
+            apart.stitches[s].clear();
+    const std::vector<int> number = weld_stitches(apart);
+    std::vector<Triangle> triangles = mesh.triangles;
+    for (Triangle& t : triangles)
+        t = Triangle(number[t[0]], number[t[1]], number[t[2]]);
+    SurfaceTopology others = surface_topology(triangles);
+    others.pieces = topology.pieces;
+    others.euler_characteristic = topology.euler_characteristic;
+    return others;
+}
+
 } // namespace
 
 std::vector<int> weld_stitches(const PatternMesh& mesh)
@@ -133,7 +155,7 @@ SewnMesh sewn_mesh(const PatternMesh& mesh)
     }
     turn_panels(mesh, sewn);
     weld_triangles(mesh, sewn);
-    static_cast<SurfaceTopology&>(sewn.topology) = surface_topology(sewn.triangles);
+    static_cast<SurfaceTopology&>(sewn.topology) = topology_of(mesh, sewn.triangles);
     return sewn;
 }
 
@@ -142,14 +164,21 @@ std::vector<std::array<int, 2>> edges_to_split(const PatternMesh& mesh)
     const std::vector<int> welded = weld_stitches(mesh);
     const std::vector<int> next = next_on_outline(mesh);
 
-    // Edges by their welded ends; those of the outline first, which stay.
     using Ends = std::array<int, 2>;
+    std::set<Ends> on_lines;
+    for (const auto& panel : mesh.panel_lines)
+        for (const auto& line : panel)
+            for (size_t i = 0; i + 1 < line.size(); ++i)
+                on_lines.insert({std::min(line[i].vertex, line[i + 1].vertex),
+                                 std::max(line[i].vertex, line[i + 1].vertex)});
+
+    // Edges by their welded ends; those of outlines and lines first, which stay.
     std::vector<std::tuple<Ends, bool, Ends>> edges; // welded ends, is inside, ends
     for (const Triangle& t : mesh.triangles)
         for (int k = 0; k < 3; ++k) {
             const auto [a, b] = std::minmax({t[k], t[(k + 1) % 3]});
             const auto [low, high] = std::minmax({welded[a], welded[b]});
-            const bool is_outline = next[a] == b || next[b] == a;
+            const bool is_outline = next[a] == b || next[b] == a || on_lines.contains({a, b});
             edges.push_back({{low, high}, !is_outline, {a, b}});
         }
     std::sort(edges.begin(), edges.end());

@@ -9,7 +9,8 @@
 
 namespace toile::garment {
 
-/// Topology of a sewn surface, by its welded vertices.
+/// Topology of a sewn surface, by its welded vertices. What is sewn to lines inside of panels, as pockets
+/// are, belongs to its piece; border loops and manifoldness are those without these seams.
 struct SewnTopology : SurfaceTopology {
     /// Seam that makes the surface one-sided: a strip of it has its outside inside after one turn. Flip one
     /// of its sides to mend it. None if the surface has two sides.

@@ -119,12 +119,16 @@ TEST(DrapeReport, ListsSeveralGarments)
     report.result.garments[0].stages = {{"sew", 1.5, 2, 30, 4}};
     report.result.garments[1].name = "tee";
     report.result.garments[1].stages = {{"mesh", 0.25, 0, 40, 0}};
+    report.result.garments[1].closures = {{"closures[0]", 0.0005}};
     const auto json = nlohmann::json::parse(to_json(report, std::vector<garment::Pattern>(2)));
     ASSERT_EQ(json["garments"].size(), 2u);
     EXPECT_EQ(json["garments"][0]["name"], "skirt");
     EXPECT_EQ(json["garments"][0]["stages"][0]["frames"], 2);
     EXPECT_EQ(json["garments"][1]["stages"][0]["seconds"], 0.25);
     EXPECT_FALSE(json.contains("stages"));
+    EXPECT_TRUE(json["garments"][0]["closures"].empty());
+    EXPECT_EQ(json["garments"][1]["closures"][0]["name"], "closures[0]");
+    EXPECT_EQ(json["garments"][1]["closures"][0]["gap_m"], 0.0005);
     const std::string summary = summary_of(report);
     EXPECT_TRUE(summary.starts_with("not at rest after 1.8 s:\nskirt: ")) << summary;
     EXPECT_NE(summary.find("\ntee: "), std::string::npos) << summary;

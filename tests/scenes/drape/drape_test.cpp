@@ -214,6 +214,89 @@ TEST_F(DrapeTest, GathersAHemByAnElasticAndWritesIt)
     }
 }
 
+/// The hem is drawn together in front of the body, where nothing is between both points.
+TEST_F(DrapeTest, ClosesButtonsAndWritesThem)
+{
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("closures": [
+        {"a": "front.0[0.25]", "b": "front.0[0.75]"},
+        {"a": "front[-0.06,-0.05]", "b": "front[0.06,-0.05]", "close_at": 1.2}])");
+    ASSERT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    ASSERT_EQ(result.garments[0].closures.size(), 2u);
+    for (const DrapeClosure& closure : result.garments[0].closures)
+        EXPECT_LT(closure.gap, 0.002) << closure.name;
+    EXPECT_EQ(result.garments[0].closures[1].name, "closures[1]");
+
+    // What holds them is in the scene, closed from its start.
+    const std::vector<scene::Tack>& tacks = result.scene.cloths[0].tacks;
+    ASSERT_EQ(tacks.size(), 2u);
+    const std::vector<Vec3>& x = result.garments[0].surface.mesh.positions;
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(tacks[i].close_at, 0.0);
+        EXPECT_NEAR((x[size_t(tacks[i].a)] - x[size_t(tacks[i].b)]).norm(),
+                    result.garments[0].closures[i].gap, 1e-12);
+    }
+    // The drape went on until the second had closed: settling takes a second at most.
+    EXPECT_GT(result.garments[0].stages.back().frames, 0.2 * 30);
+}
+
+/// A loose tube, which slides off where nothing holds it.
+TEST_F(DrapeTest, HoldsWhatIsAttachedAndWritesIt)
+{
+    const DrapeResult result = drape_tube(tube(0.40, ""), R"("attach": [
+        {"edges": ["front.2", "back.2[0.25:0.75]"]}, {"points": ["back.0[0.5]"], "release": true}])");
+    ASSERT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    ASSERT_EQ(result.scene.attachments.size(), 1u) << "the other one was released";
+    EXPECT_EQ(result.scene.attachments[0].to, "body");
+    const auto& vertices = std::get<std::vector<int>>(result.scene.attachments[0].select.by);
+    EXPECT_EQ(vertices.size(), 22u) << "14 intervals of 40 cm, and 6 of their middle half";
+    double mean = 0.0;
+    for (const int v : vertices)
+        mean += result.garments[0].surface.mesh.positions[size_t(v)].y() / double(vertices.size());
+    EXPECT_NEAR(mean, 0.1, 0.01) << "where the upper edge started";
+}
+
+TEST_F(DrapeTest, ReleasesWhatIsAttachedForAWhile)
+{
+    max_motion_ = 1.0;
+    const DrapeResult result =
+        drape_tube(tube(0.40, ""), R"("attach": [{"edges": ["front.2", "back.2"], "release": true}])");
+    EXPECT_EQ(result.outcome, DrapeOutcome::NotAtRest) << "it falls once it is released";
+    EXPECT_GT(result.rest_speed.value(), 0.1);
+}
+
+/// A patch of 9 cm on the front of the tube, sewn along three of its sides.
+TEST_F(DrapeTest, SewsAPocketOntoAPanel)
+{
+    write("pocket.json", R"({"pattern": {"panels": {"pocket": {
+        "vertices": [[0, 0], [0.09, 0], [0.09, 0.09], [0, 0.09]],
+        "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}],
+        "rotation": [0, 0, 0], "translation": [-0.04, -0.05, 0.16]}}, "stitches": []},
+        "properties": {"units_in_meter": 1}})");
+    write("tube.json", tube(0.36, "strapless_top"));
+    const DrapeResult result = drape_files({{"tube", write("tube.garment.json", R"({"toile_garment": 1,
+        "patterns": [{"file": "tube.json"}, {"file": "pocket.json"}],
+        "panels": {"front": {"lines": {"place": {"points":
+            [[-0.04, 0.04], [-0.04, -0.05], [0.05, -0.05], [0.05, 0.04]]}}}},
+        "seams": [{"a": ["front.place"], "b": ["pocket.3", "pocket.0", "pocket.1"], "join": "start-start"}]})")}});
+    ASSERT_EQ(result.outcome, DrapeOutcome::Draped) << result.message;
+    const DrapedGarment& garment = result.garments[0];
+    EXPECT_EQ(garment.pieces, 1);
+    EXPECT_EQ(garment.border_loops, 3);
+    ASSERT_EQ(garment.seams.size(), 3u);
+    for (const DrapeSeam& seam : garment.seams)
+        EXPECT_LT(seam.gap, SeamClosing::kMaxGap) << seam.name;
+
+    // The pocket lies outside of the panel, and nothing crosses.
+    const TriangleMesh mesh = garment.surface.mesh.triangulated();
+    EXPECT_TRUE(collision::find_crossings(mesh.triangles, mesh.positions).empty());
+    double farthest = 0.0;
+    for (const Vec3& x : mesh.positions)
+        farthest = std::max(farthest, std::hypot(x.x(), x.z()));
+    EXPECT_LT(farthest, 0.16);
+    const int branching = int(surface_topology(mesh.triangles).non_manifold_edges.size());
+    EXPECT_EQ(branching, 9) << "three sides of three edges";
+}
+
 TEST_F(DrapeTest, SewsSeamsInTheirOrder)
 {
     const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("seams": [

@@ -1,4 +1,4 @@
-#include "scenes/drape/elastics.h"
+#include "scenes/drape/notions.h"
 
 #include <gtest/gtest.h>
 

@@ -252,7 +252,7 @@ TEST_F(GarmentFile, NamesMistakes)
     const std::vector<std::pair<std::string, std::string>> mistakes{
         {R"("panel": {})", "panel: unknown key; did you mean \"panels\"?"},
         {R"("buttons": [])", "buttons: unknown key; known are toile_garment, description, patterns, panels, "
-                             "seams, elastics and folds"},
+                             "seams, elastics, folds, closures and attach"},
         {R"("panels": {"frnt": {}})", "panels.frnt: no panel is named \"frnt\"; did you mean \"front\"?"},
         {R"("panels": {"front": {"fabric": "demin"}})",
          "panels.front.fabric: no fabric is named \"demin\"; did you mean \"denim\"?"},
