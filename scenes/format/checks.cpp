@@ -175,6 +175,14 @@ void check_print(const Document& document, const std::string& key_path, const Cl
                         "is the former name of print, which is given too; remove it");
 }
 
+void check_pressure(const Document& document, const std::string& key_path, const Cloth& cloth,
+                    SolverMethod method)
+{
+    if (cloth.pressure && replaces_minimiser(method))
+        document.refuse(key_path, "is unknown to solver.method " + as_written(word_of(method)) +
+                                      "; choose another method, or remove it");
+}
+
 void check_elastics(const Document& document, const std::string& key_path, const Cloth& cloth,
                     SolverMethod method)
 {
@@ -221,6 +229,7 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
         check_folds(document, key_path, cloth, scene.solver.method);
         check_print(document, key_path, cloth);
         check_groups(document, below(key_path, "groups"), cloth, scene.solver.method);
+        check_pressure(document, below(key_path, "pressure"), cloth, scene.solver.method);
         check_elastics(document, below(key_path, "elastics"), cloth, scene.solver.method);
         if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMaxVertices)
             document.refuse(key_path,

@@ -8,6 +8,8 @@
 ///   visitor.field(key, member, [range,] sentence)       optional; absent keeps the default
 ///   visitor.required(key, member, [range,] sentence)
 ///   visitor.number_or_off(key, member, range, sentence) a number or the word "off"
+///   visitor.number_or_object(key, member, number, range, sentence)
+///                                                       an object, or a number for one of its members
 ///   visitor.pair(key, member, range, sentence)          {"warp": number, "weft": number}, each optional
 ///   visitor.one_of(variant, Alternative...)             exactly one of the keys, which chooses the member
 ///   visitor.version(key, number, sentence)              must be present and equal
@@ -181,6 +183,14 @@ void describe(V& v, Fold& f)
 }
 
 template <typename V>
+void describe(V& v, Pressure& p)
+{
+    v.required("pa", p.pa, kPressure, "Pressure, once it is reached.");
+    v.field("ramp_s", p.ramp, kTime,
+            "Time from sample 0 in which it rises from 0; 0: it acts from the start, while settling too.");
+}
+
+template <typename V>
 void describe(V& v, ClothGroup& g)
 {
     v.required("fabric", g.fabric, "A key of fabrics or the name of a preset.");
@@ -229,6 +239,9 @@ void describe(V& v, Cloth& c)
     v.field("folds", c.folds,
             "Lines along which the cloth is folded at rest, as pleats are. It bends there by their stiffness "
             "alone. Not with subdivide, xpbd and vbd, nor on a GPU.");
+    v.number_or_object("pressure", c.pressure, &Pressure::pa, kPressure,
+                       "Overpressure on the side that the faces' normals point away from, as of air in a "
+                       "cushion. Not with xpbd and vbd, nor on a GPU.");
     v.field("layer", c.layer, between(-100, 100),
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");

@@ -40,6 +40,7 @@ inline constexpr Range kTime{0.0, 86400.0, "s"};
 inline constexpr Range kColor{0.0, 1.0};
 inline constexpr Range kResolution{0.0005, 1.0, "m"};
 inline constexpr Range kStiffness{0.0, 1e8, "N/m", true};
+inline constexpr Range kPressure{-1e5, 1e5, "Pa"};
 inline constexpr Range kFoldAngle{-180.0, 180.0, "degrees"};
 inline constexpr Range kFoldStiffness{0.0, 100.0, "N", true};
 

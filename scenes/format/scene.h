@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -170,6 +171,15 @@ struct ClothGroup {
     std::string fabric; ///< key of Scene::fabrics or name of a preset
 };
 
+/// Overpressure on the side that a cloth's normals point away from.
+struct Pressure {
+    double pa = 0.0;   ///< [Pa]
+    double ramp = 0.0; ///< [s] from sample 0 until it is reached; 0: it acts from the beginning
+
+    /// Pressure at time t [s], which is negative while the scene settles.
+    double at(double t) const { return ramp > 0.0 ? pa * std::clamp(t / ramp, 0.0, 1.0) : pa; }
+};
+
 struct Cloth {
     std::string name;
     ClothShape shape;
@@ -190,6 +200,7 @@ struct Cloth {
     std::map<std::string, ClothGroup> groups; ///< by name; other triangles are of `fabric`
     std::vector<Elastic> elastics;
     std::vector<Fold> folds;
+    std::optional<Pressure> pressure;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     Print print = Print::Plain;          ///< in pictures

@@ -246,7 +246,7 @@ void ClothGroup::accelerate(double dt, double t_t1)
     const View<const Vec3> x = body_->positions(), v = body_->velocities();
     for (int i = 0; i < int(cloths_.size()); ++i) {
         cloths_[i].accelerate(dt, t_t1, part(x, i), part(v, i), part(View<Vec3>(acceleration_), i));
-        cloths_[i].begin_step(part(x, i), dt);
+        cloths_[i].begin_step(part(x, i), dt, t_t1);
     }
 }
 
