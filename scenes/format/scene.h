@@ -171,6 +171,24 @@ struct ClothGroup {
     std::string fabric; ///< key of Scene::fabrics or name of a preset
 };
 
+/// Channel of the vertex colours of a cloth's file, by its number in them.
+enum class PaintChannel { Red, Green, Blue };
+
+/// Values that a channel paints: `from` where it is 0, `to` where it is 1, linearly between them.
+struct PaintedValue {
+    PaintChannel channel = PaintChannel::Red;
+    double from = 1.0, to = 1.0;
+};
+
+struct PaintedStiffness : PaintedValue {}; ///< [-] factor on the fabric's stretch, shear and bending
+struct PaintedThickness : PaintedValue {}; ///< [m] in place of the fabric's
+
+/// Properties of a cloth that the vertex colours of its file paint.
+struct Painted {
+    std::optional<PaintedStiffness> stiffness;
+    std::optional<PaintedThickness> thickness;
+};
+
 /// Overpressure on the side that a cloth's normals point away from.
 struct Pressure {
     double pa = 0.0;   ///< [Pa]
@@ -201,6 +219,7 @@ struct Cloth {
     std::vector<Elastic> elastics;
     std::vector<Fold> folds;
     std::optional<Pressure> pressure;
+    std::optional<Painted> painted;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     Print print = Print::Plain;          ///< in pictures

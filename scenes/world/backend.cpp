@@ -54,6 +54,8 @@ std::string why_not_on_gpu(const Scene& scene)
             return "elastics run on the CPU only";
         if (!cloth.folds.empty())
             return "folds of cloth run on the CPU only";
+        if (cloth.painted)
+            return "painted cloth runs on the CPU only";
         if (cloth.pressure)
             return "pressure on cloth runs on the CPU only";
     }

@@ -149,7 +149,7 @@ void SceneCloth::add_membranes(bool has_internal_friction, std::vector<std::shar
             stretch.stretch_damping = fabric.stretch_damping;
             stretch.shear_damping = fabric.shear_damping;
         }
-        part.membrane = std::make_shared<garment::Membrane>(part.rest, stretch, source_);
+        part.membrane = std::make_shared<garment::Membrane>(part.rest, stretch, source_, part.stiffness);
         energies.push_back(part.membrane);
     }
 }
@@ -169,7 +169,8 @@ void SceneCloth::add_bending(bool has_internal_friction, std::vector<std::shared
     if (!is_rigid)
         return;
     const auto bending = std::make_shared<garment::Bending>(
-        rest_, garment::ByFabric(std::move(rigidities), state_.fabric_of_triangle), source_, fold_hinges());
+        rest_, garment::ByFabric(std::move(rigidities), state_.fabric_of_triangle, state_.stiffness), source_,
+        fold_hinges());
     std::vector<double> diagonal(size_t(vertex_count()), 0.0);
     for (const FabricPart& part : parts_) {
         const std::vector<double> of_part = hessian_diagonal(*part.membrane, vertex_count());
@@ -181,7 +182,8 @@ void SceneCloth::add_bending(bool has_internal_friction, std::vector<std::shared
     if (!has_internal_friction || !is_damped)
         return;
     bend_damping_ = std::make_shared<garment::BendDamping>(
-        *rest_, garment::ByFabric(std::move(dampings), state_.fabric_of_triangle), source_, fold_hinges());
+        *rest_, garment::ByFabric(std::move(dampings), state_.fabric_of_triangle, state_.stiffness), source_,
+        fold_hinges());
     energies.push_back(bend_damping_);
 }
 
@@ -203,9 +205,11 @@ void SceneCloth::add_tension(OuterMethod outer, std::vector<std::shared_ptr<Ener
     if (is_elastic)
         strain_limit_ =
             std::make_unique<garment::StrainLimit>(rest_, strain_limits({.tolerance = kYielding}), source_);
+    const double stiffest =
+        state_.stiffness.empty() ? 1.0 : *std::max_element(state_.stiffness.begin(), state_.stiffness.end());
     std::vector<garment::StretchTension::Settings> tensions;
     for (const garment::Fabric& fabric : state_.fabrics()) {
-        const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+        const double stiffness = stiffest * std::max(fabric.stretch_warp, fabric.stretch_weft);
         // That of cloth of even width, as long as the diagonal, which hangs by a whole edge across the wind.
         const double pressure = fabric.areal_density * gravity_.norm() +
                                 air_->pressure(wind_.velocity.norm()) + std::abs(overpressure_.pa);
