@@ -51,8 +51,11 @@ CollisionFreeStep::Settings settings_for(const std::vector<ContactCloth>& cloths
     settings.first_prescribed = first_prescribed;
     settings.max_deflection = kMaxDeflection * edge;
     settings.thickness = std::numeric_limits<double>::max();
-    for (const ContactCloth& cloth : cloths)
+    for (const ContactCloth& cloth : cloths) {
         settings.thickness = std::min(settings.thickness, cloth.thickness);
+        for (const double thickness : cloth.vertex_thickness)
+            settings.thickness = std::min(settings.thickness, thickness);
+    }
     return settings;
 }
 
@@ -85,7 +88,8 @@ ClothContactRules::ClothContactRules(View<const Triangle> triangles, View<const 
 {
     for (const ContactCloth& cloth : cloths) {
         thickest_ = std::max(thickest_, cloth.thickness);
-        half_thickness_.insert(half_thickness_.end(), cloth.vertex_count, 0.5 * cloth.thickness);
+        for (int v = 0; v < cloth.vertex_count; ++v)
+            half_thickness_.push_back(0.5 * cloth.thickness_at(v));
     }
     for (int v = 0, c = 0, last = 0; c < int(cloths.size()); ++c)
         for (last += cloths[c].vertex_count; v < last; ++v)

@@ -56,8 +56,12 @@ ContactTables::ContactTables(const std::vector<ContactCloth>& cloths, int collid
       cloth_friction(cloths.size() * cloths.size(), 0.0), rigid(rigid_bodies_of(cloths)),
       altitude(shortest_altitudes(triangles, positions))
 {
+    const bool is_even = std::all_of(cloths.begin(), cloths.end(),
+                                     [](const auto& one) { return one.vertex_thickness.empty(); });
     for (size_t c = 0; c < cloths.size(); ++c) {
         const ContactCloth& cloth = cloths[c];
+        for (int v = 0; !is_even && v < cloth.vertex_count; ++v)
+            vertex_gap.push_back(cloth.gap_at(v));
         cloth_of.insert(cloth_of.end(), cloth.vertex_count, int(c));
         gap.push_back(cloth.gap);
         std::copy_n(cloth.collider_friction.begin(),

@@ -13,8 +13,17 @@ struct ContactCloth {
     bool is_rigid = false;                 ///< no self-contact; moves and is limited as a whole
     double gap = 0.002;                    ///< [m] between the cloth's middle surface and a collider
     double thickness = 0.5e-3;             ///< [m] half of it is kept to the middle surface of other cloth
+    std::vector<double> vertex_thickness;  ///< [vertices] [m] at most `thickness`; empty: `thickness`
     std::vector<double> collider_friction; ///< [colliders] Coulomb coefficients [-]
     std::vector<double> cloth_friction;    ///< [cloths] with each of the cloths, itself included [-]
+
+    /// Thickness of a vertex [m].
+    double thickness_at(int v) const
+    {
+        return vertex_thickness.empty() ? thickness : vertex_thickness[size_t(v)];
+    }
+    /// Gap of a vertex to colliders [m].
+    double gap_at(int v) const { return gap - 0.5 * (thickness - thickness_at(v)); }
 };
 
 /// Number of each vertex's rigid body, -1 in cloth; empty if nothing is rigid.
@@ -42,6 +51,7 @@ struct ContactTables {
 
     std::vector<int> cloth_of;             ///< [vertices]
     std::vector<double> gap;               ///< [cloths] [m]
+    std::vector<double> vertex_gap;        ///< [vertices] [m]; empty where all have that of their cloth
     std::vector<double> collider_friction; ///< [cloths x colliders] [-]
     std::vector<double> cloth_friction;    ///< [cloths x cloths] [-]
     std::vector<int> rigid;                ///< [vertices] see rigid_bodies_of

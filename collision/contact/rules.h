@@ -55,6 +55,7 @@ enum class RememberedSlip {
 struct ContactRules {
     View<const int> cloth_of;             ///< [vertices]
     View<const double> gap;               ///< [cloths] see ContactCloth [m]
+    View<const double> vertex_gap;        ///< [vertices] [m]; empty where all have that of their cloth
     View<const double> collider_friction; ///< [cloths x colliders] [-]
     View<const double> cloth_friction;    ///< [cloths x cloths] [-]
     PairThickness thickness;              ///< empty without contact of cloth with cloth
@@ -69,8 +70,19 @@ struct ContactRules {
     TOILE_HD double gap_of(const ContactPair& pair) const
     {
         if (!pair.is_between_cloths())
-            return (pair.is_guard() ? kGuardGap : 1.0) * gap[cloth_of[pair.vertex[0]]];
+            return (pair.is_guard() ? kGuardGap : 1.0) * collider_gap_of(pair);
         return thickness.of(pair.vertex, pair.kind == ContactKind::kClothEdgeEdge);
+    }
+
+    /// Gap between the point of the cloth and the collider [m].
+    TOILE_HD double collider_gap_of(const ContactPair& pair) const
+    {
+        if (vertex_gap.empty())
+            return gap[cloth_of[pair.vertex[0]]];
+        double at_point = 0.0;
+        for (int k = 0; k < pair.count(); ++k)
+            at_point += pair.weight[k] * vertex_gap[pair.vertex[k]];
+        return at_point;
     }
 
     /// Coulomb coefficient [-].

@@ -176,9 +176,12 @@ std::vector<int> drop_loose_vertices(ObjMesh& mesh)
         if (used[v] == 0)
             continue;
         mesh.positions[kept] = mesh.positions[v];
+        if (!mesh.colours.empty())
+            mesh.colours[kept] = mesh.colours[v];
         number[v] = kept++;
     }
     mesh.positions.resize(size_t(kept));
+    mesh.colours.resize(std::min(size_t(kept), mesh.colours.size()));
     for (std::vector<int>& polygon : mesh.polygons)
         for (int& v : polygon)
             v = number[v];

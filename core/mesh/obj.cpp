@@ -54,7 +54,7 @@ public:
                 LongWork::update(1.0 - double(left_.size()) / double(text_.size()));
             const std::string_view keyword = next_word();
             if (keyword == "v") {
-                mesh_.positions.push_back(Vec3{number(), number(), number()});
+                read_vertex();
             } else if (keyword == "vt") {
                 const double u = number();
                 mesh_.texture_coordinates.push_back(Vec2{u, is_line_read() ? 0.0 : number()});
@@ -71,11 +71,14 @@ public:
         if (mesh_.positions.empty())
             refuse_content();
         drop_incomplete_texture();
+        drop_incomplete_colours();
         drop_empty_group();
         return std::move(mesh_);
     }
 
 private:
+    static constexpr std::string_view kBlank = " \t\r";
+
     /// Takes the next line, with those that a backslash at its end joins to it. Lines end with LF, CR or
     /// both.
     /// @return false at the end of the file
@@ -133,14 +136,14 @@ private:
                                     : "it is binary or in UTF-16; an OBJ is plain text"));
     }
 
-    bool is_line_read() const { return rest_.find_first_not_of(" \t\r") == std::string_view::npos; }
+    bool is_line_read() const { return rest_.find_first_not_of(kBlank) == std::string_view::npos; }
 
     std::string_view next_word()
     {
-        const size_t begin = rest_.find_first_not_of(" \t\r");
+        const size_t begin = rest_.find_first_not_of(kBlank);
         if (begin == std::string_view::npos)
             return rest_ = {};
-        const size_t end = std::min(rest_.find_first_of(" \t\r", begin), rest_.size());
+        const size_t end = std::min(rest_.find_first_of(kBlank, begin), rest_.size());
         const std::string_view word = rest_.substr(begin, end - begin);
         rest_.remove_prefix(end);
         return word;
@@ -149,8 +152,8 @@ private:
     /// Without the spaces around it.
     std::string_view rest_of_line() const
     {
-        const size_t begin = std::min(rest_.find_first_not_of(" \t\r"), rest_.size());
-        return rest_.substr(begin, rest_.find_last_not_of(" \t\r") + 1 - begin);
+        const size_t begin = std::min(rest_.find_first_not_of(kBlank), rest_.size());
+        return rest_.substr(begin, rest_.find_last_not_of(kBlank) + 1 - begin);
     }
 
     double number()
@@ -176,6 +179,26 @@ private:
             refuse(std::string(what) + " index " + std::to_string(*value) + " is out of range; " +
                    std::to_string(count) + " are defined above this line, numbered from 1");
         return int(resolved);
+    }
+
+    /// v x y z, with nothing, a weight, which is ignored, or red, green and blue after it.
+    void read_vertex()
+    {
+        mesh_.positions.push_back(Vec3{number(), number(), number()});
+        if (word_count() >= 3)
+            mesh_.colours.push_back(Vec3{number(), number(), number()});
+        else if (first_plain_vertex_line_ == 0)
+            first_plain_vertex_line_ = line_;
+    }
+
+    /// Words that are left in the line.
+    int word_count() const
+    {
+        int count = 0;
+        for (size_t at = rest_.find_first_not_of(kBlank); at != std::string_view::npos;
+             at = rest_.find_first_not_of(kBlank, std::min(rest_.find_first_of(kBlank, at), rest_.size())))
+            ++count;
+        return count;
     }
 
     void read_face()
@@ -225,6 +248,15 @@ private:
         uvs.clear();
     }
 
+    /// Drops colours unless every vertex has one.
+    void drop_incomplete_colours()
+    {
+        if (first_plain_vertex_line_ == 0 || mesh_.colours.empty())
+            return;
+        mesh_.first_plain_vertex_line = first_plain_vertex_line_;
+        mesh_.colours.clear();
+    }
+
     /// Drops a group that begins after the last polygon.
     void drop_empty_group()
     {
@@ -234,11 +266,12 @@ private:
 
     std::filesystem::path file_;
     std::string text_;
-    std::string_view left_; ///< of text_, not taken yet
-    std::string joined_;    ///< a continued line
-    std::string_view rest_; ///< of the line
-    int line_ = 1;          ///< where it begins
-    int lines_taken_ = 0;   ///< of the file for it
+    std::string_view left_;           ///< of text_, not taken yet
+    std::string joined_;              ///< a continued line
+    std::string_view rest_;           ///< of the line
+    int line_ = 1;                    ///< where it begins
+    int lines_taken_ = 0;             ///< of the file for it
+    int first_plain_vertex_line_ = 0; ///< of a vertex without a colour; 0: none
     ObjMesh mesh_;
 };
 
@@ -323,6 +356,8 @@ ObjMesh subdivide(const ObjMesh& mesh, int levels)
 {
     ObjMesh fine = faces_of(subdivide(mesh.triangulated(), levels));
     fine.lines = mesh.lines;
+    if (!mesh.colours.empty())
+        fine.colours = subdivide({mesh.colours, mesh.triangulated().triangles}, levels).positions;
     auto group = mesh.groups.begin();
     int triangles = 0;
     for (int f = 0; f < int(mesh.polygons.size()); ++f) {
@@ -394,8 +429,13 @@ ObjMesh read_obj(const std::filesystem::path& file) { return ObjReader(file).rea
 void write_obj(const std::filesystem::path& file, const ObjMesh& mesh)
 {
     std::string text;
-    for (const Vec3& p : mesh.positions)
-        append_line(text, "v", {p.data(), 3});
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        std::array<double, 6> numbers{};
+        std::copy_n(mesh.positions[v].data(), 3, numbers.begin());
+        if (!mesh.colours.empty())
+            std::copy_n(mesh.colours[v].data(), 3, numbers.begin() + 3);
+        append_line(text, "v", std::span(numbers).first(mesh.colours.empty() ? 3 : 6));
+    }
     for (const Vec2& t : mesh.texture_coordinates)
         append_line(text, "vt", {t.data(), 2});
     auto group = mesh.groups.begin();

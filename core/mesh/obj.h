@@ -22,6 +22,7 @@ struct ObjGroup {
 /// in vertex order plays on the mesh it came from (assimp reorders; 0 of 9 612 vertices stay).
 struct ObjMesh {
     std::vector<Vec3> positions;               ///< [v lines]
+    std::vector<Vec3> colours;                 ///< [v lines] red, green, blue [-]; empty: not all have one
     std::vector<Vec2> texture_coordinates;     ///< [vt lines]; may be empty
     std::vector<std::vector<int>> polygons;    ///< vertex indices, 0-based
     std::vector<std::vector<int>> polygon_uvs; ///< texture indices per corner, or empty; parallel to polygons
@@ -29,9 +30,10 @@ struct ObjMesh {
     std::vector<ObjGroup> groups;              ///< by their first polygons, ascending; may be empty
 
     // Of a file, for messages; empty or 0 for a mesh made otherwise.
-    std::vector<int> polygon_lines; ///< line of each polygon, counted from 1
-    int first_plain_line = 0;       ///< of a polygon without texture indices where others have them; 0: none
-    int free_form_elements = 0;     ///< curves and curved surfaces, which are not read
+    std::vector<int> polygon_lines;  ///< line of each polygon, counted from 1
+    int first_plain_line = 0;        ///< of a polygon without texture indices where others have them; 0: none
+    int first_plain_vertex_line = 0; ///< of a vertex without a colour where others have one; 0: none
+    int free_form_elements = 0;      ///< curves and curved surfaces, which are not read
 
     /// Triangulates every polygon: triangulate_polygon().
     TriangleMesh triangulated() const;
@@ -53,7 +55,7 @@ double signed_area(const FlatTriangle& triangle);
 std::vector<FlatTriangle> texture_triangles(const ObjMesh& mesh);
 
 /// Triangles of a mesh split as by subdivide(TriangleMesh), with their texture,
-/// groups and lines, which keep their ends.
+/// colours, groups and lines, which keep their ends.
 ObjMesh subdivide(const ObjMesh& mesh, int levels);
 
 /// Lets the polygons from `polygon` on be of a group, until the next begins.
@@ -61,7 +63,8 @@ ObjMesh subdivide(const ObjMesh& mesh, int levels);
 void begin_group(ObjMesh& mesh, const std::string& name, int polygon);
 
 /// Reads v, vt, f, g and l lines (negative indices too), with any line ends, comments, continued lines and a
-/// byte-order mark; ignores other lines of the format. Texture indices are kept only if every face has them.
+/// byte-order mark; ignores other lines of the format. Texture indices are kept only if every face has them,
+/// colours (v x y z r g b) only if every vertex has one.
 /// @throws InvalidInput naming file and line: missing file, one without vertices, a number that does not
 ///         parse or is not finite, an index out of range, a face of fewer than three or more than 10 000
 ///         corners
@@ -70,9 +73,9 @@ ObjMesh read_obj(const std::filesystem::path& file);
 /// As for triangles, naming the line of the face.
 void require_usable(const ObjMesh& mesh, const std::string& source);
 
-/// Writes positions with 9 significant digits, the polygons (with texture coordinates where present) in their
-/// groups, and the lines. Characters of names that would end them are written as _. The file appears complete
-/// or not at all.
+/// Writes positions (with colours where present) with 9 significant digits, the polygons (with texture
+/// coordinates where present) in their groups, and the lines. Characters of names that would end them are
+/// written as _. The file appears complete or not at all.
 /// @throws InvalidInput or DeviceError as write_atomically does.
 void write_obj(const std::filesystem::path& file, const ObjMesh& mesh);
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh);

@@ -78,7 +78,9 @@ BendDamping::BendDamping(const RestShape& rest, const ByFabric<Settings>& settin
         const Vec2 across = 0.5 * (over_a.across.cwiseAbs2() + over_b.across.cwiseAbs2());
         const Settings &a_settings = settings.at(edge.triangle[0]),
                        &b_settings = settings.at(edge.triangle[1]);
-        const double root = across.dot(0.5 * (root_of(a_settings.rigidity) + root_of(b_settings.rigidity)));
+        const Vec2 a_root = std::sqrt(settings.stiffness_of(edge.triangle[0])) * root_of(a_settings.rigidity),
+                   b_root = std::sqrt(settings.stiffness_of(edge.triangle[1])) * root_of(b_settings.rigidity);
+        const double root = across.dot(0.5 * (a_root + b_root));
         const double rigidity = root * root;
 
         Hinge hinge;

@@ -114,7 +114,8 @@ std::vector<Bending::Term> Bending::terms(const RestShape& rest, const ByFabric<
         if (stencils[t].vertex.empty())
             continue;
         // Limit the largest diagonal entry of the block rows^T stiffness rows.
-        const auto& [warp, weft] = settings.at(int(t));
+        const double warp = settings.stiffness_of(int(t)) * settings.at(int(t)).warp,
+                     weft = settings.stiffness_of(int(t)) * settings.at(int(t)).weft;
         Vec3 stiffness = rest.areas[t] * Vec3(warp, 2.0 * std::sqrt(warp * weft), weft);
         const double largest = kMaxRelativeStiffness * std::max(warp, weft) / mean_area;
         const double peak = (stiffness.transpose() * stencils[t].weights.cwiseAbs2()).maxCoeff();

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/cuda/elasticity.h"
@@ -33,9 +34,11 @@ void require_valid(const Membrane::Settings& s, const std::string& source)
 
 } // namespace
 
-Membrane::Membrane(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source)
-    : rest_(std::move(rest)), settings_(settings)
+Membrane::Membrane(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source,
+                   std::vector<double> stiffness)
+    : rest_(std::move(rest)), settings_(settings), stiffness_(std::move(stiffness))
 {
+    TOILE_ASSERT(stiffness_.empty() || stiffness_.size() == rest_->triangles.size());
     require_valid(settings, source);
     weights_.shear = 2.0 * settings.shear;
     weights_.warp = std::max(settings.warp - weights_.shear, 0.0);
@@ -48,7 +51,7 @@ Membrane::Membrane(std::shared_ptr<const RestShape> rest, const Settings& settin
         rest_inv_.push_back(inverse);
         viscous_share_.push_back(
             gather(first, triangles, [&](int t) { return rest_->is_sliver(t) ? 0.0 : 1.0; }));
-        area_.push_back(gather(first, triangles, [&](int t) { return rest_->areas[t]; }));
+        area_.push_back(gather(first, triangles, [&](int t) { return weighted_area(size_t(t)); }));
     }
     corner_gradient_.resize(triangles);
     triangle_energy_.resize(triangles);
@@ -63,7 +66,7 @@ void Membrane::add_hessian(Triplets& H) const
         Mat32 G;
         G.bottomRows<2>() = rest_->edges_inv[t];
         G.row(0) = -G.row(1) - G.row(2);
-        const Mat3 block = rest_->areas[t] * G * weight * G.transpose();
+        const Mat3 block = weighted_area(t) * G * weight * G.transpose();
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
                 H.emplace_back(rest_->triangles[t][i], rest_->triangles[t][j], block(i, j));
@@ -123,14 +126,15 @@ void Membrane::add_curvature(View<const Vec3> x, Definiteness definiteness, Bloc
     parallel_for(kCpu, "membrane/gather_curvature", x.size(), [&](int v) {
         for (int k = corners.first[v]; k < corners.first[v + 1]; ++k) {
             const int corner = corners.items[k], t = corner / 3;
-            add_corner_row(curvature_[t], rest_->edges_inv[t], rest_->areas[t], corner % 3, position_[corner],
-                           K.values(v));
+            add_corner_row(curvature_[t], rest_->edges_inv[t], weighted_area(size_t(t)), corner % 3,
+                           position_[corner], K.values(v));
         }
     });
 }
 
 bool Membrane::add_to(DeviceEnergies& energies, int first_vertex)
 {
+    TOILE_ASSERT(stiffness_.empty());
     energies.of_kind<DeviceElasticity>().add_membrane(*rest_, weights_, viscous_weights(1.0), first_vertex);
     return true;
 }

@@ -30,8 +30,10 @@ public:
         double shear_damping = 0.0;   ///< [s]
     };
 
+    /// @param stiffness  [triangles] factor on the three stiffnesses [-]; empty: 1, as a GPU needs it
     /// @throws InvalidInput naming `source` and the setting outside its range.
-    Membrane(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source);
+    Membrane(std::shared_ptr<const RestShape> rest, const Settings& settings, const std::string& source,
+             std::vector<double> stiffness = {});
 
     std::string_view name() const override { return "garment/membrane"; }
     void add_hessian(Triplets& H) const override;
@@ -49,14 +51,20 @@ public:
     const MembraneWeights& weights() const { return weights_; }
 
 private:
+    /// Rest area times the factor on the stiffness [m^2].
+    double weighted_area(size_t t) const
+    {
+        return stiffness_.empty() ? rest_->areas[t] : stiffness_[t] * rest_->areas[t];
+    }
     ViscousWeights viscous_weights(double dt) const; ///< of a step of dt seconds
     ViscousStep viscosity() const { return {viscous_, viscous_share_, start_}; }
 
     std::shared_ptr<const RestShape> rest_;
     Settings settings_;
+    std::vector<double> stiffness_;
     MembraneWeights weights_;
     std::vector<Mat2Of<Lanes>> rest_inv_; ///< [blocks of triangles]
-    std::vector<Lanes> area_;             ///< [blocks of triangles]
+    std::vector<Lanes> area_;             ///< [blocks of triangles] weighted
     ViscousWeights viscous_;
     std::vector<Lanes> viscous_share_;      ///< [blocks of triangles] 0 for slivers
     std::vector<GreenStrain<Lanes>> start_; ///< [blocks of triangles] strain at the start of the step

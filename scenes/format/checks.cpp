@@ -175,6 +175,30 @@ void check_print(const Document& document, const std::string& key_path, const Cl
                         "is the former name of print, which is given too; remove it");
 }
 
+void check_pressure(const Document& document, const std::string& key_path, const Cloth& cloth,
+                    SolverMethod method)
+{
+    if (cloth.pressure && replaces_minimiser(method))
+        document.refuse(key_path, "is unknown to solver.method " + as_written(word_of(method)) +
+                                      "; choose another method, or remove it");
+}
+
+void check_painted(const Document& document, const std::string& key_path, const Cloth& cloth,
+                   SolverMethod method)
+{
+    if (!cloth.painted)
+        return;
+    if (!cloth.painted->stiffness && !cloth.painted->thickness)
+        document.refuse(key_path, "paints nothing; add stiffness or thickness, or remove it");
+    if (!std::holds_alternative<std::filesystem::path>(cloth.shape))
+        document.refuse(key_path, "only a file has colours; remove it, or give the cloth as a file");
+    if (cloth.painted->thickness && cloth.thickness)
+        document.refuse(below(key_path, "thickness"), "is given beside the cloth's thickness; remove one");
+    if (replaces_minimiser(method))
+        document.refuse(key_path, "is unknown to solver.method " + as_written(word_of(method)) +
+                                      "; choose another method, or remove it");
+}
+
 void check_elastics(const Document& document, const std::string& key_path, const Cloth& cloth,
                     SolverMethod method)
 {
@@ -229,6 +253,8 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
         check_folds(document, key_path, cloth, scene.solver.method);
         check_print(document, key_path, cloth);
         check_groups(document, below(key_path, "groups"), cloth, scene.solver.method);
+        check_pressure(document, below(key_path, "pressure"), cloth, scene.solver.method);
+        check_painted(document, below(key_path, "painted"), cloth, scene.solver.method);
         check_elastics(document, below(key_path, "elastics"), cloth, scene.solver.method);
         check_tacks(document, below(key_path, "tacks"), cloth, scene.solver.method);
         if (vertices_of(cloth.shape) * std::pow(4.0, cloth.subdivide) > kMaxVertices)

@@ -8,6 +8,8 @@
 ///   visitor.field(key, member, [range,] sentence)       optional; absent keeps the default
 ///   visitor.required(key, member, [range,] sentence)
 ///   visitor.number_or_off(key, member, range, sentence) a number or the word "off"
+///   visitor.number_or_object(key, member, number, range, sentence)
+///                                                       an object, or a number for one of its members
 ///   visitor.pair(key, member, range, sentence)          {"warp": number, "weft": number}, each optional
 ///   visitor.one_of(variant, Alternative...)             exactly one of the keys, which chooses the member
 ///   visitor.version(key, number, sentence)              must be present and equal
@@ -190,6 +192,38 @@ void describe(V& v, Tack& t)
 }
 
 template <typename V>
+void describe(V& v, PaintedStiffness& p)
+{
+    v.required("channel", p.channel, "Channel of the vertex colours.");
+    v.required("from", p.from, kStiffnessFactor, "Factor where the channel is 0.");
+    v.required("to", p.to, kStiffnessFactor, "Factor where the channel is 1.");
+}
+
+template <typename V>
+void describe(V& v, PaintedThickness& p)
+{
+    v.required("channel", p.channel, "Channel of the vertex colours.");
+    v.required("from", p.from, kThickness, "Thickness where the channel is 0.");
+    v.required("to", p.to, kThickness, "Thickness where the channel is 1.");
+}
+
+template <typename V>
+void describe(V& v, Painted& p)
+{
+    v.field("stiffness", p.stiffness,
+            "Factor on stretch, shear and bending of the fabric, averaged over each triangle.");
+    v.field("thickness", p.thickness, "Thickness at each vertex, in place of the fabric's.");
+}
+
+template <typename V>
+void describe(V& v, Pressure& p)
+{
+    v.required("pa", p.pa, kPressure, "Pressure, once it is reached.");
+    v.field("ramp_s", p.ramp, kTime,
+            "Time from sample 0 in which it rises from 0; 0: it acts from the start, while settling too.");
+}
+
+template <typename V>
 void describe(V& v, ClothGroup& g)
 {
     v.required("fabric", g.fabric, "A key of fabrics or the name of a preset.");
@@ -228,7 +262,7 @@ void describe(V& v, Cloth& c)
     v.field("grain_deg", c.grain_deg, kAngle,
             "Rotation of the warp in the cloth's plane, from the X axis of flat cloth and the vertical of "
             "garments; with \"rest\": \"uv\" in the texture's plane, counter-clockwise from its v axis.");
-    v.field("thickness", c.thickness, above_zero(0.05, "m"), "Replaces the fabric's thickness.");
+    v.field("thickness", c.thickness, kThickness, "Replaces the fabric's thickness.");
     v.field(
         "sewing", c.sewing,
         "Threads that pull together the vertices that lines (l) of the file join, as of panels to be sewn.");
@@ -241,6 +275,12 @@ void describe(V& v, Cloth& c)
     v.field("tacks", c.tacks,
             "Pairs of points that are pulled together at 0.2 m/s and then held, as by tacks or buttons. Not "
             "with xpbd and vbd, nor on a GPU.");
+    v.number_or_object("pressure", c.pressure, &Pressure::pa, kPressure,
+                       "Overpressure on the side that the faces' normals point away from, as of air in a "
+                       "cushion. Not with xpbd and vbd, nor on a GPU.");
+    v.field("painted", c.painted,
+            "What the vertex colours of the file (v x y z r g b, from 0 to 1) paint. Not with xpbd and vbd, "
+            "nor on a GPU.");
     v.field("layer", c.layer, between(-100, 100),
             "Order on a body: where cloths cross, coincide or lie in the wrong order at the start, the "
             "repair moves the one with the higher layer outside.");
@@ -284,7 +324,7 @@ void describe(V& v, Fabric& f)
     v.pair("bend", f.bend, bend, "Bending rigidity across the threads; 0 turns bending off.");
     v.field("strain_limit", f.strain_limit, between(1.001, 10.0),
             "Maximum length over rest length, e.g. 1.06.");
-    v.field("thickness", f.thickness, above_zero(0.05, "m"), "Thickness of the cloth.");
+    v.field("thickness", f.thickness, kThickness, "Thickness of the cloth.");
     v.field("damping", f.damping, between(0.0, 1000.0, "1/s"), "Decay rate of velocities, besides air drag.");
     const Range time = between(0.0, 10.0, "s");
     v.field("stretch_damping", f.stretch_damping, time, "Viscosity over stiffness along the threads.");

@@ -40,6 +40,9 @@ inline constexpr Range kTime{0.0, 86400.0, "s"};
 inline constexpr Range kColor{0.0, 1.0};
 inline constexpr Range kResolution{0.0005, 1.0, "m"};
 inline constexpr Range kStiffness{0.0, 1e8, "N/m", true};
+inline constexpr Range kThickness{0.0, 0.05, "m", true};
+inline constexpr Range kStiffnessFactor{0.0, 1000.0, "", true};
+inline constexpr Range kPressure{-1e5, 1e5, "Pa"};
 inline constexpr Range kFoldAngle{-180.0, 180.0, "degrees"};
 inline constexpr Range kFoldStiffness{0.0, 100.0, "N", true};
 
@@ -74,6 +77,12 @@ template <>
 struct Words<Print> {
     static constexpr std::array<std::pair<const char*, Print>, 3> kAll{
         {{"plain", Print::Plain}, {"checker", Print::Checker}, {"stripes", Print::Stripes}}};
+};
+
+template <>
+struct Words<PaintChannel> {
+    static constexpr std::array<std::pair<const char*, PaintChannel>, 3> kAll{
+        {{"red", PaintChannel::Red}, {"green", PaintChannel::Green}, {"blue", PaintChannel::Blue}}};
 };
 
 template <>

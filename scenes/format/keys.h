@@ -25,6 +25,11 @@ public:
     {
         keys_.emplace_back(key);
     }
+    template <typename T>
+    void number_or_object(const char* key, std::optional<T>&, double T::*, const Range&, const char*)
+    {
+        keys_.emplace_back(key);
+    }
     void pair(const char* key, WarpWeft&, const Range&, const char*) { keys_.emplace_back(key); }
     void version(const char* key, int, const char*) { keys_.emplace_back(key); }
     template <typename Variant, typename... A>

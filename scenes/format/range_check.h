@@ -32,6 +32,11 @@ public:
     {
         check(value, below(key_path_, key), range);
     }
+    template <typename T>
+    void number_or_object(const char* key, std::optional<T>& value, double T::*, const Range&, const char*)
+    {
+        check(value, below(key_path_, key));
+    }
     void pair(const char* key, WarpWeft& value, const Range& range, const char*)
     {
         check(value.warp, below(below(key_path_, key), "warp"), range);

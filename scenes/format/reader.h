@@ -62,6 +62,22 @@ public:
     }
 
     void number_or_off(const char* key, std::optional<double>& value, const Range& range, const char*);
+    template <typename T>
+    void number_or_object(const char* key, std::optional<T>& value, double T::*number, const Range& range,
+                          const char*)
+    {
+        if (!object_.contains(key))
+            return;
+        const Json& json = object_[key];
+        if (json.is_object())
+            read(json, below(key_path_, key), value.emplace());
+        else if (json.is_number())
+            read(json, below(key_path_, key), value.emplace().*number, range);
+        else
+            document_.refuse(below(key_path_, key), as_written(json) +
+                                                        " is neither a number nor an object; give a number " +
+                                                        to_sentence(range));
+    }
     void pair(const char* key, WarpWeft& value, const Range& range, const char*);
     void version(const char* key, int expected, const char*);
 

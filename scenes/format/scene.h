@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -176,6 +177,33 @@ struct ClothGroup {
     std::string fabric; ///< key of Scene::fabrics or name of a preset
 };
 
+/// Channel of the vertex colours of a cloth's file, by its number in them.
+enum class PaintChannel { Red, Green, Blue };
+
+/// Values that a channel paints: `from` where it is 0, `to` where it is 1, linearly between them.
+struct PaintedValue {
+    PaintChannel channel = PaintChannel::Red;
+    double from = 1.0, to = 1.0;
+};
+
+struct PaintedStiffness : PaintedValue {}; ///< [-] factor on the fabric's stretch, shear and bending
+struct PaintedThickness : PaintedValue {}; ///< [m] in place of the fabric's
+
+/// Properties of a cloth that the vertex colours of its file paint.
+struct Painted {
+    std::optional<PaintedStiffness> stiffness;
+    std::optional<PaintedThickness> thickness;
+};
+
+/// Overpressure on the side that a cloth's normals point away from.
+struct Pressure {
+    double pa = 0.0;   ///< [Pa]
+    double ramp = 0.0; ///< [s] from sample 0 until it is reached; 0: it acts from the beginning
+
+    /// Pressure at time t [s], which is negative while the scene settles.
+    double at(double t) const { return ramp > 0.0 ? pa * std::clamp(t / ramp, 0.0, 1.0) : pa; }
+};
+
 struct Cloth {
     std::string name;
     ClothShape shape;
@@ -197,6 +225,8 @@ struct Cloth {
     std::vector<Elastic> elastics;
     std::vector<Fold> folds;
     std::vector<Tack> tacks;
+    std::optional<Pressure> pressure;
+    std::optional<Painted> painted;
     int layer = 0;                       ///< higher is further outside if cloths cross at the start
     Vec3 color = Vec3(0.30, 0.45, 0.68); ///< [-] sRGB
     Print print = Print::Plain;          ///< in pictures

@@ -1,5 +1,7 @@
 #include "scenes/format/scene_fabric.h"
 
+#include <algorithm>
+
 namespace toile::scenes {
 
 namespace {
@@ -48,6 +50,8 @@ garment::Fabric fabric_of(const Scene& scene, const scene::Cloth& cloth)
 {
     garment::Fabric fabric = fabric_named(scene, cloth.fabric);
     replace(fabric.thickness, cloth.thickness);
+    if (cloth.painted && cloth.painted->thickness)
+        fabric.thickness = std::max(cloth.painted->thickness->from, cloth.painted->thickness->to);
     fabric.validate(scene.source.string());
     return fabric;
 }

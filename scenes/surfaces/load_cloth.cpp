@@ -15,6 +15,7 @@
 #include "scenes/surfaces/cloth_elastics.h"
 #include "scenes/surfaces/fold_edges.h"
 #include "scenes/surfaces/load_solid.h"
+#include "scenes/surfaces/paint.h"
 #include "scenes/surfaces/uv_rest.h"
 
 namespace toile::scenes {
@@ -184,6 +185,8 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
     state.file = std::move(mesh.file);
     state.triangles = state.rest.triangulated().triangles;
     take_groups(scene, settings, state);
+    if (settings.painted)
+        take_paint(*settings.painted, source_of(settings), state);
     if (settings.rest == scene::RestFrom::Uv)
         rest_on_texture(settings, loaded, warn);
     else

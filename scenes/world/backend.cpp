@@ -56,6 +56,10 @@ std::string why_not_on_gpu(const Scene& scene)
             return "folds of cloth run on the CPU only";
         if (!cloth.tacks.empty())
             return "tacks run on the CPU only";
+        if (cloth.painted)
+            return "painted cloth runs on the CPU only";
+        if (cloth.pressure)
+            return "pressure on cloth runs on the CPU only";
     }
     return {};
 }

@@ -76,6 +76,7 @@ std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const st
         one.vertex_count = cloth.vertex_count();
         one.mass = std::accumulate(cloth.masses().begin(), cloth.masses().end(), 0.0);
         one.thickness = cloth.state().fabric.thickness;
+        one.vertex_thickness = cloth.state().vertex_thickness;
         one.gap = scene.contact.gap + 0.5 * one.thickness;
     }
     for (int i = 0; solids && i < solids->count(); ++i) {

@@ -13,6 +13,7 @@ namespace toile::scenes {
 struct FabricPart {
     garment::Fabric fabric;
     std::shared_ptr<const garment::RestShape> rest; ///< of these triangles, with all vertices of the cloth
+    std::vector<double> stiffness;                  ///< [triangles] of these, see ClothState
     std::shared_ptr<garment::Membrane> membrane;    ///< null for a baseline method
 };
 

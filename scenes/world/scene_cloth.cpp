@@ -91,7 +91,8 @@ garment::Gusts gusts_of(const scene::Wind& wind)
 SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
                        const std::vector<Collider>& colliders, const WorldOptions& options)
     : source_(source_of(settings)), gravity_(scene.gravity), wind_(scene.wind), gusts_(gusts_of(scene.wind)),
-      sewing_(settings.sewing.value_or(scene::Sewing{}))
+      sewing_(settings.sewing.value_or(scene::Sewing{})),
+      overpressure_(settings.pressure.value_or(scene::Pressure{}))
 {
     LoadedCloth loaded = load_cloth(scene, settings, colliders, options.warn);
     if (options.note && !loaded.note.empty())
@@ -108,6 +109,17 @@ SceneCloth::SceneCloth(const Scene& scene, const scene::Cloth& settings,
 
     air_ = std::make_unique<garment::Aerodynamics>(rest_, air_of(scene));
     strain_limit_ = std::make_unique<garment::StrainLimit>(rest_, strain_limits({}), source_);
+    if (overpressure_.pa != 0.0)
+        add_pressure(options.warn);
+}
+
+/// @param warn  may be empty
+void SceneCloth::add_pressure(const std::function<void(const std::string&)>& warn)
+{
+    pressure_ = std::make_shared<garment::Pressure>(rest_);
+    if (warn && overpressure_.pa > 0.0 && pressure_->is_closed() && pressure_->volume(state_.positions) < 0.0)
+        warn(source_ + ": the faces' normals point inwards, so pressure compresses what \"" + state_.name +
+             "\" encloses; turn the faces around, or make pressure negative");
 }
 
 void SceneCloth::add_attachments(const Scene& scene, const std::vector<Collider>& colliders)
@@ -139,7 +151,7 @@ void SceneCloth::add_membranes(bool has_internal_friction, std::vector<std::shar
             stretch.stretch_damping = fabric.stretch_damping;
             stretch.shear_damping = fabric.shear_damping;
         }
-        part.membrane = std::make_shared<garment::Membrane>(part.rest, stretch, source_);
+        part.membrane = std::make_shared<garment::Membrane>(part.rest, stretch, source_, part.stiffness);
         energies.push_back(part.membrane);
     }
 }
@@ -159,7 +171,8 @@ void SceneCloth::add_bending(bool has_internal_friction, std::vector<std::shared
     if (!is_rigid)
         return;
     const auto bending = std::make_shared<garment::Bending>(
-        rest_, garment::ByFabric(std::move(rigidities), state_.fabric_of_triangle), source_, fold_hinges());
+        rest_, garment::ByFabric(std::move(rigidities), state_.fabric_of_triangle, state_.stiffness), source_,
+        fold_hinges());
     std::vector<double> diagonal(size_t(vertex_count()), 0.0);
     for (const FabricPart& part : parts_) {
         const std::vector<double> of_part = hessian_diagonal(*part.membrane, vertex_count());
@@ -171,7 +184,8 @@ void SceneCloth::add_bending(bool has_internal_friction, std::vector<std::shared
     if (!has_internal_friction || !is_damped)
         return;
     bend_damping_ = std::make_shared<garment::BendDamping>(
-        *rest_, garment::ByFabric(std::move(dampings), state_.fabric_of_triangle), source_, fold_hinges());
+        *rest_, garment::ByFabric(std::move(dampings), state_.fabric_of_triangle, state_.stiffness), source_,
+        fold_hinges());
     energies.push_back(bend_damping_);
 }
 
@@ -193,12 +207,14 @@ void SceneCloth::add_tension(OuterMethod outer, std::vector<std::shared_ptr<Ener
     if (is_elastic)
         strain_limit_ =
             std::make_unique<garment::StrainLimit>(rest_, strain_limits({.tolerance = kYielding}), source_);
+    const double stiffest =
+        state_.stiffness.empty() ? 1.0 : *std::max_element(state_.stiffness.begin(), state_.stiffness.end());
     std::vector<garment::StretchTension::Settings> tensions;
     for (const garment::Fabric& fabric : state_.fabrics()) {
-        const double stiffness = std::max(fabric.stretch_warp, fabric.stretch_weft);
+        const double stiffness = stiffest * std::max(fabric.stretch_warp, fabric.stretch_weft);
         // That of cloth of even width, as long as the diagonal, which hangs by a whole edge across the wind.
-        const double pressure =
-            fabric.areal_density * gravity_.norm() + air_->pressure(wind_.velocity.norm());
+        const double pressure = fabric.areal_density * gravity_.norm() +
+                                air_->pressure(wind_.velocity.norm()) + std::abs(overpressure_.pa);
         const double load = pressure * size_at_rest(state_, *rest_);
         tensions.push_back(
             is_elastic ? garment::StretchTension::Settings::elastic(fabric.strain_limit, stiffness, load)
@@ -219,6 +235,8 @@ std::vector<std::shared_ptr<Energy>> SceneCloth::make_energies(OuterMethod outer
     add_folds(energies);
     add_springs(energies);
     add_sewing(energies);
+    if (pressure_)
+        energies.push_back(pressure_);
     if (!elastics_.empty())
         energies.push_back(std::make_shared<garment::Elastics>(elastics_));
     if (tacks_)
@@ -294,6 +312,8 @@ void SceneCloth::begin_step(View<const Vec3> x, double dt, double t_t1)
         bend_damping_->begin_step(x, dt);
     if (fold_lines_)
         fold_lines_->begin_step(x);
+    if (pressure_)
+        pressure_->begin_step(x, overpressure_.at(t_t1));
     if (tension_)
         tension_->begin_step(x);
 }
@@ -381,7 +401,8 @@ void SceneCloth::accelerate(double dt, double t_t1, View<const Vec3> x, View<con
 
 bool SceneCloth::is_disturbed(double t) const
 {
-    return wind_.velocity.norm() > 0.0 || (tacks_ && tacks_->are_closing(t)) ||
+    const bool is_rising = pressure_ && t > 0.0 && t <= overpressure_.ramp;
+    return is_rising || (tacks_ && tacks_->are_closing(t)) || wind_.velocity.norm() > 0.0 ||
            std::any_of(attachments_.begin(), attachments_.end(),
                        [&](const AttachmentConstraint& attachment) { return attachment.changes_at(t); });
 }

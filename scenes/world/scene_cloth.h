@@ -8,6 +8,7 @@
 #include "core/pd/energy/energy.h"
 #include "garment/energy/air/aerodynamics.h"
 #include "garment/energy/air/gusts.h"
+#include "garment/energy/air/pressure.h"
 #include "garment/energy/bend_damping.h"
 #include "garment/energy/cloth_model.h"
 #include "garment/energy/fold/fold_lines.h"
@@ -75,7 +76,7 @@ public:
     /// Sets accelerations by gravity, damping and air [m/s^2], for a step of dt [s] that ends at t_t1 [s].
     void accelerate(double dt, double t_t1, View<const Vec3> x, View<const Vec3> v, View<Vec3> acceleration);
 
-    /// Begins a step of dt [s] at x, which ends at t_t1 [s], for energies that depend on its start.
+    /// Begins a step of dt [s] that ends at t_t1 [s], at x, for energies that depend on its start or end.
     void begin_step(View<const Vec3> x, double dt, double t_t1);
 
     /// Sets the positions of state().
@@ -101,6 +102,7 @@ private:
     std::vector<int> fold_hinges() const;
     void add_folds(std::vector<std::shared_ptr<Energy>>& energies);
     void add_springs(std::vector<std::shared_ptr<Energy>>& energies);
+    void add_pressure(const std::function<void(const std::string&)>& warn);
     void add_sewing(std::vector<std::shared_ptr<Energy>>& energies) const;
 
     ClothState state_;
@@ -119,6 +121,8 @@ private:
     std::vector<garment::FoldEdge> folds_;
     std::shared_ptr<garment::FoldLines> fold_lines_; ///< null without folds
     std::shared_ptr<garment::Springs> springs_;      ///< null without attachments by springs
+    scene::Pressure overpressure_;
+    std::shared_ptr<garment::Pressure> pressure_; ///< null without pressure
     std::unique_ptr<garment::Aerodynamics> air_;
     std::shared_ptr<garment::StretchTension> tension_; ///< null for a baseline method
     std::unique_ptr<garment::StrainLimit> strain_limit_;

@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "garment/energy/bend_damping.h"
 #include "garment/energy/bending.h"
+#include "garment/energy/membrane.h"
 #include "garment/energy/rest_shape.h"
+#include "tests/garment/gradient_check.h"
+#include "tests/garment/hessian_check.h"
 #include "tests/garment/sheets.h"
 
 /// Energies of cloth of several fabrics, and the parts of its rest shape.
@@ -59,6 +63,83 @@ TEST(ByFabric, BendingIsTheSumOfItsFabrics)
     EXPECT_EQ(
         distance(matrix(2e-5, 2e-5), Bending(sheet.rest, Bending::Settings{2e-5, 2e-5}, "test").matrix()),
         0.0);
+}
+
+/// Factors on the stiffness of triangles, from 0.5 to 4.
+std::vector<double> factors(size_t count)
+{
+    std::vector<double> factors;
+    for (size_t t = 0; t < count; ++t)
+        factors.push_back(0.5 + 3.5 * double((7 * t) % count) / double(count));
+    return factors;
+}
+
+/// Positions of a creased and stretched sheet.
+std::vector<Vec3> bent(const RestShape& rest)
+{
+    std::vector<Vec3> x;
+    for (int v = 0; v < rest.vertex_count(); ++v) {
+        const double u = double(v % 9) / 8.0, w = double(v / 9) / 8.0;
+        x.emplace_back(1.1 * u + 0.02 * w, 0.1 * std::sin(5.0 * u) * std::cos(3.0 * w), 0.97 * w);
+    }
+    return x;
+}
+
+TEST(ByFabric, StiffnessOfTrianglesScalesTheirShareOfTheMembrane)
+{
+    const Patchwork sheet;
+    const Membrane::Settings settings{.stretch_damping = 0.01, .shear_damping = 0.02};
+    const std::vector<double> stiffness = factors(sheet.rest->triangles.size());
+    const auto painted = std::make_shared<Membrane>(sheet.rest, settings, "test", stiffness);
+    const std::vector<Vec3> x = bent(*sheet.rest);
+    std::vector<Vec3> start = x;
+    for (Vec3& p : start)
+        p.x() *= 0.99;
+    painted->begin_step(start, 0.01);
+
+    double sum = 0.0;
+    for (int t = 0; t < int(stiffness.size()); ++t) {
+        Membrane one(std::make_shared<const RestShape>(part_of(*sheet.rest, {t})), settings, "test");
+        one.begin_step(start, 0.01);
+        sum += stiffness[size_t(t)] * value_of(one, x);
+    }
+    EXPECT_NEAR(value_of(*painted, x), sum, 1e-12 * sum);
+    expect_gradient_of_value(*painted, x);
+    expect_exact(painted, x);
+    const std::vector<double> diagonal = hessian_diagonal(*painted, int(x.size()));
+    const std::vector<double> plain = hessian_diagonal(Membrane(sheet.rest, settings, "test"), int(x.size()));
+    for (size_t v = 0; v < x.size(); ++v) {
+        EXPECT_GT(diagonal[v], 0.5 * plain[v]);
+        EXPECT_LT(diagonal[v], 4.0 * plain[v]);
+    }
+}
+
+TEST(ByFabric, StiffnessOfTrianglesScalesTheirShareOfBending)
+{
+    const Patchwork sheet;
+    const Bending::Settings rigidity{2e-5, 3e-5};
+    const std::vector<double> stiffness = factors(sheet.rest->triangles.size());
+    const auto terms = [&](const std::vector<double>& factors) {
+        return Bending::terms(*sheet.rest, ByFabric(std::vector{rigidity}, {}, factors), "test");
+    };
+    const std::vector<Bending::Term> painted = terms(stiffness), plain = terms({});
+    ASSERT_EQ(painted.size(), stiffness.size());
+    for (size_t t = 0; t < painted.size(); ++t)
+        EXPECT_LT((painted[t].stiffness - stiffness[t] * plain[t].stiffness).norm(),
+                  1e-12 * painted[t].stiffness.norm());
+
+    const auto damping = [&](double factor) {
+        const BendDamping::Settings settings{rigidity, 0.05, 0.0};
+        BendDamping energy(
+            *sheet.rest, ByFabric(std::vector{settings}, {}, std::vector(stiffness.size(), factor)), "test");
+        std::vector<Vec3> x = bent(*sheet.rest);
+        energy.begin_step(x, 0.01);
+        for (Vec3& p : x)
+            p.y() *= 1.3;
+        return value_of(energy, x);
+    };
+    EXPECT_GT(damping(1.0), 0.0);
+    EXPECT_NEAR(damping(4.0), 4.0 * damping(1.0), 1e-12 * damping(4.0));
 }
 
 TEST(ByFabric, PartsKeepTrianglesAndEdges)

@@ -44,6 +44,7 @@ FittedGarment fitted_garment(const scenes::LoadedCloth& cloth, std::vector<Vec3>
     garment.fabrics = cloth.state.fabrics();
     garment.fabric_of_triangle = cloth.state.fabric_of_triangle;
     garment.fabric_of_triangle.resize(garment.mesh.triangles.size(), 0);
+    garment.stiffness = cloth.state.stiffness;
     return garment;
 }
 

@@ -19,6 +19,7 @@ struct FittedGarment {
     std::vector<FlatTriangle> rest; ///< [triangles] corners in the flat panels [m]
     std::vector<garment::Fabric> fabrics;
     std::vector<int> fabric_of_triangle; ///< [triangles] into fabrics
+    std::vector<double> stiffness;       ///< [triangles] painted factor on that of the fabric [-]; empty: 1
 };
 
 /// @param surface  with a texture; the panels of its groups are those of the pattern

@@ -55,26 +55,29 @@ struct Elasticity {
     double allowed = 1.0; ///< [-] stretch at the strain limit
     double beyond = 0.0;  ///< [N/m] stiffness beyond it
 
-    Elasticity(const std::shared_ptr<const garment::RestShape>& rest, const garment::Fabric& fabric)
+    /// @param stiffest  largest factor of tension()
+    Elasticity(const std::shared_ptr<const garment::RestShape>& rest, const garment::Fabric& fabric,
+               double stiffest)
         : weights(
               garment::Membrane(rest, {fabric.stretch_warp, fabric.stretch_weft, fabric.shear}, fabric.name)
                   .weights()),
           allowed(1.0 + fabric.strain_limit),
           beyond(garment::StretchTension::Settings::elastic(
-                     fabric.strain_limit, std::max(fabric.stretch_warp, fabric.stretch_weft), 0.0)
+                     fabric.strain_limit, stiffest * std::max(fabric.stretch_warp, fabric.stretch_weft), 0.0)
                      .stiffness)
     {
     }
 
     /// Larger principal force per width at rest [N/m].
-    double tension(const garment::RestShape& rest, int t, View<const Vec3> x) const
+    /// @param stiffness  factor on the fabric's [-]
+    double tension(const garment::RestShape& rest, int t, View<const Vec3> x, double stiffness) const
     {
         // P: gradients at the corners are A P B^-T, with rest edges B and the area A at rest.
         const Mat32 F = rest.deformation_gradient(t, x);
         const double area = rest.areas[size_t(t)];
         const garment::MembraneResponse<double> response =
             garment::project_membrane<double>(F, rest.edges_inv[size_t(t)], area, weights);
-        Mat32 P = response.corner_gradient * rest.edges[size_t(t)].transpose() / area;
+        Mat32 P = stiffness * response.corner_gradient * rest.edges[size_t(t)].transpose() / area;
         if (!rest.is_sliver(t))
             P += beyond * garment::stretch_excess(F, allowed);
 
@@ -100,13 +103,16 @@ VertexMap tension_map(const FittedGarment& garment)
     const auto rest = std::make_shared<const garment::RestShape>(
         garment::rest_shape_of_panels(garment.mesh, garment.rest, 0.0, garment.name));
     std::vector<Elasticity> fabrics;
+    const std::vector<double>& painted = garment.stiffness;
+    const double stiffest = painted.empty() ? 1.0 : *std::max_element(painted.begin(), painted.end());
     for (const garment::Fabric& fabric : garment.fabrics)
-        fabrics.emplace_back(rest, fabric);
+        fabrics.emplace_back(rest, fabric, stiffest);
     std::vector<double> tension;
-    for (int t = 0; t < garment.mesh.triangle_count(); ++t)
-        tension.push_back(std::max(
-            fabrics[size_t(garment.fabric_of_triangle[size_t(t)])].tension(*rest, t, garment.mesh.positions),
-            0.0));
+    for (int t = 0; t < garment.mesh.triangle_count(); ++t) {
+        const Elasticity& fabric = fabrics[size_t(garment.fabric_of_triangle[size_t(t)])];
+        const double stiffness = painted.empty() ? 1.0 : painted[size_t(t)];
+        tension.push_back(std::max(fabric.tension(*rest, t, garment.mesh.positions, stiffness), 0.0));
+    }
     VertexMap map{"tension", "N/m", mean_at_vertices(garment.mesh, tension, rest->areas), {}, "N/m", 1.0};
     map.scale = scale_of(map.values, 1.0);
     return map;

@@ -29,6 +29,7 @@ void HostContactTerms::begin_step(const StepStart& start, View<const Vec3> carri
     rules_ = rules_of(start, settings_);
     rules_.cloth_of = tables_.cloth_of;
     rules_.gap = tables_.gap;
+    rules_.vertex_gap = tables_.vertex_gap;
     rules_.collider_friction = tables_.collider_friction;
     rules_.cloth_friction = tables_.cloth_friction;
     projection_rules_ = projection_rules_of(start);

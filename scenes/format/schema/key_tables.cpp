@@ -54,6 +54,8 @@ void append_children(const OrderedJson& schema, const std::string& key_path, std
 {
     if (schema.contains("properties"))
         append_table(schema, key_path, text);
+    else if (schema.contains("anyOf"))
+        append_children(schema["anyOf"][1], key_path, text);
     else if (schema.contains("items") && schema["items"].contains("properties"))
         append_table(schema["items"], key_path + "[]", text);
     else if (schema.contains("additionalProperties") && schema["additionalProperties"].is_object())

@@ -39,6 +39,12 @@ public:
         schema["default"] = value ? OrderedJson(*value) : OrderedJson("off");
         add(key, schema, with_unit(help, range));
     }
+    template <typename T>
+    void number_or_object(const char* key, std::optional<T>&, double T::*, const Range& range,
+                          const char* help)
+    {
+        add(key, {{"anyOf", {number_schema("number", range), object_schema(T())}}}, with_unit(help, range));
+    }
     void pair(const char* key, WarpWeft& value, const Range& range, const char* help)
     {
         SchemaWriter threads;

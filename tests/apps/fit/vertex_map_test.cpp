@@ -104,6 +104,16 @@ TEST(TensionMap, HasTheFabricOfEachTriangle)
     expect_everywhere(tension_map(garment).values, 24.9 * 0.1);
 }
 
+TEST(TensionMap, HasThePaintedStiffnessOfEachTriangle)
+{
+    FittedGarment garment = sheet("jersey", {1.0, 1.1});
+    garment.stiffness.assign(garment.mesh.triangles.size(), 3.0);
+    expect_everywhere(tension_map(garment).values, 3.0 * 60.0 * 0.1);
+    garment = sheet("jersey", {1.0, 1.27});
+    garment.stiffness.assign(garment.mesh.triangles.size(), 3.0);
+    expect_everywhere(tension_map(garment).values, 3.0 * (60.0 * 0.27 + 50.0 * 60.0 * 0.02));
+}
+
 TEST(StrainMap, OfAStretchedSheetIsItsStretchLessOne)
 {
     const VertexMap map = strain_map(sheet("cotton", {0.97, 1.042}));

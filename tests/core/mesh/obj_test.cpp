@@ -130,11 +130,37 @@ TEST(ReadObj, DropsTextureThatSomeFacesLack)
     EXPECT_TRUE(mesh.polygon_uvs.empty());
 }
 
+TEST(ReadObj, KeepsColoursThatAllVerticesHave)
+{
+    const ObjMesh mesh = read_text("v 0 0 0 1 0 0.5\nv 1 0 0 0 0.25 1\nv 0 1 0 0 0 0 9\nf 1 2 3\n");
+    EXPECT_EQ(mesh.colours, (std::vector<Vec3>{Vec3(1, 0, 0.5), Vec3(0, 0.25, 1), Vec3::Zero()}));
+    EXPECT_EQ(mesh.first_plain_vertex_line, 0);
+
+    const ObjMesh mixed = read_text("v 0 0 0 1 0 0\nv 1 0 0 1.0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_TRUE(mixed.colours.empty());
+    EXPECT_EQ(mixed.first_plain_vertex_line, 2);
+
+    const ObjMesh plain = read_text(kThreeVertices + "f 1 2 3\n");
+    EXPECT_TRUE(plain.colours.empty());
+    EXPECT_EQ(plain.first_plain_vertex_line, 0);
+}
+
+TEST(Colours, AreSubdividedWithTheirVertices)
+{
+    ObjMesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    mesh.colours = mesh.positions;
+    const ObjMesh fine = subdivide(mesh, 2);
+    EXPECT_EQ(fine.colours, fine.positions);
+    EXPECT_TRUE(subdivide(faces_of(mesh.triangulated()), 1).colours.empty());
+}
+
 TEST(ReadObj, NamesTheLineOfEachMistake)
 {
     const std::string number = "' is not a finite number; write a decimal number: -0.25, 3e-4";
     for (const char* word : {"x", "1,5", "nan", "inf", "1e999", "0x1p-1", "6.0D-01", "1.#QNAN", "+-1", "+"})
         EXPECT_EQ(refusal("v 0 0 0\nv 0 0 " + std::string(word) + "\n"), "2: '" + (word + number));
+    EXPECT_EQ(refusal("v 0 0 0\nv 0 0 0 1 red 0\n"), "2: 'red" + number);
+    EXPECT_EQ(refusal("v 0 0 0\nv 0 0 0 1 0 nan\n"), "2: 'nan" + number);
     const std::string ends =
         ": the line ends too soon; a vertex has x, y and z, a texture coordinate u and v";
     EXPECT_EQ(refusal("\nv 0 0\n"), "2" + ends);
@@ -249,6 +275,15 @@ TEST(WriteObj, RoundTripKeepsOrderQuadsAndTexture)
     EXPECT_EQ(again.texture_coordinates, mesh.texture_coordinates);
     EXPECT_EQ(again.polygons, mesh.polygons);
     EXPECT_EQ(again.polygon_uvs, mesh.polygon_uvs);
+}
+
+TEST(WriteObj, RoundTripKeepsColours)
+{
+    const ObjMesh mesh = read_text("v 0 0 0 1 0 0.5\nv 1 0 0 0 0.25 1\nv 0 1 0 0 0 0\nf 1 2 3\n");
+    const ObjFile file;
+    write_obj(file.path(), mesh);
+    EXPECT_EQ(read_obj(file.path()).colours, mesh.colours);
+    EXPECT_EQ(read_obj(file.path()).positions, mesh.positions);
 }
 
 TEST(WriteObj, OfTrianglesReadsBackAsTheSameTriangles)
