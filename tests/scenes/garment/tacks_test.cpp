@@ -10,6 +10,7 @@
 #include "scenes/world/backend.h"
 #include "scenes/world/world.h"
 #include "scenes/world/world_crossings.h"
+#include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 /// Cloth that tacks and buttons hold together.
