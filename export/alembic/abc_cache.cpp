@@ -39,15 +39,15 @@ int mesh_in(const AbcReader& reader, const std::string& path)
 {
     const std::vector<int> meshes = meshes_of(reader);
     std::string known;
-    for (const int mesh : meshes)
-        known += (known.empty() ? "" : ", ") + reader.objects()[size_t(mesh)].path;
-    for (const int mesh : meshes)
-        if (reader.objects()[size_t(mesh)].path == path || (path.empty() && meshes.size() == 1))
+    for (const int mesh : meshes) {
+        if (reader.path_of(mesh) == path || (path.empty() && meshes.size() == 1))
             return mesh;
-    if (meshes.empty())
-        reader.refuse("", "has no mesh");
-    reader.refuse(path, path.empty() ? "has several meshes; name one behind #: " + known
-                                     : "is no mesh of it; its meshes are " + known);
+        known += (known.empty() ? "" : ", ") + reader.path_of(mesh);
+    }
+    const std::string why = meshes.empty() ? "has no mesh"
+                            : path.empty() ? "has several meshes; name one behind #: " + known
+                                           : "has no mesh " + path + "; its meshes are " + known;
+    throw InvalidInput(reader.path().string() + ": " + why);
 }
 
 template <typename T>
@@ -92,7 +92,7 @@ private:
     static constexpr size_t kPoint = 3 * sizeof(float);
 
     const AbcReadObject& object() const { return reader_.objects()[size_t(object_)]; }
-    [[noreturn]] void refuse(const std::string& why) const { reader_.refuse(object().path, why); }
+    [[noreturn]] void refuse(const std::string& why) const { reader_.refuse(object_, why); }
 
     AbcReadProperty required(const std::string& name, AbcType type, int extent) const
     {
@@ -196,7 +196,7 @@ private:
                 continue;
             for (const std::int32_t polygon : values_of<std::int32_t>(reader_.sample(*faces, 0)))
                 if (polygon >= 0 && size_t(polygon) < set_of.size())
-                    set_of[size_t(polygon)] = set.path.substr(set.path.rfind('/') + 1);
+                    set_of[size_t(polygon)] = set.name;
         }
         for (size_t k = 0; k < set_of.size(); ++k)
             if (set_of[k] != (k == 0 ? std::string() : set_of[k - 1]))
@@ -225,7 +225,7 @@ std::vector<std::string> abc_mesh_paths(const std::filesystem::path& archive)
     const AbcReader reader(archive);
     std::vector<std::string> paths;
     for (const int mesh : meshes_of(reader))
-        paths.push_back(reader.objects()[size_t(mesh)].path);
+        paths.push_back(reader.path_of(mesh));
     return paths;
 }
 

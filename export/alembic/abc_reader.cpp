@@ -83,13 +83,21 @@ AbcReader::AbcReader(const std::filesystem::path& file) : file_(file)
         file_.refuse(file_.root(), "the root has " + std::to_string(root.size()) + " nodes, not 6");
     read_times(root[4]);
     read_metadata(root[5]);
-    objects_.push_back({"", "", -1, kOgawaNothing});
+    objects_.push_back({"", "", -1});
     read_objects(root[2], 0, 0);
 }
 
-void AbcReader::refuse(const std::string& path, const std::string& why) const
+std::string AbcReader::path_of(int object) const
 {
-    throw InvalidInput(file_.path().string() + ": " + (path.empty() ? "/" : path) + ": " + why);
+    std::string path;
+    for (int at = object; at > 0; at = objects_[size_t(at)].parent)
+        path.insert(0, "/" + objects_[size_t(at)].name);
+    return path;
+}
+
+void AbcReader::refuse(int object, const std::string& why) const
+{
+    throw InvalidInput(path().string() + ": " + path_of(object) + ": " + why);
 }
 
 void AbcReader::read_times(OgawaNode node)
@@ -121,6 +129,8 @@ void AbcReader::read_objects(OgawaNode group, int parent, int depth)
         file_.refuse(group, "more than " + std::to_string(kMaxDepth) + " objects lie above each other");
     if (nodes.empty())
         return;
+    if (!read_.insert(group).second)
+        file_.refuse(group, "an object occurs twice");
     if (!OgawaReader::is_data(nodes.front()))
         objects_[size_t(parent)].properties = nodes.front();
     if (!OgawaReader::is_data(nodes.back()))
@@ -129,7 +139,7 @@ void AbcReader::read_objects(OgawaNode group, int parent, int depth)
     list.leave_out_at_end(kHashes);
     for (size_t k = 1; !list.is_at_end(); ++k) {
         const auto length = list.next<std::uint32_t>();
-        AbcReadObject object{objects_[size_t(parent)].path + "/" + list.next_text(length), "", parent};
+        AbcReadObject object{list.next_text(length), "", parent};
         if (const std::uint32_t number = list.next<std::uint8_t>(); number == kInlineMetadata) {
             const auto size = list.next<std::uint32_t>();
             object.metadata = list.next_text(size);

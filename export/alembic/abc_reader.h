@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,7 @@ struct AbcReadProperty {
 
 /// An object of an archive that is read.
 struct AbcReadObject {
-    std::string path; ///< names of all objects above and its own, each after a slash
-    std::string metadata;
+    std::string name, metadata;
     int parent = -1; ///< in AbcReader::objects()
     OgawaNode properties = kOgawaNothing;
 
@@ -48,6 +48,8 @@ public:
     explicit AbcReader(const std::filesystem::path& file);
 
     const std::vector<AbcReadObject>& objects() const { return objects_; } ///< parents first
+    /// Names of all objects above one and its own, each after a slash.
+    std::string path_of(int object) const;
     const std::vector<AbcTimes>& time_samplings() const { return times_; }
 
     std::vector<AbcReadProperty> properties(OgawaNode compound) const;
@@ -59,8 +61,9 @@ public:
     /// @param index  [0, samples)
     std::string sample(const AbcReadProperty& property, int index) const;
 
-    /// Refuses the file, naming the path of an object.
-    [[noreturn]] void refuse(const std::string& path, const std::string& why) const;
+    /// Refuses the file, naming an object.
+    [[noreturn]] void refuse(int object, const std::string& why) const;
+    const std::filesystem::path& path() const { return file_.path(); }
 
 private:
     void read_times(OgawaNode node);
@@ -71,6 +74,7 @@ private:
     std::vector<std::string> metadata_; ///< by the numbers in headers
     std::vector<AbcTimes> times_;
     std::vector<AbcReadObject> objects_;
+    std::set<OgawaNode> read_; ///< groups of objects_
 };
 
 } // namespace toile::exports

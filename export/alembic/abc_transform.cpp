@@ -70,13 +70,12 @@ AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader
         const auto values = reader.find(level.properties, {".xform", ".vals"});
         if (operations && operations->samples > 0 && values && values->samples > 0) {
             Level& added = levels_.emplace_back();
-            added.path = level.path;
+            added.object = at;
             int count = 0;
             for (const char code : reader.sample(*operations, 0)) {
                 const int operation = static_cast<unsigned char>(code) >> 4;
                 if (operation > kRotateZ)
-                    reader.refuse(level.path,
-                                  "its transform has the unknown operation " + std::to_string(operation));
+                    reader.refuse(at, "its transform has the unknown operation " + std::to_string(operation));
                 added.operations.push_back(operation);
                 count += value_count(operation);
             }
@@ -85,8 +84,8 @@ AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader
                 added.times = reader.time_samplings()[size_t(values->time_sampling)];
             if (values->type != int(AbcType::Float64) ||
                 reader.sample(*values, 0).size() != sizeof(double) * size_t(count))
-                reader.refuse(level.path, "its transform has not " + std::to_string(count) +
-                                              " numbers of 8 bytes, as its operations need");
+                reader.refuse(at, "its transform has not " + std::to_string(count) +
+                                      " numbers of 8 bytes, as its operations need");
         }
         const auto inherits = reader.find(level.properties, {".xform", ".inherits"});
         if (inherits && inherits->samples > 0 && reader.sample(*inherits, 0) == std::string(1, '\0'))
@@ -105,7 +104,8 @@ Matrix4d AbcTransform::matrix(const Level& level, int sample) const
     for (const int operation : level.operations) {
         const size_t end = first + size_t(value_count(operation));
         if (end > values.size())
-            reader_.refuse(level.path, "sample " + std::to_string(sample) + " of its transform is cut short");
+            reader_.refuse(level.object,
+                           "sample " + std::to_string(sample) + " of its transform is cut short");
         matrix = matrix * matrix_of(operation, &values[first]);
         first = end;
     }

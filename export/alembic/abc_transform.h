@@ -23,7 +23,7 @@ public:
 private:
     /// One of them.
     struct Level {
-        std::string path;
+        int object;
         std::vector<int> operations;
         AbcReadProperty values;
         AbcTimes times;
