@@ -11,12 +11,12 @@ namespace toile::exports {
 CacheFormat cache_format(const std::filesystem::path& file)
 {
     const std::string extension = lower_case_extension(file);
+    if (is_abc(file))
+        return CacheFormat::Abc;
     if (extension == ".pc2")
         return CacheFormat::Pc2;
     if (extension == ".mdd")
         return CacheFormat::Mdd;
-    if (is_abc(file))
-        return CacheFormat::Abc;
     if (extension == ".obj")
         return CacheFormat::Obj;
     throw InvalidInput(file.string() + ": unknown cache extension '" + extension +

@@ -5,6 +5,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "export/alembic/abc_cache.h"
 #include "export/alembic/abc_writer.h"
 #include "export/cache_format.h"
 #include "export/mdd_writer.h"
@@ -26,6 +27,8 @@ void require_sane(const path& file, const CacheLayout& layout)
         refuse("frame count is " + std::to_string(layout.frame_count) + "; it must be 1 or more");
     if (!(layout.fps > 0.0) || !std::isfinite(layout.fps))
         refuse("fps is " + std::to_string(layout.fps) + "; it must be positive");
+    if (!(std::fabs(layout.start_frame) < 1e9))
+        refuse("start frame is " + std::to_string(layout.start_frame) + "; it must be a number of frames");
     if (layout.resume_at < 0 || layout.resume_at > layout.frame_count)
         refuse("resuming at frame " + std::to_string(layout.resume_at) + " of " +
                std::to_string(layout.frame_count) + "; frames to keep must be 0 up to that count");
@@ -49,9 +52,9 @@ void require_faces(const path& file, const CacheLayout& layout)
 
 void require_numbers(const path& file, const CacheLayout& layout)
 {
-    if (layout.start_frame < 0.0)
+    if (layout.start_frame < 0.0 || layout.start_frame != std::floor(layout.start_frame))
         throw InvalidInput(file.string() + ": start frame " + std::to_string(layout.start_frame) +
-                           " can't number an OBJ; it must be 0 or more");
+                           " can't number an OBJ; it must be a whole number, 0 or more");
 }
 
 std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& layout)
@@ -62,6 +65,9 @@ std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& la
     case CacheFormat::Mdd:
         return std::make_unique<MddWriter>(file, layout);
     case CacheFormat::Abc:
+        if (archive_of(file) != file)
+            throw InvalidInput(file.string() + ": names a mesh in an archive; write the archive " +
+                               archive_of(file).string());
         require_faces(file, layout);
         return std::make_unique<AbcWriter>(file, layout);
     case CacheFormat::Obj:

@@ -11,12 +11,13 @@ namespace toile::exports {
 /// Properties of a cache that are fixed before its first frame.
 struct CacheLayout {
     int vertex_count = 0;
-    int frame_count = 0;      ///< frames that the run will deliver
-    double fps = 24.0;        ///< [frames/s] stored as times by MDD; PC2 and OBJ have no field for it
-    double start_frame = 0.0; ///< scene frame that shows frame 0; PC2 stores it, MDD shifts its times by it,
-                              ///< OBJ sequences count from it
-    int resume_at = 0;        ///< frames to keep from an earlier run; writing continues with this one
-    ObjMesh faces; ///< polygons and texture coordinates, written by OBJ only; positions are ignored
+    int frame_count = 0; ///< frames that the run will deliver
+    double fps = 24.0;   ///< [frames/s] stored as times by MDD and Alembic; PC2 and OBJ have no field for it
+    double start_frame = 0.0; ///< scene frame that shows frame 0; PC2 stores it, MDD and Alembic shift their
+                              ///< times by it, OBJ sequences count from it
+    int resume_at = 0; ///< frames to keep from an earlier run; writing continues with this one
+    ObjMesh
+        faces; ///< polygons and texture coordinates, written by OBJ and Alembic only; positions are ignored
 };
 
 /// Layout of a cache for the vertices and faces of `mesh`.
@@ -70,9 +71,10 @@ protected:
 /// Creates the writer for the extension of `file`:
 ///   .pc2   Point Cache 2
 ///   .mdd   Lightwave MDD; its partial is a PC2 (skirt.mdd.partial.pc2), see docs/guide/caches.md
+///   .abc   Alembic; can't be resumed
 ///   .obj   one OBJ for one frame, else a sequence: skirt.obj stands for skirt_####.obj, each # a digit
 /// @throws InvalidInput before the simulation: an unknown extension, an unwritable location, a layout
-///         without vertices, frames or (OBJ) faces, no cache to resume.
+///         without vertices, frames or (OBJ, Alembic) faces, no cache to resume.
 std::unique_ptr<CacheWriter> make_cache_writer(const std::filesystem::path& file, const CacheLayout& layout);
 
 } // namespace toile::exports

@@ -37,7 +37,8 @@ public:
     const ObjMesh* mesh() const { return source_->mesh.polygons.empty() ? nullptr : &source_->mesh; }
 
     /// Positions of frame `index` in [0, frame_count()). Safe to call from several threads.
-    /// @throws InvalidInput for an index out of range or an OBJ frame that doesn't match the first.
+    /// @throws InvalidInput for an index out of range, an OBJ frame that doesn't match the first, or a broken
+    ///         sample of Alembic.
     std::vector<Vec3> frame(int index) const;
 
 private:

@@ -211,11 +211,15 @@ void print_archive(const std::filesystem::path& file)
     for (const std::string& mesh : exports::abc_mesh_paths(file)) {
         const std::filesystem::path named = file.string() + "#" + mesh;
         print("mesh", mesh);
-        const exports::PointCache cache = exports::read_cache(named);
-        print("polygons", cache.mesh()->polygons.size());
-        print("texture coordinates", cache.mesh()->texture_coordinates.size());
-        print("groups", cache.mesh()->groups.size());
-        print_cache(named);
+        try {
+            const exports::PointCache cache = exports::read_cache(named);
+            print("polygons", cache.mesh()->polygons.size());
+            print("texture coordinates", cache.mesh()->texture_coordinates.size());
+            print("groups", cache.mesh()->groups.size());
+            print_cache(named);
+        } catch (const InvalidInput& error) {
+            print("refused", error.what());
+        }
     }
 }
 

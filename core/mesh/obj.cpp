@@ -23,9 +23,6 @@ namespace toile {
 
 namespace {
 
-/// Most corners of a face: its triangulation takes time by their square.
-constexpr size_t kMaxCorners = 10000;
-
 std::string text_of(const std::filesystem::path& file)
 {
     if (std::filesystem::is_directory(file))
@@ -214,10 +211,10 @@ private:
             if (const std::string_view uv = tail.substr(0, tail.find('/')); !uv.empty())
                 uvs.push_back(index(uv, mesh_.texture_coordinates.size(), "texture"));
         }
-        if (polygon.size() < 3 || polygon.size() > kMaxCorners)
+        if (polygon.size() < 3 || polygon.size() > kMaxPolygonCorners)
             refuse("the face has " + std::to_string(polygon.size()) +
                    (polygon.size() == 1 ? " corner" : " corners") + "; it needs at least 3 and at most " +
-                   std::to_string(kMaxCorners));
+                   std::to_string(kMaxPolygonCorners));
         if (!uvs.empty() && uvs.size() != polygon.size())
             refuse("some corners of the face have a texture index and some have none; give all or none");
         mesh_.polygons.push_back(std::move(polygon));

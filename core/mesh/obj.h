@@ -10,6 +10,9 @@
 
 namespace toile {
 
+/// Most corners of a polygon that is read: its triangulation takes time by their square.
+inline constexpr size_t kMaxPolygonCorners = 10000;
+
 /// Polygons from one of a mesh to the next group.
 struct ObjGroup {
     int first_polygon = 0;

@@ -1,7 +1,9 @@
 #include "export/alembic/abc_cache.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,9 +21,10 @@ namespace {
 bool is_mesh(const AbcReadObject& object) { return object.is("PolyMesh") || object.is("SubD"); }
 
 /// Where the path of a mesh in an archive begins, at its #; the end if there is none.
-size_t hash_in(const std::string& path)
+size_t hash_in(std::string path)
 {
-    const size_t at = path.rfind(".abc#");
+    std::transform(path.begin(), path.end(), path.begin(), [](unsigned char c) { return std::tolower(c); });
+    const size_t at = path.find(".abc#");
     return at == std::string::npos ? path.size() : at + 4;
 }
 
@@ -60,13 +63,22 @@ std::vector<T> values_of(const std::string& bytes)
     return values;
 }
 
+/// Start frames are numbers of frames.
+constexpr double kMaxStartFrame = 1e9;
+
 class AbcSource final : public PointCache::Source {
 public:
     AbcSource(const std::filesystem::path& file, const std::string& mesh_path)
         : reader_(file), object_(mesh_in(reader_, mesh_path)), transform_(reader_, object_)
     {
         positions_ = required("P", AbcType::Float32, 3);
-        frame_count = positions_.samples;
+        if (positions_.samples > 1) {
+            frame_count = positions_.samples;
+            times_ = reader_.times_of(positions_.time_sampling);
+        } else {
+            frame_count = std::max(transform_.sample_count(), 1);
+            times_ = transform_.times();
+        }
         vertex_count = int(reader_.sample(positions_, 0).size() / kPoint);
         read_times();
         read_faces();
@@ -76,7 +88,8 @@ public:
 
     std::vector<Vec3> frame(int index) const override
     {
-        const std::vector<float> values = values_of<float>(reader_.sample(positions_, index));
+        const std::vector<float> values =
+            values_of<float>(reader_.sample(positions_, std::min(index, positions_.samples - 1)));
         if (values.size() != 3 * size_t(vertex_count))
             refuse("has " + std::to_string(values.size() / 3) + " points in sample " + std::to_string(index) +
                    " and " + std::to_string(vertex_count) + " in the first; a cache can't change its points");
@@ -105,9 +118,6 @@ private:
     /// Samples at regular times have a rate.
     void read_times()
     {
-        if (size_t(positions_.time_sampling) >= reader_.time_samplings().size())
-            refuse("names times that the archive does not have");
-        times_ = reader_.time_samplings()[size_t(positions_.time_sampling)];
         if (frame_count < 2)
             return;
         const double first = time_of(times_, 0);
@@ -115,6 +125,8 @@ private:
         for (int k = 1; k < frame_count; ++k)
             if (!(std::fabs(time_of(times_, k) - first - k * step) < 1e-6 * step))
                 return;
+        if (!(std::fabs(first / step) < kMaxStartFrame) || !std::isfinite(1.0 / step))
+            return;
         fps = 1.0 / step;
         start_frame = first / step;
     }
@@ -138,8 +150,9 @@ private:
                        std::to_string(vertex_count - 1));
         size_t first = 0;
         for (const std::int32_t count : counts) {
-            if (count < 3 || size_t(count) > indices.size() - first)
-                refuse("has a face of " + std::to_string(count) + " corners where " +
+            if (count < 3 || size_t(count) > std::min(indices.size() - first, kMaxPolygonCorners))
+                refuse("has a face of " + std::to_string(count) + " corners; they have 3 to " +
+                       std::to_string(kMaxPolygonCorners) + ", and " +
                        std::to_string(indices.size() - first) + " are left");
             std::vector<int>& polygon = mesh.polygons.emplace_back(indices.begin() + long(first),
                                                                    indices.begin() + long(first) + count);
@@ -152,49 +165,61 @@ private:
         mesh.positions = frame(0);
     }
 
-    /// Texture coordinates per corner, with indices or without.
+    /// Texture coordinates per corner or per point, with indices or without.
     void read_texture()
     {
-        auto values = reader_.find(object().properties, {".geom", "uv", ".vals"});
-        const auto indices = reader_.find(object().properties, {".geom", "uv", ".indices"});
-        if (!values)
-            values = reader_.find(object().properties, {".geom", "uv"});
+        const auto texture = reader_.find(object().properties, {".geom", "uv"});
+        if (!texture)
+            return;
+        const auto values =
+            texture->is_compound ? reader_.find(object().properties, {".geom", "uv", ".vals"}) : texture;
         if (!values || values->samples < 1 || values->type != int(AbcType::Float32) || values->extent != 2)
             return;
         const std::vector<float> numbers = values_of<float>(reader_.sample(*values, 0));
-        std::vector<std::uint32_t> at;
+        std::vector<std::uint32_t> at(numbers.size() / 2);
+        std::iota(at.begin(), at.end(), 0u);
+        const auto indices = reader_.find(object().properties, {".geom", "uv", ".indices"});
         if (indices && indices->samples > 0 && indices->type == int(AbcType::Uint32))
             at = values_of<std::uint32_t>(reader_.sample(*indices, 0));
-        else
-            for (size_t k = 0; k < numbers.size() / 2; ++k)
-                at.push_back(std::uint32_t(k));
+        const bool is_per_point = texture->metadata.find("geoScope=vtx") != std::string::npos ||
+                                  texture->metadata.find("geoScope=var") != std::string::npos;
         size_t corners = 0;
         for (const std::vector<int>& polygon : mesh.polygons)
             corners += polygon.size();
         const auto is_beyond = [&](std::uint32_t k) { return k >= numbers.size() / 2; };
-        if (at.size() != corners || std::any_of(at.begin(), at.end(), is_beyond))
-            return; // not of corners
+        if (at.size() != (is_per_point ? size_t(vertex_count) : corners) ||
+            std::any_of(at.begin(), at.end(), is_beyond) ||
+            !std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); }))
+            return; // of another kind, or nonsense: the mesh goes without
         for (size_t k = 0; k + 1 < numbers.size(); k += 2)
             mesh.texture_coordinates.push_back(Vec2(numbers[k], numbers[k + 1]));
-        auto next = at.begin();
+        size_t first = 0;
         for (const std::vector<int>& polygon : mesh.polygons) {
-            std::vector<int>& uvs = mesh.polygon_uvs.emplace_back(next, next + long(polygon.size()));
-            std::reverse(uvs.begin(), uvs.end());
-            next += long(polygon.size());
+            std::vector<int>& uvs = mesh.polygon_uvs.emplace_back();
+            for (size_t k = 0; k < polygon.size(); ++k)
+                uvs.push_back(
+                    int(is_per_point ? at[size_t(polygon[k])] : at[first + polygon.size() - 1 - k]));
+            first += polygon.size();
         }
     }
 
     /// Face sets as groups.
     void read_groups()
     {
+        constexpr size_t kSetsOfPolygon = 100; // most, in the mean
         std::vector<std::string> set_of(mesh.polygons.size());
+        size_t members = 0;
         for (const AbcReadObject& set : reader_.objects()) {
             if (set.parent != object_ || !set.is("FaceSet"))
                 continue;
             const auto faces = reader_.find(set.properties, {".faceset", ".faces"});
             if (!faces || faces->samples < 1 || faces->type != int(AbcType::Int32))
                 continue;
-            for (const std::int32_t polygon : values_of<std::int32_t>(reader_.sample(*faces, 0)))
+            const std::vector<std::int32_t> polygons = values_of<std::int32_t>(reader_.sample(*faces, 0));
+            members += polygons.size();
+            if (members > kSetsOfPolygon * set_of.size())
+                refuse("has face sets of " + std::to_string(members) + " faces together");
+            for (const std::int32_t polygon : polygons)
                 if (polygon >= 0 && size_t(polygon) < set_of.size())
                     set_of[size_t(polygon)] = set.name;
         }

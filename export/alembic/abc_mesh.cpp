@@ -87,7 +87,7 @@ AbcMesh::AbcMesh(OgawaFile& file, const std::string& name, const ObjMesh& faces)
       positions_(vectors("P", "geoScope=vtx;interpretation=point")),
       velocities_(vectors(".velocities", "geoScope=vtx;interpretation=vector")),
       indices_(integers(".faceIndices")), counts_(integers(".faceCounts")),
-      texture_({".vals", Kind::Array, AbcType::Float32, 2, "interpretation=vector"}),
+      texture_({".vals", Kind::Array, AbcType::Float32, 2, "geoScope=fvr;interpretation=vector"}),
       texture_indices_({".indices", Kind::Array, AbcType::Uint32, 1})
 {
     std::string indices, counts;
@@ -171,9 +171,9 @@ AbcCompound AbcMesh::geometry() const
 AbcObject AbcMesh::add_object(OgawaFile& file) const
 {
     std::vector<AbcObject> sets;
-    for (const FaceSet& set : face_sets_) {
+    for (const FaceSet& set : face_sets_) { // its bounds, which Blender needs, may be those of the mesh
         const AbcCompound faces{
-            ".faceset", schema("FaceSet_v1") + ";schemaBaseType=AbcGeom_GeomBase_v1", {&set.faces}};
+            ".faceset", schema("FaceSet_v1") + ";schemaBaseType=AbcGeom_GeomBase_v1", {&bounds_, &set.faces}};
         const OgawaNode properties = AbcCompound{"", "", {}, {faces}}.add_group(file);
         sets.push_back({set.name, schema_of_object("FaceSet_v1", ".faceset"),
                         exports::add_object(file, properties, {})});

@@ -1,6 +1,7 @@
 #include "export/alembic/abc_reader.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "export/byte_order.h"
@@ -11,6 +12,9 @@ namespace {
 
 /// Objects above each other, and objects of an archive, at most.
 constexpr int kMaxDepth = 100, kMaxObjects = 100000;
+
+/// Characters of a name, at most.
+constexpr std::uint32_t kMaxName = 4096;
 
 /// Samples of a property, at most: ten hours at 24 per second and 100 subframes fit.
 constexpr std::uint32_t kMaxSamples = 1u << 27;
@@ -87,6 +91,14 @@ AbcReader::AbcReader(const std::filesystem::path& file) : file_(file)
     read_objects(root[2], 0, 0);
 }
 
+const AbcTimes& AbcReader::times_of(int number) const
+{
+    if (size_t(number) >= times_.size())
+        throw InvalidInput(path().string() + ": a property names the times " + std::to_string(number) +
+                           "; the archive has " + std::to_string(times_.size()));
+    return times_[size_t(number)];
+}
+
 std::string AbcReader::path_of(int object) const
 {
     std::string path;
@@ -108,6 +120,10 @@ void AbcReader::read_times(OgawaNode node)
         times.cycle = list.next<double>();
         for (auto count = list.next<std::uint32_t>(); count > 0; --count)
             times.starts.push_back(list.next<double>());
+        const bool are_finite =
+            std::all_of(times.starts.begin(), times.starts.end(), [](double t) { return std::isfinite(t); });
+        if (!are_finite || !std::isfinite(times.cycle) || times.cycle < 0.0)
+            file_.refuse(node, "times of samples are not finite");
         times_.push_back(std::move(times));
     }
 }
@@ -135,10 +151,14 @@ void AbcReader::read_objects(OgawaNode group, int parent, int depth)
         objects_[size_t(parent)].properties = nodes.front();
     if (!OgawaReader::is_data(nodes.back()))
         return;
+    if (nodes.back() != kOgawaData && !read_.insert(nodes.back()).second)
+        file_.refuse(group, "names of objects occur twice");
     Headers list(file_, nodes.back());
     list.leave_out_at_end(kHashes);
     for (size_t k = 1; !list.is_at_end(); ++k) {
         const auto length = list.next<std::uint32_t>();
+        if (length > kMaxName)
+            file_.refuse(group, "a name has " + std::to_string(length) + " characters");
         AbcReadObject object{list.next_text(length), "", parent};
         if (const std::uint32_t number = list.next<std::uint8_t>(); number == kInlineMetadata) {
             const auto size = list.next<std::uint32_t>();

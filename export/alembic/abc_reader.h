@@ -50,7 +50,8 @@ public:
     const std::vector<AbcReadObject>& objects() const { return objects_; } ///< parents first
     /// Names of all objects above one and its own, each after a slash.
     std::string path_of(int object) const;
-    const std::vector<AbcTimes>& time_samplings() const { return times_; }
+    /// @param number  of a property: AbcReadProperty::time_sampling
+    const AbcTimes& times_of(int number) const;
 
     std::vector<AbcReadProperty> properties(OgawaNode compound) const;
 
@@ -74,7 +75,7 @@ private:
     std::vector<std::string> metadata_; ///< by the numbers in headers
     std::vector<AbcTimes> times_;
     std::vector<AbcReadObject> objects_;
-    std::set<OgawaNode> read_; ///< groups of objects_
+    std::set<OgawaNode> read_; ///< groups of objects_ and lists of their names
 };
 
 } // namespace toile::exports

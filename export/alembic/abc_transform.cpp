@@ -71,19 +71,18 @@ AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader
         if (operations && operations->samples > 0 && values && values->samples > 0) {
             Level& added = levels_.emplace_back();
             added.object = at;
-            int count = 0;
+            size_t count = 0;
             for (const char code : reader.sample(*operations, 0)) {
                 const int operation = static_cast<unsigned char>(code) >> 4;
                 if (operation > kRotateZ)
                     reader.refuse(at, "its transform has the unknown operation " + std::to_string(operation));
                 added.operations.push_back(operation);
-                count += value_count(operation);
+                count += size_t(value_count(operation));
             }
             added.values = *values;
-            if (size_t(values->time_sampling) < reader.time_samplings().size())
-                added.times = reader.time_samplings()[size_t(values->time_sampling)];
+            added.times = reader.times_of(values->time_sampling);
             if (values->type != int(AbcType::Float64) ||
-                reader.sample(*values, 0).size() != sizeof(double) * size_t(count))
+                reader.sample(*values, 0).size() != sizeof(double) * count)
                 reader.refuse(at, "its transform has not " + std::to_string(count) +
                                       " numbers of 8 bytes, as its operations need");
         }
@@ -114,14 +113,38 @@ Matrix4d AbcTransform::matrix(const Level& level, int sample) const
 
 Matrix4d AbcTransform::matrix_at(const Level& level, double t) const
 {
-    int after = 0;
-    while (after < level.values.samples && time_of(level.times, after) < t)
-        ++after;
-    if (after == 0 || after == level.values.samples)
-        return matrix(level, std::min(after, level.values.samples - 1));
+    const int samples = level.values.last_changed > 0 ? level.values.samples : 1;
+    int after = 0, end = samples; // the first sample at t or later
+    while (after < end) {
+        const int middle = after + (end - after) / 2;
+        if (time_of(level.times, middle) < t)
+            after = middle + 1;
+        else
+            end = middle;
+    }
+    if (after == 0 || after == samples)
+        return matrix(level, std::min(after, samples - 1));
     const double t0 = time_of(level.times, after - 1), t1 = time_of(level.times, after);
+    if (!(t1 > t0))
+        return matrix(level, after);
     const double part = (t - t0) / (t1 - t0);
     return (1.0 - part) * matrix(level, after - 1) + part * matrix(level, after);
+}
+
+int AbcTransform::sample_count() const
+{
+    int count = 0;
+    for (const Level& level : levels_)
+        count = std::max(count, level.values.last_changed > 0 ? level.values.samples : 1);
+    return count;
+}
+
+AbcTimes AbcTransform::times() const
+{
+    for (const Level& level : levels_)
+        if (level.values.last_changed > 0 && level.values.samples == sample_count())
+            return level.times;
+    return {};
 }
 
 void AbcTransform::apply(double t, View<Vec3> points) const

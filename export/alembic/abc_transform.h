@@ -17,6 +17,10 @@ public:
     /// @throws InvalidInput for an operation that is unknown
     AbcTransform(const AbcReader& reader, int object);
 
+    /// Samples of the transform that has most, and their times.
+    int sample_count() const;
+    AbcTimes times() const;
+
     /// Moves points [m] as at time t [s]: linear between samples, held outside of them.
     void apply(double t, View<Vec3> points) const;
 

@@ -26,7 +26,7 @@ struct Outline {
     int tip_between(int a, int b) const
     {
         for (const int tip : {next[a], previous[a]})
-            if (tip != b && are_neighbours(tip, b))
+            if (tip >= 0 && tip != b && are_neighbours(tip, b))
                 return tip;
         return -1;
     }

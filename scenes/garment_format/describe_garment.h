@@ -176,7 +176,7 @@ void describe(V& v, GarmentFile& g)
     v.field("folds", g.folds, "Lines along which panels are folded before they are sewn, as pleats are.");
     v.field("closures", g.closures,
             "Tacks and buttons: pairs of points that are pulled together at 0.2 m/s and then held. Those "
-            "between panels with as many copies are repeated.");
+            "between copied panels are repeated for as many copies as both have.");
     v.field("attach", g.attach,
             "Edges and points that springs of 300 N/m a vertex hold on the body while the garment falls into "
             "place and rests.");

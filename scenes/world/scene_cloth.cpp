@@ -401,8 +401,8 @@ void SceneCloth::accelerate(double dt, double t_t1, View<const Vec3> x, View<con
 
 bool SceneCloth::is_disturbed(double t) const
 {
-    const bool is_rising = pressure_ && t > 0.0 && t <= overpressure_.ramp;
-    return is_rising || (tacks_ && tacks_->are_closing(t)) || wind_.velocity.norm() > 0.0 ||
+    const bool has_new_pressure = pressure_ && pressure_->overpressure() != overpressure_.at(t);
+    return has_new_pressure || (tacks_ && tacks_->are_closing(t)) || wind_.velocity.norm() > 0.0 ||
            std::any_of(attachments_.begin(), attachments_.end(),
                        [&](const AttachmentConstraint& attachment) { return attachment.changes_at(t); });
 }

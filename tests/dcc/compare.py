@@ -97,8 +97,9 @@ def main():
         difference = np.linalg.norm(x - expected, axis=1)
         if difference.max() > worst:
             worst, at = difference.max(), (first + k, int(difference.argmax()))
-    print(f"{options.cache}: {len(reference)} frames, {reference.shape[1]} points, largest difference "
-          f"{worst:.3g} m" + (f" at frame {at[0]}, point {at[1]}" if worst > 0 else ""))
+    print(f"{options.cache}: {len(reference)} frames, {reference.shape[1]} points, "
+          f"{len(item.data.uv_layers)} sets of texture coordinates, {len(item.data.materials)} face sets, "
+          f"largest difference {worst:.3g} m" + (f" at frame {at[0]}, point {at[1]}" if worst > 0 else ""))
     if options.picture:
         render(played(item, first + len(reference) - 1), options.picture)
     return 0 if worst <= options.tolerance else 1

@@ -8,18 +8,22 @@
 #include "apps/toile/terminal/exports.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
+#include "export/alembic/abc_cache.h"
 #include "export/obj_sequence.h"
 
 namespace toile::app {
 
 namespace {
 
-/// Name of a cloth: skirt for skirt.pc2, for the unfinished skirt.partial.pc2, and for skirt_####.obj.
+/// Name of a cloth: skirt for skirt.pc2, for the unfinished skirt.partial.pc2, for skirt_####.obj, and for
+/// the mesh run.abc#/skirt/skirtShape.
 std::string name_of(const std::filesystem::path& cache)
 {
     if (exports::ObjSequence::has_digits_placeholder(cache))
         return exports::ObjSequence(cache).stem();
     static const std::set<std::string> kEndings{".pc2", ".mdd", ".obj", ".abc", ".partial"};
+    if (exports::archive_of(cache) != cache)
+        return cache.parent_path().filename().string();
     std::filesystem::path name = cache.filename();
     while (kEndings.contains(lower_case_extension(name)))
         name = name.stem();

@@ -17,6 +17,7 @@
 #include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "core/base/long_work.h"
+#include "export/alembic/abc_cache.h"
 #include "export/folder_lock.h"
 #include "export/obj_sequence.h"
 #include "scenes/format/read_scene.h"
@@ -92,7 +93,7 @@ std::filesystem::path certificate_path_of(const CheckOptions& options)
 {
     if (!options.output.empty())
         return options.output;
-    const std::filesystem::path& first = options.caches.front();
+    const std::filesystem::path first = exports::archive_of(options.caches.front());
     if (std::filesystem::is_directory(first))
         return first / kCertificateName;
     if (options.caches.size() > 1)
@@ -107,7 +108,7 @@ void require_safe_output(const std::filesystem::path& file, const scenes::Scene&
     FilePlan plan;
     add_inputs(plan, scene);
     for (const ClothCache& cache : caches)
-        plan.add_input(cache.file, "a cache to check");
+        plan.add_input(exports::archive_of(cache.file), "a cache to check");
     plan.add_output(file, "the certificate");
     require_writable(file);
 }
@@ -131,7 +132,7 @@ int check(const CheckOptions& options)
     if (!options.cloth.empty() && (is_folder || options.caches.size() > 1))
         throw InvalidInput("--cloth: names the cloth of a single cache; name the caches after their cloths");
     for (const std::filesystem::path& cache : options.caches)
-        if (!cache.has_extension() && !std::filesystem::exists(cache))
+        if (!cache.has_extension() && !exports::is_abc(cache) && !std::filesystem::exists(cache))
             throw InvalidInput(cache.string() + ": no such folder; check the path");
     scenes::Scene scene = scenes::read_scene(options.scene);
     scene.frames = options.frames.value_or(scene.frames);
@@ -168,7 +169,8 @@ Command add_check(CLI::App& parser)
         "check", "Certify caches: crossings, penetration, strain, finite numbers, every frame");
     auto options = std::make_shared<CheckOptions>();
     CLI::App& add = *command.options;
-    add.add_option("caches", options->caches, "Caches (.pc2, .mdd, .obj, .abc), one of each cloth, or their folder")
+    add.add_option("caches", options->caches,
+                   "Caches (.pc2, .mdd, .obj, .abc), one of each cloth, or their folder")
         ->required();
     add.add_option("--scene", options->scene, "Scene that they were made from")->required();
     add.add_option("-o,--output", options->output, "Write the JSON here [beside the caches, and to stdout]");

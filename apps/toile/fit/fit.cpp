@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
 #include "core/compute/parallel.h"
+#include "export/alembic/abc_cache.h"
 #include "export/point_cache.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
@@ -86,7 +87,7 @@ void require_safe(const FitFiles& files, const scenes::Scene& scene, const FitOp
     FilePlan plan;
     add_inputs(plan, scene);
     for (const std::filesystem::path& cache : options.caches)
-        plan.add_input(cache, "a cache");
+        plan.add_input(exports::archive_of(cache), "a cache");
     for (const std::filesystem::path& file : files.all()) {
         plan.add_output(file, "a result of the fit");
         require_writable(file);
@@ -129,7 +130,8 @@ Command add_fit(CLI::App& parser)
     command.options = parser.add_subcommand("fit", "Measure how garments fit their body at a frame");
     auto options = std::make_shared<FitOptions>();
     CLI::App& add = *command.options;
-    add.add_option("caches", options->caches, "Caches (.pc2, .mdd, .obj, .abc) of cloths of the scene")->required();
+    add.add_option("caches", options->caches, "Caches (.pc2, .mdd, .obj, .abc) of cloths of the scene")
+        ->required();
     add.add_option("--scene", options->scene, "Scene that they were made from")->required();
     add.add_option("--frame", options->frame, "Frame of the caches; negative: from the end")
         ->capture_default_str();

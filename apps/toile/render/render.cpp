@@ -15,6 +15,7 @@
 #include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "core/base/long_work.h"
+#include "export/alembic/abc_cache.h"
 #include "scenes/format/read_scene.h"
 
 namespace toile::app {
@@ -127,7 +128,7 @@ void require_safe_output(const RenderOptions& options, const std::filesystem::pa
 {
     FilePlan plan;
     for (const std::filesystem::path& input : options.inputs)
-        plan.add_input(input, "an input");
+        plan.add_input(exports::archive_of(input), "an input");
     if (is_scene(options.inputs[0]) || !options.scene.empty())
         add_inputs(plan, scenes::read_scene(is_scene(options.inputs[0]) ? options.inputs[0] : options.scene));
     if (!output.extension().empty()) {
@@ -187,7 +188,8 @@ Command add_render(CLI::App& parser)
         parser.add_subcommand("render", "Render preview pictures of caches or of a scene's start");
     auto options = std::make_shared<RenderOptions>();
     CLI::App& add = *command.options;
-    add.add_option("inputs", options->inputs, "Caches (.pc2, .mdd, .obj, .abc), or one scene (.json)")->required();
+    add.add_option("inputs", options->inputs, "Caches (.pc2, .mdd, .obj, .abc), or one scene (.json)")
+        ->required();
     add.add_option("--scene", options->scene, "Scene that the caches were made from");
     add.add_option("-o,--output", options->output, "PNG, MP4, or folder for numbered PNGs [NAME.png]");
     add.add_option("--frames", options->frames, "FIRST:LAST:STEP [last for a PNG, else all]");

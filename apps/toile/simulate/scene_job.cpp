@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "apps/toile/check/certify.h"
+#include "apps/toile/terminal/cache_files.h"
 #include "apps/toile/terminal/exports.h"
 #include "apps/toile/terminal/scene_inputs.h"
 #include "core/base/atomic_file.h"
@@ -30,78 +31,12 @@ bool has_faces(const path& cache)
     return format == exports::CacheFormat::Obj || format == exports::CacheFormat::Abc;
 }
 
-void add_output_and_partial(FilePlan& plan, const path& file, const std::string& role)
-{
-    plan.add_output(file, role);
-    plan.add_output(partial_beside(file), role + ", unfinished");
-}
-
-/// Frames of a cache, finished and unfinished, if it is a sequence of OBJ files.
-struct SequenceFiles {
-    exports::ObjSequence finished, unfinished;
-};
-std::optional<SequenceFiles> sequence_of(const path& cache, int frame_count)
-{
-    if (exports::cache_format(cache) != exports::CacheFormat::Obj ||
-        (frame_count == 1 && !exports::ObjSequence::has_digits_placeholder(cache)))
-        return std::nullopt;
-    const exports::ObjSequence finished(cache);
-    return SequenceFiles{finished, exports::ObjSequence(cache.parent_path() / (finished.stem() + ".partial") /
-                                                        cache.filename())};
-}
-
-/// Adds the frames of a sequence, and those of an earlier run, which are removed.
-void add_frames(FilePlan& plan, const exports::ObjSequence& sequence, int frame_count,
-                const std::string& role)
-{
-    for (int frame = 0; frame < frame_count; ++frame)
-        plan.add_output(sequence.file(frame), role);
-    for (const int number : sequence.existing())
-        if (number >= frame_count)
-            plan.add_output(sequence.file(number), role);
-}
-
-void add_cache(FilePlan& plan, const path& file, int frame_count, const std::string& role)
-{
-    if (const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count)) {
-        add_frames(plan, sequence->finished, frame_count, role);
-        add_frames(plan, sequence->unfinished, frame_count, role + ", unfinished");
-        return;
-    }
-    add_output_and_partial(plan, file, role);
-    if (exports::cache_format(file) == exports::CacheFormat::Mdd)
-        plan.add_output(file.string() + ".partial.pc2", role + ", unfinished");
-}
-
-/// Refuses a name that can't be replaced by a file, or should not be.
-void require_replaceable(const path& file)
-{
-    std::error_code missing;
-    if (std::filesystem::is_directory(file, missing) || is_stream(file))
-        throw InvalidInput(file.string() + ": is no regular file; choose another folder or name");
-    require_writable(file);
-}
-
-void require_writable_cache(const path& file, int frame_count)
-{
-    const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count);
-    if (!sequence) {
-        require_replaceable(file);
-        require_writable(partial_beside(file));
-        return;
-    }
-    for (int frame = 0; frame < frame_count; ++frame) {
-        require_replaceable(sequence->finished.file(frame));
-        require_replaceable(sequence->unfinished.file(frame));
-    }
-}
-
 void add_outputs(FilePlan& plan, const SceneJob& job)
 {
     const std::vector<std::string> names = surface_names(job.scene);
     for (const SurfaceFile& cache : caches_of(job))
-        add_cache(plan, cache.file, job.scene.frames,
-                  "the cache of \"" + names[size_t(cache.surface)] + "\"");
+        add_cache_output(plan, cache.file, 0, job.scene.frames,
+                         "the cache of \"" + names[size_t(cache.surface)] + "\"");
     for (const SurfaceFile& mesh : start_meshes_of(job))
         add_output_and_partial(plan, mesh.file, "the start mesh of \"" + names[size_t(mesh.surface)] + "\"");
     for (const path& folder : output_folders_of(job))
@@ -178,7 +113,7 @@ void require_safe_outputs(const std::vector<SceneJob>& jobs)
             require_writable_folder(folder);
         }
         for (const SurfaceFile& cache : caches_of(job))
-            require_writable_cache(cache.file, job.scene.frames);
+            require_writable_cache(cache.file, 0, job.scene.frames);
         for (const SurfaceFile& mesh : start_meshes_of(job)) {
             require_replaceable(mesh.file);
             require_writable(partial_beside(mesh.file));

@@ -37,6 +37,8 @@ public:
     void add_hessian(Triplets&) const override {}
     double add_gradient(View<const Vec3> x, View<Vec3> gradient) override;
 
+    double overpressure() const { return pressure_; } ///< [Pa] of the last step
+
 private:
     /// Fan over a border loop.
     struct Cap {

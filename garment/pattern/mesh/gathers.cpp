@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -45,21 +46,37 @@ struct SewnEdge {
     double log_stretch() const { return std::log(target / length); }
 };
 
-/// [vertices] next one along the outline of its panel, or along a line inside of it; -1 elsewhere.
-std::vector<int> next_along(const PatternMesh& mesh)
-{
-    std::vector<int> next(size_t(mesh.vertex_count()), -1);
-    for (const auto& panel : mesh.edge_vertices)
-        for (const auto& edge : panel)
-            for (size_t i = 0; i + 1 < edge.size(); ++i)
-                next[edge[i].vertex] = edge[i + 1].vertex;
-    for (const auto& panel : mesh.panel_lines)
-        for (const auto& line : panel)
-            for (size_t i = 0; i + 1 < line.size(); ++i)
-                if (next[line[i].vertex] < 0)
-                    next[line[i].vertex] = line[i + 1].vertex;
-    return next;
-}
+/// Neighbours along the outlines of panels and the lines inside of them.
+class Neighbours {
+public:
+    explicit Neighbours(const PatternMesh& mesh) : next_(size_t(mesh.vertex_count()), -1)
+    {
+        for (const auto& panel : mesh.edge_vertices)
+            for (const auto& edge : panel)
+                for (size_t i = 0; i + 1 < edge.size(); ++i)
+                    next_[edge[i].vertex] = edge[i + 1].vertex;
+        for (const auto& panel : mesh.panel_lines)
+            for (const auto& line : panel)
+                for (size_t i = 0; i + 1 < line.size(); ++i)
+                    on_lines_.insert(ends_of(line[i].vertex, line[i + 1].vertex));
+    }
+
+    bool are(int a, int b) const
+    {
+        return next_[a] == b || next_[b] == a || on_lines_.contains(ends_of(a, b));
+    }
+
+    /// The vertex after a on its outline, if b comes next; -1: it does not.
+    int between(int a, int b) const
+    {
+        const int tip = next_[a];
+        return tip >= 0 && next_[tip] == b ? tip : -1;
+    }
+
+private:
+    std::vector<int> next_; ///< [vertices] along the outline; -1 inside of it
+    std::set<Ends> on_lines_;
+};
 
 /// [vertices] whether they are joined to another
 std::vector<bool> are_stitched(const PatternMesh& mesh)
@@ -73,19 +90,18 @@ std::vector<bool> are_stitched(const PatternMesh& mesh)
 
 /// Pairs of outline edges that a seam joins, each from one stitch to the next. [pairs][sides][ends]
 std::vector<std::array<Ends, 2>> sewn_pairs(const std::vector<std::array<int, 2>>& stitches,
-                                            const std::vector<int>& next, const std::vector<bool>& stitched)
+                                            const Neighbours& neighbours, const std::vector<bool>& stitched)
 {
-    const auto are_neighbours = [&](int a, int b) { return next[a] == b || next[b] == a; };
     std::vector<std::array<Ends, 2>> pairs;
     for (size_t i = 0; i + 1 < stitches.size(); ++i) {
         const auto &low = stitches[i], &high = stitches[i + 1];
-        if (are_neighbours(low[0], high[0]) && are_neighbours(low[1], high[1]))
+        if (neighbours.are(low[0], high[0]) && neighbours.are(low[1], high[1]))
             pairs.push_back({ends_of(low[0], high[0]), ends_of(low[1], high[1])});
     }
     // The tip of a dart meets itself and has no stitch. Openings have more than one vertex.
     for (const auto& [a, b] : stitches)
         for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
-            if (const int tip = next[from]; next[tip] == to && !stitched[tip])
+            if (const int tip = neighbours.between(from, to); tip >= 0 && !stitched[tip])
                 pairs.push_back({ends_of(a, tip), ends_of(b, tip)});
     return pairs;
 }
@@ -151,12 +167,13 @@ std::optional<int> kept_side(const SideLengths& lengths, Gather gather)
 
 std::vector<SewnEdge> sewn_edges(const Pattern& pattern, const PatternMesh& mesh)
 {
-    const std::vector<int> next = next_along(mesh);
+    const Neighbours neighbours(mesh);
     const std::vector<bool> stitched = are_stitched(mesh);
     std::vector<SewnEdge> edges;
     for (size_t s = 0; s < mesh.stitches.size(); ++s) {
         const Seam& seam = pattern.seams[s];
-        std::vector<SidesOfEdge> seam_edges = sides_of(sewn_pairs(mesh.stitches[s], next, stitched), mesh);
+        std::vector<SidesOfEdge> seam_edges =
+            sides_of(sewn_pairs(mesh.stitches[s], neighbours, stitched), mesh);
         const std::optional<int> kept = kept_side(
             has_shrinking_panel(pattern, seam) ? shrunk_lengths(seam_edges) : cut_lengths(pattern, seam),
             seam.gather);

@@ -108,11 +108,24 @@ void weld_triangles(const PatternMesh& mesh, SewnMesh& sewn)
     }
 }
 
-/// Surface topology without the seams on lines inside of panels, where three triangles share an edge; but for
-/// pieces and Euler characteristic.
-SurfaceTopology topology_of(const PatternMesh& mesh, const std::vector<Triangle>& welded)
+/// Edges of the welded mesh along seams on lines inside of panels.
+std::set<std::array<int, 2>> inner_seam_edges(const PatternMesh& mesh, const std::vector<int>& welded_of)
 {
-    SurfaceTopology topology = surface_topology(welded);
+    std::set<std::array<int, 2>> edges;
+    for (size_t s = 0; s < mesh.stitches.size(); ++s)
+        for (size_t i = 0; mesh.is_inner_seam[s] && i + 1 < mesh.stitches[s].size(); ++i) {
+            const auto [low, high] =
+                std::minmax({welded_of[mesh.stitches[s][i][0]], welded_of[mesh.stitches[s][i + 1][0]]});
+            edges.insert({low, high});
+        }
+    return edges;
+}
+
+/// Surface topology in which seams on lines inside of panels open no border, and the edges of three triangles
+/// along them are none of its mistakes.
+SurfaceTopology topology_of(const PatternMesh& mesh, const SewnMesh& sewn)
+{
+    SurfaceTopology topology = surface_topology(sewn.triangles);
     if (std::find(mesh.is_inner_seam.begin(), mesh.is_inner_seam.end(), true) == mesh.is_inner_seam.end())
         return topology;
     PatternMesh apart = mesh;
@@ -123,10 +136,13 @@ SurfaceTopology topology_of(const PatternMesh& mesh, const std::vector<Triangle>
     std::vector<Triangle> triangles = mesh.triangles;
     for (Triangle& t : triangles)
         t = Triangle(number[t[0]], number[t[1]], number[t[2]]);
-    SurfaceTopology others = surface_topology(triangles);
-    others.pieces = topology.pieces;
-    others.euler_characteristic = topology.euler_characteristic;
-    return others;
+    topology.border_loops = surface_topology(triangles).border_loops;
+    const std::set<std::array<int, 2>> inner = inner_seam_edges(mesh, sewn.welded_of);
+    std::erase_if(topology.non_manifold_edges, [&](const std::array<int, 2>& edge) {
+        const auto [low, high] = std::minmax(edge[0], edge[1]);
+        return inner.contains({low, high});
+    });
+    return topology;
 }
 
 } // namespace
@@ -155,7 +171,7 @@ SewnMesh sewn_mesh(const PatternMesh& mesh)
     }
     turn_panels(mesh, sewn);
     weld_triangles(mesh, sewn);
-    static_cast<SurfaceTopology&>(sewn.topology) = topology_of(mesh, sewn.triangles);
+    static_cast<SurfaceTopology&>(sewn.topology) = topology_of(mesh, sewn);
     return sewn;
 }
 
