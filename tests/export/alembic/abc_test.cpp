@@ -143,6 +143,15 @@ TEST_F(AbcTest, ReadsArchivesOfOthersUnderTheirTransforms)
     EXPECT_EQ(mesh.groups, (std::vector<ObjGroup>{{1, "tip"}}));
 }
 
+TEST_F(AbcTest, HasTheFramesOfItsTransformWhereTheMeshIsStill)
+{
+    const PointCache cache = read_cache(TOILE_SOURCE_DIR "/tests/export/alembic/samples/moving_still.abc");
+    ASSERT_EQ(cache.frame_count(), 4);
+    EXPECT_NEAR(*cache.fps(), 24.0, 1e-9);
+    for (int frame = 0; frame < 4; ++frame)
+        EXPECT_EQ(cache.frame(frame)[3], Vec3(3, 2 * frame, 0)) << frame;
+}
+
 TEST_F(AbcTest, IsRefusedWithItsPlaceWhereItIsBroken)
 {
     const std::string whole = bytes_of(written(3));
@@ -157,15 +166,17 @@ TEST_F(AbcTest, IsRefusedWithItsPlaceWhereItIsBroken)
     EXPECT_THAT(said(incomplete), HasSubstr("has not completed it (byte 5)"));
     EXPECT_THAT(said(whole.substr(0, whole.size() / 2)), HasSubstr("file of"));
     // No byte that differs makes it crash, or read what is not in the file.
-    for (size_t at = 8; at < whole.size(); at += 3) {
-        std::string broken = whole;
-        broken[at] = char(broken[at] ^ 0x55);
-        write_bytes(file("bad.abc"), broken);
-        try {
-            read_cache(file("bad.abc")).frame(0);
-        } catch (const InvalidInput&) {
+    const std::string moving = bytes_of(TOILE_SOURCE_DIR "/tests/export/alembic/samples/moving_quad.abc");
+    for (const std::string& intact : {whole, moving})
+        for (size_t at = 8; at < intact.size(); at += 3) {
+            std::string broken = intact;
+            broken[at] = char(broken[at] ^ 0x55);
+            write_bytes(file("bad.abc"), broken);
+            try {
+                read_cache(file("bad.abc")).frame(1);
+            } catch (const InvalidInput&) {
+            }
         }
-    }
 }
 
 TEST_F(AbcTest, CannotBeContinued)

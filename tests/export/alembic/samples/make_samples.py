@@ -1,7 +1,8 @@
-"""Writes moving_quad.abc beside this file with the official library: pip install alembic3d
+"""Writes moving_quad.abc and moving_still.abc beside this file with the official library: pip install alembic3d
 
-A quad and a triangle of five points under two transforms. The outer one moves by 1 m along X a frame and is
-turned by 90 degrees about Z; the inner one is scaled by 2. Point k is at (k, frame, 0) in its own frame.
+moving_quad.abc: a quad and a triangle of five points under two transforms. The outer one moves by 1 m along X a
+frame and is turned by 90 degrees about Z; the inner one is scaled by 2. Point k is at (k, frame, 0) in its own
+frame.
 Texture coordinates are stored per corner, without indices; the triangle is the face set "tip".
 """
 
@@ -54,3 +55,14 @@ for frame in range(FRAMES):
     mesh.getSchema().set(sample)
 faces = mesh.getSchema().createFaceSet("tip")
 faces.getSchema().set(AbcGeom.OFaceSetSchemaSample(integers([1])))
+
+# A quad that does not deform, moved by 2 m along Y a frame: moving_still.abc.
+archive = Abc.OArchive(str(pathlib.Path(__file__).with_name("moving_still.abc")))
+times = archive.addTimeSampling(AbcCoreAbstract.TimeSampling(1.0 / FPS, 0.0))
+mover = AbcGeom.OXform(archive.getTop(), "mover", times)
+still = AbcGeom.OPolyMesh(mover, "quad")
+still.getSchema().set(AbcGeom.OPolyMeshSchemaSample(points(0), integers([3, 2, 1, 0]), integers([4])))
+for frame in range(FRAMES):
+    sample = AbcGeom.XformSample()
+    sample.setTranslation(imath.V3d(0, 2 * frame, 0))
+    mover.getSchema().set(sample)

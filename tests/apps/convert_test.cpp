@@ -1,0 +1,115 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "export/cache_writer.h"
+#include "export/point_cache.h"
+#include "tests/apps/program.h"
+
+namespace toile::test {
+
+using namespace exports;
+
+namespace {
+
+using testing::HasSubstr;
+
+class ConvertTest : public FileTest {
+protected:
+    /// A triangle in three frames, the second vertex at (1 + frame, 2, -3).
+    void write(const std::string& name) const
+    {
+        ObjMesh mesh;
+        mesh.positions = {{0, 0, 0}, {1, 2, -3}, {0, 1, 0}};
+        mesh.polygons = {{0, 1, 2}};
+        CacheLayout layout = cache_layout(mesh, kFrames);
+        layout.fps = 25.0;
+        const auto writer = make_cache_writer(file(name), layout);
+        for (int frame = 0; frame < kFrames; ++frame) {
+            mesh.positions[1].x() = 1 + frame;
+            writer->write(frame, mesh.positions);
+        }
+        writer->finish();
+    }
+    Finished convert(std::vector<std::string> arguments) const
+    {
+        arguments.insert(arguments.begin(), "convert");
+        arguments.push_back("--quiet");
+        return run_toile(arguments, folder_);
+    }
+    void expect_refused(const std::vector<std::string>& arguments, const std::string& says) const
+    {
+        const auto before = temporary_.snapshot();
+        const Finished run = convert(arguments);
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_EQ(run.error_lines(), 1) << run.errors;
+        EXPECT_THAT(run.errors, HasSubstr(says));
+        EXPECT_EQ(temporary_.snapshot(), before) << says;
+    }
+
+    static constexpr int kFrames = 3;
+};
+
+TEST_F(ConvertTest, ThroughAllFormatsAndBackGivesTheSameBytes)
+{
+    write("a.pc2");
+    write("mesh_##.obj");
+    const std::vector<std::string> chain{"a.pc2", "b.abc", "c.mdd", "d_##.obj", "e.abc", "f.pc2"};
+    for (size_t k = 0; k + 1 < chain.size(); ++k) {
+        const Finished run = convert({chain[k], chain[k + 1], "--mesh", "mesh_00.obj", "--fps", "25"});
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+    }
+    EXPECT_EQ(bytes_of(file("f.pc2")), bytes_of(file("a.pc2")));
+    EXPECT_NEAR(*read_cache(file("e.abc")).fps(), 25.0, 1e-9);
+}
+
+TEST_F(ConvertTest, ChangesUnitAxesAndFirstFrame)
+{
+    write("a.abc");
+    convert({"a.abc", "b.abc", "--unit", "cm", "--up", "z", "--start-frame", "1001"});
+    const PointCache changed = read_cache(file("b.abc"));
+    EXPECT_EQ(changed.frame(2)[1], Vec3(300, 300, 200));
+    EXPECT_NEAR(changed.start_frame(), 1001.0, 1e-6);
+    convert({"b.abc", "c.abc", "--from-unit", "cm", "--from-up", "z"});
+    EXPECT_EQ(read_cache(file("c.abc")).frame(2)[1], Vec3(3, 2, -3));
+}
+
+TEST_F(ConvertTest, SparesWhatItReads)
+{
+    write("a.partial.abc");
+    write("s_##.obj");
+    write("a.pc2");
+    expect_refused({"a.partial.abc", "a.abc"}, "would replace a.partial.abc, the cache");
+    expect_refused({"s_01.obj", "s_##.obj"}, "would replace s_01.obj, the cache");
+    expect_refused({"a.pc2", "s_##.obj", "--mesh", "s_02.obj"}, "would replace s_02.obj, the mesh");
+    expect_refused({"a.pc2", "a.pc2"}, "would replace a.pc2, the cache");
+}
+
+TEST_F(ConvertTest, RefusesWhatCannotBeInOneLine)
+{
+    write("a.pc2");
+    write("a.abc");
+    expect_refused({"a.pc2", "b.abc"},
+                   "a.pc2: has no faces, which b.abc needs; name the mesh that it plays on "
+                   "with --mesh");
+    expect_refused({"a.abc", "b.abc#/x"}, "names a mesh in an archive");
+    expect_refused({"a.abc", "b.pc2", "--unit", "ft"}, "--unit ft: is no unit of caches; write m or cm");
+    expect_refused({"a.abc", "b.pc2", "--fps", "0"}, "--fps");
+    expect_refused({"a.abc", "b_##.obj", "--start-frame", "1.5"}, "must be a whole number");
+    expect_refused({"a.abc#/b", "b.pc2"}, "a.abc: has no mesh /b; its meshes are /a/aShape");
+}
+
+/// What a certificate says is of the cache that it was made for.
+TEST_F(ConvertTest, RemovesCertificatesOfWhatItReplaces)
+{
+    write("a.abc");
+    write("a.pc2");
+    temporary_.write("certificate.json", "{}");
+    EXPECT_EQ(convert({"a.pc2", "new.pc2"}).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(file("certificate.json")));
+    EXPECT_EQ(convert({"a.abc", "a.pc2"}).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(file("certificate.json")));
+}
+
+} // namespace
+
+} // namespace toile::test
