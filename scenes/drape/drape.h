@@ -19,7 +19,7 @@ enum class DrapeOutcome {
     Draped,
     Meshing,   ///< the time limit ended it before it was sewn
     Placement, ///< the panels do not lie around the body
-    Tangled,   ///< a seam could not be pulled shut
+    Tangled,   ///< a seam or a closure could not be pulled shut
     NotAtRest, ///< the garment still moves after DrapeSettings::max_motion
     SlidOff,   ///< a labelled edge sank by more than kMaxSlide after it was released
     Solver,    ///< a step gave numbers that are not finite
@@ -27,6 +27,9 @@ enum class DrapeOutcome {
 
 /// Distance by which a released edge may sink [m].
 inline constexpr double kMaxSlide = 0.05;
+
+/// Distance at rest between the ends of a closure that holds [m]: a spring of 2000 N/m gives way by less.
+inline constexpr double kMaxOpen = 0.01;
 
 /// A moment of a drape.
 struct DrapeProgress {

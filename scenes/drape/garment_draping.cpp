@@ -314,15 +314,21 @@ void GarmentDraping::measure_slides(const WornGarment& worn, size_t number)
     }
 }
 
-/// Measures the gaps of the closures of all garments.
+/// Measures the gaps of the closures of all garments. Fails if one has stayed open.
 void GarmentDraping::measure_closures()
 {
     for (size_t g = 0; g < worn_.size(); ++g) {
         const garment::Pattern& pattern = worn_[g].garment.pattern;
         const std::vector<double> gaps = closure_gaps(pattern, worn_[g].mesh, worn_[g].x);
         result_.garments[g].closures.clear();
-        for (size_t i = 0; i < gaps.size(); ++i)
+        for (size_t i = 0; i < gaps.size(); ++i) {
             result_.garments[g].closures.push_back({pattern.closures[i].name, gaps[i]});
+            if (gaps[i] > kMaxOpen)
+                fail(DrapeOutcome::Tangled,
+                     "the closure " + pattern.closures[i].name + " stays open by " +
+                         std::to_string(1e3 * gaps[i]) + " mm",
+                     g);
+        }
     }
 }
 

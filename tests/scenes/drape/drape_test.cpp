@@ -239,6 +239,18 @@ TEST_F(DrapeTest, ClosesButtonsAndWritesThem)
     EXPECT_GT(result.garments[0].stages.back().frames, 0.2 * 30);
 }
 
+/// The body stands between the front and the back.
+TEST_F(DrapeTest, SaysThatAClosureStaysOpen)
+{
+    const DrapeResult result = drape_tube(tube(0.36, "strapless_top"), R"("closures": [
+        {"a": "front[0,0]", "b": "back[0,0]", "close_at": 0.1}])");
+    EXPECT_EQ(result.outcome, DrapeOutcome::Tangled);
+    EXPECT_NE(result.message.find("the closure closures[0] stays open by "), std::string::npos)
+        << result.message;
+    ASSERT_EQ(result.garments[0].closures.size(), 1u);
+    EXPECT_GT(result.garments[0].closures[0].gap, 0.1);
+}
+
 /// A loose tube, which slides off where nothing holds it.
 TEST_F(DrapeTest, HoldsWhatIsAttachedAndWritesIt)
 {
