@@ -89,6 +89,7 @@ MAY_INCLUDE |= {
     "apps/preview": BELOW_APPS,
     "apps/toile/terminal": BELOW_APPS,
     "apps/toile/check": BELOW_APPS + ["apps/toile/terminal"],
+    "apps/toile/convert": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check"],
     "apps/toile/render": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/preview"],
     "apps/toile/simulate": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check"],
     "apps/toile/fit": BELOW_APPS + ["apps/toile/terminal", "apps/toile/check", "apps/preview"],
