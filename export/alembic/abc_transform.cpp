@@ -58,8 +58,9 @@ Matrix4d matrix_of(int operation, const double* values)
 double time_of(const AbcTimes& times, int index)
 {
     const int count = std::max(int(times.starts.size()), 1);
+    const int cycle = index / count;
     const double start = times.starts.empty() ? 0.0 : times.starts[size_t(index % count)];
-    return index < count ? start : start + (index / count) * times.cycle;
+    return cycle == 0 ? start : start + cycle * times.cycle;
 }
 
 AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader)

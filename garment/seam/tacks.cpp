@@ -11,6 +11,7 @@ namespace {
 std::vector<Sewing::Thread> threads_of(const std::vector<Tacks::Tack>& tacks)
 {
     std::vector<Sewing::Thread> threads;
+    threads.reserve(tacks.size());
     for (const Tacks::Tack& tack : tacks)
         threads.push_back({tack.a, tack.b});
     return threads;

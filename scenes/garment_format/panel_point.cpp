@@ -84,7 +84,7 @@ PanelPoint point_in_plane(const Document& document, const std::string& key_path,
     const std::vector<std::string> names = scene_format::names_of(pattern.panels);
     const std::string panel = name.substr(0, bracket);
     scene_format::require_known(document, key_path, "panel", panel, names);
-    const PanelPoint point{int(std::find(names.begin(), names.end(), panel) - names.begin()), Vec2(*x, *y)};
+    PanelPoint point{int(std::find(names.begin(), names.end(), panel) - names.begin()), Vec2(*x, *y)};
     if (!lies_on(pattern.panels[size_t(point.panel)], point.point))
         document.refuse(key_path, as_written(name) + " lies outside of the panel, which has " +
                                       box_text(pattern.panels[size_t(point.panel)]));

@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     constexpr int kFrames = 20;
     static const toile::test::InputFile file(".abc");
     try {
-        const std::filesystem::path archive = file.write(data, size);
+        const std::filesystem::path& archive = file.write(data, size);
         for (const std::string& mesh : toile::exports::abc_mesh_paths(archive)) {
             const auto cache = toile::exports::open_abc(archive.string() + "#" + mesh);
             for (int frame = 0; frame < std::min(cache->frame_count, kFrames); ++frame)

@@ -78,8 +78,9 @@ TEST_F(AbcTest, StoresVelocitiesPerSecond)
 
 TEST_F(AbcTest, PutsATransformAboveTheMeshAndASetUnderItForEachGroup)
 {
-    std::vector<std::string> paths;
     const AbcReader reader(written(2));
+    std::vector<std::string> paths;
+    paths.reserve(reader.objects().size());
     for (int k = 0; k < int(reader.objects().size()); ++k)
         paths.push_back(reader.path_of(k));
     EXPECT_EQ(paths, (std::vector<std::string>{"", "/skirt", "/skirt/skirtShape", "/skirt/skirtShape/front",

@@ -40,6 +40,7 @@ protected:
     DrapeResult drape_tubes(const std::vector<std::pair<std::string, std::string>>& patterns)
     {
         std::vector<std::pair<std::string, std::filesystem::path>> files;
+        files.reserve(patterns.size());
         for (const auto& [name, pattern] : patterns)
             files.emplace_back(name, write(name + ".json", pattern));
         return drape_files(files);
