@@ -15,9 +15,8 @@ struct CacheLayout {
     double fps = 24.0;   ///< [frames/s] stored as times by MDD and Alembic; PC2 and OBJ have no field for it
     double start_frame = 0.0; ///< scene frame that shows frame 0; PC2 stores it, MDD and Alembic shift their
                               ///< times by it, OBJ sequences count from it
-    int resume_at = 0; ///< frames to keep from an earlier run; writing continues with this one
-    ObjMesh
-        faces; ///< polygons and texture coordinates, written by OBJ and Alembic only; positions are ignored
+    int resume_at = 0;        ///< frames to keep from an earlier run; writing continues with this one
+    ObjMesh faces; ///< polygons and texture coordinates, for OBJ and Alembic; positions are ignored
 };
 
 /// Layout of a cache for the vertices and faces of `mesh`.

@@ -47,7 +47,7 @@ private:
 
 /// Opens a .pc2, .mdd, .abc (open_abc()), .obj or an OBJ sequence: skirt_####.obj, or skirt.obj if only
 /// skirt_0000.obj and so on exist. Sizes are checked here against the header, so frame() finds every byte it
-/// needs.
+/// needs; samples of Alembic are checked one by one.
 /// @throws InvalidInput naming the file, the byte or line, the fault and a remedy.
 PointCache read_cache(const std::filesystem::path& file);
 

@@ -202,7 +202,8 @@ void add_points(const Pattern& pattern, int panel, double target, PanelFrame& fr
     constexpr double kMinDistance = 0.5; // over the target
     constexpr double kBeyond = 1e-3;     // [m] by which a point may lie outside of the outline
     for (const PanelPoint& point : points_of(pattern))
-        if (point.panel == panel && distance_to(frame, point.point) > std::max(kMinDistance * target, kBeyond))
+        if (point.panel == panel &&
+            distance_to(frame, point.point) > std::max(kMinDistance * target, kBeyond))
             frame.points.push_back(point.point);
 }
 
