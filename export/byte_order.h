@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace toile::exports {
 
@@ -42,6 +43,17 @@ T take(const char* bytes)
     if constexpr (std::endian::native != std::endian::little)
         std::reverse(word, word + sizeof word);
     return std::bit_cast<T>(word);
+}
+
+/// Reads as many of them as there are.
+template <typename T>
+std::vector<T> values_of(const std::string& bytes)
+{
+    std::vector<T> values;
+    values.reserve(bytes.size() / sizeof(T));
+    for (std::size_t k = 0; k + sizeof(T) <= bytes.size(); k += sizeof(T))
+        values.push_back(take<T>(&bytes[k]));
+    return values;
 }
 
 /// Appends an integer or float of any size to bytes, little endian.

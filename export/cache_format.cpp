@@ -23,4 +23,6 @@ CacheFormat cache_format(const std::filesystem::path& file)
                        "'; use .pc2, .mdd, .abc or .obj");
 }
 
+bool stores_faces(CacheFormat format) { return format == CacheFormat::Obj || format == CacheFormat::Abc; }
+
 } // namespace toile::exports

@@ -11,4 +11,7 @@ enum class CacheFormat { Pc2, Mdd, Abc, Obj };
 /// @throws InvalidInput for any other.
 CacheFormat cache_format(const std::filesystem::path& file);
 
+/// Whether caches of a format hold the faces that they play on.
+bool stores_faces(CacheFormat format);
+
 } // namespace toile::exports

@@ -53,16 +53,6 @@ int mesh_in(const AbcReader& reader, const std::string& path)
     throw InvalidInput(reader.path().string() + ": " + why);
 }
 
-template <typename T>
-std::vector<T> values_of(const std::string& bytes)
-{
-    std::vector<T> values;
-    values.reserve(bytes.size() / sizeof(T));
-    for (size_t k = 0; k + sizeof(T) <= bytes.size(); k += sizeof(T))
-        values.push_back(take<T>(&bytes[k]));
-    return values;
-}
-
 /// Start frames are numbers of frames.
 constexpr double kMaxStartFrame = 1e9;
 

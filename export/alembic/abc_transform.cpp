@@ -95,10 +95,7 @@ AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader
 
 Matrix4d AbcTransform::matrix(const Level& level, int sample) const
 {
-    const std::string bytes = reader_.sample(level.values, sample);
-    std::vector<double> values;
-    for (size_t k = 0; k + sizeof(double) <= bytes.size(); k += sizeof(double))
-        values.push_back(take<double>(&bytes[k]));
+    const std::vector<double> values = values_of<double>(reader_.sample(level.values, sample));
     Matrix4d matrix = Matrix4d::Identity();
     size_t first = 0;
     for (const int operation : level.operations) {

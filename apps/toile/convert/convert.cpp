@@ -94,15 +94,19 @@ double fps_of(const ConvertOptions& options, const exports::PointCache& cache)
     return cache.fps().value_or(kUsualFps);
 }
 
-/// Refuses an output that would replace what is read, is of another kind, or lacks faces.
-void require_safe_output(const ConvertOptions& options, const exports::CacheLayout& layout)
+void require_faces(const ConvertOptions& options, const exports::CacheLayout& layout)
 {
-    const exports::CacheFormat format = exports::cache_format(options.output);
-    const bool needs_faces = format == exports::CacheFormat::Abc || format == exports::CacheFormat::Obj;
-    if (needs_faces && layout.faces.polygons.empty())
+    if (exports::stores_faces(exports::cache_format(options.output)) && layout.faces.polygons.empty())
         throw InvalidInput(options.input.string() + ": has no faces, which " + options.output.string() +
                            " needs; name the mesh that it plays on with --mesh");
-    const int first = format == exports::CacheFormat::Obj ? int(layout.start_frame) : 0;
+}
+
+/// Refuses an output that would replace what is read, or is no file.
+/// @param layout  with which make_cache_writer() is content
+void require_safe_output(const ConvertOptions& options, const exports::CacheLayout& layout)
+{
+    const bool is_numbered = exports::cache_format(options.output) == exports::CacheFormat::Obj;
+    const int first = is_numbered ? int(layout.start_frame) : 0;
     FilePlan plan;
     add_cache_input(plan, options.input, "the cache");
     if (!options.mesh.empty())
@@ -138,9 +142,10 @@ int convert(const ConvertOptions& options)
     layout.faces.positions.clear();
     layout.fps = fps_of(options, cache);
     layout.start_frame = options.start_frame.value_or(cache.start_frame());
+    require_faces(options, layout);
+    const std::unique_ptr<exports::CacheWriter> writer = exports::make_cache_writer(options.output, layout);
     require_safe_output(options, layout);
     const exports::FolderLock lock(options.output.parent_path());
-    const std::unique_ptr<exports::CacheWriter> writer = exports::make_cache_writer(options.output, layout);
     Progress progress("convert", cache.frame_count(), options.quiet);
     for (int k = 0; k < cache.frame_count(); ++k) {
         std::vector<Vec3> positions = cache.frame(k);

@@ -24,13 +24,6 @@ namespace {
 
 using std::filesystem::path;
 
-/// Whether a cache holds the faces that it plays on.
-bool has_faces(const path& cache)
-{
-    const exports::CacheFormat format = exports::cache_format(cache);
-    return format == exports::CacheFormat::Obj || format == exports::CacheFormat::Abc;
-}
-
 void add_outputs(FilePlan& plan, const SceneJob& job)
 {
     const std::vector<std::string> names = surface_names(job.scene);
@@ -66,7 +59,8 @@ std::vector<SurfaceFile> start_meshes_of(const SceneJob& job)
         const auto is_same = [&](const SurfaceFile& other) {
             return other.file == mesh.file && other.surface == mesh.surface;
         };
-        if (!has_faces(cache.file) && std::none_of(caches.begin(), caches.end(), is_same) &&
+        if (!exports::stores_faces(exports::cache_format(cache.file)) &&
+            std::none_of(caches.begin(), caches.end(), is_same) &&
             std::none_of(meshes.begin(), meshes.end(), is_same))
             meshes.push_back(mesh);
     }
