@@ -4,19 +4,19 @@
 
 #include "core/base/error.h"
 #include "core/base/extension.h"
-#include "export/alembic/abc_cache.h"
+#include "export/cache_path.h"
 
 namespace toile::exports {
 
 CacheFormat cache_format(const std::filesystem::path& file)
 {
-    const std::string extension = lower_case_extension(file);
-    if (is_abc(file))
-        return CacheFormat::Abc;
+    const std::string extension = lower_case_extension(archive_of(file));
     if (extension == ".pc2")
         return CacheFormat::Pc2;
     if (extension == ".mdd")
         return CacheFormat::Mdd;
+    if (extension == ".abc")
+        return CacheFormat::Abc;
     if (extension == ".obj")
         return CacheFormat::Obj;
     throw InvalidInput(file.string() + ": unknown cache extension '" + extension +
@@ -24,5 +24,7 @@ CacheFormat cache_format(const std::filesystem::path& file)
 }
 
 bool stores_faces(CacheFormat format) { return format == CacheFormat::Obj || format == CacheFormat::Abc; }
+
+bool holds_several_meshes(CacheFormat format) { return format == CacheFormat::Abc; }
 
 } // namespace toile::exports

@@ -14,4 +14,7 @@ CacheFormat cache_format(const std::filesystem::path& file);
 /// Whether caches of a format hold the faces that they play on.
 bool stores_faces(CacheFormat format);
 
+/// Whether they hold any number of meshes.
+bool holds_several_meshes(CacheFormat format);
+
 } // namespace toile::exports

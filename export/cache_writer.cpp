@@ -5,12 +5,12 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "export/alembic/abc_cache.h"
 #include "export/alembic/abc_writer.h"
 #include "export/cache_format.h"
-#include "export/mdd_writer.h"
-#include "export/obj_writer.h"
-#include "export/pc2_writer.h"
+#include "export/cache_path.h"
+#include "export/mdd/mdd_writer.h"
+#include "export/obj/obj_writer.h"
+#include "export/pc2/pc2_writer.h"
 
 namespace toile::exports {
 
@@ -21,12 +21,17 @@ using std::filesystem::path;
 void require_sane(const path& file, const CacheLayout& layout)
 {
     const auto refuse = [&](const std::string& why) { throw InvalidInput(file.string() + ": " + why); };
-    if (layout.vertex_count < 1)
-        refuse("the cache has no vertex; give it a mesh");
+    if (layout.meshes.empty())
+        refuse("the cache has no mesh; give it one");
+    for (const CacheMesh& mesh : layout.meshes)
+        if (mesh.vertex_count < 1)
+            refuse("the cache has no vertex; give it a mesh");
     if (layout.frame_count < 1)
         refuse("frame count is " + std::to_string(layout.frame_count) + "; it must be 1 or more");
     if (!(layout.fps > 0.0) || !std::isfinite(layout.fps))
         refuse("fps is " + std::to_string(layout.fps) + "; it must be positive");
+    if (layout.subframes < 1)
+        refuse("has " + std::to_string(layout.subframes) + " samples a frame; it must be 1 or more");
     if (!(std::fabs(layout.start_frame) < 1e9))
         refuse("start frame is " + std::to_string(layout.start_frame) + "; it must be a number of frames");
     if (layout.resume_at < 0 || layout.resume_at > layout.frame_count)
@@ -40,14 +45,24 @@ void require_sane(const path& file, const CacheLayout& layout)
 
 void require_faces(const path& file, const CacheLayout& layout)
 {
-    if (layout.faces.polygons.empty())
-        throw InvalidInput(file.string() + ": needs faces and the layout has none; use .pc2 or .mdd");
-    for (const std::vector<int>& polygon : layout.faces.polygons)
-        for (const int v : polygon)
-            if (v < 0 || v >= layout.vertex_count)
-                throw InvalidInput(file.string() + ": a face uses vertex " + std::to_string(v) +
-                                   "; the cache has vertices 0 to " +
-                                   std::to_string(layout.vertex_count - 1));
+    for (const CacheMesh& mesh : layout.meshes) {
+        if (mesh.faces.polygons.empty())
+            throw InvalidInput(file.string() + ": needs faces and the layout has none; use .pc2 or .mdd");
+        for (const std::vector<int>& polygon : mesh.faces.polygons)
+            for (const int v : polygon)
+                if (v < 0 || v >= mesh.vertex_count)
+                    throw InvalidInput(file.string() + ": a face uses vertex " + std::to_string(v) +
+                                       "; the cache has vertices 0 to " +
+                                       std::to_string(mesh.vertex_count - 1));
+    }
+}
+
+void require_one_mesh(const path& file, const CacheLayout& layout)
+{
+    if (layout.meshes.size() > 1)
+        throw InvalidInput(file.string() + ": holds one mesh, and the layout has " +
+                           std::to_string(layout.meshes.size()) +
+                           "; write each to a file, or all to an .abc");
 }
 
 void require_numbers(const path& file, const CacheLayout& layout)
@@ -59,7 +74,10 @@ void require_numbers(const path& file, const CacheLayout& layout)
 
 std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& layout)
 {
-    switch (cache_format(file)) {
+    const CacheFormat format = cache_format(file);
+    if (!holds_several_meshes(format))
+        require_one_mesh(file, layout);
+    switch (format) {
     case CacheFormat::Pc2:
         return std::make_unique<Pc2Writer>(file, partial_beside(file), layout);
     case CacheFormat::Mdd:
@@ -81,26 +99,6 @@ std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& la
 }
 
 } // namespace
-
-CacheLayout cache_layout(const ObjMesh& mesh, int frame_count)
-{
-    CacheLayout layout;
-    layout.vertex_count = int(mesh.positions.size());
-    layout.frame_count = frame_count;
-    layout.faces = mesh;
-    layout.faces.positions.clear();
-    return layout;
-}
-
-CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count)
-{
-    CacheLayout layout;
-    layout.vertex_count = mesh.vertex_count();
-    layout.frame_count = frame_count;
-    layout.faces = faces_of(mesh);
-    layout.faces.positions.clear();
-    return layout;
-}
 
 std::unique_ptr<CacheWriter> make_cache_writer(const path& file, const CacheLayout& layout)
 {

@@ -4,24 +4,9 @@
 #include <memory>
 
 #include "core/compute/types.h"
-#include "core/mesh/obj.h"
+#include "export/cache_layout.h"
 
 namespace toile::exports {
-
-/// Properties of a cache that are fixed before its first frame.
-struct CacheLayout {
-    int vertex_count = 0;
-    int frame_count = 0; ///< frames that the run will deliver
-    double fps = 24.0;   ///< [frames/s] stored as times by MDD and Alembic; PC2 and OBJ have no field for it
-    double start_frame = 0.0; ///< scene frame that shows frame 0; PC2 stores it, MDD and Alembic shift their
-                              ///< times by it, OBJ sequences count from it
-    int resume_at = 0;        ///< frames to keep from an earlier run; writing continues with this one
-    ObjMesh faces; ///< polygons and texture coordinates, for OBJ and Alembic; positions are ignored
-};
-
-/// Layout of a cache for the vertices and faces of `mesh`.
-CacheLayout cache_layout(const ObjMesh& mesh, int frame_count);
-CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count);
 
 /// Takes a simulation's frames in order and creates a point cache in vertex order.
 ///
@@ -36,8 +21,8 @@ class CacheWriter {
 public:
     virtual ~CacheWriter() = default;
 
-    /// Appends a frame. Frames come in order, from CacheLayout::resume_at on.
-    /// @param positions  [vertices] [m]
+    /// Appends a sample. Samples come in order, from CacheLayout::resume_at on.
+    /// @param positions  [vertices] of all meshes, one after the other, in the layout's axes
     /// @throws InvalidInput for a frame out of order or of another vertex count, DeviceError if the disk
     /// refuses.
     virtual void write(int frame, View<const Vec3> positions) = 0;
@@ -70,10 +55,11 @@ protected:
 /// Creates the writer for the extension of `file`:
 ///   .pc2   Point Cache 2
 ///   .mdd   Lightwave MDD; its partial is a PC2 (skirt.mdd.partial.pc2), see docs/guide/caches.md
-///   .abc   Alembic; can't be resumed
+///   .abc   Alembic, of one or several meshes; can't be resumed
 ///   .obj   one OBJ for one frame, else a sequence: skirt.obj stands for skirt_####.obj, each # a digit
 /// @throws InvalidInput before the simulation: an unknown extension, an unwritable location, a layout
-///         without vertices, frames or (OBJ, Alembic) faces, no cache to resume.
+///         without vertices, frames or (OBJ, Alembic) faces, several meshes where the format holds one, no
+///         cache to resume.
 std::unique_ptr<CacheWriter> make_cache_writer(const std::filesystem::path& file, const CacheLayout& layout);
 
 } // namespace toile::exports

@@ -8,7 +8,7 @@
 namespace toile::exports {
 
 FrameOrder::FrameOrder(std::filesystem::path file, const CacheLayout& layout)
-    : file_(std::move(file)), vertex_count_(layout.vertex_count), frame_count_(layout.frame_count),
+    : file_(std::move(file)), vertex_count_(layout.vertex_count()), frame_count_(layout.frame_count),
       next_(layout.resume_at)
 {
 }

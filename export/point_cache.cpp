@@ -9,8 +9,9 @@
 #include "export/binary_file.h"
 #include "export/byte_order.h"
 #include "export/cache_format.h"
-#include "export/obj_sequence.h"
-#include "export/pc2_writer.h"
+#include "export/cache_path.h"
+#include "export/obj/obj_sequence.h"
+#include "export/pc2/pc2_writer.h"
 
 namespace toile::exports {
 
@@ -201,6 +202,16 @@ PointCache read_cache(const path& file)
         break;
     }
     return read_obj_cache(file);
+}
+
+std::vector<path> meshes_of_cache(const path& file)
+{
+    if (cache_format(file) != CacheFormat::Abc || !mesh_path_of(file).empty())
+        return {file};
+    std::vector<path> meshes;
+    for (const std::string& mesh : abc_mesh_paths(file))
+        meshes.push_back(file.string() + "#" + mesh);
+    return meshes;
 }
 
 } // namespace toile::exports

@@ -7,6 +7,7 @@
 
 #include "core/compute/types.h"
 #include "core/mesh/obj.h"
+#include "export/axes.h"
 
 namespace toile::exports {
 
@@ -22,8 +23,10 @@ public:
         int vertex_count = 0;
         int frame_count = 0;
         std::optional<double> fps; ///< [frames/s] empty if the format has no rate or there is a single frame
+        int subframes = 1;         ///< samples per frame
         double start_frame = 0.0;
-        ObjMesh mesh; ///< of an OBJ or Alembic: the first frame with its faces
+        std::optional<Axes> axes; ///< of the positions; empty if the format does not say
+        ObjMesh mesh;             ///< of an OBJ or Alembic: the first frame with its faces
     };
 
     explicit PointCache(std::unique_ptr<const Source> source) : source_(std::move(source)) {}
@@ -31,7 +34,9 @@ public:
     int vertex_count() const { return source_->vertex_count; }
     int frame_count() const { return source_->frame_count; }
     std::optional<double> fps() const { return source_->fps; }
+    int subframes() const { return source_->subframes; }
     double start_frame() const { return source_->start_frame; }
+    std::optional<Axes> axes() const { return source_->axes; }
 
     /// Faces of an OBJ (sequence) or Alembic mesh, or null: PC2 and MDD have positions only.
     const ObjMesh* mesh() const { return source_->mesh.polygons.empty() ? nullptr : &source_->mesh; }
@@ -50,5 +55,10 @@ private:
 /// needs; samples of Alembic are checked one by one.
 /// @throws InvalidInput naming the file, the byte or line, the fault and a remedy.
 PointCache read_cache(const std::filesystem::path& file);
+
+/// Paths for read_cache() of all meshes in a file: run.abc#/skirt/skirtShape; the file itself for formats of
+/// one mesh, and for a path that names a mesh.
+/// @throws InvalidInput as read_cache()
+std::vector<std::filesystem::path> meshes_of_cache(const std::filesystem::path& file);
 
 } // namespace toile::exports

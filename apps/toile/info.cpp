@@ -14,7 +14,7 @@
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "core/mesh/vtk.h"
-#include "export/alembic/abc_cache.h"
+#include "export/cache_path.h"
 #include "export/point_cache.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
@@ -196,6 +196,8 @@ void print_cache(const std::filesystem::path& file)
     print("points", cache.vertex_count());
     if (cache.fps())
         print("frames per second", *cache.fps());
+    if (cache.subframes() > 1)
+        print("samples per frame", cache.subframes());
     print("start frame", cache.start_frame());
     if (cache.frame_count() == 0)
         return;
@@ -206,11 +208,8 @@ void print_cache(const std::filesystem::path& file)
 /// Each mesh of an archive, or the one named behind #.
 void print_archive(const std::filesystem::path& file)
 {
-    if (!std::filesystem::is_regular_file(file))
-        return print_cache(file);
-    for (const std::string& mesh : exports::abc_mesh_paths(file)) {
-        const std::filesystem::path named = file.string() + "#" + mesh;
-        print("mesh", mesh);
+    for (const std::filesystem::path& named : exports::meshes_of_cache(file)) {
+        print("mesh", exports::mesh_path_of(named));
         try {
             const exports::PointCache cache = exports::read_cache(named);
             print("polygons", cache.mesh()->polygons.size());
@@ -244,10 +243,9 @@ int info(const std::filesystem::path& file)
         {".obj", print_obj},     {".vtk", print_tets},        {".glb", print_avatar}, {".gltf", print_avatar},
         {".fbx", print_avatar},  {".bvh", print_motion_file}, {".pc2", print_cache},  {".mdd", print_cache},
         {".abc", print_archive}, {".json", print_scene}};
-    const bool is_in_archive = exports::is_abc(file);
-    if (!std::filesystem::is_regular_file(is_in_archive ? exports::archive_of(file) : file))
+    if (!std::filesystem::is_regular_file(exports::archive_of(file)))
         throw InvalidInput(file.string() + ": can't be found; name a file");
-    const auto printer = kPrinters.find(is_in_archive ? ".abc" : lower_case_extension(file));
+    const auto printer = kPrinters.find(lower_case_extension(exports::archive_of(file)));
     if (printer == kPrinters.end())
         throw InvalidInput(
             file.string() +

@@ -49,6 +49,18 @@ std::optional<std::int64_t> whole_number_in(std::string_view word)
     return end == last && error == std::errc{} ? std::optional(value) : std::nullopt;
 }
 
+std::optional<double> quotient_in(std::string_view word)
+{
+    const size_t slash = word.find('/');
+    const std::optional<double> numerator = number_in(word.substr(0, slash));
+    if (slash == std::string_view::npos || !numerator)
+        return numerator;
+    const std::optional<double> denominator = number_in(word.substr(slash + 1));
+    if (!denominator || !std::isfinite(*numerator / *denominator))
+        return std::nullopt;
+    return *numerator / *denominator;
+}
+
 std::string short_text(double value)
 {
     std::array<char, 32> text{};

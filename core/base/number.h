@@ -14,6 +14,9 @@ std::optional<double> number_in(std::string_view word);
 /// The same for whole numbers.
 std::optional<std::int64_t> whole_number_in(std::string_view word);
 
+/// A number, or a quotient of two such as the frame rate 24000/1001.
+std::optional<double> quotient_in(std::string_view word);
+
 /// Three digits of a number, for messages: 0.0123, 12.3, 1.23e+04. In the C locale always.
 std::string short_text(double value);
 

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <set>
+#include <map>
 #include <utility>
 
-#include "core/base/error.h"
 #include "export/byte_order.h"
 
 namespace toile::exports {
@@ -36,58 +35,69 @@ std::string bytes_of(std::int32_t value)
 
 } // namespace
 
-AbcArchive::AbcArchive(const std::filesystem::path& file, const Layout& layout) : file_(file), layout_(layout)
+AbcArchive::AbcArchive(const std::filesystem::path& file, const CacheLayout& layout, std::string application)
+    : file_(file), layout_(layout), application_(std::move(application))
 {
-    std::set<std::string> taken;
-    for (size_t m = 0; m < layout.names.size(); ++m) {
-        if (!taken.insert(abc_name(layout.names[m])).second)
-            throw InvalidInput(file.string() + ": two meshes would be called \"" + abc_name(layout.names[m]) +
-                               "\"; give them names that differ in letters, digits or underscores");
-        meshes_.emplace_back(file_, layout.names[m], layout.faces[m]);
+    for (CacheMesh& mesh : layout_.meshes) {
+        meshes_.emplace_back(file_, mesh, AbcMesh::Options{layout.velocities, layout.normals});
+        mesh.faces = {};
     }
-    layout_.faces.clear();
 }
 
-void AbcArchive::write(std::vector<std::vector<Vec3>> positions)
+void AbcArchive::write(View<const Vec3> positions)
 {
     file_.require_in_place();
+    std::vector<Vec3> frame(positions.begin(), positions.end());
     if (!waiting_.empty())
-        write_waiting(positions);
-    before_ = std::exchange(waiting_, std::move(positions));
+        write_waiting(frame);
+    before_ = std::exchange(waiting_, std::move(frame));
 }
 
 /// Writes the frame that waits. @param next  the frame after it; itself if there is none
-void AbcArchive::write_waiting(const std::vector<std::vector<Vec3>>& next)
+void AbcArchive::write_waiting(const std::vector<Vec3>& next)
 {
-    const std::vector<std::vector<Vec3>>& before = before_.empty() ? waiting_ : before_;
-    const int frames = int(&next != &waiting_) + int(&before != &waiting_);
-    const double per_second = frames > 0 ? layout_.fps / frames : 0.0;
-    std::vector<Vec3> velocities;
+    const std::vector<Vec3>& before = before_.empty() ? waiting_ : before_;
+    const int steps = int(&next != &waiting_) + int(&before != &waiting_);
+    const double per_second = steps > 0 ? layout_.samples_per_second() / steps : 0.0;
+    std::vector<Vec3> velocities(waiting_.size());
+    for (size_t v = 0; v < velocities.size(); ++v)
+        velocities[v] = per_second * (next[v] - before[v]);
+    int first = 0;
     for (size_t m = 0; m < meshes_.size(); ++m) {
-        velocities.resize(waiting_[m].size());
-        for (size_t v = 0; v < velocities.size(); ++v)
-            velocities[v] = per_second * (next[m][v] - before[m][v]);
-        meshes_[m].add_sample(file_, waiting_[m], velocities);
+        const int count = layout_.meshes[m].vertex_count;
+        meshes_[m].add_sample(file_, {waiting_.data() + first, count}, {velocities.data() + first, count});
+        first += count;
     }
     ++frames_;
     if (frames_ - indexed_ >= index_interval(frames_))
         write_index();
 }
 
+/// Objects of the top: meshes without a parent, and the parents, each once.
+std::vector<AbcObject> AbcArchive::add_objects()
+{
+    std::vector<AbcObject> objects;
+    std::map<std::string, std::vector<AbcObject>> children;
+    for (size_t m = 0; m < meshes_.size(); ++m) {
+        const std::string& parent = layout_.meshes[m].parent;
+        (parent.empty() ? objects : children[parent]).push_back(meshes_[m].add_object(file_));
+    }
+    for (const auto& [parent, below] : children)
+        objects.push_back(add_transform(file_, parent, below));
+    return objects;
+}
+
 void AbcArchive::write_index()
 {
     indexed_ = frames_;
-    std::vector<AbcObject> objects;
-    for (const AbcMesh& mesh : meshes_)
-        objects.push_back(mesh.add_object(file_));
     char rate[40];
     std::snprintf(rate, sizeof rate, "%.17g", layout_.fps);
     const std::string metadata =
-        "FramesPerTimeUnit=" + std::string(rate) + ";_ai_Application=" + layout_.application;
+        "FramesPerTimeUnit=" + std::string(rate) + ";_ai_Application=" + application_;
     std::string times;
     append_times(times, frames_, 1.0, 0.0);
-    append_times(times, frames_, 1.0 / layout_.fps, layout_.start_frame / layout_.fps);
-    const OgawaNode top = add_object(file_, kOgawaNothing, objects);
+    append_times(times, frames_, 1.0 / layout_.samples_per_second(), layout_.start_frame / layout_.fps);
+    const OgawaNode top = add_object(file_, kOgawaNothing, add_objects());
     file_.set_root(file_.add_group(std::array{file_.add_data(bytes_of(kFileVersion)),
                                               file_.add_data(bytes_of(kLibraryVersion)), top,
                                               file_.add_data(metadata), file_.add_data(times), kOgawaData}));

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/compute/types.h"
 #include "export/alembic/abc_mesh.h"
+#include "export/cache_layout.h"
 
 namespace toile::exports {
 
@@ -18,32 +18,28 @@ namespace toile::exports {
 /// the last are one-sided.
 class AbcArchive {
 public:
-    struct Layout {
-        double fps = 24.0;        ///< [frames/s]
-        double start_frame = 0.0; ///< of the first frame; its time is start_frame / fps
-        std::string application;  ///< that writes
-        std::vector<std::string> names;
-        std::vector<ObjMesh> faces; ///< [names] positions are ignored
-    };
-
     /// Creates the file, or empties it.
-    /// @throws InvalidInput if it can't be opened, or two names become one
-    AbcArchive(const std::filesystem::path& file, const Layout& layout);
+    /// @param layout       with distinct names; sample k is at the time frame_of(k) / fps
+    /// @param application  that writes
+    /// @throws InvalidInput if it can't be opened
+    AbcArchive(const std::filesystem::path& file, const CacheLayout& layout, std::string application);
 
-    /// Appends a frame. @param positions  [meshes][vertices] [m]
-    void write(std::vector<std::vector<Vec3>> positions);
+    /// Appends a frame. @param positions  [vertices] of all meshes, one after the other
+    void write(View<const Vec3> positions);
 
     /// Writes what waits. Every byte is then on the disk.
     void complete();
 
 private:
-    void write_waiting(const std::vector<std::vector<Vec3>>& next);
+    void write_waiting(const std::vector<Vec3>& next);
     void write_index();
+    std::vector<AbcObject> add_objects();
 
     OgawaFile file_;
-    Layout layout_;
+    CacheLayout layout_; ///< without faces
+    std::string application_;
     std::vector<AbcMesh> meshes_;
-    std::vector<std::vector<Vec3>> before_, waiting_; ///< frames; empty: none
+    std::vector<Vec3> before_, waiting_; ///< frames; empty: none
     int frames_ = 0, indexed_ = 0;
 };
 

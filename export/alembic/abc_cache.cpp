@@ -9,24 +9,16 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/extension.h"
 #include "export/alembic/abc_reader.h"
 #include "export/alembic/abc_transform.h"
 #include "export/byte_order.h"
+#include "export/cache_path.h"
 
 namespace toile::exports {
 
 namespace {
 
 bool is_mesh(const AbcReadObject& object) { return object.is("PolyMesh") || object.is("SubD"); }
-
-/// Where the path of a mesh in an archive begins, at its #; the end if there is none.
-size_t hash_in(std::string path)
-{
-    std::transform(path.begin(), path.end(), path.begin(), [](unsigned char c) { return std::tolower(c); });
-    const size_t at = path.find(".abc#");
-    return at == std::string::npos ? path.size() : at + 4;
-}
 
 std::vector<int> meshes_of(const AbcReader& reader)
 {
@@ -55,6 +47,7 @@ int mesh_in(const AbcReader& reader, const std::string& path)
 
 /// Start frames are numbers of frames.
 constexpr double kMaxStartFrame = 1e9;
+constexpr double kMaxSubframes = 1000.0;
 
 class AbcSource final : public PointCache::Source {
 public:
@@ -117,8 +110,17 @@ private:
                 return;
         if (!(std::fabs(first / step) < kMaxStartFrame) || !std::isfinite(1.0 / step))
             return;
-        fps = 1.0 / step;
-        start_frame = first / step;
+        subframes = samples_per_frame(1.0 / step);
+        fps = 1.0 / step / subframes;
+        start_frame = first * *fps;
+    }
+
+    /// Programs that write several samples per frame leave the rate of frames in the archive.
+    int samples_per_frame(double samples_per_second) const
+    {
+        const double ratio = samples_per_second / reader_.frames_per_second().value_or(samples_per_second);
+        const double whole = std::round(ratio);
+        return whole >= 1.0 && whole <= kMaxSubframes && std::fabs(ratio - whole) < 1e-6 ? int(whole) : 1;
     }
 
     std::vector<std::int32_t> constant_integers(const std::string& name) const
@@ -227,14 +229,6 @@ private:
 
 } // namespace
 
-bool is_abc(const std::filesystem::path& file) { return lower_case_extension(archive_of(file)) == ".abc"; }
-
-std::filesystem::path archive_of(const std::filesystem::path& file)
-{
-    const std::string text = file.string();
-    return text.substr(0, hash_in(text));
-}
-
 std::vector<std::string> abc_mesh_paths(const std::filesystem::path& archive)
 {
     const AbcReader reader(archive);
@@ -246,9 +240,7 @@ std::vector<std::string> abc_mesh_paths(const std::filesystem::path& archive)
 
 std::unique_ptr<const PointCache::Source> open_abc(const std::filesystem::path& file)
 {
-    const std::string text = file.string();
-    const size_t hash = hash_in(text);
-    return std::make_unique<AbcSource>(archive_of(file), hash < text.size() ? text.substr(hash + 1) : "");
+    return std::make_unique<AbcSource>(archive_of(file), mesh_path_of(file));
 }
 
 } // namespace toile::exports

@@ -9,11 +9,6 @@
 
 namespace toile::exports {
 
-/// Whether a path is that of an archive, or of a mesh in one.
-bool is_abc(const std::filesystem::path& file);
-/// The archive of such a path.
-std::filesystem::path archive_of(const std::filesystem::path& file);
-
 /// Paths of the meshes of an archive.
 /// @throws InvalidInput as open_abc()
 std::vector<std::string> abc_mesh_paths(const std::filesystem::path& archive);

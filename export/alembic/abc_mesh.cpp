@@ -33,6 +33,8 @@ AbcProperty vectors(const std::string& name, const std::string& metadata)
 
 AbcProperty integers(const std::string& name) { return AbcProperty({name, Kind::Array, AbcType::Int32, 1}); }
 
+AbcProperty corner_indices() { return AbcProperty({".indices", Kind::Array, AbcType::Uint32, 1}); }
+
 std::string bytes_of(View<const Vec3> vectors)
 {
     std::string bytes;
@@ -49,6 +51,27 @@ std::string without_separators(std::string text)
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == ';' || c == '='; }, '_');
     return text;
+}
+
+/// Indices at corners, in the order of clockwise faces.
+template <typename T>
+std::string bytes_of_corners(const std::vector<std::vector<int>>& polygons)
+{
+    std::string bytes;
+    for (const std::vector<int>& corners : polygons)
+        for (auto at = corners.rbegin(); at != corners.rend(); ++at)
+            append(bytes, T(*at));
+    return bytes;
+}
+
+/// Values at corners, by indices.
+AbcCompound at_corners(const std::string& name, const std::string& interpretation, int extent,
+                       const AbcProperty& values, const AbcProperty& indices)
+{
+    return {name,
+            "arrayExtent=1;geoScope=fvr;interpretation=" + interpretation +
+                ";isGeomParam=true;podExtent=" + std::to_string(extent) + ";podName=float32_t",
+            {&values, &indices}};
 }
 
 } // namespace
@@ -81,23 +104,37 @@ std::string abc_name(const std::string& name)
     return clean;
 }
 
-AbcMesh::AbcMesh(OgawaFile& file, const std::string& name, const ObjMesh& faces)
-    : name_(abc_name(name)), given_name_(name),
-      bounds_({".selfBnds", Kind::Scalar, AbcType::Float64, 6, "interpretation=box", kFrames}),
-      positions_(vectors("P", "geoScope=vtx;interpretation=point")),
-      velocities_(vectors(".velocities", "geoScope=vtx;interpretation=vector")),
-      indices_(integers(".faceIndices")), counts_(integers(".faceCounts")),
-      texture_({".vals", Kind::Array, AbcType::Float32, 2, "geoScope=fvr;interpretation=vector"}),
-      texture_indices_({".indices", Kind::Array, AbcType::Uint32, 1})
+AbcObject add_transform(OgawaFile& file, const std::string& name, const std::vector<AbcObject>& children)
 {
-    std::string indices, counts;
-    for (const std::vector<int>& polygon : faces.polygons) {
+    const AbcCompound transform{".xform", schema("Xform_v3")};
+    std::string metadata = schema_of_object("Xform_v3", ".xform");
+    if (name != abc_name(name))
+        metadata += ";toile_name=" + without_separators(name);
+    return {abc_name(name), metadata,
+            add_object(file, AbcCompound{"", "", {}, {transform}}.add_group(file), children)};
+}
+
+AbcMesh::AbcMesh(OgawaFile& file, const CacheMesh& mesh, const Options& options)
+    : name_(mesh.name),
+      bounds_({".selfBnds", Kind::Scalar, AbcType::Float64, 6, "interpretation=box", kFrames}),
+      positions_(vectors("P", "geoScope=vtx;interpretation=point")), indices_(integers(".faceIndices")),
+      counts_(integers(".faceCounts")),
+      texture_({".vals", Kind::Array, AbcType::Float32, 2, "geoScope=fvr;interpretation=vector"}),
+      texture_indices_(corner_indices()), normals_(vectors(".vals", "geoScope=fvr;interpretation=normal")),
+      normal_indices_(corner_indices())
+{
+    const ObjMesh& faces = mesh.faces;
+    std::string counts;
+    for (const std::vector<int>& polygon : faces.polygons)
         append(counts, std::int32_t(polygon.size()));
-        for (auto v = polygon.rbegin(); v != polygon.rend(); ++v)
-            append(indices, std::int32_t(*v));
-    }
-    indices_.add_sample(file, indices);
+    indices_.add_sample(file, bytes_of_corners<std::int32_t>(faces.polygons));
     counts_.add_sample(file, counts);
+    if (options.velocities)
+        velocities_ = vectors(".velocities", "geoScope=vtx;interpretation=vector");
+    if (options.normals) {
+        corner_normals_.emplace(faces);
+        normal_indices_.add_sample(file, bytes_of_corners<std::uint32_t>(corner_normals_->indices()));
+    }
     if (!faces.polygon_uvs.empty())
         add_texture(file, faces);
     add_face_sets(file, faces);
@@ -105,15 +142,12 @@ AbcMesh::AbcMesh(OgawaFile& file, const std::string& name, const ObjMesh& faces)
 
 void AbcMesh::add_texture(OgawaFile& file, const ObjMesh& faces)
 {
-    std::string values, indices;
+    std::string values;
     for (const Vec2& at : faces.texture_coordinates)
         for (int axis = 0; axis < 2; ++axis)
             append(values, float(at[axis]));
-    for (const std::vector<int>& corners : faces.polygon_uvs)
-        for (auto at = corners.rbegin(); at != corners.rend(); ++at)
-            append(indices, std::uint32_t(*at));
     texture_.add_sample(file, values);
-    texture_indices_.add_sample(file, indices);
+    texture_indices_.add_sample(file, bytes_of_corners<std::uint32_t>(faces.polygon_uvs));
 }
 
 /// A group may begin several times.
@@ -146,7 +180,10 @@ void AbcMesh::add_face_sets(OgawaFile& file, const ObjMesh& faces)
 void AbcMesh::add_sample(OgawaFile& file, View<const Vec3> x, View<const Vec3> v)
 {
     positions_.add_sample(file, bytes_of(x));
-    velocities_.add_sample(file, bytes_of(v));
+    if (velocities_)
+        velocities_->add_sample(file, bytes_of(v));
+    if (corner_normals_)
+        normals_.add_sample(file, bytes_of(corner_normals_->at(x)));
     const Bounds box = bounds(x);
     std::string bytes;
     for (const Vec3& corner : {box.lower, box.upper})
@@ -159,12 +196,13 @@ AbcCompound AbcMesh::geometry() const
 {
     AbcCompound geometry{".geom",
                          schema("PolyMesh_v1") + ";schemaBaseType=AbcGeom_GeomBase_v1",
-                         {&bounds_, &positions_, &velocities_, &indices_, &counts_}};
+                         {&bounds_, &positions_, &indices_, &counts_}};
+    if (velocities_)
+        geometry.properties.push_back(&*velocities_);
     if (!texture_.is_empty())
-        geometry.compounds.push_back({"uv",
-                                      "arrayExtent=1;geoScope=fvr;interpretation=vector;isGeomParam=true;"
-                                      "podExtent=2;podName=float32_t",
-                                      {&texture_, &texture_indices_}});
+        geometry.compounds.push_back(at_corners("uv", "vector", 2, texture_, texture_indices_));
+    if (corner_normals_)
+        geometry.compounds.push_back(at_corners("N", "normal", 3, normals_, normal_indices_));
     return geometry;
 }
 
@@ -179,14 +217,9 @@ AbcObject AbcMesh::add_object(OgawaFile& file) const
                         exports::add_object(file, properties, {})});
     }
     const OgawaNode properties = AbcCompound{"", "", {}, {geometry()}}.add_group(file);
-    const AbcObject mesh{name_ + "Shape", schema_of_object("PolyMesh_v1", ".geom"),
+    const AbcObject mesh{abc_name(name_) + "Shape", schema_of_object("PolyMesh_v1", ".geom"),
                          exports::add_object(file, properties, sets)};
-    const AbcCompound transform{".xform", schema("Xform_v3")};
-    std::string metadata = schema_of_object("Xform_v3", ".xform");
-    if (given_name_ != name_)
-        metadata += ";toile_name=" + without_separators(given_name_);
-    return {name_, metadata,
-            exports::add_object(file, AbcCompound{"", "", {}, {transform}}.add_group(file), {mesh})};
+    return add_transform(file, name_, {mesh});
 }
 
 } // namespace toile::exports

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/mesh/obj.h"
 #include "export/alembic/abc_property.h"
+#include "export/cache_layout.h"
+#include "export/corner_normals.h"
 
 namespace toile::exports {
 
@@ -17,6 +20,10 @@ struct AbcObject {
 /// Group of an object: its properties, its children and their names.
 OgawaNode add_object(OgawaFile& file, OgawaNode properties, const std::vector<AbcObject>& children);
 
+/// A transform that changes nothing, above its children.
+/// @param name  as the user gave it; kept as metadata if it has to be cleaned
+AbcObject add_transform(OgawaFile& file, const std::string& name, const std::vector<AbcObject>& children);
+
 /// Name as programs accept it: letters, digits and underscores, none of the digits first.
 std::string abc_name(const std::string& name);
 
@@ -25,12 +32,15 @@ std::string abc_name(const std::string& name);
 /// Alembic, and so is all that is stored per corner.
 class AbcMesh {
 public:
-    /// Writes the faces.
-    /// @param faces  polygons of `vertex_count` vertices, and texture coordinates if it has them
-    /// @throws InvalidInput for two groups of one name
-    AbcMesh(OgawaFile& file, const std::string& name, const ObjMesh& faces);
+    struct Options {
+        bool velocities = true;
+        bool normals = false; ///< at corners: CornerNormals
+    };
 
-    /// Appends a sample. @param x, v  [vertices] [m], [m/s]
+    /// Writes the faces.
+    AbcMesh(OgawaFile& file, const CacheMesh& mesh, const Options& options);
+
+    /// Appends a sample. @param x, v  [vertices] positions, and velocities per second
     void add_sample(OgawaFile& file, View<const Vec3> x, View<const Vec3> v);
 
     /// Writes the nodes of all samples so far.
@@ -46,8 +56,11 @@ private:
     void add_face_sets(OgawaFile& file, const ObjMesh& faces);
     AbcCompound geometry() const;
 
-    std::string name_, given_name_;
-    AbcProperty bounds_, positions_, velocities_, indices_, counts_, texture_, texture_indices_;
+    std::string name_; ///< as given
+    AbcProperty bounds_, positions_, indices_, counts_, texture_, texture_indices_;
+    std::optional<AbcProperty> velocities_;
+    std::optional<CornerNormals> corner_normals_;
+    AbcProperty normals_, normal_indices_; ///< empty without the former
     std::vector<FaceSet> face_sets_;
 };
 

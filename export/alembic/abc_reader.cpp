@@ -1,6 +1,7 @@
 #include "export/alembic/abc_reader.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -85,6 +86,7 @@ AbcReader::AbcReader(const std::filesystem::path& file) : file_(file)
     const std::vector<OgawaNode> root = file_.group(file_.root());
     if (root.size() < 6)
         file_.refuse(file_.root(), "the root has " + std::to_string(root.size()) + " nodes, not 6");
+    read_frame_rate(root[3]);
     read_times(root[4]);
     read_metadata(root[5]);
     objects_.push_back({"", "", -1});
@@ -126,6 +128,21 @@ void AbcReader::read_times(OgawaNode node)
             file_.refuse(node, "times of samples are not finite");
         times_.push_back(std::move(times));
     }
+}
+
+/// Key of the metadata of an archive, a list of key=value;
+void AbcReader::read_frame_rate(OgawaNode node)
+{
+    constexpr std::string_view kKey = "FramesPerTimeUnit=";
+    const std::string metadata = file_.data(node);
+    const size_t at = metadata.find(kKey);
+    if (at == std::string::npos)
+        return;
+    double rate = 0.0;
+    const char* number = metadata.data() + at + kKey.size();
+    std::from_chars(number, metadata.data() + metadata.size(), rate);
+    if (std::isfinite(rate) && rate > 0.0)
+        frames_per_second_ = rate;
 }
 
 void AbcReader::read_metadata(OgawaNode node)

@@ -52,6 +52,8 @@ public:
     std::string path_of(int object) const;
     /// @param number  of a property: AbcReadProperty::time_sampling
     const AbcTimes& times_of(int number) const;
+    /// Rate that the archive's metadata names; samples may be at another one.
+    std::optional<double> frames_per_second() const { return frames_per_second_; }
 
     std::vector<AbcReadProperty> properties(OgawaNode compound) const;
 
@@ -68,12 +70,14 @@ public:
 
 private:
     void read_times(OgawaNode node);
+    void read_frame_rate(OgawaNode node);
     void read_metadata(OgawaNode node);
     void read_objects(OgawaNode group, int parent, int depth);
 
     OgawaReader file_;
     std::vector<std::string> metadata_; ///< by the numbers in headers
     std::vector<AbcTimes> times_;
+    std::optional<double> frames_per_second_;
     std::vector<AbcReadObject> objects_;
     std::set<OgawaNode> read_; ///< groups of objects_ and lists of their names
 };

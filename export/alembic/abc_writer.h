@@ -9,7 +9,7 @@
 
 namespace toile::exports {
 
-/// Writes a cache as an Alembic archive of one mesh, named as the file.
+/// Writes a cache as an Alembic archive. A mesh without a name is called as the file.
 class AbcWriter final : public CacheWriter {
 public:
     /// @throws InvalidInput as make_cache_writer().
@@ -23,7 +23,7 @@ public:
 private:
     std::filesystem::path file_, partial_;
     FrameOrder order_;
-    CacheLayout layout_;
+    CacheLayout layout_;                ///< until the first frame
     std::optional<AbcArchive> archive_; ///< in the partial; empty before the first frame
 };
 

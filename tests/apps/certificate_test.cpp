@@ -40,7 +40,7 @@ void rewrite(const std::filesystem::path& file, const Change& change)
             frames.push_back(cache.frame(frame));
     }
     CacheLayout layout;
-    layout.vertex_count = int(frames[0].size());
+    layout.meshes.emplace_back().vertex_count = int(frames[0].size());
     layout.frame_count = int(frames.size());
     const auto writer = make_cache_writer(file, layout);
     for (int frame = 0; frame < layout.frame_count; ++frame) {

@@ -32,7 +32,7 @@ void write_cache(const TemporaryFolder& folder, int frames, const Change& change
     folder.write("drop.json", small_scene(frames));
     const std::vector<Vec3> start = read_cache(folder.path() / "sheet.pc2").frame(0);
     CacheLayout layout;
-    layout.vertex_count = int(start.size());
+    layout.meshes.emplace_back().vertex_count = int(start.size());
     layout.frame_count = frames;
     const auto writer = make_cache_writer(folder.path() / "changed.pc2", layout);
     for (int frame = 0; frame < frames; ++frame) {

@@ -200,7 +200,7 @@ TEST_F(Killed, ByASignalBeforeAnythingIsWrittenLeavesNothing)
     std::filesystem::create_directory(file("long"));
     const PointCache cache = read_cache(file("new/sheet.pc2"));
     CacheLayout layout;
-    layout.vertex_count = cache.vertex_count();
+    layout.meshes.emplace_back().vertex_count = cache.vertex_count();
     layout.frame_count = 50000;
     const auto writer = make_cache_writer(file("long/sheet.pc2"), layout);
     for (int frame = 0; frame < layout.frame_count; ++frame)

@@ -22,7 +22,7 @@ using CacheWriterTest = ExportTest;
 void write_two_frames(const std::filesystem::path& file)
 {
     CacheLayout layout;
-    layout.vertex_count = 1;
+    layout.meshes.emplace_back().vertex_count = 1;
     layout.frame_count = 2;
     layout.fps = 2.0;
     layout.start_frame = 5.0;
@@ -120,10 +120,10 @@ TEST_F(CacheWriterTest, RefusesLayoutsThatMakeNoCache)
     layout.fps = 0.0;
     EXPECT_THAT(message("a.mdd", layout), HasSubstr("fps"));
     layout = good;
-    layout.faces.polygons.clear();
+    layout.meshes[0].faces.polygons.clear();
     EXPECT_THAT(message("a.obj", layout), HasSubstr("needs faces"));
     layout = good;
-    layout.vertex_count = 5;
+    layout.meshes[0].vertex_count = 5;
     EXPECT_THAT(message("a.obj", layout), HasSubstr("uses vertex 5"));
     EXPECT_THAT(message("a.pc3", good), HasSubstr("use .pc2, .mdd, .abc or .obj"));
     EXPECT_TRUE(std::filesystem::is_empty(folder_)) << "a refused layout leaves nothing behind";

@@ -8,8 +8,8 @@
 #include "apps/toile/terminal/exports.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
-#include "export/alembic/abc_cache.h"
-#include "export/obj_sequence.h"
+#include "export/cache_path.h"
+#include "export/obj/obj_sequence.h"
 
 namespace toile::app {
 

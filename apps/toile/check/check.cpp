@@ -17,9 +17,9 @@
 #include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "core/base/long_work.h"
-#include "export/alembic/abc_cache.h"
+#include "export/cache_path.h"
 #include "export/folder_lock.h"
-#include "export/obj_sequence.h"
+#include "export/obj/obj_sequence.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/surfaces/load_cloth.h"
 
@@ -132,7 +132,7 @@ int check(const CheckOptions& options)
     if (!options.cloth.empty() && (is_folder || options.caches.size() > 1))
         throw InvalidInput("--cloth: names the cloth of a single cache; name the caches after their cloths");
     for (const std::filesystem::path& cache : options.caches)
-        if (!cache.has_extension() && !exports::is_abc(cache) && !std::filesystem::exists(cache))
+        if (!cache.has_extension() && exports::mesh_path_of(cache).empty() && !std::filesystem::exists(cache))
             throw InvalidInput(cache.string() + ": no such folder; check the path");
     scenes::Scene scene = scenes::read_scene(options.scene);
     scene.frames = options.frames.value_or(scene.frames);

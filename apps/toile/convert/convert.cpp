@@ -9,7 +9,10 @@
 #include "apps/toile/terminal/progress.h"
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
+#include "core/base/number.h"
+#include "export/axes.h"
 #include "export/cache_format.h"
+#include "export/cache_path.h"
 #include "export/cache_writer.h"
 #include "export/folder_lock.h"
 #include "export/point_cache.h"
@@ -25,67 +28,95 @@ constexpr double kMinFps = 0.001, kMaxFps = 10000.0;
 /// Largest coordinate that is written: far below what single precision holds.
 constexpr double kMaxCoordinate = 1e30;
 
-/// Unit and upward axis of the numbers in a cache.
-struct Axes {
-    std::string unit = "m", up = "y";
-
-    /// @param unit_option, up_option  that give them, for errors
-    void require_known(const std::string& unit_option, const std::string& up_option) const
-    {
-        if (unit != "m" && unit != "cm")
-            throw InvalidInput(unit_option + " " + unit + ": is no unit of caches; write m or cm");
-        if (up != "y" && up != "z")
-            throw InvalidInput(up_option + " " + up + ": is no upward axis; write y or z");
-    }
-    double scale() const { return unit == "cm" ? 100.0 : 1.0; } ///< numbers per metre
-    bool has_z_up() const { return up == "z"; }
-};
-
-Vec3 z_up(const Vec3& x) { return {x.x(), -x.z(), x.y()}; }
-Vec3 y_up(const Vec3& x) { return {x.x(), x.z(), -x.y()}; }
-
 struct ConvertOptions {
     std::filesystem::path input, output;
     std::filesystem::path mesh; ///< faces of a cache without any; empty: none
-    std::optional<double> fps, start_frame;
-    Axes from, to;
+    std::string fps;            ///< empty: the cache's
+    std::optional<double> start_frame;
+    std::string from_unit, from_up; ///< empty: the cache's
+    exports::Axes to;
+    bool normals = false, no_velocities = false;
     bool quiet = false;
 };
 
-/// Changes unit and axes of a frame. Equal ones leave its bits.
-/// @throws InvalidInput for numbers that no cache can hold
-void change_axes(const ConvertOptions& options, int frame, std::vector<Vec3>& positions)
+/// @param unit_option, up_option  that give them, for errors
+void require_known(const exports::Axes& axes, const std::string& unit_option, const std::string& up_option)
 {
-    const double scale = options.to.scale() / options.from.scale();
-    for (size_t v = 0; v < positions.size(); ++v) {
-        Vec3& x = positions[v];
-        if (options.from.has_z_up() != options.to.has_z_up())
-            x = options.to.has_z_up() ? z_up(x) : y_up(x);
-        if (scale != 1.0)
-            x *= scale;
-        if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
-            throw InvalidInput(options.input.string() + ": vertex " + std::to_string(v) + " of frame " +
+    if (axes.unit != "m" && axes.unit != "cm")
+        throw InvalidInput(unit_option + " " + axes.unit + ": is no unit of caches; write m or cm");
+    if (axes.up != "y" && axes.up != "z")
+        throw InvalidInput(up_option + " " + axes.up + ": is no upward axis; write y or z");
+}
+
+exports::Axes axes_of(const ConvertOptions& options, const std::optional<exports::Axes>& stored)
+{
+    exports::Axes axes = stored.value_or(exports::Axes{});
+    if (!options.from_unit.empty())
+        axes.unit = options.from_unit;
+    if (!options.from_up.empty())
+        axes.up = options.from_up;
+    return axes;
+}
+
+/// @throws InvalidInput for numbers that no cache can hold
+void require_finite(const std::filesystem::path& file, int frame, const std::vector<Vec3>& positions)
+{
+    for (size_t v = 0; v < positions.size(); ++v)
+        if (!(positions[v].cwiseAbs().maxCoeff() < kMaxCoordinate))
+            throw InvalidInput(file.string() + ": vertex " + std::to_string(v) + " of frame " +
                                std::to_string(frame) + " is not finite, or beyond 1e30; export it again");
-    }
+}
+
+/// A mesh of the input.
+struct InputMesh {
+    std::filesystem::path path;
+    exports::PointCache cache;
+};
+
+/// All meshes of the input, with as many frames each.
+std::vector<InputMesh> open_input(const ConvertOptions& options)
+{
+    std::vector<InputMesh> meshes;
+    for (const std::filesystem::path& path : exports::meshes_of_cache(options.input))
+        meshes.push_back({path, exports::read_cache(path)});
+    if (meshes.empty() || meshes.front().cache.frame_count() == 0)
+        throw InvalidInput(options.input.string() + ": has no " + (meshes.empty() ? "mesh" : "frame") +
+                           "; nothing is there to be converted");
+    for (const InputMesh& mesh : meshes)
+        if (mesh.cache.frame_count() != meshes.front().cache.frame_count())
+            throw InvalidInput(mesh.path.string() + ": has " + std::to_string(mesh.cache.frame_count()) +
+                               " frames and " + meshes.front().path.string() + " " +
+                               std::to_string(meshes.front().cache.frame_count()) +
+                               "; convert them one by one, each by its path");
+    return meshes;
 }
 
 /// Faces, texture coordinates and groups of the cache or of --mesh; none if it has none.
 ObjMesh faces_of(const ConvertOptions& options, const exports::PointCache& cache)
 {
-    if (options.mesh.empty())
-        return cache.mesh() ? *cache.mesh() : ObjMesh{};
+    if (options.mesh.empty()) {
+        ObjMesh faces = cache.mesh() ? *cache.mesh() : ObjMesh{};
+        faces.positions.clear();
+        return faces;
+    }
     ObjMesh mesh = read_obj(options.mesh);
     if (int(mesh.positions.size()) != cache.vertex_count())
         throw InvalidInput(options.mesh.string() + ": has " + std::to_string(mesh.positions.size()) +
                            " vertices and the cache " + std::to_string(cache.vertex_count()) +
                            "; name the mesh that it was made for");
+    mesh.positions.clear();
     return mesh;
 }
 
 double fps_of(const ConvertOptions& options, const exports::PointCache& cache)
 {
-    if (options.fps)
-        return *options.fps;
+    if (!options.fps.empty()) {
+        const double fps = quotient_in(options.fps).value_or(0.0);
+        if (!(fps >= kMinFps && fps <= kMaxFps))
+            throw InvalidInput("--fps " + options.fps +
+                               ": is no rate; write a number from 0.001 to 10000, or two as 24000/1001");
+        return fps;
+    }
     const exports::CacheFormat format = exports::cache_format(options.output);
     const bool stores_times = format == exports::CacheFormat::Abc || format == exports::CacheFormat::Mdd;
     if (!cache.fps() && stores_times && cache.frame_count() > 1 && !options.quiet)
@@ -96,7 +127,8 @@ double fps_of(const ConvertOptions& options, const exports::PointCache& cache)
 
 void require_faces(const ConvertOptions& options, const exports::CacheLayout& layout)
 {
-    if (exports::stores_faces(exports::cache_format(options.output)) && layout.faces.polygons.empty())
+    if (exports::stores_faces(exports::cache_format(options.output)) &&
+        layout.meshes.front().faces.polygons.empty())
         throw InvalidInput(options.input.string() + ": has no faces, which " + options.output.string() +
                            " needs; name the mesh that it plays on with --mesh");
 }
@@ -127,30 +159,65 @@ void remove_certificates(const ConvertOptions& options)
     }
 }
 
+/// Name of a mesh and of the group that it lies in, by its path in an archive: /skirt/skirtShape is skirt,
+/// and /tee/front/frontShape is front in tee.
+void name_mesh(exports::CacheMesh& mesh, const std::filesystem::path& path)
+{
+    const std::filesystem::path above = std::filesystem::path(exports::mesh_path_of(path)).parent_path();
+    mesh.name = above.filename().string();
+    mesh.parent = above.parent_path().filename().string();
+}
+
+exports::CacheLayout layout_of(const ConvertOptions& options, const std::vector<InputMesh>& meshes)
+{
+    if (!options.mesh.empty() && meshes.size() > 1)
+        throw InvalidInput("--mesh: has the faces of one mesh, and " + options.input.string() + " has " +
+                           std::to_string(meshes.size()) + "; leave it out");
+    const exports::PointCache& first = meshes.front().cache;
+    exports::CacheLayout layout;
+    for (const InputMesh& input : meshes) {
+        exports::CacheMesh& mesh = layout.meshes.emplace_back();
+        mesh.vertex_count = input.cache.vertex_count();
+        mesh.faces = faces_of(options, input.cache);
+        if (meshes.size() > 1)
+            name_mesh(mesh, input.path);
+    }
+    layout.frame_count = first.frame_count();
+    layout.fps = fps_of(options, first);
+    layout.subframes = first.subframes();
+    layout.start_frame = options.start_frame.value_or(first.start_frame());
+    layout.axes = options.to;
+    layout.velocities = !options.no_velocities;
+    layout.normals = options.normals;
+    return layout;
+}
+
+/// Positions of all meshes in a frame.
+std::vector<Vec3> positions_of(const ConvertOptions& options, const std::vector<InputMesh>& meshes, int frame)
+{
+    std::vector<Vec3> all;
+    for (const InputMesh& mesh : meshes) {
+        std::vector<Vec3> positions = mesh.cache.frame(frame);
+        exports::change_axes(axes_of(options, mesh.cache.axes()), options.to, positions);
+        require_finite(mesh.path, frame, positions);
+        all.insert(all.end(), positions.begin(), positions.end());
+    }
+    return all;
+}
+
 int convert(const ConvertOptions& options)
 {
-    options.from.require_known("--from-unit", "--from-up");
-    options.to.require_known("--unit", "--up");
-    const exports::PointCache cache = exports::read_cache(options.input);
-    if (cache.frame_count() == 0)
-        throw InvalidInput(options.input.string() + ": has no frame; nothing is there to be converted");
-
-    exports::CacheLayout layout;
-    layout.vertex_count = cache.vertex_count();
-    layout.frame_count = cache.frame_count();
-    layout.faces = faces_of(options, cache);
-    layout.faces.positions.clear();
-    layout.fps = fps_of(options, cache);
-    layout.start_frame = options.start_frame.value_or(cache.start_frame());
+    require_known(options.to, "--unit", "--up");
+    require_known(axes_of(options, std::nullopt), "--from-unit", "--from-up");
+    const std::vector<InputMesh> meshes = open_input(options);
+    const exports::CacheLayout layout = layout_of(options, meshes);
     require_faces(options, layout);
     const std::unique_ptr<exports::CacheWriter> writer = exports::make_cache_writer(options.output, layout);
     require_safe_output(options, layout);
     const exports::FolderLock lock(options.output.parent_path());
-    Progress progress("convert", cache.frame_count(), options.quiet);
-    for (int k = 0; k < cache.frame_count(); ++k) {
-        std::vector<Vec3> positions = cache.frame(k);
-        change_axes(options, k, positions);
-        writer->write(k, positions);
+    Progress progress("convert", layout.frame_count, options.quiet);
+    for (int k = 0; k < layout.frame_count; ++k) {
+        writer->write(k, positions_of(options, meshes, k));
         progress.update(k + 1);
     }
     writer->complete();
@@ -173,14 +240,17 @@ Command add_convert(CLI::App& parser)
         ->required();
     add.add_option("output", options->output, "Cache to write: .pc2, .mdd, .obj or .abc")->required();
     add.add_option("--mesh", options->mesh, "OBJ with the faces of a .pc2 or .mdd, which have none");
-    add.add_option("--fps", options->fps, "Frames per second; without it the cache's")
-        ->check(CLI::Range(kMinFps, kMaxFps));
+    add.add_option("--fps", options->fps, "Frames per second, also as 24000/1001; without it the cache's");
     add.add_option("--start-frame", options->start_frame,
                    "Number of the first frame; without it the cache's");
-    add.add_option("--from-unit", options->from.unit, "Unit of the numbers read: m or cm");
-    add.add_option("--from-up", options->from.up, "Upward axis of the numbers read: y or z");
+    add.add_option("--from-unit", options->from_unit,
+                   "Unit of the numbers read: m or cm; without it the file's, or m");
+    add.add_option("--from-up", options->from_up,
+                   "Upward axis of the numbers read: y or z; without it the file's, or y");
     add.add_option("--unit", options->to.unit, "Unit of the numbers written: m or cm");
     add.add_option("--up", options->to.up, "Upward axis of the numbers written: y or z");
+    add.add_flag("--normals", options->normals, "Store normals, creased at seams (.abc)");
+    add.add_flag("--no-velocities", options->no_velocities, "Store no velocities (.abc)");
     add.add_flag("--quiet", options->quiet, "No progress and no notes");
     command.run = [options] { return convert(*options); };
     return command;

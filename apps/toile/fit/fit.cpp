@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
 #include "core/compute/parallel.h"
-#include "export/alembic/abc_cache.h"
+#include "export/cache_path.h"
 #include "export/point_cache.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"

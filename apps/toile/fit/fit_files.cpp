@@ -4,7 +4,7 @@
 
 #include "apps/toile/fit/fit_pictures.h"
 #include "core/base/atomic_file.h"
-#include "export/coloured_obj.h"
+#include "export/obj/coloured_obj.h"
 
 namespace toile::app {
 

@@ -15,7 +15,7 @@
 #include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "core/base/long_work.h"
-#include "export/alembic/abc_cache.h"
+#include "export/cache_path.h"
 #include "scenes/format/read_scene.h"
 
 namespace toile::app {

@@ -5,9 +5,9 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "export/alembic/abc_cache.h"
 #include "export/cache_format.h"
-#include "export/obj_sequence.h"
+#include "export/cache_path.h"
+#include "export/obj/obj_sequence.h"
 
 namespace toile::app {
 

@@ -92,22 +92,29 @@ TEST_F(AbcTest, PutsATransformAboveTheMeshAndASetUnderItForEachGroup)
 
 TEST_F(AbcTest, HoldsSeveralMeshes)
 {
-    const ObjMesh faces = layout(1).faces;
-    {
-        AbcArchive archive(file("all.abc"), {kFps, 0.0, "test", {"skirt", "7 vest"}, {faces, faces}});
-        for (int k = 0; k < 3; ++k)
-            archive.write({frame_positions(k, 7), frame_positions(k + 10, 7)});
-        archive.complete();
+    const ObjMesh faces = layout(1).meshes[0].faces;
+    CacheLayout two;
+    two.frame_count = 3;
+    two.meshes = {{"skirt", "", 7, faces}, {"7 vest", "", 7, faces}};
+    const auto writer = make_cache_writer(file("all.abc"), two);
+    for (int k = 0; k < two.frame_count; ++k) {
+        std::vector<Vec3> positions = frame_positions(k, 7);
+        for (const Vec3& x : frame_positions(k + 10, 7))
+            positions.push_back(x);
+        writer->write(k, positions);
     }
+    writer->finish();
     EXPECT_EQ(read_cache(file("all.abc#/_7_vest/_7_vestShape")).frame(2), frame_positions(12, 7));
     EXPECT_EQ(read_cache(file("all.abc#/skirt/skirtShape")).frame(2), frame_positions(2, 7));
     EXPECT_THAT(refusal([&] { read_cache(file("all.abc")); }),
                 HasSubstr("name one behind #: /skirt/skirtShape, /_7_vest/_7_vestShape"));
     EXPECT_THAT(refusal([&] { read_cache(file("all.abc#/vest")); }),
                 HasSubstr("all.abc: has no mesh /vest; its meshes are /skirt/skirtShape"));
-    EXPECT_THAT(refusal([&] {
-                    AbcArchive(file("two.abc"), {kFps, 0.0, "test", {"a b", "a-b"}, {faces, faces}});
-                }),
+    EXPECT_THAT(refusal([&] { make_cache_writer(file("all.pc2"), two); }),
+                HasSubstr("all.pc2: holds one mesh, and the layout has 2"));
+    two.meshes[0].name = "a b";
+    two.meshes[1].name = "a-b";
+    EXPECT_THAT(refusal([&] { make_cache_writer(file("two.abc"), two); }),
                 HasSubstr("two meshes would be called \"a_b\""));
 }
 

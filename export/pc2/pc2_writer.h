@@ -14,7 +14,7 @@ namespace toile::exports {
 /// Size of a PC2 header [bytes], little endian:
 ///   0 "POINTCACHE2\0"   12 int version = 1     16 int points
 ///  20 float start frame 24 float sample rate   28 int samples
-/// Samples of points x 3 floats follow. The sample rate is the length of a sample in frames: always 1 here.
+/// Samples of points x 3 floats follow. The sample rate is the length of a sample in frames.
 inline constexpr int kPc2HeaderSize = 32;
 inline constexpr int kPc2SampleCountAt = 28;
 

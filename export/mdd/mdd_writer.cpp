@@ -1,4 +1,4 @@
-#include "export/mdd_writer.h"
+#include "export/mdd/mdd_writer.h"
 
 #include <string>
 #include <system_error>
@@ -18,9 +18,9 @@ std::string mdd_header(const CacheLayout& layout)
 {
     std::string header(8 + 4 * std::size_t(layout.frame_count), '\0');
     put<kBig>(&header[0], std::int32_t{layout.frame_count});
-    put<kBig>(&header[4], std::int32_t{layout.vertex_count});
+    put<kBig>(&header[4], std::int32_t{layout.vertex_count()});
     for (int frame = 0; frame < layout.frame_count; ++frame)
-        put<kBig>(&header[8 + 4 * std::size_t(frame)], float((layout.start_frame + frame) / layout.fps));
+        put<kBig>(&header[8 + 4 * std::size_t(frame)], float(layout.frame_of(frame) / layout.fps));
     return header;
 }
 
@@ -30,7 +30,7 @@ MddWriter::MddWriter(std::filesystem::path file, const CacheLayout& layout)
     : file_(std::move(file)), layout_(layout), converted_(partial_beside(file_)),
       frames_(file_, file_.string() + ".partial.pc2", layout)
 {
-    layout_.faces = {};
+    layout_.meshes.front().faces = {};
 }
 
 std::filesystem::path MddWriter::complete()
@@ -53,7 +53,7 @@ void MddWriter::convert(const BinaryFile& source) const
     const std::string header = mdd_header(layout_);
     target.write_at(0, header);
 
-    std::string sample(12 * std::size_t(layout_.vertex_count), '\0');
+    std::string sample(12 * std::size_t(layout_.vertex_count()), '\0');
     for (int frame = 0; frame < layout_.frame_count; ++frame) {
         const std::int64_t offset = std::int64_t(sample.size()) * frame;
         source.read_at(kPc2HeaderSize + offset, sample.data(), sample.size());

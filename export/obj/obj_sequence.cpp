@@ -1,4 +1,4 @@
-#include "export/obj_sequence.h"
+#include "export/obj/obj_sequence.h"
 
 #include <algorithm>
 #include <charconv>

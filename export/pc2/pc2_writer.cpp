@@ -1,4 +1,4 @@
-#include "export/pc2_writer.h"
+#include "export/pc2/pc2_writer.h"
 
 #include <array>
 #include <utility>
@@ -19,9 +19,9 @@ std::string header_of_one_frame(const CacheLayout& layout)
     std::string header = "POINTCACHE2"; // terminated by a zero byte from the padding
     header.resize(kPc2HeaderSize, '\0');
     put<kLittle>(&header[12], std::int32_t{1});
-    put<kLittle>(&header[16], std::int32_t{layout.vertex_count});
+    put<kLittle>(&header[16], std::int32_t{layout.vertex_count()});
     put<kLittle>(&header[20], float(layout.start_frame));
-    put<kLittle>(&header[24], 1.0f);
+    put<kLittle>(&header[24], float(1.0 / layout.subframes));
     put<kLittle>(&header[kPc2SampleCountAt], std::int32_t{1});
     return header;
 }
@@ -31,7 +31,7 @@ std::string header_of_one_frame(const CacheLayout& layout)
 Pc2Writer::Pc2Writer(std::filesystem::path file, const std::filesystem::path& partial,
                      const CacheLayout& layout)
     : file_(std::move(file)), partial_(partial), order_(file_, layout), header_(header_of_one_frame(layout)),
-      sample_(12 * std::size_t(layout.vertex_count), '\0')
+      sample_(12 * std::size_t(layout.vertex_count()), '\0')
 {
     require_writable(partial_);
     if (layout.resume_at > 0)
@@ -50,11 +50,11 @@ void Pc2Writer::keep_earlier_frames(const CacheLayout& layout)
 {
     stream_.emplace(partial_, BinaryFile::Mode::Continue);
     const PointCache earlier = read_cache(partial_);
-    if (earlier.vertex_count() != layout.vertex_count || earlier.frame_count() < layout.resume_at)
+    if (earlier.vertex_count() != layout.vertex_count() || earlier.frame_count() < layout.resume_at)
         throw InvalidInput(partial_.string() + ": holds " + std::to_string(earlier.frame_count()) +
                            " frames of " + std::to_string(earlier.vertex_count()) +
                            " vertices; resuming at " + std::to_string(layout.resume_at) +
-                           " needs that many frames of " + std::to_string(layout.vertex_count) +
+                           " needs that many frames of " + std::to_string(layout.vertex_count()) +
                            " vertices; start the run anew");
     set_sample_count(layout.resume_at);
     stream_->resize(kPc2HeaderSize + std::int64_t(sample_.size()) * layout.resume_at);

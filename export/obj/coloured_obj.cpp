@@ -1,4 +1,4 @@
-#include "export/coloured_obj.h"
+#include "export/obj/coloured_obj.h"
 
 #include <array>
 #include <charconv>

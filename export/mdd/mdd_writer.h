@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "export/cache_writer.h"
-#include "export/pc2_writer.h"
+#include "export/pc2/pc2_writer.h"
 
 namespace toile::exports {
 

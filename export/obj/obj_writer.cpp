@@ -1,4 +1,4 @@
-#include "export/obj_writer.h"
+#include "export/obj/obj_writer.h"
 
 #include <cmath>
 #include <string>
@@ -22,7 +22,8 @@ void require_exists(const std::filesystem::path& file)
 } // namespace
 
 ObjWriter::ObjWriter(std::filesystem::path file, const CacheLayout& layout)
-    : file_(std::move(file)), partial_(partial_beside(file_)), order_(file_, layout), mesh_(layout.faces)
+    : file_(std::move(file)), partial_(partial_beside(file_)), order_(file_, layout),
+      mesh_(layout.meshes.front().faces)
 {
     require_writable(partial_);
 }
@@ -48,7 +49,7 @@ ObjSequenceWriter::ObjSequenceWriter(const std::filesystem::path& pattern, const
     : sequence_(pattern), folder_(pattern.parent_path() / (sequence_.stem() + ".partial")),
       waiting_pattern_(folder_ / pattern.filename()), waiting_(waiting_pattern_), order_(pattern, layout),
       first_number_(int(std::lround(layout.start_frame))), frame_count_(layout.frame_count),
-      resume_at_(layout.resume_at), mesh_(layout.faces)
+      resume_at_(layout.resume_at), mesh_(layout.meshes.front().faces)
 {
     require_writable(waiting_.file(number(0)));
     require_earlier_frames(resume_at_);

@@ -4,7 +4,7 @@
 
 #include "export/cache_writer.h"
 #include "export/frame_order.h"
-#include "export/obj_sequence.h"
+#include "export/obj/obj_sequence.h"
 
 namespace toile::exports {
 

@@ -1,0 +1,27 @@
+#include "export/cache_layout.h"
+
+namespace toile::exports {
+
+int CacheLayout::vertex_count() const
+{
+    int count = 0;
+    for (const CacheMesh& mesh : meshes)
+        count += mesh.vertex_count;
+    return count;
+}
+
+CacheLayout cache_layout(const ObjMesh& mesh, int frame_count)
+{
+    CacheLayout layout;
+    layout.frame_count = frame_count;
+    layout.meshes.push_back({"", "", int(mesh.positions.size()), mesh});
+    layout.meshes.back().faces.positions.clear();
+    return layout;
+}
+
+CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count)
+{
+    return cache_layout(faces_of(mesh), frame_count);
+}
+
+} // namespace toile::exports

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/compute/types.h"
+#include "core/mesh/obj.h"
+#include "export/axes.h"
+
+namespace toile::exports {
+
+/// A mesh of a cache.
+struct CacheMesh {
+    std::string name;   ///< as the user gave it; empty: that of the file
+    std::string parent; ///< group that it lies in; empty: none. Only Alembic and USD have groups
+    int vertex_count = 0;
+    ObjMesh faces; ///< polygons, texture coordinates and groups; positions are ignored
+};
+
+/// Properties of a cache that are fixed before its first frame.
+struct CacheLayout {
+    std::vector<CacheMesh> meshes; ///< one for PC2, MDD and OBJ
+    int frame_count = 0;           ///< samples that the run will deliver
+    double fps = 24.0; ///< [frames/s] stored by formats that have times; PC2 and OBJ have no field for it
+    int subframes = 1; ///< samples per frame
+    double start_frame = 0.0; ///< scene frame that shows the first sample; PC2 stores it, formats with times
+                              ///< shift them by it, OBJ sequences count from it
+    int resume_at = 0;        ///< samples to keep from an earlier run; writing continues with this one
+    Axes axes;                ///< of the positions that are delivered; nothing is converted
+    bool velocities = true;   ///< stored by formats that have them
+    bool normals = false;     ///< the same
+
+    int vertex_count() const; ///< of all meshes together
+
+    double samples_per_second() const { return fps * subframes; }
+    /// Time [frames] of a sample.
+    double frame_of(int sample) const { return start_frame + double(sample) / subframes; }
+};
+
+/// Layout of a cache for the vertices and faces of `mesh`.
+CacheLayout cache_layout(const ObjMesh& mesh, int frame_count);
+CacheLayout cache_layout(const TriangleMesh& mesh, int frame_count);
+
+} // namespace toile::exports
