@@ -8,6 +8,12 @@
 
 namespace toile::exports {
 
+const std::vector<std::string>& cache_extensions()
+{
+    static const std::vector<std::string> kExtensions{".pc2", ".mdd", ".obj", ".abc"};
+    return kExtensions;
+}
+
 CacheFormat cache_format(const std::filesystem::path& file)
 {
     const std::string extension = lower_case_extension(archive_of(file));
@@ -26,5 +32,11 @@ CacheFormat cache_format(const std::filesystem::path& file)
 bool stores_faces(CacheFormat format) { return format == CacheFormat::Obj || format == CacheFormat::Abc; }
 
 bool holds_several_meshes(CacheFormat format) { return format == CacheFormat::Abc; }
+
+bool stores_normals(CacheFormat format) { return format == CacheFormat::Abc; }
+
+bool has_time_line(CacheFormat format) { return format == CacheFormat::Abc; }
+
+bool is_numbered(CacheFormat format) { return format == CacheFormat::Obj; }
 
 } // namespace toile::exports

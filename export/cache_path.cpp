@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "export/alembic/abc_mesh.h"
+
 namespace toile::exports {
 
 namespace {
@@ -23,6 +25,12 @@ std::filesystem::path archive_of(const std::filesystem::path& cache)
 {
     const std::string text = cache.string();
     return text.substr(0, hash_in(text));
+}
+
+std::string path_of_mesh(const CacheMesh& mesh)
+{
+    const std::string name = abc_name(mesh.name);
+    return (mesh.parent.empty() ? "" : "/" + abc_name(mesh.parent)) + "/" + name + "/" + name + "Shape";
 }
 
 std::string mesh_path_of(const std::filesystem::path& cache)

@@ -19,6 +19,9 @@ namespace {
 
 using std::filesystem::path;
 
+/// Samples per frame, at most: more is a header of another meaning.
+constexpr double kMaxSubframes = 1000.0;
+
 [[noreturn]] void refuse(const path& file, const std::string& why)
 {
     throw InvalidInput(file.string() + ": " + why);
@@ -95,6 +98,9 @@ public:
         vertex_count = get<kLittle, std::int32_t>(&header[16]);
         start_frame = double(get<kLittle, float>(&header[20]));
         frame_count = get<kLittle, std::int32_t>(&header[kPc2SampleCountAt]);
+        const double samples_per_frame = std::round(1.0 / double(get<kLittle, float>(&header[24])));
+        if (samples_per_frame >= 1.0 && samples_per_frame <= kMaxSubframes)
+            subframes = int(samples_per_frame);
         if (version != 1)
             refuse(file, "PC2 version " + std::to_string(version) + " (byte 12); only version 1 is known");
         if (vertex_count < 1 || frame_count < 0)

@@ -8,6 +8,8 @@
 ///   visitor.field(key, member, [range,] sentence)       optional; absent keeps the default
 ///   visitor.required(key, member, [range,] sentence)
 ///   visitor.number_or_off(key, member, range, sentence) a number or the word "off"
+///   visitor.number_or_quotient(key, member, range, sentence) a number or a text as "24000/1001"
+///   visitor.names(key, member, sentence)                   a name or a list of names
 ///   visitor.number_or_object(key, member, number, range, sentence)
 ///                                                       an object, or a number for one of its members
 ///   visitor.pair(key, member, range, sentence)          {"warp": number, "weft": number}, each optional
@@ -463,7 +465,22 @@ template <typename V>
 void describe(V& v, Export& e)
 {
     v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd, .obj or .abc.");
-    v.field("cloth", e.cloth, "Name of the cloth or solid; may be left out when there is only one.");
+    v.names(
+        "cloth", e.cloths,
+        "Cloths and solids to write, by name; or all. Absent: the only one, or all where the format holds "
+        "several meshes.");
+    v.field("avatars", e.avatars, "Also write the avatars, as they are posed, in triangles.");
+    v.field("start_frame", e.start_frame, between(0, 1e6),
+            "Number of the first frame. Absent: 1 in formats with a time line (.abc), else 0.");
+    v.field("subframes", e.subframes, between(1, 100),
+            "Samples per frame, for motion blur. The simulation then ends a step at each.");
+    v.field("unit", e.unit, "Unit of the numbers written. Blender and Houdini expect m, Maya and Unreal cm.");
+    v.field("up", e.up, "Upward axis of the numbers written.");
+    v.field("velocities", e.velocities, "Store velocities, for motion blur, in formats that have them.");
+    v.field("normals", e.normals, "Store normals, creased at seams, in formats that have them.");
+    v.field("thickness", e.thickness, "Close each cloth with its thickness: two sides and a rim.");
+    v.field("weld", e.weld,
+            "Write a cloth as one mesh; false: one for each group of its faces, such as a panel.");
 }
 
 template <typename V>
@@ -486,7 +503,8 @@ void describe(V& v, scenes::Scene& s)
     v.field("description", s.description, "What the scene shows.");
     v.required("frames", s.frames, between(1, 1e6),
                "Samples to write. Sample 0 is the start state, after settling.");
-    v.field("fps", s.fps, between(1.0, 10000.0, "1/s"), "Samples per second.");
+    v.number_or_quotient("fps", s.fps, between(1.0, 10000.0, "1/s"),
+                         "Samples per second, also as \"24000/1001\".");
     v.field("gravity", s.gravity, between(-1000.0, 1000.0, "m/s^2"), "Acceleration of free fall.");
     v.field("wind", s.wind, "Moving air.");
     v.field("air", s.air, "Drag of the air on cloth.");

@@ -74,6 +74,17 @@ struct Words<LengthUnit> {
 };
 
 template <>
+struct Words<ExportUnit> {
+    static constexpr std::array<std::pair<const char*, ExportUnit>, 2> kAll{
+        {{"m", ExportUnit::Metre}, {"cm", ExportUnit::Centimetre}}};
+};
+
+template <>
+struct Words<UpAxis> {
+    static constexpr std::array<std::pair<const char*, UpAxis>, 2> kAll{{{"y", UpAxis::Y}, {"z", UpAxis::Z}}};
+};
+
+template <>
 struct Words<Print> {
     static constexpr std::array<std::pair<const char*, Print>, 3> kAll{
         {{"plain", Print::Plain}, {"checker", Print::Checker}, {"stripes", Print::Stripes}}};

@@ -30,6 +30,8 @@ public:
     {
         keys_.emplace_back(key);
     }
+    void number_or_quotient(const char* key, double&, const Range&, const char*) { keys_.emplace_back(key); }
+    void names(const char* key, std::vector<std::string>&, const char*) { keys_.emplace_back(key); }
     void pair(const char* key, WarpWeft&, const Range&, const char*) { keys_.emplace_back(key); }
     void version(const char* key, int, const char*) { keys_.emplace_back(key); }
     template <typename Variant, typename... A>

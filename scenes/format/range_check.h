@@ -37,6 +37,11 @@ public:
     {
         check(value, below(key_path_, key));
     }
+    void number_or_quotient(const char* key, double& value, const Range& range, const char*)
+    {
+        check(value, below(key_path_, key), range);
+    }
+    void names(const char*, std::vector<std::string>&, const char*) {}
     void pair(const char* key, WarpWeft& value, const Range& range, const char*)
     {
         check(value.warp, below(below(key_path_, key), "warp"), range);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/base/number.h"
+
 namespace toile::scene_format {
 
 namespace {
@@ -132,6 +134,33 @@ void Reader::number_or_off(const char* key, std::optional<double>& value, const 
                                                     " is neither a number nor \"off\"; give a number " +
                                                     to_sentence(range));
     read_value(document_, json, below(key_path_, key), value.emplace(), range);
+}
+
+void Reader::number_or_quotient(const char* key, double& value, const Range& range, const char*)
+{
+    if (!object_.contains(key))
+        return;
+    const Json& json = object_[key];
+    const std::string key_path = below(key_path_, key);
+    if (!json.is_string())
+        return read_value(document_, json, key_path, value, range);
+    const std::optional<double> quotient = quotient_in(json.get<std::string>());
+    if (!quotient || !range.contains(*quotient))
+        document_.refuse(key_path, as_written(json) + " is no such number; give one " + to_sentence(range) +
+                                       ", or two as \"24000/1001\"");
+    value = *quotient;
+}
+
+void Reader::names(const char* key, std::vector<std::string>& value, const char*)
+{
+    if (!object_.contains(key))
+        return;
+    const Json& json = object_[key];
+    const std::string key_path = below(key_path_, key);
+    if (json.is_array())
+        read(json, key_path, value);
+    else
+        read_value(document_, json, key_path, value.emplace_back());
 }
 
 void Reader::pair(const char* key, WarpWeft& value, const Range& range, const char*)

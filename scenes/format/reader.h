@@ -62,6 +62,8 @@ public:
     }
 
     void number_or_off(const char* key, std::optional<double>& value, const Range& range, const char*);
+    void number_or_quotient(const char* key, double& value, const Range& range, const char*);
+    void names(const char* key, std::vector<std::string>& value, const char*);
     template <typename T>
     void number_or_object(const char* key, std::optional<T>& value, double T::*number, const Range& range,
                           const char*)

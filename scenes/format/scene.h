@@ -368,10 +368,26 @@ struct Solver {
     int threads = 0; ///< 0: all threads of the machine
 };
 
+enum class ExportUnit { Metre, Centimetre };
+enum class UpAxis { Y, Z };
+
 /// A cache to write; the extension gives its format.
 struct Export {
-    std::filesystem::path file; ///< relative to the output folder
-    std::string cloth;          ///< cloth or solid; empty: the only one
+    std::filesystem::path file;      ///< relative to the output folder
+    std::vector<std::string> cloths; ///< cloths and solids, or "all"; empty: the only one, or all in formats
+                                     ///< that hold several meshes
+    bool avatars = false;            ///< also those, as triangles
+    std::optional<int>
+        start_frame;   ///< number of the first frame; absent: 1 in formats with a time line, else 0
+    int subframes = 1; ///< samples per frame
+    ExportUnit unit = ExportUnit::Metre;
+    UpAxis up = UpAxis::Y;
+    bool velocities = true; ///< in formats that have them
+    bool normals = false;   ///< the same; creased at seams
+    bool thickness = false; ///< closes each cloth with its thickness
+    bool weld = true;       ///< false: one mesh for each group of faces, such as a panel
+
+    bool operator==(const Export&) const = default;
 };
 
 struct Render {

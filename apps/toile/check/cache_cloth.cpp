@@ -3,67 +3,112 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <set>
 
-#include "apps/toile/terminal/exports.h"
+#include "apps/toile/caches/exports.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
+#include "export/alembic/abc_mesh.h"
+#include "export/cache_format.h"
 #include "export/cache_path.h"
 #include "export/obj/obj_sequence.h"
+#include "scenes/format/names.h"
 
 namespace toile::app {
 
 namespace {
 
-/// Name of a cloth: skirt for skirt.pc2, for the unfinished skirt.partial.pc2, for skirt_####.obj, and for
-/// the mesh run.abc#/skirt/skirtShape.
+/// Name of a cloth: skirt for skirt.pc2, for the unfinished skirt.partial.pc2 and for skirt_####.obj.
 std::string name_of(const std::filesystem::path& cache)
 {
     if (exports::ObjSequence::has_digits_placeholder(cache))
         return exports::ObjSequence(cache).stem();
-    static const std::set<std::string> kEndings{".pc2", ".mdd", ".obj", ".abc", ".partial"};
-    if (exports::archive_of(cache) != cache)
-        return cache.parent_path().filename().string();
-    std::filesystem::path name = cache.filename();
-    while (kEndings.contains(lower_case_extension(name)))
+    std::filesystem::path name = exports::archive_of(cache).filename();
+    while (lower_case_extension(name) == ".partial" ||
+           scene_format::contains(exports::cache_extensions(), lower_case_extension(name)))
         name = name.stem();
     return name.string();
 }
 
+/// The export of a scene that writes a file of this name; else one of no keys.
+scene::Export entry_of(const scenes::Scene& scene, const std::filesystem::path& cache)
+{
+    const std::filesystem::path file = exports::archive_of(cache);
+    for (const scene::Export& entry : scene.exports)
+        if (entry.file.filename() == file.filename())
+            return entry;
+    for (const scene::Export& entry : scene.exports)
+        if (name_of(entry.file) == name_of(file) &&
+            lower_case_extension(entry.file) == lower_case_extension(file))
+            return entry;
+    scene::Export entry;
+    entry.file = file;
+    return entry;
+}
+
+bool is_exported(const scenes::Scene& scene, const scene::Export& entry)
+{
+    return std::find(scene.exports.begin(), scene.exports.end(), entry) != scene.exports.end();
+}
+
+/// Index of a cloth by its name or by what it is called in an archive; -1: none.
+int index_of(const std::vector<std::string>& names, const std::string& name)
+{
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name || exports::abc_name(names[i]) == name)
+            return int(i);
+    return -1;
+}
+
+/// Index of the cloth that a mesh of an archive is, or is a panel of; -1: none, such as an avatar.
+int surface_of_mesh(const std::vector<std::string>& names, const std::filesystem::path& mesh)
+{
+    for (std::filesystem::path at = exports::mesh_path_of(mesh); at.has_relative_path();
+         at = at.parent_path())
+        if (const int index = index_of(names, at.filename().string()); index >= 0)
+            return index;
+    return -1;
+}
+
+int named_surface(const scenes::Scene& scene, const std::vector<std::string>& names, const std::string& named)
+{
+    if (const int index = index_of(names, named); index >= 0)
+        return index;
+    const std::string near = nearest_word(named, names);
+    throw InvalidInput("--cloth: " + scene.source.string() + " has no cloth \"" + named + "\"; " +
+                       (near.empty() ? "it has " + scene_format::enumerate(names, "and")
+                                     : "did you mean \"" + near + "\"?"));
+}
+
 } // namespace
 
-int cloth_of_cache(const scenes::Scene& scene, const std::filesystem::path& cache, const std::string& named)
+std::vector<ClothInCache> cloths_of_cache(const scenes::Scene& scene, const std::filesystem::path& cache,
+                                          const std::string& named)
 {
     const std::vector<std::string> names = surface_names(scene);
-    std::string list;
-    for (const std::string& name : names)
-        list += (list.empty() ? "" : ", ") + name;
-    const auto index_of = [&](const std::string& name) {
-        for (size_t i = 0; i < names.size(); ++i)
-            if (names[i] == name)
-                return int(i);
-        return -1;
-    };
-
-    if (!named.empty()) {
-        if (const int index = index_of(named); index >= 0)
-            return index;
-        const std::string near = nearest_word(named, names);
-        throw InvalidInput("--cloth: " + scene.source.string() + " has no cloth \"" + named + "\"; " +
-                           (near.empty() ? "it has " + list : "did you mean \"" + near + "\"?"));
+    const scene::Export entry = entry_of(scene, cache);
+    if (!named.empty())
+        return {{cache, entry, named_surface(scene, names, named)}};
+    const bool is_mesh = !exports::mesh_path_of(cache).empty();
+    std::vector<ClothInCache> cloths;
+    if (is_exported(scene, entry) && !is_mesh) {
+        for (const int surface : surfaces_of(scene, entry))
+            cloths.push_back({cache, entry, surface});
+        return cloths;
     }
-    for (const scene::Export& entry : scene.exports)
-        if (entry.file.filename() == cache.filename())
-            return std::max(0, index_of(entry.cloth));
-    for (const scene::Export& entry : scene.exports)
-        if (name_of(entry.file) == name_of(cache))
-            return std::max(0, index_of(entry.cloth));
-    if (const int index = index_of(name_of(cache)); index >= 0)
-        return index;
+    if (const int index = index_of(names, name_of(cache)); index >= 0 && !is_mesh)
+        return {{cache, entry, index}};
+    for (const std::filesystem::path& mesh : exports::meshes_of_cache(cache)) {
+        const int surface = surface_of_mesh(names, mesh);
+        if (surface >= 0 && std::none_of(cloths.begin(), cloths.end(),
+                                         [&](const ClothInCache& cloth) { return cloth.surface == surface; }))
+            cloths.push_back({is_mesh ? cache : exports::archive_of(mesh), entry, surface});
+    }
+    if (!cloths.empty())
+        return cloths;
     if (names.size() == 1)
-        return 0;
+        return {{cache, entry, 0}};
     throw InvalidInput(cache.string() + ": can't tell which cloth of " + scene.source.string() +
-                       " this is; give --cloth with one of " + list);
+                       " this is; give --cloth with one of " + scene_format::enumerate(names, "or"));
 }
 
 void require_same_points(const exports::PointCache& cache, const std::filesystem::path& file,
@@ -75,7 +120,8 @@ void require_same_points(const exports::PointCache& cache, const std::filesystem
                            "; give the scene that the cache was made from");
 }
 
-void require_same_times(const exports::PointCache& cache, const std::filesystem::path& file, double fps)
+void require_same_times(const exports::PointCache& cache, const std::filesystem::path& file, double fps,
+                        int frame_count)
 {
     char text[160];
     if (cache.fps() && std::abs(*cache.fps() - fps) > 1e-3 * fps) {
@@ -83,8 +129,8 @@ void require_same_times(const exports::PointCache& cache, const std::filesystem:
                       fps);
         throw InvalidInput(file.string() + text + "; give the scene that the cache was made from");
     }
-    if (std::abs(cache.start_frame()) > 1e-3) {
-        std::snprintf(text, sizeof text, ": begins at frame %.6g, but the scene at frame 0",
+    if (std::abs(cache.start_frame()) > 1e-3 && cache.frame_count() < frame_count) {
+        std::snprintf(text, sizeof text, ": begins %.6g frames after the scene and is shorter",
                       cache.start_frame());
         throw InvalidInput(file.string() + text + "; give all frames from the first on");
     }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <functional>
 
+#include "apps/toile/caches/exports.h"
 #include "apps/toile/check/avatar_crossings.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/check/penetration.h"
 #include "apps/toile/check/strain.h"
 #include "apps/toile/terminal/command_line.h"
-#include "apps/toile/terminal/exports.h"
 #include "apps/toile/terminal/setup_progress.h"
 #include "collision/check/find_crossings.h"
 #include "collision/check/gap_meter.h"
@@ -110,13 +110,13 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
     for (const CachedCloth& cached : cloths) {
         const scenes::ClothState& cloth = *cached.cloth;
         const int vertex_count = int(cloth.rest.positions.size());
-        exports::PointCache cache = exports::read_cache(cached.source);
+        const exports::PointCache& cache = cached.cache;
         require_same_points(cache, cached.file, cloth.name, int(cloth.file_mesh().positions.size()));
-        require_same_times(cache, cached.file, scene.fps);
+        require_same_times(cache, cached.file, scene.fps, scene.frames);
         frame_count_ = cloths_.empty() ? cache.frame_count() : std::min(frame_count_, cache.frame_count());
         longest_ = std::max(longest_, cache.frame_count());
         cloths_.push_back({cloth,
-                           std::move(cache),
+                           cache,
                            strain_parts_of(cloth, limits.strain_margin),
                            collision::ClothSamples(cloth.triangles, vertex_count),
                            int(rest.size()),

@@ -17,7 +17,7 @@ namespace toile::app {
 struct CachedCloth {
     const scenes::ClothState* cloth; ///< mesh, rest shape and fabric; its positions are ignored
     std::filesystem::path file;      ///< named by the certificate
-    std::filesystem::path source;    ///< where its frames are read: the same, or a partial name
+    exports::PointCache cache;       ///< open_cloth()
 };
 
 /// Measures every frame that all caches have, cloths together, without any code of the solver.

@@ -4,11 +4,12 @@
 #include <memory>
 #include <optional>
 
+#include "apps/toile/caches/cache_contents.h"
+#include "apps/toile/caches/exports.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/check/certify.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
-#include "apps/toile/terminal/exports.h"
 #include "apps/toile/terminal/scene_inputs.h"
 #include "apps/toile/terminal/setup_progress.h"
 #include "core/base/atomic_file.h"
@@ -44,26 +45,27 @@ bool cache_exists(const std::filesystem::path& file)
            (lower_case_extension(file) == ".obj" && !exports::ObjSequence(file).existing().empty());
 }
 
-/// A cache and the index of its cloth in World::surfaces().
-struct ClothCache {
-    std::filesystem::path file;
-    int cloth;
-};
+bool holds(const std::vector<ClothInCache>& caches, int surface)
+{
+    return std::any_of(caches.begin(), caches.end(),
+                       [&](const ClothInCache& other) { return other.surface == surface; });
+}
 
 /// Caches written by simulate into a folder, one per cloth; missing ones are omitted.
-std::vector<ClothCache> caches_in(const std::filesystem::path& folder, const scenes::Scene& scene)
+std::vector<ClothInCache> caches_in(const std::filesystem::path& folder, const scenes::Scene& scene)
 {
-    std::vector<ClothCache> caches;
+    std::vector<ClothInCache> caches;
     std::string searched;
     for (const scene::Export& entry : exports_of(scene)) {
-        const int cloth = surface_index(scene, entry.cloth);
         searched += (searched.empty() ? "" : ", ") + entry.file.string();
         std::filesystem::path file = folder / entry.file.lexically_normal();
         if (scene.frames > 1 && lower_case_extension(file) == ".obj")
             file = exports::ObjSequence(file).pattern(); // skirt.obj may be the start mesh beside skirt.pc2
-        if (cache_exists(file) && std::none_of(caches.begin(), caches.end(),
-                                               [&](const ClothCache& other) { return other.cloth == cloth; }))
-            caches.push_back({file, cloth});
+        if (!cache_exists(file))
+            continue;
+        for (const int surface : surfaces_of(scene, entry))
+            if (!holds(caches, surface))
+                caches.push_back({file, entry, surface});
     }
     if (caches.empty())
         throw InvalidInput(folder.string() + ": has no cache of " + scene.source.string() + "; looked for " +
@@ -71,20 +73,20 @@ std::vector<ClothCache> caches_in(const std::filesystem::path& folder, const sce
     return caches;
 }
 
-/// Pairs each cache with its cloth.
-std::vector<ClothCache> named_caches(const std::vector<std::filesystem::path>& files,
-                                     const scenes::Scene& scene, const std::string& named)
+/// Pairs each cache with its cloths.
+std::vector<ClothInCache> named_caches(const std::vector<std::filesystem::path>& files,
+                                       const scenes::Scene& scene, const std::string& named)
 {
-    std::vector<ClothCache> caches;
-    for (const std::filesystem::path& file : files) {
-        const int cloth = cloth_of_cache(scene, file, named);
-        for (const ClothCache& other : caches)
-            if (other.cloth == cloth)
-                throw InvalidInput(file.string() + ": is of the same cloth \"" +
-                                   surface_names(scene)[size_t(cloth)] + "\" as " + other.file.string() +
-                                   "; give one cache of each cloth");
-        caches.push_back({file, cloth});
-    }
+    std::vector<ClothInCache> caches;
+    for (const std::filesystem::path& file : files)
+        for (const ClothInCache& cloth : cloths_of_cache(scene, file, named)) {
+            for (const ClothInCache& other : caches)
+                if (other.surface == cloth.surface)
+                    throw InvalidInput(file.string() + ": is of the same cloth \"" +
+                                       surface_names(scene)[size_t(cloth.surface)] + "\" as " +
+                                       other.file.string() + "; give one cache of each cloth");
+            caches.push_back(cloth);
+        }
     return caches;
 }
 
@@ -103,11 +105,11 @@ std::filesystem::path certificate_path_of(const CheckOptions& options)
 
 /// Refuses a certificate that would replace a file that it is made from, or could not be written.
 void require_safe_output(const std::filesystem::path& file, const scenes::Scene& scene,
-                         const std::vector<ClothCache>& caches)
+                         const std::vector<ClothInCache>& caches)
 {
     FilePlan plan;
     add_inputs(plan, scene);
-    for (const ClothCache& cache : caches)
+    for (const ClothInCache& cache : caches)
         plan.add_input(exports::archive_of(cache.file), "a cache to check");
     plan.add_output(file, "the certificate");
     require_writable(file);
@@ -136,7 +138,7 @@ int check(const CheckOptions& options)
             throw InvalidInput(cache.string() + ": no such folder; check the path");
     scenes::Scene scene = scenes::read_scene(options.scene);
     scene.frames = options.frames.value_or(scene.frames);
-    const std::vector<ClothCache> caches =
+    const std::vector<ClothInCache> caches =
         is_folder ? caches_in(options.caches[0], scene) : named_caches(options.caches, scene, options.cloth);
     const std::filesystem::path output = certificate_path_of(options);
     require_safe_output(output, scene, caches);
@@ -149,8 +151,10 @@ int check(const CheckOptions& options)
     const std::vector<scenes::ClothState> surfaces = load_surfaces(scene, log, interrupt);
     std::vector<CachedCloth> cloths;
     cloths.reserve(caches.size());
-    for (const ClothCache& cache : caches)
-        cloths.push_back({&surfaces[size_t(cache.cloth)], cache.file, cache.file});
+    for (const ClothInCache& cache : caches) {
+        const scenes::ClothState& cloth = surfaces[size_t(cache.surface)];
+        cloths.push_back({&cloth, cache.file, open_cloth(cache.file, cache.entry, cloth)});
+    }
     const std::optional<Certificate> certificate = certify(scene, cloths, options.limits, log, interrupt);
     if (!certificate)
         throw Cancelled("interrupted");

@@ -2,8 +2,8 @@
 #include <memory>
 #include <optional>
 
+#include "apps/toile/caches/cache_files.h"
 #include "apps/toile/check/certify.h"
-#include "apps/toile/terminal/cache_files.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/progress.h"

@@ -240,7 +240,7 @@ std::optional<Certificate> DrapeFiles::write_certificate(const RunLog& log,
     const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene_at_rest);
     std::vector<CachedCloth> checked;
     for (size_t g = 0; g < names_.size(); ++g)
-        checked.push_back({&surfaces.at(g), mesh(names_[g]), mesh(names_[g])});
+        checked.push_back({&surfaces.at(g), mesh(names_[g]), exports::read_cache(mesh(names_[g]))});
     std::optional<Certificate> certified = certify(scene_at_rest, checked, {}, log, interrupt);
     if (!certified)
         return std::nullopt;

@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/fit/fit_files.h"
 #include "apps/toile/terminal/command_line.h"
@@ -67,13 +68,17 @@ int frame_of(const exports::PointCache& cache, const std::filesystem::path& file
 CacheFrame read_frame(const scenes::Scene& scene, const std::filesystem::path& file,
                       const FitOptions& options)
 {
-    const size_t index = size_t(cloth_of_cache(scene, file, options.cloth));
+    const std::vector<ClothInCache> cloths = cloths_of_cache(scene, file, options.cloth);
+    if (cloths.size() > 1)
+        throw InvalidInput(file.string() + ": has " + std::to_string(cloths.size()) +
+                           " cloths; give --cloth with one of them");
+    const size_t index = size_t(cloths.front().surface);
     if (index >= scene.cloths.size())
         throw InvalidInput(file.string() + ": is of a solid; only cloths fit a body");
     scenes::Scene free = scene; // attachments don't change how cloth fits
     free.attachments.clear();
     const scenes::LoadedCloth cloth = scenes::load_cloth(free, free.cloths[index], {}, {});
-    const exports::PointCache cache = exports::read_cache(file);
+    const exports::PointCache cache = open_cloth(file, cloths.front().entry, cloth.state);
     require_same_points(cache, file, cloth.state.name, int(cloth.state.file_mesh().positions.size()));
     const int frame = frame_of(cache, file, options.frame);
     const std::vector<Vec3> x = cache.frame(frame);

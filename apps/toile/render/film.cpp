@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/render/print.h"
 #include "core/base/error.h"
@@ -72,11 +73,12 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
     const LongWork::Part part(kOfBodies, 1.0);
     const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene);
     for (const std::filesystem::path& file : caches) {
-        const exports::PointCache cache = exports::read_cache(file);
-        const int index = cloth_of_cache(scene, file, cloth);
-        const scenes::ClothState& state = surfaces[size_t(index)];
-        require_same_points(cache, file, state.name, int(state.file_mesh().positions.size()));
-        film.add_surface(index, state, cache, file);
+        for (const ClothInCache& in_cache : cloths_of_cache(scene, file, cloth)) {
+            const scenes::ClothState& state = surfaces[size_t(in_cache.surface)];
+            const exports::PointCache cache = open_cloth(file, in_cache.entry, state);
+            require_same_points(cache, file, state.name, int(state.file_mesh().positions.size()));
+            film.add_surface(in_cache.surface, state, cache, file);
+        }
     }
     return film;
 }
@@ -85,15 +87,16 @@ Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches)
 {
     Film film;
     film.settings_.render.ground.reset();
-    for (const std::filesystem::path& file : caches) {
-        const exports::PointCache cache = exports::read_cache(file);
-        if (cache.mesh() == nullptr)
-            throw InvalidInput(file.string() +
-                               ": has points without faces; give --scene with the scene that it " +
-                               "was made from");
-        film.settings_.fps = cache.fps().value_or(film.settings_.fps);
-        film.add_cloth({}, cache.mesh()->triangulated().triangles, cache.mesh()->positions, cache, file);
-    }
+    for (const std::filesystem::path& file : caches)
+        for (const std::filesystem::path& mesh : exports::meshes_of_cache(file)) {
+            const exports::PointCache cache = exports::read_cache(mesh);
+            if (cache.mesh() == nullptr)
+                throw InvalidInput(file.string() +
+                                   ": has points without faces; give --scene with the scene that it " +
+                                   "was made from");
+            film.settings_.fps = cache.fps().value_or(film.settings_.fps) * cache.subframes();
+            film.add_cloth({}, cache.mesh()->triangulated().triangles, cache.mesh()->positions, cache, mesh);
+        }
     return film;
 }
 

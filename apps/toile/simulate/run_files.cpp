@@ -5,29 +5,36 @@
 #include <system_error>
 #include <utility>
 
+#include "apps/toile/caches/exports.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "export/binary_file.h"
 
 namespace toile::app {
 
-RunFiles::RunFiles(const SceneJob& job, const scenes::World& world, const RunLog& log) : job_(job)
+RunFiles::RunFiles(const SceneJob& job, const scenes::World& world, const RunLog& log)
+    : job_(job), subframes_(subframes_of(job.scene))
 {
     for (const std::filesystem::path& folder : output_folders_of(job))
         locks_.all.emplace_back(folder, [&](const std::string& text) { log.note("warning: " + text); });
-    for (const SurfaceFile& cache : caches_of(job)) {
-        const scenes::ClothState& state = world.surfaces()[cache.surface];
-        exports::CacheLayout layout = exports::cache_layout(state.file_mesh(), job.scene.frames);
-        layout.fps = job.scene.fps;
-        caches_.push_back({cache,
-                           &state,
-                           std::make_unique<exports::AsyncCacheWriter>(make_cache_writer(cache.file, layout)),
-                           {}});
+    const std::vector<ExportFile> caches = caches_of(job);
+    if (std::any_of(caches.begin(), caches.end(), [](const ExportFile& file) { return file.entry.avatars; }))
+        avatars_ = scenes::make_bodies(job.scene);
+    std::vector<std::pair<std::string, const TriangleMesh*>> avatars;
+    for (const scenes::SceneBody& avatar : avatars_)
+        avatars.emplace_back(avatar.settings().name, &avatar.surface());
+    const View<const scenes::ClothState> surfaces = world.surfaces();
+    for (const ExportFile& cache : caches) {
+        auto contents = std::make_shared<CacheContents>(cache.entry, job.scene, surfaces, avatars);
+        auto writer =
+            std::make_unique<exports::AsyncCacheWriter>(make_cache_writer(cache.file, contents->layout()));
+        caches_.push_back({cache, std::move(contents), std::move(writer), {}});
     }
-    for (const SurfaceFile& mesh : start_meshes_of(job)) {
-        const scenes::ClothState& state = world.surfaces()[mesh.surface];
-        meshes_.push_back({mesh.file, state.file_mesh()});
-        meshes_.back().mesh.positions = state.to_file(state.positions);
+    for (const ExportFile& mesh : start_meshes_of(job)) {
+        const CacheContents contents(mesh.entry, job.scene, surfaces, {});
+        meshes_.push_back({mesh.file, contents.layout().meshes.front().faces});
+        meshes_.back().mesh.positions = contents.positions(
+            [&](int surface) { return View<const Vec3>(surfaces[surface].positions); }, {});
     }
 }
 
@@ -39,26 +46,35 @@ void RunFiles::write_start_meshes()
     }
 }
 
-void RunFiles::write_frame(const scenes::World& world)
+/// Positions of the avatars' surfaces [avatars][vertices] [m].
+std::vector<std::vector<Vec3>> RunFiles::avatar_positions(int sample)
+{
+    std::vector<std::vector<Vec3>> positions;
+    for (scenes::SceneBody& avatar : avatars_) {
+        avatar.advance_to(sample * job_.scene.frame_duration() / subframes_);
+        positions.push_back(avatar.surface().positions);
+    }
+    return positions;
+}
+
+void RunFiles::write_sample(const scenes::World& world)
 {
     if (!std::exchange(has_frames_, true))
         write_start_meshes();
-    if (world.device() == nullptr) {
-        for (Cache& cache : caches_) {
-            const std::vector<Vec3>& x = world.surfaces()[cache.target.surface].positions;
-            if (cache.state->has_file_order())
-                cache.writer->write(world.frame(), cache.state->to_file(x));
-            else
-                cache.writer->write(world.frame(), x);
-        }
-        return;
-    }
     const std::shared_ptr<const scenes::Snapshot> snapshot = world.snapshot();
-    for (Cache& cache : caches_)
-        cache.writer->write_later(world.frame(),
-                                  [snapshot, state = cache.state, surface = cache.target.surface] {
-                                      return state->to_file(snapshot->positions(surface));
-                                  });
+    const auto avatars =
+        std::make_shared<const std::vector<std::vector<Vec3>>>(avatar_positions(world.frame()));
+    for (Cache& cache : caches_) {
+        const int apart =
+            subframes_ / cache.target.entry.subframes; // samples of the run per one of the cache
+        if (world.frame() % apart != 0)
+            continue;
+        cache.writer->write_later(world.frame() / apart, [snapshot, avatars, contents = cache.contents,
+                                                          has_avatars = cache.target.entry.avatars] {
+            return contents->positions([&](int surface) { return snapshot->positions(surface); },
+                                       has_avatars ? *avatars : std::vector<std::vector<Vec3>>{});
+        });
+    }
 }
 
 RunFiles::Partials RunFiles::close()
@@ -88,13 +104,16 @@ void RunFiles::complete()
 
 std::vector<CachedCloth> RunFiles::cloths_to_check(const scenes::World& world) const
 {
+    const View<const scenes::ClothState> surfaces = world.surfaces();
     std::vector<CachedCloth> cloths;
-    for (const Cache& cache : caches_) {
-        const scenes::ClothState* cloth = &world.surfaces()[cache.target.surface];
-        if (std::none_of(cloths.begin(), cloths.end(),
-                         [&](const CachedCloth& other) { return other.cloth == cloth; }))
-            cloths.push_back({cloth, cache.target.file, cache.complete});
-    }
+    for (const Cache& cache : caches_)
+        for (const int surface : surfaces_of(job_.scene, cache.target.entry)) {
+            const scenes::ClothState* cloth = &surfaces[surface];
+            if (std::none_of(cloths.begin(), cloths.end(),
+                             [&](const CachedCloth& other) { return other.cloth == cloth; }))
+                cloths.push_back(
+                    {cloth, cache.target.file, open_cloth(cache.complete, cache.target.entry, *cloth)});
+        }
     return cloths;
 }
 

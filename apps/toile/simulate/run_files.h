@@ -3,12 +3,14 @@
 #include <memory>
 #include <vector>
 
+#include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/check/certify.h"
 #include "apps/toile/simulate/scene_job.h"
 #include "apps/toile/terminal/run_log.h"
 #include "core/mesh/obj.h"
 #include "export/async_cache_writer.h"
 #include "export/folder_lock.h"
+#include "scenes/colliders/scene_body.h"
 #include "scenes/world/world.h"
 
 namespace toile::app {
@@ -22,12 +24,13 @@ public:
     /// @throws InvalidInput if a folder is locked or a cache can't be written
     RunFiles(const SceneJob& job, const scenes::World& world, const RunLog& log);
 
-    /// Appends the world's current positions to every cache. @throws as CacheWriter::write()
-    void write_frame(const scenes::World& world);
+    /// Appends a sample to every cache that has one now. @throws as CacheWriter::write()
+    /// @param world  at sample k of with_subframes()
+    void write_sample(const scenes::World& world);
 
     /// Ends a run that stops early.
     struct Partials {
-        int frame_count = 0; ///< of the longest cache; a failed GPU does not send every frame to all
+        int frame_count = 0; ///< samples of the longest cache; a failed GPU does not send every frame to all
         std::vector<std::filesystem::path> files;
     };
     Partials close();
@@ -45,8 +48,8 @@ public:
 
 private:
     struct Cache {
-        SurfaceFile target;
-        const scenes::ClothState* state; ///< of the world
+        ExportFile target;
+        std::shared_ptr<const CacheContents> contents; ///< also of what waits in the writer
         std::unique_ptr<exports::AsyncCacheWriter> writer;
         std::filesystem::path complete; ///< partial name of the complete cache
     };
@@ -65,9 +68,12 @@ private:
     };
 
     void write_start_meshes();
+    std::vector<std::vector<Vec3>> avatar_positions(int sample);
 
     const SceneJob& job_;
-    Locks locks_; ///< before the caches: released after them
+    int subframes_;
+    std::vector<scenes::SceneBody> avatars_; ///< empty: no cache has them
+    Locks locks_;                            ///< before the caches: released after them
     std::vector<Cache> caches_;
     std::vector<StartMesh> meshes_;
     bool has_frames_ = false;

@@ -7,9 +7,9 @@
 #include <string>
 #include <system_error>
 
+#include "apps/toile/caches/cache_files.h"
+#include "apps/toile/caches/exports.h"
 #include "apps/toile/check/certify.h"
-#include "apps/toile/terminal/cache_files.h"
-#include "apps/toile/terminal/exports.h"
 #include "apps/toile/terminal/scene_inputs.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -24,14 +24,32 @@ namespace {
 
 using std::filesystem::path;
 
+/// The surfaces of an export, for messages.
+std::string contents_of(const scenes::Scene& scene, const scene::Export& entry)
+{
+    const std::vector<std::string> names = surface_names(scene);
+    std::string list;
+    for (const int surface : surfaces_of(scene, entry))
+        list += (list.empty() ? "\"" : ", \"") + names[size_t(surface)] + "\"";
+    return list;
+}
+
+/// Whether two exports write the same positions, in files of any name.
+bool have_same_contents(const scenes::Scene& scene, const ExportFile& a, const ExportFile& b)
+{
+    scene::Export a_entry = a.entry, b_entry = b.entry;
+    a_entry.file = b_entry.file = "";
+    a_entry.cloths = b_entry.cloths = {};
+    return a_entry == b_entry && surfaces_of(scene, a.entry) == surfaces_of(scene, b.entry);
+}
+
 void add_outputs(FilePlan& plan, const SceneJob& job)
 {
-    const std::vector<std::string> names = surface_names(job.scene);
-    for (const SurfaceFile& cache : caches_of(job))
-        add_cache_output(plan, cache.file, 0, job.scene.frames,
-                         "the cache of \"" + names[size_t(cache.surface)] + "\"");
-    for (const SurfaceFile& mesh : start_meshes_of(job))
-        add_output_and_partial(plan, mesh.file, "the start mesh of \"" + names[size_t(mesh.surface)] + "\"");
+    for (const ExportFile& cache : caches_of(job))
+        add_cache_output(plan, cache.file, start_frame_of(cache.entry), job.scene.frames,
+                         "the cache of " + contents_of(job.scene, cache.entry));
+    for (const ExportFile& mesh : start_meshes_of(job))
+        add_output_and_partial(plan, mesh.file, "the start mesh of " + contents_of(job.scene, mesh.entry));
     for (const path& folder : output_folders_of(job))
         plan.add_output(exports::FolderLock::file_in(folder), "the lock of the folder");
     for (const path& certificate : certificates_of(job))
@@ -42,22 +60,22 @@ void add_outputs(FilePlan& plan, const SceneJob& job)
 
 } // namespace
 
-std::vector<SurfaceFile> caches_of(const SceneJob& job)
+std::vector<ExportFile> caches_of(const SceneJob& job)
 {
-    std::vector<SurfaceFile> caches;
+    std::vector<ExportFile> caches;
     for (const scene::Export& entry : exports_of(job.scene))
-        caches.push_back({job.folder / entry.file.lexically_normal(), surface_index(job.scene, entry.cloth)});
+        caches.push_back({job.folder / entry.file.lexically_normal(), entry});
     return caches;
 }
 
-std::vector<SurfaceFile> start_meshes_of(const SceneJob& job)
+std::vector<ExportFile> start_meshes_of(const SceneJob& job)
 {
-    const std::vector<SurfaceFile> caches = caches_of(job);
-    std::vector<SurfaceFile> meshes;
-    for (const SurfaceFile& cache : caches) {
-        const SurfaceFile mesh{path(cache.file).replace_extension(".obj"), cache.surface};
-        const auto is_same = [&](const SurfaceFile& other) {
-            return other.file == mesh.file && other.surface == mesh.surface;
+    const std::vector<ExportFile> caches = caches_of(job);
+    std::vector<ExportFile> meshes;
+    for (const ExportFile& cache : caches) {
+        const ExportFile mesh{path(cache.file).replace_extension(".obj"), cache.entry};
+        const auto is_same = [&](const ExportFile& other) {
+            return other.file == mesh.file && have_same_contents(job.scene, other, mesh);
         };
         if (!exports::stores_faces(exports::cache_format(cache.file)) &&
             std::none_of(caches.begin(), caches.end(), is_same) &&
@@ -75,7 +93,7 @@ std::vector<path> output_folders_of(const SceneJob& job)
         by_canonical.try_emplace(std::filesystem::weakly_canonical(folder / ""), folder);
     };
     add(job.folder);
-    for (const SurfaceFile& cache : caches_of(job))
+    for (const ExportFile& cache : caches_of(job))
         add(cache.file.parent_path());
     std::vector<path> folders;
     folders.reserve(by_canonical.size());
@@ -89,7 +107,7 @@ std::vector<path> certificates_of(const SceneJob& job)
     std::set<path> certificates;
     for (const path& folder : output_folders_of(job))
         certificates.insert(folder / kCertificateName);
-    for (const SurfaceFile& cache : caches_of(job))
+    for (const ExportFile& cache : caches_of(job))
         certificates.insert(certificate_beside(cache.file));
     return {certificates.begin(), certificates.end()};
 }
@@ -106,9 +124,9 @@ void require_safe_outputs(const std::vector<SceneJob>& jobs)
             exports::FolderLock::require_free(folder);
             require_writable_folder(folder);
         }
-        for (const SurfaceFile& cache : caches_of(job))
-            require_writable_cache(cache.file, 0, job.scene.frames);
-        for (const SurfaceFile& mesh : start_meshes_of(job)) {
+        for (const ExportFile& cache : caches_of(job))
+            require_writable_cache(cache.file, start_frame_of(cache.entry), job.scene.frames);
+        for (const ExportFile& mesh : start_meshes_of(job)) {
             require_replaceable(mesh.file);
             require_writable(partial_beside(mesh.file));
         }

@@ -14,18 +14,18 @@ struct SceneJob {
     std::filesystem::path report; ///< empty: none
 };
 
-/// A file with the positions of a cloth or solid.
-struct SurfaceFile {
+/// A file that a scene exports.
+struct ExportFile {
     std::filesystem::path file;
-    int surface; ///< index in World::surfaces()
+    scene::Export entry;
 };
 
 /// Caches that the scene exports.
-std::vector<SurfaceFile> caches_of(const SceneJob& job);
+std::vector<ExportFile> caches_of(const SceneJob& job);
 
 /// Meshes that PC2 and MDD caches play on, in their start pose: an OBJ of the same name beside each. None
-/// where an OBJ of that name is itself a cache of the same cloth.
-std::vector<SurfaceFile> start_meshes_of(const SceneJob& job);
+/// where an OBJ of that name is itself a cache with the same contents.
+std::vector<ExportFile> start_meshes_of(const SceneJob& job);
 
 /// Folders that caches and certificate are written to, each once.
 std::vector<std::filesystem::path> output_folders_of(const SceneJob& job);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "apps/toile/caches/exports.h"
 #include "apps/toile/simulate/start_text.h"
 #include "apps/toile/simulate/unmet.h"
 #include "apps/toile/terminal/command_line.h"
@@ -82,7 +83,8 @@ SceneRun::SceneRun(const SceneJob& job, const RunSettings& settings, RunLog log,
                    const InterruptGuard* interrupt)
     : job_(job), no_check_(settings.no_check), log_(std::move(log)),
       progress_(log_.quiet(), log_.scene(), log_.use()), interrupt_(interrupt),
-      world_(job.scene, world_options(settings))
+      subframes_(subframes_of(job.scene)), sampled_(with_subframes(job.scene, subframes_)),
+      world_(sampled_, world_options(settings))
 {
     if (const std::string text = start_text(world_.start(), job.scene); !text.empty())
         log_.note(text);
@@ -117,7 +119,7 @@ void SceneRun::tell(const std::string& task, double fraction)
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - frame_start_;
     if (seconds.count() > kLongFrame)
-        frames_->update(world_.frame() + 1,
+        frames_->update(world_.frame() / subframes_ + 1,
                         "the next: " + std::to_string(int(100.0 * fraction)) + " %, " + task);
 }
 
@@ -133,7 +135,7 @@ int SceneRun::run(const InterruptGuard& interrupt)
     const Outcome outcome = run_or_stop(files, report);
     if (outcome.word == "complete")
         return publish(files, report);
-    explain_stop(world_.frame(), outcome, files, log_);
+    explain_stop(world_.frame() / subframes_, outcome, files, log_);
     if (!job_.report.empty())
         succeeds(log_, [&] {
             const std::filesystem::path file =
@@ -142,6 +144,22 @@ int SceneRun::run(const InterruptGuard& interrupt)
             log_.result("the report of this run is " + file.string());
         });
     return kExitFailure;
+}
+
+/// Simulates the samples up to the next frame, and writes them.
+StepReport SceneRun::advance_frame(RunFiles& files)
+{
+    StepReport total;
+    for (int sample = 0; sample < subframes_; ++sample) {
+        const StepReport step = world_.advance_frame();
+        total.energy = 0.0; // these two are of the last sample
+        total.contacts = 0;
+        total.merge(step);
+        if (step.status == StepReport::Status::NonFinite)
+            break;
+        files.write_sample(world_);
+    }
+    return total;
 }
 
 /// Settles and simulates to the last frame or to a failure.
@@ -153,18 +171,17 @@ SceneRun::Outcome SceneRun::run_frames(RunFiles& files, RunReport& report)
     Unmet unmet(log_);
     const int count = job_.scene.frames;
     frames_ = std::unique_ptr<Progress>(new Progress(log_.progress("frame", count)));
-    files.write_frame(world_);
+    files.write_sample(world_);
     frames_->update(1);
-    while (world_.frame() + 1 < count) {
+    for (int frame = 1; frame < count; ++frame) {
         frame_start_ = std::chrono::steady_clock::now();
-        const StepReport step = world_.advance_frame();
+        const StepReport step = advance_frame(files);
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - frame_start_;
-        report.add_frame(world_.frame(), step, seconds.count());
-        unmet.add(world_.frame(), step);
+        report.add_frame(frame, step, seconds.count());
+        unmet.add(frame, step);
         if (step.status == StepReport::Status::NonFinite)
             return {"failed", step.message};
-        files.write_frame(world_);
-        frames_->update(world_.frame() + 1, note_of(step));
+        frames_->update(frame + 1, note_of(step));
     }
     files.complete();
     unmet.sum_up(count);
@@ -218,7 +235,7 @@ int SceneRun::publish(RunFiles& files, const RunReport& report) const
 
     if (!succeeds(log_, [&] { files.publish(); }))
         return kExitFailure;
-    for (const SurfaceFile& cache : caches_of(job_))
+    for (const ExportFile& cache : caches_of(job_))
         log_.file(cache.file);
     const bool is_reported = job_.report.empty() || deliver_report(job_.report, staged_report, log_);
     if (no_check_)

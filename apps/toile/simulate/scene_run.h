@@ -47,6 +47,7 @@ public:
 private:
     scenes::WorldOptions world_options(const RunSettings& settings);
     void tell(const std::string& task, double fraction);
+    StepReport advance_frame(RunFiles& files);
     Outcome run_frames(RunFiles& files, RunReport& report);
     Outcome run_or_stop(RunFiles& files, RunReport& report);
     std::optional<Certificate> check(const RunFiles& files) const;
@@ -59,6 +60,8 @@ private:
     const InterruptGuard* interrupt_;  ///< null: none
     std::unique_ptr<Progress> frames_; ///< null before the first frame and after the last
     std::chrono::steady_clock::time_point frame_start_;
+    int subframes_;         ///< samples of the world per frame
+    scenes::Scene sampled_; ///< the job's, with a frame for each sample
     scenes::World world_;
 };
 

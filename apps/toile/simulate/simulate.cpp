@@ -11,6 +11,7 @@
 #include "core/compute/cuda/runtime/device.h"
 #include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/format/validate.h"
 
 namespace toile::app {
 
@@ -28,7 +29,11 @@ struct SimulateOptions {
     std::string outer;
     std::string backend = "cpu"; ///< a key of kBackends
     std::optional<std::string> devices;
-    std::filesystem::path report; ///< a file for one scene, a folder for several
+    std::filesystem::path report;               ///< a file for one scene, a folder for several
+    std::vector<std::filesystem::path> exports; ///< caches instead of the scene's
+    scene::Export export_keys;                  ///< of these
+    std::string export_unit = "m", export_up = "y";
+    bool no_velocities = false, no_weld = false;
     bool no_cache = false;
     bool no_check = false;
     bool quiet = false;
@@ -57,6 +62,21 @@ std::vector<int> devices_of(const SimulateOptions& options)
     return devices;
 }
 
+/// The caches of --export, with the options that go with it.
+std::vector<scene::Export> exports_of(const SimulateOptions& options)
+{
+    std::vector<scene::Export> exports;
+    for (const std::filesystem::path& file : options.exports) {
+        scene::Export& entry = exports.emplace_back(options.export_keys);
+        entry.file = file;
+        entry.unit = scene_format::value_of<scene::ExportUnit>(options.export_unit);
+        entry.up = scene_format::value_of<scene::UpAxis>(options.export_up);
+        entry.velocities = !options.no_velocities;
+        entry.weld = !options.no_weld;
+    }
+    return exports;
+}
+
 /// Scene with the options of the command line applied.
 scenes::Scene scene_with_options(const std::filesystem::path& file, const SimulateOptions& options)
 {
@@ -67,6 +87,10 @@ scenes::Scene scene_with_options(const std::filesystem::path& file, const Simula
         scene.solver.method = scene_format::value_of<scene::SolverMethod>(options.solver);
     if (!options.outer.empty())
         scene.solver.outer = scene_format::value_of<OuterMethod>(options.outer);
+    if (!options.exports.empty()) {
+        scene.exports = exports_of(options);
+        require_valid(scene);
+    }
     if (kBackends.at(options.backend) == scenes::Backend::Cuda)
         require_runs_on_gpu(scene);
     return scene;
@@ -125,6 +149,37 @@ int simulate(const SimulateOptions& options, const scenes::BaselineMethods* base
 
 } // namespace
 
+namespace {
+
+/// Options of --export: the keys of the scene's "export".
+void add_export_options(CLI::App& add, SimulateOptions& options)
+{
+    const auto in_group = [](CLI::Option* option) { return option->group("Export"); };
+    CLI::Option* const file =
+        in_group(add.add_option("--export", options.exports,
+                                "Cache to write into the folder, instead of those of the scene: .abc, .pc2, "
+                                ".mdd or .obj; may be given several times")
+                     ->expected(1)
+                     ->take_all());
+    scene::Export& keys = options.export_keys;
+    for (CLI::Option* const option :
+         {add.add_option("--export-cloth", keys.cloths, "Cloth or solid to write [all, or the only one]"),
+          add.add_option("--start-frame", keys.start_frame, "Number of the first frame [1 in .abc, else 0]"),
+          add.add_option("--subframes", keys.subframes, "Samples per frame [1]")->check(CLI::Range(1, 100)),
+          add.add_option("--unit", options.export_unit, "Unit of the numbers [m]")
+              ->check(CLI::IsMember(scene_format::words_of<scene::ExportUnit>())),
+          add.add_option("--up", options.export_up, "Upward axis of the numbers [y]")
+              ->check(CLI::IsMember(scene_format::words_of<scene::UpAxis>())),
+          add.add_flag("--avatars", keys.avatars, "Also write the avatars"),
+          add.add_flag("--normals", keys.normals, "Store normals, creased at seams"),
+          add.add_flag("--thickness", keys.thickness, "Close each cloth with its thickness"),
+          add.add_flag("--no-velocities", options.no_velocities, "Store no velocities"),
+          add.add_flag("--no-weld", options.no_weld, "Write one mesh for each group of faces")})
+        in_group(option)->needs(file);
+}
+
+} // namespace
+
 Command add_simulate(CLI::App& parser, const scenes::BaselineMethods* baselines)
 {
     Command command;
@@ -149,6 +204,7 @@ Command add_simulate(CLI::App& parser, const scenes::BaselineMethods* baselines)
     add.add_option("--report", options->report,
                    "Write stages, frames and settings to this JSON file; for several scenes to NAME.json in "
                    "this folder");
+    add_export_options(add, *options);
     add.add_flag("--no-cache", options->no_cache, "Neither read nor keep quadrature tables on disk");
     add.add_flag("--no-check", options->no_check, "Write no certificate of the caches");
     add.add_flag("--quiet", options->quiet, "No progress on stderr");

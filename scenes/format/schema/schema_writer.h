@@ -39,6 +39,17 @@ public:
         schema["default"] = value ? OrderedJson(*value) : OrderedJson("off");
         add(key, schema, with_unit(help, range));
     }
+    void number_or_quotient(const char* key, double& value, const Range& range, const char* help)
+    {
+        OrderedJson schema = {{"anyOf", {number_schema("number", range), {{"type", "string"}}}}};
+        schema["default"] = value;
+        add(key, schema, with_unit(help, range));
+    }
+    void names(const char* key, std::vector<std::string>&, const char* help)
+    {
+        const OrderedJson name = {{"type", "string"}};
+        add(key, {{"anyOf", {name, {{"type", "array"}, {"items", name}}}}}, help);
+    }
     template <typename T>
     void number_or_object(const char* key, std::optional<T>&, double T::*, const Range& range,
                           const char* help)

@@ -285,5 +285,43 @@ TEST(SceneErrors, KeepExportsInsideTheOutputFolder)
     });
 }
 
+TEST(SceneErrors, KeepExportsToWhatTheirFormatHolds)
+{
+    const auto two = [](const std::string& entry) {
+        return R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "disc": {}}, {"name": "b", "disc": {}}],
+                   "solver": {"substeps": 4}, "export": [)" +
+               entry + "]}";
+    };
+    expect_complaints({
+        {two(R"({"file": "x.pc2", "cloth": "all"})"),
+         R"(bad.json: export[0].cloth: ".pc2" holds one mesh; write one file each, or an .abc of all)"},
+        {two(R"({"file": "x.pc2", "cloth": ["a", "b"]})"),
+         R"(bad.json: export[0].cloth: ".pc2" holds one mesh; write one file each, or an .abc of all)"},
+        {two(R"({"file": "x.abc", "cloth": ["a", "a"]})"),
+         R"(bad.json: export[0].cloth: "a" is there twice; name it once)"},
+        {two(R"({"file": "x.abc", "cloth": ["a", "c"]})"),
+         R"(bad.json: export[0].cloth: no cloth is named "c"; known are "a" and "b")"},
+        {two(R"({"file": "x.abc", "cloth": 3})"),
+         "bad.json: export[0].cloth: 3 is not text; write it in double quotes"},
+        {two(R"({"file": "x.mdd", "cloth": "a", "avatars": true})"),
+         R"(bad.json: export[0].avatars: ".mdd" holds one mesh; write the avatars to an .abc)"},
+        {two(R"({"file": "x.mdd", "cloth": "a", "weld": false})"),
+         R"(bad.json: export[0].weld: ".mdd" holds one mesh; write the panels to an .abc)"},
+        {two(R"({"file": "x.obj", "cloth": "a", "normals": true})"),
+         R"(bad.json: export[0].normals: ".obj" stores no normals; write an .abc)"},
+        {two(R"({"file": "x_##.obj", "cloth": "a", "subframes": 2})"),
+         R"(bad.json: export[0].subframes: ".obj" has a file for each frame and none between; write an .abc)"},
+        {two(R"({"file": "x.abc", "subframes": 3})"), "bad.json: export[0].subframes: 3 does not divide "
+                                                      "solver.substeps, 4; give a divisor of it, or leave "
+                                                      "substeps out"},
+        {two(R"({"file": "x.abc", "subframes": 2}, {"file": "y.abc", "subframes": 4})"),
+         "bad.json: export[1].subframes: 4, and an earlier entry has 2; a run has one number besides 1"},
+        {two(R"({"file": "x.abc", "unit": "mm"})"),
+         R"(bad.json: export[0].unit: "mm" is unknown; write "m" or "cm")"},
+        {scene_with(R"("fps": "24/0")"),
+         R"(bad.json: fps: "24/0" is no such number; give one from 1 to 10000 1/s, or two as "24000/1001")"},
+    });
+}
+
 } // namespace
 } // namespace toile::test

@@ -1,4 +1,4 @@
-#include "apps/toile/terminal/cache_files.h"
+#include "apps/toile/caches/cache_files.h"
 
 #include <optional>
 #include <system_error>

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+#include "export/cache_layout.h"
+#include "export/mesh/closed_surface.h"
+#include "export/point_cache.h"
+#include "scenes/format/scene.h"
+#include "scenes/surfaces/cloth_state.h"
+
+namespace toile::app {
+
+/// The meshes that a cloth or solid becomes in a cache: itself, or one for each group of its faces; each with
+/// or without its thickness.
+class ExportedSurface {
+public:
+    /// @param state  outlives this; its positions are ignored
+    ExportedSurface(const scene::Export& entry, const scenes::ClothState& state);
+
+    const std::vector<exports::CacheMesh>& meshes() const { return meshes_; }
+
+    /// Appends positions of all meshes. @param x  [vertices] of the cloth as simulated [m]
+    void append(View<const Vec3> x, std::vector<Vec3>& positions) const;
+
+    /// Positions of the cloth's file_mesh() for those of all meshes, one vector each.
+    std::vector<Vec3> file_positions(const std::vector<std::vector<Vec3>>& meshes) const;
+
+private:
+    struct Part {
+        std::vector<int> vertices; ///< of the file's mesh
+        std::optional<exports::ClosedSurface> closed;
+    };
+    void add_part(const scene::Export& entry, exports::CacheMesh mesh, std::vector<int> vertices);
+
+    const scenes::ClothState* state_;
+    std::vector<double> thickness_; ///< [file vertices] [m]
+    std::vector<exports::CacheMesh> meshes_;
+    std::vector<Part> parts_; ///< [meshes]
+};
+
+/// What a scene's export writes: surfaces, and avatars after them.
+class CacheContents {
+public:
+    /// @param surfaces  of the scene; outlive this
+    /// @param avatars   of the scene, with their names; only those of an export that has them are used
+    CacheContents(const scene::Export& entry, const scenes::Scene& scene,
+                  View<const scenes::ClothState> surfaces,
+                  const std::vector<std::pair<std::string, const TriangleMesh*>>& avatars);
+
+    const exports::CacheLayout& layout() const { return layout_; }
+
+    /// Positions of all meshes in the export's axes.
+    /// @param surface  gives the positions of a surface, numbered as World::surfaces() [m]
+    /// @param avatars  [avatars of the export] [m]
+    std::vector<Vec3> positions(const std::function<View<const Vec3>(int surface)>& surface,
+                                const std::vector<std::vector<Vec3>>& avatars) const;
+
+private:
+    std::vector<int> numbers_; ///< of the surfaces
+    std::vector<ExportedSurface> surfaces_;
+    exports::CacheLayout layout_;
+};
+
+/// Opens the cache of a cloth in the file of an export: whole frames, in the order of the cloth's
+/// file_mesh(), in metres with Y up, frame 0 first.
+/// @param file   the export's, or what it is named until it is complete; may name the cloth's mesh
+/// @param state  outlives the cache
+/// @throws InvalidInput as read_cache(), or if the file has other meshes
+exports::PointCache open_cloth(const std::filesystem::path& file, const scene::Export& entry,
+                               const scenes::ClothState& state);
+
+} // namespace toile::app

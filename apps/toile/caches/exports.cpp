@@ -1,0 +1,75 @@
+#include "apps/toile/caches/exports.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "export/cache_format.h"
+
+namespace toile::app {
+
+std::vector<scene::Export> exports_of(const scenes::Scene& scene)
+{
+    if (!scene.exports.empty())
+        return scene.exports;
+    std::vector<scene::Export> exports;
+    for (const std::string& name : surface_names(scene)) {
+        scene::Export& entry = exports.emplace_back();
+        entry.file = name + ".pc2";
+        entry.cloths = {name};
+    }
+    return exports;
+}
+
+std::vector<std::string> surface_names(const scenes::Scene& scene)
+{
+    std::vector<std::string> names;
+    for (const scene::Cloth& cloth : scene.cloths)
+        names.push_back(cloth.name);
+    for (const scene::Solid& solid : scene.solids)
+        names.push_back(solid.name);
+    return names;
+}
+
+std::vector<int> surfaces_of(const scenes::Scene& scene, const scene::Export& entry)
+{
+    const std::vector<std::string> names = surface_names(scene);
+    std::vector<int> surfaces;
+    for (const std::string& name : entry.cloths)
+        if (const auto at = std::find(names.begin(), names.end(), name); at != names.end())
+            surfaces.push_back(int(at - names.begin()));
+    if (surfaces.empty()) { // none is named, or all: see checks.cpp
+        surfaces.resize(names.size());
+        std::iota(surfaces.begin(), surfaces.end(), 0);
+    }
+    return surfaces;
+}
+
+int start_frame_of(const scene::Export& entry)
+{
+    return entry.start_frame.value_or(exports::has_time_line(exports::cache_format(entry.file)) ? 1 : 0);
+}
+
+exports::Axes axes_of(const scene::Export& entry)
+{
+    return {entry.unit == scene::ExportUnit::Centimetre ? "cm" : "m",
+            entry.up == scene::UpAxis::Z ? "z" : "y"};
+}
+
+int subframes_of(const scenes::Scene& scene)
+{
+    int subframes = 1;
+    for (const scene::Export& entry : scene.exports)
+        subframes = std::max(subframes, entry.subframes);
+    return subframes;
+}
+
+scenes::Scene with_subframes(scenes::Scene scene, int subframes)
+{
+    scene.frames = (scene.frames - 1) * subframes + 1;
+    scene.fps *= subframes;
+    if (scene.solver.substeps)
+        *scene.solver.substeps /= subframes; // a multiple: see checks.cpp
+    return scene;
+}
+
+} // namespace toile::app

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "export/axes.h"
+#include "scenes/format/scene.h"
+
+namespace toile::app {
+
+/// Exports of the scene: its list, or one PC2 per cloth and solid.
+std::vector<scene::Export> exports_of(const scenes::Scene& scene);
+
+/// Names of the scene's cloths and then of its solids: the order of World::surfaces().
+std::vector<std::string> surface_names(const scenes::Scene& scene);
+
+/// Indices in surface_names() of the cloths and solids that an export writes.
+std::vector<int> surfaces_of(const scenes::Scene& scene, const scene::Export& entry);
+
+/// Number of the first frame in an export's file.
+int start_frame_of(const scene::Export& entry);
+
+exports::Axes axes_of(const scene::Export& entry);
+
+/// Samples per frame that the scene's exports need.
+int subframes_of(const scenes::Scene& scene);
+
+/// The scene with a sample at each subframe: sample k is at the time of frame k / subframes.
+scenes::Scene with_subframes(scenes::Scene scene, int subframes);
+
+} // namespace toile::app
