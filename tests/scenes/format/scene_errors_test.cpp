@@ -300,7 +300,7 @@ TEST(SceneErrors, KeepExportsToWhatTheirFormatHolds)
         {two(R"({"file": "x.abc", "cloth": ["a", "a"]})"),
          R"(bad.json: export[0].cloth: "a" is there twice; name it once)"},
         {two(R"({"file": "x.abc", "cloth": ["a", "c"]})"),
-         R"(bad.json: export[0].cloth: no cloth is named "c"; known are "a" and "b")"},
+         R"(bad.json: export[0].cloth: no cloth is named "c"; known are a and b)"},
         {two(R"({"file": "x.abc", "cloth": 3})"),
          "bad.json: export[0].cloth: 3 is not text; write it in double quotes"},
         {two(R"({"file": "x.mdd", "cloth": "a", "avatars": true})"),
