@@ -17,14 +17,22 @@ CacheFormat cache_format(const std::filesystem::path& file)
         return CacheFormat::Mdd;
     if (extension == ".abc")
         return CacheFormat::Abc;
+    if (extension == ".usda" || extension == ".usdc" || extension == ".usd")
+        return CacheFormat::Usd;
     if (extension == ".obj")
         return CacheFormat::Obj;
     throw InvalidInput(file.string() + ": unknown cache extension '" + extension +
-                       "'; use .pc2, .mdd, .abc or .obj");
+                       "'; use .pc2, .mdd, .abc, .usda, .usdc or .obj");
 }
 
-bool stores_faces(CacheFormat format) { return format == CacheFormat::Obj || format == CacheFormat::Abc; }
+bool stores_faces(CacheFormat format)
+{
+    return format == CacheFormat::Obj || format == CacheFormat::Abc || format == CacheFormat::Usd;
+}
 
-bool holds_several_meshes(CacheFormat format) { return format == CacheFormat::Abc; }
+bool holds_several_meshes(CacheFormat format)
+{
+    return format == CacheFormat::Abc || format == CacheFormat::Usd;
+}
 
 } // namespace toile::exports

@@ -4,10 +4,10 @@
 
 namespace toile::exports {
 
-enum class CacheFormat { Pc2, Mdd, Abc, Obj };
+enum class CacheFormat { Pc2, Mdd, Abc, Usd, Obj };
 
-/// Format for the extension of `file`: .pc2, .mdd, .abc or .obj. A mesh in an archive
-/// may follow: run.abc#/skirt/skirtShape.
+/// Format for the extension of `file`: .pc2, .mdd, .abc, .usda, .usdc, .usd or .obj. A mesh in an
+/// archive may follow: run.abc#/skirt/skirtShape.
 /// @throws InvalidInput for any other.
 CacheFormat cache_format(const std::filesystem::path& file);
 

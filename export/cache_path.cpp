@@ -11,7 +11,7 @@ namespace {
 size_t hash_in(std::string path)
 {
     std::transform(path.begin(), path.end(), path.begin(), [](unsigned char c) { return std::tolower(c); });
-    for (const std::string archive : {".abc#"})
+    for (const std::string archive : {".abc#", ".usda#", ".usdc#", ".usd#"})
         if (const size_t at = path.find(archive); at != std::string::npos)
             return at + archive.size() - 1;
     return path.size();

@@ -399,7 +399,7 @@ void check_exports(const Document& document, const scenes::Scene& scene)
         const Export& entry = scene.exports[i];
         const std::string key_path = below("export", i);
         const std::string at_file = below(key_path, "file");
-        check_extension(document, at_file, entry.file, {".pc2", ".mdd", ".obj", ".abc"});
+        check_extension(document, at_file, entry.file, {".pc2", ".mdd", ".obj", ".abc", ".usda"});
         const std::filesystem::path file = entry.file.lexically_normal();
         if (file.is_absolute() || *file.begin() == "..")
             document.refuse(at_file, as_written(entry.file.string()) +

@@ -462,7 +462,7 @@ void describe(V& v, Solver& s)
 template <typename V>
 void describe(V& v, Export& e)
 {
-    v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd, .obj or .abc.");
+    v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd, .obj, .abc or .usda.");
     v.field("cloth", e.cloth, "Name of the cloth or solid; may be left out when there is only one.");
 }
 

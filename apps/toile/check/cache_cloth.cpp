@@ -21,7 +21,8 @@ std::string name_of(const std::filesystem::path& cache)
 {
     if (exports::ObjSequence::has_digits_placeholder(cache))
         return exports::ObjSequence(cache).stem();
-    static const std::set<std::string> kEndings{".pc2", ".mdd", ".obj", ".abc", ".partial"};
+    static const std::set<std::string> kEndings{".pc2",  ".mdd",  ".obj", ".abc",
+                                                ".usda", ".usdc", ".usd", ".partial"};
     if (exports::archive_of(cache) != cache)
         return cache.parent_path().filename().string();
     std::filesystem::path name = cache.filename();
