@@ -1,6 +1,6 @@
 #include "export/cache_format.h"
 
-#include <string>
+#include <map>
 
 #include "core/base/error.h"
 #include "core/base/extension.h"
@@ -10,33 +10,43 @@ namespace toile::exports {
 
 const std::vector<std::string>& cache_extensions()
 {
-    static const std::vector<std::string> kExtensions{".pc2", ".mdd", ".obj", ".abc"};
+    static const std::vector<std::string> kExtensions{".pc2", ".mdd", ".abc", ".usda", ".obj"};
     return kExtensions;
+}
+
+std::optional<CacheFormat> known_cache_format(const std::filesystem::path& file)
+{
+    static const std::map<std::string, CacheFormat> kFormats{
+        {".pc2", CacheFormat::Pc2},  {".mdd", CacheFormat::Mdd},  {".abc", CacheFormat::Abc},
+        {".usda", CacheFormat::Usd}, {".usdc", CacheFormat::Usd}, {".usd", CacheFormat::Usd},
+        {".obj", CacheFormat::Obj}};
+    const auto at = kFormats.find(lower_case_extension(archive_of(file)));
+    return at == kFormats.end() ? std::nullopt : std::optional(at->second);
 }
 
 CacheFormat cache_format(const std::filesystem::path& file)
 {
-    const std::string extension = lower_case_extension(archive_of(file));
-    if (extension == ".pc2")
-        return CacheFormat::Pc2;
-    if (extension == ".mdd")
-        return CacheFormat::Mdd;
-    if (extension == ".abc")
-        return CacheFormat::Abc;
-    if (extension == ".obj")
-        return CacheFormat::Obj;
-    throw InvalidInput(file.string() + ": unknown cache extension '" + extension +
-                       "'; use .pc2, .mdd, .abc or .obj");
+    const std::optional<CacheFormat> format = known_cache_format(file);
+    if (!format)
+        throw InvalidInput(file.string() + ": unknown cache extension '" +
+                           lower_case_extension(archive_of(file)) +
+                           "'; use .pc2, .mdd, .abc, .usda, .usdc or .obj");
+    return *format;
 }
 
-bool stores_faces(CacheFormat format) { return format == CacheFormat::Obj || format == CacheFormat::Abc; }
-
-bool holds_several_meshes(CacheFormat format) { return format == CacheFormat::Abc; }
-
-bool stores_normals(CacheFormat format) { return format == CacheFormat::Abc; }
-
-bool has_time_line(CacheFormat format) { return format == CacheFormat::Abc; }
-
-bool is_numbered(CacheFormat format) { return format == CacheFormat::Obj; }
+CacheFeatures features_of(CacheFormat format)
+{
+    switch (format) {
+    case CacheFormat::Pc2:
+    case CacheFormat::Mdd:
+        break;
+    case CacheFormat::Abc:
+    case CacheFormat::Usd:
+        return {.faces = true, .several = true, .normals = true, .time_line = true};
+    case CacheFormat::Obj:
+        return {.faces = true, .numbered = true};
+    }
+    return {};
+}
 
 } // namespace toile::exports

@@ -1,34 +1,32 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace toile::exports {
 
-enum class CacheFormat { Pc2, Mdd, Abc, Obj };
+enum class CacheFormat { Pc2, Mdd, Abc, Usd, Obj };
 
-/// Extensions of all formats that are written: .pc2, .mdd, .obj, .abc.
+/// Extensions of the caches that a run can write.
 const std::vector<std::string>& cache_extensions();
 
-/// Format for the extension of `file`: .pc2, .mdd, .abc or .obj. A mesh in an archive
-/// may follow: run.abc#/skirt/skirtShape.
-/// @throws InvalidInput for any other.
+/// Format for the extension of `file`; none for another. A mesh in an archive may follow:
+/// run.abc#/skirt/skirtShape.
+std::optional<CacheFormat> known_cache_format(const std::filesystem::path& file);
+
+/// The same. @throws InvalidInput for another extension
 CacheFormat cache_format(const std::filesystem::path& file);
 
-/// Whether caches of a format hold the faces that they play on.
-bool stores_faces(CacheFormat format);
-
-/// Whether they hold any number of meshes.
-bool holds_several_meshes(CacheFormat format);
-
-/// Whether they hold normals.
-bool stores_normals(CacheFormat format);
-
-/// Whether their frames are numbered as a scene's time line, which begins at 1 in most programs.
-bool has_time_line(CacheFormat format);
-
-/// Whether they are a file for each frame.
-bool is_numbered(CacheFormat format);
+/// What caches of a format hold.
+struct CacheFeatures {
+    bool faces = false;   ///< that they play on
+    bool several = false; ///< any number of meshes
+    bool normals = false;
+    bool time_line = false; ///< frames numbered as a scene's, which begins at 1 in most programs
+    bool numbered = false;  ///< a file for each frame
+};
+CacheFeatures features_of(CacheFormat format);
 
 } // namespace toile::exports

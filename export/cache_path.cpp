@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "export/alembic/abc_mesh.h"
+#include "export/archive/names.h"
 
 namespace toile::exports {
 
@@ -13,7 +13,7 @@ namespace {
 size_t hash_in(std::string path)
 {
     std::transform(path.begin(), path.end(), path.begin(), [](unsigned char c) { return std::tolower(c); });
-    for (const std::string archive : {".abc#"})
+    for (const std::string archive : {".abc#", ".usda#", ".usdc#", ".usd#"})
         if (const size_t at = path.find(archive); at != std::string::npos)
             return at + archive.size() - 1;
     return path.size();
@@ -29,8 +29,8 @@ std::filesystem::path archive_of(const std::filesystem::path& cache)
 
 std::string path_of_mesh(const CacheMesh& mesh)
 {
-    const std::string name = abc_name(mesh.name);
-    return (mesh.parent.empty() ? "" : "/" + abc_name(mesh.parent)) + "/" + name + "/" + name + "Shape";
+    const std::string name = clean_name(mesh.name);
+    return (mesh.parent.empty() ? "" : "/" + clean_name(mesh.parent)) + "/" + name + "/" + name + "Shape";
 }
 
 std::string mesh_path_of(const std::filesystem::path& cache)

@@ -5,12 +5,15 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/extension.h"
 #include "export/alembic/abc_writer.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
 #include "export/mdd/mdd_writer.h"
 #include "export/obj/obj_writer.h"
 #include "export/pc2/pc2_writer.h"
+#include "export/usd/usd_writer.h"
+#include "export/usd/usdc_writer.h"
 
 namespace toile::exports {
 
@@ -62,7 +65,7 @@ void require_one_mesh(const path& file, const CacheLayout& layout)
     if (layout.meshes.size() > 1)
         throw InvalidInput(file.string() + ": holds one mesh, and the layout has " +
                            std::to_string(layout.meshes.size()) +
-                           "; write each to a file, or all to an .abc");
+                           "; write each to a file, or all to an .abc or .usda");
 }
 
 void require_numbers(const path& file, const CacheLayout& layout)
@@ -72,10 +75,29 @@ void require_numbers(const path& file, const CacheLayout& layout)
                            " can't number an OBJ; it must be a whole number, 0 or more");
 }
 
+void require_whole_archive(const path& file)
+{
+    if (archive_of(file) != file)
+        throw InvalidInput(file.string() + ": names a mesh in an archive; write the archive " +
+                           archive_of(file).string());
+}
+
+std::unique_ptr<CacheWriter> open_usd_writer(const path& file, const CacheLayout& layout)
+{
+    require_whole_archive(file);
+    require_faces(file, layout);
+    const std::string extension = lower_case_extension(file);
+    if (extension == ".usda")
+        return std::make_unique<UsdWriter>(file, layout, file.stem().string());
+    if (extension == ".usdc")
+        return std::make_unique<UsdcWriter>(file, layout);
+    throw InvalidInput(file.string() + ": may be text or binary; write .usda or .usdc");
+}
+
 std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& layout)
 {
     const CacheFormat format = cache_format(file);
-    if (!holds_several_meshes(format))
+    if (!features_of(format).several)
         require_one_mesh(file, layout);
     switch (format) {
     case CacheFormat::Pc2:
@@ -83,11 +105,11 @@ std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& la
     case CacheFormat::Mdd:
         return std::make_unique<MddWriter>(file, layout);
     case CacheFormat::Abc:
-        if (archive_of(file) != file)
-            throw InvalidInput(file.string() + ": names a mesh in an archive; write the archive " +
-                               archive_of(file).string());
+        require_whole_archive(file);
         require_faces(file, layout);
         return std::make_unique<AbcWriter>(file, layout);
+    case CacheFormat::Usd:
+        return open_usd_writer(file, layout);
     case CacheFormat::Obj:
         break;
     }

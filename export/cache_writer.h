@@ -56,10 +56,12 @@ protected:
 ///   .pc2   Point Cache 2
 ///   .mdd   Lightwave MDD; its partial is a PC2 (skirt.mdd.partial.pc2), see docs/guide/caches.md
 ///   .abc   Alembic, of one or several meshes; can't be resumed
+///   .usda  USD in text, of one or several meshes, with value clips beyond 50 samples; can't be resumed
+///   .usdc  the same as one binary file; needs Python with USD
 ///   .obj   one OBJ for one frame, else a sequence: skirt.obj stands for skirt_####.obj, each # a digit
 /// @throws InvalidInput before the simulation: an unknown extension, an unwritable location, a layout
-///         without vertices, frames or (OBJ, Alembic) faces, several meshes where the format holds one, no
-///         cache to resume.
+///         without vertices, frames or (OBJ, Alembic, USD) faces, several meshes where the format holds one,
+///         no cache to resume.
 std::unique_ptr<CacheWriter> make_cache_writer(const std::filesystem::path& file, const CacheLayout& layout);
 
 } // namespace toile::exports

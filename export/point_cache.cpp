@@ -12,6 +12,7 @@
 #include "export/cache_path.h"
 #include "export/obj/obj_sequence.h"
 #include "export/pc2/pc2_writer.h"
+#include "export/usd/usd_cache.h"
 
 namespace toile::exports {
 
@@ -204,6 +205,8 @@ PointCache read_cache(const path& file)
         return PointCache(std::make_unique<MddSource>(file));
     case CacheFormat::Abc:
         return PointCache(open_abc(file));
+    case CacheFormat::Usd:
+        return PointCache(open_usd(file));
     case CacheFormat::Obj:
         break;
     }
@@ -212,10 +215,11 @@ PointCache read_cache(const path& file)
 
 std::vector<path> meshes_of_cache(const path& file)
 {
-    if (cache_format(file) != CacheFormat::Abc || !mesh_path_of(file).empty())
+    const CacheFormat format = cache_format(file);
+    if (!features_of(format).several || !mesh_path_of(file).empty())
         return {file};
     std::vector<path> meshes;
-    for (const std::string& mesh : abc_mesh_paths(file))
+    for (const std::string& mesh : format == CacheFormat::Abc ? abc_mesh_paths(file) : usd_mesh_paths(file))
         meshes.push_back(file.string() + "#" + mesh);
     return meshes;
 }

@@ -240,9 +240,11 @@ void print_scene(const std::filesystem::path& file)
 int info(const std::filesystem::path& file)
 {
     static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
-        {".obj", print_obj},     {".vtk", print_tets},        {".glb", print_avatar}, {".gltf", print_avatar},
-        {".fbx", print_avatar},  {".bvh", print_motion_file}, {".pc2", print_cache},  {".mdd", print_cache},
-        {".abc", print_archive}, {".json", print_scene}};
+        {".obj", print_obj},      {".vtk", print_tets},     {".glb", print_avatar},
+        {".gltf", print_avatar},  {".fbx", print_avatar},   {".bvh", print_motion_file},
+        {".pc2", print_cache},    {".mdd", print_cache},    {".abc", print_archive},
+        {".usda", print_archive}, {".usdc", print_archive}, {".usd", print_archive},
+        {".json", print_scene}};
     if (!std::filesystem::is_regular_file(exports::archive_of(file)))
         throw InvalidInput(file.string() + ": can't be found; name a file");
     const auto printer = kPrinters.find(lower_case_extension(exports::archive_of(file)));
@@ -250,7 +252,7 @@ int info(const std::filesystem::path& file)
         throw InvalidInput(
             file.string() +
             ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .bvh, .pc2, .mdd, " +
-            ".abc and .json (scene)");
+            ".abc, .usda, .usdc, .usd and .json (scene)");
     printer->second(file);
     return kExitOk;
 }

@@ -27,6 +27,9 @@ namespace {
 /// refusal.
 enum Outcome { kDone = 90, kRefused, kOutOfMemory };
 
+/// Exit code of a program that can't be started, as shells have it.
+constexpr int kNotStarted = 127;
+
 /// Between two questions whether the work shall go on [ms].
 constexpr int kPollInterval = 50;
 
@@ -99,7 +102,8 @@ std::string name_of(int signal)
 /// A child process and the end of the pipe that it writes to. Ends it if it still runs.
 class Child {
 public:
-    Child(const std::function<std::string()>& work, const ChildBounds& bounds)
+    /// @param run  work of the child, by the pipe; it does not return
+    Child(const std::function<void(int)>& run, const ChildBounds& bounds)
     {
         // Another child that inherits the writing end would keep this one's pipe open.
         static std::mutex one_at_a_time;
@@ -111,7 +115,8 @@ public:
         if (process_ == 0) {
             ::close(pipe[0]);
             confine(bounds, parent);
-            do_work(work, pipe[1]);
+            run(pipe[1]);
+            ::abort();
         }
         pipe_ = pipe[0];
         ::close(pipe[1]);
@@ -164,14 +169,11 @@ private:
     int pipe_ = -1;
 };
 
-} // namespace
-
-std::string in_child_process(const std::function<std::string()>& work, const ChildBounds& bounds)
+/// Receives what a child sends, until its end or a bound. @return status as of waitpid()
+int receive_all(Child& child, const ChildBounds& bounds, std::string& text)
 {
     using std::chrono::steady_clock;
     const auto end = steady_clock::now() + bounds.time;
-    Child child(work, bounds);
-    std::string text;
     while (child.receive(text)) {
         Cancellation::check();
         if (steady_clock::now() > end)
@@ -180,6 +182,23 @@ std::string in_child_process(const std::function<std::string()>& work, const Chi
     const int status = child.wait();
     if (WIFSIGNALED(status))
         throw ChildStopped("stopped with " + name_of(WTERMSIG(status)));
+    return status;
+}
+
+[[noreturn]] void become(char* const* arguments, int pipe)
+{
+    ::dup2(pipe, STDOUT_FILENO);
+    ::execvp(arguments[0], arguments);
+    ::_exit(kNotStarted);
+}
+
+} // namespace
+
+std::string in_child_process(const std::function<std::string()>& work, const ChildBounds& bounds)
+{
+    Child child([&](int pipe) { do_work(work, pipe); }, bounds);
+    std::string text;
+    const int status = receive_all(child, bounds, text);
     if (WEXITSTATUS(status) == kOutOfMemory)
         throw ChildStopped("needs more memory than it may take, at most " +
                            std::to_string(bounds.memory >> 20) + " MB");
@@ -188,6 +207,18 @@ std::string in_child_process(const std::function<std::string()>& work, const Chi
     if (WEXITSTATUS(status) != kDone)
         throw ChildStopped("ended early with exit code " + std::to_string(WEXITSTATUS(status)));
     return text;
+}
+
+ProgramEnd run_program(const std::vector<std::string>& command, const ChildBounds& bounds)
+{
+    std::vector<char*> arguments;
+    for (const std::string& argument : command)
+        arguments.push_back(const_cast<char*>(argument.c_str()));
+    arguments.push_back(nullptr);
+    Child child([&](int pipe) { become(arguments.data(), pipe); }, bounds);
+    ProgramEnd end;
+    end.exit_code = WEXITSTATUS(receive_all(child, bounds, end.output));
+    return end;
 }
 
 } // namespace toile

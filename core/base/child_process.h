@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace toile {
 
@@ -29,5 +30,17 @@ public:
 /// @throws Cancelled    if Cancellation says so meanwhile
 /// @throws DeviceError  if no process can be started
 std::string in_child_process(const std::function<std::string()>& work, const ChildBounds& bounds);
+
+/// End of a program that ended by itself.
+struct ProgramEnd {
+    int exit_code = 0;  ///< 127: it could not be started
+    std::string output; ///< standard output
+};
+
+/// Runs another program as a child process, with the same bounds and the same end if this thread ends. It has
+/// no input and no error stream.
+/// @param command  name in PATH, or path, and the arguments
+/// @throws ChildStopped, Cancelled, DeviceError as in_child_process
+ProgramEnd run_program(const std::vector<std::string>& command, const ChildBounds& bounds);
 
 } // namespace toile

@@ -6,6 +6,7 @@
 
 #include "core/compute/types.h"
 #include "export/alembic/abc_mesh.h"
+#include "export/archive/frame_velocities.h"
 #include "export/cache_layout.h"
 
 namespace toile::exports {
@@ -14,8 +15,7 @@ namespace toile::exports {
 /// last frame but one for the first ten frames, then up to all but the last eleven, and beyond frame 320 all
 /// but a thirtieth, because each index names all frames before it.
 ///
-/// Velocities are central differences, so that a frame is written when the next one arrives; the first and
-/// the last are one-sided.
+/// A frame is written when the next one arrives, which gives its velocity.
 class AbcArchive {
 public:
     /// Creates the file, or empties it.
@@ -31,7 +31,7 @@ public:
     void complete();
 
 private:
-    void write_waiting(const std::vector<Vec3>& next);
+    void write_sample();
     void write_index();
     std::vector<AbcObject> add_objects();
 
@@ -39,7 +39,7 @@ private:
     CacheLayout layout_; ///< without faces
     std::string application_;
     std::vector<AbcMesh> meshes_;
-    std::vector<Vec3> before_, waiting_; ///< frames; empty: none
+    FrameVelocities velocities_;
     int frames_ = 0, indexed_ = 0;
 };
 

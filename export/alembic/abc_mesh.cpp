@@ -1,12 +1,9 @@
 #include "export/alembic/abc_mesh.h"
 
 #include <algorithm>
-#include <cctype>
-#include <map>
-#include <set>
-#include <utility>
 
-#include "core/base/error.h"
+#include "export/archive/face_groups.h"
+#include "export/archive/names.h"
 #include "export/byte_order.h"
 
 namespace toile::exports {
@@ -93,24 +90,13 @@ OgawaNode add_object(OgawaFile& file, OgawaNode properties, const std::vector<Ab
     return file.add_group(nodes);
 }
 
-std::string abc_name(const std::string& name)
-{
-    std::string clean = name;
-    for (char& c : clean)
-        if (!std::isalnum(static_cast<unsigned char>(c)))
-            c = '_';
-    if (clean.empty() || std::isdigit(static_cast<unsigned char>(clean.front())))
-        clean.insert(0, "_");
-    return clean;
-}
-
 AbcObject add_transform(OgawaFile& file, const std::string& name, const std::vector<AbcObject>& children)
 {
     const AbcCompound transform{".xform", schema("Xform_v3")};
     std::string metadata = schema_of_object("Xform_v3", ".xform");
-    if (name != abc_name(name))
+    if (name != clean_name(name))
         metadata += ";toile_name=" + without_separators(name);
-    return {abc_name(name), metadata,
+    return {clean_name(name), metadata,
             add_object(file, AbcCompound{"", "", {}, {transform}}.add_group(file), children)};
 }
 
@@ -150,29 +136,13 @@ void AbcMesh::add_texture(OgawaFile& file, const ObjMesh& faces)
     texture_indices_.add_sample(file, bytes_of_corners<std::uint32_t>(faces.polygon_uvs));
 }
 
-/// A group may begin several times.
 void AbcMesh::add_face_sets(OgawaFile& file, const ObjMesh& faces)
 {
-    std::vector<std::pair<std::string, std::string>> sets; // name, bytes
-    std::map<std::string, size_t> set_of;
-    for (size_t g = 0; g < faces.groups.size(); ++g) {
-        const ObjGroup& group = faces.groups[g];
-        const int end =
-            g + 1 < faces.groups.size() ? faces.groups[g + 1].first_polygon : int(faces.polygons.size());
-        if (group.name.empty() || group.first_polygon == end)
-            continue;
-        const auto [at, is_new] = set_of.try_emplace(group.name, sets.size());
-        if (is_new)
-            sets.emplace_back(group.name, "");
-        for (int polygon = group.first_polygon; polygon < end; ++polygon)
-            append(sets[at->second].second, std::int32_t(polygon));
-    }
-    std::set<std::string> taken;
-    for (const auto& [name, bytes] : sets) {
-        std::string clean = abc_name(name);
-        for (int k = 2; !taken.insert(clean).second; ++k)
-            clean = abc_name(name) + "_" + std::to_string(k);
-        face_sets_.push_back({clean, integers(".faces")});
+    for (const FaceGroup& group : face_groups(faces)) {
+        std::string bytes;
+        for (const int polygon : group.polygons)
+            append(bytes, std::int32_t(polygon));
+        face_sets_.push_back({group.clean_name, integers(".faces")});
         face_sets_.back().faces.add_sample(file, bytes);
     }
 }
@@ -217,7 +187,7 @@ AbcObject AbcMesh::add_object(OgawaFile& file) const
                         exports::add_object(file, properties, {})});
     }
     const OgawaNode properties = AbcCompound{"", "", {}, {geometry()}}.add_group(file);
-    const AbcObject mesh{abc_name(name_) + "Shape", schema_of_object("PolyMesh_v1", ".geom"),
+    const AbcObject mesh{clean_name(name_) + "Shape", schema_of_object("PolyMesh_v1", ".geom"),
                          exports::add_object(file, properties, sets)};
     return add_transform(file, name_, {mesh});
 }

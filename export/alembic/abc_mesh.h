@@ -24,9 +24,6 @@ OgawaNode add_object(OgawaFile& file, OgawaNode properties, const std::vector<Ab
 /// @param name  as the user gave it; kept as metadata if it has to be cleaned
 AbcObject add_transform(OgawaFile& file, const std::string& name, const std::vector<AbcObject>& children);
 
-/// Name as programs accept it: letters, digits and underscores, none of the digits first.
-std::string abc_name(const std::string& name);
-
 /// A mesh of an Alembic archive that moves with constant topology: a transform /NAME, for programs that show
 /// no mesh without one, above the mesh NAMEShape, with a face set for each group. Faces are clockwise in
 /// Alembic, and so is all that is stored per corner.

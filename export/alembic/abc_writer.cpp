@@ -1,42 +1,19 @@
 #include "export/alembic/abc_writer.h"
 
-#include <set>
 #include <string>
 #include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "export/archive/names.h"
 #include "export/binary_file.h"
 
 namespace toile::exports {
 
-namespace {
-
-/// Names of meshes below one parent, and of those without and of parents.
-void require_distinct_names(const std::filesystem::path& file, const CacheLayout& layout)
-{
-    std::set<std::string> taken, parents;
-    const auto take = [&](const std::string& name) {
-        if (!taken.insert(name).second)
-            throw InvalidInput(file.string() + ": two meshes would be called \"" + name +
-                               "\"; give them names that differ in letters, digits or underscores");
-    };
-    for (const CacheMesh& mesh : layout.meshes) {
-        if (!mesh.parent.empty() && parents.insert(mesh.parent).second)
-            take(abc_name(mesh.parent));
-        take((mesh.parent.empty() ? "" : abc_name(mesh.parent) + "/") + abc_name(mesh.name));
-    }
-}
-
-} // namespace
-
 AbcWriter::AbcWriter(std::filesystem::path file, const CacheLayout& layout)
-    : file_(std::move(file)), partial_(partial_beside(file_)), order_(file_, layout), layout_(layout)
+    : file_(std::move(file)), partial_(partial_beside(file_)), order_(file_, layout),
+      layout_(with_names(file_, layout))
 {
-    for (CacheMesh& mesh : layout_.meshes)
-        if (mesh.name.empty())
-            mesh.name = file_.stem().string();
-    require_distinct_names(file_, layout_);
     require_writable(partial_);
     if (layout.resume_at > 0)
         throw InvalidInput(file_.string() + ": an Alembic archive can't be continued; start the run anew, or "

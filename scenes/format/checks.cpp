@@ -416,19 +416,20 @@ void check_exported_cloths(const Document& document, const std::string& key_path
         if (!seen.insert(name).second)
             document.refuse(below(key_path, "cloth"), as_written(name) + " is there twice; name it once");
     }
-    if (exports::holds_several_meshes(exports::cache_format(entry.file)))
+    if (exports::features_of(exports::cache_format(entry.file)).several)
         return;
     const std::string one_mesh = as_written(lower_case_extension(entry.file)) + " holds one mesh; ";
     if (entry.cloths.size() > 1 || (is_all && known.size() > 1))
-        document.refuse(below(key_path, "cloth"), one_mesh + "write one file each, or an .abc of all");
+        document.refuse(below(key_path, "cloth"),
+                        one_mesh + "write one file each, or an .abc or .usda of all");
     if (entry.cloths.empty() && known.size() > 1)
         document.refuse(key_path, "the scene has " + std::to_string(known.size()) +
                                       (scene.solids.empty() ? " cloths" : " cloths and solids") +
                                       "; name the one to write with the key \"cloth\"");
     if (entry.avatars)
-        document.refuse(below(key_path, "avatars"), one_mesh + "write the avatars to an .abc");
+        document.refuse(below(key_path, "avatars"), one_mesh + "write the avatars to an .abc or .usda");
     if (!entry.weld)
-        document.refuse(below(key_path, "weld"), one_mesh + "write the panels to an .abc");
+        document.refuse(below(key_path, "weld"), one_mesh + "write the panels to an .abc or .usda");
 }
 
 /// Checks what a format can't store. What stays at its default is left out silently.
@@ -437,11 +438,11 @@ void check_export_features(const Document& document, const std::string& key_path
 {
     const exports::CacheFormat format = exports::cache_format(entry.file);
     const std::string extension = as_written(lower_case_extension(entry.file));
-    if (entry.normals && !exports::stores_normals(format))
-        document.refuse(below(key_path, "normals"), extension + " stores no normals; write an .abc");
-    if (entry.subframes > 1 && exports::is_numbered(format))
+    if (entry.normals && !exports::features_of(format).normals)
+        document.refuse(below(key_path, "normals"), extension + " stores no normals; write an .abc or .usda");
+    if (entry.subframes > 1 && exports::features_of(format).numbered)
         document.refuse(below(key_path, "subframes"),
-                        extension + " has a file for each frame and none between; write an .abc");
+                        extension + " has a file for each frame and none between; write an .abc or .usda");
     if (solver.substeps && *solver.substeps % entry.subframes != 0)
         document.refuse(below(key_path, "subframes"),
                         as_written(entry.subframes) + " does not divide solver.substeps, " +

@@ -464,14 +464,14 @@ void describe(V& v, Solver& s)
 template <typename V>
 void describe(V& v, Export& e)
 {
-    v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd, .obj or .abc.");
+    v.required("file", e.file, "Cache to write, inside the output folder; its extension gives the format.");
     v.names(
         "cloth", e.cloths,
         "Cloths and solids to write, by name; or all. Absent: the only one, or all where the format holds "
         "several meshes.");
     v.field("avatars", e.avatars, "Also write the avatars, as they are posed, in triangles.");
     v.field("start_frame", e.start_frame, between(0, 1e6),
-            "Number of the first frame. Absent: 1 in formats with a time line (.abc), else 0.");
+            "Number of the first frame. Absent: 1 in formats with a time line (.abc, .usda), else 0.");
     v.field("subframes", e.subframes, between(1, 100),
             "Samples per frame, for motion blur. The simulation then ends a step at each.");
     v.field("unit", e.unit, "Unit of the numbers written. Blender and Houdini expect m, Maya and Unreal cm.");

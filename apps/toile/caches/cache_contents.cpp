@@ -145,11 +145,9 @@ public:
                 const scenes::ClothState& state)
         : surface_(entry, state)
     {
-        const bool is_named = !exports::mesh_path_of(file).empty();
-        const bool is_single = is_named || exports::meshes_of_cache(file).size() == 1;
+        const std::vector<std::filesystem::path> in_file = exports::meshes_of_cache(file);
         for (const exports::CacheMesh& of_surface : surface_.meshes())
-            caches_.push_back(exports::read_cache(
-                is_single ? file : std::filesystem::path(file.string() + "#" + exports::path_of_mesh(of_surface))));
+            caches_.push_back(exports::read_cache(path_of(of_surface, in_file)));
         const exports::PointCache& first = caches_.front();
         axes_ = first.axes().value_or(axes_of(entry));
         subframes_ = first.subframes() > 1 ? first.subframes() : entry.subframes;
@@ -173,6 +171,17 @@ public:
     }
 
 private:
+    /// The only mesh of a file, or that of this name.
+    static std::filesystem::path path_of(const exports::CacheMesh& of_surface,
+                                         const std::vector<std::filesystem::path>& in_file)
+    {
+        const std::string ending = exports::path_of_mesh(of_surface);
+        for (const std::filesystem::path& path : in_file)
+            if (in_file.size() == 1 || exports::mesh_path_of(path).ends_with(ending))
+                return path;
+        return exports::archive_of(in_file.at(0)).string() + "#" + ending; // which will be refused
+    }
+
     /// Otherwise the cache is of another cloth, which who opened it will say.
     bool parts_have_their_size() const
     {

@@ -46,7 +46,8 @@ std::vector<int> surfaces_of(const scenes::Scene& scene, const scene::Export& en
 
 int start_frame_of(const scene::Export& entry)
 {
-    return entry.start_frame.value_or(exports::has_time_line(exports::cache_format(entry.file)) ? 1 : 0);
+    return entry.start_frame.value_or(exports::features_of(exports::cache_format(entry.file)).time_line ? 1
+                                                                                                        : 0);
 }
 
 exports::Axes axes_of(const scene::Export& entry)

@@ -7,11 +7,11 @@
 #include "apps/toile/caches/exports.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
-#include "export/alembic/abc_mesh.h"
+#include "export/archive/names.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
 #include "export/obj/obj_sequence.h"
-#include "scenes/format/names.h"
+#include "scenes/format/document.h"
 
 namespace toile::app {
 
@@ -23,8 +23,7 @@ std::string name_of(const std::filesystem::path& cache)
     if (exports::ObjSequence::has_digits_placeholder(cache))
         return exports::ObjSequence(cache).stem();
     std::filesystem::path name = exports::archive_of(cache).filename();
-    while (lower_case_extension(name) == ".partial" ||
-           scene_format::contains(exports::cache_extensions(), lower_case_extension(name)))
+    while (lower_case_extension(name) == ".partial" || exports::known_cache_format(name))
         name = name.stem();
     return name.string();
 }
@@ -54,7 +53,7 @@ bool is_exported(const scenes::Scene& scene, const scene::Export& entry)
 int index_of(const std::vector<std::string>& names, const std::string& name)
 {
     for (size_t i = 0; i < names.size(); ++i)
-        if (names[i] == name || exports::abc_name(names[i]) == name)
+        if (names[i] == name || exports::clean_name(names[i]) == name)
             return int(i);
     return -1;
 }

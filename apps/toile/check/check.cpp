@@ -174,7 +174,7 @@ Command add_check(CLI::App& parser)
     auto options = std::make_shared<CheckOptions>();
     CLI::App& add = *command.options;
     add.add_option("caches", options->caches,
-                   "Caches (.pc2, .mdd, .obj, .abc), one of each cloth, or their folder")
+                   "Caches (.pc2, .mdd, .obj, .abc, .usda, .usdc, .usd), one of each cloth, or their folder")
         ->required();
     add.add_option("--scene", options->scene, "Scene that they were made from")->required();
     add.add_option("-o,--output", options->output, "Write the JSON here [beside the caches, and to stdout]");

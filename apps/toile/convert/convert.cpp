@@ -118,7 +118,8 @@ double fps_of(const ConvertOptions& options, const exports::PointCache& cache)
         return fps;
     }
     const exports::CacheFormat format = exports::cache_format(options.output);
-    const bool stores_times = format == exports::CacheFormat::Abc || format == exports::CacheFormat::Mdd;
+    const bool stores_times = format == exports::CacheFormat::Abc || format == exports::CacheFormat::Mdd ||
+                              format == exports::CacheFormat::Usd;
     if (!cache.fps() && stores_times && cache.frame_count() > 1 && !options.quiet)
         std::cerr << "toile: " << options.input.string()
                   << ": has no frame rate; taken to be 24 a second (--fps)\n";
@@ -127,7 +128,7 @@ double fps_of(const ConvertOptions& options, const exports::PointCache& cache)
 
 void require_faces(const ConvertOptions& options, const exports::CacheLayout& layout)
 {
-    if (exports::stores_faces(exports::cache_format(options.output)) &&
+    if (exports::features_of(exports::cache_format(options.output)).faces &&
         layout.meshes.front().faces.polygons.empty())
         throw InvalidInput(options.input.string() + ": has no faces, which " + options.output.string() +
                            " needs; name the mesh that it plays on with --mesh");
@@ -235,10 +236,12 @@ Command add_convert(CLI::App& parser)
     command.options = parser.add_subcommand("convert", "Write a cache in another format, unit or rate");
     auto options = std::make_shared<ConvertOptions>();
     CLI::App& add = *command.options;
-    add.add_option("input", options->input,
-                   "Cache: .pc2, .mdd, .obj or .abc; a mesh in an archive by a path behind #")
+    add.add_option(
+           "input", options->input,
+           "Cache: .pc2, .mdd, .obj, .abc, .usda, .usdc or .usd; a mesh in an archive by a path behind #")
         ->required();
-    add.add_option("output", options->output, "Cache to write: .pc2, .mdd, .obj or .abc")->required();
+    add.add_option("output", options->output, "Cache to write: .pc2, .mdd, .obj, .abc, .usda or .usdc")
+        ->required();
     add.add_option("--mesh", options->mesh, "OBJ with the faces of a .pc2 or .mdd, which have none");
     add.add_option("--fps", options->fps, "Frames per second, also as 24000/1001; without it the cache's");
     add.add_option("--start-frame", options->start_frame,
@@ -249,8 +252,8 @@ Command add_convert(CLI::App& parser)
                    "Upward axis of the numbers read: y or z; without it the file's, or y");
     add.add_option("--unit", options->to.unit, "Unit of the numbers written: m or cm");
     add.add_option("--up", options->to.up, "Upward axis of the numbers written: y or z");
-    add.add_flag("--normals", options->normals, "Store normals, creased at seams (.abc)");
-    add.add_flag("--no-velocities", options->no_velocities, "Store no velocities (.abc)");
+    add.add_flag("--normals", options->normals, "Store normals, creased at seams (.abc, .usda, .usdc)");
+    add.add_flag("--no-velocities", options->no_velocities, "Store no velocities (.abc, .usda, .usdc)");
     add.add_flag("--quiet", options->quiet, "No progress and no notes");
     command.run = [options] { return convert(*options); };
     return command;

@@ -77,7 +77,7 @@ std::vector<ExportFile> start_meshes_of(const SceneJob& job)
         const auto is_same = [&](const ExportFile& other) {
             return other.file == mesh.file && have_same_contents(job.scene, other, mesh);
         };
-        if (!exports::stores_faces(exports::cache_format(cache.file)) &&
+        if (!exports::features_of(exports::cache_format(cache.file)).faces &&
             std::none_of(caches.begin(), caches.end(), is_same) &&
             std::none_of(meshes.begin(), meshes.end(), is_same))
             meshes.push_back(mesh);

@@ -274,7 +274,7 @@ TEST(SceneErrors, KeepExportsInsideTheOutputFolder)
         {scene_with(R"("export": [{"file": "../a.pc2"}])"),
          R"(bad.json: export[0].file: "../a.pc2" leaves the output folder; give a path inside it)"},
         {scene_with(R"("export": [{"file": "a.mc"}])"),
-         R"(bad.json: export[0].file: "a.mc" is of an unknown format; use .pc2, .mdd, .obj or .abc)"},
+         R"(bad.json: export[0].file: "a.mc" is of an unknown format; use .pc2, .mdd, .abc, .usda or .obj)"},
         {scene_with(R"("export": [{"file": "a.pc2"}, {"file": "./a.pc2"}])"),
          R"(bad.json: export[1].file: "./a.pc2" is written by an earlier entry; choose another file)"},
         {scene_with(R"("export": [{"file": "a.pc2", "cloth": "shet"}])"),
@@ -294,9 +294,9 @@ TEST(SceneErrors, KeepExportsToWhatTheirFormatHolds)
     };
     expect_complaints({
         {two(R"({"file": "x.pc2", "cloth": "all"})"),
-         R"(bad.json: export[0].cloth: ".pc2" holds one mesh; write one file each, or an .abc of all)"},
+         R"(bad.json: export[0].cloth: ".pc2" holds one mesh; write one file each, or an .abc or .usda of all)"},
         {two(R"({"file": "x.pc2", "cloth": ["a", "b"]})"),
-         R"(bad.json: export[0].cloth: ".pc2" holds one mesh; write one file each, or an .abc of all)"},
+         R"(bad.json: export[0].cloth: ".pc2" holds one mesh; write one file each, or an .abc or .usda of all)"},
         {two(R"({"file": "x.abc", "cloth": ["a", "a"]})"),
          R"(bad.json: export[0].cloth: "a" is there twice; name it once)"},
         {two(R"({"file": "x.abc", "cloth": ["a", "c"]})"),
@@ -304,13 +304,13 @@ TEST(SceneErrors, KeepExportsToWhatTheirFormatHolds)
         {two(R"({"file": "x.abc", "cloth": 3})"),
          "bad.json: export[0].cloth: 3 is not text; write it in double quotes"},
         {two(R"({"file": "x.mdd", "cloth": "a", "avatars": true})"),
-         R"(bad.json: export[0].avatars: ".mdd" holds one mesh; write the avatars to an .abc)"},
+         R"(bad.json: export[0].avatars: ".mdd" holds one mesh; write the avatars to an .abc or .usda)"},
         {two(R"({"file": "x.mdd", "cloth": "a", "weld": false})"),
-         R"(bad.json: export[0].weld: ".mdd" holds one mesh; write the panels to an .abc)"},
+         R"(bad.json: export[0].weld: ".mdd" holds one mesh; write the panels to an .abc or .usda)"},
         {two(R"({"file": "x.obj", "cloth": "a", "normals": true})"),
-         R"(bad.json: export[0].normals: ".obj" stores no normals; write an .abc)"},
+         R"(bad.json: export[0].normals: ".obj" stores no normals; write an .abc or .usda)"},
         {two(R"({"file": "x_##.obj", "cloth": "a", "subframes": 2})"),
-         R"(bad.json: export[0].subframes: ".obj" has a file for each frame and none between; write an .abc)"},
+         R"(bad.json: export[0].subframes: ".obj" has a file for each frame and none between; write an .abc or .usda)"},
         {two(R"({"file": "x.abc", "subframes": 3})"), "bad.json: export[0].subframes: 3 does not divide "
                                                       "solver.substeps, 4; give a divisor of it, or leave "
                                                       "substeps out"},

@@ -1,0 +1,143 @@
+#include "export/usd/usd_mesh.h"
+
+#include "core/mesh/triangle_mesh.h"
+#include "export/archive/names.h"
+
+namespace toile::exports {
+
+namespace {
+
+void append(std::vector<float>& numbers, const Vec3& x)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        numbers.push_back(float(x[axis]));
+}
+
+std::vector<float> floats_of(View<const Vec3> vectors)
+{
+    std::vector<float> numbers;
+    numbers.reserve(3 * size_t(vectors.size()));
+    for (const Vec3& x : vectors)
+        append(numbers, x);
+    return numbers;
+}
+
+std::vector<int> joined(const std::vector<std::vector<int>>& lists)
+{
+    std::vector<int> all;
+    for (const std::vector<int>& list : lists)
+        all.insert(all.end(), list.begin(), list.end());
+    return all;
+}
+
+constexpr const char* kAtCorners = " (\n            interpolation = \"faceVarying\"\n        )";
+
+} // namespace
+
+UsdMesh::UsdMesh(const CacheMesh& mesh, const Options& options)
+    : name_(clean_name(mesh.name) + "Shape"), faces_(mesh.faces), groups_(face_groups(mesh.faces)),
+      extent_("float3[] extent", 3), points_("point3f[] points", 3)
+{
+    if (options.velocities)
+        velocities_.emplace("vector3f[] velocities", 3);
+    if (options.normals) {
+        corner_normals_.emplace(mesh.faces);
+        normals_.emplace("normal3f[] normals", 3, kAtCorners);
+    }
+}
+
+void UsdMesh::add_sample(View<const Vec3> x, View<const Vec3> v)
+{
+    const Bounds box = bounds(x);
+    extent_.add(floats_of(std::vector<Vec3>{box.lower, box.upper}));
+    points_.add(floats_of(x));
+    if (velocities_)
+        velocities_->add(floats_of(v));
+    if (!normals_)
+        return;
+    const std::vector<Vec3> normals = corner_normals_->at(x);
+    std::vector<float> at_corners;
+    for (const std::vector<int>& indices : corner_normals_->indices())
+        for (const int index : indices)
+            append(at_corners, normals[size_t(index)]);
+    normals_->add(std::move(at_corners));
+}
+
+void UsdMesh::drop_all_but_last()
+{
+    for (UsdTrack* track :
+         {&extent_, &points_, velocities_ ? &*velocities_ : nullptr, normals_ ? &*normals_ : nullptr})
+        if (track)
+            track->drop_all_but_last();
+}
+
+void UsdMesh::write(UsdFile& file, UsdLayer layer, const std::string& indent,
+                    const std::vector<double>& times) const
+{
+    const bool has_faces = layer == UsdLayer::Whole || layer == UsdLayer::Root;
+    const std::string inner = indent + "    ";
+    file << indent << (has_faces ? "def Mesh \"" : "over \"") << name_ << "\"\n" << indent << "{\n";
+    if (has_faces)
+        write_faces(file, inner);
+    for (const UsdTrack* track :
+         {&extent_, &points_, velocities_ ? &*velocities_ : nullptr, normals_ ? &*normals_ : nullptr}) {
+        if (!track)
+            continue;
+        if (layer == UsdLayer::Whole)
+            track->write(file, inner, times);
+        else if (layer == UsdLayer::Clip)
+            track->write_samples(file, inner, times);
+        else
+            track->declare(file, inner);
+    }
+    if (has_faces)
+        write_groups(file, inner);
+    file << indent << "}\n";
+}
+
+void UsdMesh::write_faces(UsdFile& file, const std::string& indent) const
+{
+    std::vector<int> counts;
+    for (const std::vector<int>& polygon : faces_.polygons)
+        counts.push_back(int(polygon.size()));
+    file << indent << "int[] faceVertexCounts = ";
+    file.append(counts);
+    file << "\n" << indent << "int[] faceVertexIndices = ";
+    file.append(joined(faces_.polygons));
+    file << "\n" << indent << "uniform token orientation = \"rightHanded\"\n";
+    file << indent << "uniform token subdivisionScheme = \"none\"\n";
+    if (faces_.polygon_uvs.empty())
+        return;
+    std::vector<float> texture;
+    for (const Vec2& at : faces_.texture_coordinates) {
+        texture.push_back(float(at.x()));
+        texture.push_back(float(at.y()));
+    }
+    file << indent << "texCoord2f[] primvars:st = ";
+    file.append(texture.data(), texture.size(), 2);
+    file << kAtCorners << "\n" << indent << "int[] primvars:st:indices = ";
+    file.append(joined(faces_.polygon_uvs));
+    file << "\n";
+}
+
+void UsdMesh::write_groups(UsdFile& file, const std::string& indent) const
+{
+    if (groups_.empty())
+        return;
+    file << indent << "uniform token subsetFamily:materialBind:familyType = \"nonOverlapping\"\n";
+    for (const FaceGroup& group : groups_) {
+        file << "\n" << indent << "def GeomSubset \"" << group.clean_name << "\"";
+        if (group.name != group.clean_name)
+            file << " (\n"
+                 << indent << "    displayName = " << usd_quoted(group.name) << "\n"
+                 << indent << ")";
+        file << "\n" << indent << "{\n";
+        file << indent << "    uniform token elementType = \"face\"\n";
+        file << indent << "    uniform token familyName = \"materialBind\"\n";
+        file << indent << "    int[] indices = ";
+        file.append(group.polygons);
+        file << "\n" << indent << "}\n";
+    }
+}
+
+} // namespace toile::exports

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "export/archive/face_groups.h"
+#include "export/cache_layout.h"
+#include "export/corner_normals.h"
+#include "export/usd/usd_track.h"
+
+namespace toile::exports {
+
+/// Layers that hold a stage together or in parts.
+enum class UsdLayer {
+    Whole,    ///< everything
+    Root,     ///< all but samples, which are in clips
+    Clip,     ///< samples
+    Manifest, ///< names of attributes that have samples in clips
+};
+
+/// A mesh of a USD stage that moves with constant topology, and its latest samples: polygons, texture
+/// coordinates (primvars:st), groups as subsets of the family materialBind, velocities, normals and extent.
+class UsdMesh {
+public:
+    struct Options {
+        bool velocities = true;
+        bool normals = false; ///< at corners: CornerNormals
+    };
+
+    UsdMesh(const CacheMesh& mesh, const Options& options);
+
+    /// @param x, v  [vertices] positions, and velocities per second
+    void add_sample(View<const Vec3> x, View<const Vec3> v);
+    void drop_all_but_last();
+
+    /// Writes the prim NAMEShape. @param times  [samples] time codes
+    void write(UsdFile& file, UsdLayer layer, const std::string& indent,
+               const std::vector<double>& times) const;
+
+private:
+    void write_faces(UsdFile& file, const std::string& indent) const;
+    void write_groups(UsdFile& file, const std::string& indent) const;
+
+    std::string name_;
+    ObjMesh faces_; ///< without positions
+    std::vector<FaceGroup> groups_;
+    std::optional<CornerNormals> corner_normals_;
+    UsdTrack extent_, points_;
+    std::optional<UsdTrack> velocities_, normals_;
+};
+
+} // namespace toile::exports

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "export/archive/frame_velocities.h"
+#include "export/cache_writer.h"
+#include "export/frame_order.h"
+#include "export/usd/usd_files.h"
+#include "export/usd/usd_stage.h"
+
+namespace toile::exports {
+
+/// Writes a cache as USD in text: one .usda of at most kUsdSamplesPerFile samples, else a root .usda and
+/// value clips. A clip is complete when it appears, and then the root names it, so memory holds the samples
+/// of one clip and a killed run keeps all whole clips.
+///
+/// publish() moves the clips one by one, and then the root. A kill in between, which takes milliseconds,
+/// leaves clips of either run. Clips of an earlier, longer run are removed.
+class UsdWriter final : public CacheWriter {
+public:
+    /// @param name  of the prim at the top where there are several meshes
+    /// @throws InvalidInput as make_cache_writer().
+    UsdWriter(std::filesystem::path file, const CacheLayout& layout, const std::string& name);
+
+    void write(int frame, View<const Vec3> positions) override;
+    std::filesystem::path complete() override;
+    void publish() override;
+    std::filesystem::path partial() const override { return unfinished_.root(); }
+
+    /// Removes the partial.
+    void remove_partial();
+
+private:
+    void add_sample();
+    void write_clip();
+
+    UsdFiles files_, unfinished_;
+    FrameOrder order_;
+    std::string name_;
+    CacheLayout layout_; ///< until the first frame
+    int clip_count_;     ///< when complete; 0: one file
+    FrameVelocities velocities_;
+    std::optional<UsdStage> stage_; ///< from the first frame to complete()
+    std::vector<UsdStage::Clip> clips_;
+};
+
+} // namespace toile::exports
