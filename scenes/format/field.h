@@ -74,6 +74,11 @@ struct Words<LengthUnit> {
 };
 
 template <>
+struct Words<UpAxis> {
+    static constexpr std::array<std::pair<const char*, UpAxis>, 2> kAll{{{"y", UpAxis::Y}, {"z", UpAxis::Z}}};
+};
+
+template <>
 struct Words<Print> {
     static constexpr std::array<std::pair<const char*, Print>, 3> kAll{
         {{"plain", Print::Plain}, {"checker", Print::Checker}, {"stripes", Print::Stripes}}};
