@@ -311,7 +311,7 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
         const std::string key_path = below("cloths", i);
         if (const auto* file = std::get_if<std::filesystem::path>(&cloth.shape))
             check_shape_file(document, below(key_path, "file"), *file);
-        else if (cloth.unit)
+        else if (cloth.unit.value_or(LengthUnit::Metre) != LengthUnit::Metre)
             document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
         if (const auto* skirt = std::get_if<Skirt>(&cloth.shape))
             check_skirt(document, below(key_path, "skirt"), *skirt);

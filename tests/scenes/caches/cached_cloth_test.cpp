@@ -133,10 +133,12 @@ TEST_F(CachedCloth, TakesItsRestShapeFromAnArchive)
 
 TEST_F(CachedCloth, NamesFacesWhereThereAreNoLines)
 {
-    ObjMesh folded = sheet();
-    folded.texture_coordinates[12] = folded.texture_coordinates[0];
-    write_cache("folded.abc", folded);
-    EXPECT_THAT(complaint(R"("file": "folded.abc", "rest": "uv")"), HasSubstr("folded.abc (face "));
+    ObjMesh collapsed = sheet();
+    for (const int v : collapsed.polygons[0])
+        collapsed.texture_coordinates[size_t(v)] = Vec2::Zero();
+    write_cache("collapsed.abc", collapsed);
+    EXPECT_THAT(complaint(R"("file": "collapsed.abc", "rest": "uv")"),
+                HasSubstr("collapsed.abc (face 0): the face has no area"));
     ObjMesh turned = sheet();
     std::reverse(turned.polygons[2].begin(), turned.polygons[2].end());
     write_cache("turned.abc", turned);
