@@ -29,10 +29,18 @@ double metres_per_unit(const AvatarSettings& settings)
     return unit->second;
 }
 
+bool has_no_area(const TriangleMesh& mesh, const Triangle& t)
+{
+    const Vec3& a = mesh.positions[t[0]];
+    return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).isZero(0.0);
+}
+
+} // namespace
+
 Affine metres_from_file(const AvatarSettings& settings)
 {
     Affine result = Affine::Zero();
-    if (settings.up == "y")
+    if (settings.up.empty() || settings.up == "y")
         result.leftCols<3>().setIdentity();
     else if (settings.up == "z")
         result.leftCols<3>() << 1, 0, 0, 0, 0, 1, 0, -1, 0; // z to y, y to -z
@@ -41,11 +49,16 @@ Affine metres_from_file(const AvatarSettings& settings)
     return metres_per_unit(settings) * result;
 }
 
-bool has_no_area(const TriangleMesh& mesh, const Triangle& t)
+void require_surface(const TriangleMesh& mesh, const std::string& source)
 {
-    const Vec3& a = mesh.positions[t[0]];
-    return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).isZero(0.0);
+    if (mesh.triangles.empty())
+        throw InvalidInput(source + ": no triangles; an avatar needs a surface");
+    if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
+                    [&](const Triangle& t) { return has_no_area(mesh, t); }))
+        throw InvalidInput(source + ": no triangle has an area; an avatar needs a surface");
 }
+
+namespace {
 
 std::unique_ptr<Avatar> read_avatar(const AvatarSettings& settings)
 {
@@ -55,11 +68,7 @@ std::unique_ptr<Avatar> read_avatar(const AvatarSettings& settings)
     const Affine to_metres = metres_from_file(settings);
     if (lower_case_extension(settings.file) == ".obj") {
         TriangleMesh mesh = read_obj(settings.file).triangulated();
-        if (mesh.triangles.empty())
-            throw InvalidInput(source + ": no triangles; an avatar needs a surface");
-        if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
-                        [&](const Triangle& t) { return has_no_area(mesh, t); }))
-            throw InvalidInput(source + ": no triangle has an area; an avatar needs a surface");
+        require_surface(mesh, source);
         return std::make_unique<StaticAvatar>(source, std::move(mesh), to_metres);
     }
     RiggedModel model =

@@ -6,6 +6,7 @@
 
 #include "avatars/mannequin/mannequin.h"
 #include "avatars/model/avatar.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace toile::avatars {
 
@@ -13,12 +14,19 @@ namespace toile::avatars {
 struct AvatarSettings {
     std::filesystem::path file; ///< empty: the built-in mannequin
     std::string unit;           ///< "m", "cm", "mm" or "in"; empty: default of the format (FBX cm, others m)
-    std::string up = "y";       ///< "y" or "z": the file's upward axis
+    std::string up;             ///< "y" or "z": the file's upward axis; empty: y
     MannequinSettings mannequin;
 };
 
 /// True for a format in centimetres, unless another unit is given: FBX.
 bool is_in_centimetres(const std::filesystem::path& file);
+
+/// Map from the units and axes of the file to metres with Y up.
+/// @throws InvalidInput for an unknown unit or axis
+Affine metres_from_file(const AvatarSettings& settings);
+
+/// @throws InvalidInput naming `source` if no triangle has an area
+void require_surface(const TriangleMesh& mesh, const std::string& source);
 
 /// Loads any kind of avatar: the mannequin, .obj (static, vertex order kept), glTF, and every format of
 /// assimp (meshes of a file merged, texture seams welded).

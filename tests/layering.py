@@ -75,11 +75,11 @@ BELOW_SCENES = CORE + ["quadrature2d", "volume", "collision", "avatars", "garmen
 MAY_INCLUDE |= {
     "scenes/format": BELOW_SCENES + ["export"],
     "scenes/garment_format": BELOW_SCENES + ["scenes/format"],
-    "scenes/meshes": BELOW_SCENES + ["scenes/format"],
-    "scenes/colliders": BELOW_SCENES + ["scenes/format", "scenes/meshes"],
+    "scenes/meshes": BELOW_SCENES + ["export", "scenes/format"],
+    "scenes/colliders": BELOW_SCENES + ["export", "scenes/format", "scenes/meshes"],
     "scenes/method": BELOW_SCENES + ["scenes/format"],
     "scenes/surfaces": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders"],
-    "scenes/drape": BELOW_SCENES + ["scenes/format", "scenes/garment_format", "scenes/world"],
+    "scenes/drape": BELOW_SCENES + ["scenes/colliders", "scenes/format", "scenes/garment_format", "scenes/world"],
     "scenes/world": BELOW_SCENES + ["scenes/format", "scenes/meshes", "scenes/colliders", "scenes/method",
                                     "scenes/surfaces"],
 }

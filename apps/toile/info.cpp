@@ -16,6 +16,7 @@
 #include "core/mesh/vtk.h"
 #include "export/cache_path.h"
 #include "export/point_cache.h"
+#include "scenes/format/cache_files.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/surfaces/uv_rest.h"
@@ -222,18 +223,26 @@ void print_archive(const std::filesystem::path& file)
     }
 }
 
+/// Names the cache that a body plays, or of whose first sample a cloth is.
+std::string cache_text(const auto& shape)
+{
+    const auto* file = std::get_if<std::filesystem::path>(&shape);
+    return file != nullptr && scene_format::is_cache(*file) ? ", cache " + file->string() : "";
+}
+
 void print_scene(const std::filesystem::path& file)
 {
     const scenes::Scene scene = scenes::read_scene(file);
     print("name", scene.name);
     if (!scene.description.empty())
         print("description", scene.description);
-    print("frames", std::to_string(scene.frames) + " at " + std::to_string(int(scene.fps)) + " per second");
+    std::cout << "frames: " << scene.frames << " at " << scene.fps << " per second\n";
     for (const scene::Avatar& avatar : scene.avatars)
-        print("avatar", avatar.name + (avatar.clip.empty() ? "" : ", clip " + avatar.clip) +
+        print("avatar", avatar.name + cache_text(avatar.shape) +
+                            (avatar.clip.empty() ? "" : ", clip " + avatar.clip) +
                             (avatar.motion ? ", motion " + avatar.motion->file.string() : ""));
     for (const scene::Cloth& cloth : scene.cloths)
-        print("cloth", cloth.name + ", " + cloth.fabric);
+        print("cloth", cloth.name + cache_text(cloth.shape) + ", " + cloth.fabric);
     print("attachments", scene.attachments.size());
 }
 

@@ -7,7 +7,7 @@
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "avatars/landmarks/measure_body.h"
-#include "avatars/load_avatar.h"
+#include "scenes/colliders/load_body.h"
 
 namespace toile::app {
 
@@ -21,7 +21,7 @@ struct MeasureOptions {
 
 avatars::UprightBody load_body(const MeasureOptions& options)
 {
-    const std::unique_ptr<avatars::Avatar> avatar = avatars::load_avatar(options.body);
+    const std::unique_ptr<avatars::Avatar> avatar = scenes::load_body(options.body, {});
     TriangleMesh mesh{std::vector<Vec3>(size_t(avatar->vertex_count())), avatar->triangles()};
     avatar->pose({}, avatars::identity_affine(), mesh.positions);
     const avatars::GivenLandmarks given =
@@ -71,8 +71,9 @@ Command add_measure(CLI::App& parser)
     command.options = parser.add_subcommand("measure", "Measure a body for sewing patterns");
     auto options = std::make_shared<MeasureOptions>();
     CLI::App& add = *command.options;
-    add.add_option("body", options->body.file,
-                   "Body, .obj, .glb, .gltf or .fbx; without it the built-in mannequin");
+    add.add_option(
+        "body", options->body.file,
+        "Body, .obj, .glb, .gltf, .fbx or the first sample of an .abc; without it the built-in mannequin");
     add.add_option("--landmarks", options->landmarks, "JSON file of landmarks that replace those found");
     add.add_option("--unit", options->body.unit, "Unit of the file: m, cm, mm or in");
     add.add_option("--up", options->body.up, "Upward axis of the file: y or z");

@@ -1,7 +1,6 @@
 #include "avatars/model/moving_avatar.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -33,14 +32,15 @@ std::vector<Bounds> boxes_of_bones(const SkinView& skin, int bone_count)
     return boxes;
 }
 
-/// Corners of a box around rest positions.
-std::array<Vec3, 8> corners_of(const Bounds& box)
+/// Corners of a box around rest positions: one for that of a bone with one vertex.
+unsigned corner_count(const Bounds& box) { return box.lower == box.upper ? 1 : 8; }
+
+Vec3 corner_of(const Bounds& box, unsigned corner)
 {
-    std::array<Vec3, 8> corners;
-    for (unsigned corner = 0; corner < 8; ++corner)
-        for (int axis = 0; axis < 3; ++axis)
-            corners[corner][axis] = ((corner >> axis) & 1) != 0 ? box.upper[axis] : box.lower[axis];
-    return corners;
+    Vec3 position;
+    for (int axis = 0; axis < 3; ++axis)
+        position[axis] = ((corner >> axis) & 1) != 0 ? box.upper[axis] : box.lower[axis];
+    return position;
 }
 
 /// Longest displacement of a vertex by each blend shape of weight 1 [mesh units]. [shapes]
@@ -59,8 +59,10 @@ std::vector<double> reaches_of_shapes(const SkinView& skin, int bone_count)
 double max_distance(const Bounds& box, const Affine& a, const Affine& b)
 {
     double largest = 0.0;
-    for (const Vec3& p : corners_of(box))
+    for (unsigned corner = 0; corner < corner_count(box); ++corner) {
+        const Vec3 p = corner_of(box, corner);
         largest = std::max(largest, (apply(a, p) - apply(b, p)).norm());
+    }
     return largest;
 }
 
@@ -71,8 +73,8 @@ void require_in_range(View<const Affine> bones, const std::vector<Bounds>& boxes
     for (int b = 0; b < bones.size(); ++b) {
         if (boxes[size_t(b)].empty())
             continue;
-        for (const Vec3& p : corners_of(boxes[size_t(b)]))
-            if (!is_in_range(apply(bones[b], p)))
+        for (unsigned corner = 0; corner < corner_count(boxes[size_t(b)]); ++corner)
+            if (!is_in_range(apply(bones[b], corner_of(boxes[size_t(b)], corner))))
                 throw InvalidInput(source + ": bone " + std::to_string(b) + " at " + std::to_string(time) +
                                    " s moves its vertices out of range; coordinates must be finite and at " +
                                    "most 100 km");

@@ -1,41 +1,34 @@
 #include "scenes/colliders/skinned_collider.h"
 
-#include "avatars/load_avatar.h"
+#include "avatars/model/cached_avatar.h"
 #include "avatars/retarget/add_motion.h"
+#include "core/base/error.h"
 #include "core/compute/cuda/array.h"
+#include "scenes/colliders/load_body.h"
 
 namespace toile::scenes {
 
 namespace {
 
-const char* word_of(scene::LengthUnit unit)
+/// @throws InvalidInput for a cache of one pose that is to be played
+void require_motion_for(const scene::Avatar& avatar, const avatars::Avatar& body)
 {
-    switch (unit) {
-    case scene::LengthUnit::Centimetre:
-        return "cm";
-    case scene::LengthUnit::Millimetre:
-        return "mm";
-    case scene::LengthUnit::Inch:
-        return "in";
-    case scene::LengthUnit::Metre:
-        break;
-    }
-    return "m";
+    const bool has_pace = avatar.speed != 1.0 && avatar.speed != 0.0;
+    if (body.is_static() && (avatar.loop || avatar.start != 0.0 || has_pace))
+        throw InvalidInput(body.source() + ": has one sample, so loop, start and speed have no effect; " +
+                           "remove them or export more");
 }
 
 avatars::MovingAvatar make_avatar(const scene::Avatar& avatar, const avatars::Affine& root_transform)
 {
-    avatars::AvatarSettings settings;
-    if (const auto* file = std::get_if<std::filesystem::path>(&avatar.shape))
-        settings.file = *file;
-    else
-        settings.mannequin.height = std::get<scene::Mannequin>(avatar.shape).height;
-    if (avatar.unit)
-        settings.unit = word_of(*avatar.unit);
-
+    std::unique_ptr<avatars::Avatar> body = load_body(avatar);
     avatars::Motion motion;
     motion.clip = avatar.clip;
-    std::unique_ptr<avatars::Avatar> body = load_avatar(settings);
+    if (const auto* cached = dynamic_cast<const avatars::CachedAvatar*>(body.get())) {
+        require_motion_for(avatar, *cached);
+        if (motion.clip.empty() && !cached->is_static())
+            motion.clip = avatars::CachedAvatar::kClip;
+    }
     if (avatar.motion)
         motion.clip = add_motion(*body, {avatar.motion->file, avatar.motion->clip, avatar.motion->map});
     motion.loop = avatar.loop;

@@ -2,19 +2,17 @@
 
 #include <memory>
 
-#include "avatars/load_avatar.h"
 #include "core/base/error.h"
+#include "scenes/colliders/load_body.h"
 
 namespace toile::scenes {
 
 DressedBody::DressedBody(const scene::Avatar& body, bool needs_segments)
 {
-    avatars::AvatarSettings settings;
-    if (const auto* file = std::get_if<std::filesystem::path>(&body.shape))
-        settings.file = *file;
-    else if (!std::holds_alternative<scene::Mannequin>(body.shape))
+    if (!std::holds_alternative<std::filesystem::path>(body.shape) &&
+        !std::holds_alternative<scene::Mannequin>(body.shape))
         return;
-    const std::unique_ptr<avatars::Avatar> avatar = avatars::load_avatar(settings);
+    const std::unique_ptr<avatars::Avatar> avatar = load_body(body);
     skin.triangles = avatar->triangles();
     skin.positions.resize(size_t(avatar->vertex_count()));
     avatar->pose({}, avatars::identity_affine(), skin.positions);

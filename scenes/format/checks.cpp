@@ -9,6 +9,7 @@
 #include "core/base/extension.h"
 #include "export/cache_format.h"
 #include "garment/fabric/fabric.h"
+#include "scenes/format/cache_files.h"
 #include "scenes/format/field.h"
 #include "scenes/format/names.h"
 #include "scenes/format/scene_fabric.h"
@@ -42,15 +43,46 @@ void check_extension(const Document& document, const std::string& key_path, cons
                                       enumerate(known, "or"));
 }
 
+/// Likewise, for files that may be caches.
+void check_extension_or_cache(const Document& document, const std::string& key_path,
+                              const std::filesystem::path& file, std::vector<std::string> known)
+{
+    if (is_cache(file))
+        return;
+    known.emplace_back("a cache (.abc, .pc2, .mdd or an OBJ sequence)");
+    if (!contains(known, lower_case_extension(file)))
+        document.refuse(key_path, as_written(file.string()) + " is of an unknown format; use " +
+                                      enumerate(known, "or"));
+}
+
+/// Checks the file of a mesh with faces.
+void check_shape_file(const Document& document, const std::string& key_path,
+                      const std::filesystem::path& file)
+{
+    if (!is_cache(file))
+        check_extension(document, key_path, file, {".obj", ".abc"});
+    else if (!exports::stores_faces(exports::cache_format(file)))
+        document.refuse(key_path,
+                        as_written(file.string()) + " has no faces; name the OBJ on which it plays");
+}
+
 // --- avatars ---
+
+const std::filesystem::path* file_of(const Avatar& avatar)
+{
+    return std::get_if<std::filesystem::path>(&avatar.shape);
+}
+
+bool plays_cache(const Avatar& avatar) { return file_of(avatar) != nullptr && is_cache(*file_of(avatar)); }
 
 void check_motion_file(const Document& document, const std::string& key_path, const Avatar& avatar)
 {
     const AvatarMotion& motion = *avatar.motion;
     check_extension(document, below(key_path, "file"), motion.file, {".bvh", ".fbx", ".glb", ".gltf"});
-    const auto* body = std::get_if<std::filesystem::path>(&avatar.shape);
-    if (body != nullptr && lower_case_extension(*body) == ".obj")
-        document.refuse(key_path, "an .obj body has no bones; use a .glb, .gltf or .fbx body");
+    const std::filesystem::path* body = file_of(avatar);
+    if (plays_cache(avatar) || (body != nullptr && lower_case_extension(*body) == ".obj"))
+        document.refuse(key_path, std::string(plays_cache(avatar) ? "a cache" : "an .obj body") +
+                                      " has no bones; use a .glb, .gltf or .fbx body");
     if (!avatar.clip.empty())
         document.refuse(key_path, "excludes clip; remove one of them");
     if (motion.is_mapped_by_file() && lower_case_extension(motion.map) != ".json")
@@ -59,10 +91,38 @@ void check_motion_file(const Document& document, const std::string& key_path, co
                             "or the path of a .json file" + did_you_mean(motion.map, {"names", "cmu"}));
 }
 
+/// Checks keys that only caches support.
+void check_cache(const Document& document, const std::string& key_path, const Avatar& avatar)
+{
+    if (!plays_cache(avatar)) {
+        for (const auto& [key, is_used] :
+             {std::pair("mesh", avatar.mesh.has_value()), std::pair("fps", avatar.fps.has_value())})
+            if (is_used)
+                document.refuse(below(key_path, key), "only a cache (.abc, .pc2, .mdd or an OBJ sequence) " +
+                                                          std::string("has it; remove it"));
+        return;
+    }
+    const std::filesystem::path& file = *file_of(avatar);
+    const bool has_faces = exports::stores_faces(exports::cache_format(file));
+    if (!has_faces && !avatar.mesh)
+        document.refuse(key_path, "the key \"mesh\" is missing; " + as_written(file.string()) +
+                                      " has no faces, name the OBJ on which it plays");
+    if (has_faces && avatar.mesh)
+        document.refuse(below(key_path, "mesh"),
+                        as_written(file.string()) + " has faces of its own; remove it");
+    if (avatar.mesh)
+        check_shape_file(document, below(key_path, "mesh"), *avatar.mesh);
+    if (avatar.fps && has_times(file))
+        document.refuse(below(key_path, "fps"),
+                        as_written(file.string()) + " has times of its own; remove it, or write speed");
+    if (avatar.accumulate_root)
+        document.refuse(below(key_path, "accumulate_root"), "a cache has no root; remove it");
+}
+
 /// Checks keys that only an animated avatar supports.
 void check_avatar_motion(const Document& document, const std::string& key_path, const Avatar& avatar)
 {
-    const bool from_file = std::holds_alternative<std::filesystem::path>(avatar.shape);
+    const bool from_file = file_of(avatar) != nullptr;
     const bool is_skinned = from_file || std::holds_alternative<Mannequin>(avatar.shape);
     const Preroll& preroll = avatar.preroll;
     const std::pair<const char*, bool> used[] = {
@@ -76,12 +136,13 @@ void check_avatar_motion(const Document& document, const std::string& key_path, 
     for (const auto& [key, is_used] : used) {
         if (is_used && !is_skinned)
             document.refuse(below(key_path, key), "a shape has no clips; move it with keyframes");
-        if (is_used && avatar.clip.empty() && !avatar.motion)
+        if (is_used && avatar.clip.empty() && !avatar.motion && !plays_cache(avatar))
             document.refuse(below(key_path, key), "has no effect without a clip; name the clip to play");
     }
     if (avatar.motion)
         check_motion_file(document, below(key_path, "motion"), avatar);
-    if (!avatar.keyframes.empty() && (!avatar.clip.empty() || avatar.motion || (is_skinned && !from_file)))
+    if (!avatar.keyframes.empty() && !plays_cache(avatar) &&
+        (!avatar.clip.empty() || avatar.motion || (is_skinned && !from_file)))
         document.refuse(below(key_path, "keyframes"),
                         "an animated avatar is not moved by keyframes; remove them " +
                             std::string("or the clip"));
@@ -89,6 +150,9 @@ void check_avatar_motion(const Document& document, const std::string& key_path, 
         document.refuse(below(key_path, "exclude_bones"), "a shape has no bones");
     if (avatar.unit && !from_file)
         document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
+    if (avatar.up && !from_file)
+        document.refuse(below(key_path, "up"), "only a file has an upward axis; it is Y here");
+    check_cache(document, key_path, avatar);
 }
 
 void check_avatars(const Document& document, const scenes::Scene& scene)
@@ -101,8 +165,9 @@ void check_avatars(const Document& document, const scenes::Scene& scene)
             document.refuse(below(key_path, "name"),
                             "\"fixed\" stands for the world in attachments; choose " +
                                 std::string("another name"));
-        if (const auto* file = std::get_if<std::filesystem::path>(&avatar.shape))
-            check_extension(document, below(key_path, "file"), *file, {".glb", ".gltf", ".fbx", ".obj"});
+        if (const std::filesystem::path* file = file_of(avatar))
+            check_extension_or_cache(document, below(key_path, "file"), *file,
+                                     {".glb", ".gltf", ".fbx", ".obj"});
         check_avatar_motion(document, key_path, avatar);
         check_keyframes(document, key_path, avatar.keyframes);
     }
@@ -146,7 +211,7 @@ void check_rest(const Document& document, const std::string& key_path, const Clo
         document.refuse(below(key_path, "rest_file"),
                         "has no effect on a rest shape that is the mesh; add \"rest\": \"uv\" or remove it");
     if (cloth.rest_file)
-        check_extension(document, below(key_path, "rest_file"), *cloth.rest_file, {".obj"});
+        check_shape_file(document, below(key_path, "rest_file"), *cloth.rest_file);
     if (cloth.uv_scale && !is_from_uv)
         document.refuse(below(key_path, "uv_scale"),
                         "has no effect on a rest shape that is the mesh; add \"rest\": \"uv\" or remove it");
@@ -245,8 +310,8 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
         const Cloth& cloth = scene.cloths[i];
         const std::string key_path = below("cloths", i);
         if (const auto* file = std::get_if<std::filesystem::path>(&cloth.shape))
-            check_extension(document, below(key_path, "file"), *file, {".obj"});
-        else if (cloth.unit != LengthUnit::Metre)
+            check_shape_file(document, below(key_path, "file"), *file);
+        else if (cloth.unit.value_or(LengthUnit::Metre) != LengthUnit::Metre)
             document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
         if (const auto* skirt = std::get_if<Skirt>(&cloth.shape))
             check_skirt(document, below(key_path, "skirt"), *skirt);

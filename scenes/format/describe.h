@@ -102,17 +102,29 @@ template <typename V>
 void describe(V& v, Avatar& a)
 {
     v.required("name", a.name, "Name, for attachments and messages.");
-    v.one_of(a.shape, Alternative<std::filesystem::path>{"file", "Body to load: .glb, .gltf, .fbx or .obj."},
+    v.one_of(a.shape,
+             Alternative<std::filesystem::path>{
+                 "file",
+                 "Body to load: .glb, .gltf, .fbx or .obj; or a cache of its positions: .abc, .pc2, .mdd or "
+                 "an OBJ sequence, body_####.obj. One of several meshes is named behind #: "
+                 "shot.abc#/body/bodyShape."},
              Alternative<Mannequin>{"mannequin",
                                     "The built-in mannequin; its clips are walk_in_place, walk and turn."},
              Alternative<Plane>{"plane", "Endless floor: y = 0, solid below."},
              Alternative<Sphere>{"sphere", "Sphere."}, Alternative<Capsule>{"capsule", "Capsule along Y."},
              Alternative<Box>{"box", "Box with edges along the axes."});
-    v.field("unit", a.unit, "Length unit of the file; absent: what its format says (.fbx cm, others m).");
+    v.field("mesh", a.mesh, "Mesh with the faces of a cache that stores none: the OBJ on which it plays.");
+    v.field("fps", a.fps, between(1.0, 10000.0, "1/s"),
+            "Samples per second of a cache that has no times (.pc2, OBJ sequence); absent: the scene's.");
+    v.field("unit", a.unit,
+            "Length unit of the file; absent: what it or its format says (.fbx cm), else metres.");
+    v.field("up", a.up, "Upward axis of the file; absent: what it says, else y.");
     v.field("scale", a.scale, above_zero(1e6), "Factor on the file's lengths.");
     v.field("translate", a.translate, kPosition, "Moves the avatar, after scale and rotate_deg.");
     v.field("rotate_deg", a.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
-    v.field("clip", a.clip, "Animation to play, by name; empty: the bind pose.");
+    v.field(
+        "clip", a.clip,
+        "Animation to play, by name; empty: the bind pose. A cache has one, \"cache\", which plays anyway.");
     v.field("motion", a.motion, "Animation from a file of its own, instead of a clip.");
     v.field("loop", a.loop, "Repeat the clip; otherwise its last pose stays.");
     v.field("accumulate_root", a.accumulate_root,
@@ -121,7 +133,7 @@ void describe(V& v, Avatar& a)
             "Seconds of the clip per second of the scene; 0 freezes it.");
     v.field("start", a.start, kTime, "Time in the clip at which playback begins.");
     v.field("preroll", a.preroll, "Start of the avatar from a standstill into its clip.");
-    v.field("keyframes", a.keyframes, "Moves a shape or a body without animation.");
+    v.field("keyframes", a.keyframes, "Moves a shape, a cache or a body without animation.");
     v.field("self_contact", a.self_contact,
             "\"separate\" moves skin inwards, by up to 2 cm, where a clip brings it on or into other skin of "
             "the body, so that cloth fits between; \"keep\" leaves it as it is.");
@@ -235,21 +247,23 @@ template <typename V>
 void describe(V& v, Cloth& c)
 {
     v.required("name", c.name, "Name, for attachments, messages and the cache's file.");
-    v.one_of(
-        c.shape,
-        Alternative<std::filesystem::path>{"file", "Mesh to load: .obj; its vertex order is the cache's."},
-        Alternative<Rectangle>{"rectangle", "Flat rectangle, horizontal, about the origin."},
-        Alternative<Disc>{"disc", "Flat disc, horizontal, about the origin."},
-        Alternative<Skirt>{"skirt", "Conical skirt about the Y axis, waist at y = 0, hanging down."});
+    v.one_of(c.shape,
+             Alternative<std::filesystem::path>{
+                 "file", "Mesh to load: .obj, or the first sample of a mesh in an archive, "
+                         "tee.abc#/tee/teeShape; its vertex order is the cache's."},
+             Alternative<Rectangle>{"rectangle", "Flat rectangle, horizontal, about the origin."},
+             Alternative<Disc>{"disc", "Flat disc, horizontal, about the origin."},
+             Alternative<Skirt>{"skirt", "Conical skirt about the Y axis, waist at y = 0, hanging down."});
     v.field("subdivide", c.subdivide, between(0, 4), "Number of times every triangle is split into four.");
     v.field("weld", c.weld,
             "Join edges of the file that lie on each other, as along texture seams; false keeps them apart.");
-    v.field("unit", c.unit, "Length unit of the file.");
+    v.field("unit", c.unit, "Length unit of the file; absent: what it says, else metres.");
     v.field("rest", c.rest,
             "Rest shape: the mesh as it is posed (\"shape\"), or each triangle's texture coordinates, flat "
             "(\"uv\"), as of garments made from patterns.");
     v.field("rest_file", c.rest_file,
-            "OBJ with the same faces as file, whose texture coordinates are the rest shape of \"rest\": "
+            "OBJ or mesh in an archive with the same faces as file, whose texture coordinates are the rest "
+            "shape of \"rest\": "
             "\"uv\" in place of the file's own, as of gathers.");
     v.field("uv_scale", c.uv_scale, above_zero(1e6, "m"),
             "Metres per texture unit of \"rest\": \"uv\", before scale; unit does not apply to it. Absent: "

@@ -139,7 +139,7 @@ Json Document::parse(const std::string& text) const
     }
 }
 
-std::filesystem::path Document::existing_file(const std::string& text, const std::string& key_path) const
+std::string Document::expanded(const std::string& text, const std::string& key_path) const
 {
     static const std::string kVariable = "${TOILE_DATA_DIR}";
     std::string expanded = text;
@@ -152,13 +152,22 @@ std::filesystem::path Document::existing_file(const std::string& text, const std
     }
     if (expanded.find("${") != std::string::npos)
         refuse(key_path, as_written(text) + " names an unknown variable; only " + kVariable + " is known");
+    return expanded;
+}
 
-    const std::filesystem::path file = source_.parent_path() / expanded;
+std::filesystem::path Document::path_of(const std::string& text, const std::string& key_path) const
+{
+    return source_.parent_path() / expanded(text, key_path);
+}
+
+std::filesystem::path Document::existing_file(const std::string& text, const std::string& key_path) const
+{
+    const std::filesystem::path file = path_of(text, key_path);
     const std::filesystem::path normal = file.lexically_normal();
     std::error_code unreachable;
     if (!std::filesystem::exists(file, unreachable))
-        refuse(key_path,
-               "the file " + as_written(normal.string()) + " does not exist; " + remedy_for(expanded));
+        refuse(key_path, "the file " + as_written(normal.string()) + " does not exist; " +
+                             remedy_for(expanded(text, key_path)));
     if (!std::filesystem::is_regular_file(file, unreachable))
         refuse(key_path, as_written(normal.string()) + " is a folder, pipe or device; name a file");
     // Behind a symbolic link, ".." leads elsewhere than its text says.

@@ -26,12 +26,18 @@ public:
     ///         an object, which JSON parsers accept silently.
     Json parse(const std::string& text) const;
 
-    /// File named by `text` at `key_path`: ${TOILE_DATA_DIR} replaced, relative paths made relative to the
+    /// Path named by `text` at `key_path`: ${TOILE_DATA_DIR} replaced, relative paths made relative to the
     /// document's folder.
-    /// @throws InvalidInput if the file (or the data folder) is missing or another variable is named.
+    /// @throws InvalidInput if the data folder is missing or another variable is named.
+    std::filesystem::path path_of(const std::string& text, const std::string& key_path) const;
+
+    /// Path of a file, likewise.
+    /// @throws InvalidInput if it is missing, too
     std::filesystem::path existing_file(const std::string& text, const std::string& key_path) const;
 
 private:
+    std::string expanded(const std::string& text, const std::string& key_path) const;
+
     std::filesystem::path source_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "scenes/format/cache_files.h"
 #include "scenes/format/checks.h"
 #include "scenes/format/reader.h"
 
@@ -16,8 +17,23 @@ void resolve_files(const scene_format::Document& document, const std::string& li
 {
     for (size_t i = 0; i < objects.size(); ++i)
         if (auto* file = std::get_if<std::filesystem::path>(&objects[i].shape))
-            *file = document.existing_file(file->string(),
-                                           scene_format::below(scene_format::below(list, i), "file"));
+            *file = scene_format::existing_cache(document, *file,
+                                                 scene_format::below(scene_format::below(list, i), "file"));
+}
+
+/// Replaces the paths of meshes, and gives caches without times the rate of the scene.
+void resolve_caches(const scene_format::Document& document, Scene& scene)
+{
+    using scene_format::below;
+    for (size_t i = 0; i < scene.avatars.size(); ++i) {
+        scene::Avatar& avatar = scene.avatars[i];
+        if (auto& mesh = avatar.mesh)
+            *mesh = scene_format::existing_cache(document, *mesh, below(below("avatars", i), "mesh"));
+        const auto* file = std::get_if<std::filesystem::path>(&avatar.shape);
+        if (file != nullptr && scene_format::is_cache(*file) && !scene_format::has_times(*file) &&
+            !avatar.fps)
+            avatar.fps = scene.fps;
+    }
 }
 
 /// Replaces the paths of motions and of their maps.
@@ -37,8 +53,8 @@ void resolve_rest_files(const scene_format::Document& document, std::vector<scen
 {
     for (size_t i = 0; i < cloths.size(); ++i)
         if (auto& file = cloths[i].rest_file)
-            *file = document.existing_file(
-                file->string(), scene_format::below(scene_format::below("cloths", i), "rest_file"));
+            *file = scene_format::existing_cache(
+                document, *file, scene_format::below(scene_format::below("cloths", i), "rest_file"));
 }
 
 } // namespace
@@ -62,6 +78,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& source)
     for (scene::Cloth& cloth : scene.cloths)
         cloth.print = cloth.pattern.value_or(cloth.print);
     resolve_files(document, "avatars", scene.avatars);
+    resolve_caches(document, scene);
     resolve_motions(document, scene.avatars);
     resolve_files(document, "cloths", scene.cloths);
     resolve_files(document, "solids", scene.solids);

@@ -28,6 +28,9 @@ enum class LengthUnit { Metre, Centimetre, Millimetre, Inch };
 /// Metres in one unit: 1, 0.01, 0.001 or 0.0254.
 double metres_per(LengthUnit unit);
 
+/// Upward axis of a file.
+enum class UpAxis { Y, Z };
+
 /// Placement of an object at a time; RigidMotion interpolates.
 struct Keyframe {
     double time = 0.0;             ///< [s] from sample 0
@@ -92,18 +95,21 @@ struct AvatarMotion {
 
 using AvatarShape = std::variant<std::filesystem::path, Mannequin, Plane, Sphere, Capsule, Box>;
 
-/// A body that cloth collides with.
 /// What is done about skin that touches other skin of the same avatar: moved apart, or nothing.
 enum class SelfContact { Separate, Keep };
 
+/// A body that cloth collides with.
 struct Avatar {
     std::string name;
     AvatarShape shape;
-    std::optional<LengthUnit> unit; ///< of the file; absent: the default of its format
+    std::optional<std::filesystem::path> mesh; ///< with the faces of a cache that stores none
+    std::optional<double> fps;      ///< [1/s] of a cache that has no times; read_scene() puts the scene's
+    std::optional<LengthUnit> unit; ///< of the file; absent: what it says, or the default of its format
+    std::optional<UpAxis> up;       ///< of the file; absent: what it says, or Y
     double scale = 1.0;             ///< [-]
     Vec3 translate = Vec3::Zero();  ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
-    std::string clip;                   ///< animation by name; empty: the bind pose, or that of `motion`
+    std::string clip; ///< animation by name; empty: the bind pose, or that of `motion` or of a cache
     std::optional<AvatarMotion> motion; ///< replaces `clip`
     bool loop = false;                  ///< repeat the clip; otherwise its last pose stays
     bool accumulate_root = false;       ///< repeated cycles continue the root motion instead of jumping back
@@ -207,12 +213,12 @@ struct Pressure {
 struct Cloth {
     std::string name;
     ClothShape shape;
-    int subdivide = 0;                   ///< number of times that every triangle is split into four
-    bool weld = true;                    ///< join edges of the file that lie on each other
-    LengthUnit unit = LengthUnit::Metre; ///< of the file
-    RestFrom rest = RestFrom::Shape;     ///< what the rest shape is taken from
+    int subdivide = 0;               ///< number of times that every triangle is split into four
+    bool weld = true;                ///< join edges of the file that lie on each other
+    std::optional<LengthUnit> unit;  ///< of the file; absent: what it says, or metres
+    RestFrom rest = RestFrom::Shape; ///< what the rest shape is taken from
     std::optional<std::filesystem::path>
-        rest_file; ///< OBJ with the faces of `shape`, whose texture is the rest shape; absent: its own
+        rest_file; ///< mesh with the faces of `shape`, whose texture is the rest shape; absent: its own
     std::optional<double> uv_scale; ///< [m] per texture unit, before `scale`; absent: areas agree
     double scale = 1.0;             ///< [-]
     Vec3 translate = Vec3::Zero();  ///< [m]
@@ -369,7 +375,6 @@ struct Solver {
 };
 
 enum class ExportUnit { Metre, Centimetre };
-enum class UpAxis { Y, Z };
 
 /// A cache to write; the extension gives its format.
 struct Export {

@@ -1,6 +1,7 @@
 #include "scenes/meshes/cloth_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -10,11 +11,24 @@
 #include "core/mesh/winding.h"
 #include "garment/pattern/shapes.h"
 #include "scenes/meshes/flat_texture.h"
+#include "scenes/meshes/mesh_file.h"
 #include "scenes/meshes/rigid_motion.h"
 
 namespace toile::scenes {
 
 namespace {
+
+/// Mesh of a cloth's file with Y up, in the cloth's unit.
+ObjMesh read_file(const scene::Cloth& cloth)
+{
+    auto [mesh, axes] = read_mesh_file(std::get<std::filesystem::path>(cloth.shape));
+    if (axes) {
+        // A unit in the scene replaces that of the file.
+        const exports::Axes stored{cloth.unit ? exports::Axes{}.unit : axes->unit, axes->up};
+        exports::change_axes(stored, {}, mesh.positions);
+    }
+    return std::move(mesh);
+}
 
 /// Mesh of the cloth in its local frame, before placement.
 ObjMesh cut(const scene::Cloth& cloth)
@@ -26,7 +40,7 @@ ObjMesh cut(const scene::Cloth& cloth)
     if (const auto* skirt = std::get_if<scene::Skirt>(&cloth.shape))
         return faces_of(
             garment::cut_skirt({skirt->waist_radius, skirt->hem_radius, skirt->length, skirt->resolution}));
-    return read_obj(std::get<std::filesystem::path>(cloth.shape));
+    return read_file(cloth);
 }
 
 /// Distance at which two vertices of a file are one, over the diagonal of the mesh [-].
@@ -86,7 +100,14 @@ bool join_vertices(const scene::Cloth& cloth, ClothMesh& result)
     return joined > 0;
 }
 
-std::string line_of(const ObjMesh& mesh, int polygon) { return std::to_string(mesh.polygon_lines[polygon]); }
+std::string text_of_pair(const ObjMesh& mesh, const std::array<int, 2>& polygons)
+{
+    const auto number = [&](int polygon) {
+        return std::to_string(mesh.polygon_lines.empty() ? polygon : mesh.polygon_lines[size_t(polygon)]);
+    };
+    return (mesh.polygon_lines.empty() ? "" : "in lines ") + number(polygons[0]) + " and " +
+           number(polygons[1]);
+}
 
 /// Makes of a file's mesh one that can be simulated, and tells what was changed.
 void clean(const scene::Cloth& cloth, ClothMesh& result)
@@ -123,8 +144,7 @@ void clean(const scene::Cloth& cloth, ClothMesh& result)
                                   (branching_in_file < count ? "; \"weld\": false keeps seams apart" : ""));
     if (const auto polygons = one_sided_polygons(mesh))
         throw InvalidInput(
-            source_of(cloth) + ": the faces in lines " + line_of(mesh, (*polygons)[0]) + " and " +
-            line_of(mesh, (*polygons)[1]) +
+            source_of(cloth) + ": the faces " + text_of_pair(mesh, *polygons) +
             " can't be wound alike: the surface has one side only, as a Moebius strip" +
             (is_welded ? "; cut it, or keep its seams apart with \"weld\": false" : "; cut it"));
     if (!result.numbers.vertex.empty() && cloth.subdivide == 0)
@@ -148,7 +168,8 @@ void place(const scene::Cloth& cloth, ClothMesh& result)
     const Mat3 rotation = rotation_of(cloth.rotate_deg);
     for (ObjMesh* mesh : {&result.mesh, &result.file}) {
         for (Vec3& p : mesh->positions)
-            p = rotation * (cloth.scale * scene::metres_per(cloth.unit) * p);
+            p = rotation *
+                (cloth.scale * scene::metres_per(cloth.unit.value_or(scene::LengthUnit::Metre)) * p);
         require_in_range(mesh->positions, source_of(cloth));
     }
 }
@@ -169,9 +190,9 @@ void take_texture(ObjMesh rest, const scene::Cloth& cloth, ObjMesh& mesh)
     const size_t common = std::min(rest.polygons.size(), mesh.polygons.size());
     for (size_t f = 0; f < common; ++f)
         if (rest.polygons[f] != mesh.polygons[f])
-            throw InvalidInput(source + ":" + line_of(rest, int(f)) + ": the face has vertices " +
+            throw InvalidInput(name_of_face(rest, int(f), source) + ": the face has vertices " +
                                text_of(rest.polygons[f]) + ", but " + text_of(mesh.polygons[f]) + " in " +
-                               source_of(cloth) + ":" + line_of(mesh, int(f)) + remedy);
+                               name_of_face(mesh, int(f), source_of(cloth)) + remedy);
     if (rest.polygons.size() != mesh.polygons.size())
         throw InvalidInput(source + ": has " +
                            counted(std::ptrdiff_t(rest.polygons.size()), "face", "faces") + ", but " +
@@ -210,7 +231,7 @@ ObjMesh mesh_at_rest(const scene::Cloth& cloth)
 {
     ClothMesh result;
     result.mesh = cut(cloth);
-    take_texture(read_obj(*cloth.rest_file), cloth, result.mesh);
+    take_texture(read_mesh_file(*cloth.rest_file).mesh, cloth, result.mesh);
     prepare(cloth, result);
     require_flat_texture(result.mesh, rest_source_of(cloth));
     place(cloth, result);

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/mesh/obj.h"
+#include "scenes/meshes/mesh_file.h"
 
 namespace toile::scenes {
 
@@ -20,20 +21,14 @@ std::string text_of(const Vec2& point)
     return text;
 }
 
-/// Start of a message about a face.
-std::string at_line(const std::string& source, int line)
-{
-    return source + ":" + std::to_string(line) + ": the face ";
-}
-
 void require_texture(const ObjMesh& mesh, const std::string& source)
 {
     if (!mesh.polygon_uvs.empty())
         return;
     if (mesh.first_plain_line > 0)
         throw InvalidInput(
-            at_line(source, mesh.first_plain_line) +
-            "has no texture coordinates, which \"rest\": \"uv\" needs at every corner; write " +
+            source + ":" + std::to_string(mesh.first_plain_line) +
+            ": the face has no texture coordinates, which \"rest\": \"uv\" needs at every corner; write " +
             "its corners as v/vt" + kOrShape);
     throw InvalidInput(source +
                        ": has no texture coordinates, which \"rest\": \"uv\" needs; export it with " + "UVs" +
@@ -98,9 +93,10 @@ void require_unfolded(const ObjMesh& mesh, const std::vector<FlatTriangle>& flat
         const Side &a = sides[begin], &b = sides[end - 1];
         const int folded = polygon[size_t(a.triangle)];
         if (end - begin == 2 && a.is_left == b.is_left && folded == polygon[size_t(b.triangle)])
-            throw InvalidInput(at_line(source, mesh.polygon_lines[size_t(folded)]) +
-                               "folds over itself in the texture plane, along " + text_of(a.at_low) + " to " +
-                               text_of(a.at_high) + "; unfold the texture there" + kOrShape);
+            throw InvalidInput(name_of_face(mesh, folded, source) +
+                               ": the face folds over itself in the texture plane, along " +
+                               text_of(a.at_low) + " to " + text_of(a.at_high) +
+                               "; unfold the texture there" + kOrShape);
     }
 }
 
@@ -113,10 +109,10 @@ void require_flat_texture(const ObjMesh& mesh, const std::string& source)
     const std::vector<int> polygon = polygons_of_triangles(mesh);
     for (size_t t = 0; t < flat.size(); ++t)
         if (!has_area(flat[t]))
-            throw InvalidInput(at_line(source, mesh.polygon_lines[size_t(polygon[t])]) +
-                               "has no area in the texture plane: its corners are at " + text_of(flat[t][0]) +
-                               ", " + text_of(flat[t][1]) + " and " + text_of(flat[t][2]) +
-                               "; unwrap it there" + kOrShape);
+            throw InvalidInput(name_of_face(mesh, polygon[t], source) +
+                               ": the face has no area in the texture plane: its corners are at " +
+                               text_of(flat[t][0]) + ", " + text_of(flat[t][1]) + " and " +
+                               text_of(flat[t][2]) + "; unwrap it there" + kOrShape);
     require_unfolded(mesh, flat, polygon, source);
 }
 

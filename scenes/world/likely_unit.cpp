@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "avatars/load_avatar.h"
+#include "scenes/colliders/load_body.h"
 #include "scenes/format/field.h"
 #include "scenes/surfaces/load_solid.h"
 
@@ -39,12 +39,6 @@ double size_of(const Collider& collider)
     std::vector<Vec3> x(size_t(skinned->vertex_count()));
     skinned->pose_t1(x);
     return bounds(x).diagonal();
-}
-
-scene::LengthUnit unit_of(const scene::Avatar& avatar, const std::filesystem::path& file)
-{
-    using enum scene::LengthUnit;
-    return avatar.unit.value_or(avatars::is_in_centimetres(file) ? Centimetre : Metre);
 }
 
 /// Largest avatar with a surface of its own.
@@ -101,11 +95,12 @@ std::vector<std::string> unit_warnings(const Scene& scene, const std::vector<Sce
     const std::string comparison = body.empty() ? "" : ", and \"" + body + "\" is " + in_metres(body_size);
     for (size_t i = 0; i < cloths.size(); ++i)
         if (std::holds_alternative<std::filesystem::path>(scene.cloths[i].shape))
-            add(cloths[i].source(), bounds(cloths[i].state().rest.positions).diagonal(), scene.cloths[i].unit,
-                kCloth, body.empty() ? kPerson : body_size, comparison);
+            add(cloths[i].source(), bounds(cloths[i].state().rest.positions).diagonal(),
+                scene.cloths[i].unit.value_or(scene::LengthUnit::Metre), kCloth,
+                body.empty() ? kPerson : body_size, comparison);
     for (size_t i = 0; i < colliders.size(); ++i)
         if (const auto* file = std::get_if<std::filesystem::path>(&scene.avatars[i].shape))
-            add(file->string(), size_of(colliders[i]), unit_of(scene.avatars[i], *file), kBody, kPerson, "");
+            add(file->string(), size_of(colliders[i]), unit_of_file(scene.avatars[i]), kBody, kPerson, "");
     for (const scene::Solid& solid : scene.solids)
         if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
             add(file->string(), bounds(load_solid(solid).positions).diagonal(), solid.unit, kBody, kPerson,

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdlib>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -188,6 +189,21 @@ TEST_F(ExportsTest, OptionsReplaceTheListOfTheScene)
     EXPECT_EQ(two.exit_code, 2);
     EXPECT_THAT(two.errors, HasSubstr("the scene has 2 cloths; name the one to write"));
     EXPECT_FALSE(std::filesystem::exists(file("q")));
+}
+
+TEST_F(ExportsTest, RefusesUsdThatCouldNotBeChecked)
+{
+    const std::string usd_only = R"([{"file": "a.usda"}])";
+    ::setenv("TOILE_PYTHON", "/bin/false", 1);
+    const Finished refused = simulate("u", usd_only);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.errors, HasSubstr("u/a.usda: is checked by Python with USD, which is not there"));
+    EXPECT_FALSE(std::filesystem::exists(file("u")));
+    simulate_well("v", usd_only, {"--no-check"});
+    simulate_well("w", R"([{"file": "a.usda"}, {"file": "sheet.pc2", "cloth": "sheet"},
+                           {"file": "disc.pc2", "cloth": "disc"}])");
+    EXPECT_TRUE(std::filesystem::exists(file("w/certificate.json")));
+    ::unsetenv("TOILE_PYTHON");
 }
 
 } // namespace

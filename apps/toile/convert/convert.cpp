@@ -161,12 +161,14 @@ void remove_certificates(const ConvertOptions& options)
 }
 
 /// Name of a mesh and of the group that it lies in, by its path in an archive: /skirt/skirtShape is skirt,
-/// and /tee/front/frontShape is front in tee.
+/// and /tee/front/frontShape is front in tee. In USD both lie below the prim that is the whole file.
 void name_mesh(exports::CacheMesh& mesh, const std::filesystem::path& path)
 {
     const std::filesystem::path above = std::filesystem::path(exports::mesh_path_of(path)).parent_path();
+    const bool is_usd = exports::cache_format(path) == exports::CacheFormat::Usd;
+    const std::filesystem::path group = above.parent_path();
     mesh.name = above.filename().string();
-    mesh.parent = above.parent_path().filename().string();
+    mesh.parent = is_usd && !group.parent_path().has_filename() ? "" : group.filename().string();
 }
 
 exports::CacheLayout layout_of(const ConvertOptions& options, const std::vector<InputMesh>& meshes)
@@ -180,7 +182,7 @@ exports::CacheLayout layout_of(const ConvertOptions& options, const std::vector<
         exports::CacheMesh& mesh = layout.meshes.emplace_back();
         mesh.vertex_count = input.cache.vertex_count();
         mesh.faces = faces_of(options, input.cache);
-        if (meshes.size() > 1)
+        if (!exports::mesh_path_of(input.path).empty())
             name_mesh(mesh, input.path);
     }
     layout.frame_count = first.frame_count();

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <memory>
 
-#include "avatars/load_avatar.h"
 #include "avatars/model/motion.h"
 #include "avatars/retarget/add_motion.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
+#include "scenes/colliders/load_body.h"
 
 namespace toile::app {
 
@@ -26,14 +26,6 @@ void require_map(const ClipOptions& options)
     const std::string nearest = nearest_word(options.map, {"names", "cmu"});
     throw InvalidInput("--map " + options.map + ": must be names, cmu or the path of a .json file" +
                        (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
-}
-
-std::unique_ptr<avatars::Avatar> load(const scene::Avatar& body)
-{
-    avatars::AvatarSettings settings;
-    if (const auto* file = std::get_if<std::filesystem::path>(&body.shape))
-        settings.file = *file;
-    return avatars::load_avatar(settings);
 }
 
 /// The clip to play, which a motion adds to the avatar. @return its name there
@@ -72,7 +64,7 @@ Continuation continuation_of(const scene::Avatar& body, const ClipOptions& optio
     require_map(options);
 
     // Find the clip, and the time that it takes to get to it.
-    const std::unique_ptr<avatars::Avatar> avatar = load(body);
+    const std::unique_ptr<avatars::Avatar> avatar = scenes::load_body(body);
     avatars::Motion motion;
     motion.clip = choose_clip(*avatar, options);
     motion.pre_roll = {.hold = 0.0, .ease = choose_ease(*avatar, motion), .from_bind = true};
@@ -81,6 +73,7 @@ Continuation continuation_of(const scene::Avatar& body, const ClipOptions& optio
     const double duration = avatar->clips()[size_t(avatar->clip_index(motion.clip))].duration;
     continuation.frames = 1 + int(std::ceil(end_time(motion, duration) * scenes::Scene{}.fps));
     continuation.body.preroll = {.hold = 0.0, .ease = motion.pre_roll.ease, .from_bind = true};
+    continuation.body.speed = 1.0;
     if (options.motion.empty())
         continuation.body.clip = motion.clip;
     else

@@ -16,6 +16,7 @@
 #include "core/base/number.h"
 #include "core/compute/parallel.h"
 #include "garment/fabric/fabric.h"
+#include "scenes/format/cache_files.h"
 #include "scenes/garment_format/read_garment.h"
 
 namespace toile::app {
@@ -73,6 +74,11 @@ void complete(DrapeOptions& options, const DrapeFiles& files)
         settings.body.shape = scene::Mannequin{};
     else
         settings.body.shape = options.avatar;
+    if (scene_format::is_cache(options.avatar)) {
+        settings.body.speed = 0.0; // stays in its first sample
+        if (!scene_format::has_times(options.avatar))
+            settings.body.fps = scenes::Scene{}.fps;
+    }
     if (!options.shift.empty())
         settings.shift = Vec3(options.shift[0], options.shift[1], options.shift[2]);
 }

@@ -15,6 +15,7 @@
 #include "core/base/error.h"
 #include "core/base/file_plan.h"
 #include "scenes/colliders/scene_body.h"
+#include "scenes/format/cache_files.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/surfaces/load_cloth.h"
 
@@ -62,8 +63,9 @@ void add_model(Inputs& inputs, const path& file, const std::string& role)
 {
     if (file.empty())
         return;
-    inputs.emplace_back(file, role);
-    if (avatars::is_gltf(file))
+    for (const path& part : scene_format::files_of(file))
+        inputs.emplace_back(part, role);
+    if (!scene_format::is_cache(file) && avatars::is_gltf(file))
         for (const path& part : avatars::files_of_gltf(file))
             inputs.emplace_back(part, "a part of " + role);
 }
@@ -78,6 +80,8 @@ Json json_of(const scene::Avatar& body)
         avatar["mannequin"] = Json::object();
     if (!body.clip.empty())
         avatar["clip"] = body.clip;
+    if (body.speed != 1.0)
+        avatar["speed"] = body.speed;
     if (body.motion) {
         const scene::AvatarMotion& motion = *body.motion;
         avatar["motion"] = {{"file", std::filesystem::absolute(motion.file).string()}};

@@ -105,15 +105,16 @@ void RunFiles::complete()
 std::vector<CachedCloth> RunFiles::cloths_to_check(const scenes::World& world) const
 {
     const View<const scenes::ClothState> surfaces = world.surfaces();
+    const std::vector<ExportFile> targets = caches_of(job_);
     std::vector<CachedCloth> cloths;
-    for (const Cache& cache : caches_)
-        for (const int surface : surfaces_of(job_.scene, cache.target.entry)) {
-            const scenes::ClothState* cloth = &surfaces[surface];
-            if (std::none_of(cloths.begin(), cloths.end(),
-                             [&](const CachedCloth& other) { return other.cloth == cloth; }))
-                cloths.push_back(
-                    {cloth, cache.target.file, open_cloth(cache.complete, cache.target.entry, *cloth)});
-        }
+    for (int surface = 0; surface < surfaces.size(); ++surface) {
+        const ExportFile* const target = cache_to_check(job_, targets, surface);
+        if (target == nullptr)
+            continue;
+        const Cache& cache = caches_[size_t(target - targets.data())];
+        const scenes::ClothState& cloth = surfaces[surface];
+        cloths.push_back({&cloth, cache.target.file, open_cloth(cache.complete, cache.target.entry, cloth)});
+    }
     return cloths;
 }
 

@@ -17,6 +17,7 @@
 #include "export/cache_format.h"
 #include "export/folder_lock.h"
 #include "export/obj/obj_sequence.h"
+#include "export/usd/usd_python.h"
 
 namespace toile::app {
 
@@ -110,6 +111,41 @@ std::vector<path> certificates_of(const SceneJob& job)
     for (const ExportFile& cache : caches_of(job))
         certificates.insert(certificate_beside(cache.file));
     return {certificates.begin(), certificates.end()};
+}
+
+const ExportFile* cache_to_check(const SceneJob& job, const std::vector<ExportFile>& caches, int surface)
+{
+    const ExportFile* found = nullptr;
+    for (const ExportFile& cache : caches) {
+        const std::vector<int> surfaces = surfaces_of(job.scene, cache.entry);
+        const bool is_usd = exports::cache_format(cache.file) == exports::CacheFormat::Usd;
+        if (std::find(surfaces.begin(), surfaces.end(), surface) == surfaces.end())
+            continue;
+        if (!is_usd)
+            return &cache;
+        found = found != nullptr ? found : &cache;
+    }
+    return found;
+}
+
+void require_checkable(const SceneJob& job)
+{
+    const std::vector<std::string> names = surface_names(job.scene);
+    const std::vector<ExportFile> caches = caches_of(job);
+    for (int surface = 0; surface < int(names.size()); ++surface) {
+        const ExportFile* const cache = cache_to_check(job, caches, surface);
+        if (cache == nullptr || exports::cache_format(cache->file) != exports::CacheFormat::Usd)
+            continue;
+        try {
+            exports::require_usd_python(cache->file);
+        } catch (const InvalidInput&) {
+            throw InvalidInput(cache->file.string() +
+                               ": is checked by Python with USD, which is not there (pip install usd-core); "
+                               "export \"" +
+                               names[size_t(surface)] + "\" to a .pc2 as well, or give --no-check");
+        }
+        return; // which is there for all
+    }
 }
 
 void require_safe_outputs(const std::vector<SceneJob>& jobs)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
@@ -143,6 +144,8 @@ int simulate(const SimulateOptions& options, const scenes::BaselineMethods* base
     const bool is_single = options.scenes.size() == 1;
     const std::vector<SceneJob> jobs = is_single ? std::vector{job_of(options)} : jobs_of(options);
     require_safe_outputs(jobs);
+    if (!options.no_check)
+        std::for_each(jobs.begin(), jobs.end(), require_checkable);
     return is_single ? simulate_one(jobs.front(), settings, options.quiet)
                      : run_scenes(jobs, settings, devices, options.quiet);
 }

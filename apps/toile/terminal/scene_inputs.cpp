@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "avatars/import/gltf_import.h"
+#include "scenes/format/cache_files.h"
 
 namespace toile::app {
 
@@ -17,8 +18,8 @@ void add_file_of(FilePlan& plan, const Object& object, const std::string& kind)
     const path* file = std::get_if<path>(&object.shape);
     if (file == nullptr)
         return;
-    const std::string role = "the file of " + kind + " \"" + object.name + "\"";
-    plan.add_input(*file, role);
+    for (const path& part : scene_format::files_of(*file))
+        plan.add_input(part, "the file of " + kind + " \"" + object.name + "\"");
 }
 
 } // namespace
@@ -29,13 +30,18 @@ void add_inputs(FilePlan& plan, const scenes::Scene& scene)
     for (const scene::Cloth& cloth : scene.cloths) {
         add_file_of(plan, cloth, "cloth");
         if (cloth.rest_file)
-            plan.add_input(*cloth.rest_file, "the rest file of cloth \"" + cloth.name + "\"");
+            for (const path& part : scene_format::files_of(*cloth.rest_file))
+                plan.add_input(part, "the rest file of cloth \"" + cloth.name + "\"");
     }
     for (const scene::Solid& solid : scene.solids)
         add_file_of(plan, solid, "solid");
     for (const scene::Avatar& avatar : scene.avatars) {
         add_file_of(plan, avatar, "avatar");
-        if (const auto* file = std::get_if<path>(&avatar.shape); file != nullptr && avatars::is_gltf(*file))
+        if (avatar.mesh)
+            for (const path& part : scene_format::files_of(*avatar.mesh))
+                plan.add_input(part, "the mesh of avatar \"" + avatar.name + "\"");
+        if (const auto* file = std::get_if<path>(&avatar.shape);
+            file != nullptr && !scene_format::is_cache(*file) && avatars::is_gltf(*file))
             for (const path& part : avatars::files_of_gltf(*file))
                 plan.add_input(part, "a part of " + file->string());
         if (avatar.motion) {

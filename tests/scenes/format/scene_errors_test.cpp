@@ -191,7 +191,8 @@ TEST(SceneErrors, RefuseAvatarsThatContradictThemselves)
          "order "
          "of time"},
         {avatar_scene(R"("name": "a", "file": "body.stl")"),
-         R"(bad.json: avatars[0].file: "body.stl" is of an unknown format; use .glb, .gltf, .fbx or .obj)"},
+         R"(bad.json: avatars[0].file: "body.stl" is of an unknown format; use .glb, .gltf, .fbx, .obj or a cache )"
+         R"((.abc, .pc2, .mdd or an OBJ sequence))"},
         {avatar_scene(R"("name": "a", "box": {}, "motion": {"file": "walk.bvh"})"),
          "bad.json: avatars[0].motion: a shape has no clips; move it with keyframes"},
         {avatar_scene(R"("name": "a", "file": "body.obj", "motion": {"file": "walk.bvh"})"),

@@ -1,0 +1,133 @@
+#include "avatars/model/cached_avatar.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "core/base/number.h"
+#include "core/compute/parallel.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace toile::avatars {
+
+namespace {
+
+/// Distance in time from a sample at which it is taken as it is [samples]: times of frames are quotients with
+/// rounding errors.
+constexpr double kSnap = 1e-9;
+
+std::vector<Avatar::ClipName> clip_of(const GeometryCache& cache)
+{
+    if (cache.sample_count < 2)
+        return {};
+    return {{CachedAvatar::kClip, (cache.sample_count - 1) / cache.rate}};
+}
+
+/// A vertex at the other end of one of a vertex's edges. [vertices]
+std::vector<int> neighbours(const GeometryCache& cache)
+{
+    std::vector<int> neighbour(size_t(cache.vertex_count), -1);
+    for (const Triangle& t : cache.triangles)
+        for (int k = 0; k < 3; ++k)
+            if (neighbour[size_t(t[k])] < 0)
+                neighbour[size_t(t[k])] = t[(k + 1) % 3];
+    return neighbour;
+}
+
+/// Right-handed axes: tangential along the edge, tangential across it, normal. The identity where there are
+/// none.
+Mat3 frame_of(const Vec3& normal, const Vec3& edge)
+{
+    const Vec3 along = edge - normal.dot(edge) * normal;
+    const double length = along.norm();
+    if (normal.isZero(0.0) || !(length > 0.0))
+        return Mat3::Identity();
+    Mat3 frame;
+    frame.col(0) = along / length;
+    frame.col(1) = normal.cross(frame.col(0));
+    frame.col(2) = normal;
+    return frame;
+}
+
+/// x + u (y - x)
+void blend(double u, const std::vector<Vec3>& y, std::vector<Vec3>& x)
+{
+    for (size_t v = 0; v < x.size(); ++v)
+        x[v] += u * (y[v] - x[v]);
+}
+
+} // namespace
+
+CachedAvatar::CachedAvatar(std::string source, GeometryCache cache)
+    : Avatar(std::move(source), cache.triangles, cache.vertex_count, clip_of(cache)),
+      cache_(std::move(cache)), origins_(size_t(cache_.vertex_count), Vec3::Zero()),
+      first_(origins_.size() + 1), neighbour_(neighbours(cache_))
+{
+    std::iota(first_.begin(), first_.end(), 0);
+    for (int v = 0; v < cache_.vertex_count; ++v)
+        influences_.push_back({v, 1.0});
+}
+
+CachedAvatar::Positions CachedAvatar::read(int index) const
+{
+    Positions x = cache_.positions(index);
+    if (int(x.size()) != cache_.vertex_count)
+        throw InvalidInput(source() + ": sample " + std::to_string(index) + " has " +
+                           std::to_string(x.size()) + " vertices and the mesh " +
+                           std::to_string(cache_.vertex_count) + "; a body keeps its vertices");
+    for (size_t v = 0; v < x.size(); ++v) {
+        const Vec3 stored = x[v];
+        x[v] = apply(cache_.metres_from_file, stored);
+        if (!is_in_range(x[v]))
+            throw InvalidInput(source() + ": vertex " + std::to_string(v) + " of sample " +
+                               std::to_string(index) + " is at (" + short_text(stored.x()) + ", " +
+                               short_text(stored.y()) + ", " + short_text(stored.z()) +
+                               "); coordinates must be finite and at most 100 km; export it again");
+    }
+    return x;
+}
+
+std::shared_ptr<const CachedAvatar::Positions> CachedAvatar::sample(int index)
+{
+    const auto known = std::find_if(samples_.begin(), samples_.end(),
+                                    [&](const Sample& sample) { return sample.index == index; });
+    if (known != samples_.end()) {
+        std::rotate(known, known + 1, samples_.end());
+        return samples_.back().x;
+    }
+    if (int(samples_.size()) == kSamples)
+        samples_.erase(samples_.begin());
+    samples_.push_back({index, std::make_shared<const Positions>(read(index))});
+    return samples_.back().x;
+}
+
+CachedAvatar::Positions CachedAvatar::at(const PoseAt& at)
+{
+    if (at.clip < 0 || at.bind_weight >= 1.0)
+        return *sample(0);
+    const double position = std::clamp(at.time * cache_.rate, 0.0, double(cache_.sample_count - 1));
+    const double nearest = std::round(position);
+    const bool is_sample = std::fabs(position - nearest) < kSnap;
+    const double first = is_sample ? nearest : std::floor(position);
+    Positions x = *sample(int(first));
+    if (!is_sample)
+        blend(position - first, *sample(int(first) + 1), x);
+    if (at.bind_weight > 0.0)
+        blend(at.bind_weight, *sample(0), x);
+    return x;
+}
+
+void CachedAvatar::pose_bones(const PoseAt& at, const Affine& world_from_avatar, View<Affine> bones)
+{
+    const Positions x = this->at(at);
+    const std::vector<Vec3> normals = vertex_normals(x, triangles());
+    parallel_for(kCpu, "avatars/cache", vertex_count(), [&](int v) {
+        const int neighbour = neighbour_[size_t(v)];
+        const Vec3 edge = neighbour < 0 ? Vec3::Zero() : Vec3(x[size_t(neighbour)] - x[size_t(v)]);
+        bones[v].leftCols<3>() = world_from_avatar.leftCols<3>() * frame_of(normals[size_t(v)], edge);
+        bones[v].col(3) = apply(world_from_avatar, x[size_t(v)]);
+    });
+}
+
+} // namespace toile::avatars

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "avatars/model/avatar.h"
+
+namespace toile::avatars {
+
+/// A surface whose positions are stored sample by sample, at regular times.
+struct GeometryCache {
+    std::vector<Triangle> triangles;
+    int vertex_count = 0;
+    int sample_count = 0; ///< at least 1
+    double rate = 0.0;    ///< [1/s] samples per second; of no meaning for one sample
+
+    /// Reads the positions of a sample, [vertices] in the units and axes of the file.
+    std::function<std::vector<Vec3>(int sample)> positions;
+    Affine metres_from_file = identity_affine();
+};
+
+/// A body that was animated elsewhere: its vertices are where a cache has them.
+///
+///   x_v(t) = (1 - u) x_v^k + u x_v^(k+1),   k + u = rate t
+///
+/// The only clip, "cache", begins with sample 0 and ends with the last; sample 0 is the bind pose. A cache of
+/// one sample has no clip. Samples are read when they are needed, and the last kSamples are kept.
+///
+/// Every vertex follows a bone of its own, whose frame lies in the surface: two axes tangential, one normal.
+/// All that is done with skins works: insets of skin, bounds of motion, posing on a GPU.
+class CachedAvatar final : public Avatar {
+public:
+    static constexpr const char* kClip = "cache";
+    static constexpr int kSamples = 8; ///< two around the present, and those that insets look ahead to
+
+    CachedAvatar(std::string source, GeometryCache cache);
+
+    SkinView skin() const override { return {origins_, first_, influences_}; }
+    int bone_count() const override { return vertex_count(); }
+
+    /// @throws InvalidInput naming the sample and the vertex for a position that is not finite or out of
+    /// range
+    void pose_bones(const PoseAt& at, const Affine& world_from_avatar, View<Affine> bones) override;
+
+private:
+    using Positions = std::vector<Vec3>;
+    struct Sample {
+        int index;
+        std::shared_ptr<const Positions> x; ///< [vertices] [m]
+    };
+
+    std::shared_ptr<const Positions> sample(int index);
+    Positions read(int index) const;
+    Positions at(const PoseAt& at);
+
+    GeometryCache cache_;
+    std::vector<Vec3> origins_; ///< [vertices] zeros
+    std::vector<int> first_;    ///< [vertices + 1] 0, 1, 2, ...
+    std::vector<Influence> influences_;
+    std::vector<int> neighbour_;  ///< [vertices] at the other end of an edge; -1: none
+    std::vector<Sample> samples_; ///< used last is last
+};
+
+} // namespace toile::avatars

@@ -1,0 +1,101 @@
+#include "scenes/colliders/load_body.h"
+
+#include <utility>
+
+#include "avatars/model/cached_avatar.h"
+#include "core/base/error.h"
+#include "export/point_cache.h"
+#include "scenes/format/cache_files.h"
+#include "scenes/format/field.h"
+#include "scenes/meshes/mesh_file.h"
+
+namespace toile::scenes {
+
+namespace {
+
+/// Samples per second of a cache.
+double rate_of(const exports::PointCache& cache, const CacheSettings& settings, const std::string& source)
+{
+    if (cache.fps())
+        return *cache.fps() * cache.subframes();
+    if (cache.frame_count() > 1 && scene_format::has_times(source))
+        throw InvalidInput(source + ": its samples are not at regular times; export it with a fixed step");
+    if (cache.frame_count() > 1 && !settings.fps)
+        throw InvalidInput(source + ": has no times; give the avatar's fps");
+    return settings.fps.value_or(1.0);
+}
+
+/// Faces of a cache: its own, or those of the mesh on which it plays.
+TriangleMesh faces_of(const exports::PointCache& cache, const CacheSettings& settings,
+                      const std::string& source)
+{
+    if (cache.mesh() == nullptr && !settings.mesh)
+        throw InvalidInput(source + ": has no faces; name the OBJ on which it plays as the avatar's mesh");
+    const ObjMesh mesh = cache.mesh() != nullptr ? *cache.mesh() : read_mesh_file(*settings.mesh).mesh;
+    if (int(mesh.positions.size()) != cache.vertex_count())
+        throw InvalidInput(settings.mesh->string() + ": has " + std::to_string(mesh.positions.size()) +
+                           " vertices, but " + source + " " + std::to_string(cache.vertex_count()) +
+                           "; name the mesh on which the cache plays");
+    TriangleMesh faces = mesh.triangulated();
+    avatars::require_surface(faces, cache.mesh() != nullptr ? source : settings.mesh->string());
+    return faces;
+}
+
+std::unique_ptr<avatars::Avatar> load_cached_body(avatars::AvatarSettings settings, const CacheSettings& more)
+{
+    const std::string source = settings.file.string();
+    const exports::PointCache cache = exports::read_cache(settings.file);
+    if (cache.frame_count() < 1)
+        throw InvalidInput(source + ": has no sample; a body needs one at least");
+    if (settings.unit.empty() && cache.axes())
+        settings.unit = cache.axes()->unit;
+    if (settings.up.empty() && cache.axes())
+        settings.up = cache.axes()->up;
+
+    avatars::GeometryCache samples;
+    samples.triangles = faces_of(cache, more, source).triangles;
+    samples.vertex_count = cache.vertex_count();
+    samples.sample_count = cache.frame_count();
+    samples.rate = rate_of(cache, more, source);
+    samples.positions = [cache](int sample) { return cache.frame(sample); };
+    samples.metres_from_file = avatars::metres_from_file(settings);
+    auto body = std::make_unique<avatars::CachedAvatar>(source, std::move(samples));
+    body->face_outwards();
+    return body;
+}
+
+} // namespace
+
+std::unique_ptr<avatars::Avatar> load_body(avatars::AvatarSettings settings, const CacheSettings& cache)
+{
+    return scene_format::is_cache(settings.file) ? load_cached_body(std::move(settings), cache)
+                                                 : avatars::load_avatar(settings);
+}
+
+std::unique_ptr<avatars::Avatar> load_body(const scene::Avatar& settings)
+{
+    avatars::AvatarSettings body;
+    if (const auto* file = std::get_if<std::filesystem::path>(&settings.shape))
+        body.file = *file;
+    else
+        body.mannequin.height = std::get<scene::Mannequin>(settings.shape).height;
+    if (settings.unit)
+        body.unit = scene_format::word_of(*settings.unit);
+    if (settings.up)
+        body.up = scene_format::word_of(*settings.up);
+    return load_body(std::move(body), {settings.mesh, settings.fps});
+}
+
+scene::LengthUnit unit_of_file(const scene::Avatar& settings)
+{
+    using enum scene::LengthUnit;
+    if (settings.unit)
+        return *settings.unit;
+    const auto* file = std::get_if<std::filesystem::path>(&settings.shape);
+    if (file == nullptr || !scene_format::is_cache(*file))
+        return file != nullptr && avatars::is_in_centimetres(*file) ? Centimetre : Metre;
+    const std::optional<exports::Axes> axes = exports::read_cache(*file).axes();
+    return axes && axes->unit == "cm" ? Centimetre : Metre;
+}
+
+} // namespace toile::scenes
