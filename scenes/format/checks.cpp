@@ -61,7 +61,7 @@ void check_shape_file(const Document& document, const std::string& key_path,
 {
     if (!is_cache(file))
         check_extension(document, key_path, file, {".obj", ".abc"});
-    else if (!exports::stores_faces(exports::cache_format(file)))
+    else if (!exports::features_of(exports::cache_format(file)).faces)
         document.refuse(key_path,
                         as_written(file.string()) + " has no faces; name the OBJ on which it plays");
 }
@@ -103,7 +103,7 @@ void check_cache(const Document& document, const std::string& key_path, const Av
         return;
     }
     const std::filesystem::path& file = *file_of(avatar);
-    const bool has_faces = exports::stores_faces(exports::cache_format(file));
+    const bool has_faces = exports::features_of(exports::cache_format(file)).faces;
     if (!has_faces && !avatar.mesh)
         document.refuse(key_path, "the key \"mesh\" is missing; " + as_written(file.string()) +
                                       " has no faces, name the OBJ on which it plays");

@@ -194,7 +194,7 @@ TEST_F(ExportsTest, OptionsReplaceTheListOfTheScene)
 TEST_F(ExportsTest, RefusesUsdThatCouldNotBeChecked)
 {
     const std::string usd_only = R"([{"file": "a.usda"}])";
-    ::setenv("TOILE_PYTHON", "/bin/false", 1);
+    ::setenv("TOILE_PYTHON", "/nowhere/python3", 1);
     const Finished refused = simulate("u", usd_only);
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_THAT(refused.errors, HasSubstr("u/a.usda: is checked by Python with USD, which is not there"));
