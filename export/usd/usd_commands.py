@@ -81,17 +81,6 @@ class Mesh:
     def geometry(self):
         return UsdGeom.Mesh(self.prim)
 
-    def transforms(self):
-        """Of the mesh and all above it that move it."""
-        prim = self.prim
-        while prim and not prim.IsPseudoRoot():
-            transform = UsdGeom.Xformable(prim)
-            if transform:
-                yield transform
-                if transform.GetResetXformStack():
-                    return
-            prim = prim.GetParent()
-
     def points(self, time):
         points = self.geometry().GetPointsAttr().Get(time)
         if not isinstance(points, Vt.Vec3fArray):
@@ -108,8 +97,9 @@ class Mesh:
                    for attribute in (mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()))
 
     def sample_times(self, first, last):
-        """Time codes of all samples of points and transforms, ascending."""
-        if not has_clips(self.prim):
+        """Time codes of all samples of points and transforms, of all meshes of the stage, which then have as many
+        frames each; ascending."""
+        if not any(has_clips(prim) for prim in mesh_prims(self.stage)):
             return sorted(set(self.samples_in(Gf.Interval.GetFullInterval())))
         times, begin = set(), first
         while begin <= last:
@@ -119,14 +109,27 @@ class Mesh:
         return sorted(times)
 
     def samples_in(self, interval):
-        times = list(self.geometry().GetPointsAttr().GetTimeSamplesInInterval(interval))
-        for transform in self.transforms():
-            times += transform.GetTimeSamplesInInterval(interval)
+        times = []
+        for prim in mesh_prims(self.stage):
+            times += UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamplesInInterval(interval)
+            for transform in transforms_above(prim):
+                times += transform.GetTimeSamplesInInterval(interval)
         return times
 
 
 def at_time(time):
     return "" if time.IsDefault() else f" at time code {time.GetValue():g}"
+
+
+def transforms_above(prim):
+    """Of a prim and all above it that move it."""
+    while prim and not prim.IsPseudoRoot():
+        transform = UsdGeom.Xformable(prim)
+        if transform:
+            yield transform
+            if transform.GetResetXformStack():
+                return
+        prim = prim.GetParent()
 
 
 def has_clips(prim):

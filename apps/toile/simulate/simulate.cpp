@@ -9,6 +9,8 @@
 #include "apps/toile/terminal/commands.h"
 #include "core/base/error.h"
 #include "core/compute/cuda/runtime/device.h"
+#include "export/cache_format.h"
+#include "export/usd/usd_python.h"
 #include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
 
@@ -109,6 +111,17 @@ int simulate_one(const SceneJob& job, const RunSettings& settings, bool quiet)
     return run.run(interrupt);
 }
 
+/// Refuses caches that could not be certified after the run.
+void require_readable_caches(const std::vector<SceneJob>& jobs)
+{
+    for (const SceneJob& job : jobs)
+        for (const SurfaceFile& cache : caches_of(job))
+            if (exports::cache_format(cache.file) == exports::CacheFormat::Usd) {
+                exports::require_usd_python(cache.file);
+                return; // it is one for all
+            }
+}
+
 int simulate(const SimulateOptions& options, const scenes::BaselineMethods* baselines)
 {
     require_range("--frames", options.frames, 1, 1000000);
@@ -119,6 +132,8 @@ int simulate(const SimulateOptions& options, const scenes::BaselineMethods* base
     const bool is_single = options.scenes.size() == 1;
     const std::vector<SceneJob> jobs = is_single ? std::vector{job_of(options)} : jobs_of(options);
     require_safe_outputs(jobs);
+    if (!options.no_check)
+        require_readable_caches(jobs);
     return is_single ? simulate_one(jobs.front(), settings, options.quiet)
                      : run_scenes(jobs, settings, devices, options.quiet);
 }
