@@ -9,11 +9,14 @@ Exit codes: 3 without the modules; 4 for a file that is refused, and 5 for anoth
 standard output.
 """
 
+import os
 import struct
 import sys
 
 MISSING, REFUSED, BROKE_OFF = 3, 4, 5
 
+# Files are read, not mapped: memory is what the frames at hand take, and a file that shrinks is an error.
+os.environ.setdefault("USDC_USE_PREAD", "1")
 try:
     from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel, Vt
 except ImportError:
@@ -151,18 +154,19 @@ class Sampling:
         if not (0 < self.fps < 1e9 and 0 < codes_per_second < 1e9):
             refuse(f"has {self.fps:g} frames and {codes_per_second:g} time codes a second; they must be positive")
         self.step = codes_per_second / self.fps  # time codes of a frame
-        self.subframes, first, last = 1, 0.0, 0.0
-        told = layer.customLayerData.get("toileSubframes")
+        first, last = 0.0, 0.0
         if stage.HasAuthoredTimeCodeRange():
             first, last = stage.GetStartTimeCode(), stage.GetEndTimeCode()
         if not -1e9 < first <= last < 1e9:
             refuse(f"begins at time code {first:g} and ends at {last:g}")
-        self.samples = mesh.sample_times(first, last)
+        told = layer.customLayerData.get("toileSubframes")  # Toile's own samples are regular: no clip need be opened
+        is_told = first < last and isinstance(told, int) and 0 < told <= 1000
+        self.samples = [] if is_told else mesh.sample_times(first, last)
         if first == last and self.samples:
             first, last = self.samples[0], self.samples[-1]
         self.start = first / self.step
         within = [(time - first) / self.step for time in self.samples if first <= time <= last]
-        self.subframes = told if isinstance(told, int) and 0 < told <= 1000 else self.subframes_of(within)
+        self.subframes = told if is_told else self.subframes_of(within)
         count = int((last - first) / self.step * self.subframes + NEAR) + 1
         if count > MAX_FRAMES:
             refuse(f"has {count} frames; {MAX_FRAMES} are the most that are read")
@@ -279,7 +283,7 @@ def write_usdc(file, output):
         return
     top.ClearInfo("clips")
     top.ClearInfo("clipSets")
-    subframes = root.customLayerData.get("toileSubframes", 1)
+    subframes = root.customLayerData["toileSubframes"]
     first = stage.GetStartTimeCode()
     count = round((stage.GetEndTimeCode() - first) * subframes) + 1
     paths = [attribute.GetPath() for prim in stage.Traverse() for attribute in prim.GetAttributes()

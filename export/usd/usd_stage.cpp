@@ -8,7 +8,12 @@ namespace toile::exports {
 
 namespace {
 
-std::string pair_text(double a, double b) { return "(" + usd_number(a) + ", " + usd_number(b) + ")"; }
+std::string pair_text(double a, double b)
+{
+    std::string text = "(";
+    text += usd_number(a) + ", " + usd_number(b) + ")";
+    return text;
+}
 
 } // namespace
 
@@ -62,9 +67,7 @@ void UsdStage::write_header(UsdFile& file, double first_time, double last_time) 
 {
     file << "#usda 1.0\n(\n";
     file << "    customLayerData = {\n        string creator = \"toile\"\n";
-    if (layout_.subframes > 1)
-        file << "        int toileSubframes = " << std::to_string(layout_.subframes) << "\n";
-    file << "    }\n";
+    file << "        int toileSubframes = " << std::to_string(layout_.subframes) << "\n    }\n";
     file << "    defaultPrim = \"" << clean_name(top_.name) << "\"\n";
     file << "    endTimeCode = " << usd_number(last_time) << "\n";
     file << "    framesPerSecond = " << usd_number(layout_.fps) << "\n";

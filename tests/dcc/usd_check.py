@@ -48,7 +48,7 @@ def findings(subject):
 def compare(stage, mesh, frames, points):
     """Complaints about the frames of a mesh."""
     start, rate = stage.GetStartTimeCode(), stage.GetTimeCodesPerSecond()
-    subframes = stage.GetRootLayer().customLayerData.get("toileSubframes", 1)
+    subframes = stage.GetRootLayer().customLayerData["toileSubframes"]
     said = []
     if round((stage.GetEndTimeCode() - start) * subframes) + 1 != len(frames):
         said.append(f"ends at time code {stage.GetEndTimeCode():g}, and has {len(frames)} frames")
