@@ -2,7 +2,8 @@
 
     usd_commands.py version                   prints the version of USD
     usd_commands.py meshes FILE               prints the paths of the meshes, one a line
-    usd_commands.py frames FILE PATH OUTPUT   writes a mesh and its frames; usd_frames.h says how
+    usd_commands.py frames FILE PATH OUTPUT   writes a mesh and its frames into a file that the caller has open, and
+                                              removes its name; usd_frames.h says how
     usd_commands.py usdc FILE OUTPUT          writes a .usda of Toile as one .usdc, without value clips
 
 Exit codes: 3 without the modules; 4 for a file that is refused, and 5 for another failure, with the reason on the
@@ -251,7 +252,8 @@ def write_frames(file, path, output):
     sampling = Sampling(mesh)
     first = Usd.TimeCode(sampling.times[0])
     faces, count = mesh.faces(first), len(mesh.points(first))
-    with open(output, "xb") as out:
+    with open(output, "r+b") as out:
+        os.unlink(output)  # nothing is left of it if this process is killed
         write_head(out, mesh, sampling, first)
         for k, value in enumerate(sampling.times):
             if k % FRAMES_AT_ONCE == 0:

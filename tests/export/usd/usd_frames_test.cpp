@@ -65,7 +65,12 @@ protected:
     std::unique_ptr<const PointCache::Source> open(const FrameFile& frames) const
     {
         write_bytes(file("frames"), frames.bytes());
-        return open_usd_frames(file("frames"), "shot.usda");
+        return open_written();
+    }
+    std::unique_ptr<const PointCache::Source> open_written() const
+    {
+        return open_usd_frames(std::make_unique<BinaryFile>(file("frames"), BinaryFile::Mode::Read),
+                               "shot.usda");
     }
     std::string said(const FrameFile& frames) const
     {
@@ -166,14 +171,14 @@ TEST_F(UsdFramesTest, NoSizeMakesItReadWhatIsNotThere)
     const std::string whole = FrameFile{}.bytes();
     for (size_t size = 0; size < whole.size(); ++size) {
         write_bytes(file("frames"), whole.substr(0, size));
-        EXPECT_NE(refusal([&] { open_usd_frames(file("frames"), "shot.usda"); }), "") << size;
+        EXPECT_NE(refusal([&] { open_written(); }), "") << size;
     }
     for (size_t at = 0; at < whole.size(); ++at) {
         std::string broken = whole;
         broken[at] = char(broken[at] ^ 0xff);
         write_bytes(file("frames"), broken);
         try {
-            open_usd_frames(file("frames"), "shot.usda")->frame(1);
+            open_written()->frame(1);
         } catch (const InvalidInput&) {
         }
     }
