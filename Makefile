@@ -12,7 +12,7 @@ ARCHITECTURES := $(if $(CARD),native,90-real)
 # The demo runs on the CPU unless a GPU is here. GPU=1: kernels are compiled all the same.
 DEMO_CUDA := $(if $(filter-out 0,$(GPU)),ON,$(if $(CARD),AUTO,OFF))
 
-FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf obj pattern scene vtk)
+FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf obj pattern scene usd_frames vtk)
 # What ships; research and the tests of GPUs would double the time.
 SANITIZED_TESTS := $(addprefix test_,core quadrature2d garment collision avatars export garment_format scenes preview) $(FUZZ_TARGETS)
 

@@ -196,6 +196,13 @@ std::vector<Vec3> PointCache::frame(int index) const
     return source_->frame(index);
 }
 
+std::vector<Vec3> PointCache::frame_in_metres(int index) const
+{
+    std::vector<Vec3> positions = frame(index);
+    change_axes(axes().value_or(Axes{}), Axes{}, positions);
+    return positions;
+}
+
 PointCache read_cache(const path& file)
 {
     switch (cache_format(file)) {

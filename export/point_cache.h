@@ -46,6 +46,9 @@ public:
     ///         sample of Alembic.
     std::vector<Vec3> frame(int index) const;
 
+    /// The same in metres with Y up; where the format does not say what it holds, it is that.
+    std::vector<Vec3> frame_in_metres(int index) const;
+
 private:
     std::shared_ptr<const Source> source_;
 };

@@ -200,6 +200,8 @@ void print_cache(const std::filesystem::path& file)
     if (cache.subframes() > 1)
         print("samples per frame", cache.subframes());
     print("start frame", cache.start_frame());
+    if (cache.axes())
+        print("axes", cache.axes()->unit + ", " + cache.axes()->up + " up");
     if (cache.frame_count() == 0)
         return;
     print_extent("extent of the first frame", cache.frame(0));

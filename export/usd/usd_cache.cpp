@@ -2,6 +2,7 @@
 
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "core/base/error.h"
 #include "export/cache_path.h"
@@ -37,9 +38,10 @@ std::unique_ptr<const PointCache::Source> open_usd(const std::filesystem::path& 
 {
     const std::filesystem::path stage = archive_of(file);
     const ExchangeFolder folder;
-    const std::filesystem::path frames = folder.path() / "frames";
-    run_usd_command(stage, {"frames", required(stage), mesh_path_of(file), frames.string()}, folder);
-    return open_usd_frames(frames, file.string());
+    const std::filesystem::path name = folder.path() / "frames";
+    auto frames = std::make_unique<const BinaryFile>(name, BinaryFile::Mode::Create);
+    run_usd_command(stage, {"frames", required(stage), mesh_path_of(file), name.string()}, folder);
+    return open_usd_frames(std::move(frames), file.string());
 }
 
 } // namespace toile::exports

@@ -2,18 +2,22 @@
 
     usd_commands.py version                   prints the version of USD
     usd_commands.py meshes FILE               prints the paths of the meshes, one a line
-    usd_commands.py frames FILE PATH OUTPUT   writes a mesh and its frames; usd_frames.h says how
+    usd_commands.py frames FILE PATH OUTPUT   writes a mesh and its frames into a file that the caller has open, and
+                                              removes its name; usd_frames.h says how
     usd_commands.py usdc FILE OUTPUT          writes a .usda of Toile as one .usdc, without value clips
 
 Exit codes: 3 without the modules; 4 for a file that is refused, and 5 for another failure, with the reason on the
 standard output.
 """
 
+import os
 import struct
 import sys
 
 MISSING, REFUSED, BROKE_OFF = 3, 4, 5
 
+# Files are read, not mapped: memory is what the frames at hand take, and a file that shrinks is an error.
+os.environ.setdefault("USDC_USE_PREAD", "1")
 try:
     from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel, Vt
 except ImportError:
@@ -81,17 +85,6 @@ class Mesh:
     def geometry(self):
         return UsdGeom.Mesh(self.prim)
 
-    def transforms(self):
-        """Of the mesh and all above it that move it."""
-        prim = self.prim
-        while prim and not prim.IsPseudoRoot():
-            transform = UsdGeom.Xformable(prim)
-            if transform:
-                yield transform
-                if transform.GetResetXformStack():
-                    return
-            prim = prim.GetParent()
-
     def points(self, time):
         points = self.geometry().GetPointsAttr().Get(time)
         if not isinstance(points, Vt.Vec3fArray):
@@ -108,8 +101,9 @@ class Mesh:
                    for attribute in (mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()))
 
     def sample_times(self, first, last):
-        """Time codes of all samples of points and transforms, ascending."""
-        if not has_clips(self.prim):
+        """Time codes of all samples of points and transforms, of all meshes of the stage, which then have as many
+        frames each; ascending."""
+        if not any(has_clips(prim) for prim in mesh_prims(self.stage)):
             return sorted(set(self.samples_in(Gf.Interval.GetFullInterval())))
         times, begin = set(), first
         while begin <= last:
@@ -119,14 +113,27 @@ class Mesh:
         return sorted(times)
 
     def samples_in(self, interval):
-        times = list(self.geometry().GetPointsAttr().GetTimeSamplesInInterval(interval))
-        for transform in self.transforms():
-            times += transform.GetTimeSamplesInInterval(interval)
+        times = []
+        for prim in mesh_prims(self.stage):
+            times += UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamplesInInterval(interval)
+            for transform in transforms_above(prim):
+                times += transform.GetTimeSamplesInInterval(interval)
         return times
 
 
 def at_time(time):
     return "" if time.IsDefault() else f" at time code {time.GetValue():g}"
+
+
+def transforms_above(prim):
+    """Of a prim and all above it that move it."""
+    while prim and not prim.IsPseudoRoot():
+        transform = UsdGeom.Xformable(prim)
+        if transform:
+            yield transform
+            if transform.GetResetXformStack():
+                return
+        prim = prim.GetParent()
 
 
 def has_clips(prim):
@@ -148,18 +155,19 @@ class Sampling:
         if not (0 < self.fps < 1e9 and 0 < codes_per_second < 1e9):
             refuse(f"has {self.fps:g} frames and {codes_per_second:g} time codes a second; they must be positive")
         self.step = codes_per_second / self.fps  # time codes of a frame
-        self.subframes, first, last = 1, 0.0, 0.0
-        told = layer.customLayerData.get("toileSubframes")
+        first, last = 0.0, 0.0
         if stage.HasAuthoredTimeCodeRange():
             first, last = stage.GetStartTimeCode(), stage.GetEndTimeCode()
         if not -1e9 < first <= last < 1e9:
             refuse(f"begins at time code {first:g} and ends at {last:g}")
-        self.samples = mesh.sample_times(first, last)
+        told = layer.customLayerData.get("toileSubframes")  # Toile's own samples are regular: no clip need be opened
+        is_told = first < last and isinstance(told, int) and 0 < told <= 1000
+        self.samples = [] if is_told else mesh.sample_times(first, last)
         if first == last and self.samples:
             first, last = self.samples[0], self.samples[-1]
         self.start = first / self.step
         within = [(time - first) / self.step for time in self.samples if first <= time <= last]
-        self.subframes = told if isinstance(told, int) and 0 < told <= 1000 else self.subframes_of(within)
+        self.subframes = told if is_told else self.subframes_of(within)
         count = int((last - first) / self.step * self.subframes + NEAR) + 1
         if count > MAX_FRAMES:
             refuse(f"has {count} frames; {MAX_FRAMES} are the most that are read")
@@ -244,7 +252,8 @@ def write_frames(file, path, output):
     sampling = Sampling(mesh)
     first = Usd.TimeCode(sampling.times[0])
     faces, count = mesh.faces(first), len(mesh.points(first))
-    with open(output, "xb") as out:
+    with open(output, "r+b") as out:
+        os.unlink(output)  # nothing is left of it if this process is killed
         write_head(out, mesh, sampling, first)
         for k, value in enumerate(sampling.times):
             if k % FRAMES_AT_ONCE == 0:
@@ -276,7 +285,7 @@ def write_usdc(file, output):
         return
     top.ClearInfo("clips")
     top.ClearInfo("clipSets")
-    subframes = root.customLayerData.get("toileSubframes", 1)
+    subframes = root.customLayerData["toileSubframes"]
     first = stage.GetStartTimeCode()
     count = round((stage.GetEndTimeCode() - first) * subframes) + 1
     paths = [attribute.GetPath() for prim in stage.Traverse() for attribute in prim.GetAttributes()

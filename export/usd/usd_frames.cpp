@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -24,8 +25,8 @@ using Transform = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 class UsdFrames final : public PointCache::Source {
 public:
-    UsdFrames(const std::filesystem::path& file, std::string name)
-        : file_(file, BinaryFile::Mode::Read), name_(std::move(name)), size_(file_.size())
+    UsdFrames(std::unique_ptr<const BinaryFile> file, std::string name)
+        : file_(std::move(file)), name_(std::move(name)), size_(file_->size())
     {
         read_head();
         read_faces();
@@ -42,7 +43,7 @@ public:
     std::vector<Vec3> frame(int index) const override
     {
         std::string bytes(size_t(frame_size()), '\0');
-        file_.read_at(first_frame_at_ + frame_size() * index, bytes.data(), bytes.size());
+        file_->read_at(first_frame_at_ + frame_size() * index, bytes.data(), bytes.size());
         const Transform world = transform(bytes);
         const bool moves = !world.isIdentity(0.0);
         std::vector<Vec3> positions;
@@ -79,7 +80,7 @@ private:
             refuse("needs " + std::to_string(count) + " bytes at byte " + std::to_string(at_) +
                    " of what USD left, which has " + std::to_string(size_));
         std::string part(size_t(count), '\0');
-        file_.read_at(at_, part.data(), part.size());
+        file_->read_at(at_, part.data(), part.size());
         at_ += count;
         return part;
     }
@@ -192,7 +193,7 @@ private:
     void finish_faces()
     {
         std::string first(size_t(kTransform), '\0');
-        file_.read_at(first_frame_at_, first.data(), first.size());
+        file_->read_at(first_frame_at_, first.data(), first.size());
         const bool mirrors = transform(first).topLeftCorner<3, 3>().determinant() < 0.0;
         if (is_clockwise_ != mirrors)
             for (auto* corners : {&mesh.polygons, &mesh.polygon_uvs})
@@ -201,7 +202,7 @@ private:
         mesh.positions = frame(0);
     }
 
-    BinaryFile file_;
+    std::unique_ptr<const BinaryFile> file_;
     std::string name_;
     std::int64_t size_, at_ = 0, first_frame_at_ = 0;
     std::uint32_t scope_ = kNone;
@@ -212,10 +213,10 @@ private:
 
 } // namespace
 
-std::unique_ptr<const PointCache::Source> open_usd_frames(const std::filesystem::path& file,
+std::unique_ptr<const PointCache::Source> open_usd_frames(std::unique_ptr<const BinaryFile> file,
                                                           const std::string& name)
 {
-    return std::make_unique<UsdFrames>(file, name);
+    return std::make_unique<UsdFrames>(std::move(file), name);
 }
 
 } // namespace toile::exports

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "export/binary_file.h"
 #include "export/point_cache.h"
@@ -21,11 +22,10 @@ namespace toile::exports {
 ///   frames, each: double[4][4] transform of rows (x y z 1); float[points][3]
 ///
 /// Units other than metres and centimetres are converted into metres.
-/// @param file  may be removed when this returns
 /// @param name  of what was read, for errors
 /// @throws InvalidInput for sizes that are not those of the file, points of faces out of range, and frames
 ///         without a rate
-std::unique_ptr<const PointCache::Source> open_usd_frames(const std::filesystem::path& file,
+std::unique_ptr<const PointCache::Source> open_usd_frames(std::unique_ptr<const BinaryFile> file,
                                                           const std::string& name);
 
 } // namespace toile::exports

@@ -1,5 +1,7 @@
 #include "export/usd/usd_mesh.h"
 
+#include <algorithm>
+
 #include "core/mesh/triangle_mesh.h"
 #include "export/archive/names.h"
 
@@ -30,7 +32,7 @@ std::vector<int> joined(const std::vector<std::vector<int>>& lists)
     return all;
 }
 
-constexpr const char* kAtCorners = " (\n            interpolation = \"faceVarying\"\n        )";
+constexpr const char* kAtCorners = " (interpolation = \"faceVarying\")";
 
 } // namespace
 
@@ -71,7 +73,7 @@ void UsdMesh::drop_all_but_last()
             track->drop_all_but_last();
 }
 
-void UsdMesh::write(UsdFile& file, UsdLayer layer, const std::string& indent,
+void UsdMesh::write(UsdFile& file, UsdLayer layer, const std::string& parent, const std::string& indent,
                     const std::vector<double>& times) const
 {
     const bool has_faces = layer == UsdLayer::Whole || layer == UsdLayer::Root;
@@ -86,13 +88,15 @@ void UsdMesh::write(UsdFile& file, UsdLayer layer, const std::string& indent,
         if (layer == UsdLayer::Whole)
             track->write(file, inner, times);
         else if (layer == UsdLayer::Clip)
-            track->write_samples(file, inner, times);
+            track->write_all(file, inner, times);
         else
             track->declare(file, inner);
     }
     if (has_faces)
-        write_groups(file, inner);
+        write_groups(file, parent, inner);
     file << indent << "}\n";
+    if (has_faces)
+        write_materials(file, indent);
 }
 
 void UsdMesh::write_faces(UsdFile& file, const std::string& indent) const
@@ -120,23 +124,47 @@ void UsdMesh::write_faces(UsdFile& file, const std::string& indent) const
     file << "\n";
 }
 
-void UsdMesh::write_groups(UsdFile& file, const std::string& indent) const
+void UsdMesh::write_groups(UsdFile& file, const std::string& parent, const std::string& indent) const
 {
     if (groups_.empty())
         return;
     file << indent << "uniform token subsetFamily:materialBind:familyType = \"nonOverlapping\"\n";
     for (const FaceGroup& group : groups_) {
-        file << "\n" << indent << "def GeomSubset \"" << group.clean_name << "\"";
+        file << "\n" << indent << "def GeomSubset \"" << group.clean_name << "\" (\n";
         if (group.name != group.clean_name)
-            file << " (\n"
-                 << indent << "    displayName = " << usd_quoted(group.name) << "\n"
-                 << indent << ")";
-        file << "\n" << indent << "{\n";
+            file << indent << "    displayName = " << usd_quoted(group.name) << "\n";
+        file << indent << "    prepend apiSchemas = [\"MaterialBindingAPI\"]\n";
+        file << indent << ")\n" << indent << "{\n";
         file << indent << "    uniform token elementType = \"face\"\n";
         file << indent << "    uniform token familyName = \"materialBind\"\n";
         file << indent << "    int[] indices = ";
         file.append(group.polygons);
-        file << "\n" << indent << "}\n";
+        file << "\n"
+             << indent << "    rel material:binding = <" << parent << "/" << material_of(group) << ">\n";
+        file << indent << "}\n";
+    }
+}
+
+std::string UsdMesh::material_of(const FaceGroup& group) const
+{
+    std::string name = group.clean_name;
+    const auto is_of_other = [&](const FaceGroup& other) {
+        return other.clean_name == name && &other != &group;
+    };
+    while (name == name_ || std::any_of(groups_.begin(), groups_.end(), is_of_other))
+        name += "_";
+    return name;
+}
+
+void UsdMesh::write_materials(UsdFile& file, const std::string& indent) const
+{
+    for (const FaceGroup& group : groups_) {
+        file << "\n" << indent << "def Material \"" << material_of(group) << "\"";
+        if (group.name != group.clean_name)
+            file << " (\n"
+                 << indent << "    displayName = " << usd_quoted(group.name) << "\n"
+                 << indent << ")";
+        file << "\n" << indent << "{\n" << indent << "}\n";
     }
 }
 

@@ -34,13 +34,18 @@ public:
     void add_sample(View<const Vec3> x, View<const Vec3> v);
     void drop_all_but_last();
 
-    /// Writes the prim NAMEShape. @param times  [samples] time codes
-    void write(UsdFile& file, UsdLayer layer, const std::string& indent,
+    /// Writes the prim NAMEShape, and beside it a material for each group, from which Blender makes a slot.
+    /// @param parent  path of the transform that they lie in
+    /// @param times   [samples] time codes
+    void write(UsdFile& file, UsdLayer layer, const std::string& parent, const std::string& indent,
                const std::vector<double>& times) const;
 
 private:
     void write_faces(UsdFile& file, const std::string& indent) const;
-    void write_groups(UsdFile& file, const std::string& indent) const;
+    void write_groups(UsdFile& file, const std::string& parent, const std::string& indent) const;
+    void write_materials(UsdFile& file, const std::string& indent) const;
+    /// Of the material of a group: like the group's, but not like the mesh's.
+    std::string material_of(const FaceGroup& group) const;
 
     std::string name_;
     ObjMesh faces_; ///< without positions

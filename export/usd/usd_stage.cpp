@@ -8,7 +8,12 @@ namespace toile::exports {
 
 namespace {
 
-std::string pair_text(double a, double b) { return "(" + usd_number(a) + ", " + usd_number(b) + ")"; }
+std::string pair_text(double a, double b)
+{
+    std::string text = "(";
+    text += usd_number(a) + ", " + usd_number(b) + ")";
+    return text;
+}
 
 } // namespace
 
@@ -62,9 +67,7 @@ void UsdStage::write_header(UsdFile& file, double first_time, double last_time) 
 {
     file << "#usda 1.0\n(\n";
     file << "    customLayerData = {\n        string creator = \"toile\"\n";
-    if (layout_.subframes > 1)
-        file << "        int toileSubframes = " << std::to_string(layout_.subframes) << "\n";
-    file << "    }\n";
+    file << "        int toileSubframes = " << std::to_string(layout_.subframes) << "\n    }\n";
     file << "    defaultPrim = \"" << clean_name(top_.name) << "\"\n";
     file << "    endTimeCode = " << usd_number(last_time) << "\n";
     file << "    framesPerSecond = " << usd_number(layout_.fps) << "\n";
@@ -74,11 +77,13 @@ void UsdStage::write_header(UsdFile& file, double first_time, double last_time) 
     file << "    upAxis = \"" << (layout_.axes.has_z_up() ? "Z" : "Y") << "\"\n)\n\n";
 }
 
-void UsdStage::write_group(UsdFile& file, UsdLayer layer, const Group& group, const std::string& metadata,
-                           const std::string& indent) const
+void UsdStage::write_group(UsdFile& file, UsdLayer layer, const Group& group, const std::string& parent,
+                           const std::string& metadata) const
 {
     const bool defines = layer == UsdLayer::Whole || layer == UsdLayer::Root;
-    const std::string name = clean_name(group.name);
+    const std::string name = clean_name(group.name), path = parent + "/" + name;
+    const auto depth = size_t(std::count(parent.begin(), parent.end(), '/'));
+    const std::string indent(4 * depth, ' ');
     std::string all = metadata;
     if (defines && group.name != name)
         all += indent + "    displayName = " + usd_quoted(group.name) + "\n";
@@ -87,9 +92,9 @@ void UsdStage::write_group(UsdFile& file, UsdLayer layer, const Group& group, co
         file << " (\n" << all << indent << ")";
     file << "\n" << indent << "{\n";
     for (const Group& child : group.groups)
-        write_group(file, layer, child, "", indent + "    ");
+        write_group(file, layer, child, path, "");
     if (group.mesh >= 0)
-        meshes_[size_t(group.mesh)].write(file, layer, indent + "    ", times_);
+        meshes_[size_t(group.mesh)].write(file, layer, path, indent + "    ", times_);
     file << indent << "}\n";
 }
 
@@ -135,7 +140,7 @@ void UsdStage::write_root(const std::filesystem::path& path, const std::vector<C
         "]\n        }\n    }\n    clipSets = [\"default\"]\n";
     UsdFile file(path);
     write_header(file, first, last);
-    write_group(file, UsdLayer::Root, top_, metadata, "");
+    write_group(file, UsdLayer::Root, top_, "", metadata);
     file.commit();
 }
 

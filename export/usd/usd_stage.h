@@ -46,9 +46,10 @@ private:
 
     static Group tree_of(const std::string& name, const CacheLayout& layout);
     void write_header(UsdFile& file, double first_time, double last_time) const;
+    /// @param parent    path of the prim that it lies in; empty for the top
     /// @param metadata  of the group
-    void write_group(UsdFile& file, UsdLayer layer, const Group& group, const std::string& metadata,
-                     const std::string& indent) const;
+    void write_group(UsdFile& file, UsdLayer layer, const Group& group, const std::string& parent,
+                     const std::string& metadata) const;
 
     CacheLayout layout_; ///< without faces
     Group top_;

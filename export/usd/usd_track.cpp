@@ -29,29 +29,35 @@ void UsdTrack::declare(UsdFile& file, const std::string& indent) const
     file << indent << declaration_ << metadata_ << "\n";
 }
 
-void UsdTrack::write(UsdFile& file, const std::string& indent, const std::vector<double>& times) const
-{
-    for (const std::vector<float>& sample : samples_)
-        if (!same_bits(sample, samples_.front())) {
-            if (!metadata_.empty())
-                declare(file, indent);
-            write_samples(file, indent, times);
-            return;
-        }
-    file << indent << declaration_ << " = ";
-    file.append(samples_.front().data(), samples_.front().size(), width_);
-    file << metadata_ << "\n";
-}
-
 /// USD holds the first sample before its time and the last after it, so equal ones there are left out. Those
 /// between are not: interpolation between equal numbers may round.
-void UsdTrack::write_samples(UsdFile& file, const std::string& indent, const std::vector<double>& times) const
+void UsdTrack::write(UsdFile& file, const std::string& indent, const std::vector<double>& times) const
 {
     size_t first = 0, end = samples_.size();
     while (end > 1 && same_bits(samples_[end - 1], samples_[end - 2]))
         --end;
     while (first + 1 < end && same_bits(samples_[first], samples_[first + 1]))
         ++first;
+    if (end - first == 1) {
+        file << indent << declaration_ << " = ";
+        file.append(samples_[first].data(), samples_[first].size(), width_);
+        file << metadata_ << "\n";
+        return;
+    }
+    if (!metadata_.empty())
+        declare(file, indent);
+    write_samples(file, indent, times, first, end);
+}
+
+/// The ends of clips are times to interpolate to, so here nothing is left out.
+void UsdTrack::write_all(UsdFile& file, const std::string& indent, const std::vector<double>& times) const
+{
+    write_samples(file, indent, times, 0, samples_.size());
+}
+
+void UsdTrack::write_samples(UsdFile& file, const std::string& indent, const std::vector<double>& times,
+                             size_t first, size_t end) const
+{
     file << indent << declaration_ << ".timeSamples = {\n";
     for (size_t k = first; k < end; ++k) {
         file << indent << "    " << usd_number(times[k]) << ": ";

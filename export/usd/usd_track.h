@@ -20,13 +20,16 @@ public:
 
     /// Type and name only: samples are in clips.
     void declare(UsdFile& file, const std::string& indent) const;
-    /// All samples; one value without a time if they are the same.
+    /// Samples of a stage; one value without a time if they are the same.
     /// @param times  [samples] time codes
     void write(UsdFile& file, const std::string& indent, const std::vector<double>& times) const;
-    /// The same with a time in any case, as clips need.
-    void write_samples(UsdFile& file, const std::string& indent, const std::vector<double>& times) const;
+    /// All samples, as clips need them.
+    void write_all(UsdFile& file, const std::string& indent, const std::vector<double>& times) const;
 
 private:
+    void write_samples(UsdFile& file, const std::string& indent, const std::vector<double>& times,
+                       size_t first, size_t end) const;
+
     std::string declaration_, metadata_;
     int width_;
     std::vector<std::vector<float>> samples_;

@@ -125,7 +125,7 @@ TEST_F(CacheWriterTest, RefusesLayoutsThatMakeNoCache)
     layout = good;
     layout.meshes[0].vertex_count = 5;
     EXPECT_THAT(message("a.obj", layout), HasSubstr("uses vertex 5"));
-    EXPECT_THAT(message("a.pc3", good), HasSubstr("use .pc2, .mdd, .abc or .obj"));
+    EXPECT_THAT(message("a.pc3", good), HasSubstr("use .pc2, .mdd, .abc, .usda, .usdc or .obj"));
     EXPECT_TRUE(std::filesystem::is_empty(folder_)) << "a refused layout leaves nothing behind";
 }
 

@@ -133,7 +133,7 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
 void Examiner::load(int frame, FrameFindings& found)
 {
     for (const MeasuredCloth& cloth : cloths_) {
-        const std::vector<Vec3> stored = cloth.cache.frame(frame);
+        const std::vector<Vec3> stored = cloth.cache.frame_in_metres(frame);
         const std::vector<Vec3> positions = cloth.state.from_file(stored);
         std::copy(positions.begin(), positions.end(), x_.begin() + cloth.first_vertex);
         found.out_of_range += int(std::count_if(stored.begin(), stored.end(), std::not_fn(is_in_range)));

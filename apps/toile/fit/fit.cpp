@@ -81,7 +81,7 @@ CacheFrame read_frame(const scenes::Scene& scene, const std::filesystem::path& f
     const exports::PointCache cache = open_cloth(file, cloths.front().entry, cloth.state);
     require_same_points(cache, file, cloth.state.name, int(cloth.state.file_mesh().positions.size()));
     const int frame = frame_of(cache, file, options.frame);
-    const std::vector<Vec3> x = cache.frame(frame);
+    const std::vector<Vec3> x = cache.frame_in_metres(frame);
     require_in_range(x, file.string() + ": frame " + std::to_string(frame));
     return {file, fitted_garment(cloth, cloth.state.from_file(x)), frame};
 }

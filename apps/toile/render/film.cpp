@@ -133,7 +133,7 @@ std::vector<Vec3> Film::positions(const Track& track, int frame) const
     if (!track.cache)
         return track.start;
     const int shown = std::min(frame, track.cache->frame_count() - 1);
-    const std::vector<Vec3> x = track.cache->frame(shown);
+    const std::vector<Vec3> x = track.cache->frame_in_metres(shown);
     require_in_range(x, track.file.string() + ": frame " + std::to_string(shown));
     return track.cloth ? track.cloth->from_file(x) : x;
 }

@@ -150,10 +150,6 @@ int simulate(const SimulateOptions& options, const scenes::BaselineMethods* base
                      : run_scenes(jobs, settings, devices, options.quiet);
 }
 
-} // namespace
-
-namespace {
-
 /// Options of --export: the keys of the scene's "export".
 void add_export_options(CLI::App& add, SimulateOptions& options)
 {

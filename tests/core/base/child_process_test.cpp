@@ -147,4 +147,30 @@ TEST(ChildProcess, RunsBesideThreadsThatAllocate)
         thread.join();
 }
 
+TEST(ChildProcess, RunsAProgramAndTellsHowItEnded)
+{
+    const ProgramEnd said = toile::run_program({"sh", "-c", "echo \"$0 $1\"; exit 7", "a b", "c"}, kBounds);
+    EXPECT_EQ(said.exit_code, 7);
+    EXPECT_EQ(said.output, "a b c\n");
+    EXPECT_EQ(toile::run_program({"/nowhere/program"}, kBounds).exit_code, 127);
+    EXPECT_EQ(toile::run_program({"sh", "-c", "cat; echo lost >&2"}, kBounds).output, "")
+        << "it has no input";
+}
+
+TEST(ChildProcess, EndsAProgramThatTakesTooLongOrIsStopped)
+{
+    const auto stop_of_program = [](const std::vector<std::string>& command, const ChildBounds& bounds) {
+        try {
+            return "ended with " + std::to_string(toile::run_program(command, bounds).exit_code);
+        } catch (const ChildStopped& stop) {
+            return std::string(stop.what());
+        }
+    };
+    EXPECT_EQ(stop_of_program({"sleep", "60"}, {1s, kBounds.memory}), "took more than 1 s");
+    EXPECT_EQ(stop_of_program({"sh", "-c", "kill -KILL $$"}, kBounds), "stopped with SIGKILL");
+    const std::function<bool()> stops = [] { return false; };
+    const Cancellation::Scope cancellation(stops);
+    EXPECT_THROW(toile::run_program({"sleep", "60"}, kBounds), Cancelled);
+}
+
 } // namespace toile::test
