@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/number.h"
@@ -17,22 +18,14 @@ namespace {
 /// rounding errors.
 constexpr double kSnap = 1e-9;
 
+/// Edges from a vertex to those over which its rotation is averaged.
+constexpr int kRings = 4;
+
 std::vector<Avatar::ClipName> clip_of(const GeometryCache& cache)
 {
     if (cache.sample_count < 2)
         return {};
     return {{CachedAvatar::kClip, (cache.sample_count - 1) / cache.rate}};
-}
-
-/// A vertex at the other end of one of a vertex's edges. [vertices]
-std::vector<int> neighbours(const GeometryCache& cache)
-{
-    std::vector<int> neighbour(size_t(cache.vertex_count), -1);
-    for (const Triangle& t : cache.triangles)
-        for (int k = 0; k < 3; ++k)
-            if (neighbour[size_t(t[k])] < 0)
-                neighbour[size_t(t[k])] = t[(k + 1) % 3];
-    return neighbour;
 }
 
 /// Right-handed axes: tangential along the edge, tangential across it, normal. The identity where there are
@@ -62,11 +55,46 @@ void blend(double u, const std::vector<Vec3>& y, std::vector<Vec3>& x)
 CachedAvatar::CachedAvatar(std::string source, GeometryCache cache)
     : Avatar(std::move(source), cache.triangles, cache.vertex_count, clip_of(cache)),
       cache_(std::move(cache)), origins_(size_t(cache_.vertex_count), Vec3::Zero()),
-      first_(origins_.size() + 1), neighbour_(neighbours(cache_))
+      first_(origins_.size() + 1)
 {
     std::iota(first_.begin(), first_.end(), 0);
-    for (int v = 0; v < cache_.vertex_count; ++v)
+    for (int v = 0; v < vertex_count(); ++v)
         influences_.push_back({v, 1.0});
+    list_neighbours();
+    choose_anchors();
+    rest_frames_ = frames(*sample(0));
+}
+
+void CachedAvatar::list_neighbours()
+{
+    std::vector<std::set<int>> ring(origins_.size());
+    for (const Triangle& t : triangles())
+        for (int k = 0; k < 3; ++k) {
+            ring[size_t(t[k])].insert(t[(k + 1) % 3]);
+            ring[size_t(t[k])].insert(t[(k + 2) % 3]);
+        }
+    first_neighbour_.push_back(0);
+    for (const std::set<int>& of_vertex : ring) {
+        neighbours_.insert(neighbours_.end(), of_vertex.begin(), of_vertex.end());
+        first_neighbour_.push_back(int(neighbours_.size()));
+    }
+}
+
+void CachedAvatar::choose_anchors()
+{
+    const Positions& x = *sample(0);
+    const std::vector<Vec3> normals = vertex_normals(x, triangles());
+    for (size_t v = 0; v < x.size(); ++v) {
+        anchor_.push_back(-1);
+        double largest = 0.0;
+        for (int k = first_neighbour_[v]; k < first_neighbour_[v + 1]; ++k) {
+            const Vec3 edge = (x[size_t(neighbours_[size_t(k)])] - x[v]).normalized();
+            if (const double sine = normals[v].cross(edge).norm(); sine > largest) {
+                largest = sine;
+                anchor_.back() = neighbours_[size_t(k)];
+            }
+        }
+    }
 }
 
 CachedAvatar::Positions CachedAvatar::read(int index) const
@@ -118,14 +146,42 @@ CachedAvatar::Positions CachedAvatar::at(const PoseAt& at)
     return x;
 }
 
+/// Frames in the surface. [vertices]
+std::vector<Mat3> CachedAvatar::frames(const Positions& x) const
+{
+    const std::vector<Vec3> normals = vertex_normals(x, triangles());
+    std::vector<Mat3> frames(x.size());
+    parallel_for(kCpu, "avatars/cache_frames", vertex_count(), [&](int v) {
+        const int anchor = anchor_[size_t(v)];
+        const Vec3 edge = anchor < 0 ? Vec3::Zero() : Vec3(x[size_t(anchor)] - x[size_t(v)]);
+        frames[size_t(v)] = frame_of(normals[size_t(v)], edge);
+    });
+    return frames;
+}
+
+/// Averages over the vertices around: skin in folds turns by more than the limb that it is on.
+void CachedAvatar::smooth(std::vector<Mat3>& turns) const
+{
+    for (int ring = 0; ring < kRings; ++ring) {
+        const std::vector<Mat3> before = turns;
+        parallel_for(kCpu, "avatars/cache_frames", vertex_count(), [&](int v) {
+            const int first = first_neighbour_[size_t(v)], end = first_neighbour_[size_t(v) + 1];
+            for (int k = first; k < end; ++k)
+                turns[size_t(v)] += before[size_t(neighbours_[size_t(k)])];
+            turns[size_t(v)] /= 1 + end - first;
+        });
+    }
+}
+
 void CachedAvatar::pose_bones(const PoseAt& at, const Affine& world_from_avatar, View<Affine> bones)
 {
     const Positions x = this->at(at);
-    const std::vector<Vec3> normals = vertex_normals(x, triangles());
+    std::vector<Mat3> turns = frames(x);
+    for (size_t v = 0; v < turns.size(); ++v)
+        turns[v] *= rest_frames_[v].transpose();
+    smooth(turns);
     parallel_for(kCpu, "avatars/cache", vertex_count(), [&](int v) {
-        const int neighbour = neighbour_[size_t(v)];
-        const Vec3 edge = neighbour < 0 ? Vec3::Zero() : Vec3(x[size_t(neighbour)] - x[size_t(v)]);
-        bones[v].leftCols<3>() = world_from_avatar.leftCols<3>() * frame_of(normals[size_t(v)], edge);
+        bones[v].leftCols<3>() = world_from_avatar.leftCols<3>() * turns[size_t(v)];
         bones[v].col(3) = apply(world_from_avatar, x[size_t(v)]);
     });
 }

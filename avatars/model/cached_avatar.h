@@ -27,8 +27,8 @@ struct GeometryCache {
 /// The only clip, "cache", begins with sample 0 and ends with the last; sample 0 is the bind pose. A cache of
 /// one sample has no clip. Samples are read when they are needed, and the last kSamples are kept.
 ///
-/// Every vertex follows a bone of its own, whose frame lies in the surface: two axes tangential, one normal.
-/// All that is done with skins works: insets of skin, bounds of motion, posing on a GPU.
+/// Every vertex follows a bone of its own, which is at the vertex and turns with the surface around it. All
+/// that is done with skins works: insets of skin, bounds of motion, posing on a GPU.
 class CachedAvatar final : public Avatar {
 public:
     static constexpr const char* kClip = "cache";
@@ -53,13 +53,20 @@ private:
     std::shared_ptr<const Positions> sample(int index);
     Positions read(int index) const;
     Positions at(const PoseAt& at);
+    void list_neighbours();
+    void choose_anchors();
+    std::vector<Mat3> frames(const Positions& x) const;
+    void smooth(std::vector<Mat3>& turns) const;
 
     GeometryCache cache_;
     std::vector<Vec3> origins_; ///< [vertices] zeros
     std::vector<int> first_;    ///< [vertices + 1] 0, 1, 2, ...
     std::vector<Influence> influences_;
-    std::vector<int> neighbour_;  ///< [vertices] at the other end of an edge; -1: none
-    std::vector<Sample> samples_; ///< used last is last
+    std::vector<int> first_neighbour_; ///< [vertices + 1] start of a vertex's neighbours
+    std::vector<int> neighbours_;      ///< [first_neighbour_.back()] at the other ends of its edges
+    std::vector<int> anchor_;       ///< [vertices] neighbour whose edge is most tangential at rest; -1: none
+    std::vector<Sample> samples_;   ///< used last is last
+    std::vector<Mat3> rest_frames_; ///< [vertices] in sample 0
 };
 
 } // namespace toile::avatars

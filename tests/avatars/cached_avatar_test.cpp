@@ -100,7 +100,7 @@ TEST(CachedAvatar, BlendsFromItsFirstSample)
     EXPECT_EQ(posed(avatar, at)[0], Vec3(1.0, 0.0, 0.0));
 }
 
-TEST(CachedAvatar, TurnsTheFramesOfItsVerticesWithTheSurface)
+TEST(CachedAvatar, TurnsItsBonesWithTheSurface)
 {
     constexpr double kAngle = 0.3;
     CachedAvatar avatar("body.abc", cache_of(3, 8.0, kAngle));
@@ -109,10 +109,8 @@ TEST(CachedAvatar, TurnsTheFramesOfItsVerticesWithTheSurface)
     avatar.pose_bones(at_time(0.25), identity_affine(), last);
     const Mat3 R = Eigen::AngleAxisd(2.0 * kAngle, Vec3::UnitZ()).toRotationMatrix();
     for (size_t v = 0; v < 4; ++v) {
-        const Mat3 frame = first[v].leftCols<3>();
-        EXPECT_LT((frame.transpose() * frame - Mat3::Identity()).norm(), 1e-14);
-        EXPECT_GT(frame.determinant(), 0.0);
-        EXPECT_LT((last[v].leftCols<3>() - R * frame).norm(), 1e-14);
+        EXPECT_LT((first[v].leftCols<3>() - Mat3::Identity()).norm(), 1e-14);
+        EXPECT_LT((last[v].leftCols<3>() - R).norm(), 1e-14);
     }
 }
 

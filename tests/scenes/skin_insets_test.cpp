@@ -10,7 +10,9 @@
 
 #include "avatars/load_avatar.h"
 #include "collision/check/find_crossings.h"
+#include "export/cache_writer.h"
 #include "scenes/colliders/scene_body.h"
+#include "tests/support/temporary_folder.h"
 
 namespace toile::test {
 
@@ -20,10 +22,10 @@ namespace {
 
 /// Pairs of triangles of a body that cross, but those of hands, feet and head: they are thinner than what
 /// would have to give way.
-int crossings(const SceneBody& body)
+/// @param surface  of a body with the faces of `body`, which has bones
+int crossings(const SceneBody& body, const TriangleMesh& surface)
 {
     int count = 0;
-    const TriangleMesh& surface = body.surface();
     for (const collision::Crossing& crossing :
          collision::find_crossings(surface.triangles, surface.positions)) {
         const std::string bone = body.bone_of(crossing.a);
@@ -33,6 +35,8 @@ int crossings(const SceneBody& body)
     }
     return count;
 }
+
+int crossings(const SceneBody& body) { return crossings(body, body.surface()); }
 
 scene::Avatar walking(const std::string& file, scene::SelfContact self_contact)
 {
@@ -72,6 +76,46 @@ TEST_P(SkinInsetsOn, UncrossSkinOfAWalk)
     }
     EXPECT_GT(before, 100);
     EXPECT_LE(after, before / 20); // some cross in the bind pose
+}
+
+/// The same walk without its bones: from a cache that begins with the bind pose.
+TEST_P(SkinInsetsOn, UncrossSkinOfACache)
+{
+    constexpr int kSamples = 16;
+    scene::Avatar standing = walking(GetParam(), scene::SelfContact::Keep);
+    standing.clip.clear();
+    SceneBody walker(walking(GetParam(), scene::SelfContact::Keep));
+    const TemporaryFolder folder;
+    exports::CacheLayout layout = exports::cache_layout(walker.surface(), kSamples);
+    layout.fps = SkinInsets::kRate;
+    const auto writer = exports::make_cache_writer(folder.path() / "walk.abc", layout);
+    writer->write(0, SceneBody(standing).surface().positions);
+    for (int k = 1; k < kSamples; ++k) {
+        walker.advance_to(1.5 + k / layout.fps);
+        writer->write(k, walker.surface().positions);
+    }
+    writer->finish();
+
+    scene::Avatar cached;
+    cached.name = "body";
+    cached.shape = folder.path() / "walk.abc";
+    SceneBody separated(cached);
+    cached.self_contact = scene::SelfContact::Keep;
+    SceneBody kept(cached);
+    SceneBody rigged(walking(GetParam(), scene::SelfContact::Separate));
+    int with_bones = 0;
+    int before = 0, after = 0;
+    for (const int k : {5, 8, 11}) {
+        rigged.advance_to(1.5 + k / layout.fps);
+        with_bones += crossings(rigged);
+        kept.advance_to(k / layout.fps);
+        separated.advance_to(k / layout.fps);
+        before += crossings(walker, kept.surface());
+        after += crossings(walker, separated.surface());
+    }
+    std::cout << before << " crossings, " << after << " after separation, " << with_bones << " with bones\n";
+    EXPECT_GT(before, 50);
+    EXPECT_LE(after, before / 20);
 }
 
 TEST_P(SkinInsetsOn, AreSmoothInTime)

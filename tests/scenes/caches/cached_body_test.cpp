@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "collision/check/find_crossings.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/drape/dressed_body.h"
 #include "scenes/format/read_scene.h"
@@ -223,6 +224,27 @@ TEST(BakedBody, MovesClothToTheBitsOfTheGltfWhereTheNumbersAgree)
     ASSERT_EQ(from_archive.size(), 16u);
     EXPECT_EQ(from_archive, from_gltf);
     EXPECT_GT(largest_difference(from_gltf.back(), from_gltf.front()), 0.2) << "moved along";
+}
+
+TEST(BakedBody, PushesClothOutThatStartsInside)
+{
+    const std::string text =
+        R"({"toile": 1, "frames": 4, "fps": 32, "avatars": [{"name": "body", "file": ")" +
+        baked("slide.abc").string() + R"("}], "cloths": [{"name": "cloth", "rectangle":
+        {"size": [0.4, 0.4], "resolution": 0.04}, "translate": [0, 0.19, 0]}]})";
+    World world(parse_scene(text, "baked.json"));
+    EXPECT_TRUE(world.start().was_repaired);
+    SceneBody body(cached_avatar(baked("slide.abc")));
+    for (int frame = 0; frame < world.frame_count(); ++frame) {
+        if (frame > 0)
+            static_cast<void>(world.advance_frame());
+        body.advance_to(frame / 32.0);
+        const ClothState& cloth = world.cloths()[0];
+        EXPECT_TRUE(collision::find_crossings(cloth.triangles, cloth.positions, body.surface().triangles,
+                                              body.surface().positions)
+                        .empty())
+            << frame;
+    }
 }
 
 /// Blender skins in single precision, and turns along arcs between keys where a cache is linear.
