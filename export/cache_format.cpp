@@ -19,12 +19,34 @@ CacheFormat cache_format(const std::filesystem::path& file)
         return CacheFormat::Abc;
     if (extension == ".obj")
         return CacheFormat::Obj;
+    if (extension == ".ply")
+        return CacheFormat::Ply;
+    if (extension == ".glb")
+        return CacheFormat::Glb;
+    if (extension == ".pvd")
+        return CacheFormat::Vtk;
     throw InvalidInput(file.string() + ": unknown cache extension '" + extension +
-                       "'; use .pc2, .mdd, .abc or .obj");
+                       "'; use .pc2, .mdd, .abc, .obj, .ply, .glb or .pvd");
 }
 
-bool stores_faces(CacheFormat format) { return format == CacheFormat::Obj || format == CacheFormat::Abc; }
+bool stores_faces(CacheFormat format) { return format != CacheFormat::Pc2 && format != CacheFormat::Mdd; }
 
-bool holds_several_meshes(CacheFormat format) { return format == CacheFormat::Abc; }
+bool stores_times(CacheFormat format)
+{
+    return format == CacheFormat::Mdd || format == CacheFormat::Abc || format == CacheFormat::Glb ||
+           format == CacheFormat::Vtk;
+}
+
+bool numbers_frames(CacheFormat format)
+{
+    return format == CacheFormat::Obj || format == CacheFormat::Ply || format == CacheFormat::Vtk;
+}
+
+bool is_read_back(CacheFormat format) { return format != CacheFormat::Glb && format != CacheFormat::Vtk; }
+
+bool holds_several_meshes(CacheFormat format)
+{
+    return format == CacheFormat::Abc || format == CacheFormat::Glb;
+}
 
 } // namespace toile::exports

@@ -36,7 +36,9 @@ std::string bytes_of(std::int32_t value)
 } // namespace
 
 AbcArchive::AbcArchive(const std::filesystem::path& file, const CacheLayout& layout, std::string application)
-    : file_(file), layout_(layout), application_(std::move(application))
+    : file_(file), layout_(layout), application_(std::move(application)),
+      frames_with_velocities_(layout.samples_per_second(),
+                              [this](View<const Vec3> x, View<const Vec3> v) { write_frame(x, v); })
 {
     for (CacheMesh& mesh : layout_.meshes) {
         meshes_.emplace_back(file_, mesh, AbcMesh::Options{layout.velocities, layout.normals});
@@ -47,25 +49,15 @@ AbcArchive::AbcArchive(const std::filesystem::path& file, const CacheLayout& lay
 void AbcArchive::write(View<const Vec3> positions)
 {
     file_.require_in_place();
-    std::vector<Vec3> frame(positions.begin(), positions.end());
-    if (!waiting_.empty())
-        write_waiting(frame);
-    before_ = std::exchange(waiting_, std::move(frame));
+    frames_with_velocities_.add(positions);
 }
 
-/// Writes the frame that waits. @param next  the frame after it; itself if there is none
-void AbcArchive::write_waiting(const std::vector<Vec3>& next)
+void AbcArchive::write_frame(View<const Vec3> x, View<const Vec3> v)
 {
-    const std::vector<Vec3>& before = before_.empty() ? waiting_ : before_;
-    const int steps = int(&next != &waiting_) + int(&before != &waiting_);
-    const double per_second = steps > 0 ? layout_.samples_per_second() / steps : 0.0;
-    std::vector<Vec3> velocities(waiting_.size());
-    for (size_t v = 0; v < velocities.size(); ++v)
-        velocities[v] = per_second * (next[v] - before[v]);
     int first = 0;
     for (size_t m = 0; m < meshes_.size(); ++m) {
         const int count = layout_.meshes[m].vertex_count;
-        meshes_[m].add_sample(file_, {waiting_.data() + first, count}, {velocities.data() + first, count});
+        meshes_[m].add_sample(file_, {x.data() + first, count}, {v.data() + first, count});
         first += count;
     }
     ++frames_;
@@ -105,10 +97,7 @@ void AbcArchive::write_index()
 
 void AbcArchive::complete()
 {
-    if (!waiting_.empty()) {
-        write_waiting(waiting_);
-        before_ = std::exchange(waiting_, {});
-    }
+    frames_with_velocities_.finish();
     write_index();
     file_.sync();
     file_.require_in_place();

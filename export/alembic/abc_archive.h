@@ -7,6 +7,7 @@
 #include "core/compute/types.h"
 #include "export/alembic/abc_mesh.h"
 #include "export/cache_layout.h"
+#include "export/sequence/frame_velocities.h"
 
 namespace toile::exports {
 
@@ -23,6 +24,8 @@ public:
     /// @param application  that writes
     /// @throws InvalidInput if it can't be opened
     AbcArchive(const std::filesystem::path& file, const CacheLayout& layout, std::string application);
+    AbcArchive(const AbcArchive&) = delete;
+    AbcArchive& operator=(const AbcArchive&) = delete;
 
     /// Appends a frame. @param positions  [vertices] of all meshes, one after the other
     void write(View<const Vec3> positions);
@@ -31,7 +34,7 @@ public:
     void complete();
 
 private:
-    void write_waiting(const std::vector<Vec3>& next);
+    void write_frame(View<const Vec3> x, View<const Vec3> v);
     void write_index();
     std::vector<AbcObject> add_objects();
 
@@ -39,7 +42,7 @@ private:
     CacheLayout layout_; ///< without faces
     std::string application_;
     std::vector<AbcMesh> meshes_;
-    std::vector<Vec3> before_, waiting_; ///< frames; empty: none
+    FrameVelocities frames_with_velocities_;
     int frames_ = 0, indexed_ = 0;
 };
 

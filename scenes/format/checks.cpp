@@ -1,5 +1,6 @@
 #include "scenes/format/checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -389,6 +390,27 @@ void check_contact(const Document& document, const scenes::Scene& scene)
 
 // --- export ---
 
+/// Certificates measure what was written, so each cloth needs a cache that is read back.
+void require_certifiable(const Document& document, const scenes::Scene& scene)
+{
+    const auto is_read_back = [](const Export& entry) {
+        const std::string extension = lower_case_extension(entry.file);
+        return extension != ".glb" && extension != ".pvd";
+    };
+    for (size_t i = 0; i < scene.exports.size(); ++i) {
+        const Export& entry = scene.exports[i];
+        const bool is_only_cloth = scene.cloths.size() + scene.solids.size() == 1;
+        const auto certifies = [&](const Export& other) {
+            return is_read_back(other) && (is_only_cloth || other.cloth == entry.cloth);
+        };
+        if (std::none_of(scene.exports.begin(), scene.exports.end(), certifies))
+            document.refuse(
+                below(below("export", i), "file"),
+                as_written(entry.file.string()) +
+                    " is for other programs and has no certificate; export the cloth as .pc2 too");
+    }
+}
+
 void check_exports(const Document& document, const scenes::Scene& scene)
 {
     std::vector<std::string> cloths = names_of(scene.cloths);
@@ -399,7 +421,8 @@ void check_exports(const Document& document, const scenes::Scene& scene)
         const Export& entry = scene.exports[i];
         const std::string key_path = below("export", i);
         const std::string at_file = below(key_path, "file");
-        check_extension(document, at_file, entry.file, {".pc2", ".mdd", ".obj", ".abc"});
+        check_extension(document, at_file, entry.file,
+                        {".pc2", ".mdd", ".abc", ".obj", ".ply", ".glb", ".pvd"});
         const std::filesystem::path file = entry.file.lexically_normal();
         if (file.is_absolute() || *file.begin() == "..")
             document.refuse(at_file, as_written(entry.file.string()) +
@@ -428,6 +451,7 @@ void require_consistent(const Document& document, const scenes::Scene& scene)
     check_attachments(document, scene);
     check_contact(document, scene);
     check_exports(document, scene);
+    require_certifiable(document, scene);
 }
 
 } // namespace toile::scene_format

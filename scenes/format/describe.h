@@ -462,7 +462,8 @@ void describe(V& v, Solver& s)
 template <typename V>
 void describe(V& v, Export& e)
 {
-    v.required("file", e.file, "Cache to write, inside the output folder: .pc2, .mdd, .obj or .abc.");
+    v.required("file", e.file,
+               "Cache to write, inside the output folder: .pc2, .mdd, .abc, .obj, .ply, .glb or .pvd.");
     v.field("cloth", e.cloth, "Name of the cloth or solid; may be left out when there is only one.");
 }
 

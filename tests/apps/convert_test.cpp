@@ -53,7 +53,7 @@ TEST_F(ConvertTest, ThroughAllFormatsAndBackGivesTheSameBytes)
 {
     write("a.pc2");
     write("mesh_##.obj");
-    const std::vector<std::string> chain{"a.pc2", "b.abc", "c.mdd", "d_##.obj", "e.abc", "f.pc2"};
+    const std::vector<std::string> chain{"a.pc2", "b.abc", "c.mdd", "d_##.obj", "e.abc", "e_##.ply", "f.pc2"};
     for (size_t k = 0; k + 1 < chain.size(); ++k) {
         const Finished run = convert({chain[k], chain[k + 1], "--mesh", "mesh_00.obj", "--fps", "25"});
         EXPECT_EQ(run.exit_code, 0) << run.errors;

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/extension.h"
 #include "export/cache_path.h"
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 
 namespace toile::app {
 
@@ -19,9 +19,10 @@ namespace {
 /// the mesh run.abc#/skirt/skirtShape.
 std::string name_of(const std::filesystem::path& cache)
 {
-    if (exports::ObjSequence::has_digits_placeholder(cache))
-        return exports::ObjSequence(cache).stem();
-    static const std::set<std::string> kEndings{".pc2", ".mdd", ".obj", ".abc", ".partial"};
+    if (exports::NumberedFiles::has_digits_placeholder(cache))
+        return exports::NumberedFiles(cache).stem();
+    static const std::set<std::string> kEndings{".pc2", ".mdd", ".obj", ".ply",
+                                                ".abc", ".glb", ".pvd", ".partial"};
     if (exports::archive_of(cache) != cache)
         return cache.parent_path().filename().string();
     std::filesystem::path name = cache.filename();

@@ -14,12 +14,12 @@
 #include "core/base/atomic_file.h"
 #include "core/base/cancellation.h"
 #include "core/base/error.h"
-#include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "core/base/long_work.h"
+#include "export/cache_format.h"
 #include "export/cache_path.h"
 #include "export/folder_lock.h"
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/surfaces/load_cloth.h"
 
@@ -37,11 +37,11 @@ struct CheckOptions {
     bool quiet = false;
 };
 
-/// Whether a cache of this name exists, as a file or as numbered OBJ files.
+/// Whether a cache of this name exists, as a file or as numbered ones.
 bool cache_exists(const std::filesystem::path& file)
 {
-    return std::filesystem::exists(file) ||
-           (lower_case_extension(file) == ".obj" && !exports::ObjSequence(file).existing().empty());
+    return std::filesystem::exists(file) || (exports::numbers_frames(exports::cache_format(file)) &&
+                                             !exports::NumberedFiles(file).existing().empty());
 }
 
 /// A cache and the index of its cloth in World::surfaces().
@@ -59,8 +59,11 @@ std::vector<ClothCache> caches_in(const std::filesystem::path& folder, const sce
         const int cloth = surface_index(scene, entry.cloth);
         searched += (searched.empty() ? "" : ", ") + entry.file.string();
         std::filesystem::path file = folder / entry.file.lexically_normal();
-        if (scene.frames > 1 && lower_case_extension(file) == ".obj")
-            file = exports::ObjSequence(file).pattern(); // skirt.obj may be the start mesh beside skirt.pc2
+        const exports::CacheFormat format = exports::cache_format(file);
+        if (!exports::is_read_back(format))
+            continue;
+        if (scene.frames > 1 && exports::numbers_frames(format))
+            file = exports::NumberedFiles(file).pattern(); // skirt.obj may be the start mesh beside skirt.pc2
         if (cache_exists(file) && std::none_of(caches.begin(), caches.end(),
                                                [&](const ClothCache& other) { return other.cloth == cloth; }))
             caches.push_back({file, cloth});
@@ -170,7 +173,7 @@ Command add_check(CLI::App& parser)
     auto options = std::make_shared<CheckOptions>();
     CLI::App& add = *command.options;
     add.add_option("caches", options->caches,
-                   "Caches (.pc2, .mdd, .obj, .abc), one of each cloth, or their folder")
+                   "Caches (.pc2, .mdd, .obj, .ply, .abc), one of each cloth, or their folder")
         ->required();
     add.add_option("--scene", options->scene, "Scene that they were made from")->required();
     add.add_option("-o,--output", options->output, "Write the JSON here [beside the caches, and to stdout]");

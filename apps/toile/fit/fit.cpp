@@ -130,7 +130,7 @@ Command add_fit(CLI::App& parser)
     command.options = parser.add_subcommand("fit", "Measure how garments fit their body at a frame");
     auto options = std::make_shared<FitOptions>();
     CLI::App& add = *command.options;
-    add.add_option("caches", options->caches, "Caches (.pc2, .mdd, .obj, .abc) of cloths of the scene")
+    add.add_option("caches", options->caches, "Caches (.pc2, .mdd, .obj, .ply, .abc) of cloths of the scene")
         ->required();
     add.add_option("--scene", options->scene, "Scene that they were made from")->required();
     add.add_option("--frame", options->frame, "Frame of the caches; negative: from the end")

@@ -188,7 +188,7 @@ Command add_render(CLI::App& parser)
         parser.add_subcommand("render", "Render preview pictures of caches or of a scene's start");
     auto options = std::make_shared<RenderOptions>();
     CLI::App& add = *command.options;
-    add.add_option("inputs", options->inputs, "Caches (.pc2, .mdd, .obj, .abc), or one scene (.json)")
+    add.add_option("inputs", options->inputs, "Caches (.pc2, .mdd, .obj, .ply, .abc), or one scene (.json)")
         ->required();
     add.add_option("--scene", options->scene, "Scene that the caches were made from");
     add.add_option("-o,--output", options->output, "PNG, MP4, or folder for numbered PNGs [NAME.png]");

@@ -8,6 +8,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "export/binary_file.h"
+#include "export/cache_format.h"
 
 namespace toile::app {
 
@@ -86,12 +87,22 @@ void RunFiles::complete()
         cache.complete = cache.writer->complete();
 }
 
+std::vector<std::string> RunFiles::notes() const
+{
+    std::vector<std::string> notes;
+    for (const Cache& cache : caches_)
+        if (const std::string note = cache.writer->note(); !note.empty())
+            notes.push_back(cache.target.file.string() + ": " + note);
+    return notes;
+}
+
 std::vector<CachedCloth> RunFiles::cloths_to_check(const scenes::World& world) const
 {
     std::vector<CachedCloth> cloths;
     for (const Cache& cache : caches_) {
         const scenes::ClothState* cloth = &world.surfaces()[cache.target.surface];
-        if (std::none_of(cloths.begin(), cloths.end(),
+        if (exports::is_read_back(exports::cache_format(cache.target.file)) &&
+            std::none_of(cloths.begin(), cloths.end(),
                          [&](const CachedCloth& other) { return other.cloth == cloth; }))
             cloths.push_back({cloth, cache.target.file, cache.complete});
     }

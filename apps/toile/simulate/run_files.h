@@ -35,7 +35,10 @@ public:
     /// Completes every cache under its partial name. @throws as CacheWriter::complete()
     void complete();
 
-    /// Complete caches with their cloths, one per cloth.
+    /// What is to be known of complete caches, a line each.
+    std::vector<std::string> notes() const;
+
+    /// Complete caches that can be read with their cloths, one per cloth.
     std::vector<CachedCloth> cloths_to_check(const scenes::World& world) const;
 
     /// Removes certificates of earlier caches, then moves meshes and caches to their final names. What can't

@@ -16,7 +16,6 @@
 #include "core/base/file_plan.h"
 #include "export/cache_format.h"
 #include "export/folder_lock.h"
-#include "export/obj/obj_sequence.h"
 
 namespace toile::app {
 

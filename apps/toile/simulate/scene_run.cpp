@@ -167,6 +167,8 @@ SceneRun::Outcome SceneRun::run_frames(RunFiles& files, RunReport& report)
         frames_->update(world_.frame() + 1, note_of(step));
     }
     files.complete();
+    for (const std::string& note : files.notes())
+        log_.note(note);
     unmet.sum_up(count);
     return {};
 }

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 
 namespace toile::app {
 
@@ -15,22 +15,8 @@ namespace {
 
 using std::filesystem::path;
 
-/// Frames of a cache, finished and unfinished, if it is a sequence of OBJ files.
-struct SequenceFiles {
-    exports::ObjSequence finished, unfinished;
-};
-std::optional<SequenceFiles> sequence_of(const path& cache, int frame_count)
-{
-    if (exports::cache_format(cache) != exports::CacheFormat::Obj ||
-        (frame_count == 1 && !exports::ObjSequence::has_digits_placeholder(cache)))
-        return std::nullopt;
-    const exports::ObjSequence finished(cache);
-    return SequenceFiles{finished, exports::ObjSequence(cache.parent_path() / (finished.stem() + ".partial") /
-                                                        cache.filename())};
-}
-
 /// Adds the frames of a sequence, and those of an earlier run.
-void add_frames(FilePlan& plan, const exports::ObjSequence& sequence, int first, int frame_count,
+void add_frames(FilePlan& plan, const exports::NumberedFiles& sequence, int first, int frame_count,
                 const std::string& role)
 {
     for (int frame = 0; frame < frame_count; ++frame)
@@ -50,24 +36,29 @@ void add_output_and_partial(FilePlan& plan, const path& file, const std::string&
 
 void add_cache_output(FilePlan& plan, const path& file, int first, int frame_count, const std::string& role)
 {
-    if (const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count)) {
-        add_frames(plan, sequence->finished, first, frame_count, role);
-        add_frames(plan, sequence->unfinished, first, frame_count, role + ", unfinished");
+    const exports::CacheFormat format = exports::cache_format(file);
+    if (const std::optional<exports::NumberedFiles> frames = exports::files_of_frames(file, frame_count)) {
+        add_frames(plan, *frames, first, frame_count, role);
+        add_frames(plan, frames->unfinished(), first, frame_count, role + ", unfinished");
+        if (format == exports::CacheFormat::Vtk) {
+            plan.add_output(file, role);
+            plan.add_output(frames->unfinished_folder() / file.filename(), role + ", unfinished");
+        }
         return;
     }
     add_output_and_partial(plan, file, role);
-    if (exports::cache_format(file) == exports::CacheFormat::Mdd)
+    if (format == exports::CacheFormat::Mdd || format == exports::CacheFormat::Glb)
         plan.add_output(file.string() + ".partial.pc2", role + ", unfinished");
 }
 
 void add_cache_input(FilePlan& plan, const path& file, const std::string& role)
 {
     std::error_code missing;
-    if (exports::cache_format(file) != exports::CacheFormat::Obj || std::filesystem::exists(file, missing)) {
+    if (!exports::numbers_frames(exports::cache_format(file)) || std::filesystem::exists(file, missing)) {
         plan.add_input(exports::archive_of(file), role);
         return;
     }
-    const exports::ObjSequence sequence(file);
+    const exports::NumberedFiles sequence(file);
     for (const int number : sequence.existing())
         plan.add_input(sequence.file(number), role);
 }
@@ -83,15 +74,14 @@ void require_replaceable(const path& file)
 
 void require_writable_cache(const path& file, int first, int frame_count)
 {
-    const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count);
-    if (!sequence) {
+    const std::optional<exports::NumberedFiles> frames = exports::files_of_frames(file, frame_count);
+    if (!frames || exports::cache_format(file) == exports::CacheFormat::Vtk) {
         require_replaceable(file);
         require_writable(partial_beside(file));
-        return;
     }
-    for (int frame = 0; frame < frame_count; ++frame) {
-        require_replaceable(sequence->finished.file(first + frame));
-        require_replaceable(sequence->unfinished.file(first + frame));
+    for (int frame = 0; frames && frame < frame_count; ++frame) {
+        require_replaceable(frames->file(first + frame));
+        require_replaceable(frames->unfinished().file(first + frame));
     }
 }
 
