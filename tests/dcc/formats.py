@@ -12,7 +12,6 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import time
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from players import Vtk
 from point_cache import read_pc2
 
 COLUMNS, ROWS, FRAMES = 100, 100, 120
+PAYLOAD = 12 * COLUMNS * ROWS * FRAMES  # [bytes]
 RUNS = 3  # of which the fastest counts
 
 # Where the frames of a killed run are.
@@ -37,14 +37,13 @@ class Run:
         self.toile, self.source, self.folder, self.suffix = toile, source, folder, suffix
         self.options = ["--mesh", str(source.with_suffix(".obj")), "--fps", "24"]
         self.output = folder / FORMATS[suffix]
+        self.bytes = 0  # of all files of the cache
 
     def time(self):
         """@return seconds of the fastest run, and what it says"""
-        return min(convert(self.toile, self.source, self.output, *self.options) for _ in range(RUNS))
-
-    def size(self):
-        """[bytes] of all files."""
-        return sum(file.stat().st_size for file in self.folder.iterdir() if file.is_file())
+        fastest = min(convert(self.toile, self.source, self.output, *self.options) for _ in range(RUNS))
+        self.bytes = bytes_in(self.folder)
+        return fastest
 
     def read_back(self):
         back = self.folder / "back.pc2"
@@ -61,43 +60,47 @@ class Run:
         difference = said[0].split("largest difference ")[-1].split(" at ")[0].split(",")[0]
         return f"{'yes' if is_equal else '**NO**'}, to {difference}"
 
-    def kill(self, after):
-        """Kills a run after some seconds. @return frames that can be read"""
+    def kill_half_way(self):
+        """Kills a run when half of its bytes are written. @return frames that can be read"""
+        for file in list(self.folder.rglob("*")):
+            if file.is_file():
+                file.unlink()
+        half = 0.5 * (PAYLOAD if PARTIALS[self.suffix].endswith(".pc2") else self.bytes)
         command = [self.toile, "convert", str(self.source), str(self.output), "--quiet", *self.options]
-        killed = subprocess.Popen(command)
-        time.sleep(after)
-        killed.kill()
-        if killed.wait() == 0:
-            return None
-        partial = self.folder / PARTIALS[self.suffix]
-        expected = read_pc2(self.source)[1]
-        if self.suffix == ".pvd":
-            if not partial.exists():
-                return 0
-            vtk = Vtk(partial, argparse.Namespace(fps=24.0, first=0))
-            x = np.array([vtk.positions("", k) for k in range(len(vtk.entries))])
-        else:
-            back = self.folder / "killed.pc2"
-            done = subprocess.run([self.toile, "convert", str(partial), str(back), "--quiet"], capture_output=True,
-                                  check=False)
-            if done.returncode != 0:
-                return 0
-            x = read_pc2(back)[1]
-        if not np.array_equal(x, expected[:len(x)]):
-            sys.exit(f"{partial}: frames of a killed run differ from those of the whole one")
+        with subprocess.Popen(command) as killed:
+            while killed.poll() is None and bytes_in(self.folder) < half:
+                pass
+            killed.kill()
+        x = self.read_partial()
+        if not np.array_equal(x, read_pc2(self.source)[1][:len(x)]):
+            sys.exit(f"{self.output}: frames of a killed run differ from those of the whole one")
         return len(x)
 
-    def kill_half_way(self, seconds):
-        """@return frames that can be read after a kill in the middle of the run"""
-        for _ in range(20):
-            for file in self.folder.rglob("*"):
-                if file.is_file():
-                    file.unlink()
-            frames = self.kill(0.5 * seconds)
-            if frames is not None:
-                return frames
-            seconds *= 0.8
-        return None
+    def read_partial(self):
+        """Frames [frames, points, 3] of a killed run."""
+        partial = self.folder / PARTIALS[self.suffix]
+        if self.suffix == ".pvd":
+            vtk = Vtk(partial, argparse.Namespace(fps=24.0, first=0))
+            return np.array([vtk.positions("", k) for k in range(len(vtk.entries))])
+        back = self.folder / "killed.pc2"
+        done = subprocess.run([self.toile, "convert", str(partial), str(back), "--quiet"], capture_output=True,
+                              text=True, check=False)
+        if done.returncode != 0:
+            print(f"{self.suffix}: {done.stderr.strip()}", file=sys.stderr)
+            return np.empty((0, 0, 3))
+        return read_pc2(back)[1]
+
+
+def bytes_in(folder):
+    """Size of all files below a folder, of which some vanish meanwhile."""
+    size = 0
+    for root, _, files in os.walk(folder):
+        for file in files:
+            try:
+                size += os.path.getsize(os.path.join(root, file))
+            except FileNotFoundError:
+                pass
+    return size
 
 
 def machine():
@@ -111,13 +114,12 @@ def main():
     parser.add_argument("toile", help="the program")
     options = parser.parse_args()
     toile = str(pathlib.Path(options.toile).resolve())
-    payload = 12 * COLUMNS * ROWS * FRAMES
     print(f"""# Cache formats, measured
 
-{COLUMNS * ROWS} vertices, {FRAMES} frames: {payload / 1e6:.1f} MB of positions in single precision. Machine: {machine()}.
+{COLUMNS * ROWS} vertices, {FRAMES} frames: {PAYLOAD / 1e6:.1f} MB of positions in single precision. Machine: {machine()}.
 Made by `python3 tests/dcc/formats.py build/bin/toile` with the Python packages of `tests/dcc/requirements.txt`.
 
-| format | reads back | other program, every frame | after a kill half way | size [MB] | writes [MB/s] | note |
+| format | reads back | other program, every frame | frames after SIGKILL half way | size [MB] | writes [MB/s] | note |
 |---|---|---|---|---|---|---|""")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -134,17 +136,16 @@ Made by `python3 tests/dcc/formats.py build/bin/toile` with the Python packages 
             own.mkdir()
             run = Run(toile, folder / "skirt.pc2", own, suffix)
             seconds, said = run.time()
-            size = run.size()
             note = said.split(": ", 1)[1] if ": " in said else ""
             back, played = run.read_back(), run.play()
-            frames = run.kill_half_way(seconds)
-            print(f"| `{suffix}` | {back} | {played} | {frames} frames | {size / 1e6:.1f} | "
-                  f"{payload / 1e6 / seconds:.0f} | {note} |", flush=True)
+            frames = run.kill_half_way()
+            print(f"| `{suffix}` | {back} | {played} | {frames} | {run.bytes / 1e6:.1f} | "
+                  f"{PAYLOAD / 1e6 / seconds:.0f} | {note} |", flush=True)
     print(f"""
 The other program is Blender 5.0.1, for `.pvd` VTK 9.7.2; differences of 1e-7 m are its own rotation of axes in single
-precision. Speed is that of `toile convert` from a PC2, its reading included, the fastest of {RUNS} runs. After a kill
-those frames were read from the [partial](../guide/caches.md#when-a-run-is-killed) and equal those of the whole run;
-half of the time is not half of the frames where a format computes or copies at the end (`.glb`, `.mdd`).""")
+precision. Speed is that of `toile convert` from a PC2, its reading included, the fastest of {RUNS} runs. A run is
+killed when half of the bytes of its frames are written; what is then read from the
+[partial](../guide/caches.md#when-a-run-is-killed) equals those frames of the whole run.""")
     return 0
 
 

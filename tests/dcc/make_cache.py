@@ -40,7 +40,8 @@ def waves(columns, rows, frames, shift):
     x = []
     for frame in range(frames):
         time = frame / FPS
-        radius = 0.3 + 0.2 * height + 0.05 * height * np.cos(5 * angle + 6 * time) + 0.01 * np.sin(9 * height + 5 * time)
+        phase = 6 * time + np.sin(8 * height - 3 * time)
+        radius = 0.3 + 0.2 * height + 0.1 * height * np.cos(5 * angle + phase) + 0.01 * np.sin(9 * height + 5 * time)
         turned = angle + 0.3 * np.sin(2 * time)
         x.append(np.stack([radius * np.cos(turned) + shift, 1.0 - height, radius * np.sin(turned)], axis=-1))
     return np.float32(np.reshape(x, (frames, -1, 3)))
