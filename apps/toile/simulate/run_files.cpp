@@ -83,8 +83,24 @@ RunFiles::Partials RunFiles::close()
 
 void RunFiles::complete()
 {
-    for (Cache& cache : caches_)
-        cache.complete = cache.writer->complete();
+    for (Cache& cache : caches_) {
+        try {
+            cache.complete = cache.writer->complete();
+        } catch (const InvalidInput& error) {
+            if (exports::is_read_back(exports::cache_format(cache.target.file)))
+                throw;
+            undelivered_.push_back(error.what());
+        }
+    }
+}
+
+std::vector<std::filesystem::path> RunFiles::completed() const
+{
+    std::vector<std::filesystem::path> files;
+    for (const Cache& cache : caches_)
+        if (!cache.complete.empty())
+            files.push_back(cache.target.file);
+    return files;
 }
 
 std::vector<std::string> RunFiles::notes() const
@@ -130,7 +146,8 @@ void RunFiles::publish()
     for (const StartMesh& mesh : meshes_)
         attempt([&] { exports::move_into_place(partial_beside(mesh.file), mesh.file); });
     for (Cache& cache : caches_)
-        attempt([&] { cache.writer->publish(); });
+        if (!cache.complete.empty())
+            attempt([&] { cache.writer->publish(); });
     if (first_error)
         std::rethrow_exception(first_error);
 }

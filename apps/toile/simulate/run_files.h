@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "apps/toile/check/certify.h"
@@ -32,8 +34,16 @@ public:
     };
     Partials close();
 
-    /// Completes every cache under its partial name. @throws as CacheWriter::complete()
+    /// Completes every cache under its partial name. Those for other programs that can't be made of these
+    /// frames do not keep back the rest: undelivered().
+    /// @throws as CacheWriter::complete()
     void complete();
+
+    /// Why caches could not be completed, a line each.
+    const std::vector<std::string>& undelivered() const { return undelivered_; }
+
+    /// Caches that are complete.
+    std::vector<std::filesystem::path> completed() const;
 
     /// What is to be known of complete caches, a line each.
     std::vector<std::string> notes() const;
@@ -73,6 +83,7 @@ private:
     Locks locks_; ///< before the caches: released after them
     std::vector<Cache> caches_;
     std::vector<StartMesh> meshes_;
+    std::vector<std::string> undelivered_;
     bool has_frames_ = false;
 };
 
