@@ -103,6 +103,26 @@ TEST_F(PlyTest, ReadsTextOfOtherPrograms)
     EXPECT_EQ(mesh.polygon_uvs, mesh.polygons);
 }
 
+/// samples/make_samples.py, which wrote the files with these programs, says what is in them. Blender splits
+/// vertices at seams of the texture.
+TEST_F(PlyTest, ReadsFilesOfBlenderAndMeshLab)
+{
+    const std::filesystem::path samples =
+        std::filesystem::path(TOILE_SOURCE_DIR) / "tests/export/ply/samples";
+    for (const char* name : {"blender.ply", "blender_text.ply"}) {
+        const ObjMesh mesh = read_ply(samples / name);
+        EXPECT_EQ(mesh.positions,
+                  (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}, {1, 0, 0}, {2, 0.5, 1}}));
+        EXPECT_EQ(mesh.polygons, (std::vector<std::vector<int>>{{0, 1, 2, 3}, {4, 5, 2}}));
+        EXPECT_EQ(mesh.texture_coordinates[5], Vec2(0.5, 0));
+    }
+    const ObjMesh mesh = read_ply(samples / "meshlab.ply");
+    EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}, {2, 0.5, 1}}));
+    ASSERT_EQ(mesh.polygons.size(), 3u);
+    EXPECT_EQ(mesh.polygons[2], (std::vector<int>{1, 4, 2}));
+    EXPECT_EQ(mesh.texture_coordinates[size_t(mesh.polygon_uvs[2][0])], Vec2(0, 0)); // (1, 0) in the quad
+}
+
 TEST_F(PlyTest, ReadsBothByteOrders)
 {
     const ObjMesh mesh = quad_mesh();
