@@ -111,6 +111,7 @@ private:
         };
         const Coordinates shown = of_mesh(first_frame_);
         std::vector<Vec3> positions;
+        positions.reserve(size_t(mesh.vertex_count));
         for (int v = 0; v < mesh.vertex_count; ++v)
             positions.push_back(shown.segment<3>(3 * Eigen::Index(v)).cast<double>());
         const GlbMesh drawn = glb_mesh(mesh.faces, positions);

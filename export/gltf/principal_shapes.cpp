@@ -32,8 +32,8 @@ void for_blocks(const FrameSource& source, const Eigen::VectorXd& base, const Wo
     }
 }
 
-/// Rows of R for some frames [frames x samples]: numbers from -1 to 1, the same on all machines; or the identity
-/// where there is a sample for each frame but the first, which has no displacement.
+/// Rows of R for some frames [frames x samples]: numbers from -1 to 1, the same on all machines; or the
+/// identity where there is a sample for each frame but the first, which has no displacement.
 MatrixXd combinations(int first_frame, Eigen::Index frames, int samples, bool one_for_each)
 {
     if (one_for_each)
