@@ -88,7 +88,9 @@ std::filesystem::path GlbWriter::complete()
     if (error > layout_.max_error)
         throw InvalidInput(file_.string() + ": single precision holds its positions within " +
                            millimetres(error) + ", which is more than " + millimetres(layout_.max_error) +
-                           "; move them closer to the origin. The frames are kept in " + partial().string());
+                           "; move them closer to the origin, or allow it with --max-error of toile convert. "
+                           "The frames are kept in " +
+                           partial().string());
     write_atomically(converted_, glb_bytes(file_.string(), layout_, animation, error));
     if (layout_.frame_count > 1)
         note_ = std::to_string(animation.shapes.cols()) +
