@@ -95,7 +95,6 @@ class Gltf(BlenderPlayer):
     def open(self):
         import pygltflib
 
-        # Without this Blender would merge the bones of its own, and move to object mode, in a scene of none.
         self.bpy.ops.import_scene.gltf(filepath=self.file, merge_vertices=False)
         gltf = pygltflib.GLTF2().load(self.file)
         self.tolerance = gltf.asset.extras["max_error_m"] + ROUNDING
