@@ -1,6 +1,6 @@
 # make demo, make test: everything from a fresh clone. The build itself is CMake's (CMakePresets.json).
 .DEFAULT_GOAL := help
-.PHONY: help demo gallery test bench sanitize fuzz build install format lint clean packages lint-packages fuzz-packages
+.PHONY: help demo gallery test test-dcc bench sanitize fuzz build install format lint clean packages lint-packages fuzz-packages
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -12,14 +12,14 @@ ARCHITECTURES := $(if $(CARD),native,90-real)
 # The demo runs on the CPU unless a GPU is here. GPU=1: kernels are compiled all the same.
 DEMO_CUDA := $(if $(filter-out 0,$(GPU)),ON,$(if $(CARD),AUTO,OFF))
 
-FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf obj pattern scene usd_frames vtk)
+FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf obj pattern ply scene usd_frames vtk)
 # What ships; research and the tests of GPUs would double the time.
 SANITIZED_TESTS := $(addprefix test_,core quadrature2d garment collision avatars export garment_format scenes preview) $(FUZZ_TARGETS)
 
 configure = cmake --preset $(1) --log-level=WARNING --no-warn-unused-cli -DCMAKE_CUDA_ARCHITECTURES=$(ARCHITECTURES) $(2)
 
 help: ## Show this list
-	@sed -nE 's/^([a-z]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
 
 demo: packages ## Drape a table, and a mannequin that walks; pictures and caches go to out/ (GPU=1: with kernels for GPUs)
 	@$(call configure,default,-DTOILE_CUDA=$(DEMO_CUDA))
@@ -33,6 +33,13 @@ gallery: packages ## Make the pictures of docs/guide/gallery.md again (an hour o
 
 test: build ## Build everything, and run every test
 	@ctest --preset default -j $(JOBS)
+
+test-dcc: packages ## Compare caches of every format, as Blender and VTK play them (Python 3.11; installs 2 GB into build/dcc)
+	@$(call configure,default,-DTOILE_CUDA=AUTO)
+	@cmake --build --preset default --target toile -j $(JOBS)
+	@test -x build/dcc/bin/python || python3 -m venv build/dcc
+	@build/dcc/bin/python -m pip install --quiet --disable-pip-version-check -r tests/dcc/requirements.txt
+	@build/dcc/bin/python tests/dcc/compare_all.py $(TOILE) build/dcc/caches
 
 bench: packages ## Build toile-bench, which measures
 	@$(call configure,default,-DTOILE_CUDA=AUTO)

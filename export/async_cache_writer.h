@@ -41,6 +41,7 @@ public:
     int close();
 
     std::filesystem::path partial() const override { return target_->partial(); }
+    std::string note() const override { return target_->note(); }
 
 private:
     struct Frame {

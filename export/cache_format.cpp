@@ -8,9 +8,17 @@
 
 namespace toile::exports {
 
-const std::vector<std::string>& cache_extensions()
+const std::vector<std::string>& written_extensions()
 {
-    static const std::vector<std::string> kExtensions{".pc2", ".mdd", ".abc", ".usda", ".obj"};
+    static const std::vector<std::string> kExtensions{".pc2", ".mdd", ".abc", ".usda", ".usdc",
+                                                      ".obj", ".ply", ".glb", ".pvd"};
+    return kExtensions;
+}
+
+const std::vector<std::string>& read_extensions()
+{
+    static const std::vector<std::string> kExtensions{".pc2",  ".mdd", ".abc", ".usda",
+                                                      ".usdc", ".usd", ".obj", ".ply"};
     return kExtensions;
 }
 
@@ -19,7 +27,8 @@ std::optional<CacheFormat> known_cache_format(const std::filesystem::path& file)
     static const std::map<std::string, CacheFormat> kFormats{
         {".pc2", CacheFormat::Pc2},  {".mdd", CacheFormat::Mdd},  {".abc", CacheFormat::Abc},
         {".usda", CacheFormat::Usd}, {".usdc", CacheFormat::Usd}, {".usd", CacheFormat::Usd},
-        {".obj", CacheFormat::Obj}};
+        {".obj", CacheFormat::Obj},  {".ply", CacheFormat::Ply},  {".glb", CacheFormat::Glb},
+        {".pvd", CacheFormat::Vtk}};
     const auto at = kFormats.find(lower_case_extension(archive_of(file)));
     return at == kFormats.end() ? std::nullopt : std::optional(at->second);
 }
@@ -30,7 +39,7 @@ CacheFormat cache_format(const std::filesystem::path& file)
     if (!format)
         throw InvalidInput(file.string() + ": unknown cache extension '" +
                            lower_case_extension(archive_of(file)) +
-                           "'; use .pc2, .mdd, .abc, .usda, .usdc or .obj");
+                           "'; use .pc2, .mdd, .abc, .usda, .usdc, .obj, .ply, .glb or .pvd");
     return *format;
 }
 
@@ -38,13 +47,19 @@ CacheFeatures features_of(CacheFormat format)
 {
     switch (format) {
     case CacheFormat::Pc2:
-    case CacheFormat::Mdd:
         break;
+    case CacheFormat::Mdd:
+        return {.times = true};
     case CacheFormat::Abc:
     case CacheFormat::Usd:
-        return {.faces = true, .several = true, .normals = true, .time_line = true};
+        return {.faces = true, .several = true, .normals = true, .times = true, .time_line = true};
     case CacheFormat::Obj:
+    case CacheFormat::Ply:
         return {.faces = true, .numbered = true};
+    case CacheFormat::Glb:
+        return {.faces = true, .several = true, .times = true, .read_back = false};
+    case CacheFormat::Vtk:
+        return {.faces = true, .times = true, .numbered = true, .read_back = false};
     }
     return {};
 }

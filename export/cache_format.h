@@ -7,10 +7,11 @@
 
 namespace toile::exports {
 
-enum class CacheFormat { Pc2, Mdd, Abc, Usd, Obj };
+enum class CacheFormat { Pc2, Mdd, Abc, Usd, Obj, Ply, Glb, Vtk };
 
-/// Extensions of the caches that a run can write.
-const std::vector<std::string>& cache_extensions();
+/// Extensions of the caches that are written, and of those that are read.
+const std::vector<std::string>& written_extensions();
+const std::vector<std::string>& read_extensions();
 
 /// Format for the extension of `file`; none for another. A mesh in an archive may follow:
 /// run.abc#/skirt/skirtShape.
@@ -24,8 +25,10 @@ struct CacheFeatures {
     bool faces = false;   ///< that they play on
     bool several = false; ///< any number of meshes
     bool normals = false;
+    bool times = false;     ///< of their frames
     bool time_line = false; ///< frames numbered as a scene's, which begins at 1 in most programs
-    bool numbered = false;  ///< a file for each frame
+    bool numbered = false;  ///< a file for each of several frames
+    bool read_back = true;  ///< read_cache() reads them; others are for other programs only
 };
 CacheFeatures features_of(CacheFormat format);
 

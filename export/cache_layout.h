@@ -19,7 +19,7 @@ struct CacheMesh {
 
 /// Properties of a cache that are fixed before its first frame.
 struct CacheLayout {
-    std::vector<CacheMesh> meshes; ///< one for PC2, MDD and OBJ
+    std::vector<CacheMesh> meshes; ///< one for all formats but Alembic and glTF
     int frame_count = 0;           ///< samples that the run will deliver
     double fps = 24.0; ///< [frames/s] stored by formats that have times; PC2 and OBJ have no field for it
     int subframes = 1; ///< samples per frame
@@ -29,6 +29,7 @@ struct CacheLayout {
     Axes axes;                ///< of the positions that are delivered; nothing is converted
     bool velocities = true;   ///< stored by formats that have them
     bool normals = false;     ///< the same
+    double max_error = 0.001; ///< [m] of a vertex in any frame; .glb approximates
 
     int vertex_count() const; ///< of all meshes together
 

@@ -9,11 +9,15 @@
 #include "export/alembic/abc_writer.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
+#include "export/gltf/glb_writer.h"
 #include "export/mdd/mdd_writer.h"
-#include "export/obj/obj_writer.h"
+#include "export/obj/obj_file.h"
 #include "export/pc2/pc2_writer.h"
+#include "export/ply/ply_file.h"
+#include "export/sequence/mesh_files.h"
 #include "export/usd/usd_writer.h"
 #include "export/usd/usdc_writer.h"
+#include "export/vtk/vtk_writer.h"
 
 namespace toile::exports {
 
@@ -65,14 +69,38 @@ void require_one_mesh(const path& file, const CacheLayout& layout)
     if (layout.meshes.size() > 1)
         throw InvalidInput(file.string() + ": holds one mesh, and the layout has " +
                            std::to_string(layout.meshes.size()) +
-                           "; write each to a file, or all to an .abc or .usda");
+                           "; write each to a file, or all to an .abc, .usda or .glb");
 }
 
 void require_numbers(const path& file, const CacheLayout& layout)
 {
     if (layout.start_frame < 0.0 || layout.start_frame != std::floor(layout.start_frame))
         throw InvalidInput(file.string() + ": start frame " + std::to_string(layout.start_frame) +
-                           " can't number an OBJ; it must be a whole number, 0 or more");
+                           " can't number a file; it must be a whole number, 0 or more");
+}
+
+void require_max_error(const path& file, const CacheLayout& layout)
+{
+    if (!(layout.max_error > 0.0) || !std::isfinite(layout.max_error))
+        throw InvalidInput(file.string() + ": largest error is " + std::to_string(layout.max_error) +
+                           " m; it must be positive");
+}
+
+void require_no_placeholder(const path& file)
+{
+    if (NumberedFiles::has_digits_placeholder(file))
+        throw InvalidInput(file.string() + ": is one file, which lists those of the frames; leave out the #");
+}
+
+/// One file, or one for each frame.
+std::unique_ptr<CacheWriter> mesh_files(const path& file, const CacheLayout& layout,
+                                        MeshFileWriter (&writer_for)(const CacheLayout&))
+{
+    require_faces(file, layout);
+    require_numbers(file, layout);
+    if (files_of_frames(file, layout.frame_count))
+        return std::make_unique<MeshSequenceCache>(file, layout, writer_for(layout));
+    return std::make_unique<MeshFileCache>(file, layout, writer_for(layout));
 }
 
 void require_whole_archive(const path& file)
@@ -110,14 +138,21 @@ std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& la
         return std::make_unique<AbcWriter>(file, layout);
     case CacheFormat::Usd:
         return open_usd_writer(file, layout);
+    case CacheFormat::Glb:
+        require_faces(file, layout);
+        require_max_error(file, layout);
+        return std::make_unique<GlbWriter>(file, layout);
+    case CacheFormat::Vtk:
+        require_faces(file, layout);
+        require_numbers(file, layout);
+        require_no_placeholder(file);
+        return std::make_unique<VtkWriter>(file, layout);
     case CacheFormat::Obj:
-        break;
+        return mesh_files(file, layout, obj_file_writer);
+    case CacheFormat::Ply:
+        return mesh_files(file, layout, ply_file_writer);
     }
-    require_faces(file, layout);
-    require_numbers(file, layout);
-    if (layout.frame_count > 1 || ObjSequence::has_digits_placeholder(file))
-        return std::make_unique<ObjSequenceWriter>(file, layout);
-    return std::make_unique<ObjWriter>(file, layout);
+    return nullptr;
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "core/compute/types.h"
 #include "export/cache_layout.h"
@@ -28,7 +29,7 @@ public:
     virtual void write(int frame, View<const Vec3> positions) = 0;
 
     /// Completes the partial: every byte of the cache is on the disk.
-    /// @return the complete cache under its partial name, for read_cache()
+    /// @return the complete cache under its partial name, for read_cache() where CacheFeatures::read_back
     /// @throws InvalidInput if frames are missing; the message names the partial, which is kept. DeviceError
     ///         if the disk refuses.
     virtual std::filesystem::path complete() = 0;
@@ -43,8 +44,11 @@ public:
         publish();
     }
 
-    /// Location of the frames until complete(): a file, or a folder for an OBJ sequence.
+    /// Location of the frames until complete(): a file, or a folder for a sequence.
     virtual std::filesystem::path partial() const = 0;
+
+    /// What is to be known of a complete cache, for instance its largest error; empty: nothing.
+    virtual std::string note() const { return {}; }
 
 protected:
     CacheWriter() = default;
@@ -59,9 +63,12 @@ protected:
 ///   .usda  USD in text, of one or several meshes, with value clips beyond 50 samples; can't be resumed
 ///   .usdc  the same as one binary file; needs Python with USD
 ///   .obj   one OBJ for one frame, else a sequence: skirt.obj stands for skirt_####.obj, each # a digit
+///   .ply   the same in PLY, binary
+///   .glb   glTF, of one or several meshes: shapes with weights; its partial is a PC2 as that of .mdd
+///   .pvd   a list of numbered .vtu files for ParaView; can't be resumed
 /// @throws InvalidInput before the simulation: an unknown extension, an unwritable location, a layout
-///         without vertices, frames or (OBJ, Alembic, USD) faces, several meshes where the format holds one,
-///         no cache to resume.
+///         without vertices, frames or (all but PC2 and MDD) faces, several meshes where the format holds
+///         one, no cache to resume.
 std::unique_ptr<CacheWriter> make_cache_writer(const std::filesystem::path& file, const CacheLayout& layout);
 
 } // namespace toile::exports

@@ -10,8 +10,9 @@
 #include "export/byte_order.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
-#include "export/obj/obj_sequence.h"
 #include "export/pc2/pc2_writer.h"
+#include "export/ply/ply_file.h"
+#include "export/sequence/numbered_files.h"
 #include "export/usd/usd_cache.h"
 
 namespace toile::exports {
@@ -138,21 +139,32 @@ public:
     }
 };
 
-class ObjSource final : public PointCache::Source {
+/// Reads a mesh, or its positions alone.
+struct MeshFileReader {
+    ObjMesh (*mesh)(const path&);
+    std::vector<Vec3> (*positions)(const path&);
+};
+
+constexpr MeshFileReader kObjReader{[](const path& file) { return read_obj(file); },
+                                    [](const path& file) { return read_obj(file).positions; }};
+constexpr MeshFileReader kPlyReader{read_ply, read_ply_positions};
+
+class MeshFileSource final : public PointCache::Source {
 public:
-    explicit ObjSource(std::vector<path> files) : files_(std::move(files))
+    MeshFileSource(std::vector<path> files, const MeshFileReader& reader)
+        : files_(std::move(files)), reader_(reader)
     {
         frame_count = int(files_.size());
-        mesh = read_obj(files_.front());
+        mesh = reader_.mesh(files_.front());
         vertex_count = int(mesh.positions.size());
         if (mesh.polygons.empty())
-            refuse(files_.front(), "has no faces; a cache as OBJ needs its surface");
+            refuse(files_.front(), "has no faces; a cache of such files needs its surface");
     }
 
     std::vector<Vec3> frame(int index) const override
     {
         const path& file = files_[size_t(index)];
-        std::vector<Vec3> positions = read_obj(file).positions;
+        std::vector<Vec3> positions = reader_.positions(file);
         if (int(positions.size()) != vertex_count)
             refuse(file, "has " + std::to_string(positions.size()) + " vertices and " +
                              files_.front().string() + " " + std::to_string(vertex_count) +
@@ -162,14 +174,15 @@ public:
 
 private:
     std::vector<path> files_;
+    MeshFileReader reader_;
 };
 
-PointCache read_obj_cache(const path& file)
+PointCache read_mesh_files(const path& file, const MeshFileReader& reader)
 {
-    if (!ObjSequence::has_digits_placeholder(file) && std::filesystem::exists(file))
-        return PointCache(std::make_unique<ObjSource>(std::vector<path>{file}));
+    if (!NumberedFiles::has_digits_placeholder(file) && std::filesystem::exists(file))
+        return PointCache(std::make_unique<MeshFileSource>(std::vector<path>{file}, reader));
 
-    const ObjSequence sequence(file);
+    const NumberedFiles sequence(file);
     const std::vector<int> numbers = sequence.existing();
     if (numbers.empty())
         refuse(file, "can't be found, nor a sequence beginning with " + sequence.file(0).filename().string() +
@@ -181,7 +194,7 @@ PointCache read_obj_cache(const path& file)
                                                        "or remove the later ones");
         files.push_back(sequence.file(numbers[k]));
     }
-    auto source = std::make_unique<ObjSource>(std::move(files));
+    auto source = std::make_unique<MeshFileSource>(std::move(files), reader);
     source->start_frame = numbers[0];
     return PointCache(std::move(source));
 }
@@ -215,9 +228,15 @@ PointCache read_cache(const path& file)
     case CacheFormat::Usd:
         return PointCache(open_usd(file));
     case CacheFormat::Obj:
+        return read_mesh_files(file, kObjReader);
+    case CacheFormat::Ply:
+        return read_mesh_files(file, kPlyReader);
+    case CacheFormat::Glb:
+    case CacheFormat::Vtk:
         break;
     }
-    return read_obj_cache(file);
+    refuse(file, "is written for other programs, and not read as a cache; name the .pc2, .mdd, .abc, .obj or "
+                 ".ply of the run");
 }
 
 std::vector<path> meshes_of_cache(const path& file)

@@ -26,7 +26,7 @@ public:
         int subframes = 1;         ///< samples per frame
         double start_frame = 0.0;
         std::optional<Axes> axes; ///< of the positions; empty if the format does not say
-        ObjMesh mesh;             ///< of an OBJ, Alembic or USD: the first frame with its faces
+        ObjMesh mesh;             ///< of a format with faces: the first frame with them
     };
 
     explicit PointCache(std::unique_ptr<const Source> source) : source_(std::move(source)) {}
@@ -38,11 +38,12 @@ public:
     double start_frame() const { return source_->start_frame; }
     std::optional<Axes> axes() const { return source_->axes; }
 
-    /// Faces of an OBJ (sequence), Alembic or USD mesh, or null: PC2 and MDD have positions only.
+    /// Faces, or null: PC2 and MDD have positions only.
     const ObjMesh* mesh() const { return source_->mesh.polygons.empty() ? nullptr : &source_->mesh; }
 
     /// Positions of frame `index` in [0, frame_count()). Safe to call from several threads.
-    /// @throws InvalidInput for an index out of range, an OBJ frame that doesn't match the first, or a broken
+    /// @throws InvalidInput for an index out of range, an OBJ or PLY that doesn't match the first, or a
+    /// broken
     ///         sample of Alembic.
     std::vector<Vec3> frame(int index) const;
 
@@ -53,9 +54,9 @@ private:
     std::shared_ptr<const Source> source_;
 };
 
-/// Opens a .pc2, .mdd, .abc (open_abc()), .usda, .usdc or .usd (open_usd()), .obj or an OBJ sequence:
-/// skirt_####.obj, or skirt.obj if only skirt_0000.obj and so on exist. Sizes are checked here against the
-/// header, so frame() finds every byte it needs; samples of Alembic are checked one by one.
+/// Opens a .pc2, .mdd, .abc (open_abc()), .usda, .usdc or .usd (open_usd()), .obj or .ply, or a sequence of
+/// the last two: skirt_####.obj, or skirt.obj if only skirt_0000.obj and so on exist. Sizes are checked here
+/// against the header, so frame() finds every byte it needs; samples of Alembic are checked one by one.
 /// @throws InvalidInput naming the file, the byte or line, the fault and a remedy.
 PointCache read_cache(const std::filesystem::path& file);
 

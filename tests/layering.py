@@ -133,6 +133,7 @@ OWNERS = {
     # The benchmark times Embree against collision.
     r"embree[34]/": ["collision/bvh", "research/benchmarks/near_pairs"],
     r"assimp/": ["avatars/import"],
+    r"tiny_gltf\.h": ["export/gltf"],
     r"CGAL/": ["collision/check", "garment/pattern/mesh"],
     r"(libpng/)?png\.h": ["apps/preview"],
     r"boost/multiprecision/": [],  # comes with CGAL; rational numbers of the tests

@@ -208,17 +208,22 @@ void print_cache(const std::filesystem::path& file)
     print_extent("extent of the last frame", cache.frame(cache.frame_count() - 1));
 }
 
+void print_cache_with_faces(const std::filesystem::path& file)
+{
+    const exports::PointCache cache = exports::read_cache(file);
+    print("polygons", cache.mesh()->polygons.size());
+    print("texture coordinates", cache.mesh()->texture_coordinates.size());
+    print("groups", cache.mesh()->groups.size());
+    print_cache(file);
+}
+
 /// Each mesh of an archive, or the one named behind #.
 void print_archive(const std::filesystem::path& file)
 {
     for (const std::filesystem::path& named : exports::meshes_of_cache(file)) {
         print("mesh", exports::mesh_path_of(named));
         try {
-            const exports::PointCache cache = exports::read_cache(named);
-            print("polygons", cache.mesh()->polygons.size());
-            print("texture coordinates", cache.mesh()->texture_coordinates.size());
-            print("groups", cache.mesh()->groups.size());
-            print_cache(named);
+            print_cache_with_faces(named);
         } catch (const InvalidInput& error) {
             print("refused", error.what());
         }
@@ -251,10 +256,20 @@ void print_scene(const std::filesystem::path& file)
 int info(const std::filesystem::path& file)
 {
     static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
-        {".obj", print_obj},      {".vtk", print_tets},     {".glb", print_avatar},
-        {".gltf", print_avatar},  {".fbx", print_avatar},   {".bvh", print_motion_file},
-        {".pc2", print_cache},    {".mdd", print_cache},    {".abc", print_archive},
-        {".usda", print_archive}, {".usdc", print_archive}, {".usd", print_archive},
+        {".obj", print_obj},
+        {".vtk", print_tets},
+        {".glb", print_avatar},
+        {".gltf", print_avatar},
+        {".fbx", print_avatar},
+        {".bvh", print_motion_file},
+        {".pc2", print_cache},
+        {".mdd", print_cache},
+        {".abc", print_archive},
+        {".usda", print_archive},
+        {".usdc", print_archive},
+        {".usd", print_archive},
+        {".ply", print_cache_with_faces},
+        {".pvd", print_cache},
         {".json", print_scene}};
     if (!std::filesystem::is_regular_file(exports::archive_of(file)))
         throw InvalidInput(file.string() + ": can't be found; name a file");
@@ -263,7 +278,7 @@ int info(const std::filesystem::path& file)
         throw InvalidInput(
             file.string() +
             ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .bvh, .pc2, .mdd, " +
-            ".abc, .usda, .usdc, .usd and .json (scene)");
+            ".abc, .usda, .usdc, .usd, .ply and .json (scene)");
     printer->second(file);
     return kExitOk;
 }

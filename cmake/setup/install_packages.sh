@@ -21,6 +21,7 @@ BUILD=(
     libassimp-dev
     libcgal-dev        # exact predicates, triangulations; header-only
     nlohmann-json3-dev
+    libtinygltf-dev    # header-only as it is used
     libpng-dev
     libcli11-dev
     libgtest-dev

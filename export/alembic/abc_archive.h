@@ -23,6 +23,8 @@ public:
     /// @param application  that writes
     /// @throws InvalidInput if it can't be opened
     AbcArchive(const std::filesystem::path& file, const CacheLayout& layout, std::string application);
+    AbcArchive(const AbcArchive&) = delete;
+    AbcArchive& operator=(const AbcArchive&) = delete;
 
     /// Appends a frame. @param positions  [vertices] of all meshes, one after the other
     void write(View<const Vec3> positions);

@@ -5,7 +5,7 @@
 #include "core/base/extension.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 #include "scenes/format/document.h"
 #include "scenes/format/names.h"
 
@@ -15,17 +15,17 @@ namespace {
 
 bool is_sequence(const std::filesystem::path& cache)
 {
-    return exports::mesh_path_of(cache).empty() && exports::ObjSequence::has_digits_placeholder(cache);
+    return exports::mesh_path_of(cache).empty() && exports::NumberedFiles::has_digits_placeholder(cache);
 }
 
 } // namespace
 
 bool is_cache(const std::filesystem::path& file)
 {
-    static const std::vector<std::string> kOthers{".glb", ".gltf", ".fbx", ".obj", ".vtk"};
-    if (!is_sequence(file) && contains(kOthers, lower_case_extension(exports::archive_of(file))))
+    const std::optional<exports::CacheFormat> format = exports::known_cache_format(file);
+    if (!format || !exports::features_of(*format).read_back)
         return false;
-    return exports::known_cache_format(file).has_value();
+    return *format != exports::CacheFormat::Obj || is_sequence(file);
 }
 
 bool has_times(const std::filesystem::path& cache)
@@ -38,7 +38,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& file)
 {
     if (!is_sequence(file))
         return {exports::archive_of(file)};
-    const exports::ObjSequence sequence(file);
+    const exports::NumberedFiles sequence(file);
     std::vector<std::filesystem::path> files;
     for (const int number : sequence.existing())
         files.push_back(sequence.file(number));
@@ -50,7 +50,7 @@ std::filesystem::path existing_cache(const Document& document, const std::filesy
 {
     if (is_sequence(file)) {
         const std::filesystem::path pattern = document.path_of(file.string(), key_path);
-        if (exports::ObjSequence(pattern).existing().empty())
+        if (exports::NumberedFiles(pattern).existing().empty())
             document.refuse(key_path, "no file of the sequence " + as_written(pattern.string()) +
                                           " exists; each # stands for a digit, from the first frame on");
         return pattern;

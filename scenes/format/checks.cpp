@@ -1,5 +1,6 @@
 #include "scenes/format/checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -458,7 +459,7 @@ void check_contact(const Document& document, const scenes::Scene& scene)
 void check_export_file(const Document& document, const std::string& at_file,
                        const std::filesystem::path& file)
 {
-    check_extension(document, at_file, file, exports::cache_extensions());
+    check_extension(document, at_file, file, exports::written_extensions());
     const std::filesystem::path normal = file.lexically_normal();
     if (normal.is_absolute() || *normal.begin() == "..")
         document.refuse(at_file,

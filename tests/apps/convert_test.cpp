@@ -53,7 +53,7 @@ TEST_F(ConvertTest, ThroughAllFormatsAndBackGivesTheSameBytes)
 {
     write("a.pc2");
     write("mesh_##.obj");
-    const std::vector<std::string> chain{"a.pc2", "b.abc", "c.mdd", "d_##.obj", "e.abc", "f.pc2"};
+    const std::vector<std::string> chain{"a.pc2", "b.abc", "c.mdd", "d_##.obj", "e.abc", "e_##.ply", "f.pc2"};
     for (size_t k = 0; k + 1 < chain.size(); ++k) {
         const Finished run = convert({chain[k], chain[k + 1], "--mesh", "mesh_00.obj", "--fps", "25"});
         EXPECT_EQ(run.exit_code, 0) << run.errors;
@@ -96,6 +96,18 @@ TEST_F(ConvertTest, RefusesWhatCannotBeInOneLine)
     expect_refused({"a.abc", "b.pc2", "--fps", "0"}, "--fps");
     expect_refused({"a.abc", "b_##.obj", "--start-frame", "1.5"}, "must be a whole number");
     expect_refused({"a.abc#/b", "b.pc2"}, "a.abc: has no mesh /b; its meshes are /a/aShape");
+}
+
+TEST_F(ConvertTest, SaysHowManyShapesAGltfHasAndTheirError)
+{
+    write("a.abc");
+    const Finished run = convert({"a.abc", "a.glb"});
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_THAT(run.output, testing::StartsWith("a.glb: 1 shape, largest error "));
+    EXPECT_THAT(convert({"a.abc", "b.glb", "--max-error", "10"}).output,
+                HasSubstr("0 shapes, largest error 2e+03 mm"));
+    expect_refused({"a.abc", "c.glb", "--max-error", "0"}, "c.glb: largest error is 0");
+    expect_refused({"a.glb", "c.pc2"}, "a.glb: is written for other programs");
 }
 
 /// What a certificate says is of the cache that it was made for.

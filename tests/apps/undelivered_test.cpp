@@ -40,6 +40,21 @@ TEST_F(Undelivered, ReportLeavesCachesAndCertificate)
     EXPECT_TRUE(std::filesystem::exists(file("out/certificate.json")));
 }
 
+/// Single precision is too coarse for its shapes 90 km away.
+TEST_F(Undelivered, CacheForOtherProgramsLeavesTheRest)
+{
+    temporary_.write("far.obj", "v 90000 0 0\nv 90001 0 0\nv 90000 0 1\nf 1 3 2\n");
+    temporary_.write("far.json", R"({"toile": 1, "frames": 12, "wind": {"velocity": [20, 0, 5]},
+        "cloths": [{"name": "sheet", "file": "far.obj"}],
+        "export": [{"file": "sheet.glb"}, {"file": "sheet.pc2"}]})");
+    expect_failure(shell("\"$TOILE\" simulate far.json -o out --quiet"),
+                   "out/sheet.glb: single precision holds its positions within ");
+    EXPECT_EQ(read_cache(file("out/sheet.pc2")).frame_count(), 12);
+    EXPECT_TRUE(std::filesystem::exists(file("out/certificate.json")));
+    EXPECT_FALSE(std::filesystem::exists(file("out/sheet.glb")));
+    EXPECT_EQ(read_cache(file("out/sheet.glb.partial.pc2")).frame_count(), 12);
+}
+
 TEST_F(Undelivered, CertificateLeavesCaches)
 {
     // The partial name of the certificate is taken by a folder.

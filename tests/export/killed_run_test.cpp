@@ -59,8 +59,13 @@ TEST_F(KilledRun, LeavesAReadablePartialAndTheOldCache)
     kill_after_three("skirt.mdd");
     expect_frames(file("skirt.mdd.partial.pc2"), 3);
 
-    kill_after_three("skirt.obj");
-    expect_frames(file("skirt.partial/skirt_####.obj"), 3);
+    kill_after_three("skirt.glb");
+    expect_frames(file("skirt.glb.partial.pc2"), 3);
+
+    for (const std::string extension : {".obj", ".ply"}) {
+        kill_after_three("skirt" + extension);
+        expect_frames(file("skirt.partial/skirt_####" + extension), 3);
+    }
 }
 
 TEST_F(KilledRun, LeavesAReadablePartialWhenKilledWithinAFrame)
@@ -72,7 +77,7 @@ TEST_F(KilledRun, LeavesAReadablePartialWhenKilledWithinAFrame)
 
 TEST_F(KilledRun, ResumesAtACheckpoint)
 {
-    for (const std::string name : {"skirt.pc2", "skirt.mdd", "skirt.obj"}) {
+    for (const std::string name : {"skirt.pc2", "skirt.mdd", "skirt.obj", "skirt.ply"}) {
         kill_after_three(name);
         CacheLayout layout = cache_layout(quad_mesh(), 5);
         layout.resume_at = 2;
@@ -102,7 +107,7 @@ TEST_F(KilledRun, RefusesToResumeMissingFrames)
     const auto resume = [&](const char* name) {
         return refusal([&] { make_cache_writer(file(name), layout); });
     };
-    for (const char* name : {"skirt.pc2", "skirt.mdd", "skirt.obj"}) {
+    for (const char* name : {"skirt.pc2", "skirt.mdd", "skirt.obj", "skirt.ply"}) {
         EXPECT_THAT(resume(name), HasSubstr("start the run anew")) << name;
         kill_after_three(name);
         EXPECT_THAT(resume(name), HasSubstr("start the run anew")) << name;

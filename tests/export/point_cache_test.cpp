@@ -37,7 +37,7 @@ protected:
 
 TEST_F(PointCacheTest, ReadsEveryFrameInVertexOrder)
 {
-    for (const std::string name : {"a.pc2", "a.mdd", "a.obj", "a.abc"}) {
+    for (const std::string name : {"a.pc2", "a.mdd", "a.obj", "a.abc", "a.ply"}) {
         const PointCache cache = read_cache(write_cache(name));
         ASSERT_EQ(cache.frame_count(), 4) << name;
         EXPECT_EQ(cache.vertex_count(), 7) << name;
@@ -83,6 +83,13 @@ TEST_F(PointCacheTest, RefusesOtherFiles)
     EXPECT_THAT(refusal_after("a.mdd", std::string(64, '\xff')), HasSubstr("no MDD file"));
 }
 
+TEST_F(PointCacheTest, RefusesByNameWhatIsForOtherProgramsOnly)
+{
+    for (const std::string name : {"a.glb", "a.pvd"})
+        EXPECT_THAT(refusal([&] { read_cache(write_cache(name)); }),
+                    HasSubstr(name + ": is written for other programs, and not read as a cache"));
+}
+
 TEST_F(PointCacheTest, NamesTheLineOfABrokenObj)
 {
     EXPECT_THAT(refusal_after("a.obj", "v 0 0 0\nv 1 x 0\n"), HasSubstr("a.obj:2:"));
@@ -92,7 +99,8 @@ TEST_F(PointCacheTest, NamesTheLineOfABrokenObj)
 TEST_F(PointCacheTest, NamesAMissingFileAndAnUnknownExtension)
 {
     EXPECT_THAT(refusal([&] { read_cache(file("none.pc2")); }), HasSubstr("none.pc2: can't be opened"));
-    EXPECT_THAT(refusal([&] { read_cache(file("a.mc")); }), HasSubstr("use .pc2, .mdd, .abc, .usda, .usdc or .obj"));
+    EXPECT_THAT(refusal([&] { read_cache(file("a.mc")); }),
+                HasSubstr("use .pc2, .mdd, .abc, .usda, .usdc, .obj, .ply, .glb or .pvd"));
 }
 
 } // namespace

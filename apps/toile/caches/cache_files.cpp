@@ -10,9 +10,10 @@
 #include "core/base/extension.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 #include "export/usd/usd_files.h"
 #include "export/usd/usdc_writer.h"
+#include "scenes/format/document.h"
 
 namespace toile::app {
 
@@ -20,22 +21,8 @@ namespace {
 
 using std::filesystem::path;
 
-/// Frames of a cache, finished and unfinished, if it is a sequence of OBJ files.
-struct SequenceFiles {
-    exports::ObjSequence finished, unfinished;
-};
-std::optional<SequenceFiles> sequence_of(const path& cache, int frame_count)
-{
-    if (exports::cache_format(cache) != exports::CacheFormat::Obj ||
-        (frame_count == 1 && !exports::ObjSequence::has_digits_placeholder(cache)))
-        return std::nullopt;
-    const exports::ObjSequence finished(cache);
-    return SequenceFiles{finished, exports::ObjSequence(cache.parent_path() / (finished.stem() + ".partial") /
-                                                        cache.filename())};
-}
-
 /// Adds the frames of a sequence, and those of an earlier run.
-void add_frames(FilePlan& plan, const exports::ObjSequence& sequence, int first, int frame_count,
+void add_frames(FilePlan& plan, const exports::NumberedFiles& sequence, int first, int frame_count,
                 const std::string& role)
 {
     for (int frame = 0; frame < frame_count; ++frame)
@@ -80,6 +67,8 @@ std::optional<UsdOutputs> usd_outputs(const path& cache, int frame_count)
 
 } // namespace
 
+std::string readable_extensions() { return scene_format::enumerate(exports::read_extensions(), "or"); }
+
 void add_output_and_partial(FilePlan& plan, const path& file, const std::string& role)
 {
     plan.add_output(file, role);
@@ -88,9 +77,14 @@ void add_output_and_partial(FilePlan& plan, const path& file, const std::string&
 
 void add_cache_output(FilePlan& plan, const path& file, int first, int frame_count, const std::string& role)
 {
-    if (const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count)) {
-        add_frames(plan, sequence->finished, first, frame_count, role);
-        add_frames(plan, sequence->unfinished, first, frame_count, role + ", unfinished");
+    const exports::CacheFormat format = exports::cache_format(file);
+    if (const std::optional<exports::NumberedFiles> frames = exports::files_of_frames(file, frame_count)) {
+        add_frames(plan, *frames, first, frame_count, role);
+        add_frames(plan, frames->unfinished(), first, frame_count, role + ", unfinished");
+        if (format == exports::CacheFormat::Vtk) {
+            plan.add_output(file, role);
+            plan.add_output(frames->unfinished_folder() / file.filename(), role + ", unfinished");
+        }
         return;
     }
     if (const std::optional<UsdOutputs> usd = usd_outputs(file, frame_count)) {
@@ -101,18 +95,19 @@ void add_cache_output(FilePlan& plan, const path& file, int first, int frame_cou
         return;
     }
     add_output_and_partial(plan, file, role);
-    if (exports::cache_format(file) == exports::CacheFormat::Mdd)
+    if (format == exports::CacheFormat::Mdd || format == exports::CacheFormat::Glb)
         plan.add_output(file.string() + ".partial.pc2", role + ", unfinished");
 }
 
 void add_cache_input(FilePlan& plan, const path& file, const std::string& role)
 {
     std::error_code missing;
-    if (exports::cache_format(file) != exports::CacheFormat::Obj || std::filesystem::exists(file, missing)) {
+    if (!exports::features_of(exports::cache_format(file)).numbered ||
+        std::filesystem::exists(file, missing)) {
         plan.add_input(exports::archive_of(file), role);
         return;
     }
-    const exports::ObjSequence sequence(file);
+    const exports::NumberedFiles sequence(file);
     for (const int number : sequence.existing())
         plan.add_input(sequence.file(number), role);
 }
@@ -134,15 +129,14 @@ void require_writable_cache(const path& file, int first, int frame_count)
                 require_replaceable(each);
         return;
     }
-    const std::optional<SequenceFiles> sequence = sequence_of(file, frame_count);
-    if (!sequence) {
+    const std::optional<exports::NumberedFiles> frames = exports::files_of_frames(file, frame_count);
+    if (!frames || exports::cache_format(file) == exports::CacheFormat::Vtk) {
         require_replaceable(file);
         require_writable(partial_beside(file));
-        return;
     }
-    for (int frame = 0; frame < frame_count; ++frame) {
-        require_replaceable(sequence->finished.file(first + frame));
-        require_replaceable(sequence->unfinished.file(first + frame));
+    for (int frame = 0; frames && frame < frame_count; ++frame) {
+        require_replaceable(frames->file(first + frame));
+        require_replaceable(frames->unfinished().file(first + frame));
     }
 }
 

@@ -7,6 +7,9 @@
 
 namespace toile::app {
 
+/// Extensions of the caches that are read, for help: ".pc2, .mdd or .ply".
+std::string readable_extensions();
+
 /// Adds a file that is written under its partial name first.
 void add_output_and_partial(FilePlan& plan, const std::filesystem::path& file, const std::string& role);
 

@@ -10,7 +10,7 @@
 #include "export/archive/names.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 #include "scenes/format/document.h"
 
 namespace toile::app {
@@ -20,8 +20,8 @@ namespace {
 /// Name of a cloth: skirt for skirt.pc2, for the unfinished skirt.partial.pc2 and for skirt_####.obj.
 std::string name_of(const std::filesystem::path& cache)
 {
-    if (exports::ObjSequence::has_digits_placeholder(cache))
-        return exports::ObjSequence(cache).stem();
+    if (exports::NumberedFiles::has_digits_placeholder(cache))
+        return exports::NumberedFiles(cache).stem();
     std::filesystem::path name = exports::archive_of(cache).filename();
     while (lower_case_extension(name) == ".partial" || exports::known_cache_format(name))
         name = name.stem();

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "apps/toile/caches/cache_contents.h"
+#include "apps/toile/caches/cache_files.h"
 #include "apps/toile/caches/exports.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/check/certify.h"
@@ -15,12 +16,12 @@
 #include "core/base/atomic_file.h"
 #include "core/base/cancellation.h"
 #include "core/base/error.h"
-#include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "core/base/long_work.h"
+#include "export/cache_format.h"
 #include "export/cache_path.h"
 #include "export/folder_lock.h"
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/surfaces/load_cloth.h"
 
@@ -38,11 +39,11 @@ struct CheckOptions {
     bool quiet = false;
 };
 
-/// Whether a cache of this name exists, as a file or as numbered OBJ files.
+/// Whether a cache of this name exists, as a file or as numbered ones.
 bool cache_exists(const std::filesystem::path& file)
 {
-    return std::filesystem::exists(file) ||
-           (lower_case_extension(file) == ".obj" && !exports::ObjSequence(file).existing().empty());
+    return std::filesystem::exists(file) || (exports::features_of(exports::cache_format(file)).numbered &&
+                                             !exports::NumberedFiles(file).existing().empty());
 }
 
 bool holds(const std::vector<ClothInCache>& caches, int surface)
@@ -59,8 +60,11 @@ std::vector<ClothInCache> caches_in(const std::filesystem::path& folder, const s
     for (const scene::Export& entry : exports_of(scene)) {
         searched += (searched.empty() ? "" : ", ") + entry.file.string();
         std::filesystem::path file = folder / entry.file.lexically_normal();
-        if (scene.frames > 1 && lower_case_extension(file) == ".obj")
-            file = exports::ObjSequence(file).pattern(); // skirt.obj may be the start mesh beside skirt.pc2
+        const exports::CacheFeatures features = exports::features_of(exports::cache_format(file));
+        if (!features.read_back)
+            continue;
+        if (scene.frames > 1 && features.numbered)
+            file = exports::NumberedFiles(file).pattern(); // skirt.obj may be the start mesh beside skirt.pc2
         if (!cache_exists(file))
             continue;
         for (const int surface : surfaces_of(scene, entry))
@@ -174,7 +178,7 @@ Command add_check(CLI::App& parser)
     auto options = std::make_shared<CheckOptions>();
     CLI::App& add = *command.options;
     add.add_option("caches", options->caches,
-                   "Caches (.pc2, .mdd, .obj, .abc, .usda, .usdc, .usd), one of each cloth, or their folder")
+                   "Caches (" + readable_extensions() + "), one of each cloth, or their folder")
         ->required();
     add.add_option("--scene", options->scene, "Scene that they were made from")->required();
     add.add_option("-o,--output", options->output, "Write the JSON here [beside the caches, and to stdout]");

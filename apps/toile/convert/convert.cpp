@@ -36,6 +36,7 @@ struct ConvertOptions {
     std::string from_unit, from_up; ///< empty: the cache's
     exports::Axes to;
     bool normals = false, no_velocities = false;
+    double max_error = exports::CacheLayout{}.max_error; ///< [m]
     bool quiet = false;
 };
 
@@ -117,10 +118,8 @@ double fps_of(const ConvertOptions& options, const exports::PointCache& cache)
                                ": is no rate; write a number from 0.001 to 10000, or two as 24000/1001");
         return fps;
     }
-    const exports::CacheFormat format = exports::cache_format(options.output);
-    const bool stores_times = format == exports::CacheFormat::Abc || format == exports::CacheFormat::Mdd ||
-                              format == exports::CacheFormat::Usd;
-    if (!cache.fps() && stores_times && cache.frame_count() > 1 && !options.quiet)
+    if (!cache.fps() && exports::features_of(exports::cache_format(options.output)).times &&
+        cache.frame_count() > 1 && !options.quiet)
         std::cerr << "toile: " << options.input.string()
                   << ": has no frame rate; taken to be 24 a second (--fps)\n";
     return cache.fps().value_or(kUsualFps);
@@ -138,7 +137,7 @@ void require_faces(const ConvertOptions& options, const exports::CacheLayout& la
 /// @param layout  with which make_cache_writer() is content
 void require_safe_output(const ConvertOptions& options, const exports::CacheLayout& layout)
 {
-    const bool is_numbered = exports::cache_format(options.output) == exports::CacheFormat::Obj;
+    const bool is_numbered = exports::features_of(exports::cache_format(options.output)).numbered;
     const int first = is_numbered ? int(layout.start_frame) : 0;
     FilePlan plan;
     add_cache_input(plan, options.input, "the cache");
@@ -192,6 +191,7 @@ exports::CacheLayout layout_of(const ConvertOptions& options, const std::vector<
     layout.axes = options.to;
     layout.velocities = !options.no_velocities;
     layout.normals = options.normals;
+    layout.max_error = options.max_error;
     return layout;
 }
 
@@ -226,7 +226,8 @@ int convert(const ConvertOptions& options)
     writer->complete();
     remove_certificates(options);
     writer->publish();
-    std::cout << options.output.string() << "\n";
+    const std::string note = writer->note();
+    std::cout << options.output.string() << (note.empty() ? "" : ": " + note) << "\n";
     return kExitOk;
 }
 
@@ -238,11 +239,11 @@ Command add_convert(CLI::App& parser)
     command.options = parser.add_subcommand("convert", "Write a cache in another format, unit or rate");
     auto options = std::make_shared<ConvertOptions>();
     CLI::App& add = *command.options;
-    add.add_option(
-           "input", options->input,
-           "Cache: .pc2, .mdd, .obj, .abc, .usda, .usdc or .usd; a mesh in an archive by a path behind #")
+    add.add_option("input", options->input,
+                   "Cache (" + readable_extensions() + "); a mesh in an archive by a path behind #")
         ->required();
-    add.add_option("output", options->output, "Cache to write: .pc2, .mdd, .obj, .abc, .usda or .usdc")
+    add.add_option("output", options->output,
+                   "Cache to write: .pc2, .mdd, .abc, .usda, .usdc, .obj, .ply, .glb or .pvd")
         ->required();
     add.add_option("--mesh", options->mesh, "OBJ with the faces of a .pc2 or .mdd, which have none");
     add.add_option("--fps", options->fps, "Frames per second, also as 24000/1001; without it the cache's");
@@ -255,7 +256,10 @@ Command add_convert(CLI::App& parser)
     add.add_option("--unit", options->to.unit, "Unit of the numbers written: m or cm");
     add.add_option("--up", options->to.up, "Upward axis of the numbers written: y or z");
     add.add_flag("--normals", options->normals, "Store normals, creased at seams (.abc, .usda, .usdc)");
-    add.add_flag("--no-velocities", options->no_velocities, "Store no velocities (.abc, .usda, .usdc)");
+    add.add_flag("--no-velocities", options->no_velocities, "Store no velocities (.abc, .usda, .usdc, .pvd)");
+    add.add_option("--max-error", options->max_error,
+                   "Largest error of a vertex in any frame [m], for outputs that approximate (.glb)")
+        ->capture_default_str();
     add.add_flag("--quiet", options->quiet, "No progress and no notes");
     command.run = [options] { return convert(*options); };
     return command;

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "apps/toile/caches/cache_contents.h"
+#include "apps/toile/caches/cache_files.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/fit/fit_files.h"
 #include "apps/toile/terminal/command_line.h"
@@ -135,8 +136,7 @@ Command add_fit(CLI::App& parser)
     command.options = parser.add_subcommand("fit", "Measure how garments fit their body at a frame");
     auto options = std::make_shared<FitOptions>();
     CLI::App& add = *command.options;
-    add.add_option("caches", options->caches,
-                   "Caches (.pc2, .mdd, .obj, .abc, .usda, .usdc, .usd) of cloths of the scene")
+    add.add_option("caches", options->caches, "Caches (" + readable_extensions() + ") of cloths of the scene")
         ->required();
     add.add_option("--scene", options->scene, "Scene that they were made from")->required();
     add.add_option("--frame", options->frame, "Frame of the caches; negative: from the end")

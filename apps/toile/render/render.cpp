@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/preview/video.h"
+#include "apps/toile/caches/cache_files.h"
 #include "apps/toile/render/film.h"
 #include "apps/toile/render/frame_range.h"
 #include "apps/toile/terminal/command_line.h"
@@ -188,8 +189,7 @@ Command add_render(CLI::App& parser)
         parser.add_subcommand("render", "Render preview pictures of caches or of a scene's start");
     auto options = std::make_shared<RenderOptions>();
     CLI::App& add = *command.options;
-    add.add_option("inputs", options->inputs,
-                   "Caches (.pc2, .mdd, .obj, .abc, .usda, .usdc, .usd), or one scene (.json)")
+    add.add_option("inputs", options->inputs, "Caches (" + readable_extensions() + "), or one scene (.json)")
         ->required();
     add.add_option("--scene", options->scene, "Scene that the caches were made from");
     add.add_option("-o,--output", options->output, "PNG, MP4, or folder for numbered PNGs [NAME.png]");

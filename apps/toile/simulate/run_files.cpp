@@ -9,6 +9,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "export/binary_file.h"
+#include "export/cache_format.h"
 
 namespace toile::app {
 
@@ -98,8 +99,33 @@ RunFiles::Partials RunFiles::close()
 
 void RunFiles::complete()
 {
-    for (Cache& cache : caches_)
-        cache.complete = cache.writer->complete();
+    for (Cache& cache : caches_) {
+        try {
+            cache.complete = cache.writer->complete();
+        } catch (const InvalidInput& error) {
+            if (exports::features_of(exports::cache_format(cache.target.file)).read_back)
+                throw;
+            undelivered_.push_back(error.what());
+        }
+    }
+}
+
+std::vector<std::filesystem::path> RunFiles::completed() const
+{
+    std::vector<std::filesystem::path> files;
+    for (const Cache& cache : caches_)
+        if (!cache.complete.empty())
+            files.push_back(cache.target.file);
+    return files;
+}
+
+std::vector<std::string> RunFiles::notes() const
+{
+    std::vector<std::string> notes;
+    for (const Cache& cache : caches_)
+        if (const std::string note = cache.writer->note(); !note.empty())
+            notes.push_back(cache.target.file.string() + ": " + note);
+    return notes;
 }
 
 std::vector<CachedCloth> RunFiles::cloths_to_check(const scenes::World& world) const
@@ -109,7 +135,7 @@ std::vector<CachedCloth> RunFiles::cloths_to_check(const scenes::World& world) c
     std::vector<CachedCloth> cloths;
     for (int surface = 0; surface < surfaces.size(); ++surface) {
         const ExportFile* const target = cache_to_check(job_, targets, surface);
-        if (target == nullptr)
+        if (target == nullptr || !exports::features_of(exports::cache_format(target->file)).read_back)
             continue;
         const Cache& cache = caches_[size_t(target - targets.data())];
         const scenes::ClothState& cloth = surfaces[surface];
@@ -139,7 +165,8 @@ void RunFiles::publish()
     for (const StartMesh& mesh : meshes_)
         attempt([&] { exports::move_into_place(partial_beside(mesh.file), mesh.file); });
     for (Cache& cache : caches_)
-        attempt([&] { cache.writer->publish(); });
+        if (!cache.complete.empty())
+            attempt([&] { cache.writer->publish(); });
     if (first_error)
         std::rethrow_exception(first_error);
 }

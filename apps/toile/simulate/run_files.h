@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "apps/toile/caches/cache_contents.h"
@@ -35,10 +37,21 @@ public:
     };
     Partials close();
 
-    /// Completes every cache under its partial name. @throws as CacheWriter::complete()
+    /// Completes every cache under its partial name. Those for other programs that can't be made of these
+    /// frames do not keep back the rest: undelivered().
+    /// @throws as CacheWriter::complete()
     void complete();
 
-    /// Complete caches with their cloths, one per cloth.
+    /// Why caches could not be completed, a line each.
+    const std::vector<std::string>& undelivered() const { return undelivered_; }
+
+    /// Caches that are complete.
+    std::vector<std::filesystem::path> completed() const;
+
+    /// What is to be known of complete caches, a line each.
+    std::vector<std::string> notes() const;
+
+    /// Complete caches that can be read with their cloths, one per cloth.
     std::vector<CachedCloth> cloths_to_check(const scenes::World& world) const;
 
     /// Removes certificates of earlier caches, then moves meshes and caches to their final names. What can't
@@ -76,6 +89,7 @@ private:
     Locks locks_;                            ///< before the caches: released after them
     std::vector<Cache> caches_;
     std::vector<StartMesh> meshes_;
+    std::vector<std::string> undelivered_;
     bool has_frames_ = false;
 };
 

@@ -16,7 +16,6 @@
 #include "core/base/file_plan.h"
 #include "export/cache_format.h"
 #include "export/folder_lock.h"
-#include "export/obj/obj_sequence.h"
 #include "export/usd/usd_python.h"
 
 namespace toile::app {
@@ -115,15 +114,16 @@ std::vector<path> certificates_of(const SceneJob& job)
 
 const ExportFile* cache_to_check(const SceneJob& job, const std::vector<ExportFile>& caches, int surface)
 {
+    const auto effort = [](const ExportFile& cache) { // of reading it
+        const exports::CacheFormat format = exports::cache_format(cache.file);
+        return !exports::features_of(format).read_back ? 2 : format == exports::CacheFormat::Usd ? 1 : 0;
+    };
     const ExportFile* found = nullptr;
     for (const ExportFile& cache : caches) {
         const std::vector<int> surfaces = surfaces_of(job.scene, cache.entry);
-        const bool is_usd = exports::cache_format(cache.file) == exports::CacheFormat::Usd;
-        if (std::find(surfaces.begin(), surfaces.end(), surface) == surfaces.end())
-            continue;
-        if (!is_usd)
-            return &cache;
-        found = found != nullptr ? found : &cache;
+        const bool has_it = std::find(surfaces.begin(), surfaces.end(), surface) != surfaces.end();
+        if (has_it && (found == nullptr || effort(cache) < effort(*found)))
+            found = &cache;
     }
     return found;
 }
@@ -134,17 +134,22 @@ void require_checkable(const SceneJob& job)
     const std::vector<ExportFile> caches = caches_of(job);
     for (int surface = 0; surface < int(names.size()); ++surface) {
         const ExportFile* const cache = cache_to_check(job, caches, surface);
-        if (cache == nullptr || exports::cache_format(cache->file) != exports::CacheFormat::Usd)
+        if (cache == nullptr)
+            continue;
+        const std::string remedy =
+            "; export \"" + names[size_t(surface)] + "\" to a .pc2 as well, or give --no-check";
+        const exports::CacheFormat format = exports::cache_format(cache->file);
+        if (!exports::features_of(format).read_back)
+            throw InvalidInput(cache->file.string() + ": is for other programs and can't be checked" +
+                               remedy);
+        if (format != exports::CacheFormat::Usd)
             continue;
         try {
             exports::require_usd_python(cache->file);
         } catch (const InvalidInput&) {
-            throw InvalidInput(cache->file.string() +
-                               ": is checked by Python with USD, which is not there (pip install usd-core); "
-                               "export \"" +
-                               names[size_t(surface)] + "\" to a .pc2 as well, or give --no-check");
+            throw InvalidInput(cache->file.string() + ": is checked by Python with USD, which is not there " +
+                               "(pip install usd-core)" + remedy);
         }
-        return; // which is there for all
     }
 }
 

@@ -184,6 +184,8 @@ SceneRun::Outcome SceneRun::run_frames(RunFiles& files, RunReport& report)
         frames_->update(frame + 1, note_of(step));
     }
     files.complete();
+    for (const std::string& note : files.notes())
+        log_.note(note);
     unmet.sum_up(count);
     return {};
 }
@@ -235,16 +237,19 @@ int SceneRun::publish(RunFiles& files, const RunReport& report) const
 
     if (!succeeds(log_, [&] { files.publish(); }))
         return kExitFailure;
-    for (const ExportFile& cache : caches_of(job_))
-        log_.file(cache.file);
-    const bool is_reported = job_.report.empty() || deliver_report(job_.report, staged_report, log_);
+    for (const std::filesystem::path& cache : files.completed())
+        log_.file(cache);
+    for (const std::string& why : files.undelivered())
+        log_.error(why);
+    const bool is_whole = (job_.report.empty() || deliver_report(job_.report, staged_report, log_)) &&
+                          files.undelivered().empty();
     if (no_check_)
-        return is_reported ? kExitOk : kExitFailure;
+        return is_whole ? kExitOk : kExitFailure;
     if (!commit(staged_certificate, log_))
         return kExitFailure;
     log_.file(certificate_name);
     const int code = conclude(*certificate, certificate_name, log_);
-    return is_reported ? code : int(kExitFailure);
+    return is_whole ? code : int(kExitFailure);
 }
 
 } // namespace toile::app

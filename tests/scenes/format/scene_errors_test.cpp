@@ -275,7 +275,7 @@ TEST(SceneErrors, KeepExportsInsideTheOutputFolder)
         {scene_with(R"("export": [{"file": "../a.pc2"}])"),
          R"(bad.json: export[0].file: "../a.pc2" leaves the output folder; give a path inside it)"},
         {scene_with(R"("export": [{"file": "a.mc"}])"),
-         R"(bad.json: export[0].file: "a.mc" is of an unknown format; use .pc2, .mdd, .abc, .usda or .obj)"},
+         R"(bad.json: export[0].file: "a.mc" is of an unknown format; use .pc2, .mdd, .abc, .usda, .usdc, .obj, .ply, .glb or .pvd)"},
         {scene_with(R"("export": [{"file": "a.pc2"}, {"file": "./a.pc2"}])"),
          R"(bad.json: export[1].file: "./a.pc2" is written by an earlier entry; choose another file)"},
         {scene_with(R"("export": [{"file": "a.pc2", "cloth": "shet"}])"),

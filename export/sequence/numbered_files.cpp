@@ -1,17 +1,19 @@
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 
 #include <algorithm>
 #include <charconv>
 #include <system_error>
 
+#include "export/cache_format.h"
+
 namespace toile::exports {
 
-bool ObjSequence::has_digits_placeholder(const std::filesystem::path& pattern)
+bool NumberedFiles::has_digits_placeholder(const std::filesystem::path& pattern)
 {
     return pattern.filename().string().find('#') != std::string::npos;
 }
 
-ObjSequence::ObjSequence(const std::filesystem::path& pattern) : folder_(pattern.parent_path())
+NumberedFiles::NumberedFiles(const std::filesystem::path& pattern) : folder_(pattern.parent_path())
 {
     if (!has_digits_placeholder(pattern)) {
         prefix_ = pattern.stem().string() + "_";
@@ -26,7 +28,7 @@ ObjSequence::ObjSequence(const std::filesystem::path& pattern) : folder_(pattern
     digits_ = int(end - begin);
 }
 
-std::filesystem::path ObjSequence::file(int number) const
+std::filesystem::path NumberedFiles::file(int number) const
 {
     std::string digits = std::to_string(number);
     if (int(digits.size()) < digits_)
@@ -34,14 +36,23 @@ std::filesystem::path ObjSequence::file(int number) const
     return folder_ / (prefix_ + digits + suffix_);
 }
 
-std::filesystem::path ObjSequence::pattern() const
+std::filesystem::path NumberedFiles::pattern() const
 {
     return folder_ / (prefix_ + std::string(size_t(digits_), '#') + suffix_);
 }
 
-std::string ObjSequence::stem() const { return prefix_.substr(0, prefix_.find_last_not_of("_.-") + 1); }
+std::string NumberedFiles::stem() const { return prefix_.substr(0, prefix_.find_last_not_of("_.-") + 1); }
 
-std::optional<int> ObjSequence::number_of(const std::string& file_name) const
+std::filesystem::path NumberedFiles::unfinished_folder() const { return folder_ / (stem() + ".partial"); }
+
+NumberedFiles NumberedFiles::unfinished() const
+{
+    NumberedFiles names = *this;
+    names.folder_ = unfinished_folder();
+    return names;
+}
+
+std::optional<int> NumberedFiles::number_of(const std::string& file_name) const
 {
     if (!file_name.starts_with(prefix_) || !file_name.ends_with(suffix_) ||
         file_name.size() < prefix_.size() + suffix_.size() + size_t(digits_))
@@ -55,7 +66,7 @@ std::optional<int> ObjSequence::number_of(const std::string& file_name) const
     return number;
 }
 
-std::vector<int> ObjSequence::existing() const
+std::vector<int> NumberedFiles::existing() const
 {
     std::vector<int> numbers;
     std::error_code error;
@@ -65,6 +76,21 @@ std::vector<int> ObjSequence::existing() const
             numbers.push_back(*number);
     std::sort(numbers.begin(), numbers.end());
     return numbers;
+}
+
+NumberedFiles frames_of_pvd(std::filesystem::path pvd)
+{
+    return NumberedFiles(pvd.replace_extension(".vtu"));
+}
+
+std::optional<NumberedFiles> files_of_frames(const std::filesystem::path& cache, int frame_count)
+{
+    const CacheFormat format = cache_format(cache);
+    if (format == CacheFormat::Vtk)
+        return frames_of_pvd(cache);
+    if (features_of(format).numbered && (frame_count > 1 || NumberedFiles::has_digits_placeholder(cache)))
+        return NumberedFiles(cache);
+    return std::nullopt;
 }
 
 } // namespace toile::exports

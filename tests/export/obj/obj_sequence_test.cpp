@@ -1,4 +1,4 @@
-#include "export/obj/obj_sequence.h"
+#include "export/sequence/numbered_files.h"
 
 #include <gmock/gmock.h>
 
@@ -26,10 +26,10 @@ void write_sequence(const std::filesystem::path& pattern, int frames, double sta
 
 TEST_F(ObjSequenceTest, NamesFramesByTheirNumber)
 {
-    const ObjSequence sequence("out/skirt.obj");
+    const NumberedFiles sequence("out/skirt.obj");
     EXPECT_EQ(sequence.file(1), "out/skirt_0001.obj");
     EXPECT_EQ(sequence.file(12345), "out/skirt_12345.obj");
-    EXPECT_EQ(ObjSequence("f.##.obj").file(7), "f.07.obj");
+    EXPECT_EQ(NumberedFiles("f.##.obj").file(7), "f.07.obj");
     EXPECT_EQ(sequence.stem(), "skirt");
     EXPECT_EQ(sequence.number_of("skirt_0010.obj"), 10);
     EXPECT_EQ(sequence.number_of("skirt_12345.obj"), 12345);
@@ -68,7 +68,7 @@ TEST_F(ObjSequenceTest, RemovesTheTailOfALongerEarlierRun)
     write_sequence(file("skirt.obj"), 5, 0.0);
     write_bytes(file("skirt_0009.obj"), "not a continuation");
     write_sequence(file("skirt.obj"), 3, 0.0);
-    EXPECT_EQ(ObjSequence(file("skirt.obj")).existing(), (std::vector<int>{0, 1, 2, 9}));
+    EXPECT_EQ(NumberedFiles(file("skirt.obj")).existing(), (std::vector<int>{0, 1, 2, 9}));
 }
 
 TEST_F(ObjSequenceTest, KeepsTheEarlierSequenceUntilTheNewOneIsComplete)

@@ -1,0 +1,16 @@
+#include "export/obj/obj_file.h"
+
+#include "core/mesh/obj.h"
+
+namespace toile::exports {
+
+MeshFileWriter obj_file_writer(const CacheLayout& layout)
+{
+    return [mesh = layout.meshes.front().faces](const std::filesystem::path& file,
+                                                View<const Vec3> positions) mutable {
+        mesh.positions.assign(positions.begin(), positions.end());
+        write_obj(file, mesh);
+    };
+}
+
+} // namespace toile::exports

@@ -1,0 +1,113 @@
+#include "export/ply/ply_values.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+#include "core/base/error.h"
+#include "export/byte_order.h"
+
+namespace toile::exports {
+
+void PlyValues::refuse(const std::string& why) const
+{
+    throw InvalidInput(file_.string() + ": " + why + " (byte " + std::to_string(at_) + ")");
+}
+
+/// [bytes] A number in text has a digit, and a space behind it.
+std::size_t PlyValues::smallest_size(PlyType type) const
+{
+    return encoding_ == PlyHeader::Encoding::Ascii ? 2 : std::size_t(size_of(type));
+}
+
+void PlyValues::require_room(const PlyElement& element) const
+{
+    std::size_t size = 0; // smallest of an element
+    for (const PlyProperty& property : element.properties)
+        size += smallest_size(property.count_type.value_or(property.type));
+    if (size > 0 && std::size_t(element.count) > (room() + 1) / size)
+        refuse("the header promises " + std::to_string(element.count) + " elements \"" + element.name +
+               "\", for which the file is too short; export it again");
+}
+
+double PlyValues::scalar(PlyType type)
+{
+    if (encoding_ == PlyHeader::Encoding::Ascii)
+        return number_in_text();
+    switch (type) {
+    case PlyType::Int8:
+        return binary<std::int8_t>();
+    case PlyType::Uint8:
+        return binary<std::uint8_t>();
+    case PlyType::Int16:
+        return binary<std::int16_t>();
+    case PlyType::Uint16:
+        return binary<std::uint16_t>();
+    case PlyType::Int32:
+        return binary<std::int32_t>();
+    case PlyType::Uint32:
+        return binary<std::uint32_t>();
+    case PlyType::Float32:
+        return binary<float>();
+    case PlyType::Float64:
+        return binary<double>();
+    }
+    return 0.0;
+}
+
+template <typename T>
+double PlyValues::binary()
+{
+    if (room() < sizeof(T))
+        refuse("ends within its values; export it again");
+    char word[sizeof(T)];
+    std::copy_n(bytes_.data() + at_, sizeof(T), word);
+    if (encoding_ == PlyHeader::Encoding::BigEndian)
+        std::reverse(word, word + sizeof(T));
+    at_ += sizeof(T);
+    return double(take<T>(word));
+}
+
+double PlyValues::number_in_text()
+{
+    at_ = std::min(bytes_.find_first_not_of(" \t\r\n", at_), bytes_.size());
+    if (room() == 0)
+        refuse("ends within its values; export it again");
+    const std::size_t plus = bytes_[at_] == '+' ? 1 : 0;
+    const char* const end = bytes_.data() + bytes_.size();
+    double value = 0.0;
+    const auto [stopped, error] = std::from_chars(bytes_.data() + at_ + plus, end, value);
+    if (error != std::errc{} ||
+        (stopped != end && std::string_view(" \t\r\n").find(*stopped) == std::string_view::npos))
+        refuse("what is there is no number; export it again");
+    at_ = std::size_t(stopped - bytes_.data());
+    return value;
+}
+
+std::size_t PlyValues::count_of(const PlyProperty& property)
+{
+    const double count = scalar(*property.count_type);
+    if (!(count >= 0.0) || count != std::floor(count) ||
+        count > double((room() + 1) / smallest_size(property.type)))
+        refuse("a list \"" + property.name + "\" can't have " + std::to_string(count) +
+               " values; export it again");
+    return std::size_t(count);
+}
+
+void PlyValues::list(const PlyProperty& property, std::vector<double>& values)
+{
+    values.resize(count_of(property));
+    for (double& value : values)
+        value = scalar(property.type);
+}
+
+void PlyValues::skip(const PlyProperty& property)
+{
+    std::size_t count = property.count_type ? count_of(property) : 1;
+    for (; count > 0; --count)
+        scalar(property.type);
+}
+
+} // namespace toile::exports
