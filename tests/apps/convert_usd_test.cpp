@@ -142,6 +142,7 @@ TEST_F(ConvertUsdTest, KilledAnywhereEachFileIsWhole)
                                          "skirt_clips/skirt.0001.usda", "skirt_clips/skirt.manifest.usda"};
     const auto contents = [&] {
         std::vector<std::string> all;
+        all.reserve(files.size());
         for (const std::string& name : files)
             all.push_back(bytes_of(file(name)));
         return all;

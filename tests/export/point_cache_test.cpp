@@ -92,7 +92,8 @@ TEST_F(PointCacheTest, NamesTheLineOfABrokenObj)
 TEST_F(PointCacheTest, NamesAMissingFileAndAnUnknownExtension)
 {
     EXPECT_THAT(refusal([&] { read_cache(file("none.pc2")); }), HasSubstr("none.pc2: can't be opened"));
-    EXPECT_THAT(refusal([&] { read_cache(file("a.mc")); }), HasSubstr("use .pc2, .mdd, .abc, .usda, .usdc or .obj"));
+    EXPECT_THAT(refusal([&] { read_cache(file("a.mc")); }),
+                HasSubstr("use .pc2, .mdd, .abc, .usda, .usdc or .obj"));
 }
 
 } // namespace
