@@ -220,7 +220,10 @@ void print_cache_with_faces(const std::filesystem::path& file)
 /// Each mesh of an archive, or the one named behind #.
 void print_archive(const std::filesystem::path& file)
 {
-    for (const std::filesystem::path& named : exports::meshes_of_cache(file)) {
+    const std::vector<std::filesystem::path> meshes = exports::meshes_of_cache(file);
+    if (meshes.empty())
+        print("meshes", 0);
+    for (const std::filesystem::path& named : meshes) {
         print("mesh", exports::mesh_path_of(named));
         try {
             print_cache_with_faces(named);

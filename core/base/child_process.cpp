@@ -212,6 +212,7 @@ std::string in_child_process(const std::function<std::string()>& work, const Chi
 ProgramEnd run_program(const std::vector<std::string>& command, const ChildBounds& bounds)
 {
     std::vector<char*> arguments;
+    arguments.reserve(command.size() + 1);
     for (const std::string& argument : command)
         arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);

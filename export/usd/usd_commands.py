@@ -28,6 +28,7 @@ MAX_SUBFRAMES = 64
 NEAR = 1e-4  # frames; times that differ by less are the same
 FRAMES_AT_ONCE = 50  # between two looks at how many layers are open
 LAYERS_AT_ONCE = 4  # of value clips, which a stage keeps until it is closed
+NAMED = 20  # most meshes that a message lists
 FACE_VARYING, PER_POINT = 1, 2  # scopes of texture coordinates
 
 
@@ -50,7 +51,7 @@ def mesh_prims(stage):
 
 def find_mesh(stage, path):
     meshes = mesh_prims(stage)
-    known = ", ".join(str(prim.GetPath()) for prim in meshes)
+    known = ", ".join([str(prim.GetPath()) for prim in meshes[:NAMED]] + ["..."] * (len(meshes) > NAMED))
     if not meshes:
         refuse("has no mesh")
     if not path and len(meshes) > 1:

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "core/base/error.h"
 #include "export/byte_order.h"
 

@@ -1,6 +1,7 @@
 #include "export/usd/usd_mesh.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/mesh/triangle_mesh.h"
 #include "export/archive/names.h"

@@ -1,6 +1,5 @@
 #include "export/usd/usd_track.h"
 
-#include <bit>
 #include <cstring>
 #include <utility>
 

@@ -68,8 +68,7 @@ TEST_F(UsdTextTest, SaysWhatTheNumbersAre)
           "endTimeCode = 1003", "timeCodesPerSecond = 25", "framesPerSecond = 25", "def Xform \"skirt\"",
           "def Mesh \"skirtShape\"", "int[] faceVertexCounts = [4, 4, 3]",
           "int[] faceVertexIndices = [0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 6]",
-          "texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.5)] (interpolation = "
-          "\"faceVarying\")",
+          "primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.5)] (interpolation = \"faceVarying\")",
           "int[] primvars:st:indices = [0, 1, 2, 3, 3, 2, 1, 0, 0, 4, 2]", "orientation = \"rightHanded\"",
           "subdivisionScheme = \"none\"", "def GeomSubset \"front\"", "int[] indices = [0, 1]",
           "displayName = \"back \\\"panel\\\"\"", "rel material:binding = </skirt/back__panel_>"})
@@ -179,8 +178,8 @@ TEST_F(UsdTextTest, ALongCacheIsARootAndClips)
                             "skirt_clips/skirt.0002.usda", "skirt_clips/skirt.manifest.usda"));
     for (const char* line :
          {"double2[] active = [(1001, 0), (1051, 1), (1101, 2)]",
-          "asset[] assetPaths = [@./skirt_clips/skirt.0000.usda@, @./skirt_clips/skirt.0001.usda@, "
-          "@./skirt_clips/skirt.0002.usda@]",
+          "asset[] assetPaths = [@./skirt_clips/skirt.0000.usda@, @./skirt_clips/skirt.0001.usda@, ",
+          ", @./skirt_clips/skirt.0002.usda@]",
           "asset manifestAssetPath = @./skirt_clips/skirt.manifest.usda@", "string primPath = \"/skirt\"",
           "double2[] times = [(1001, 1001), (1120, 1120)]", "endTimeCode = 1120",
           "int[] faceVertexCounts = [4, 4, 3]", "point3f[] points\n"})
