@@ -146,6 +146,8 @@ public:
         : surface_(entry, state)
     {
         const std::vector<std::filesystem::path> in_file = exports::meshes_of_cache(file);
+        if (in_file.empty())
+            throw InvalidInput(file.string() + ": has no mesh; give a cache of \"" + state.name + "\"");
         for (const exports::CacheMesh& of_surface : surface_.meshes())
             caches_.push_back(exports::read_cache(path_of(of_surface, in_file)));
         const exports::PointCache& first = caches_.front();
@@ -179,7 +181,7 @@ private:
         for (const std::filesystem::path& path : in_file)
             if (in_file.size() == 1 || exports::mesh_path_of(path).ends_with(ending))
                 return path;
-        return exports::archive_of(in_file.at(0)).string() + "#" + ending; // which will be refused
+        return exports::archive_of(in_file.front()).string() + "#" + ending; // which will be refused
     }
 
     /// Otherwise the cache is of another cloth, which who opened it will say.
