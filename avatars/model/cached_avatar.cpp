@@ -53,7 +53,7 @@ void blend(double u, const std::vector<Vec3>& y, std::vector<Vec3>& x)
 } // namespace
 
 CachedAvatar::CachedAvatar(std::string source, GeometryCache cache)
-    : Avatar(std::move(source), cache.triangles, cache.vertex_count, clip_of(cache)),
+    : Avatar(std::move(source), std::move(cache.triangles), cache.vertex_count, clip_of(cache)),
       cache_(std::move(cache)), origins_(size_t(cache_.vertex_count), Vec3::Zero()),
       first_(origins_.size() + 1)
 {
