@@ -53,13 +53,15 @@ void blend(double u, const std::vector<Vec3>& y, std::vector<Vec3>& x)
 } // namespace
 
 CachedAvatar::CachedAvatar(std::string source, GeometryCache cache)
-    : Avatar(std::move(source), cache.triangles, cache.vertex_count, clip_of(cache)),
+    : Avatar(std::move(source), std::move(cache.triangles), cache.vertex_count, clip_of(cache)),
       cache_(std::move(cache)), origins_(size_t(cache_.vertex_count), Vec3::Zero()),
       first_(origins_.size() + 1)
 {
     std::iota(first_.begin(), first_.end(), 0);
     for (int v = 0; v < vertex_count(); ++v)
         influences_.push_back({v, 1.0});
+    if (!cache_.turns_bones)
+        return;
     list_neighbours();
     choose_anchors();
     rest_frames_ = frames(*sample(0));
@@ -151,7 +153,7 @@ std::vector<Mat3> CachedAvatar::frames(const Positions& x) const
 {
     const std::vector<Vec3> normals = vertex_normals(x, triangles());
     std::vector<Mat3> frames(x.size());
-    parallel_for(kCpu, "avatars/cache_frames", vertex_count(), [&](int v) {
+    parallel_for(kCpu, "avatars/cache_turns", vertex_count(), [&](int v) {
         const int anchor = anchor_[size_t(v)];
         const Vec3 edge = anchor < 0 ? Vec3::Zero() : Vec3(x[size_t(anchor)] - x[size_t(v)]);
         frames[size_t(v)] = frame_of(normals[size_t(v)], edge);
@@ -159,29 +161,33 @@ std::vector<Mat3> CachedAvatar::frames(const Positions& x) const
     return frames;
 }
 
-/// Averages over the vertices around: skin in folds turns by more than the limb that it is on.
-void CachedAvatar::smooth(std::vector<Mat3>& turns) const
+/// Rotations from sample 0, averaged over the vertices around: skin in folds turns by more than the limb that
+/// it is on. [vertices]
+std::vector<Mat3> CachedAvatar::turns(const Positions& x) const
 {
+    std::vector<Mat3> turns = frames(x);
+    for (size_t v = 0; v < turns.size(); ++v)
+        turns[v] *= rest_frames_[v].transpose();
     for (int ring = 0; ring < kRings; ++ring) {
         const std::vector<Mat3> before = turns;
-        parallel_for(kCpu, "avatars/cache_frames", vertex_count(), [&](int v) {
+        parallel_for(kCpu, "avatars/cache_turns", vertex_count(), [&](int v) {
             const int first = first_neighbour_[size_t(v)], end = first_neighbour_[size_t(v) + 1];
             for (int k = first; k < end; ++k)
                 turns[size_t(v)] += before[size_t(neighbours_[size_t(k)])];
             turns[size_t(v)] /= 1 + end - first;
         });
     }
+    return turns;
 }
 
 void CachedAvatar::pose_bones(const PoseAt& at, const Affine& world_from_avatar, View<Affine> bones)
 {
     const Positions x = this->at(at);
-    std::vector<Mat3> turns = frames(x);
-    for (size_t v = 0; v < turns.size(); ++v)
-        turns[v] *= rest_frames_[v].transpose();
-    smooth(turns);
+    const std::vector<Mat3> turns = cache_.turns_bones ? this->turns(x) : std::vector<Mat3>{};
     parallel_for(kCpu, "avatars/cache", vertex_count(), [&](int v) {
-        bones[v].leftCols<3>() = world_from_avatar.leftCols<3>() * turns[size_t(v)];
+        bones[v].leftCols<3>() = world_from_avatar.leftCols<3>();
+        if (cache_.turns_bones)
+            bones[v].leftCols<3>() *= turns[size_t(v)];
         bones[v].col(3) = apply(world_from_avatar, x[size_t(v)]);
     });
 }

@@ -18,6 +18,8 @@ struct GeometryCache {
     /// Reads the positions of a sample, [vertices] in the units and axes of the file.
     std::function<std::vector<Vec3>(int sample)> positions;
     Affine metres_from_file = identity_affine();
+
+    bool turns_bones = true; ///< bones turn with the surface, as insets of skin need; else they stay parallel
 };
 
 /// A body that was animated elsewhere: its vertices are where a cache has them.
@@ -56,7 +58,7 @@ private:
     void list_neighbours();
     void choose_anchors();
     std::vector<Mat3> frames(const Positions& x) const;
-    void smooth(std::vector<Mat3>& turns) const;
+    std::vector<Mat3> turns(const Positions& x) const;
 
     GeometryCache cache_;
     std::vector<Vec3> origins_; ///< [vertices] zeros

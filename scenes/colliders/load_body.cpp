@@ -59,6 +59,7 @@ std::unique_ptr<avatars::Avatar> load_cached_body(avatars::AvatarSettings settin
     samples.rate = rate_of(cache, more, source);
     samples.positions = [cache](int sample) { return cache.frame(sample); };
     samples.metres_from_file = avatars::metres_from_file(settings);
+    samples.turns_bones = more.turns_bones;
     auto body = std::make_unique<avatars::CachedAvatar>(source, std::move(samples));
     body->face_outwards();
     return body;
@@ -83,7 +84,8 @@ std::unique_ptr<avatars::Avatar> load_body(const scene::Avatar& settings)
         body.unit = scene_format::word_of(*settings.unit);
     if (settings.up)
         body.up = scene_format::word_of(*settings.up);
-    return load_body(std::move(body), {settings.mesh, settings.fps});
+    return load_body(std::move(body),
+                     {settings.mesh, settings.fps, settings.self_contact == scene::SelfContact::Separate});
 }
 
 scene::LengthUnit unit_of_file(const scene::Avatar& settings)

@@ -13,6 +13,7 @@ namespace toile::scenes {
 struct CacheSettings {
     std::optional<std::filesystem::path> mesh; ///< with its faces
     std::optional<double> fps;                 ///< [1/s]
+    bool turns_bones = false;                  ///< see GeometryCache
 };
 
 /// Loads a body: the mannequin, a file of load_avatar(), or a cache (CachedAvatar).

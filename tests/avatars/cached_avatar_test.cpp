@@ -114,6 +114,18 @@ TEST(CachedAvatar, TurnsItsBonesWithTheSurface)
     }
 }
 
+TEST(CachedAvatar, KeepsItsBonesParallelWhereNothingAsksForMore)
+{
+    GeometryCache cache = cache_of(3, 8.0, 0.3);
+    cache.turns_bones = false;
+    CachedAvatar avatar("body.abc", std::move(cache));
+    std::vector<Affine> bones(4);
+    avatar.pose_bones(at_time(0.25), identity_affine(), bones);
+    for (const Affine& bone : bones)
+        EXPECT_EQ(bone.leftCols<3>(), Mat3::Identity());
+    EXPECT_EQ(posed(avatar, at_time(0.25)), moved(2, 0.3));
+}
+
 TEST(CachedAvatar, MovesAtMostAsFarAsItsBoundAndNotMuchLess)
 {
     Motion motion;

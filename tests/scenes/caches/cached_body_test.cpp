@@ -330,6 +330,30 @@ TEST_F(CachedBody, IsRefusedWithTheRemedy)
         EXPECT_THAT(complaint(avatar), HasSubstr(expected)) << avatar;
 }
 
+TEST_F(CachedBody, IsRefusedIfItsMeshChanges)
+{
+    EXPECT_THAT(complaint(R"("file": ")" + baked("growing.abc").string() + R"(")"),
+                HasSubstr("changes its faces; a cache needs a mesh of constant topology"));
+    ObjMesh more = tube();
+    write_obj(file("tube_0000.obj"), more);
+    more.positions.push_back(Vec3::Zero());
+    write_obj(file("tube_0001.obj"), more);
+    const std::string said = refusal([&] {
+        World world(scene(R"("file": "tube_####.obj")"));
+        static_cast<void>(world.advance_frame());
+    });
+    EXPECT_THAT(said, HasSubstr("all frames of a sequence need the same mesh"));
+}
+
+TEST_F(CachedBody, IsRefusedWithoutRegularTimes)
+{
+    write_tube(file("tube.mdd"), 3);
+    write_obj(file("tube.obj"), tube());
+    temporary_.write("tube.mdd", bytes_of(file("tube.mdd")).replace(8, 12, std::string(12, '\0')));
+    EXPECT_THAT(complaint(R"("file": "tube.mdd", "mesh": "tube.obj")"),
+                HasSubstr("tube.mdd: its samples are not at regular times"));
+}
+
 TEST_F(CachedBody, NamesTheSampleThatIsNoNumber)
 {
     write_tube(file("tube.pc2"), 3);
