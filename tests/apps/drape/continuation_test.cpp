@@ -1,5 +1,7 @@
 #include "apps/toile/drape/continuation.h"
 
+#include <cmath>
+
 #include "apps/toile/drape/drape_files.h"
 #include "scenes/format/read_scene.h"
 #include "tests/support/refusal.h"
@@ -50,6 +52,27 @@ protected:
         return scenes::read_scene(files.scene());
     }
 };
+
+/// A body from a cache stands in its first sample, and plays from there when asked to.
+TEST_F(Continued, HoldsOrPlaysACache)
+{
+    scene::Avatar body;
+    body.name = "body";
+    body.shape =
+        std::filesystem::path(TOILE_SOURCE_DIR) / "tests/scenes/caches/samples/slide.abc#/slide/slide";
+    body.speed = 0.0;
+    const scenes::Scene still = written(continuation_of(body, {}));
+    EXPECT_EQ(still.avatars.at(0).speed, 0.0);
+    EXPECT_EQ(std::get<std::filesystem::path>(still.avatars[0].shape).filename(), "slide");
+
+    ClipOptions play;
+    play.clip = "cache";
+    const scenes::Scene moving = written(continuation_of(body, play));
+    EXPECT_EQ(moving.avatars.at(0).speed, 1.0);
+    EXPECT_EQ(moving.avatars[0].clip, "cache");
+    EXPECT_TRUE(moving.avatars[0].preroll.from_bind);
+    EXPECT_EQ(moving.frames, 1 + int(std::ceil(30.0 * (2.0 * 0.5 + 0.25)))) << "0.5 s, with a ramp of 0.5 s";
+}
 
 TEST_F(Continued, StandsStillWithoutAClip)
 {
