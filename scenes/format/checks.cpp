@@ -25,6 +25,9 @@ using namespace scene;
 /// Maximum number of vertices of one generated cloth; more is probably a typing error.
 constexpr double kMaxVertices = 5e6;
 
+/// For messages about bodies.
+constexpr const char* kCaches = "a cache (.abc, .usda, .usdc, .pc2, .mdd, or a sequence of .obj or .ply)";
+
 void check_keyframes(const Document& document, const std::string& key_path,
                      const std::vector<Keyframe>& frames)
 {
@@ -50,7 +53,7 @@ void check_extension_or_cache(const Document& document, const std::string& key_p
 {
     if (is_cache(file))
         return;
-    known.emplace_back("a cache (.abc, .pc2, .mdd or an OBJ sequence)");
+    known.emplace_back(kCaches);
     if (!contains(known, lower_case_extension(file)))
         document.refuse(key_path, as_written(file.string()) + " is of an unknown format; use " +
                                       enumerate(known, "or"));
@@ -61,7 +64,7 @@ void check_shape_file(const Document& document, const std::string& key_path,
                       const std::filesystem::path& file)
 {
     if (!is_cache(file))
-        check_extension(document, key_path, file, {".obj", ".abc"});
+        check_extension(document, key_path, file, {".obj", ".ply", ".abc", ".usda", ".usdc"});
     else if (!exports::features_of(exports::cache_format(file)).faces)
         document.refuse(key_path,
                         as_written(file.string()) + " has no faces; name the OBJ on which it plays");
@@ -99,8 +102,7 @@ void check_cache(const Document& document, const std::string& key_path, const Av
         for (const auto& [key, is_used] :
              {std::pair("mesh", avatar.mesh.has_value()), std::pair("fps", avatar.fps.has_value())})
             if (is_used)
-                document.refuse(below(key_path, key), "only a cache (.abc, .pc2, .mdd or an OBJ sequence) " +
-                                                          std::string("has it; remove it"));
+                document.refuse(below(key_path, key), std::string("only ") + kCaches + " has it; remove it");
         return;
     }
     const std::filesystem::path& file = *file_of(avatar);

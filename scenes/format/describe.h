@@ -105,8 +105,8 @@ void describe(V& v, Avatar& a)
     v.one_of(a.shape,
              Alternative<std::filesystem::path>{
                  "file",
-                 "Body to load: .glb, .gltf, .fbx or .obj; or a cache of its positions: .abc, .pc2, .mdd or "
-                 "an OBJ sequence, body_####.obj. One of several meshes is named behind #: "
+                 "Body to load: .glb, .gltf, .fbx or .obj; or a cache of its positions: .abc, .usda, .usdc, "
+                 ".pc2, .mdd, or a sequence, body_####.obj or .ply. One of several meshes is named behind #: "
                  "shot.abc#/body/bodyShape."},
              Alternative<Mannequin>{"mannequin",
                                     "The built-in mannequin; its clips are walk_in_place, walk and turn."},
@@ -115,7 +115,7 @@ void describe(V& v, Avatar& a)
              Alternative<Box>{"box", "Box with edges along the axes."});
     v.field("mesh", a.mesh, "Mesh with the faces of a cache that stores none: the OBJ on which it plays.");
     v.field("fps", a.fps, between(1.0, 10000.0, "1/s"),
-            "Samples per second of a cache that has no times (.pc2, OBJ sequence); absent: the scene's.");
+            "Samples per second of a cache that has no times (.pc2, sequences); absent: the scene's.");
     v.field("unit", a.unit,
             "Length unit of the file; absent: what it or its format says (.fbx cm), else metres.");
     v.field("up", a.up, "Upward axis of the file; absent: what it says, else y.");

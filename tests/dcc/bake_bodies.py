@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Animates two bodies in Blender and writes each as glTF and as Alembic.
+"""Animates two bodies in Blender and writes each as glTF, Alembic and USD.
 
     python3 tests/dcc/bake_bodies.py tests/scenes/caches/samples
 
@@ -104,6 +104,8 @@ def export(folder, name):
                               export_texcoords=False, export_materials="NONE", export_optimize_animation_size=False)
     bpy.ops.wm.alembic_export(filepath=file + ".abc", start=0, end=FRAMES - 1, uvs=False, normals=False,
                               flatten=False, packuv=False)
+    bpy.ops.wm.usd_export(filepath=file + ".usdc", export_animation=True, export_uvmaps=False, export_normals=False,
+                          export_materials=False, export_armatures=False)
 
 
 def main():

@@ -11,7 +11,7 @@ namespace toile::test {
 
 using namespace scenes;
 
-/// Samples that a DCC program wrote (tests/dcc/bake_bodies.py): slide and bend, each as .abc and .glb.
+/// Samples that a DCC program wrote (tests/dcc/bake_bodies.py): slide and bend, each as .abc, .glb and .usdc.
 inline std::filesystem::path baked(const std::string& name)
 {
     return std::filesystem::path(TOILE_SOURCE_DIR) / "tests/scenes/caches/samples" / name;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/check/find_crossings.h"
+#include "export/usd/usd_python.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/drape/dressed_body.h"
 #include "scenes/format/read_scene.h"
@@ -224,6 +225,22 @@ TEST(BakedBody, MovesClothToTheBitsOfTheGltfWhereTheNumbersAgree)
     ASSERT_EQ(from_archive.size(), 16u);
     EXPECT_EQ(from_archive, from_gltf);
     EXPECT_GT(largest_difference(from_gltf.back(), from_gltf.front()), 0.2) << "moved along";
+}
+
+/// Blender's USD is Z up, and its archive Y up; both are in metres.
+TEST(BakedBody, MovesClothToTheSameBitsFromUsd)
+{
+    const std::string missing = refusal([] { exports::require_usd_python("USD"); });
+    if (!missing.empty())
+        GTEST_SKIP() << missing;
+    for (const std::string name : {"slide", "bend"}) {
+        SceneBody archive(cached_avatar(baked(name + ".abc")));
+        SceneBody stage(cached_avatar(baked(name + ".usdc")));
+        for (int step = 0; step <= 64; ++step)
+            ASSERT_EQ(positions_at(stage, step / 128.0), positions_at(archive, step / 128.0)) << name << step;
+    }
+    EXPECT_EQ(frames_of(carried_by(baked("slide.usdc").string(), "cache")),
+              frames_of(carried_by(baked("slide.abc").string(), "cache")));
 }
 
 TEST(BakedBody, PushesClothOutThatStartsInside)

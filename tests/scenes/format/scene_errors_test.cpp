@@ -192,7 +192,7 @@ TEST(SceneErrors, RefuseAvatarsThatContradictThemselves)
          "of time"},
         {avatar_scene(R"("name": "a", "file": "body.stl")"),
          R"(bad.json: avatars[0].file: "body.stl" is of an unknown format; use .glb, .gltf, .fbx, .obj or a cache )"
-         R"((.abc, .pc2, .mdd or an OBJ sequence))"},
+         R"((.abc, .usda, .usdc, .pc2, .mdd, or a sequence of .obj or .ply))"},
         {avatar_scene(R"("name": "a", "box": {}, "motion": {"file": "walk.bvh"})"),
          "bad.json: avatars[0].motion: a shape has no clips; move it with keyframes"},
         {avatar_scene(R"("name": "a", "file": "body.obj", "motion": {"file": "walk.bvh"})"),
