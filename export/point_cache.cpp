@@ -1,5 +1,6 @@
 #include "export/point_cache.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -10,6 +11,7 @@
 #include "export/byte_order.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
+#include "export/frame_times.h"
 #include "export/pc2/pc2_writer.h"
 #include "export/ply/ply_file.h"
 #include "export/sequence/numbered_files.h"
@@ -21,8 +23,8 @@ namespace {
 
 using std::filesystem::path;
 
-/// Samples per frame, at most: more is a header of another meaning.
-constexpr double kMaxSubframes = 1000.0;
+/// Relative error of a number in single precision.
+constexpr double kSingleRounding = 0x1p-24;
 
 [[noreturn]] void refuse(const path& file, const std::string& why)
 {
@@ -101,7 +103,7 @@ public:
         start_frame = double(get<kLittle, float>(&header[20]));
         frame_count = get<kLittle, std::int32_t>(&header[kPc2SampleCountAt]);
         const double samples_per_frame = std::round(1.0 / double(get<kLittle, float>(&header[24])));
-        if (samples_per_frame >= 1.0 && samples_per_frame <= kMaxSubframes)
+        if (samples_per_frame >= 1.0 && samples_per_frame <= kMaxSubframes) // else of another meaning
             subframes = int(samples_per_frame);
         if (version != 1)
             refuse(file, "PC2 version " + std::to_string(version) + " (byte 12); only version 1 is known");
@@ -130,11 +132,15 @@ public:
         const std::string times = read_head(file_, first_frame_at_, "MDD");
         require_size("MDD", false);
 
-        const double first = double(get<kBig, float>(&times[8]));
-        const double last = double(get<kBig, float>(&times[times.size() - 4]));
-        if (last > first) {
-            fps = (frame_count - 1) / (last - first);
-            start_frame = first * *fps;
+        if (frame_count < 2)
+            return;
+        std::vector<double> seconds;
+        for (size_t at = 8; at < times.size(); at += 4)
+            seconds.push_back(double(get<kBig, float>(&times[at])));
+        const double largest = std::max(std::fabs(seconds.front()), std::fabs(seconds.back()));
+        if (const auto found = frame_times(seconds, largest * kSingleRounding, std::nullopt)) {
+            fps = found->fps;
+            start_frame = found->start_frame;
         }
     }
 };

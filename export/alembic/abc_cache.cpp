@@ -13,6 +13,7 @@
 #include "export/alembic/abc_transform.h"
 #include "export/byte_order.h"
 #include "export/cache_path.h"
+#include "export/frame_times.h"
 
 namespace toile::exports {
 
@@ -44,10 +45,6 @@ int mesh_in(const AbcReader& reader, const std::string& path)
                                            : "has no mesh " + path + "; its meshes are " + known;
     throw InvalidInput(reader.path().string() + ": " + why);
 }
-
-/// Start frames are numbers of frames.
-constexpr double kMaxStartFrame = 1e9;
-constexpr double kMaxSubframes = 1000.0;
 
 class AbcSource final : public PointCache::Source {
 public:
@@ -98,29 +95,20 @@ private:
         return *property;
     }
 
-    /// Samples at regular times have a rate.
+    /// Samples at regular times have a rate. Programs that write several per frame leave that of frames in
+    /// the archive.
     void read_times()
     {
         if (frame_count < 2)
             return;
-        const double first = time_of(times_, 0);
-        const double step = (time_of(times_, frame_count - 1) - first) / (frame_count - 1);
-        for (int k = 1; k < frame_count; ++k)
-            if (!(std::fabs(time_of(times_, k) - first - k * step) < 1e-6 * step))
-                return;
-        if (!(std::fabs(first / step) < kMaxStartFrame) || !std::isfinite(1.0 / step))
-            return;
-        subframes = samples_per_frame(1.0 / step);
-        fps = 1.0 / step / subframes;
-        start_frame = first * *fps;
-    }
-
-    /// Programs that write several samples per frame leave the rate of frames in the archive.
-    int samples_per_frame(double samples_per_second) const
-    {
-        const double ratio = samples_per_second / reader_.frames_per_second().value_or(samples_per_second);
-        const double whole = std::round(ratio);
-        return whole >= 1.0 && whole <= kMaxSubframes && std::fabs(ratio - whole) < 1e-6 ? int(whole) : 1;
+        std::vector<double> times;
+        for (int k = 0; k < frame_count; ++k)
+            times.push_back(time_of(times_, k));
+        if (const auto found = frame_times(times, 0.0, reader_.frames_per_second())) {
+            fps = found->fps;
+            subframes = found->subframes;
+            start_frame = found->start_frame;
+        }
     }
 
     std::vector<std::int32_t> constant_integers(const std::string& name) const

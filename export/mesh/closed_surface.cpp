@@ -44,6 +44,8 @@ void ClosedSurface::add_lower_side()
     const size_t upper = normals_.indices().size();
     const std::vector<ObjGroup> groups = faces_.groups;
     size_t group = 0;
+    if (!groups.empty() && groups.front().first_polygon > 0)
+        begin_group(faces_, "", int(faces_.polygons.size()));
     for (size_t p = 0; p < upper; ++p) {
         for (; group < groups.size() && groups[group].first_polygon == int(p); ++group)
             begin_group(faces_, groups[group].name, int(faces_.polygons.size()));

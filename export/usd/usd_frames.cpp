@@ -10,14 +10,13 @@
 
 #include "core/base/error.h"
 #include "export/byte_order.h"
+#include "export/frame_times.h"
 
 namespace toile::exports {
 
 namespace {
 
 constexpr std::int64_t kTransform = 16 * sizeof(double), kPoint = 3 * sizeof(float);
-constexpr double kMaxStartFrame = 1e9;
-constexpr std::uint32_t kMaxSubframes = 1000;
 
 /// Scopes of texture coordinates.
 enum Scope : std::uint32_t { kNone, kCorners, kPoints };
@@ -113,7 +112,7 @@ private:
         if (points < 1 || frames < 1 || points > kMax / kPoint || frames > kMax)
             refuse("has " + std::to_string(points) + " points and " + std::to_string(frames) + " frames");
         if (!(rate > 0.0 && std::isfinite(rate)) || !(std::fabs(start) < kMaxStartFrame) || samples < 1 ||
-            samples > kMaxSubframes)
+            samples > std::uint32_t(kMaxSubframes))
             refuse("has " + std::to_string(rate) + " frames a second from frame " + std::to_string(start) +
                    " on, and " + std::to_string(samples) + " samples of each");
         if (!(metres > 0.0 && std::isfinite(metres)))

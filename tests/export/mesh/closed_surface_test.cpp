@@ -51,6 +51,15 @@ TEST(ClosedSurface, HasTheVolumeOfItsThickness)
     EXPECT_NEAR(volume, 1.5 * 0.002, 1e-12) << "negative: the faces look inside";
 }
 
+TEST(ClosedSurface, KeepsGroupsOnBothSides)
+{
+    ObjMesh mesh = flat_mesh();
+    mesh.groups = {{1, "right"}};
+    const ObjMesh closed = ClosedSurface(mesh, std::vector<double>(5, 0.002)).faces();
+    // The sides are a polygon without a group and one of "right"; the rim of five quads is between them.
+    EXPECT_EQ(closed.groups, (std::vector<ObjGroup>{{1, "right"}, {2, "rim"}, {7, ""}, {8, "right"}}));
+}
+
 TEST(ClosedSurface, GivesTheClothBack)
 {
     const ObjMesh mesh = flat_mesh();
