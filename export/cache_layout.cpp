@@ -2,6 +2,12 @@
 
 namespace toile::exports {
 
+ObjMesh faces_only(ObjMesh mesh)
+{
+    mesh.positions.clear();
+    return mesh;
+}
+
 int CacheLayout::vertex_count() const
 {
     int count = 0;
@@ -14,8 +20,7 @@ CacheLayout cache_layout(const ObjMesh& mesh, int frame_count)
 {
     CacheLayout layout;
     layout.frame_count = frame_count;
-    layout.meshes.push_back({"", "", int(mesh.positions.size()), mesh});
-    layout.meshes.back().faces.positions.clear();
+    layout.meshes.push_back({"", "", int(mesh.positions.size()), faces_only(mesh)});
     return layout;
 }
 

@@ -12,19 +12,22 @@ namespace toile::exports {
 /// A mesh of a cache.
 struct CacheMesh {
     std::string name;   ///< as the user gave it; empty: that of the file
-    std::string parent; ///< group that it lies in; empty: none. Only Alembic and USD have groups
+    std::string parent; ///< group that it lies in, in Alembic and USD; empty: none
     int vertex_count = 0;
     ObjMesh faces; ///< polygons, texture coordinates and groups; positions are ignored
 };
 
+/// A mesh without its positions.
+ObjMesh faces_only(ObjMesh mesh);
+
 /// Properties of a cache that are fixed before its first frame.
 struct CacheLayout {
-    std::vector<CacheMesh> meshes; ///< one for all formats but Alembic and glTF
+    std::vector<CacheMesh> meshes; ///< one, where CacheFeatures::several is false
     int frame_count = 0;           ///< samples that the run will deliver
-    double fps = 24.0; ///< [frames/s] stored by formats that have times; PC2 and OBJ have no field for it
-    int subframes = 1; ///< samples per frame
+    double fps = 24.0;             ///< [frames/s] stored where CacheFeatures::times
+    int subframes = 1;             ///< samples per frame
     double start_frame = 0.0; ///< scene frame that shows the first sample; PC2 stores it, formats with times
-                              ///< shift them by it, OBJ sequences count from it
+                              ///< shift them by it, numbered files count from it
     int resume_at = 0;        ///< samples to keep from an earlier run; writing continues with this one
     Axes axes;                ///< of the positions that are delivered; nothing is converted
     bool velocities = true;   ///< stored by formats that have them

@@ -127,6 +127,9 @@ std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& la
     const CacheFormat format = cache_format(file);
     if (!features_of(format).several)
         require_one_mesh(file, layout);
+    if (features_of(format).numbered && layout.subframes > 1)
+        throw InvalidInput(file.string() + ": has a file for each frame and none between, and there are " +
+                           std::to_string(layout.subframes) + " samples a frame; write an .abc or .usda");
     switch (format) {
     case CacheFormat::Pc2:
         return std::make_unique<Pc2Writer>(file, partial_beside(file), layout);

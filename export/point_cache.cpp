@@ -248,7 +248,7 @@ PointCache read_cache(const path& file)
 std::vector<path> meshes_of_cache(const path& file)
 {
     const CacheFormat format = cache_format(file);
-    if (!features_of(format).several || !mesh_path_of(file).empty())
+    if ((format != CacheFormat::Abc && format != CacheFormat::Usd) || !mesh_path_of(file).empty())
         return {file};
     std::vector<path> meshes;
     for (const std::string& mesh : format == CacheFormat::Abc ? abc_mesh_paths(file) : usd_mesh_paths(file))

@@ -73,7 +73,7 @@ Command add_measure(CLI::App& parser)
     CLI::App& add = *command.options;
     add.add_option(
         "body", options->body.file,
-        "Body, .obj, .glb, .gltf, .fbx or the first sample of an .abc; without it the built-in mannequin");
+        "Body, .obj, .glb, .gltf, .fbx or the first sample of a cache; without it the built-in mannequin");
     add.add_option("--landmarks", options->landmarks, "JSON file of landmarks that replace those found");
     add.add_option("--unit", options->body.unit, "Unit of the file: m, cm, mm or in");
     add.add_option("--up", options->body.up, "Upward axis of the file: y or z");

@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "export/cache_layout.h"
+
 namespace toile::exports {
 
 namespace {
@@ -16,20 +18,14 @@ ObjMesh polygons_of(const ObjMesh& mesh)
     return faces;
 }
 
-ObjMesh without_positions(ObjMesh mesh)
-{
-    mesh.positions.clear();
-    mesh.colours.clear();
-    mesh.lines.clear();
-    return mesh;
-}
-
 } // namespace
 
 ClosedSurface::ClosedSurface(const ObjMesh& faces, std::vector<double> thickness)
-    : faces_(without_positions(faces)), thickness_(std::move(thickness)), normals_(polygons_of(faces)),
+    : faces_(faces_only(faces)), thickness_(std::move(thickness)), normals_(polygons_of(faces)),
       normal_of_(thickness_.size(), -1)
 {
+    faces_.colours.clear(); // of vertices that become two
+    faces_.lines.clear();
     for (size_t p = 0; p < faces_.polygons.size(); ++p)
         for (size_t k = 0; k < faces_.polygons[p].size(); ++k)
             normal_of_[size_t(faces_.polygons[p][k])] = normals_.indices()[p][k];

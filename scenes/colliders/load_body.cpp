@@ -22,7 +22,7 @@ double rate_of(const exports::PointCache& cache, const CacheSettings& settings, 
         throw InvalidInput(source + ": its samples are not at regular times; export it with a fixed step");
     if (cache.frame_count() > 1 && !settings.fps)
         throw InvalidInput(source + ": has no times; give the avatar's fps");
-    return settings.fps.value_or(1.0);
+    return settings.fps.value_or(1.0) * cache.subframes();
 }
 
 /// Faces of a cache: its own, or those of the mesh on which it plays.

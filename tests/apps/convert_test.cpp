@@ -62,6 +62,21 @@ TEST_F(ConvertTest, ThroughAllFormatsAndBackGivesTheSameBytes)
     EXPECT_NEAR(*read_cache(file("e.abc")).fps(), 25.0, 1e-9);
 }
 
+TEST_F(ConvertTest, KeepsRateAndFirstFrameAsTheyWereSaid)
+{
+    write("a.abc");
+    write("mesh_##.obj");
+    for (const std::string fps : {"24", "24000/1001"})
+        for (const std::string to : {"b.mdd", "b.abc"}) {
+            EXPECT_EQ(convert({"a.abc", to, "--fps", fps, "--start-frame", "1001"}).exit_code, 0);
+            EXPECT_EQ(*read_cache(file(to)).fps(), fps == "24" ? 24.0 : 24000.0 / 1001.0) << to;
+            EXPECT_EQ(read_cache(file(to)).start_frame(), 1001.0) << to;
+            const std::string frames = to + fps.substr(0, 5) + "_####.obj";
+            EXPECT_EQ(convert({to, frames, "--mesh", "mesh_00.obj"}).exit_code, 0);
+            EXPECT_TRUE(std::filesystem::exists(file(to + fps.substr(0, 5) + "_1003.obj")));
+        }
+}
+
 TEST_F(ConvertTest, ChangesUnitAxesAndFirstFrame)
 {
     write("a.abc");

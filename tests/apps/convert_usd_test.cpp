@@ -80,7 +80,7 @@ TEST_F(ConvertUsdTest, ThroughUsdAndBackGivesTheSamePoints)
         EXPECT_EQ(bytes_of(file("g.pc2")), bytes_of(file("h.pc2")));
     }
     const Finished info = run_toile({"info", "d.usdc"}, folder_);
-    for (const char* line : {"mesh: /d/dShape", "frames: 120", "frames per second: 25", "start frame: 1001",
+    for (const char* line : {"/a/aShape", "frames: 120", "frames per second: 25", "start frame: 1001",
                              "axes: m, y up", "groups: 2"})
         EXPECT_THAT(info.output, HasSubstr(line));
 }

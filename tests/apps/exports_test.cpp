@@ -191,6 +191,41 @@ TEST_F(ExportsTest, OptionsReplaceTheListOfTheScene)
     EXPECT_FALSE(std::filesystem::exists(file("q")));
 }
 
+TEST_F(ExportsTest, CachesThatTheSceneDoesNotListAreCheckedInTheirUnit)
+{
+    simulate_well("o", R"([{"file": "disc.pc2", "cloth": "disc"}])",
+                  {"--export", "shot.abc", "--unit", "cm", "--start-frame", "1001"});
+    const std::vector<std::string> check{"check", "o/shot.abc", "--scene", "o.json", "--quiet"};
+    EXPECT_EQ(run_toile(check, folder_).exit_code, 1) << "of metres it is a hundred times too large";
+    std::vector<std::string> in_unit = check;
+    in_unit.insert(in_unit.end(), {"--from-unit", "cm"});
+    const Finished run = run_toile(in_unit, folder_);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+}
+
+TEST_F(ExportsTest, CachesOfOneNameAreToldByTheirFolders)
+{
+    simulate_well("n", R"([{"file": "a/c.pc2", "cloth": "sheet"},
+                           {"file": "b/c.pc2", "cloth": "disc", "unit": "cm"}])");
+    const Finished run = run_toile({"check", "n/b/c.pc2", "--scene", "n.json", "-o", "b.json"}, folder_);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_THAT(bytes_of(file("b.json")), HasSubstr("\"disc\""));
+    std::filesystem::copy_file(file("n/b/c.pc2"), file("c.pc2"));
+    const Finished unclear = run_toile({"check", "c.pc2", "--scene", "n.json"}, folder_);
+    EXPECT_EQ(unclear.exit_code, 2);
+    EXPECT_THAT(unclear.errors, HasSubstr("c.pc2: may be a/c.pc2 or b/c.pc2 of n.json"));
+}
+
+TEST_F(ExportsTest, MeshesToPlayOnAreSharedWhereTheyAreTheSame)
+{
+    simulate_well("s", R"([{"file": "disc.pc2", "cloth": "disc"},
+                           {"file": "disc.mdd", "cloth": "disc", "start_frame": 5}])");
+    const Finished two = simulate("t", R"([{"file": "disc.pc2", "cloth": "disc"},
+                                           {"file": "disc.mdd", "cloth": "disc", "unit": "cm"}])");
+    EXPECT_EQ(two.exit_code, 2);
+    EXPECT_THAT(two.errors, HasSubstr("t/disc.obj"));
+}
+
 TEST_F(ExportsTest, RefusesUsdThatCouldNotBeChecked)
 {
     const std::string usd_only = R"([{"file": "a.usda"}])";

@@ -26,12 +26,6 @@ std::vector<double> thickness_of(const scenes::ClothState& state)
     return thickness;
 }
 
-ObjMesh without_positions(ObjMesh mesh)
-{
-    mesh.positions.clear();
-    return mesh;
-}
-
 } // namespace
 
 ExportedSurface::ExportedSurface(const scene::Export& entry, const scenes::ClothState& state)
@@ -46,7 +40,7 @@ ExportedSurface::ExportedSurface(const scene::Export& entry, const scenes::Cloth
                      group.vertices);
         return;
     }
-    exports::CacheMesh mesh{state.name, "", int(whole.positions.size()), without_positions(whole)};
+    exports::CacheMesh mesh{state.name, "", int(whole.positions.size()), exports::faces_only(whole)};
     std::vector<int> all(whole.positions.size());
     std::iota(all.begin(), all.end(), 0);
     add_part(entry, std::move(mesh), std::move(all));
@@ -113,7 +107,7 @@ CacheContents::CacheContents(const scene::Export& entry, const scenes::Scene& sc
     }
     if (entry.avatars)
         for (const auto& [name, mesh] : avatars)
-            layout_.meshes.push_back({name, "", mesh->vertex_count(), without_positions(faces_of(*mesh))});
+            layout_.meshes.push_back({name, "", mesh->vertex_count(), exports::faces_only(faces_of(*mesh))});
     layout_.frame_count = (scene.frames - 1) * entry.subframes + 1;
     layout_.fps = scene.fps;
     layout_.subframes = entry.subframes;
@@ -157,7 +151,8 @@ public:
         fps = first.fps();
         if (fps && first.subframes() == 1)
             *fps /= subframes_;
-        start_frame = first.start_frame() / (first.subframes() > 1 ? 1 : subframes_) - start_frame_of(entry);
+        const double first_frame = first.start_frame() / (first.subframes() > 1 ? 1 : subframes_);
+        start_frame = entry.start_frame ? first_frame - *entry.start_frame : 0.0;
         vertex_count =
             parts_have_their_size() ? int(state.file_mesh().positions.size()) : first.vertex_count();
     }
@@ -173,14 +168,17 @@ public:
     }
 
 private:
-    /// The only mesh of a file, or that of this name.
+    /// The only mesh of a file, or that of this path. In USD a prim may be above it.
     static std::filesystem::path path_of(const exports::CacheMesh& of_surface,
                                          const std::vector<std::filesystem::path>& in_file)
     {
         const std::string ending = exports::path_of_mesh(of_surface);
-        for (const std::filesystem::path& path : in_file)
-            if (in_file.size() == 1 || exports::mesh_path_of(path).ends_with(ending))
+        for (const std::filesystem::path& path : in_file) {
+            const std::string mesh = exports::mesh_path_of(path);
+            if (in_file.size() == 1 ||
+                (mesh.ends_with(ending) && mesh.rfind('/', mesh.size() - ending.size() - 1) + 1 <= 1))
                 return path;
+        }
         return exports::archive_of(in_file.front()).string() + "#" + ending; // which will be refused
     }
 

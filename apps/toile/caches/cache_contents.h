@@ -67,7 +67,8 @@ private:
 };
 
 /// Opens the cache of a cloth in the file of an export: whole frames, in the order of the cloth's
-/// file_mesh(), in metres with Y up, frame 0 first.
+/// file_mesh(), in metres with Y up. Its start frame
+/// counts from that of the entry, or is 0 if the entry has none.
 /// @param file   the export's, or what it is named until it is complete; may name the cloth's mesh
 /// @param state  outlives the cache
 /// @throws InvalidInput as read_cache(), or if the file has other meshes

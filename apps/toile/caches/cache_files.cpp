@@ -105,6 +105,9 @@ void add_cache_input(FilePlan& plan, const path& file, const std::string& role)
     if (!exports::features_of(exports::cache_format(file)).numbered ||
         std::filesystem::exists(file, missing)) {
         plan.add_input(exports::archive_of(file), role);
+        if (exports::cache_format(file) == exports::CacheFormat::Usd)
+            for (const path& clip : exports::UsdFiles(exports::archive_of(file)).existing())
+                plan.add_input(clip, role);
         return;
     }
     const exports::NumberedFiles sequence(file);

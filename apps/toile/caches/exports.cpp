@@ -56,6 +56,28 @@ exports::Axes axes_of(const scene::Export& entry)
             entry.up == scene::UpAxis::Z ? "z" : "y"};
 }
 
+int sample_count(const scenes::Scene& scene, const scene::Export& entry)
+{
+    return (scene.frames - 1) * entry.subframes + 1;
+}
+
+std::optional<size_t> export_to_check(const scenes::Scene& scene, const std::vector<scene::Export>& entries,
+                                      int surface)
+{
+    std::optional<size_t> usd;
+    for (size_t k = 0; k < entries.size(); ++k) {
+        const exports::CacheFormat format = exports::cache_format(entries[k].file);
+        const std::vector<int> surfaces = surfaces_of(scene, entries[k]);
+        if (!exports::features_of(format).read_back ||
+            std::find(surfaces.begin(), surfaces.end(), surface) == surfaces.end())
+            continue;
+        if (format != exports::CacheFormat::Usd)
+            return k;
+        usd = usd.value_or(k);
+    }
+    return usd;
+}
+
 int subframes_of(const scenes::Scene& scene)
 {
     int subframes = 1;

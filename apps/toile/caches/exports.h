@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,14 @@ std::vector<int> surfaces_of(const scenes::Scene& scene, const scene::Export& en
 int start_frame_of(const scene::Export& entry);
 
 exports::Axes axes_of(const scene::Export& entry);
+
+/// Samples that an export has of a scene.
+int sample_count(const scenes::Scene& scene, const scene::Export& entry);
+
+/// Of several entries, the one that a surface is checked by: read without another program, if there is one.
+/// @return its index; none if no export that is read back has the surface
+std::optional<size_t> export_to_check(const scenes::Scene& scene, const std::vector<scene::Export>& entries,
+                                      int surface);
 
 /// Samples per frame that the scene's exports need.
 int subframes_of(const scenes::Scene& scene);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 
 #include "apps/toile/caches/exports.h"
 #include "core/base/error.h"
@@ -17,6 +19,9 @@ namespace toile::app {
 
 namespace {
 
+/// Relative difference of equal frame rates [-]: 24 and 24000/1001 differ by ten times as much.
+constexpr double kSameRate = 1e-4;
+
 /// Name of a cloth: skirt for skirt.pc2, for the unfinished skirt.partial.pc2 and for skirt_####.obj.
 std::string name_of(const std::filesystem::path& cache)
 {
@@ -28,18 +33,49 @@ std::string name_of(const std::filesystem::path& cache)
     return name.string();
 }
 
-/// The export of a scene that writes a file of this name; else one of no keys.
-scene::Export entry_of(const scenes::Scene& scene, const std::filesystem::path& cache)
+/// Whether a path ends with all parts of another one.
+bool ends_with(const std::filesystem::path& path, const std::filesystem::path& end)
+{
+    const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
+    const std::filesystem::path last = end.lexically_normal();
+    const auto parts = std::distance(last.begin(), last.end());
+    return std::distance(whole.begin(), whole.end()) >= parts &&
+           std::equal(last.begin(), last.end(), std::prev(whole.end(), parts));
+}
+
+/// The only entry for which a rule holds; null: there is none.
+/// @throws InvalidInput for several
+const scene::Export* only_entry(const scenes::Scene& scene, const std::filesystem::path& cache,
+                                const std::function<bool(const scene::Export&)>& fits)
+{
+    const scene::Export* found = nullptr;
+    for (const scene::Export& entry : scene.exports) {
+        if (!fits(entry))
+            continue;
+        if (found != nullptr)
+            throw InvalidInput(cache.string() + ": may be " + found->file.string() + " or " +
+                               entry.file.string() + " of " + scene.source.string() +
+                               "; keep it in the folder of its name, or check the output folder");
+        found = &entry;
+    }
+    return found;
+}
+
+/// The export of a scene that writes a file of this path, else of this name; else `unlisted`.
+scene::Export entry_of(const scenes::Scene& scene, const std::filesystem::path& cache,
+                       const scene::Export& unlisted)
 {
     const std::filesystem::path file = exports::archive_of(cache);
-    for (const scene::Export& entry : scene.exports)
-        if (entry.file.filename() == file.filename())
-            return entry;
-    for (const scene::Export& entry : scene.exports)
-        if (name_of(entry.file) == name_of(file) &&
-            lower_case_extension(entry.file) == lower_case_extension(file))
-            return entry;
-    scene::Export entry;
+    const auto has_same_name = [&](const scene::Export& entry) {
+        return name_of(entry.file) == name_of(file) &&
+               lower_case_extension(entry.file) == lower_case_extension(file);
+    };
+    const auto has_same_path = [&](const scene::Export& entry) { return ends_with(file, entry.file); };
+    if (const scene::Export* const entry = only_entry(scene, cache, has_same_path))
+        return *entry;
+    if (const scene::Export* const entry = only_entry(scene, cache, has_same_name))
+        return *entry;
+    scene::Export entry = unlisted;
     entry.file = file;
     return entry;
 }
@@ -81,15 +117,18 @@ int named_surface(const scenes::Scene& scene, const std::vector<std::string>& na
 } // namespace
 
 std::vector<ClothInCache> cloths_of_cache(const scenes::Scene& scene, const std::filesystem::path& cache,
-                                          const std::string& named)
+                                          const std::string& named, const scene::Export& unlisted)
 {
     const std::vector<std::string> names = surface_names(scene);
-    const scene::Export entry = entry_of(scene, cache);
+    scene::Export entry = entry_of(scene, cache, unlisted);
+    const bool is_listed = is_exported(scene, entry);
+    if (is_listed)
+        entry.start_frame = start_frame_of(entry);
     if (!named.empty())
         return {{cache, entry, named_surface(scene, names, named)}};
     const bool is_mesh = !exports::mesh_path_of(cache).empty();
     std::vector<ClothInCache> cloths;
-    if (is_exported(scene, entry) && !is_mesh) {
+    if (is_listed && !is_mesh) {
         for (const int surface : surfaces_of(scene, entry))
             cloths.push_back({cache, entry, surface});
         return cloths;
@@ -123,7 +162,7 @@ void require_same_times(const exports::PointCache& cache, const std::filesystem:
                         int frame_count)
 {
     char text[160];
-    if (cache.fps() && std::abs(*cache.fps() - fps) > 1e-3 * fps) {
+    if (cache.fps() && std::abs(*cache.fps() - fps) > kSameRate * fps) {
         std::snprintf(text, sizeof text, ": has %.6g frames a second, but the scene has %.6g", *cache.fps(),
                       fps);
         throw InvalidInput(file.string() + text + "; give the scene that the cache was made from");

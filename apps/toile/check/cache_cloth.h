@@ -18,9 +18,10 @@ struct ClothInCache {
 
 /// Cloths and solids that a cache holds: the one named; else those exported to a file of this name; else
 /// those that the file or its meshes are named after; else the only one.
+/// @param unlisted  keys of a cache that the scene does not export
 /// @throws InvalidInput if this is ambiguous or the named cloth does not exist, and as read_cache()
 std::vector<ClothInCache> cloths_of_cache(const scenes::Scene& scene, const std::filesystem::path& cache,
-                                          const std::string& named);
+                                          const std::string& named, const scene::Export& unlisted = {});
 
 /// @throws InvalidInput unless the cache has as many points as the cloth.
 void require_same_points(const exports::PointCache& cache, const std::filesystem::path& file,

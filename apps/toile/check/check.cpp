@@ -22,6 +22,7 @@
 #include "export/cache_path.h"
 #include "export/folder_lock.h"
 #include "export/sequence/numbered_files.h"
+#include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/surfaces/load_cloth.h"
 
@@ -36,6 +37,7 @@ struct CheckOptions {
     std::string cloth;
     CertificateLimits limits;
     std::optional<int> frames;
+    std::string unit = "m", up = "y"; ///< of caches that the scene does not list
     bool quiet = false;
 };
 
@@ -46,44 +48,41 @@ bool cache_exists(const std::filesystem::path& file)
                                              !exports::NumberedFiles(file).existing().empty());
 }
 
-bool holds(const std::vector<ClothInCache>& caches, int surface)
-{
-    return std::any_of(caches.begin(), caches.end(),
-                       [&](const ClothInCache& other) { return other.surface == surface; });
-}
-
 /// Caches written by simulate into a folder, one per cloth; missing ones are omitted.
 std::vector<ClothInCache> caches_in(const std::filesystem::path& folder, const scenes::Scene& scene)
 {
-    std::vector<ClothInCache> caches;
     std::string searched;
+    std::vector<scene::Export> entries;
+    std::vector<std::filesystem::path> files;
     for (const scene::Export& entry : exports_of(scene)) {
         searched += (searched.empty() ? "" : ", ") + entry.file.string();
         std::filesystem::path file = folder / entry.file.lexically_normal();
-        const exports::CacheFeatures features = exports::features_of(exports::cache_format(file));
-        if (!features.read_back)
-            continue;
-        if (scene.frames > 1 && features.numbered)
+        if (scene.frames > 1 && exports::features_of(exports::cache_format(file)).numbered)
             file = exports::NumberedFiles(file).pattern(); // skirt.obj may be the start mesh beside skirt.pc2
         if (!cache_exists(file))
             continue;
-        for (const int surface : surfaces_of(scene, entry))
-            if (!holds(caches, surface))
-                caches.push_back({file, entry, surface});
+        entries.push_back(entry);
+        entries.back().start_frame = start_frame_of(entry);
+        files.push_back(file);
     }
+    std::vector<ClothInCache> caches;
+    for (int surface = 0; surface < int(surface_names(scene).size()); ++surface)
+        if (const std::optional<size_t> checked = export_to_check(scene, entries, surface))
+            caches.push_back({files[*checked], entries[*checked], surface});
     if (caches.empty())
         throw InvalidInput(folder.string() + ": has no cache of " + scene.source.string() + "; looked for " +
-                           searched);
+                           searched + "; name other caches one by one");
     return caches;
 }
 
 /// Pairs each cache with its cloths.
 std::vector<ClothInCache> named_caches(const std::vector<std::filesystem::path>& files,
-                                       const scenes::Scene& scene, const std::string& named)
+                                       const scenes::Scene& scene, const std::string& named,
+                                       const scene::Export& unlisted)
 {
     std::vector<ClothInCache> caches;
     for (const std::filesystem::path& file : files)
-        for (const ClothInCache& cloth : cloths_of_cache(scene, file, named)) {
+        for (const ClothInCache& cloth : cloths_of_cache(scene, file, named, unlisted)) {
             for (const ClothInCache& other : caches)
                 if (other.surface == cloth.surface)
                     throw InvalidInput(file.string() + ": is of the same cloth \"" +
@@ -114,7 +113,7 @@ void require_safe_output(const std::filesystem::path& file, const scenes::Scene&
     FilePlan plan;
     add_inputs(plan, scene);
     for (const ClothInCache& cache : caches)
-        plan.add_input(exports::archive_of(cache.file), "a cache to check");
+        add_cache_input(plan, cache.file, "a cache to check");
     plan.add_output(file, "the certificate");
     require_writable(file);
 }
@@ -142,8 +141,12 @@ int check(const CheckOptions& options)
             throw InvalidInput(cache.string() + ": no such folder; check the path");
     scenes::Scene scene = scenes::read_scene(options.scene);
     scene.frames = options.frames.value_or(scene.frames);
+    scene::Export unlisted;
+    unlisted.unit = scene_format::value_of<scene::ExportUnit>(options.unit);
+    unlisted.up = scene_format::value_of<scene::UpAxis>(options.up);
     const std::vector<ClothInCache> caches =
-        is_folder ? caches_in(options.caches[0], scene) : named_caches(options.caches, scene, options.cloth);
+        is_folder ? caches_in(options.caches[0], scene)
+                  : named_caches(options.caches, scene, options.cloth, unlisted);
     const std::filesystem::path output = certificate_path_of(options);
     require_safe_output(output, scene, caches);
     const InterruptGuard interrupt;
@@ -190,6 +193,10 @@ Command add_check(CLI::App& parser)
         ->capture_default_str();
     add.add_option("--frames", options->frames, "Number of frames that the caches must have [the scene's]")
         ->check(CLI::Range(1, 1000000));
+    add.add_option("--from-unit", options->unit, "Unit of caches that the scene does not list [m]")
+        ->check(CLI::IsMember(scene_format::words_of<scene::ExportUnit>()));
+    add.add_option("--from-up", options->up, "Upward axis of caches that the scene does not list [y]")
+        ->check(CLI::IsMember(scene_format::words_of<scene::UpAxis>()));
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return check(*options); };
     return command;

@@ -74,7 +74,19 @@ struct InputMesh {
     exports::PointCache cache;
 };
 
-/// All meshes of the input, with as many frames each.
+bool have_same_times(const exports::PointCache& a, const exports::PointCache& b)
+{
+    return a.frame_count() == b.frame_count() && a.fps() == b.fps() && a.subframes() == b.subframes() &&
+           a.start_frame() == b.start_frame();
+}
+
+std::string times_text(const exports::PointCache& cache)
+{
+    return std::to_string(cache.frame_count()) + " samples from frame " + short_text(cache.start_frame()) +
+           (cache.fps() ? " at " + short_text(*cache.fps()) + " a second" : "");
+}
+
+/// All meshes of the input, with the same frames.
 std::vector<InputMesh> open_input(const ConvertOptions& options)
 {
     std::vector<InputMesh> meshes;
@@ -84,29 +96,25 @@ std::vector<InputMesh> open_input(const ConvertOptions& options)
         throw InvalidInput(options.input.string() + ": has no " + (meshes.empty() ? "mesh" : "frame") +
                            "; nothing is there to be converted");
     for (const InputMesh& mesh : meshes)
-        if (mesh.cache.frame_count() != meshes.front().cache.frame_count())
-            throw InvalidInput(mesh.path.string() + ": has " + std::to_string(mesh.cache.frame_count()) +
-                               " frames and " + meshes.front().path.string() + " " +
-                               std::to_string(meshes.front().cache.frame_count()) +
-                               "; convert them one by one, each by its path");
+        if (!have_same_times(mesh.cache, meshes.front().cache))
+            throw InvalidInput(mesh.path.string() + ": has other frames than " +
+                               meshes.front().path.string() + " (" + times_text(mesh.cache) + ", and " +
+                               times_text(meshes.front().cache) +
+                               "); convert them one by one, each by its path");
     return meshes;
 }
 
 /// Faces, texture coordinates and groups of the cache or of --mesh; none if it has none.
 ObjMesh faces_of(const ConvertOptions& options, const exports::PointCache& cache)
 {
-    if (options.mesh.empty()) {
-        ObjMesh faces = cache.mesh() ? *cache.mesh() : ObjMesh{};
-        faces.positions.clear();
-        return faces;
-    }
+    if (options.mesh.empty())
+        return cache.mesh() ? exports::faces_only(*cache.mesh()) : ObjMesh{};
     ObjMesh mesh = read_obj(options.mesh);
     if (int(mesh.positions.size()) != cache.vertex_count())
         throw InvalidInput(options.mesh.string() + ": has " + std::to_string(mesh.positions.size()) +
                            " vertices and the cache " + std::to_string(cache.vertex_count()) +
                            "; name the mesh that it was made for");
-    mesh.positions.clear();
-    return mesh;
+    return exports::faces_only(std::move(mesh));
 }
 
 double fps_of(const ConvertOptions& options, const exports::PointCache& cache)

@@ -131,13 +131,15 @@ std::vector<std::string> RunFiles::notes() const
 std::vector<CachedCloth> RunFiles::cloths_to_check(const scenes::World& world) const
 {
     const View<const scenes::ClothState> surfaces = world.surfaces();
-    const std::vector<ExportFile> targets = caches_of(job_);
+    std::vector<scene::Export> entries;
+    for (const Cache& cache : caches_)
+        entries.push_back(cache.target.entry);
     std::vector<CachedCloth> cloths;
     for (int surface = 0; surface < surfaces.size(); ++surface) {
-        const ExportFile* const target = cache_to_check(job_, targets, surface);
-        if (target == nullptr || !exports::features_of(exports::cache_format(target->file)).read_back)
+        const std::optional<size_t> checked = export_to_check(job_.scene, entries, surface);
+        if (!checked)
             continue;
-        const Cache& cache = caches_[size_t(target - targets.data())];
+        const Cache& cache = caches_[*checked];
         const scenes::ClothState& cloth = surfaces[surface];
         cloths.push_back({&cloth, cache.target.file, open_cloth(cache.complete, cache.target.entry, cloth)});
     }

@@ -34,19 +34,17 @@ std::string contents_of(const scenes::Scene& scene, const scene::Export& entry)
     return list;
 }
 
-/// Whether two exports write the same positions, in files of any name.
-bool have_same_contents(const scenes::Scene& scene, const ExportFile& a, const ExportFile& b)
+/// Whether the start meshes of two exports are the same.
+bool have_same_start(const scenes::Scene& scene, const scene::Export& a, const scene::Export& b)
 {
-    scene::Export a_entry = a.entry, b_entry = b.entry;
-    a_entry.file = b_entry.file = "";
-    a_entry.cloths = b_entry.cloths = {};
-    return a_entry == b_entry && surfaces_of(scene, a.entry) == surfaces_of(scene, b.entry);
+    return surfaces_of(scene, a) == surfaces_of(scene, b) && axes_of(a) == axes_of(b) &&
+           a.thickness == b.thickness;
 }
 
 void add_outputs(FilePlan& plan, const SceneJob& job)
 {
     for (const ExportFile& cache : caches_of(job))
-        add_cache_output(plan, cache.file, start_frame_of(cache.entry), job.scene.frames,
+        add_cache_output(plan, cache.file, start_frame_of(cache.entry), sample_count(job.scene, cache.entry),
                          "the cache of " + contents_of(job.scene, cache.entry));
     for (const ExportFile& mesh : start_meshes_of(job))
         add_output_and_partial(plan, mesh.file, "the start mesh of " + contents_of(job.scene, mesh.entry));
@@ -56,6 +54,18 @@ void add_outputs(FilePlan& plan, const SceneJob& job)
         add_output_and_partial(plan, certificate, "the certificate");
     if (!job.report.empty())
         add_output_and_partial(plan, job.report, "the report");
+}
+
+void require_usd_if_needed(const path& cache, const std::string& remedy)
+{
+    if (exports::cache_format(cache) != exports::CacheFormat::Usd)
+        return;
+    try {
+        exports::require_usd_python(cache);
+    } catch (const InvalidInput&) {
+        throw InvalidInput(cache.string() + ": is checked by Python with USD, which is not there " +
+                           "(pip install usd-core)" + remedy);
+    }
 }
 
 } // namespace
@@ -75,7 +85,7 @@ std::vector<ExportFile> start_meshes_of(const SceneJob& job)
     for (const ExportFile& cache : caches) {
         const ExportFile mesh{path(cache.file).replace_extension(".obj"), cache.entry};
         const auto is_same = [&](const ExportFile& other) {
-            return other.file == mesh.file && have_same_contents(job.scene, other, mesh);
+            return other.file == mesh.file && have_same_start(job.scene, other.entry, mesh.entry);
         };
         if (!exports::features_of(exports::cache_format(cache.file)).faces &&
             std::none_of(caches.begin(), caches.end(), is_same) &&
@@ -112,44 +122,22 @@ std::vector<path> certificates_of(const SceneJob& job)
     return {certificates.begin(), certificates.end()};
 }
 
-const ExportFile* cache_to_check(const SceneJob& job, const std::vector<ExportFile>& caches, int surface)
-{
-    const auto effort = [](const ExportFile& cache) { // of reading it
-        const exports::CacheFormat format = exports::cache_format(cache.file);
-        return !exports::features_of(format).read_back ? 2 : format == exports::CacheFormat::Usd ? 1 : 0;
-    };
-    const ExportFile* found = nullptr;
-    for (const ExportFile& cache : caches) {
-        const std::vector<int> surfaces = surfaces_of(job.scene, cache.entry);
-        const bool has_it = std::find(surfaces.begin(), surfaces.end(), surface) != surfaces.end();
-        if (has_it && (found == nullptr || effort(cache) < effort(*found)))
-            found = &cache;
-    }
-    return found;
-}
-
 void require_checkable(const SceneJob& job)
 {
     const std::vector<std::string> names = surface_names(job.scene);
-    const std::vector<ExportFile> caches = caches_of(job);
+    const std::vector<scene::Export> entries = exports_of(job.scene);
     for (int surface = 0; surface < int(names.size()); ++surface) {
-        const ExportFile* const cache = cache_to_check(job, caches, surface);
-        if (cache == nullptr)
-            continue;
         const std::string remedy =
             "; export \"" + names[size_t(surface)] + "\" to a .pc2 as well, or give --no-check";
-        const exports::CacheFormat format = exports::cache_format(cache->file);
-        if (!exports::features_of(format).read_back)
-            throw InvalidInput(cache->file.string() + ": is for other programs and can't be checked" +
-                               remedy);
-        if (format != exports::CacheFormat::Usd)
+        if (const std::optional<size_t> checked = export_to_check(job.scene, entries, surface)) {
+            require_usd_if_needed(job.folder / entries[*checked].file, remedy);
             continue;
-        try {
-            exports::require_usd_python(cache->file);
-        } catch (const InvalidInput&) {
-            throw InvalidInput(cache->file.string() + ": is checked by Python with USD, which is not there " +
-                               "(pip install usd-core)" + remedy);
         }
+        for (const scene::Export& entry : entries)
+            if (const std::vector<int> surfaces = surfaces_of(job.scene, entry);
+                std::find(surfaces.begin(), surfaces.end(), surface) != surfaces.end())
+                throw InvalidInput((job.folder / entry.file).string() +
+                                   ": is for other programs and can't be checked" + remedy);
     }
 }
 
@@ -166,7 +154,8 @@ void require_safe_outputs(const std::vector<SceneJob>& jobs)
             require_writable_folder(folder);
         }
         for (const ExportFile& cache : caches_of(job))
-            require_writable_cache(cache.file, start_frame_of(cache.entry), job.scene.frames);
+            require_writable_cache(cache.file, start_frame_of(cache.entry),
+                                   sample_count(job.scene, cache.entry));
         for (const ExportFile& mesh : start_meshes_of(job)) {
             require_replaceable(mesh.file);
             require_writable(partial_beside(mesh.file));

@@ -33,12 +33,10 @@ std::vector<std::filesystem::path> output_folders_of(const SceneJob& job);
 /// Certificates that may lie beside the caches from earlier runs and checks: of all, and of each alone.
 std::vector<std::filesystem::path> certificates_of(const SceneJob& job);
 
-/// Refuses a cloth whose certificate would need what is not there: Python with USD, where only USD has it.
+/// Refuses exports of a cloth none of which could be checked after the run: those for other programs, and USD
+/// without Python that reads it.
 /// @throws InvalidInput
 void require_checkable(const SceneJob& job);
-
-/// The cache that a surface is checked by: one that is read without another program, if there is one.
-const ExportFile* cache_to_check(const SceneJob& job, const std::vector<ExportFile>& caches, int surface);
 
 /// Refuses, without changing a file, jobs that would write a file that one of them reads, or one file twice;
 /// folders that another run is writing to; and reports that could not be written.

@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
 #include "core/quadrature/tables/table_store.h"
+#include "export/cache_format.h"
 
 namespace toile::app {
 
@@ -41,6 +42,16 @@ void explain_stop(int last_frame, const SceneRun::Outcome& outcome, RunFiles& fi
     else
         log.error(outcome.word + " at frame " + std::to_string(last_frame) + reason + "; " + count +
                   (partials.frame_count <= 1 ? " frame is" : " frames are") + " in the partial caches");
+}
+
+/// Caches of a run that can be checked, as arguments.
+std::string checked_files(const SceneJob& job)
+{
+    std::string files;
+    for (const ExportFile& cache : caches_of(job))
+        if (exports::features_of(exports::cache_format(cache.file)).read_back)
+            files += (files.empty() ? "" : " ") + cache.file.string();
+    return files;
 }
 
 /// Reports an exception of the work after the last frame. @return whether there was none
@@ -213,8 +224,8 @@ std::optional<Certificate> SceneRun::check(const RunFiles& files) const
         certificate = certify(job_.scene, files.cloths_to_check(world_), {}, log_, *interrupt_);
     });
     if (was_able && !certificate)
-        log_.error("interrupted while checking; the caches are complete, toile check " +
-                   job_.folder.string() + " --scene " + job_.scene.source.string() + " --frames " +
+        log_.error("interrupted while checking; the caches are complete, toile check " + checked_files(job_) +
+                   " --scene " + job_.scene.source.string() + " --frames " +
                    std::to_string(job_.scene.frames) + " certifies them");
     return certificate;
 }

@@ -10,6 +10,8 @@
 #include "apps/toile/terminal/commands.h"
 #include "core/base/error.h"
 #include "core/compute/cuda/runtime/device.h"
+#include "export/cache_format.h"
+#include "scenes/format/document.h"
 #include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/format/validate.h"
@@ -156,14 +158,16 @@ void add_export_options(CLI::App& add, SimulateOptions& options)
     const auto in_group = [](CLI::Option* option) { return option->group("Export"); };
     CLI::Option* const file =
         in_group(add.add_option("--export", options.exports,
-                                "Cache to write into the folder, instead of those of the scene: .abc, .pc2, "
-                                ".mdd or .obj; may be given several times")
+                                "Cache to write into the folder, instead of those of the scene (" +
+                                    scene_format::enumerate(exports::written_extensions(), "or") +
+                                    "); may be given several times")
                      ->expected(1)
                      ->take_all());
     scene::Export& keys = options.export_keys;
     for (CLI::Option* const option :
          {add.add_option("--export-cloth", keys.cloths, "Cloth or solid to write [all, or the only one]"),
-          add.add_option("--start-frame", keys.start_frame, "Number of the first frame [1 in .abc, else 0]"),
+          add.add_option("--start-frame", keys.start_frame,
+                         "Number of the first frame [1 in .abc and USD, else 0]"),
           add.add_option("--subframes", keys.subframes, "Samples per frame [1]")->check(CLI::Range(1, 100)),
           add.add_option("--unit", options.export_unit, "Unit of the numbers [m]")
               ->check(CLI::IsMember(scene_format::words_of<scene::ExportUnit>())),
