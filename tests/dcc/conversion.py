@@ -1,11 +1,15 @@
 """Runs `toile convert`, and other scripts of this folder."""
 
+import os
 import pathlib
 import subprocess
 import sys
 import time
 
 FOLDER = pathlib.Path(__file__).parent
+
+# The packages of requirements.txt are in this interpreter, Pixar's USD among them.
+os.environ.setdefault("TOILE_PYTHON", sys.executable)
 
 # Extensions of caches that Toile writes, in the order of tables; names of files of several frames.
 FORMATS = {".pc2": "skirt.pc2", ".mdd": "skirt.mdd", ".abc": "skirt.abc", ".usda": "skirt.usda", ".usdc": "skirt.usdc",

@@ -95,6 +95,10 @@ class Usd(BlenderPlayer):
     def open(self):
         self.bpy.ops.wm.usd_import(filepath=self.file, set_frame_range=False, apply_unit_conversion_scale=False)
 
+    def positions(self, name, frame):
+        x = super().positions(name, frame)
+        return x if self.options.up == "y" else np.stack([x[:, 0], -x[:, 2], x[:, 1]], axis=1)
+
 
 class Gltf(BlenderPlayer):
     """glTF begins at 0 s and splits vertices; pygltflib reads which vertex of the cache each is."""
