@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "export/alembic/abc_reader.h"
 #include "export/alembic/abc_transform.h"
+#include "export/archive/polygons.h"
 #include "export/byte_order.h"
 #include "export/cache_path.h"
 #include "export/frame_times.h"
@@ -122,26 +123,10 @@ private:
     /// Turns the faces, which are clockwise.
     void read_faces()
     {
-        const std::vector<std::int32_t> counts = constant_integers(".faceCounts");
-        const std::vector<std::int32_t> indices = constant_integers(".faceIndices");
-        for (const std::int32_t v : indices)
-            if (v < 0 || v >= vertex_count)
-                refuse("has a face of point " + std::to_string(v) + "; its points are 0 to " +
-                       std::to_string(vertex_count - 1));
-        size_t first = 0;
-        for (const std::int32_t count : counts) {
-            if (count < 3 || size_t(count) > std::min(indices.size() - first, kMaxPolygonCorners))
-                refuse("has a face of " + std::to_string(count) + " corners; they have 3 to " +
-                       std::to_string(kMaxPolygonCorners) + ", and " +
-                       std::to_string(indices.size() - first) + " are left");
-            std::vector<int>& polygon = mesh.polygons.emplace_back(indices.begin() + long(first),
-                                                                   indices.begin() + long(first) + count);
+        mesh.polygons = polygons_of(constant_integers(".faceCounts"), constant_integers(".faceIndices"),
+                                    vertex_count, [this](const std::string& why) { refuse(why); });
+        for (std::vector<int>& polygon : mesh.polygons)
             std::reverse(polygon.begin(), polygon.end());
-            first += size_t(count);
-        }
-        if (mesh.polygons.empty() || first != indices.size())
-            refuse("has faces of " + std::to_string(first) + " corners together and " +
-                   std::to_string(indices.size()) + " corners");
         mesh.positions = frame(0);
     }
 

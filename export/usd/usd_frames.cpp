@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "core/base/error.h"
+#include "export/archive/polygons.h"
 #include "export/byte_order.h"
 #include "export/frame_times.h"
 
@@ -131,23 +132,9 @@ private:
     void read_faces()
     {
         const auto counts = next_array<std::int32_t>(), indices = next_array<std::int32_t>();
-        for (const std::int32_t v : indices)
-            if (v < 0 || v >= vertex_count)
-                refuse("has a face of point " + std::to_string(v) + "; its points are 0 to " +
-                       std::to_string(vertex_count - 1));
-        size_t first = 0;
-        for (const std::int32_t count : counts) {
-            if (count < 3 || size_t(count) > std::min(indices.size() - first, kMaxPolygonCorners))
-                refuse("has a face of " + std::to_string(count) + " corners; they have 3 to " +
-                       std::to_string(kMaxPolygonCorners) + ", and " +
-                       std::to_string(indices.size() - first) + " are left");
-            mesh.polygons.emplace_back(indices.begin() + long(first), indices.begin() + long(first) + count);
-            first += size_t(count);
-        }
-        if (mesh.polygons.empty() || first != indices.size())
-            refuse("has faces of " + std::to_string(first) + " corners together and " +
-                   std::to_string(indices.size()) + " corners");
-        corner_count_ = first;
+        mesh.polygons =
+            polygons_of(counts, indices, vertex_count, [this](const std::string& why) { refuse(why); });
+        corner_count_ = indices.size();
     }
 
     /// Texture coordinates of another number, or that are no numbers, are left out.
