@@ -49,6 +49,7 @@ std::uint8_t srgb(double linear)
 /// Averages the samples of one pixel; the first ones suffice if they agree (background, open floor).
 struct ShadePixel {
     const PathTracer& tracer;
+    const Camera& camera;
     Image& image;
     int samples;
 
@@ -60,9 +61,9 @@ struct ShadePixel {
         int taken = 0;
         while (taken < samples) {
             const Vec2 jitter = sampler.point(taken, 0);
-            const Vec3 color =
-                tracer.display_color(2.0 * (x + jitter.x()) / image.width - 1.0,
-                                     1.0 - 2.0 * (y + jitter.y()) / image.height, sampler, taken);
+            const Vec2 at =
+                camera.picture_coordinates((x + jitter.x()) / image.width, (y + jitter.y()) / image.height);
+            const Vec3 color = tracer.display_color(at.x(), at.y(), sampler, taken);
             sum += color;
             lowest = lowest.cwiseMin(color);
             highest = highest.cwiseMax(color);
@@ -104,7 +105,7 @@ Image Renderer::render(const Camera& camera) const
     Image image(settings_.width, settings_.height);
     const PathTracer tracer(scene_, normals_, rays_, camera);
     parallel_for(kCpu, "render/pixels", image.width * image.height,
-                 ShadePixel{tracer, image, settings_.samples});
+                 ShadePixel{tracer, camera, image, settings_.samples});
     return image;
 }
 
