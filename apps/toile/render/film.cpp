@@ -4,6 +4,7 @@
 
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/check/cache_cloth.h"
+#include "apps/toile/maps/skin.h"
 #include "apps/toile/render/print.h"
 #include "core/base/error.h"
 #include "core/base/long_work.h"
@@ -192,6 +193,35 @@ void Film::put_floor_below_avatars()
             box.extend(p);
     if (settings_.render.ground && !bodies_.empty())
         settings_.render.ground = box.lower.y();
+}
+
+std::vector<Film::Cloth> Film::cloths(int frame) const
+{
+    std::vector<Cloth> cloths;
+    for (const Track& track : tracks_)
+        if (is_cloth(track))
+            cloths.push_back({int(track.cloth - surfaces_.data()), positions(track, frame)});
+    return cloths;
+}
+
+TriangleMesh Film::skin(int frame)
+{
+    show_bodies(frame);
+    return skin_of(bodies_);
+}
+
+TriangleMesh Film::solids(int frame) const
+{
+    TriangleMesh solids;
+    for (const Track& track : tracks_)
+        if (!is_cloth(track))
+            append(solids, positions(track, frame), track.mesh.triangles);
+    return solids;
+}
+
+bool Film::is_cloth(const Track& track) const
+{
+    return track.cloth != nullptr && track.cloth - surfaces_.data() < long(settings_.cloths.size());
 }
 
 void Film::choose(const std::vector<Shot>& shots, const CameraTarget& target, const preview::Crop& crop)

@@ -32,6 +32,7 @@ public:
     Film(Film&&) = default;
     Film& operator=(Film&&) = default;
 
+    const scenes::Scene& settings() const { return settings_; }
     int frame_count() const { return frame_count_; }
     double fps() const { return settings_.fps; }
     scene::Render& render() { return settings_.render; } ///< size, view and samples; may be changed
@@ -45,6 +46,18 @@ public:
                 const preview::Crop& crop = {});
 
     PictureSize picture_size() const { return size_of_part(settings_.render, crop_); }
+
+    const std::vector<Shot>& shots() const { return shots_; }
+    const preview::Camera& camera(size_t shot) const { return path_.at(shot); }
+
+    /// A cloth of the scene in a frame.
+    struct Cloth {
+        int index = 0;         ///< in the scene
+        std::vector<Vec3> now; ///< [vertices] [m]
+    };
+    std::vector<Cloth> cloths(int frame) const;
+    TriangleMesh skin(int frame);
+    TriangleMesh solids(int frame) const;
 
     /// One of the prepared pictures.
     preview::Image picture(size_t shot);
@@ -66,6 +79,7 @@ private:
                    const std::vector<Triangle>& triangles, const std::vector<Vec3>& start,
                    std::optional<exports::PointCache> cache, const std::filesystem::path& file);
     std::vector<Vec3> positions(const Track& track, int frame) const;
+    bool is_cloth(const Track& track) const;
     bool is_shown(const scenes::SceneBody& body) const;
     void show_bodies(int frame);
     std::vector<std::string> names() const;

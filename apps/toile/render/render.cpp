@@ -1,10 +1,10 @@
-#include <cmath>
 #include <iostream>
 #include <memory>
 
 #include "apps/preview/video.h"
 #include "apps/toile/render/film.h"
 #include "apps/toile/render/frame_range.h"
+#include "apps/toile/render/map_pictures.h"
 #include "apps/toile/render/viewpoint.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
@@ -35,6 +35,7 @@ struct RenderOptions {
     int samples = 0;
     int turntable = 0; ///< pictures around; 0: none
     ViewpointOptions viewpoint;
+    MapOptions map;
     bool quiet = false;
 };
 
@@ -117,24 +118,49 @@ Shots chosen_shots(const RenderOptions& options, const Film& film, bool is_pictu
     return shots;
 }
 
-std::vector<preview::Image> take_pictures(Film& film, size_t count, bool quiet)
+/// What is written: the film's pictures, or heat maps with their legend.
+class Pictures {
+public:
+    Pictures(Film& film, const RenderOptions& options) : film_(film)
+    {
+        if (options.map.is_given())
+            maps_.emplace(film, options.map, options.quiet);
+    }
+
+    preview::Image without_legend(size_t shot) { return maps_ ? maps_->picture(shot) : film_.picture(shot); }
+    preview::Image with_legend(const preview::Image& picture, const std::string& caption) const
+    {
+        return maps_ ? preview::with_colour_bar({&picture, 1}, {&caption, 1}, maps_->legend()) : picture;
+    }
+    preview::Image operator()(size_t shot)
+    {
+        return with_legend(without_legend(shot), "frame " + std::to_string(film_.shots()[shot].frame));
+    }
+
+private:
+    Film& film_;
+    std::optional<MapPictures> maps_;
+};
+
+preview::Image sheet_of(Pictures& pictures, const Shots& shots, const RenderOptions& options)
 {
-    Progress progress("picture", int(count), quiet);
-    std::vector<preview::Image> pictures;
-    for (size_t i = 0; i < count; ++i) {
-        pictures.push_back(film.picture(i));
+    Progress progress("picture", int(shots.shots.size()), options.quiet);
+    std::vector<preview::Image> taken;
+    for (size_t i = 0; i < shots.shots.size(); ++i) {
+        taken.push_back(pictures.without_legend(i));
         progress.update(int(i) + 1);
     }
-    return pictures;
+    return pictures.with_legend(contact_sheet(taken, options.sheet, shots.numbers), "");
 }
 
-void write_video(Film& film, const Shots& shots, const std::filesystem::path& file, bool quiet)
+void write_video(Pictures& pictures, const Shots& shots, const std::filesystem::path& file, bool quiet)
 {
-    const PictureSize size = film.picture_size();
-    preview::VideoWriter video(file, size.width, size.height, shots.fps);
+    preview::require_encoder(file);
     Progress progress("picture", int(shots.shots.size()), quiet);
+    const preview::Image first = pictures(0);
+    preview::VideoWriter video(file, first.width, first.height, shots.fps);
     for (size_t i = 0; i < shots.shots.size(); ++i) {
-        video.write(film.picture(i));
+        video.write(i == 0 ? first : pictures(i));
         progress.update(int(i) + 1);
     }
     video.finish();
@@ -148,12 +174,12 @@ std::filesystem::path picture_file(const std::filesystem::path& folder, int fram
     return folder / name;
 }
 
-void write_folder(Film& film, const Shots& shots, const std::filesystem::path& folder, bool quiet)
+void write_folder(Pictures& pictures, const Shots& shots, const std::filesystem::path& folder, bool quiet)
 {
     Progress progress("picture", int(shots.numbers.size()), quiet);
     for (size_t i = 0; i < shots.numbers.size(); ++i) {
         try {
-            write_png(picture_file(folder, shots.numbers[i]), film.picture(i));
+            write_png(picture_file(folder, shots.numbers[i]), pictures(i));
         } catch (const InvalidInput& error) { // at first, nothing is written yet
             if (i > 0)
                 throw DeviceError(error.what() + std::string("; the pictures before are written"));
@@ -199,6 +225,11 @@ void require_possible(const RenderOptions& options)
         throw InvalidInput(options.output.string() + ": is one picture, but --turntable makes " +
                            std::to_string(options.turntable) +
                            "; add --sheet COLUMNS, or write to .mp4 or a folder");
+    options.map.require_valid();
+    if (options.map.is_given() && options.scene.empty() && !is_scene(options.inputs[0]))
+        throw InvalidInput(
+            "--map: give --scene with the scene that the caches were made from; it has the cloth's "
+            "shape at rest, its fabric and the body");
 }
 
 int render(RenderOptions options)
@@ -221,15 +252,15 @@ int render(RenderOptions options)
 
     require_safe_output(options, output, shots.numbers);
     film.choose(shots.shots, target, crop);
+    Pictures pictures(film, options);
     if (is_picture)
-        write_png(output, film.picture(0));
+        write_png(output, pictures(0));
     else if (is_png)
-        write_png(output, contact_sheet(take_pictures(film, shots.shots.size(), options.quiet), options.sheet,
-                                        shots.numbers));
+        write_png(output, sheet_of(pictures, shots, options));
     else if (extension == ".mp4")
-        write_video(film, shots, output, options.quiet);
+        write_video(pictures, shots, output, options.quiet);
     else
-        write_folder(film, shots, output, options.quiet);
+        write_folder(pictures, shots, output, options.quiet);
     std::cout << output.string() << std::endl;
     return kExitOk;
 }
@@ -255,6 +286,7 @@ Command add_render(CLI::App& parser)
     add.add_option("--height", options->height, "Pixels, instead of the scene's");
     add.add_option("--samples", options->samples, "Light paths per pixel, instead of the scene's");
     options->viewpoint.add_to(add);
+    options->map.add_to(add);
     add.add_option("--turntable", options->turntable, "Once around one frame, in this many pictures")
         ->expected(0, 1)
         ->default_str("96");

@@ -1,10 +1,8 @@
 #include "apps/toile/render/viewpoint.h"
 
-#include <charconv>
-#include <cmath>
 #include <sstream>
-#include <vector>
 
+#include "apps/toile/render/number_list.h"
 #include "core/base/error.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -13,26 +11,6 @@ namespace toile::app {
 namespace {
 
 constexpr double kLargestZoom = 1000.0;
-
-/// Numbers separated by commas; nothing if there are others than `count`, or something else.
-std::optional<std::vector<double>> numbers_of(const std::string& text, size_t count)
-{
-    std::vector<double> numbers;
-    const char *at = text.data(), *const end = at + text.size();
-    while (true) {
-        double number = 0.0;
-        const auto [stop, error] = std::from_chars(at, end, number);
-        if (error != std::errc{} || !std::isfinite(number))
-            return std::nullopt;
-        numbers.push_back(number);
-        if (stop == end)
-            break;
-        if (*stop != ',')
-            return std::nullopt;
-        at = stop + 1;
-    }
-    return numbers.size() == count ? std::optional(numbers) : std::nullopt;
-}
 
 void replace_if_given(double& value, const std::optional<double>& given, double lowest, double highest,
                       const char* option)
