@@ -28,6 +28,12 @@ constexpr float kInvisible = 1e-8f;
 /// Half side of the square over which variances are averaged [pixels].
 constexpr int kVarianceReach = 3;
 
+/// What a pass changes of a pixel.
+struct Estimate {
+    Eigen::Vector3f color = Eigen::Vector3f::Zero();
+    float variance = 0.0f;
+};
+
 struct Grid {
     const std::vector<NoisyPixel>& pixels;
     int width, height;
@@ -40,12 +46,13 @@ struct Grid {
 struct MeanVariance {
     const Grid& grid;
     int across, down; ///< 1 along the row or column, else 0
-    std::vector<NoisyPixel>& after;
+    std::vector<Estimate>& after;
 
     void operator()(int pixel) const
     {
         const int x = pixel % grid.width, y = pixel / grid.width;
         const int surface = grid.at(x, y).surface;
+        after[size_t(pixel)] = {grid.at(x, y).color, grid.at(x, y).variance};
         if (surface == NoisyPixel::kNoSurface)
             return;
         float sum = 0.0f;
@@ -77,16 +84,15 @@ float likeness(const NoisyPixel& p, const NoisyPixel& q)
 /// A pass of the wavelet for one pixel.
 struct Smooth {
     const Grid& grid;
-    int spacing;                    ///< of taps [pixels]
-    std::vector<NoisyPixel>& after; ///< color and variance
+    int spacing; ///< of taps [pixels]
+    std::vector<Estimate>& after;
 
     void operator()(int pixel) const
     {
         const int x = pixel % grid.width, y = pixel / grid.width;
         const NoisyPixel& p = grid.at(x, y);
-        NoisyPixel& result = after[size_t(pixel)];
-        result.color = p.color;
-        result.variance = p.variance;
+        Estimate& result = after[size_t(pixel)];
+        result = {p.color, p.variance};
         if (p.surface == NoisyPixel::kNoSurface || p.variance < kInvisible)
             return;
         float weight = kSpline[0] * kSpline[0], variance = weight * weight * p.variance;
@@ -107,20 +113,27 @@ struct Smooth {
     }
 };
 
+void replace(std::vector<NoisyPixel>& pixels, const std::vector<Estimate>& by)
+{
+    parallel_for(kCpu, "denoise/replace", int(pixels.size()), [&](int pixel) {
+        pixels[size_t(pixel)].color = by[size_t(pixel)].color;
+        pixels[size_t(pixel)].variance = by[size_t(pixel)].variance;
+    });
+}
+
 } // namespace
 
 void remove_noise(std::vector<NoisyPixel>& pixels, int width, int height)
 {
-    std::vector<NoisyPixel> other = pixels;
+    std::vector<Estimate> after(pixels.size());
+    const Grid grid{pixels, width, height};
     for (const int across : {1, 0}) {
-        const Grid grid{pixels, width, height};
-        parallel_for(kCpu, "denoise/variance", width * height, MeanVariance{grid, across, 1 - across, other});
-        pixels.swap(other);
+        parallel_for(kCpu, "denoise/variance", width * height, MeanVariance{grid, across, 1 - across, after});
+        replace(pixels, after);
     }
     for (int pass = 0; pass < kPasses; ++pass) {
-        const Grid grid{pixels, width, height};
-        parallel_for(kCpu, "denoise/pass", width * height, Smooth{grid, 1 << pass, other});
-        pixels.swap(other);
+        parallel_for(kCpu, "denoise/pass", width * height, Smooth{grid, 1 << pass, after});
+        replace(pixels, after);
     }
 }
 
