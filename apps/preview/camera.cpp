@@ -52,6 +52,12 @@ void require_sane(View<const Vec3> points, const CameraSettings& settings)
 
 } // namespace
 
+Vec2 Camera::picture_coordinates(double column, double row) const
+{
+    return {2.0 * (crop.left + (crop.right - crop.left) * column) - 1.0,
+            1.0 - 2.0 * (crop.top + (crop.bottom - crop.top) * row)};
+}
+
 Vec3 Camera::direction(double x, double y) const
 {
     return (forward + tan_half_fov * (aspect * x * right + y * up)).normalized();
@@ -92,6 +98,22 @@ Camera fit_camera(View<const Vec3> points, const CameraSettings& settings, doubl
     return camera;
 }
 
+Camera aimed_at(Camera camera, const Vec3& target, const Vec3& before)
+{
+    camera.origin = target - (before - camera.origin).dot(camera.forward) * camera.forward;
+    return camera;
+}
+
+Camera turned(Camera camera, double angle_deg, const Vec3& pivot)
+{
+    const Mat3 R = Eigen::AngleAxisd(radians(angle_deg), Vec3::UnitY()).toRotationMatrix();
+    camera.origin = pivot + R * (camera.origin - pivot);
+    camera.right = R * camera.right;
+    camera.up = R * camera.up;
+    camera.forward = R * camera.forward;
+    return camera;
+}
+
 std::vector<Vec3> corners(const Bounds& box)
 {
     std::vector<Vec3> points;
@@ -99,6 +121,21 @@ std::vector<Vec3> corners(const Bounds& box)
     for (int k = 0; k < 8; ++k)
         points.push_back(Vec3(k & 1 ? box.upper.x() : box.lower.x(), k & 2 ? box.upper.y() : box.lower.y(),
                               k & 4 ? box.upper.z() : box.lower.z()));
+    return points;
+}
+
+std::vector<Vec3> cylinder_around(const Bounds& box)
+{
+    constexpr int kSides = 64;
+    const Vec3 center = box.center(), half = box.upper - center;
+    const double radius = std::hypot(half.x(), half.z());
+    std::vector<Vec3> points;
+    points.reserve(2 * kSides);
+    for (int k = 0; k < kSides; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kSides;
+        for (const double height : {-half.y(), half.y()})
+            points.push_back(center + Vec3(radius * std::sin(angle), height, radius * std::cos(angle)));
+    }
     return points;
 }
 

@@ -13,6 +13,11 @@ struct CameraSettings {
     double zoom = 1.0;           ///< > 1 comes closer; at 1 everything just fits, with a margin
 };
 
+/// A rectangle of a picture, in fractions of its width and height from the upper left corner [-].
+struct Crop {
+    double left = 0.0, top = 0.0, right = 1.0, bottom = 1.0;
+};
+
 /// A pinhole camera.
 struct Camera {
     Vec3 origin = Vec3::Zero();    ///< [m]
@@ -20,7 +25,11 @@ struct Camera {
     Vec3 up = Vec3::UnitY();       ///< unit
     Vec3 forward = -Vec3::UnitZ(); ///< unit
     double tan_half_fov = 0.3;     ///< of half the vertical opening angle [-]
-    double aspect = 4.0 / 3.0;     ///< width over height [-]
+    double aspect = 4.0 / 3.0;     ///< width over height of the whole picture [-]
+    Crop crop;                     ///< part of the picture that is taken
+
+    /// Picture coordinates of a point of the part taken, in fractions of its size from its upper left corner.
+    Vec2 picture_coordinates(double column, double row) const;
 
     /// Unit direction through picture coordinates in [-1, 1] x [-1, 1], y up.
     Vec3 direction(double x, double y) const;
@@ -33,7 +42,16 @@ struct Camera {
 /// @throws InvalidInput for no points or settings out of range.
 Camera fit_camera(View<const Vec3> points, const CameraSettings& settings, double aspect);
 
+/// The camera shifted across its direction and along it, so that `target` [m] is in the middle of the picture
+/// at the distance along the direction that `before` has.
+Camera aimed_at(Camera camera, const Vec3& target, const Vec3& before);
+
+/// The camera turned about the vertical through `pivot` [m], from +Z towards +X.
+Camera turned(Camera camera, double angle_deg, const Vec3& pivot);
+
 /// The eight corners of a box.
 std::vector<Vec3> corners(const Bounds& box);
+/// Points around the upright cylinder about a box: a camera that is turned about its axis sees them alike.
+std::vector<Vec3> cylinder_around(const Bounds& box);
 
 } // namespace toile::preview

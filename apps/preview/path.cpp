@@ -85,7 +85,7 @@ PathTracer::PathTracer(const RenderScene& scene, const std::vector<std::vector<V
     sun_frame_ = frame_around(lighting_.to_sun);
 }
 
-Vec3 PathTracer::display_color(double x, double y, const PixelSampler& sampler, int sample) const
+PathSample PathTracer::trace(double x, double y, const PixelSampler& sampler, int sample) const
 {
     const Vec3 direction = camera_.direction(x, y);
     const double height = std::clamp(0.5 + 0.5 * y, 0.0, 1.0);
@@ -96,11 +96,15 @@ Vec3 PathTracer::display_color(double x, double y, const PixelSampler& sampler, 
     if (scene_.ground_height && direction.y() < 0.0 && camera_.origin.y() > *scene_.ground_height)
         t_ground = (*scene_.ground_height - camera_.origin.y()) / direction.y();
 
-    if (const auto hit = rays_.closest_hit(camera_.origin, direction, t_ground))
-        return tone_map(shade(surface_point(camera_.origin, direction, *hit), -direction, sampler, sample));
-    if (t_ground < 1e30)
-        return ground_color(camera_.origin + t_ground * direction, background, sampler, sample);
-    return background;
+    if (const auto hit = rays_.closest_hit(camera_.origin, direction, t_ground)) {
+        const SurfacePoint at = surface_point(camera_.origin, direction, *hit);
+        return {tone_map(shade(at, -direction, sampler, sample)), at.surface, at.position, at.normal};
+    }
+    if (t_ground < 1e30) {
+        const Vec3 at = camera_.origin + t_ground * direction;
+        return {ground_color(at, background, sampler, sample), PathSample::kGround, at, Vec3::UnitY()};
+    }
+    return {.color = background};
 }
 
 SurfacePoint PathTracer::surface_point(const Vec3& origin, const Vec3& direction,
@@ -137,11 +141,14 @@ SurfacePoint PathTracer::surface_point(const Vec3& origin, const Vec3& direction
     }
     at.shadow_origin = at.position + lift + step_off_ * at.facet_normal;
 
+    at.surface = 1 + 3 * hit.mesh + (is_front ? 1 : 0);
     at.albedo = is_front ? mesh.material.front : mesh.material.back;
     if (is_front && mesh.material.print != Print::Plain) {
         const std::array<Vec2, 3>& uv = mesh.corner_coordinates[size_t(hit.triangle)];
-        if (second_color(mesh.material, weight[0] * uv[0] + weight[1] * uv[1] + weight[2] * uv[2]))
+        if (second_color(mesh.material, weight[0] * uv[0] + weight[1] * uv[1] + weight[2] * uv[2])) {
             at.albedo = mesh.material.print_front;
+            ++at.surface;
+        }
     }
     return at;
 }

@@ -19,6 +19,17 @@ struct SurfacePoint {
     Vec3 facet_normal = Vec3::UnitY(); ///< of the triangle, on the viewer's side, unit
     Vec3 albedo = Vec3::Zero();        ///< linear RGB
     const Material* material = nullptr;
+    int surface = 0; ///< PathSample::surface
+};
+
+/// Colour of one path, and what its camera ray met.
+struct PathSample {
+    Vec3 color = Vec3::Zero();    ///< display-linear [0, 1]
+    int surface = kBackground;    ///< a side of a mesh, or a colour of its print
+    Vec3 position = Vec3::Zero(); ///< [m]
+    Vec3 normal = Vec3::Zero();   ///< smooth, on the viewer's side, unit
+
+    static constexpr int kBackground = -1, kGround = 0;
 };
 
 /// Traces light paths of length two: camera, surface, then sun, sky or a neighbouring surface.
@@ -28,8 +39,8 @@ public:
     PathTracer(const RenderScene& scene, const std::vector<std::vector<Vec3>>& normals,
                const collision::RayScene& rays, const Camera& camera);
 
-    /// Display-linear colour [0, 1] at picture coordinates in [-1, 1], one sample.
-    Vec3 display_color(double x, double y, const PixelSampler& sampler, int sample) const;
+    /// One sample at picture coordinates in [-1, 1].
+    PathSample trace(double x, double y, const PixelSampler& sampler, int sample) const;
 
 private:
     SurfacePoint surface_point(const Vec3& origin, const Vec3& direction, const collision::RayHit& hit) const;

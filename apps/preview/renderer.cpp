@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "apps/preview/denoise.h"
 #include "apps/preview/path.h"
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
@@ -13,10 +14,11 @@ namespace toile::preview {
 
 namespace {
 
-/// A pixel takes no more samples if its first kProbeSamples differ by less than kProbeAgreement
-/// [display-linear]. That is half a step of 8-bit sRGB in light tones. Fewer probes would miss edges that
-/// cover an eighth of a pixel.
+/// A pixel takes no more samples if its first kProbeSamples, or kProbeFraction of all, differ by less than
+/// kProbeAgreement [display-linear]. That is half a step of 8-bit sRGB in light tones. Fewer probes would
+/// miss edges that cover an eighth of a pixel, and the rim of shadows where many samples are asked for.
 constexpr int kProbeSamples = 8;
+constexpr double kProbeFraction = 0.125;
 constexpr double kProbeAgreement = 0.004;
 
 void require_sane(const RenderScene& scene, const RenderSettings& settings)
@@ -46,31 +48,63 @@ std::uint8_t srgb(double linear)
     return std::uint8_t(std::lround(255.0 * std::clamp(encoded, 0.0, 1.0)));
 }
 
+/// Samples of a pixel with several surfaces, over those of others [-]: their borders are not smoothed.
+constexpr int kEdgeSamples = 4;
+
 /// Averages the samples of one pixel; the first ones suffice if they agree (background, open floor).
 struct ShadePixel {
     const PathTracer& tracer;
-    Image& image;
-    int samples;
+    const Camera& camera;
+    int width, height, samples;
+    std::vector<NoisyPixel>& pixels;
 
     void operator()(int pixel) const
     {
-        const int x = pixel % image.width, y = pixel / image.width;
+        const int x = pixel % width, y = pixel / width;
         const PixelSampler sampler(pixel);
-        Vec3 sum = Vec3::Zero(), lowest = Vec3::Ones(), highest = Vec3::Zero();
+        Vec3 sum = Vec3::Zero(), first_half = Vec3::Zero(), lowest = Vec3::Ones(), highest = Vec3::Zero();
+        PathSample first;
+        bool is_one_surface = true;
+        const int probes = std::max(kProbeSamples, int(kProbeFraction * samples));
         int taken = 0;
-        while (taken < samples) {
+        while (taken < (is_one_surface ? samples : kEdgeSamples * samples)) {
             const Vec2 jitter = sampler.point(taken, 0);
-            const Vec3 color =
-                tracer.display_color(2.0 * (x + jitter.x()) / image.width - 1.0,
-                                     1.0 - 2.0 * (y + jitter.y()) / image.height, sampler, taken);
-            sum += color;
-            lowest = lowest.cwiseMin(color);
-            highest = highest.cwiseMax(color);
-            if (++taken == kProbeSamples && (highest - lowest).maxCoeff() < kProbeAgreement)
+            const Vec2 at = camera.picture_coordinates((x + jitter.x()) / width, (y + jitter.y()) / height);
+            const PathSample path = tracer.trace(at.x(), at.y(), sampler, taken);
+            if (taken == 0)
+                first = path;
+            else
+                is_one_surface = is_one_surface && continues(first, path);
+            sum += path.color;
+            lowest = lowest.cwiseMin(path.color);
+            highest = highest.cwiseMax(path.color);
+            ++taken;
+            if (taken == samples / 2)
+                first_half = sum;
+            if (taken == probes && (highest - lowest).maxCoeff() < kProbeAgreement)
                 break;
         }
-        for (int channel = 0; channel < 3; ++channel)
-            image.pixel(x, y)[channel] = srgb(sum[channel] / taken);
+        NoisyPixel& result = pixels[size_t(pixel)];
+        const Vec3 mean = sum / taken;
+        result.color = mean.cast<float>();
+        if (!is_one_surface || first.surface == PathSample::kBackground)
+            return;
+        result.surface = first.surface;
+        result.normal = first.normal.cast<float>();
+        result.position = (first.position - camera.origin).cast<float>();
+        // Halves of a low-discrepancy sequence are such sequences: their difference is twice the error.
+        if (taken == samples && samples > 1)
+            result.variance = float((first_half / (samples / 2) - mean).squaredNorm());
+    }
+
+    /// True if two paths of a pixel met one surface, and not at two of its folds.
+    bool continues(const PathSample& a, const PathSample& b) const
+    {
+        if (a.surface != b.surface)
+            return false;
+        const double pixel_size = 2.0 * camera.tan_half_fov * (camera.crop.bottom - camera.crop.top) /
+                                  height * (a.position - camera.origin).norm();
+        return std::abs(a.normal.dot(b.position - a.position)) < pixel_size;
     }
 };
 
@@ -102,9 +136,16 @@ void Renderer::update(int mesh, View<const Vec3> positions)
 Image Renderer::render(const Camera& camera) const
 {
     Image image(settings_.width, settings_.height);
+    std::vector<NoisyPixel> pixels(size_t(image.width) * size_t(image.height));
     const PathTracer tracer(scene_, normals_, rays_, camera);
-    parallel_for(kCpu, "render/pixels", image.width * image.height,
-                 ShadePixel{tracer, image, settings_.samples});
+    parallel_for(kCpu, "render/pixels", int(pixels.size()),
+                 ShadePixel{tracer, camera, image.width, image.height, settings_.samples, pixels});
+    if (settings_.removes_noise)
+        remove_noise(pixels, image.width, image.height);
+    parallel_for(kCpu, "render/encode", int(pixels.size()), [&](int i) {
+        for (int channel = 0; channel < 3; ++channel)
+            image.rgb[3 * size_t(i) + size_t(channel)] = srgb(pixels[size_t(i)].color[channel]);
+    });
     return image;
 }
 

@@ -11,13 +11,15 @@
 namespace toile::preview {
 
 struct RenderSettings {
-    int width = 960;  ///< [pixels]
-    int height = 720; ///< [pixels]
-    int samples = 16; ///< per pixel; powers of two are best distributed
+    int width = 960;           ///< [pixels]
+    int height = 720;          ///< [pixels]
+    int samples = 16;          ///< per pixel; powers of two are best distributed
+    bool removes_noise = true; ///< by remove_noise()
 };
 
 /// Renders preview pictures of surfaces: ray-traced soft sun, sky with ambient occlusion and one bounce, a
-/// floor that fades into a light background. The result has the same bits for any number of threads.
+/// floor that fades into a light background. Noise of few samples is removed. The result has the same bits
+/// for any number of threads.
 class Renderer {
 public:
     /// Copies the scene and builds its ray tree.

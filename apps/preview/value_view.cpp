@@ -40,8 +40,9 @@ ValueView::ValueView(const TriangleMesh& surface, const TriangleMesh& around, co
     parallel_for(kCpu, "value_view/rays", int(samples_.size()), [&](int i) {
         const int pixel = i / int(kRays.size());
         const Vec2& at = kRays[size_t(i) % kRays.size()];
-        const Vec3 direction = camera.direction(2.0 * (pixel % width + at.x()) / width - 1.0,
-                                                1.0 - 2.0 * (pixel / width + at.y()) / height);
+        const Vec2 seen =
+            camera.picture_coordinates((pixel % width + at.x()) / width, (pixel / width + at.y()) / height);
+        const Vec3 direction = camera.direction(seen.x(), seen.y());
         const auto hit = rays.closest_hit(camera.origin, direction, kFarthestHit);
         if (!hit)
             return;

@@ -69,6 +69,13 @@ bool is_on_path(const char* program)
     return false;
 }
 
+void require_encoder(const std::filesystem::path& file)
+{
+    if (!is_on_path("ffmpeg"))
+        throw InvalidInput(file.string() + ": a video needs the program ffmpeg on PATH; install it "
+                                           "(apt install ffmpeg) or write a .png");
+}
+
 VideoWriter::VideoWriter(std::filesystem::path file, int width, int height, double fps)
     : file_(std::move(file)),
       partial_(file_.parent_path() / (file_.stem().string() + ".partial" + file_.extension().string())),
@@ -80,9 +87,7 @@ VideoWriter::VideoWriter(std::filesystem::path file, int width, int height, doub
         throw InvalidInput(file_.string() + ": " + std::to_string(width) + " x " + std::to_string(height) +
                            " pixels at " + std::to_string(fps) +
                            " fps make no video; use 2 x 2 or more and a positive rate");
-    if (!is_on_path("ffmpeg"))
-        throw InvalidInput(file_.string() + ": a video needs the program ffmpeg on PATH; install it "
-                                            "(apt install ffmpeg) or write a .png");
+    require_encoder(file_);
     write_atomically(partial_, "");
 
     std::ostringstream rate;

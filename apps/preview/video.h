@@ -33,6 +33,9 @@ private:
     int process_ = -1;
 };
 
+/// @throws InvalidInput naming the video if ffmpeg is not on PATH.
+void require_encoder(const std::filesystem::path& file);
+
 /// True if a program of this name can be run from PATH.
 bool is_on_path(const char* program);
 

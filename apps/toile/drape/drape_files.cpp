@@ -298,7 +298,7 @@ void DrapeFiles::write_picture(const scenes::DrapeSettings& settings, const RunL
 
     Film film = Film::of_caches(shown, meshes, "");
     film.put_floor_below_avatars();
-    film.choose({0});
+    film.choose({Shot{}});
     preview::write_png(picture(), film.picture(0));
     log.file(picture());
 }

@@ -4,6 +4,7 @@
 #include "apps/toile/caches/cache_files.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/fit/fit_files.h"
+#include "apps/toile/maps/skin.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/run_log.h"
@@ -16,7 +17,6 @@
 #include "export/point_cache.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/surfaces/load_cloth.h"
 
 namespace toile::app {
 
@@ -38,20 +38,12 @@ struct CacheFrame {
     int frame = 0;
 };
 
-/// Skin of all avatars but planes, together.
 TriangleMesh skin_at(const scenes::Scene& scene, double time)
 {
-    TriangleMesh skin;
-    for (scenes::SceneBody& body : scenes::make_bodies(scene)) {
-        if (std::holds_alternative<scene::Plane>(body.settings().shape))
-            continue;
+    std::vector<scenes::SceneBody> bodies = scenes::make_bodies(scene);
+    for (scenes::SceneBody& body : bodies)
         body.advance_to(time);
-        const int first = skin.vertex_count();
-        skin.positions.insert(skin.positions.end(), body.surface().positions.begin(),
-                              body.surface().positions.end());
-        for (const Triangle& t : body.surface().triangles)
-            skin.triangles.push_back(Triangle(t[0] + first, t[1] + first, t[2] + first));
-    }
+    TriangleMesh skin = skin_of(bodies);
     if (skin.triangles.empty())
         throw InvalidInput(scene.source.string() + ": has no avatar with a skin; a garment fits a body");
     return skin;
@@ -76,9 +68,7 @@ CacheFrame read_frame(const scenes::Scene& scene, const std::filesystem::path& f
     const size_t index = size_t(cloths.front().surface);
     if (index >= scene.cloths.size())
         throw InvalidInput(file.string() + ": is of a solid; only cloths fit a body");
-    scenes::Scene free = scene; // attachments don't change how cloth fits
-    free.attachments.clear();
-    const scenes::LoadedCloth cloth = scenes::load_cloth(free, free.cloths[index], {}, {});
+    const scenes::LoadedCloth cloth = unattached_cloth(scene, index);
     const exports::PointCache cache = open_cloth(file, cloths.front().entry, cloth.state);
     require_same_points(cache, file, cloth.state.name, int(cloth.state.file_mesh().positions.size()));
     const int frame = frame_of(cache, file, options.frame);

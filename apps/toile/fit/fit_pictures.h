@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "apps/preview/image.h"
-#include "apps/toile/fit/vertex_map.h"
+#include "apps/toile/maps/vertex_map.h"
 
 namespace toile::app {
 

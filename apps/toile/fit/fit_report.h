@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/toile/fit/garment_girth.h"
-#include "apps/toile/fit/vertex_map.h"
+#include "apps/toile/maps/vertex_map.h"
 
 namespace toile::app {
 

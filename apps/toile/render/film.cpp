@@ -1,23 +1,20 @@
 #include "apps/toile/render/film.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/check/cache_cloth.h"
+#include "apps/toile/maps/skin.h"
 #include "apps/toile/render/print.h"
 #include "core/base/error.h"
 #include "core/base/long_work.h"
+#include "export/cache_path.h"
 #include "scenes/surfaces/load_cloth.h"
 #include "scenes/world/world.h"
 
 namespace toile::app {
 
 namespace {
-
-/// Half width of the window that smooths the camera path [s]. Footsteps take about half a second; a shorter
-/// window would make the camera bob with them.
-constexpr double kFollowWindow = 0.5;
 
 preview::Material body_material(const Vec3& srgb)
 {
@@ -26,19 +23,26 @@ preview::Material body_material(const Vec3& srgb)
     return material;
 }
 
-/// Moving averages over `reach` entries to either side; windows are shorter at the ends.
-std::vector<Vec3> smoothed(const std::vector<Vec3>& points, int reach)
+/// What a mesh is called: /skirt/skirtShape of an archive, or the name of its file.
+std::string name_in_cache(const std::filesystem::path& mesh)
 {
-    std::vector<Vec3> means;
-    const int count = int(points.size());
-    for (int i = 0; i < count; ++i) {
-        const int half = std::min({reach, i, count - 1 - i});
-        Vec3 sum = Vec3::Zero();
-        for (int k = i - half; k <= i + half; ++k)
-            sum += points[size_t(k)];
-        means.push_back(sum / (2 * half + 1));
-    }
-    return means;
+    const std::filesystem::path inside = exports::mesh_path_of(mesh);
+    return inside.has_parent_path() && inside.parent_path().has_filename()
+               ? inside.parent_path().filename().string()
+               : exports::archive_of(mesh).stem().string();
+}
+
+void require_name(const std::string& name, const std::vector<std::string>& known)
+{
+    if (std::find(known.begin(), known.end(), name) != known.end())
+        return;
+    std::string list;
+    for (const std::string& word : known)
+        list += (list.empty() ? "" : ", ") + word;
+    const std::string near = nearest_word(name, known);
+    throw InvalidInput("--target: nothing in the picture is named \"" + name + "\"; " +
+                       (near.empty() ? "there are " + list + "; or write X,Y,Z in metres"
+                                     : "did you mean \"" + near + "\"?"));
 }
 
 /// Part of the loading that is that of avatars [-].
@@ -59,8 +63,9 @@ Film Film::of_scene(const scenes::Scene& scene, const scenes::WorldOptions& opti
     film.bodies_ = load_bodies(scene);
     film.frame_count_ = 1;
     const scenes::World world(scene, options);
-    for (int i = 0; i < world.surfaces().size(); ++i)
-        film.add_surface(i, world.surfaces()[i], std::nullopt, {});
+    film.surfaces_.assign(world.surfaces().begin(), world.surfaces().end());
+    for (int i = 0; i < int(film.surfaces_.size()); ++i)
+        film.add_surface(i, std::nullopt, {});
     return film;
 }
 
@@ -71,13 +76,13 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
     film.settings_ = scene;
     film.bodies_ = load_bodies(scene);
     const LongWork::Part part(kOfBodies, 1.0);
-    const std::vector<scenes::ClothState> surfaces = scenes::load_surfaces(scene);
+    film.surfaces_ = scenes::load_surfaces(scene);
     for (const std::filesystem::path& file : caches) {
         for (const ClothInCache& in_cache : cloths_of_cache(scene, file, cloth)) {
-            const scenes::ClothState& state = surfaces[size_t(in_cache.surface)];
+            const scenes::ClothState& state = film.surfaces_[size_t(in_cache.surface)];
             const exports::PointCache cache = open_cloth(file, in_cache.entry, state);
             require_same_points(cache, file, state.name, int(state.file_mesh().positions.size()));
-            film.add_surface(in_cache.surface, state, cache, file);
+            film.add_surface(in_cache.surface, cache, file);
         }
     }
     return film;
@@ -95,29 +100,31 @@ Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches)
                                    ": has points without faces; give --scene with the scene that it " +
                                    "was made from");
             film.settings_.fps = cache.fps().value_or(film.settings_.fps) * cache.subframes();
-            film.add_cloth({}, cache.mesh()->triangulated().triangles, cache.mesh()->positions, cache, mesh);
+            film.add_cloth(name_in_cache(mesh), {}, cache.mesh()->triangulated().triangles,
+                           cache.mesh()->positions, cache, mesh);
         }
     return film;
 }
 
-/// @param index  in World::surfaces()
-void Film::add_surface(int index, const scenes::ClothState& state, std::optional<exports::PointCache> cache,
-                       const std::filesystem::path& file)
+/// @param index  in surfaces_
+void Film::add_surface(int index, std::optional<exports::PointCache> cache, const std::filesystem::path& file)
 {
+    const scenes::ClothState& state = surfaces_[size_t(index)];
     const int solid = index - int(settings_.cloths.size());
     const scene::Cloth settings = solid < 0 ? settings_.cloths[size_t(index)] : scene::Cloth{};
-    add_cloth(settings, state.triangles, state.positions, std::move(cache), file);
-    tracks_.back().cloth = state;
+    add_cloth(state.name, settings, state.triangles, state.positions, std::move(cache), file);
+    tracks_.back().cloth = &state;
     apply_print(settings, state, tracks_.back().mesh);
     if (solid >= 0)
         tracks_.back().mesh.material = body_material(settings_.solids[size_t(solid)].color);
 }
 
-void Film::add_cloth(const scene::Cloth& settings, const std::vector<Triangle>& triangles,
-                     const std::vector<Vec3>& start, std::optional<exports::PointCache> cache,
-                     const std::filesystem::path& file)
+void Film::add_cloth(const std::string& name, const scene::Cloth& settings,
+                     const std::vector<Triangle>& triangles, const std::vector<Vec3>& start,
+                     std::optional<exports::PointCache> cache, const std::filesystem::path& file)
 {
     Track track;
+    track.name = name;
     track.file = file;
     if (cache)
         frame_count_ = std::max(frame_count_, cache->frame_count());
@@ -150,15 +157,28 @@ void Film::show_bodies(int frame)
         body.advance_to(frame * settings_.frame_duration());
 }
 
-Bounds Film::bounds_of(int frame)
+std::vector<std::string> Film::names() const
+{
+    std::vector<std::string> names;
+    for (const Track& track : tracks_)
+        names.push_back(track.name);
+    for (const scenes::SceneBody& body : bodies_)
+        if (!std::holds_alternative<scene::Plane>(body.settings().shape))
+            names.push_back(body.settings().name);
+    return names;
+}
+
+Bounds Film::bounds_of(int frame, const std::string& name)
 {
     Bounds box;
     for (const Track& track : tracks_)
-        for (const Vec3& p : positions(track, frame))
-            box.extend(p);
+        if (name.empty() || track.name == name)
+            for (const Vec3& p : positions(track, frame))
+                box.extend(p);
     show_bodies(frame);
     for (const scenes::SceneBody& body : bodies_)
-        if (!std::holds_alternative<scene::Plane>(body.settings().shape))
+        if (!std::holds_alternative<scene::Plane>(body.settings().shape) &&
+            (name.empty() || body.settings().name == name))
             for (const Vec3& p : body.surface().positions)
                 box.extend(p);
     return box;
@@ -175,24 +195,48 @@ void Film::put_floor_below_avatars()
         settings_.render.ground = box.lower.y();
 }
 
-void Film::choose(const std::vector<int>& frames)
+std::vector<Film::Cloth> Film::cloths(int frame) const
 {
-    frames_ = frames;
-    std::vector<Bounds> boxes;
-    centers_.clear();
-    for (const int frame : frames) {
-        boxes.push_back(bounds_of(frame));
-        const Vec3 center = boxes.back().center();
-        centers_.push_back(Vec3(center.x(), 0.0, center.z()));
-    }
-    const int spacing = frames.size() > 1 ? frames[1] - frames[0] : 1;
-    centers_ = smoothed(centers_, int(kFollowWindow * settings_.fps / spacing));
+    std::vector<Cloth> cloths;
+    for (const Track& track : tracks_)
+        if (is_cloth(track))
+            cloths.push_back({int(track.cloth - surfaces_.data()), positions(track, frame)});
+    return cloths;
+}
 
-    view_ = Bounds();
-    for (size_t i = 0; i < boxes.size(); ++i) {
-        view_.extend(boxes[i].lower - centers_[i]);
-        view_.extend(boxes[i].upper - centers_[i]);
-    }
+TriangleMesh Film::skin(int frame)
+{
+    show_bodies(frame);
+    return skin_of(bodies_);
+}
+
+TriangleMesh Film::solids(int frame) const
+{
+    TriangleMesh solids;
+    for (const Track& track : tracks_)
+        if (!is_cloth(track))
+            append(solids, positions(track, frame), track.mesh.triangles);
+    return solids;
+}
+
+bool Film::is_cloth(const Track& track) const
+{
+    return track.cloth != nullptr && track.cloth - surfaces_.data() < long(settings_.cloths.size());
+}
+
+void Film::choose(const std::vector<Shot>& shots, const CameraTarget& target, const preview::Crop& crop)
+{
+    const std::string* const name = std::get_if<std::string>(&target);
+    if (name != nullptr)
+        require_name(*name, names());
+    std::vector<Bounds> boxes;
+    for (size_t i = 0; i < shots.size(); ++i)
+        boxes.push_back(i > 0 && shots[i].frame == shots[i - 1].frame
+                            ? boxes.back()
+                            : bounds_of(shots[i].frame, name != nullptr ? *name : ""));
+    shots_ = shots;
+    crop_ = crop;
+    path_ = CameraPath(settings_.render, crop, target, shots, boxes, settings_.fps);
     renderer_.reset();
 }
 
@@ -216,14 +260,15 @@ preview::RenderScene Film::render_scene(int frame) const
     return scene;
 }
 
-preview::Image Film::picture(int frame)
+preview::Image Film::picture(size_t shot)
 {
-    const scene::Render& render = settings_.render;
+    const int frame = shots_[shot].frame;
     show_bodies(frame);
     if (!renderer_) {
+        const PictureSize size = picture_size();
         renderer_.emplace(render_scene(frame),
-                          preview::RenderSettings{render.width, render.height, render.samples});
-    } else {
+                          preview::RenderSettings{size.width, size.height, settings_.render.samples});
+    } else if (rendered_frame_ != frame) {
         int mesh = 0;
         for (const Track& track : tracks_)
             renderer_->update(mesh++, positions(track, frame));
@@ -231,15 +276,8 @@ preview::Image Film::picture(int frame)
             if (is_shown(body))
                 renderer_->update(mesh++, body.surface().positions);
     }
-
-    preview::CameraSettings view;
-    view.azimuth_deg = render.azimuth_deg;
-    view.elevation_deg = render.elevation_deg;
-    view.zoom = render.zoom;
-    preview::Camera camera = fit_camera(preview::corners(view_), view, double(render.width) / render.height);
-    const auto at = std::find(frames_.begin(), frames_.end(), frame) - frames_.begin();
-    camera.origin += centers_[size_t(at)];
-    return renderer_->render(camera);
+    rendered_frame_ = frame;
+    return renderer_->render(path_.at(shot));
 }
 
 } // namespace toile::app

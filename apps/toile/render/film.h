@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/preview/camera.h"
 #include "apps/preview/renderer.h"
+#include "apps/toile/render/camera_path.h"
 #include "export/point_cache.h"
 #include "scenes/colliders/scene_body.h"
 #include "scenes/format/scene.h"
@@ -29,6 +29,10 @@ public:
     /// @throws InvalidInput for a cache without faces.
     static Film of_obj_caches(const std::vector<std::filesystem::path>& caches);
 
+    Film(Film&&) = default;
+    Film& operator=(Film&&) = default;
+
+    const scenes::Scene& settings() const { return settings_; }
     int frame_count() const { return frame_count_; }
     double fps() const { return settings_.fps; }
     scene::Render& render() { return settings_.render; } ///< size, view and samples; may be changed
@@ -36,40 +40,63 @@ public:
     /// Puts the floor at the lowest point of the avatars in their first pose, if there are any and a floor.
     void put_floor_below_avatars();
 
-    /// Prepares pictures of these frames. The view contains all of them and follows a walking avatar.
-    void choose(const std::vector<int>& frames);
+    /// Prepares pictures. The view contains the target in all of them.
+    /// @throws InvalidInput if the target is a name that nothing has.
+    void choose(const std::vector<Shot>& shots, const CameraTarget& target = {},
+                const preview::Crop& crop = {});
 
-    /// Picture of one of the prepared frames.
-    preview::Image picture(int frame);
+    PictureSize picture_size() const { return size_of_part(settings_.render, crop_); }
+
+    const std::vector<Shot>& shots() const { return shots_; }
+    const preview::Camera& camera(size_t shot) const { return path_.at(shot); }
+
+    /// A cloth of the scene in a frame.
+    struct Cloth {
+        int index = 0;         ///< in the scene
+        std::vector<Vec3> now; ///< [vertices] [m]
+    };
+    std::vector<Cloth> cloths(int frame) const;
+    TriangleMesh skin(int frame);
+    TriangleMesh solids(int frame) const;
+
+    /// One of the prepared pictures.
+    preview::Image picture(size_t shot);
 
 private:
+    Film() = default;
+
     struct Track {
-        std::optional<exports::PointCache> cache; ///< absent: `start` at all times
-        std::filesystem::path file;               ///< of the cache
-        std::optional<scenes::ClothState> cloth;  ///< with a scene
-        std::vector<Vec3> start;                  ///< [vertices] [m]
+        std::string name;                          ///< of the cloth, solid or mesh
+        std::optional<exports::PointCache> cache;  ///< absent: `start` at all times
+        std::filesystem::path file;                ///< of the cache
+        const scenes::ClothState* cloth = nullptr; ///< of surfaces_, with a scene
+        std::vector<Vec3> start;                   ///< [vertices] [m]
         preview::RenderMesh mesh;
     };
 
-    void add_surface(int index, const scenes::ClothState& state, std::optional<exports::PointCache> cache,
-                     const std::filesystem::path& file);
-    void add_cloth(const scene::Cloth& settings, const std::vector<Triangle>& triangles,
-                   const std::vector<Vec3>& start, std::optional<exports::PointCache> cache,
-                   const std::filesystem::path& file);
+    void add_surface(int index, std::optional<exports::PointCache> cache, const std::filesystem::path& file);
+    void add_cloth(const std::string& name, const scene::Cloth& settings,
+                   const std::vector<Triangle>& triangles, const std::vector<Vec3>& start,
+                   std::optional<exports::PointCache> cache, const std::filesystem::path& file);
     std::vector<Vec3> positions(const Track& track, int frame) const;
+    bool is_cloth(const Track& track) const;
     bool is_shown(const scenes::SceneBody& body) const;
     void show_bodies(int frame);
-    Bounds bounds_of(int frame);
+    std::vector<std::string> names() const;
+    /// @param name  of what is to be seen; empty: everything
+    Bounds bounds_of(int frame, const std::string& name);
     preview::RenderScene render_scene(int frame) const;
 
     scenes::Scene settings_; ///< fps, render; defaults for caches without a scene
     std::vector<scenes::SceneBody> bodies_;
+    std::vector<scenes::ClothState> surfaces_; ///< cloths and then solids of the scene; caches refer to them
     std::vector<Track> tracks_;
     int frame_count_ = 0;
-    std::vector<int> frames_;   ///< prepared
-    std::vector<Vec3> centers_; ///< [frames_] horizontal position followed by the camera [m]
-    Bounds view_;               ///< of all prepared frames, relative to their centres [m]
+    std::vector<Shot> shots_; ///< prepared
+    preview::Crop crop_;
+    CameraPath path_; ///< of shots_
     std::optional<preview::Renderer> renderer_;
+    int rendered_frame_ = -1; ///< that renderer_ has
 };
 
 } // namespace toile::app

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -6,6 +5,8 @@
 #include "apps/toile/caches/cache_files.h"
 #include "apps/toile/render/film.h"
 #include "apps/toile/render/frame_range.h"
+#include "apps/toile/render/map_pictures.h"
+#include "apps/toile/render/viewpoint.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "apps/toile/terminal/progress.h"
@@ -33,8 +34,14 @@ struct RenderOptions {
     int width = 0; ///< 0: the scene's
     int height = 0;
     int samples = 0;
+    int turntable = 0; ///< pictures around; 0: none
+    ViewpointOptions viewpoint;
+    MapOptions map;
     bool quiet = false;
 };
+
+/// Pictures of a turntable in a second.
+constexpr double kTurntableFps = 24.0;
 
 bool is_scene(const std::filesystem::path& input) { return lower_case_extension(input) == ".json"; }
 
@@ -77,24 +84,84 @@ std::vector<int> chosen_frames(const RenderOptions& options, const Film& film, b
     return parse_frame_range(text, film.frame_count());
 }
 
-std::vector<preview::Image> take_pictures(Film& film, const std::vector<int>& frames, bool quiet)
+/// Pictures in the order of their numbers.
+struct Shots {
+    std::vector<Shot> shots;
+    std::vector<int> numbers; ///< [shots] in names of files and on sheets
+    double fps = 0.0;
+};
+
+/// Frames of a film, or one frame from all around.
+Shots chosen_shots(const RenderOptions& options, const Film& film, bool is_picture)
 {
-    Progress progress("picture", int(frames.size()), quiet);
-    std::vector<preview::Image> pictures;
-    for (const int frame : frames) {
-        pictures.push_back(film.picture(frame));
-        progress.update(int(pictures.size()));
+    const bool is_single = is_picture || options.turntable > 0;
+    const std::vector<int> frames = chosen_frames(options, film, is_single);
+    if (is_single && frames.size() > 1)
+        throw InvalidInput(is_picture ? options.output.string() + ": is one picture, but --frames chooses " +
+                                            std::to_string(frames.size()) +
+                                            "; add --sheet COLUMNS, or write to .mp4 or a folder"
+                                      : "--turntable: goes around one frame, but --frames chooses " +
+                                            std::to_string(frames.size()));
+    Shots shots;
+    if (options.turntable == 0) {
+        const int step = frames.size() > 1 ? frames[1] - frames[0] : 1;
+        shots.fps = film.fps() / step;
+        shots.numbers = frames;
+        for (const int frame : frames)
+            shots.shots.push_back({frame});
+        return shots;
     }
-    return pictures;
+    shots.fps = kTurntableFps;
+    for (int i = 0; i < options.turntable; ++i) {
+        shots.numbers.push_back(i);
+        shots.shots.push_back({frames[0], 360.0 * i / options.turntable});
+    }
+    return shots;
 }
 
-void write_video(Film& film, const std::vector<int>& frames, const std::filesystem::path& file, bool quiet)
+/// What is written: the film's pictures, or heat maps with their legend.
+class Pictures {
+public:
+    Pictures(Film& film, const RenderOptions& options) : film_(film)
+    {
+        if (options.map.is_given())
+            maps_.emplace(film, options.map, options.quiet);
+    }
+
+    preview::Image without_legend(size_t shot) { return maps_ ? maps_->picture(shot) : film_.picture(shot); }
+    preview::Image with_legend(const preview::Image& picture, const std::string& caption) const
+    {
+        return maps_ ? preview::with_colour_bar({&picture, 1}, {&caption, 1}, maps_->legend()) : picture;
+    }
+    preview::Image operator()(size_t shot)
+    {
+        return with_legend(without_legend(shot), "frame " + std::to_string(film_.shots()[shot].frame));
+    }
+
+private:
+    Film& film_;
+    std::optional<MapPictures> maps_;
+};
+
+preview::Image sheet_of(Pictures& pictures, const Shots& shots, const RenderOptions& options)
 {
-    const int step = frames.size() > 1 ? frames[1] - frames[0] : 1;
-    preview::VideoWriter video(file, film.render().width, film.render().height, film.fps() / step);
-    Progress progress("picture", int(frames.size()), quiet);
-    for (size_t i = 0; i < frames.size(); ++i) {
-        video.write(film.picture(frames[i]));
+    Progress progress("picture", int(shots.shots.size()), options.quiet);
+    std::vector<preview::Image> taken;
+    for (size_t i = 0; i < shots.shots.size(); ++i) {
+        taken.push_back(pictures.without_legend(i));
+        progress.update(int(i) + 1);
+    }
+    return pictures.with_legend(contact_sheet(taken, options.sheet, shots.numbers), "");
+}
+
+void write_video(Pictures& pictures, const Shots& shots, const std::filesystem::path& file, bool quiet)
+{
+    preview::require_encoder(file);
+    Progress progress("picture", int(shots.shots.size()), quiet);
+    const preview::Image first = pictures(0);
+    preview::VideoWriter video(file, first.width, first.height, shots.fps);
+    for (size_t i = 0; i < shots.shots.size(); ++i) {
+        video.write(i == 0 ? first : pictures(i));
         progress.update(int(i) + 1);
     }
     video.finish();
@@ -108,12 +175,12 @@ std::filesystem::path picture_file(const std::filesystem::path& folder, int fram
     return folder / name;
 }
 
-void write_folder(Film& film, const std::vector<int>& frames, const std::filesystem::path& folder, bool quiet)
+void write_folder(Pictures& pictures, const Shots& shots, const std::filesystem::path& folder, bool quiet)
 {
-    Progress progress("picture", int(frames.size()), quiet);
-    for (size_t i = 0; i < frames.size(); ++i) {
+    Progress progress("picture", int(shots.numbers.size()), quiet);
+    for (size_t i = 0; i < shots.numbers.size(); ++i) {
         try {
-            write_png(picture_file(folder, frames[i]), film.picture(frames[i]));
+            write_png(picture_file(folder, shots.numbers[i]), pictures(i));
         } catch (const InvalidInput& error) { // at first, nothing is written yet
             if (i > 0)
                 throw DeviceError(error.what() + std::string("; the pictures before are written"));
@@ -125,7 +192,7 @@ void write_folder(Film& film, const std::vector<int>& frames, const std::filesys
 
 /// Refuses pictures that would replace a file that they are made from, or could not be written.
 void require_safe_output(const RenderOptions& options, const std::filesystem::path& output,
-                         const std::vector<int>& frames)
+                         const std::vector<int>& numbers)
 {
     FilePlan plan;
     for (const std::filesystem::path& input : options.inputs)
@@ -137,45 +204,64 @@ void require_safe_output(const RenderOptions& options, const std::filesystem::pa
         require_writable(output);
         return;
     }
-    for (const int frame : frames) {
-        plan.add_output(picture_file(output, frame), "a picture");
-        require_writable(picture_file(output, frame));
+    for (const int number : numbers) {
+        plan.add_output(picture_file(output, number), "a picture");
+        require_writable(picture_file(output, number));
     }
 }
 
-int render(const RenderOptions& options)
+/// Refuses a combination of options before anything is loaded.
+void require_possible(const RenderOptions& options)
 {
-    const std::filesystem::path output =
-        options.output.empty() ? std::filesystem::path(options.inputs[0].stem().string() + ".png")
-                               : options.output;
-    const std::string extension = lower_case_extension(output);
+    const std::string extension = lower_case_extension(options.output);
     if (!extension.empty() && extension != ".png" && extension != ".mp4")
-        throw InvalidInput(output.string() +
+        throw InvalidInput(options.output.string() +
                            ": pictures are .png or .mp4; a name without extension is a folder");
     if (options.sheet < 0 || (options.sheet > 0 && extension != ".png"))
         throw InvalidInput("--sheet: needs a number of columns above 0 and an output ending in .png");
+    if (options.turntable < 0 || options.turntable == 1 || options.turntable > 3600)
+        throw InvalidInput("--turntable: " + std::to_string(options.turntable) +
+                           " pictures; give a number from 2 to 3600");
+    if (options.turntable > 0 && extension == ".png" && options.sheet == 0)
+        throw InvalidInput(options.output.string() + ": is one picture, but --turntable makes " +
+                           std::to_string(options.turntable) +
+                           "; add --sheet COLUMNS, or write to .mp4 or a folder");
+    options.map.require_valid();
+    if (options.map.is_given() && options.scene.empty() && !is_scene(options.inputs[0]))
+        throw InvalidInput(
+            "--map: give --scene with the scene that the caches were made from; it has the cloth's "
+            "shape at rest, its fabric and the body");
+}
+
+int render(RenderOptions options)
+{
+    if (options.output.empty())
+        options.output = options.inputs[0].stem().string() + ".png";
+    require_possible(options);
+    const CameraTarget target = options.viewpoint.target();
+    const preview::Crop crop = options.viewpoint.crop();
 
     Film film = open_film(options);
     replace_if_given(film.render().width, options.width, "--width");
     replace_if_given(film.render().height, options.height, "--height");
     replace_if_given(film.render().samples, options.samples, "--samples");
-    const bool is_picture = extension == ".png" && options.sheet == 0;
-    const std::vector<int> frames = chosen_frames(options, film, is_picture);
-    if (is_picture && frames.size() > 1)
-        throw InvalidInput(output.string() + ": is one picture, but --frames chooses " +
-                           std::to_string(frames.size()) +
-                           "; add --sheet COLUMNS, or write to .mp4 or a folder");
+    options.viewpoint.apply(film.render());
+    const std::filesystem::path& output = options.output;
+    const std::string extension = lower_case_extension(output);
+    const bool is_png = extension == ".png", is_picture = is_png && options.sheet == 0;
+    const Shots shots = chosen_shots(options, film, is_picture);
 
-    require_safe_output(options, output, frames);
-    film.choose(frames);
+    require_safe_output(options, output, shots.numbers);
+    film.choose(shots.shots, target, crop);
+    Pictures pictures(film, options);
     if (is_picture)
-        write_png(output, film.picture(frames[0]));
-    else if (extension == ".png")
-        write_png(output, contact_sheet(take_pictures(film, frames, options.quiet), options.sheet, frames));
+        write_png(output, pictures(0));
+    else if (is_png)
+        write_png(output, sheet_of(pictures, shots, options));
     else if (extension == ".mp4")
-        write_video(film, frames, output, options.quiet);
+        write_video(pictures, shots, output, options.quiet);
     else
-        write_folder(film, frames, output, options.quiet);
+        write_folder(pictures, shots, output, options.quiet);
     std::cout << output.string() << std::endl;
     return kExitOk;
 }
@@ -199,6 +285,11 @@ Command add_render(CLI::App& parser)
     add.add_option("--width", options->width, "Pixels, instead of the scene's");
     add.add_option("--height", options->height, "Pixels, instead of the scene's");
     add.add_option("--samples", options->samples, "Light paths per pixel, instead of the scene's");
+    options->viewpoint.add_to(add);
+    options->map.add_to(add);
+    add.add_option("--turntable", options->turntable, "Once around one frame, in this many pictures")
+        ->expected(0, 1)
+        ->default_str("96");
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return render(*options); };
     return command;

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "apps/toile/fit/fitted_garment.h"
+#include "apps/toile/maps/fitted_garment.h"
 
 namespace toile::test {
 

@@ -1,4 +1,4 @@
-#include "apps/toile/fit/vertex_map.h"
+#include "apps/toile/maps/vertex_map.h"
 
 #include <gtest/gtest.h>
 
@@ -133,6 +133,26 @@ TEST(GapMap, OfATubeAroundACylinderIsTheDifferenceOfTheirRadii)
         EXPECT_GE(value, -0.01 - 1e-12);
         EXPECT_LE(value, 0.2 - 0.21 * std::cos(std::numbers::pi / kSides) + 1e-12);
     }
+}
+
+/// Laplace: tension over radius; cotton has 261.1 N/m, and cloth of 1 m at rest is 1.03 m long.
+TEST(PressureMap, OfAStretchedTubeIsItsTensionOverItsRadius)
+{
+    FittedGarment garment;
+    garment.name = "tube";
+    garment.mesh = tube(0.2);
+    garment.rest = flat(garment.mesh, 1.03);
+    garment.fabrics = {garment::fabric_preset("cotton", "test")};
+    garment.fabric_of_triangle.assign(garment.mesh.triangles.size(), 0);
+    const double tension = 261.1 * 0.03, radius = 0.2, length = 1.03;
+    const std::vector<double> on_skin = pressure_map(garment, tube(0.199)).values;
+    for (int ring = 2; ring <= kRings - 2; ++ring) // the ends are pulled along the tube too
+        for (int i = 0; i < kSides; ++i)
+            EXPECT_NEAR(on_skin[size_t(ring * kSides + i)], tension / (radius * length),
+                        0.02 * tension / (radius * length));
+    expect_everywhere(pressure_map(garment, tube(0.19)).values, 0.0);
+    garment.rest = flat(garment.mesh);
+    expect_everywhere(pressure_map(garment, tube(0.199)).values, 0.0);
 }
 
 TEST(FittedGarment, HasTheFabricsOfItsPanels)

@@ -75,5 +75,41 @@ TEST(Camera, ProjectsAPointToThePixelOfItsRay)
     EXPECT_LT((camera.project(point) - Vec2(0.3, -0.6)).norm(), 1e-12);
 }
 
+TEST(Camera, GivesTheWholePictureOrACrop)
+{
+    Camera camera;
+    EXPECT_EQ(camera.picture_coordinates(0.0, 0.0), Vec2(-1.0, 1.0));
+    EXPECT_EQ(camera.picture_coordinates(1.0, 1.0), Vec2(1.0, -1.0));
+    camera.crop = {.left = 0.5, .top = 0.25, .right = 0.75, .bottom = 1.0};
+    EXPECT_EQ(camera.picture_coordinates(0.0, 0.0), Vec2(0.0, 0.5));
+    EXPECT_EQ(camera.picture_coordinates(1.0, 1.0), Vec2(0.5, -1.0));
+}
+
+TEST(AimedAt, PutsThePointIntoTheMiddleAtTheSameDistance)
+{
+    const std::vector<Vec3> points = corners(Bounds{Vec3(-1, 0, -1), Vec3(1, 2, 3)});
+    const Camera fitted = fit_camera(points, {}, 1.5);
+    const Vec3 target(0.3, 0.2, 4.0), before(0.0, 1.0, 1.0);
+    const Camera camera = aimed_at(fitted, target, before);
+    EXPECT_LT(camera.project(target).norm(), 1e-12);
+    EXPECT_NEAR((target - camera.origin).norm(), (before - fitted.origin).dot(fitted.forward), 1e-12);
+    EXPECT_EQ(camera.forward, fitted.forward);
+}
+
+TEST(Turned, SeesACylinderAlikeFromAllAround)
+{
+    const Bounds box{Vec3(-0.4, 0.0, -0.2), Vec3(0.5, 1.8, 0.3)};
+    const std::vector<Vec3> points = cylinder_around(box);
+    for (const Vec3& corner : corners(box))
+        EXPECT_LE(std::hypot(corner.x() - box.center().x(), corner.z() - box.center().z()),
+                  std::hypot(points[0].x() - box.center().x(), points[0].z() - box.center().z()) + 1e-12);
+    const Camera fitted = fit_camera(points, {.azimuth_deg = 20.0}, 1.0);
+    const Camera direct = fit_camera(points, {.azimuth_deg = 20.0 + 45.0}, 1.0);
+    const Camera camera = turned(fitted, 45.0, box.center());
+    EXPECT_LT((camera.origin - direct.origin).norm(), 1e-9);
+    EXPECT_LT((camera.forward - direct.forward).norm(), 1e-12);
+    EXPECT_LT((camera.up - direct.up).norm(), 1e-12);
+}
+
 } // namespace
 } // namespace toile::test

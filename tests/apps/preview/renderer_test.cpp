@@ -174,6 +174,35 @@ TEST(Renderer, GivesTheSameBitsForAnyThreadCount)
     EXPECT_EQ(picture(1).rgb, picture(2).rgb);
 }
 
+/// Root mean square of the differences of two pictures [8-bit steps].
+double difference(const Image& a, const Image& b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < a.rgb.size(); ++i)
+        sum += (a.rgb[i] - b.rgb[i]) * (a.rgb[i] - b.rgb[i]);
+    return std::sqrt(sum / double(a.rgb.size()));
+}
+
+TEST(Renderer, RemovesNoiseAndKeepsSilhouettesSharp)
+{
+    const RenderScene scene{.meshes = {square(Vec3(0.0, 2.5, 0.0), true)}, .ground_height = -1.0};
+    const Camera camera = fit_camera(corners(Bounds{Vec3(-1.0, -1.0, -1.0), Vec3(4.0, 2.5, 1.0)}),
+                                     {.elevation_deg = 30.0}, 4.0 / 3.0);
+    const auto picture = [&](int samples, bool removes_noise) {
+        RenderSettings settings = kSmall;
+        settings.samples = samples;
+        settings.removes_noise = removes_noise;
+        return Renderer(scene, settings).render(camera);
+    };
+    const Image converged = picture(256, false), noisy = picture(16, false), smooth = picture(16, true);
+    EXPECT_LT(difference(smooth, converged), 0.8 * difference(noisy, converged));
+    int blurred = 0;
+    for (size_t i = 0; i < smooth.rgb.size(); ++i)
+        blurred += std::abs(smooth.rgb[i] - converged.rgb[i]) > 30;
+    EXPECT_LT(blurred, 60);
+    EXPECT_LT(difference(picture(256, true), converged), 0.3) << "nothing to remove";
+}
+
 TEST(Renderer, FollowsAMeshToItsNextFrame)
 {
     RenderScene scene{.meshes = {unit_sphere(64)}, .ground_height = -1.0};

@@ -31,4 +31,7 @@ FittedGarment fitted_garment(const std::string& name, const scenes::GarmentSurfa
 /// @param x  [vertices] [m]
 FittedGarment fitted_garment(const scenes::LoadedCloth& cloth, std::vector<Vec3> x);
 
+/// A cloth of a scene without its attachments, which don't change how it fits.
+scenes::LoadedCloth unattached_cloth(const scenes::Scene& scene, size_t cloth);
+
 } // namespace toile::app

@@ -1,4 +1,4 @@
-#include "apps/toile/fit/fitted_garment.h"
+#include "apps/toile/maps/fitted_garment.h"
 
 #include <map>
 #include <utility>
@@ -46,6 +46,13 @@ FittedGarment fitted_garment(const scenes::LoadedCloth& cloth, std::vector<Vec3>
     garment.fabric_of_triangle.resize(garment.mesh.triangles.size(), 0);
     garment.stiffness = cloth.state.stiffness;
     return garment;
+}
+
+scenes::LoadedCloth unattached_cloth(const scenes::Scene& scene, size_t cloth)
+{
+    scenes::Scene free = scene;
+    free.attachments.clear();
+    return scenes::load_cloth(free, free.cloths[cloth], {}, {});
 }
 
 } // namespace toile::app
