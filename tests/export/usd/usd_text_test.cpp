@@ -244,6 +244,28 @@ TEST_F(UsdTextTest, APartialStaysUntilTheFirstFrame)
     EXPECT_THAT(files(), ElementsAre("skirt.partial/skirt_clips/skirt.manifest.usda"));
 }
 
+TEST_F(UsdTextTest, ARunThatEndsEarlyKeepsAllItsSamples)
+{
+    for (const int frames : {40, 120})
+        for (const int written : {1, 2, 39, 50, 51, 52, 101, 102, 119}) {
+            if (written >= frames)
+                continue;
+            SCOPED_TRACE(std::to_string(written) + " of " + std::to_string(frames));
+            const auto writer = make_cache_writer(file("skirt.usda"), layout(frames));
+            EXPECT_EQ(writer->readable_samples(), 0);
+            write_frames(*writer, 0, written, 7);
+            EXPECT_EQ(writer->readable_samples(), written <= 51 ? 0 : written <= 101 ? 51 : 101);
+            writer->keep();
+            EXPECT_EQ(writer->readable_samples(), written);
+            EXPECT_THAT(bytes_of(writer->partial()),
+                        HasSubstr("endTimeCode = " + std::to_string(1000 + written) + "\n"));
+            writer->keep();
+            EXPECT_EQ(int(files().size()), frames == 40 ? 1 : 2 + std::max(1, usd_clip_count(written)));
+            std::filesystem::remove_all(file("skirt.partial"));
+            std::filesystem::remove(file("skirt.partial.usda"));
+        }
+}
+
 TEST_F(UsdTextTest, RefusesWhatItCannotWrite)
 {
     CacheLayout later = layout(4);
