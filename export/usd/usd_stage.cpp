@@ -42,7 +42,7 @@ UsdStage::Group UsdStage::tree_of(const std::string& name, const CacheLayout& la
         }
         siblings->push_back({mesh.name, {}, int(m)});
     }
-    return all.groups.size() == 1 ? all.groups.front() : all;
+    return all;
 }
 
 void UsdStage::add_sample(View<const Vec3> x, View<const Vec3> v)

@@ -22,7 +22,7 @@ namespace toile::exports {
 /// leaves clips of either run. Clips of an earlier, longer run are removed.
 class UsdWriter final : public CacheWriter {
 public:
-    /// @param name  of the prim at the top where there are several meshes
+    /// @param name  of the prim at the top
     /// @throws InvalidInput as make_cache_writer().
     UsdWriter(std::filesystem::path file, const CacheLayout& layout, const std::string& name);
 

@@ -71,7 +71,7 @@ TEST_F(UsdTextTest, SaysWhatTheNumbersAre)
           "primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.5)] (interpolation = \"faceVarying\")",
           "int[] primvars:st:indices = [0, 1, 2, 3, 3, 2, 1, 0, 0, 4, 2]", "orientation = \"rightHanded\"",
           "subdivisionScheme = \"none\"", "def GeomSubset \"front\"", "int[] indices = [0, 1]",
-          "displayName = \"back \\\"panel\\\"\"", "rel material:binding = </skirt/back__panel_>"})
+          "displayName = \"back \\\"panel\\\"\"", "rel material:binding = </skirt/skirt/back__panel_>"})
         EXPECT_THAT(text, HasSubstr(line));
     EXPECT_THAT(text, HasSubstr("1002: [(1.5, 0.25, -100), (1.5, 1.25, -101)"));
     EXPECT_THAT(text, HasSubstr("vector3f[] velocities = [(25, 0, -2500), (25, 0, -2500)"));
@@ -118,7 +118,7 @@ TEST_F(UsdTextTest, AFileAppearsWhenItIsWhole)
     EXPECT_TRUE(files().empty());
 }
 
-TEST_F(UsdTextTest, MeshesLieInTheirGroupsBelowOnePrim)
+TEST_F(UsdTextTest, MeshesLieInTheirGroupsBelowAPrimCalledAsTheFile)
 {
     const ObjMesh faces = layout(1).meshes[0].faces;
     CacheLayout three;
@@ -131,7 +131,9 @@ TEST_F(UsdTextTest, MeshesLieInTheirGroupsBelowOnePrim)
     EXPECT_THAT(text, HasSubstr("def Xform \"_7_back\" (\n            displayName = \"7 back\""));
     EXPECT_THAT(text, HasSubstr("</all/tee/_7_back/front>"));
     three.meshes.erase(three.meshes.begin());
-    EXPECT_THAT(written("tee.usda", three), HasSubstr("defaultPrim = \"tee\""));
+    const std::string panels = written("look.usda", three);
+    EXPECT_THAT(panels, HasSubstr("defaultPrim = \"look\""));
+    EXPECT_THAT(panels, HasSubstr("</look/tee/front/front>"));
     three.meshes[0].name = "7-back";
     EXPECT_THAT(refusal([&] { make_cache_writer(file("b.usda"), three); }),
                 HasSubstr("two meshes would be called \"tee/_7_back\""));
