@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/base/number.h"
 #include "export/usd/usd_file.h"
 #include "export/usd/usd_files.h"
 #include "tests/export/export_fixtures.h"
@@ -98,7 +99,7 @@ TEST_F(UsdTextTest, FloatsReadBackWithTheSameBits)
     file.append(floats.data(), floats.size(), 3);
     file.commit();
     EXPECT_EQ(bytes_of(this->file("floats")), "[(0.1, -0, 16777216), (1e-45, 3.4028235e+38, 0.33333334)]");
-    EXPECT_EQ(usd_number(1001.0 + 1.0 / 3.0), "1001.3333333333334");
+    EXPECT_EQ(shortest_text(1001.0 + 1.0 / 3.0), "1001.3333333333334");
 }
 
 TEST_F(UsdTextTest, NamesInQuotesAreAlwaysText)
