@@ -110,10 +110,16 @@ void UsdWriter::publish()
     if (clip_count_ > 0)
         move(unfinished_.manifest(), files_.manifest());
     move(unfinished_.root(), files_.root());
-    for (const std::filesystem::path& old : files_.existing())
-        if (!published.contains(old))
-            std::filesystem::remove(old);
     remove_partial();
+    for (const std::filesystem::path& old : files_.existing()) {
+        std::error_code error;
+        if (!published.contains(old) && !std::filesystem::remove(old, error) && error)
+            throw DeviceError(old.string() + ": is of an earlier cache and can't be removed (" +
+                              error.message() + ")");
+    }
+    std::error_code missing;
+    if (std::filesystem::is_empty(files_.clip_folder(), missing))
+        std::filesystem::remove(files_.clip_folder(), missing);
 }
 
 void UsdWriter::remove_partial()

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/base/error.h"
 #include "core/base/number.h"
 #include "export/usd/usd_file.h"
 #include "export/usd/usd_files.h"
@@ -230,6 +231,25 @@ TEST_F(UsdTextTest, UntilItIsPublishedTheEarlierCacheStays)
     // A short one needs no clips.
     written("skirt.usda", layout(20));
     EXPECT_THAT(files(), ElementsAre("skirt.usda", "skirt_clips/notes.txt"));
+}
+
+TEST_F(UsdTextTest, AShortCacheLeavesNoFolderOfClips)
+{
+    written("skirt.usda", layout(200));
+    written("skirt.usda", layout(20));
+    EXPECT_FALSE(std::filesystem::exists(file("skirt_clips")));
+}
+
+TEST_F(UsdTextTest, SaysThatAnEarlierClipCannotBeRemoved)
+{
+    std::filesystem::create_directories(file("skirt_clips/skirt.0007.usda/full"));
+    try {
+        written("skirt.usda", layout(20));
+        FAIL() << "removed a folder";
+    } catch (const DeviceError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("skirt.0007.usda: is of an earlier cache and can't be removed"));
+    }
+    EXPECT_THAT(files(), ElementsAre("skirt.usda"));
 }
 
 TEST_F(UsdTextTest, APartialStaysUntilTheFirstFrame)
