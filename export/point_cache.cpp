@@ -143,11 +143,13 @@ public:
 struct MeshFileReader {
     ObjMesh (*mesh)(const path&);
     std::vector<Vec3> (*positions)(const path&);
+    std::optional<Axes> (*axes)(const path&);
 };
 
 constexpr MeshFileReader kObjReader{[](const path& file) { return read_obj(file); },
-                                    [](const path& file) { return read_obj(file).positions; }};
-constexpr MeshFileReader kPlyReader{read_ply, read_ply_positions};
+                                    [](const path& file) { return read_obj(file).positions; },
+                                    [](const path&) { return std::optional<Axes>(); }};
+constexpr MeshFileReader kPlyReader{read_ply, read_ply_positions, read_ply_axes};
 
 class MeshFileSource final : public PointCache::Source {
 public:
@@ -155,6 +157,7 @@ public:
         : files_(std::move(files)), reader_(reader)
     {
         frame_count = int(files_.size());
+        axes = reader_.axes(files_.front());
         mesh = reader_.mesh(files_.front());
         vertex_count = int(mesh.positions.size());
         if (mesh.polygons.empty())
