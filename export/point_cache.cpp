@@ -221,7 +221,7 @@ std::vector<Vec3> PointCache::frame_in_metres(int index) const
 
 PointCache read_cache(const path& file)
 {
-    switch (cache_format(file)) {
+    switch (format_to_read(file)) {
     case CacheFormat::Pc2:
         return PointCache(std::make_unique<Pc2Source>(file));
     case CacheFormat::Mdd:
@@ -238,13 +238,12 @@ PointCache read_cache(const path& file)
     case CacheFormat::Vtk:
         break;
     }
-    refuse(file, "is written for other programs, and not read as a cache; name the .pc2, .mdd, .abc, .obj or "
-                 ".ply of the run");
+    return PointCache(nullptr); // format_to_read() refuses these
 }
 
 std::vector<path> meshes_of_cache(const path& file)
 {
-    const CacheFormat format = cache_format(file);
+    const CacheFormat format = format_to_read(file);
     if (!features_of(format).several || !mesh_path_of(file).empty())
         return {file};
     std::vector<path> meshes;
