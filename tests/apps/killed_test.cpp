@@ -238,7 +238,7 @@ TEST_F(Killed, ByASignalThatCanBeCaughtEndsAfterItsFrame)
 
 TEST_F(Killed, ByASignalKeepsAllFramesInEveryCache)
 {
-    temporary_.write("s.json", small_scene(1000000, R"("export": [{"file": "a.abc", "subframes": 2},
+    temporary_.write("s.json", small_scene(300000, R"("export": [{"file": "a.abc", "subframes": 2},
         {"file": "b.pc2", "cloth": "sheet"}, {"file": "c.usda"}])"));
     Running run(arguments("s.json", "out"), folder_);
     Running::wait_for_file(file("out/b.partial.pc2"));
