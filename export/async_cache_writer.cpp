@@ -7,7 +7,7 @@ namespace toile::exports {
 
 AsyncCacheWriter::AsyncCacheWriter(std::unique_ptr<CacheWriter> target, int queue_limit)
     : target_(std::move(target)), free_(size_t(std::max(queue_limit, 1))),
-      thread_([this] { deliver_until_closed(); })
+      readable_(target_->readable_samples()), thread_([this] { deliver_until_closed(); })
 {
 }
 
@@ -48,7 +48,7 @@ void AsyncCacheWriter::enqueue(Frame frame)
 
 std::filesystem::path AsyncCacheWriter::complete()
 {
-    close();
+    deliver_rest();
     rethrow_error();
     return target_->complete();
 }
@@ -71,8 +71,7 @@ void AsyncCacheWriter::deliver_until_closed()
         lock.lock();
         if (error)
             error_ = error;
-        else if (!is_dropped)
-            ++delivered_;
+        readable_ = target_->readable_samples();
         free_.push_back(std::move(frame));
         changed_.notify_all();
     }
@@ -82,10 +81,10 @@ void AsyncCacheWriter::deliver_until_closed()
 std::exception_ptr AsyncCacheWriter::deliver(const Frame& frame)
 {
     try {
-        if (frame.late)
-            target_->write(frame.index, frame.late());
-        else
-            target_->write(frame.index, frame.positions);
+        const std::vector<Vec3> late = frame.late ? frame.late() : std::vector<Vec3>{};
+        target_failed_ = true;
+        target_->write(frame.index, frame.late ? late : frame.positions);
+        target_failed_ = false;
     } catch (...) {
         return std::current_exception();
     }
@@ -94,6 +93,32 @@ std::exception_ptr AsyncCacheWriter::deliver(const Frame& frame)
 
 int AsyncCacheWriter::close()
 {
+    try {
+        keep();
+    } catch (const std::exception&) {
+        // readable_samples() says what there is without it
+    }
+    return readable_samples();
+}
+
+void AsyncCacheWriter::keep()
+{
+    deliver_rest();
+    if (target_failed_)
+        return;
+    target_->keep();
+    readable_ = target_->readable_samples();
+}
+
+int AsyncCacheWriter::readable_samples() const
+{
+    const std::lock_guard lock(mutex_);
+    return readable_;
+}
+
+/// Waits for the queue, and ends the thread.
+void AsyncCacheWriter::deliver_rest()
+{
     {
         const std::lock_guard lock(mutex_);
         closed_ = true;
@@ -101,7 +126,6 @@ int AsyncCacheWriter::close()
     }
     if (thread_.joinable())
         thread_.join();
-    return delivered_;
 }
 
 void AsyncCacheWriter::rethrow_error() const

@@ -20,7 +20,7 @@ public:
     /// @param queue_limit  maximum frames in memory (1 or more); write() waits while all are in use
     explicit AsyncCacheWriter(std::unique_ptr<CacheWriter> target, int queue_limit = 4);
 
-    /// Delivers queued frames to the partial. Errors are lost here; complete() reports them.
+    /// close(). Errors are lost here; complete() reports them.
     ~AsyncCacheWriter() override;
 
     /// Queues a copy. @throws the exception of an earlier failed write; nothing is written after that.
@@ -37,7 +37,11 @@ public:
     std::filesystem::path complete() override;
     void publish() override { target_->publish(); }
 
-    /// Waits for the queue; nothing can be written afterwards. @return frames that the target has
+    /// Waits for the queue and keeps the target, unless it failed. @throws its exception
+    void keep() override;
+    int readable_samples() const override;
+
+    /// keep() without exceptions; nothing can be written afterwards. @return readable_samples()
     int close();
 
     std::filesystem::path partial() const override { return target_->partial(); }
@@ -54,15 +58,17 @@ private:
     void enqueue(Frame frame);
     void deliver_until_closed();
     std::exception_ptr deliver(const Frame& frame);
+    void deliver_rest();
     void rethrow_error() const;
 
     std::unique_ptr<CacheWriter> target_;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Frame> queue_;
     std::vector<Frame> free_; ///< buffers of delivered frames, reused
     std::exception_ptr error_;
-    int delivered_ = 0;
+    int readable_ = 0;           ///< readable_samples() of the target between its frames
+    bool target_failed_ = false; ///< of the thread, until it ends
     bool closed_ = false;
     std::thread thread_;
 };

@@ -8,6 +8,25 @@
 
 namespace toile::exports {
 
+namespace {
+
+/// .pc2, .mdd or .abc
+std::string choice_of(const std::vector<std::string>& extensions)
+{
+    std::string text;
+    for (size_t k = 0; k < extensions.size(); ++k)
+        text += (k == 0 ? "" : k + 1 < extensions.size() ? ", " : " or ") + extensions[k];
+    return text;
+}
+
+[[noreturn]] void refuse_unknown(const std::filesystem::path& file, const std::vector<std::string>& known)
+{
+    throw InvalidInput(file.string() + ": unknown cache extension '" +
+                       lower_case_extension(archive_of(file)) + "'; use " + choice_of(known));
+}
+
+} // namespace
+
 const std::vector<std::string>& written_extensions()
 {
     static const std::vector<std::string> kExtensions{".pc2", ".mdd", ".abc", ".usda", ".usdc",
@@ -37,9 +56,19 @@ CacheFormat cache_format(const std::filesystem::path& file)
 {
     const std::optional<CacheFormat> format = known_cache_format(file);
     if (!format)
-        throw InvalidInput(file.string() + ": unknown cache extension '" +
-                           lower_case_extension(archive_of(file)) +
-                           "'; use .pc2, .mdd, .abc, .usda, .usdc, .obj, .ply, .glb or .pvd");
+        refuse_unknown(file, written_extensions());
+    return *format;
+}
+
+CacheFormat format_to_read(const std::filesystem::path& file)
+{
+    const std::optional<CacheFormat> format = known_cache_format(file);
+    if (!format)
+        refuse_unknown(file, read_extensions());
+    if (!features_of(*format).read_back)
+        throw InvalidInput(file.string() +
+                           ": is written for other programs, and not read as a cache; name the " +
+                           choice_of(read_extensions()) + " of the run");
     return *format;
 }
 

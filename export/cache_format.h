@@ -20,6 +20,9 @@ std::optional<CacheFormat> known_cache_format(const std::filesystem::path& file)
 /// The same. @throws InvalidInput for another extension
 CacheFormat cache_format(const std::filesystem::path& file);
 
+/// The same of a cache that is to be read. @throws InvalidInput also for one that is for other programs only
+CacheFormat format_to_read(const std::filesystem::path& file);
+
 /// What caches of a format hold.
 struct CacheFeatures {
     bool faces = false;   ///< that they play on

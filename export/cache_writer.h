@@ -12,9 +12,11 @@ namespace toile::exports {
 /// Takes a simulation's frames in order and creates a point cache in vertex order.
 ///
 /// Until publish() everything goes into a partial beside the cache (skirt.partial.pc2 for skirt.pc2). A cache
-/// of the same name from an earlier run stays unchanged, and so does its partial until the first frame. A
-/// killed run leaves a partial that is readable up to its last completed frame. Destruction without publish()
-/// keeps the partial.
+/// of the same name from an earlier run stays unchanged, and so does its partial until the first frame.
+/// Destruction without publish() keeps the partial. It can be read at any moment, also after SIGKILL, up to
+/// readable_samples(): all of PC2, MDD, OBJ, PLY and glTF; all but the last of VTK with velocities; whole
+/// clips of 50 of USD, and none of a USD cache without clips; Alembic as AbcArchive says. A run that can
+/// still act calls keep(), and then all can be read.
 ///
 /// Nothing keeps a second writer of the same cache out: hold a FolderLock (folder_lock.h) where there may be
 /// one.
@@ -34,6 +36,14 @@ public:
     ///         if the disk refuses.
     virtual std::filesystem::path complete() = 0;
 
+    /// Ends a cache early: what waits for later samples is written, so that a reader of partial() finds all.
+    /// Neither write() nor complete() may follow. Not for a writer whose write() has failed.
+    /// @throws DeviceError if the disk refuses
+    virtual void keep() {}
+
+    /// Samples that a reader of partial() finds now.
+    virtual int readable_samples() const = 0;
+
     /// Moves the complete cache to its final name.
     /// @throws DeviceError if the system refuses
     virtual void publish() = 0;
@@ -52,8 +62,8 @@ public:
 
 protected:
     CacheWriter() = default;
-    CacheWriter(const CacheWriter&) = default;
-    CacheWriter& operator=(const CacheWriter&) = default;
+    CacheWriter(const CacheWriter&) = delete;
+    CacheWriter& operator=(const CacheWriter&) = delete;
 };
 
 /// Creates the writer for the extension of `file`:

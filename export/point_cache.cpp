@@ -149,11 +149,13 @@ public:
 struct MeshFileReader {
     ObjMesh (*mesh)(const path&);
     std::vector<Vec3> (*positions)(const path&);
+    std::optional<Axes> (*axes)(const path&);
 };
 
 constexpr MeshFileReader kObjReader{[](const path& file) { return read_obj(file); },
-                                    [](const path& file) { return read_obj(file).positions; }};
-constexpr MeshFileReader kPlyReader{read_ply, read_ply_positions};
+                                    [](const path& file) { return read_obj(file).positions; },
+                                    [](const path&) { return std::optional<Axes>(); }};
+constexpr MeshFileReader kPlyReader{read_ply, read_ply_positions, read_ply_axes};
 
 class MeshFileSource final : public PointCache::Source {
 public:
@@ -161,6 +163,7 @@ public:
         : files_(std::move(files)), reader_(reader)
     {
         frame_count = int(files_.size());
+        axes = reader_.axes(files_.front());
         mesh = reader_.mesh(files_.front());
         vertex_count = int(mesh.positions.size());
         if (mesh.polygons.empty())
@@ -224,7 +227,7 @@ std::vector<Vec3> PointCache::frame_in_metres(int index) const
 
 PointCache read_cache(const path& file)
 {
-    switch (cache_format(file)) {
+    switch (format_to_read(file)) {
     case CacheFormat::Pc2:
         return PointCache(std::make_unique<Pc2Source>(file));
     case CacheFormat::Mdd:
@@ -241,13 +244,12 @@ PointCache read_cache(const path& file)
     case CacheFormat::Vtk:
         break;
     }
-    refuse(file, "is written for other programs, and not read as a cache; name the .pc2, .mdd, .abc, .obj or "
-                 ".ply of the run");
+    return PointCache(nullptr); // format_to_read() refuses these
 }
 
 std::vector<path> meshes_of_cache(const path& file)
 {
-    const CacheFormat format = cache_format(file);
+    const CacheFormat format = format_to_read(file);
     if ((format != CacheFormat::Abc && format != CacheFormat::Usd) || !mesh_path_of(file).empty())
         return {file};
     std::vector<path> meshes;

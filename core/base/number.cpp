@@ -25,6 +25,16 @@ double magnitude_beyond_range(std::string_view word)
     return ::strtod_l(std::string(word).c_str(), nullptr, c_locale);
 }
 
+template <typename T>
+std::string shortest_text_of(T value)
+{
+    if (std::isnan(value))
+        return "nan"; // without a sign
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+    return {text.data(), end.ptr};
+}
+
 } // namespace
 
 std::optional<double> number_in(std::string_view word)
@@ -60,6 +70,10 @@ std::optional<double> quotient_in(std::string_view word)
         return std::nullopt;
     return *numerator / *denominator;
 }
+
+std::string shortest_text(double value) { return shortest_text_of(value); }
+
+std::string shortest_text(float value) { return shortest_text_of(value); }
 
 std::string short_text(double value)
 {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <map>
 #include <utility>
 
+#include "core/base/number.h"
 #include "export/byte_order.h"
 
 namespace toile::exports {
@@ -83,10 +83,8 @@ std::vector<AbcObject> AbcArchive::add_objects()
 void AbcArchive::write_index()
 {
     indexed_ = frames_;
-    char rate[40];
-    std::snprintf(rate, sizeof rate, "%.17g", layout_.fps);
     const std::string metadata =
-        "FramesPerTimeUnit=" + std::string(rate) + ";_ai_Application=" + application_;
+        "FramesPerTimeUnit=" + shortest_text(layout_.fps) + ";_ai_Application=" + application_;
     std::string times;
     append_times(times, frames_, 1.0, 0.0);
     append_times(times, frames_, 1.0 / layout_.samples_per_second(), layout_.start_frame / layout_.fps);

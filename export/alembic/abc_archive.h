@@ -32,6 +32,8 @@ public:
     /// Writes what waits. Every byte is then on the disk.
     void complete();
 
+    int readable_frames() const { return indexed_; }
+
 private:
     void write_sample();
     void write_index();

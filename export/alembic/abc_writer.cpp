@@ -38,6 +38,12 @@ std::filesystem::path AbcWriter::complete()
     return partial_;
 }
 
+void AbcWriter::keep()
+{
+    if (readable_samples() < order_.next())
+        archive_->complete();
+}
+
 void AbcWriter::publish() { move_into_place(partial_, file_); }
 
 } // namespace toile::exports

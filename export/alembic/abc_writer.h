@@ -17,6 +17,8 @@ public:
 
     void write(int frame, View<const Vec3> positions) override;
     std::filesystem::path complete() override;
+    void keep() override;
+    int readable_samples() const override { return archive_ ? archive_->readable_frames() : 0; }
     void publish() override;
     std::filesystem::path partial() const override { return partial_; }
 

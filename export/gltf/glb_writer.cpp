@@ -1,13 +1,14 @@
 #include "export/gltf/glb_writer.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "export/binary_file.h"
 #include "export/gltf/glb_file.h"
 #include "export/point_cache.h"
@@ -23,14 +24,7 @@ constexpr int kMaxShapesToFind = 256;
 /// precision.
 constexpr double kErrorToChoose = 0.99;
 
-std::string number(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
-
-std::string millimetres(double metres) { return number(1000.0 * metres) + " mm"; }
+std::string millimetres(double metres) { return short_text(1000.0 * metres) + " mm"; }
 
 /// Rounded up to two digits, so that what a message proposes is enough.
 double rounded_up(double value)
@@ -59,7 +53,7 @@ GlbWriter::GlbWriter(std::filesystem::path file, const CacheLayout& layout)
             mesh.name = file_.stem().string();
 }
 
-/// As few shapes as keep to the error.
+/// As few shapes as keep to the error; all that the motion has where they do not, for complete() to measure.
 ShapeAnimation GlbWriter::shapes_of(const FrameSource& source) const
 {
     const double to_keep = kErrorToChoose * layout_.max_error;
@@ -67,15 +61,15 @@ ShapeAnimation GlbWriter::shapes_of(const FrameSource& source) const
     if (shapes.shapes_for(to_keep) > kMaxGlbShapes)
         shapes = PrincipalShapes(source, kMaxShapesToFind);
     const int needed = shapes.shapes_for(to_keep);
-    if (needed <= kMaxGlbShapes)
-        return shapes.animation(needed);
+    if (needed <= kMaxGlbShapes || shapes.count() <= kMaxGlbShapes)
+        return shapes.animation(std::min(needed, shapes.count()));
 
     const double possible = rounded_up(shapes.max_errors()[kMaxGlbShapes] / kErrorToChoose);
     throw InvalidInput(file_.string() + ": needs " + (needed > shapes.count() ? "more than " : "") +
                        std::to_string(std::min(needed, shapes.count())) + " shapes for " +
                        millimetres(layout_.max_error) + ", at most " + std::to_string(kMaxGlbShapes) +
                        " are written; allow " + millimetres(possible) + " with --max-error " +
-                       number(possible) + " of toile convert, or write .abc. The frames are kept in " +
+                       short_text(possible) + " of toile convert, or write .abc. The frames are kept in " +
                        partial().string());
 }
 

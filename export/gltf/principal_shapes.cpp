@@ -8,6 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include "core/base/assert.h"
+
 namespace toile::exports {
 
 namespace {
@@ -139,6 +141,7 @@ int PrincipalShapes::shapes_for(double distance) const
 
 ShapeAnimation PrincipalShapes::animation(int shape_count) const
 {
+    TOILE_ASSERT(shape_count >= 0 && shape_count <= count());
     ShapeAnimation animation{
         {}, MatrixXf(shapes_.rows(), shape_count), MatrixXf(weights_.rows(), shape_count)};
     Eigen::VectorXd base = base_;

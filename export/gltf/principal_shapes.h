@@ -52,7 +52,7 @@ public:
     /// Smallest number of shapes that keep to a distance [m]; count() + 1 if all do not.
     int shapes_for(double distance) const;
 
-    /// The first shapes, in single precision.
+    /// The first shapes, count() at most, in single precision.
     ShapeAnimation animation(int shape_count) const;
 
 private:

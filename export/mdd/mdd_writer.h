@@ -22,6 +22,7 @@ public:
     std::filesystem::path complete() override;
     void publish() override;
     std::filesystem::path partial() const override { return frames_.partial(); }
+    int readable_samples() const override { return frames_.readable_samples(); }
 
 private:
     void convert(const BinaryFile& source) const;

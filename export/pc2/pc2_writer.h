@@ -30,6 +30,7 @@ public:
     std::filesystem::path complete() override;
     void publish() override;
     std::filesystem::path partial() const override { return partial_; }
+    int readable_samples() const override { return order_.next(); }
 
 private:
     void create(std::string_view first_sample);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/mesh/obj.h"
@@ -10,7 +11,8 @@
 namespace toile::exports {
 
 /// Writes PLY files of a layout of one mesh, binary little endian: float x, y, z, and per polygon a list
-/// vertex_indices, and a list texcoord with the texture coordinates of its corners, as MeshLab reads them.
+/// vertex_indices, and a list texcoord with the texture coordinates of its corners, as MeshLab reads them. A
+/// comment says the unit and the upward axis.
 MeshFileWriter ply_file_writer(const CacheLayout& layout);
 
 /// Reads positions, polygons and texture coordinates: those of corners (texcoord) or else those of vertices
@@ -19,6 +21,10 @@ MeshFileWriter ply_file_writer(const CacheLayout& layout);
 /// @throws InvalidInput naming the file and the byte or line: no PLY, a size beyond the file, a vertex out of
 ///         range, a number that is not finite, a face of fewer than three or more than 10 000 corners
 ObjMesh read_ply(const std::filesystem::path& file);
+
+/// What the positions are, where the file says so in the comment of ply_file_writer().
+/// @throws InvalidInput naming the file and the line, for a header that is none
+std::optional<Axes> read_ply_axes(const std::filesystem::path& file);
 
 /// The positions alone, with the same errors of what comes before them.
 std::vector<Vec3> read_ply_positions(const std::filesystem::path& file);

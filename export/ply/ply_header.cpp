@@ -29,6 +29,8 @@ constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes{{{"char", 
                                                                        {"double", PlyType::Float64},
                                                                        {"float64", PlyType::Float64}}};
 
+const std::array<Axes, 4> kKnownAxes{{{"m", "y"}, {"m", "z"}, {"cm", "y"}, {"cm", "z"}}};
+
 bool is_integer(PlyType type) { return type != PlyType::Float32 && type != PlyType::Float64; }
 
 class HeaderReader {
@@ -42,9 +44,14 @@ public:
         PlyHeader header;
         bool has_format = false;
         while (true) {
-            split(next_line());
-            if (words_.empty() || words_[0] == "comment" || words_[0] == "obj_info")
+            const std::string_view line = next_line();
+            split(line);
+            if (words_.empty() || words_[0] == "comment" || words_[0] == "obj_info") {
+                for (const Axes& axes : kKnownAxes)
+                    if (line == axes_comment(axes))
+                        header.axes = axes;
                 continue;
+            }
             if (words_[0] == "end_header")
                 break;
             if (words_[0] == "format") {
@@ -186,6 +193,8 @@ int PlyElement::find(const std::vector<std::string>& names, bool is_list) const
             return int(k);
     return -1;
 }
+
+std::string axes_comment(const Axes& axes) { return "comment toile, unit " + axes.unit + ", up " + axes.up; }
 
 PlyHeader read_ply_header(const std::filesystem::path& file, std::string_view bytes)
 {

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "export/axes.h"
+
 namespace toile::exports {
 
 enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
@@ -35,8 +37,12 @@ struct PlyHeader {
 
     Encoding encoding = Encoding::Ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0; ///< [bytes] the values follow
+    std::optional<Axes> axes; ///< of a file with a line axes_comment()
+    std::size_t size = 0;     ///< [bytes] the values follow
 };
+
+/// Line of a header that says what the positions are: comment toile, unit cm, up z.
+std::string axes_comment(const Axes& axes);
 
 /// @param file  for errors
 /// @throws InvalidInput naming the file, the line and what it should say

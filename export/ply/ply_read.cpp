@@ -108,11 +108,13 @@ private:
         std::vector<double> row(element.properties.size());
         mesh_.positions.reserve(size_t(element.count));
         for (std::int64_t k = 0; k < element.count; ++k) {
-            for (size_t p = 0; p < row.size(); ++p)
-                if (element.properties[p].count_type)
-                    values_.skip(element.properties[p]);
+            for (int p = 0; p < int(row.size()); ++p) {
+                const PlyProperty& property = element.properties[size_t(p)];
+                if (p == axes[0] || p == axes[1] || p == axes[2] || p == u || p == v)
+                    row[size_t(p)] = values_.scalar(property.type);
                 else
-                    row[p] = values_.scalar(element.properties[p].type);
+                    values_.skip(property);
+            }
             mesh_.positions.push_back(Vec3(finite(row[size_t(axes[0])]), finite(row[size_t(axes[1])]),
                                            finite(row[size_t(axes[2])])));
             if (u >= 0 && v >= 0)
@@ -185,6 +187,11 @@ private:
 } // namespace
 
 ObjMesh read_ply(const std::filesystem::path& file) { return PlyReader(file).read(); }
+
+std::optional<Axes> read_ply_axes(const std::filesystem::path& file)
+{
+    return read_ply_header(file, bytes_of(file)).axes;
+}
 
 std::vector<Vec3> read_ply_positions(const std::filesystem::path& file)
 {

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "export/byte_order.h"
 
 namespace toile::exports {
@@ -34,8 +35,14 @@ void PlyValues::require_room(const PlyElement& element) const
 
 double PlyValues::scalar(PlyType type)
 {
-    if (encoding_ == PlyHeader::Encoding::Ascii)
-        return number_in_text();
+    if (encoding_ == PlyHeader::Encoding::Ascii) {
+        const std::string_view text = word();
+        const std::optional<double> number = number_in(text);
+        if (!number)
+            refuse("what is there is no finite number; export it again");
+        at_ += text.size();
+        return *number;
+    }
     switch (type) {
     case PlyType::Int8:
         return binary<std::int8_t>();
@@ -70,20 +77,15 @@ double PlyValues::binary()
     return double(take<T>(word));
 }
 
-double PlyValues::number_in_text()
+/// The next one of a text.
+std::string_view PlyValues::word()
 {
-    at_ = std::min(bytes_.find_first_not_of(" \t\r\n", at_), bytes_.size());
+    constexpr std::string_view kSpace = " \t\r\n";
+    at_ = std::min(bytes_.find_first_not_of(kSpace, at_), bytes_.size());
     if (room() == 0)
         refuse("ends within its values; export it again");
-    const std::size_t plus = bytes_[at_] == '+' ? 1 : 0;
-    const char* const end = bytes_.data() + bytes_.size();
-    double value = 0.0;
-    const auto [stopped, error] = std::from_chars(bytes_.data() + at_ + plus, end, value);
-    if (error != std::errc{} ||
-        (stopped != end && std::string_view(" \t\r\n").find(*stopped) == std::string_view::npos))
-        refuse("what is there is no number; export it again");
-    at_ = std::size_t(stopped - bytes_.data());
-    return value;
+    const std::size_t end = std::min(bytes_.find_first_of(kSpace, at_), bytes_.size());
+    return bytes_.substr(at_, end - at_);
 }
 
 std::size_t PlyValues::count_of(const PlyProperty& property)
@@ -107,7 +109,10 @@ void PlyValues::skip(const PlyProperty& property)
 {
     std::size_t count = property.count_type ? count_of(property) : 1;
     for (; count > 0; --count)
-        scalar(property.type);
+        if (encoding_ == PlyHeader::Encoding::Ascii)
+            at_ += word().size();
+        else
+            scalar(property.type);
 }
 
 } // namespace toile::exports

@@ -26,7 +26,7 @@ public:
     double scalar(PlyType type);
     void list(const PlyProperty& property, std::vector<double>& values);
 
-    /// Reads a property without use.
+    /// Reads a property without use: words of text may be any.
     void skip(const PlyProperty& property);
 
     [[noreturn]] void refuse(const std::string& why) const;
@@ -35,7 +35,7 @@ private:
     std::size_t room() const { return bytes_.size() - at_; }
     std::size_t smallest_size(PlyType type) const;
     std::size_t count_of(const PlyProperty& property);
-    double number_in_text();
+    std::string_view word();
 
     template <typename T>
     double binary();

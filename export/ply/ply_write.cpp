@@ -6,6 +6,7 @@
 #include "core/base/atomic_file.h"
 #include "export/byte_order.h"
 #include "export/ply/ply_file.h"
+#include "export/ply/ply_header.h"
 
 namespace toile::exports {
 
@@ -36,8 +37,8 @@ PlyFrame frame_of(const CacheLayout& layout)
 
     PlyFrame frame;
     const std::string count_type = is_short ? "uchar" : "uint";
-    frame.header = "ply\nformat binary_little_endian 1.0\ncomment toile, unit " + layout.axes.unit + ", up " +
-                   layout.axes.up + "\nelement vertex " + std::to_string(layout.vertex_count()) +
+    frame.header = "ply\nformat binary_little_endian 1.0\n" + axes_comment(layout.axes) +
+                   "\nelement vertex " + std::to_string(layout.vertex_count()) +
                    "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
                    std::to_string(mesh.polygons.size()) + "\nproperty list " + count_type +
                    " int vertex_indices\n" +

@@ -23,6 +23,7 @@ public:
     std::filesystem::path complete() override;
     void publish() override;
     std::filesystem::path partial() const override { return partial_; }
+    int readable_samples() const override { return order_.next(); }
 
 private:
     std::filesystem::path file_;
@@ -44,6 +45,7 @@ public:
     std::filesystem::path complete() override;
     void publish() override;
     std::filesystem::path partial() const override { return sequence_.unfinished_folder(); }
+    int readable_samples() const override { return order_.next(); }
 
     /// Name of a frame's file before publish().
     std::filesystem::path unfinished_file(int frame) const { return unfinished_.file(number(frame)); }

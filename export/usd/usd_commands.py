@@ -302,7 +302,12 @@ def write_usdc(file, output):
     layer.Save()
 
 
-COMMANDS = {"version": lambda: print(*Usd.GetVersion(), sep="."), "meshes": print_meshes, "frames": write_frames, "usdc": write_usdc}
+COMMANDS = {
+    "version": lambda: print(*Usd.GetVersion(), sep="."),
+    "meshes": print_meshes,
+    "frames": write_frames,
+    "usdc": write_usdc,
+}
 
 if __name__ == "__main__":
     try:

@@ -1,14 +1,11 @@
 #include "export/usd/usd_file.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdio>
 #include <system_error>
 #include <utility>
 
 #include "core/base/atomic_file.h"
+#include "core/base/number.h"
 
 namespace toile::exports {
 
@@ -16,19 +13,6 @@ namespace {
 
 /// Text that waits for the disk [bytes].
 constexpr size_t kBuffer = size_t{1} << 20;
-
-/// Appends the shortest text that reads back as the same number.
-template <typename T>
-void append_number(std::string& text, T value)
-{
-    if (std::isnan(value)) { // has no sign in .usda
-        text += "nan";
-        return;
-    }
-    std::array<char, 40> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    text.append(digits.data(), end);
-}
 
 /// Bytes of the character of UTF-8 that begins the text; 0: none does.
 size_t utf8_length(std::string_view text)
@@ -53,13 +37,6 @@ size_t utf8_length(std::string_view text)
 }
 
 } // namespace
-
-std::string usd_number(double value)
-{
-    std::string text;
-    append_number(text, value);
-    return text;
-}
 
 std::string usd_quoted(const std::string& text)
 {
@@ -107,7 +84,7 @@ void UsdFile::append(const float* numbers, size_t count, int width)
         const bool is_first = k % size_t(width) == 0;
         text_ += k == 0 ? "" : is_first && width > 1 ? "), " : ", ";
         text_ += is_first && width > 1 ? "(" : "";
-        append_number(text_, numbers[k]);
+        text_ += shortest_text(numbers[k]);
         flush_beyond(kBuffer);
     }
     text_ += count > 0 && width > 1 ? ")]" : "]";

@@ -11,9 +11,6 @@
 
 namespace toile::exports {
 
-/// The shortest text that reads back as the same number.
-std::string usd_number(double value);
-
 /// Text in quotes, as .usda stores it. Bytes that are not UTF-8 become _.
 std::string usd_quoted(const std::string& text);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/number.h"
 #include "export/archive/names.h"
 
 namespace toile::exports {
@@ -11,7 +12,7 @@ namespace {
 std::string pair_text(double a, double b)
 {
     std::string text = "(";
-    text += usd_number(a) + ", " + usd_number(b) + ")";
+    text += shortest_text(a) + ", " + shortest_text(b) + ")";
     return text;
 }
 
@@ -42,7 +43,7 @@ UsdStage::Group UsdStage::tree_of(const std::string& name, const CacheLayout& la
         }
         siblings->push_back({mesh.name, {}, int(m)});
     }
-    return all.groups.size() == 1 ? all.groups.front() : all;
+    return all;
 }
 
 void UsdStage::add_sample(View<const Vec3> x, View<const Vec3> v)
@@ -69,11 +70,11 @@ void UsdStage::write_header(UsdFile& file, double first_time, double last_time) 
     file << "    customLayerData = {\n        string creator = \"toile\"\n";
     file << "        int toileSubframes = " << std::to_string(layout_.subframes) << "\n    }\n";
     file << "    defaultPrim = \"" << clean_name(top_.name) << "\"\n";
-    file << "    endTimeCode = " << usd_number(last_time) << "\n";
-    file << "    framesPerSecond = " << usd_number(layout_.fps) << "\n";
-    file << "    metersPerUnit = " << usd_number(layout_.axes.metres_per_unit()) << "\n";
-    file << "    startTimeCode = " << usd_number(first_time) << "\n";
-    file << "    timeCodesPerSecond = " << usd_number(layout_.fps) << "\n";
+    file << "    endTimeCode = " << shortest_text(last_time) << "\n";
+    file << "    framesPerSecond = " << shortest_text(layout_.fps) << "\n";
+    file << "    metersPerUnit = " << shortest_text(layout_.axes.metres_per_unit()) << "\n";
+    file << "    startTimeCode = " << shortest_text(first_time) << "\n";
+    file << "    timeCodesPerSecond = " << shortest_text(layout_.fps) << "\n";
     file << "    upAxis = \"" << (layout_.axes.has_z_up() ? "Z" : "Y") << "\"\n)\n\n";
 }
 

@@ -10,11 +10,11 @@
 namespace toile::exports {
 
 /// Text of a USD stage of moving meshes, and their latest samples. Each mesh NAMEShape lies in a transform
-/// NAME, for programs that show no mesh without one, and that in its group. The stage has one prim at the
-/// top, so that a reference to its file brings everything: another transform, where there would be several.
+/// NAME, for programs that show no mesh without one, and that in its group. A transform at the top holds
+/// all, so that a reference to the file brings everything.
 class UsdStage {
 public:
-    /// @param name    of the transform at the top where there would be several
+    /// @param name    of the transform at the top
     /// @param layout  with names: with_names()
     UsdStage(const std::string& name, const CacheLayout& layout);
 

@@ -3,6 +3,8 @@
 #include <cstring>
 #include <utility>
 
+#include "core/base/number.h"
+
 namespace toile::exports {
 
 namespace {
@@ -59,7 +61,7 @@ void UsdTrack::write_samples(UsdFile& file, const std::string& indent, const std
 {
     file << indent << declaration_ << ".timeSamples = {\n";
     for (size_t k = first; k < end; ++k) {
-        file << indent << "    " << usd_number(times[k]) << ": ";
+        file << indent << "    " << shortest_text(times[k]) << ": ";
         file.append(samples_[k].data(), samples_[k].size(), width_);
         file << ",\n";
     }

@@ -70,21 +70,31 @@ void UsdWriter::write_clip()
     const std::filesystem::path clip = unfinished_.clip(number);
     stage_->write_clip(clip);
     clips_.push_back({unfinished_.asset(clip), first});
-    stage_->write_root(unfinished_.root(), clips_, unfinished_.asset(unfinished_.manifest()),
-                       first + stage_->sample_count());
+    const int samples = first + stage_->sample_count();
+    stage_->write_root(unfinished_.root(), clips_, unfinished_.asset(unfinished_.manifest()), samples);
+    readable_ = samples;
     stage_->drop_all_but_last();
 }
 
 std::filesystem::path UsdWriter::complete()
 {
     order_.require_complete(partial());
+    keep();
+    return partial();
+}
+
+void UsdWriter::keep()
+{
     if (velocities_.finish())
         add_sample();
-    if (clip_count_ == 0)
-        stage_->write_whole(unfinished_.root());
-    else if (int(clips_.size()) < clip_count_)
+    if (readable_ == order_.next())
+        return;
+    if (clip_count_ > 0) {
         write_clip();
-    return partial();
+    } else {
+        stage_->write_whole(unfinished_.root());
+        readable_ = stage_->sample_count();
+    }
 }
 
 void UsdWriter::publish()
@@ -100,10 +110,16 @@ void UsdWriter::publish()
     if (clip_count_ > 0)
         move(unfinished_.manifest(), files_.manifest());
     move(unfinished_.root(), files_.root());
-    for (const std::filesystem::path& old : files_.existing())
-        if (!published.contains(old))
-            std::filesystem::remove(old);
     remove_partial();
+    for (const std::filesystem::path& old : files_.existing()) {
+        std::error_code error;
+        if (!published.contains(old) && !std::filesystem::remove(old, error) && error)
+            throw DeviceError(old.string() + ": is of an earlier cache and can't be removed (" +
+                              error.message() + ")");
+    }
+    std::error_code missing;
+    if (std::filesystem::is_empty(files_.clip_folder(), missing))
+        std::filesystem::remove(files_.clip_folder(), missing);
 }
 
 void UsdWriter::remove_partial()

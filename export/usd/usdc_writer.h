@@ -17,6 +17,8 @@ public:
 
     void write(int frame, View<const Vec3> positions) override { frames_.write(frame, positions); }
     std::filesystem::path complete() override;
+    void keep() override { frames_.keep(); }
+    int readable_samples() const override { return frames_.readable_samples(); }
     void publish() override;
     std::filesystem::path partial() const override { return frames_.partial(); }
 

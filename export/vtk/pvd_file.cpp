@@ -1,7 +1,7 @@
 #include "export/vtk/pvd_file.h"
 
 #include "core/base/atomic_file.h"
-#include "export/vtk/vtu_file.h"
+#include "core/base/number.h"
 
 namespace toile::exports {
 
@@ -25,7 +25,7 @@ std::string escaped(const std::string& text)
 void PvdFile::add(double time, const std::string& name)
 {
     const std::string entry =
-        "<DataSet timestep=\"" + text_of(time) + "\" part=\"0\" file=\"" + escaped(name) + "\"/>\n";
+        "<DataSet timestep=\"" + shortest_text(time) + "\" part=\"0\" file=\"" + escaped(name) + "\"/>\n";
     if (!file_) {
         write_atomically(path_, std::string(kHead) + entry + std::string(kEnd));
         file_.emplace(path_, BinaryFile::Mode::Continue);

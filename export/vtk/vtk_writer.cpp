@@ -56,11 +56,16 @@ void VtkWriter::write_frame(View<const Vec3> positions, View<const Vec3> velocit
 std::filesystem::path VtkWriter::complete()
 {
     order_.require_complete(partial());
-    if (moving_.finish())
-        write_frame(moving_.positions(), moving_.velocities());
+    keep();
     files_.complete();
     list_.complete();
     return list_.path();
+}
+
+void VtkWriter::keep()
+{
+    if (moving_.finish())
+        write_frame(moving_.positions(), moving_.velocities());
 }
 
 void VtkWriter::publish()

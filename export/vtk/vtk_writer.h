@@ -22,8 +22,10 @@ public:
 
     void write(int frame, View<const Vec3> positions) override;
     std::filesystem::path complete() override;
+    void keep() override;
     void publish() override;
     std::filesystem::path partial() const override { return files_.partial(); }
+    int readable_samples() const override { return written_; }
 
 private:
     void write_frame(View<const Vec3> positions, View<const Vec3> velocities);

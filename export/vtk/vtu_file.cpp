@@ -1,9 +1,8 @@
 #include "export/vtk/vtu_file.h"
 
-#include <array>
-#include <charconv>
 #include <cstdint>
 
+#include "core/base/number.h"
 #include "export/byte_order.h"
 
 namespace toile::exports {
@@ -48,13 +47,6 @@ private:
 
 } // namespace
 
-std::string text_of(double number)
-{
-    std::array<char, 32> buffer;
-    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-    return {buffer.data(), end};
-}
-
 VtuFile::VtuFile(const ObjMesh& faces) : polygon_count_(int(faces.polygons.size()))
 {
     std::int64_t offset = 0;
@@ -74,7 +66,7 @@ std::string VtuFile::bytes(double time, View<const Vec3> positions, View<const V
         "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
         "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
         "format=\"ascii\">" +
-        text_of(time) + "</DataArray></FieldData>\n<Piece NumberOfPoints=\"" +
+        shortest_text(time) + "</DataArray></FieldData>\n<Piece NumberOfPoints=\"" +
         std::to_string(positions.size()) + "\" NumberOfCells=\"" + std::to_string(polygon_count_) +
         "\">\n<Points>\n" + data.add("Float32", "Points", 3, bytes_of(positions)) + "</Points>\n<Cells>\n" +
         data.add("Int64", "connectivity", 1, connectivity_) + data.add("Int64", "offsets", 1, offsets_) +

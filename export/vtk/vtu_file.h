@@ -24,7 +24,4 @@ private:
     std::string connectivity_, offsets_, types_;
 };
 
-/// A number in text, whatever the locale, that reads back as the same.
-std::string text_of(double number);
-
 } // namespace toile::exports

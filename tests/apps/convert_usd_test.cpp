@@ -80,9 +80,37 @@ TEST_F(ConvertUsdTest, ThroughUsdAndBackGivesTheSamePoints)
         EXPECT_EQ(bytes_of(file("g.pc2")), bytes_of(file("h.pc2")));
     }
     const Finished info = run_toile({"info", "d.usdc"}, folder_);
-    for (const char* line : {"/a/aShape", "frames: 120", "frames per second: 25", "start frame: 1001",
+    for (const char* line : {"mesh: /d/a/aShape", "frames: 120", "frames per second: 25", "start frame: 1001",
                              "axes: m, y up", "groups: 2"})
         EXPECT_THAT(info.output, HasSubstr(line));
+}
+
+/// The prim of the whole file is no group.
+TEST_F(ConvertUsdTest, KeepsTheGroupsOfPanels)
+{
+    if (!has_usd())
+        GTEST_SKIP();
+    ObjMesh faces;
+    faces.polygons = {{0, 1, 2}};
+    CacheLayout layout;
+    layout.frame_count = 1;
+    layout.meshes = {{"front", "tee", 3, faces}, {"back", "tee", 3, faces}};
+    for (const bool with_skirt : {false, true}) {
+        if (with_skirt)
+            layout.meshes.push_back({"skirt", "", 3, faces});
+        const auto writer = make_cache_writer(file("look.usda"), layout);
+        writer->write(0, std::vector<Vec3>(size_t(layout.vertex_count()), Vec3(1, 2, 3)));
+        writer->finish();
+        const Finished run = convert({"look.usda", "b.abc"});
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        const std::string archive = file("b.abc").string();
+        EXPECT_EQ(read_cache(archive + "#/tee/front/frontShape").vertex_count(), 3);
+        EXPECT_EQ(read_cache(archive + "#/tee/back/backShape").vertex_count(), 3);
+        EXPECT_EQ(meshes_of_cache(archive).size(), layout.meshes.size());
+        if (with_skirt) {
+            EXPECT_EQ(read_cache(archive + "#/skirt/skirtShape").vertex_count(), 3);
+        }
+    }
 }
 
 /// tests/dcc/usd_check.py compares bits, extents and velocities, and asks all validators of Pixar's library.

@@ -236,5 +236,23 @@ TEST_F(Killed, ByASignalThatCanBeCaughtEndsAfterItsFrame)
         << "a run that finishes leaves no partials";
 }
 
+TEST_F(Killed, ByASignalKeepsAllFramesInEveryCache)
+{
+    temporary_.write("s.json", small_scene(300000, R"("export": [{"file": "a.abc", "subframes": 2},
+        {"file": "b.pc2", "cloth": "sheet"}, {"file": "c.usda"}])"));
+    Running run(arguments("s.json", "out"), folder_);
+    Running::wait_for_file(file("out/b.partial.pc2"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const Finished end = run.end(SIGINT);
+    const int frames = read_cache(file("out/b.partial.pc2")).frame_count();
+    const int samples = read_cache(file("out/a.partial.abc")).frame_count();
+    EXPECT_TRUE(samples == 2 * frames - 1 || samples == 2 * frames) << samples << " of " << frames;
+    EXPECT_NE(bytes_of(file("out/c.partial/c.usda")).find("endTimeCode = " + std::to_string(frames) + "\n"),
+              std::string::npos);
+    EXPECT_NE(end.errors.find("; " + std::to_string(frames) + (frames == 1 ? " frame is" : " frames are")),
+              std::string::npos)
+        << end.errors;
+}
+
 } // namespace
 } // namespace toile::test

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reads a USD cache with Pixar's library, compares it with a point cache of the same run, and validates it.
 
-    python3 tests/dcc/usd_check.py skirt.usda skirt.pc2 [--mesh /skirt/skirtShape]
+    python3 tests/dcc/usd_check.py skirt.usda skirt.pc2 [--mesh /skirt/skirt/skirtShape]
 
 Needs usd-core: pip install usd-core. Every frame must have the same bits as the PC2, velocities must be differences
 of positions, and all validators of pxr.UsdValidation must be content, with the stage and with each layer of value

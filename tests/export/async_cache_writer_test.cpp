@@ -85,6 +85,25 @@ TEST_F(AsyncCacheWriterTest, WritesQueuedFramesWhenDestroyed)
     EXPECT_FALSE(std::filesystem::exists(file("a.pc2")));
 }
 
+/// What waited for a next frame is not lost with it.
+TEST_F(AsyncCacheWriterTest, KeepsAllDeliveredFramesWhenClosed)
+{
+    for (const char* name : {"a.pc2", "a.mdd", "a.abc", "a_####.ply", "a.pvd", "a.glb", "a.usda"}) {
+        CacheLayout layout = cache_layout(quad_mesh(), 200);
+        AsyncCacheWriter writer(make_cache_writer(file(name), layout));
+        write_frames(writer, 0, 70, 7);
+        writer.write_later(70, []() -> std::vector<Vec3> { throw DeviceError("the GPU is gone"); });
+        EXPECT_EQ(writer.close(), 70) << name;
+        EXPECT_EQ(writer.close(), 70) << name;
+    }
+    EXPECT_EQ(read_cache(file("a.partial.pc2")).frame_count(), 70);
+    EXPECT_EQ(read_cache(file("a.partial.abc")).frame_count(), 70);
+    EXPECT_EQ(read_cache(file("a.partial.abc")).frame(69), frame_positions(69, 7));
+    EXPECT_EQ(read_cache(file("a.partial/a_####.ply")).frame_count(), 70);
+    EXPECT_TRUE(std::filesystem::exists(file("a.partial/a_0069.vtu")));
+    EXPECT_NE(bytes_of(file("a.partial/a.usda")).find("endTimeCode = 69\n"), std::string::npos);
+}
+
 /// Disk that is slow and full from frame 3 on.
 class FullDisk final : public CacheWriter {
 public:
@@ -99,6 +118,8 @@ public:
     std::filesystem::path complete() override { return {}; }
     void publish() override { written_.push_back(-1); }
     std::filesystem::path partial() const override { return {}; }
+    void keep() override { written_.push_back(-2); }
+    int readable_samples() const override { return int(written_.size()); }
 
 private:
     std::vector<int>& written_;

@@ -87,7 +87,9 @@ TEST_F(PointCacheTest, RefusesByNameWhatIsForOtherProgramsOnly)
 {
     for (const std::string name : {"a.glb", "a.pvd"})
         EXPECT_THAT(refusal([&] { read_cache(write_cache(name)); }),
-                    HasSubstr(name + ": is written for other programs, and not read as a cache"));
+                    HasSubstr(name +
+                              ": is written for other programs, and not read as a cache; name the .pc2, "
+                              ".mdd, .abc, .usda, .usdc, .usd, .obj or .ply of the run"));
 }
 
 TEST_F(PointCacheTest, NamesTheLineOfABrokenObj)
@@ -100,7 +102,7 @@ TEST_F(PointCacheTest, NamesAMissingFileAndAnUnknownExtension)
 {
     EXPECT_THAT(refusal([&] { read_cache(file("none.pc2")); }), HasSubstr("none.pc2: can't be opened"));
     EXPECT_THAT(refusal([&] { read_cache(file("a.mc")); }),
-                HasSubstr("use .pc2, .mdd, .abc, .usda, .usdc, .obj, .ply, .glb or .pvd"));
+                HasSubstr("use .pc2, .mdd, .abc, .usda, .usdc, .usd, .obj or .ply"));
 }
 
 } // namespace

@@ -82,11 +82,12 @@ RunFiles::Partials RunFiles::close()
 {
     Partials partials;
     for (Cache& cache : caches_) {
-        const int written = cache.writer->close();
+        const int samples = cache.writer->close();
         std::error_code missing;
-        if (written == 0 || !std::filesystem::exists(cache.writer->partial(), missing))
+        if (samples == 0 || !std::filesystem::exists(cache.writer->partial(), missing))
             continue;
-        partials.frame_count = std::max(partials.frame_count, written);
+        const int frames = (samples - 1) / cache.target.entry.subframes + 1;
+        partials.frame_count = std::max(partials.frame_count, frames);
         partials.files.push_back(cache.writer->partial());
     }
     if (has_frames_ && partials.frame_count == 0)

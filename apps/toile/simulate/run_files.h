@@ -30,9 +30,9 @@ public:
     /// @param world  at sample k of with_subframes()
     void write_sample(const scenes::World& world);
 
-    /// Ends a run that stops early.
+    /// Ends a run that stops early: CacheWriter::keep().
     struct Partials {
-        int frame_count = 0; ///< samples of the longest cache; a failed GPU does not send every frame to all
+        int frame_count = 0; ///< that can be read in the longest; a failed GPU does not send all to each
         std::vector<std::filesystem::path> files;
     };
     Partials close();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <clocale>
+#include <limits>
 
 namespace toile::test {
 
@@ -19,6 +20,16 @@ TEST(ShortText, HasThreeDigitsInEveryLocale)
     EXPECT_EQ(short_text(12345.0), "1.23e+04");
     if (german != nullptr)
         std::setlocale(LC_NUMERIC, "C");
+}
+
+TEST(ShortestText, ReadsBackAsTheSameNumber)
+{
+    EXPECT_EQ(shortest_text(0.1), "0.1");
+    EXPECT_EQ(shortest_text(1.0 / 3.0), "0.3333333333333333");
+    EXPECT_EQ(shortest_text(1.0f / 3.0f), "0.33333334");
+    EXPECT_EQ(shortest_text(-0.0), "-0");
+    EXPECT_EQ(shortest_text(-std::numeric_limits<double>::quiet_NaN()), "nan");
+    EXPECT_EQ(shortest_text(-std::numeric_limits<float>::infinity()), "-inf");
 }
 
 } // namespace

@@ -177,6 +177,17 @@ TEST_F(GlbTest, RefusesWhatNeedsTooManyShapesAndProposesAnErrorThatIsEnough)
     EXPECT_FALSE(std::filesystem::exists(file("skirt.glb.partial.pc2")));
 }
 
+/// Five frames have four shapes at most.
+TEST_F(GlbTest, RefusesAnErrorThatNoNumberOfShapesKeeps)
+{
+    CacheLayout layout = cache_layout(quad_mesh(), 5);
+    layout.max_error = 1e-20;
+    const std::string message = refusal([&] { written(layout, [](int frame) { return wave(frame, 7); }); });
+    EXPECT_THAT(message, HasSubstr("skirt.glb: single precision holds its positions within "));
+    EXPECT_THAT(message, HasSubstr(" mm, which is more than 1e-17 mm; "));
+    EXPECT_FALSE(std::filesystem::exists(file("skirt.glb")));
+}
+
 TEST_F(GlbTest, ContinuesAKilledRun)
 {
     CacheLayout layout = cache_layout(quad_mesh(), 9);

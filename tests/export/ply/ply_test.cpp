@@ -103,6 +103,34 @@ TEST_F(PlyTest, ReadsTextOfOtherPrograms)
     EXPECT_EQ(mesh.polygon_uvs, mesh.polygons);
 }
 
+TEST_F(PlyTest, ReadsNumbersOfAnySizeAndSkipsWhatItDoesNotUse)
+{
+    const std::vector<Vec3> expected{{0, 1e300, -2}, {1, 1, 1}, {2, 2, 2}};
+    EXPECT_EQ(read("ply\nformat ascii 1.0\nelement vertex 3\n" + kFloats +
+                   "property float quality\nend_header\n1e-400 1e300 -2 nan\n1 1 1 -inf\n2 2 2 1e400\n")
+                  .positions,
+              expected);
+}
+
+/// What a cache was written in, it is read in.
+TEST_F(PlyTest, SaysItsUnitAndUpwardAxis)
+{
+    CacheLayout layout = cache_layout(quad_mesh(), 2);
+    layout.axes = {"cm", "z"};
+    const auto writer = make_cache_writer(file("skirt.ply"), layout);
+    write_frames(*writer, 0, 2, 7);
+    writer->finish();
+    EXPECT_EQ(read_cache(file("skirt_####.ply")).axes(), layout.axes);
+    EXPECT_EQ(read_cache(file("skirt_0001.ply")).axes(), layout.axes);
+
+    const std::string text = bytes_of(file("skirt_0001.ply"));
+    const std::string comment = "comment toile, unit cm, up z";
+    for (const char* other : {"comment toile, unit ft, up z", "comment unit cm, up z"}) {
+        write_bytes(file("other.ply"), std::string(text).replace(text.find(comment), comment.size(), other));
+        EXPECT_EQ(read_cache(file("other.ply")).axes(), std::nullopt) << other;
+    }
+}
+
 /// samples/make_samples.py, which wrote the files with these programs, says what is in them. Blender splits
 /// vertices at seams of the texture.
 TEST_F(PlyTest, ReadsFilesOfBlenderAndMeshLab)
@@ -168,9 +196,9 @@ TEST_F(PlyTest, NamesThePlaceAndTheRemedyOfWhatIsWrong)
     EXPECT_THAT(refusal_of(start + "element vertex 2147483647\n" + kFloats + "end_header\n0 0 0\n"),
                 HasSubstr("promises 2147483647 elements \"vertex\", for which the file is too short"));
     EXPECT_THAT(refusal_of(start + "element vertex 1\n" + kFloats + "end_header\n0 nan 0\n"),
-                HasSubstr("not finite"));
+                HasSubstr("no finite number"));
     EXPECT_THAT(refusal_of(start + "element vertex 1\n" + kFloats + "end_header\n0 0 z\n"),
-                HasSubstr("no number"));
+                HasSubstr("no finite number"));
     EXPECT_THAT(refusal_of(start + "element vertex 1\nproperty float x\nend_header\n0\n"),
                 HasSubstr("no x, y and z"));
     const std::string vertex =

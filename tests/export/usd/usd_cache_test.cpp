@@ -121,6 +121,24 @@ TEST_F(UsdCacheTest, WhatAKilledRunLeavesIsReadable)
         EXPECT_EQ(cache.frame(k), frame_positions(k, 7)) << k;
 }
 
+TEST_F(UsdCacheTest, WhatARunLeavesThatEndsEarlyIsReadable)
+{
+    for (const int frames : {40, 300})
+        for (const char* name : {"skirt.usda", "skirt.usdc"})
+            for (const int written : {1, 30, 51, 180}) {
+                if (written >= frames)
+                    continue;
+                SCOPED_TRACE(std::to_string(written) + " of " + std::to_string(frames));
+                const auto writer = make_cache_writer(file(name), layout(frames));
+                write_frames(*writer, 0, written, 7);
+                writer->keep();
+                const PointCache cache = read_cache(writer->partial());
+                ASSERT_EQ(cache.frame_count(), written);
+                for (int k = 0; k < written; ++k)
+                    EXPECT_EQ(cache.frame(k), frame_positions(k, 7)) << k;
+            }
+}
+
 TEST_F(UsdCacheTest, FindsEachOfSeveralMeshes)
 {
     CacheLayout two = layout(60);

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "core/base/error.h"
+#include "core/base/number.h"
 #include "export/usd/usd_file.h"
 #include "export/usd/usd_files.h"
 #include "tests/export/export_fixtures.h"
@@ -71,7 +73,7 @@ TEST_F(UsdTextTest, SaysWhatTheNumbersAre)
           "primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.5)] (interpolation = \"faceVarying\")",
           "int[] primvars:st:indices = [0, 1, 2, 3, 3, 2, 1, 0, 0, 4, 2]", "orientation = \"rightHanded\"",
           "subdivisionScheme = \"none\"", "def GeomSubset \"front\"", "int[] indices = [0, 1]",
-          "displayName = \"back \\\"panel\\\"\"", "rel material:binding = </skirt/back__panel_>"})
+          "displayName = \"back \\\"panel\\\"\"", "rel material:binding = </skirt/skirt/back__panel_>"})
         EXPECT_THAT(text, HasSubstr(line));
     EXPECT_THAT(text, HasSubstr("1002: [(1.5, 0.25, -100), (1.5, 1.25, -101)"));
     EXPECT_THAT(text, HasSubstr("vector3f[] velocities = [(25, 0, -2500), (25, 0, -2500)"));
@@ -98,7 +100,7 @@ TEST_F(UsdTextTest, FloatsReadBackWithTheSameBits)
     file.append(floats.data(), floats.size(), 3);
     file.commit();
     EXPECT_EQ(bytes_of(this->file("floats")), "[(0.1, -0, 16777216), (1e-45, 3.4028235e+38, 0.33333334)]");
-    EXPECT_EQ(usd_number(1001.0 + 1.0 / 3.0), "1001.3333333333334");
+    EXPECT_EQ(shortest_text(1001.0 + 1.0 / 3.0), "1001.3333333333334");
 }
 
 TEST_F(UsdTextTest, NamesInQuotesAreAlwaysText)
@@ -118,7 +120,7 @@ TEST_F(UsdTextTest, AFileAppearsWhenItIsWhole)
     EXPECT_TRUE(files().empty());
 }
 
-TEST_F(UsdTextTest, MeshesLieInTheirGroupsBelowOnePrim)
+TEST_F(UsdTextTest, MeshesLieInTheirGroupsBelowAPrimCalledAsTheFile)
 {
     const ObjMesh faces = layout(1).meshes[0].faces;
     CacheLayout three;
@@ -131,7 +133,9 @@ TEST_F(UsdTextTest, MeshesLieInTheirGroupsBelowOnePrim)
     EXPECT_THAT(text, HasSubstr("def Xform \"_7_back\" (\n            displayName = \"7 back\""));
     EXPECT_THAT(text, HasSubstr("</all/tee/_7_back/front>"));
     three.meshes.erase(three.meshes.begin());
-    EXPECT_THAT(written("tee.usda", three), HasSubstr("defaultPrim = \"tee\""));
+    const std::string panels = written("look.usda", three);
+    EXPECT_THAT(panels, HasSubstr("defaultPrim = \"look\""));
+    EXPECT_THAT(panels, HasSubstr("</look/tee/front/front>"));
     three.meshes[0].name = "7-back";
     EXPECT_THAT(refusal([&] { make_cache_writer(file("b.usda"), three); }),
                 HasSubstr("two meshes would be called \"tee/_7_back\""));
@@ -229,6 +233,25 @@ TEST_F(UsdTextTest, UntilItIsPublishedTheEarlierCacheStays)
     EXPECT_THAT(files(), ElementsAre("skirt.usda", "skirt_clips/notes.txt"));
 }
 
+TEST_F(UsdTextTest, AShortCacheLeavesNoFolderOfClips)
+{
+    written("skirt.usda", layout(200));
+    written("skirt.usda", layout(20));
+    EXPECT_FALSE(std::filesystem::exists(file("skirt_clips")));
+}
+
+TEST_F(UsdTextTest, SaysThatAnEarlierClipCannotBeRemoved)
+{
+    std::filesystem::create_directories(file("skirt_clips/skirt.0007.usda/full"));
+    try {
+        written("skirt.usda", layout(20));
+        FAIL() << "removed a folder";
+    } catch (const DeviceError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("skirt.0007.usda: is of an earlier cache and can't be removed"));
+    }
+    EXPECT_THAT(files(), ElementsAre("skirt.usda"));
+}
+
 TEST_F(UsdTextTest, APartialStaysUntilTheFirstFrame)
 {
     {
@@ -242,6 +265,28 @@ TEST_F(UsdTextTest, APartialStaysUntilTheFirstFrame)
     EXPECT_EQ(files().size(), 3u);
     write_frames(*writer, 0, 1, 7);
     EXPECT_THAT(files(), ElementsAre("skirt.partial/skirt_clips/skirt.manifest.usda"));
+}
+
+TEST_F(UsdTextTest, ARunThatEndsEarlyKeepsAllItsSamples)
+{
+    for (const int frames : {40, 120})
+        for (const int written : {1, 2, 39, 50, 51, 52, 101, 102, 119}) {
+            if (written >= frames)
+                continue;
+            SCOPED_TRACE(std::to_string(written) + " of " + std::to_string(frames));
+            const auto writer = make_cache_writer(file("skirt.usda"), layout(frames));
+            EXPECT_EQ(writer->readable_samples(), 0);
+            write_frames(*writer, 0, written, 7);
+            EXPECT_EQ(writer->readable_samples(), written <= 51 ? 0 : written <= 101 ? 51 : 101);
+            writer->keep();
+            EXPECT_EQ(writer->readable_samples(), written);
+            EXPECT_THAT(bytes_of(writer->partial()),
+                        HasSubstr("endTimeCode = " + std::to_string(1000 + written) + "\n"));
+            writer->keep();
+            EXPECT_EQ(int(files().size()), frames == 40 ? 1 : 2 + std::max(1, usd_clip_count(written)));
+            std::filesystem::remove_all(file("skirt.partial"));
+            std::filesystem::remove(file("skirt.partial.usda"));
+        }
 }
 
 TEST_F(UsdTextTest, RefusesWhatItCannotWrite)
