@@ -11,11 +11,14 @@
 #include "avatars/retarget/motion_file.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
+#include "core/base/number.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
 #include "core/mesh/vtk.h"
+#include "export/cache_format.h"
 #include "export/cache_path.h"
 #include "export/point_cache.h"
+#include "export/sequence/numbered_files.h"
 #include "scenes/format/cache_files.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
@@ -193,12 +196,13 @@ void print_avatar(const std::filesystem::path& file)
 void print_cache(const std::filesystem::path& file)
 {
     const exports::PointCache cache = exports::read_cache(file);
-    print("frames", cache.frame_count());
+    print("frames", (cache.frame_count() + cache.subframes() - 1) / cache.subframes());
     print("points", cache.vertex_count());
     if (cache.fps())
-        print("frames per second", *cache.fps());
+        print("frames per second", shortest_text(*cache.fps()));
     if (cache.subframes() > 1)
-        print("samples per frame", cache.subframes());
+        print("samples",
+              std::to_string(cache.frame_count()) + ", " + std::to_string(cache.subframes()) + " per frame");
     print("start frame", cache.start_frame());
     if (cache.axes())
         print("axes", cache.axes()->unit + ", " + cache.axes()->up + " up");
@@ -256,6 +260,14 @@ void print_scene(const std::filesystem::path& file)
     print("attachments", scene.attachments.size());
 }
 
+/// Whether numbered files of this name exist.
+bool is_sequence(const std::filesystem::path& file)
+{
+    const std::optional<exports::CacheFormat> format = exports::known_cache_format(file);
+    return format && exports::features_of(*format).numbered && exports::features_of(*format).read_back &&
+           !exports::NumberedFiles(file).existing().empty();
+}
+
 int info(const std::filesystem::path& file)
 {
     static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
@@ -274,8 +286,13 @@ int info(const std::filesystem::path& file)
         {".ply", print_cache_with_faces},
         {".pvd", print_cache},
         {".json", print_scene}};
-    if (!std::filesystem::is_regular_file(exports::archive_of(file)))
+    if (!std::filesystem::is_regular_file(exports::archive_of(file))) {
+        if (is_sequence(file)) {
+            print_cache_with_faces(file);
+            return kExitOk;
+        }
         throw InvalidInput(file.string() + ": can't be found; name a file");
+    }
     const auto printer = kPrinters.find(lower_case_extension(exports::archive_of(file)));
     if (printer == kPrinters.end())
         throw InvalidInput(

@@ -83,8 +83,9 @@ std::vector<AbcObject> AbcArchive::add_objects()
 void AbcArchive::write_index()
 {
     indexed_ = frames_;
-    const std::string metadata =
-        "FramesPerTimeUnit=" + shortest_text(layout_.fps) + ";_ai_Application=" + application_;
+    const std::string metadata = "FramesPerTimeUnit=" + shortest_text(layout_.fps) +
+                                 ";_ai_Application=" + application_ + ";toile_unit=" + layout_.axes.unit +
+                                 ";toile_up=" + layout_.axes.up;
     std::string times;
     append_times(times, frames_, 1.0, 0.0);
     append_times(times, frames_, 1.0 / layout_.samples_per_second(), layout_.start_frame / layout_.fps);

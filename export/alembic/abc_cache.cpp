@@ -62,6 +62,7 @@ public:
         }
         vertex_count = int(reader_.sample(positions_, 0).size() / kPoint);
         read_times();
+        read_axes();
         read_faces();
         read_texture();
         read_groups();
@@ -110,6 +111,14 @@ private:
             subframes = found->subframes;
             start_frame = found->start_frame;
         }
+    }
+
+    /// Archives of Toile say unit and axis; those of others do not.
+    void read_axes()
+    {
+        const Axes said{reader_.value_of("toile_unit"), reader_.value_of("toile_up")};
+        if ((said.unit == "m" || said.unit == "cm") && (said.up == "y" || said.up == "z"))
+            axes = said;
     }
 
     std::vector<std::int32_t> constant_integers(const std::string& name) const

@@ -1,10 +1,10 @@
 #include "export/alembic/abc_reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "export/byte_order.h"
 
 namespace toile::exports {
@@ -86,7 +86,7 @@ AbcReader::AbcReader(const std::filesystem::path& file) : file_(file)
     const std::vector<OgawaNode> root = file_.group(file_.root());
     if (root.size() < 6)
         file_.refuse(file_.root(), "the root has " + std::to_string(root.size()) + " nodes, not 6");
-    read_frame_rate(root[3]);
+    archive_metadata_ = file_.data(root[3]);
     read_times(root[4]);
     read_metadata(root[5]);
     objects_.push_back({"", "", -1});
@@ -130,19 +130,19 @@ void AbcReader::read_times(OgawaNode node)
     }
 }
 
-/// Key of the metadata of an archive, a list of key=value;
-void AbcReader::read_frame_rate(OgawaNode node)
+std::string AbcReader::value_of(const std::string& key) const
 {
-    constexpr std::string_view kKey = "FramesPerTimeUnit=";
-    const std::string metadata = file_.data(node);
-    const size_t at = metadata.find(kKey);
+    const size_t at = (";" + archive_metadata_).find(";" + key + "=");
     if (at == std::string::npos)
-        return;
-    double rate = 0.0;
-    const char* number = metadata.data() + at + kKey.size();
-    std::from_chars(number, metadata.data() + metadata.size(), rate);
-    if (std::isfinite(rate) && rate > 0.0)
-        frames_per_second_ = rate;
+        return "";
+    const size_t begin = at + key.size() + 1;
+    return archive_metadata_.substr(begin, archive_metadata_.find(';', begin) - begin);
+}
+
+std::optional<double> AbcReader::frames_per_second() const
+{
+    const std::optional<double> rate = number_in(value_of("FramesPerTimeUnit"));
+    return rate && *rate > 0.0 ? rate : std::nullopt;
 }
 
 void AbcReader::read_metadata(OgawaNode node)

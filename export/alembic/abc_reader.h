@@ -53,7 +53,9 @@ public:
     /// @param number  of a property: AbcReadProperty::time_sampling
     const AbcTimes& times_of(int number) const;
     /// Rate that the archive's metadata names; samples may be at another one.
-    std::optional<double> frames_per_second() const { return frames_per_second_; }
+    std::optional<double> frames_per_second() const;
+    /// Value of a key of the archive's metadata; empty: none.
+    std::string value_of(const std::string& key) const;
 
     std::vector<AbcReadProperty> properties(OgawaNode compound) const;
 
@@ -70,14 +72,13 @@ public:
 
 private:
     void read_times(OgawaNode node);
-    void read_frame_rate(OgawaNode node);
     void read_metadata(OgawaNode node);
     void read_objects(OgawaNode group, int parent, int depth);
 
     OgawaReader file_;
     std::vector<std::string> metadata_; ///< by the numbers in headers
     std::vector<AbcTimes> times_;
-    std::optional<double> frames_per_second_;
+    std::string archive_metadata_; ///< key=value;key=value
     std::vector<AbcReadObject> objects_;
     std::set<OgawaNode> read_; ///< groups of objects_ and lists of their names
 };

@@ -7,14 +7,14 @@
     usd_commands.py usdc FILE OUTPUT          writes a .usda of Toile as one .usdc, without value clips
 
 Exit codes: 3 without the modules; 4 for a file that is refused, and 5 for another failure, with the reason on the
-standard output.
+standard output; 6 when all is done, which no program says that is not this one.
 """
 
 import os
 import struct
 import sys
 
-MISSING, REFUSED, BROKE_OFF = 3, 4, 5
+MISSING, REFUSED, BROKE_OFF, DONE = 3, 4, 5, 6
 
 # Files are read, not mapped: memory is what the frames at hand take, and a file that shrinks is an error.
 os.environ.setdefault("USDC_USE_PREAD", "1")
@@ -41,8 +41,8 @@ def refuse(text):
 def open_stage(file):
     try:
         return Usd.Stage.Open(file)
-    except Tf.ErrorException as error:
-        refuse("can't be opened as USD: " + str(error).strip().splitlines()[-1].strip())
+    except Tf.ErrorException:
+        refuse("can't be opened as USD; it is empty, cut off or of another format, export it again")
 
 
 def mesh_prims(stage):
@@ -315,3 +315,5 @@ if __name__ == "__main__":
     except (Tf.ErrorException, OSError, MemoryError, ValueError, TypeError) as error:
         print(type(error).__name__, *str(error).strip().splitlines()[-1:], sep=": ")
         sys.exit(BROKE_OFF)
+    sys.stdout.flush()
+    sys.exit(DONE)

@@ -19,7 +19,7 @@ namespace {
 constexpr ChildBounds kBounds{std::chrono::hours(12), std::size_t{1} << 38};
 
 /// Exit codes of usd_commands.py, and of a program that can't be started.
-enum ExitCode { kDone = 0, kMissingModules = 3, kRefused = 4, kNoProgram = 127 };
+enum ExitCode { kDone = 6, kMissingModules = 3, kRefused = 4, kNoProgram = 127 };
 
 std::string python()
 {
@@ -64,6 +64,9 @@ std::string run_usd_command(const std::filesystem::path& file, const std::vector
         throw InvalidInput(file.string() + ": needs Python with USD, and " + python() +
                            (end.exit_code == kNoProgram ? " can't be started" : " has none") +
                            "; pip install usd-core, or name another interpreter in TOILE_PYTHON");
+    if (end.exit_code == 0)
+        throw InvalidInput(file.string() + ": needs Python with USD, and " + python() +
+                           " is no Python; name another interpreter in TOILE_PYTHON");
     if (end.exit_code == kRefused)
         throw InvalidInput(file.string() + ": " + end.output);
     if (end.exit_code != kDone)

@@ -84,8 +84,10 @@ TEST_F(ConvertTest, ChangesUnitAxesAndFirstFrame)
     const PointCache changed = read_cache(file("b.abc"));
     EXPECT_EQ(changed.frame(2)[1], Vec3(300, 300, 200));
     EXPECT_NEAR(changed.start_frame(), 1001.0, 1e-6);
-    convert({"b.abc", "c.abc", "--from-unit", "cm", "--from-up", "z"});
+    convert({"b.abc", "c.abc"}); // the archive says its unit and axis
     EXPECT_EQ(read_cache(file("c.abc")).frame(2)[1], Vec3(3, 2, -3));
+    convert({"b.abc", "d.mdd"});
+    EXPECT_EQ(read_cache(file("d.mdd")).frame(2)[1], Vec3(3, 2, -3));
 }
 
 TEST_F(ConvertTest, SparesWhatItReads)

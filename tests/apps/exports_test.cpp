@@ -193,14 +193,21 @@ TEST_F(ExportsTest, OptionsReplaceTheListOfTheScene)
 
 TEST_F(ExportsTest, CachesThatTheSceneDoesNotListAreCheckedInTheirUnit)
 {
-    simulate_well("o", R"([{"file": "disc.pc2", "cloth": "disc"}])",
-                  {"--export", "shot.abc", "--unit", "cm", "--start-frame", "1001"});
-    const std::vector<std::string> check{"check", "o/shot.abc", "--scene", "o.json", "--quiet"};
+    const std::string disc = R"([{"file": "disc.pc2", "cloth": "disc"}])";
+    const std::vector<std::string> in_cm{"--export-cloth", "disc", "--unit", "cm", "--start-frame", "1001"};
+    std::vector<std::string> archive = in_cm, positions = in_cm;
+    archive.insert(archive.begin(), {"--export", "shot.abc"});
+    positions.insert(positions.begin(), {"--export", "other.pc2"});
+    simulate_well("o", disc, archive);
+    const Finished says_it = run_toile({"check", "o/shot.abc", "--scene", "o.json", "--quiet"}, folder_);
+    EXPECT_EQ(says_it.exit_code, 0) << says_it.errors;
+
+    simulate_well("p", disc, positions);
+    std::vector<std::string> check{"check", "p/other.pc2", "--scene", "p.json", "--cloth", "disc", "--quiet"};
     EXPECT_EQ(run_toile(check, folder_).exit_code, 1) << "of metres it is a hundred times too large";
-    std::vector<std::string> in_unit = check;
-    in_unit.insert(in_unit.end(), {"--from-unit", "cm"});
-    const Finished run = run_toile(in_unit, folder_);
-    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    check.insert(check.end(), {"--from-unit", "cm"});
+    const Finished told = run_toile(check, folder_);
+    EXPECT_EQ(told.exit_code, 0) << told.errors;
 }
 
 TEST_F(ExportsTest, CachesOfOneNameAreToldByTheirFolders)
