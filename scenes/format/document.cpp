@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/extension.h"
 
 namespace toile::scene_format {
 
@@ -197,6 +198,14 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 {
     const std::string near = nearest_word(word, candidates);
     return near.empty() ? "" : "; did you mean " + as_written(near) + "?";
+}
+
+void check_extension(const Document& document, const std::string& key_path, const std::filesystem::path& file,
+                     const std::vector<std::string>& known)
+{
+    if (std::find(known.begin(), known.end(), lower_case_extension(file)) == known.end())
+        document.refuse(key_path, as_written(file.string()) + " is of an unknown format; use " +
+                                      enumerate(known, "or"));
 }
 
 std::string enumerate(const std::vector<std::string>& words, const std::string& conjunction)

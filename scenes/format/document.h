@@ -57,6 +57,10 @@ std::string below(const std::string& key_path, size_t index);
 /// "; did you mean "fabric"?", or empty if no candidate is similar.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
+/// @throws InvalidInput unless a file has one of these extensions, in capitals or not
+void check_extension(const Document& document, const std::string& key_path, const std::filesystem::path& file,
+                     const std::vector<std::string>& known);
+
 /// "a, b and c" for messages.
 std::string enumerate(const std::vector<std::string>& words, const std::string& conjunction);
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "scenes/format/cache_files.h"
-#include "scenes/format/checks.h"
+#include "scenes/format/checks/checks.h"
 #include "scenes/format/reader.h"
 
 namespace toile::scenes {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenes/format/checks.h"
+#include "scenes/format/checks/checks.h"
 #include "scenes/format/field.h"
 #include "scenes/format/range_check.h"
 

@@ -37,7 +37,7 @@ std::vector<int> surfaces_of(const scenes::Scene& scene, const scene::Export& en
     for (const std::string& name : entry.cloths)
         if (const auto at = std::find(names.begin(), names.end(), name); at != names.end())
             surfaces.push_back(int(at - names.begin()));
-    if (surfaces.empty()) { // none is named, or all: see checks.cpp
+    if (surfaces.empty()) { // none is named, or all: see export_checks.cpp
         surfaces.resize(names.size());
         std::iota(surfaces.begin(), surfaces.end(), 0);
     }
@@ -91,7 +91,7 @@ scenes::Scene with_subframes(scenes::Scene scene, int subframes)
     scene.frames = (scene.frames - 1) * subframes + 1;
     scene.fps *= subframes;
     if (scene.solver.substeps)
-        *scene.solver.substeps /= subframes; // a multiple: see checks.cpp
+        *scene.solver.substeps /= subframes; // a multiple: see export_checks.cpp
     return scene;
 }
 

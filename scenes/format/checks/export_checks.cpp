@@ -1,0 +1,101 @@
+#include "scenes/format/checks/export_checks.h"
+
+#include <algorithm>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/extension.h"
+#include "export/cache_format.h"
+#include "scenes/format/names.h"
+
+namespace toile::scene_format {
+
+namespace {
+
+using namespace scene;
+
+void check_export_file(const Document& document, const std::string& at_file,
+                       const std::filesystem::path& file)
+{
+    check_extension(document, at_file, file, exports::written_extensions());
+    const std::filesystem::path normal = file.lexically_normal();
+    if (normal.is_absolute() || *normal.begin() == "..")
+        document.refuse(at_file,
+                        as_written(file.string()) + " leaves the output folder; give a path inside it");
+}
+
+/// Checks which surfaces an entry writes, and that its format has room for them.
+void check_exported_cloths(const Document& document, const std::string& key_path, const Export& entry,
+                           const scenes::Scene& scene)
+{
+    std::vector<std::string> known = names_of(scene.cloths);
+    for (const Solid& solid : scene.solids)
+        known.push_back(solid.name);
+    const char* const kind = scene.solids.empty() ? "cloth" : "cloth or solid";
+    const bool is_all = entry.cloths == std::vector<std::string>{"all"} && !contains(known, "all");
+    std::set<std::string> seen;
+    for (const std::string& name : entry.cloths) {
+        if (!is_all)
+            require_known(document, below(key_path, "cloth"), kind, name, known);
+        if (!seen.insert(name).second)
+            document.refuse(below(key_path, "cloth"), as_written(name) + " is there twice; name it once");
+    }
+    if (exports::features_of(exports::cache_format(entry.file)).several)
+        return;
+    const std::string one_mesh = as_written(lower_case_extension(entry.file)) + " holds one mesh; ";
+    if (entry.cloths.size() > 1 || (is_all && known.size() > 1))
+        document.refuse(below(key_path, "cloth"),
+                        one_mesh + "write one file each, or an .abc or .usda of all");
+    if (entry.cloths.empty() && known.size() > 1)
+        document.refuse(key_path, "the scene has " + std::to_string(known.size()) +
+                                      (scene.solids.empty() ? " cloths" : " cloths and solids") +
+                                      "; name the one to write with the key \"cloth\"");
+    if (entry.avatars)
+        document.refuse(below(key_path, "avatars"), one_mesh + "write the avatars to an .abc or .usda");
+    if (!entry.weld)
+        document.refuse(below(key_path, "weld"), one_mesh + "write the panels to an .abc or .usda");
+}
+
+/// Checks what a format can't store. What stays at its default is left out silently.
+void check_export_features(const Document& document, const std::string& key_path, const Export& entry,
+                           const Solver& solver)
+{
+    const exports::CacheFormat format = exports::cache_format(entry.file);
+    const std::string extension = as_written(lower_case_extension(entry.file));
+    if (entry.normals && !exports::features_of(format).normals)
+        document.refuse(below(key_path, "normals"), extension + " stores no normals; write an .abc or .usda");
+    if (entry.subframes > 1 && exports::features_of(format).numbered)
+        document.refuse(below(key_path, "subframes"),
+                        extension + " has a file for each frame and none between; write an .abc or .usda");
+    if (solver.substeps && *solver.substeps % entry.subframes != 0)
+        document.refuse(below(key_path, "subframes"),
+                        as_written(entry.subframes) + " does not divide solver.substeps, " +
+                            as_written(*solver.substeps) + "; give a divisor of it, or leave substeps out");
+}
+
+} // namespace
+
+void check_exports(const Document& document, const scenes::Scene& scene)
+{
+    std::set<std::filesystem::path> seen;
+    int subframes = 1;
+    for (size_t i = 0; i < scene.exports.size(); ++i) {
+        const Export& entry = scene.exports[i];
+        const std::string key_path = below("export", i);
+        const std::string at_file = below(key_path, "file");
+        check_export_file(document, at_file, entry.file);
+        if (!seen.insert(entry.file.lexically_normal()).second)
+            document.refuse(at_file, as_written(entry.file.string()) +
+                                         " is written by an earlier entry; choose another file");
+        check_exported_cloths(document, key_path, entry, scene);
+        check_export_features(document, key_path, entry, scene.solver);
+        if (entry.subframes > 1 && subframes > 1 && entry.subframes != subframes)
+            document.refuse(below(key_path, "subframes"),
+                            as_written(entry.subframes) + ", and an earlier entry has " +
+                                as_written(subframes) + "; a run has one number besides 1");
+        subframes = std::max(subframes, entry.subframes);
+    }
+}
+
+} // namespace toile::scene_format
