@@ -21,6 +21,7 @@ std::vector<double> thickness_of(const scenes::ClothState& state)
         return state.vertex_thickness.empty() ? state.fabric.thickness : state.vertex_thickness[size_t(v)];
     };
     std::vector<double> thickness;
+    thickness.reserve(state.file_mesh().positions.size());
     for (int v = 0; v < int(state.file_mesh().positions.size()); ++v)
         thickness.push_back(of_vertex(state.has_file_order() ? state.numbers.vertex[size_t(v)] : v));
     return thickness;
