@@ -7,13 +7,11 @@ namespace {
 Vec3 z_up(const Vec3& x) { return {x.x(), -x.z(), x.y()}; }
 Vec3 y_up(const Vec3& x) { return {x.x(), x.z(), -x.y()}; }
 
-double units_per_metre(const Axes& axes) { return axes.unit == "cm" ? 100.0 : 1.0; }
-
 } // namespace
 
 void change_axes(const Axes& from, const Axes& to, std::vector<Vec3>& positions)
 {
-    const double scale = units_per_metre(to) / units_per_metre(from);
+    const double scale = from.metres_per_unit() / to.metres_per_unit();
     for (Vec3& x : positions) {
         if (from.has_z_up() != to.has_z_up())
             x = to.has_z_up() ? z_up(x) : y_up(x);

@@ -99,17 +99,17 @@ std::vector<Vec3> ExportedSurface::file_positions(const std::vector<std::vector<
 CacheContents::CacheContents(const scene::Export& entry, const scenes::Scene& scene,
                              View<const scenes::ClothState> surfaces,
                              const std::vector<std::pair<std::string, const TriangleMesh*>>& avatars)
-    : numbers_(surfaces_of(scene, entry))
+    : numbers_(surfaces_of(scene, entry)), has_avatars_(entry.avatars)
 {
     for (const int number : numbers_) {
         surfaces_.emplace_back(entry, surfaces[number]);
         for (const exports::CacheMesh& mesh : surfaces_.back().meshes())
             layout_.meshes.push_back(mesh);
     }
-    if (entry.avatars)
+    if (has_avatars_)
         for (const auto& [name, mesh] : avatars)
             layout_.meshes.push_back({name, "", mesh->vertex_count(), exports::faces_only(faces_of(*mesh))});
-    layout_.frame_count = (scene.frames - 1) * entry.subframes + 1;
+    layout_.frame_count = sample_count(scene, entry);
     layout_.fps = scene.fps;
     layout_.subframes = entry.subframes;
     layout_.start_frame = start_frame_of(entry);
@@ -125,8 +125,9 @@ std::vector<Vec3> CacheContents::positions(const std::function<View<const Vec3>(
     positions.reserve(size_t(layout_.vertex_count()));
     for (size_t s = 0; s < surfaces_.size(); ++s)
         surfaces_[s].append(surface(numbers_[s]), positions);
-    for (const std::vector<Vec3>& avatar : avatars)
-        positions.insert(positions.end(), avatar.begin(), avatar.end());
+    if (has_avatars_)
+        for (const std::vector<Vec3>& avatar : avatars)
+            positions.insert(positions.end(), avatar.begin(), avatar.end());
     exports::change_axes({}, layout_.axes, positions);
     return positions;
 }

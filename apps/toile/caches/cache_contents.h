@@ -56,13 +56,14 @@ public:
 
     /// Positions of all meshes in the export's axes.
     /// @param surface  gives the positions of a surface, numbered as World::surfaces() [m]
-    /// @param avatars  [avatars of the export] [m]
+    /// @param avatars  [avatars of the scene] [m]; not used by an export without them
     std::vector<Vec3> positions(const std::function<View<const Vec3>(int surface)>& surface,
                                 const std::vector<std::vector<Vec3>>& avatars) const;
 
 private:
     std::vector<int> numbers_; ///< of the surfaces
     std::vector<ExportedSurface> surfaces_;
+    bool has_avatars_;
     exports::CacheLayout layout_;
 };
 

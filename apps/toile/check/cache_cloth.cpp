@@ -61,9 +61,8 @@ const scene::Export* only_entry(const scenes::Scene& scene, const std::filesyste
     return found;
 }
 
-/// The export of a scene that writes a file of this path, else of this name; else `unlisted`.
-scene::Export entry_of(const scenes::Scene& scene, const std::filesystem::path& cache,
-                       const scene::Export& unlisted)
+/// The export of a scene that writes a file of this path, else of this name; null: there is none.
+const scene::Export* listed_entry(const scenes::Scene& scene, const std::filesystem::path& cache)
 {
     const std::filesystem::path file = exports::archive_of(cache);
     const auto has_same_name = [&](const scene::Export& entry) {
@@ -71,18 +70,8 @@ scene::Export entry_of(const scenes::Scene& scene, const std::filesystem::path& 
                lower_case_extension(entry.file) == lower_case_extension(file);
     };
     const auto has_same_path = [&](const scene::Export& entry) { return ends_with(file, entry.file); };
-    if (const scene::Export* const entry = only_entry(scene, cache, has_same_path))
-        return *entry;
-    if (const scene::Export* const entry = only_entry(scene, cache, has_same_name))
-        return *entry;
-    scene::Export entry = unlisted;
-    entry.file = file;
-    return entry;
-}
-
-bool is_exported(const scenes::Scene& scene, const scene::Export& entry)
-{
-    return std::find(scene.exports.begin(), scene.exports.end(), entry) != scene.exports.end();
+    const scene::Export* const of_path = only_entry(scene, cache, has_same_path);
+    return of_path != nullptr ? of_path : only_entry(scene, cache, has_same_name);
 }
 
 /// Index of a cloth by its name or by what it is called in an archive; -1: none.
@@ -120,15 +109,17 @@ std::vector<ClothInCache> cloths_of_cache(const scenes::Scene& scene, const std:
                                           const std::string& named, const scene::Export& unlisted)
 {
     const std::vector<std::string> names = surface_names(scene);
-    scene::Export entry = entry_of(scene, cache, unlisted);
-    const bool is_listed = is_exported(scene, entry);
-    if (is_listed)
+    const scene::Export* const listed = listed_entry(scene, cache);
+    scene::Export entry = listed != nullptr ? *listed : unlisted;
+    if (listed != nullptr)
         entry.start_frame = start_frame_of(entry);
+    else
+        entry.file = exports::archive_of(cache);
     if (!named.empty())
         return {{cache, entry, named_surface(scene, names, named)}};
     const bool is_mesh = !exports::mesh_path_of(cache).empty();
     std::vector<ClothInCache> cloths;
-    if (is_listed && !is_mesh) {
+    if (listed != nullptr && !is_mesh) {
         for (const int surface : surfaces_of(scene, entry))
             cloths.push_back({cache, entry, surface});
         return cloths;

@@ -70,10 +70,8 @@ void RunFiles::write_sample(const scenes::World& world)
             subframes_ / cache.target.entry.subframes; // samples of the run per one of the cache
         if (world.frame() % apart != 0)
             continue;
-        cache.writer->write_later(world.frame() / apart, [snapshot, avatars, contents = cache.contents,
-                                                          has_avatars = cache.target.entry.avatars] {
-            return contents->positions([&](int surface) { return snapshot->positions(surface); },
-                                       has_avatars ? *avatars : std::vector<std::vector<Vec3>>{});
+        cache.writer->write_later(world.frame() / apart, [snapshot, avatars, contents = cache.contents] {
+            return contents->positions([&](int surface) { return snapshot->positions(surface); }, *avatars);
         });
     }
 }
