@@ -66,6 +66,7 @@ MAY_INCLUDE = {
     "collision/skin": CORE + ["collision/bvh", "collision/check"],
     "avatars/model": CORE,
     "avatars/import": CORE + ["avatars/model"],
+    "avatars/appearance": CORE + ["avatars/model", "avatars/import"],
     "avatars/mannequin": CORE + ["avatars/model"],
     "avatars/landmarks": CORE + ["avatars/model"],
     "avatars": CORE + ["avatars/model", "avatars/import", "avatars/mannequin", "avatars/landmarks"],
@@ -139,6 +140,7 @@ OWNERS = {
     r"tiny_gltf\.h": ["export/gltf"],
     r"CGAL/": ["collision/check", "garment/pattern/mesh"],
     r"(libpng/)?png\.h": ["apps/preview"],
+    r"j(peglib|error)\.h": ["apps/preview"],
     r"boost/multiprecision/": [],  # comes with CGAL; rational numbers of the tests
     r"nlohmann/": ["avatars/import", "avatars/landmarks", "scenes/format", "scenes/garment_format", "apps"],
     r"CLI/": ["apps/toile", "research/bench"],

@@ -1,10 +1,15 @@
 #include "avatars/import/assimp_import.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <iterator>
+#include <map>
+#include <memory>
 #include <new>
+#include <optional>
 
 #include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
@@ -34,6 +39,9 @@ Affine to_affine(const aiMatrix4x4& m)
     return result;
 }
 
+/// Textures that colour a surface, the preferred one first.
+constexpr std::array kColourTextures{aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
+
 /// Builds a RiggedModel from one assimp scene.
 class SceneReader {
 public:
@@ -52,6 +60,18 @@ public:
     {
         read_parts();
         return builder_.motion();
+    }
+
+    Appearance read_appearance()
+    {
+        read_parts();
+        Appearance appearance;
+        appearance.triangles = builder_.finish().mesh.rest.triangles;
+        add_materials(appearance);
+        const int white = appearance.add_white();
+        for (const AddedTriangle& triangle : builder_.added_triangles())
+            add_corners(triangle, white, appearance);
+        return appearance;
     }
 
 private:
@@ -81,6 +101,7 @@ private:
     {
         SkinnedMesh& out = builder_.mesh();
         const int first_vertex = out.rest.vertex_count();
+        mesh_from_.insert_or_assign(first_vertex, &mesh); // the last, if those before have no vertices
         for (unsigned v = 0; v < mesh.mNumVertices; ++v)
             out.rest.positions.push_back(to_vec3(mesh.mVertices[v]));
         out.space_of_vertex.resize(out.rest.positions.size(), mesh.HasBones() ? 0 : node_joint + 1);
@@ -159,9 +180,80 @@ private:
         builder_.add_clip(std::move(clip));
     }
 
+    /// All materials of the scene: material i of a mesh is appearance.materials[i].
+    void add_materials(Appearance& appearance) const
+    {
+        for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
+            const aiMaterial& from = *scene_.mMaterials[i];
+            SurfaceMaterial& material = appearance.materials.emplace_back();
+            aiColor4D colour;
+            const bool is_invented = from.GetName() == aiString(AI_DEFAULT_MATERIAL_NAME);
+            if (!is_invented && (from.Get(AI_MATKEY_BASE_COLOR, colour) == aiReturn_SUCCESS ||
+                                 from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS))
+                material.colour = Vec3(colour.r, colour.g, colour.b);
+            for (const aiTextureType type : kColourTextures)
+                if (!material.texture)
+                    material.texture = texture(from, type, appearance);
+            if (material.texture)
+                material.colour.reset(); // FBX has the image in place of the colour
+        }
+    }
+
+    std::optional<Texture> texture(const aiMaterial& material, aiTextureType type,
+                                   Appearance& appearance) const
+    {
+        aiString name;
+        std::array<aiTextureMapMode, 2> modes{aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+        if (material.GetTexture(type, 0, &name, nullptr, nullptr, nullptr, nullptr, modes.data()) !=
+            aiReturn_SUCCESS)
+            return std::nullopt;
+        Texture texture;
+        for (size_t k = 0; k < 2; ++k)
+            texture.wrap[k] = modes[k] == aiTextureMapMode_Mirror ? Wrap::Mirror
+                              : modes[k] == aiTextureMapMode_Wrap ? Wrap::Repeat
+                                                                  : Wrap::Clamp;
+        const std::string place = source_ + ": material '" + material.GetName().C_Str() + "'";
+        const aiTexture* embedded = scene_.GetEmbeddedTexture(name.C_Str());
+        if (embedded == nullptr) {
+            texture.image = appearance.add_image_file(source_, name.C_Str(), place);
+            return texture;
+        }
+        const auto* bytes = reinterpret_cast<const unsigned char*>(embedded->pcData);
+        const size_t size = embedded->mHeight == 0 ? embedded->mWidth : 0; // else texels, which no FBX has
+        texture.image = int(appearance.images.size());
+        appearance.images.push_back({place, {bytes, bytes + size}});
+        return texture;
+    }
+
+    /// @param white  material under colours of vertices that have no other
+    void add_corners(const AddedTriangle& triangle, int white, Appearance& appearance) const
+    {
+        const auto [first_vertex, mesh] = *std::prev(mesh_from_.upper_bound(triangle.corners[0]));
+        CornerCoordinates coordinates;
+        CornerColours colours;
+        for (size_t k = 0; k < 3; ++k) {
+            const int v = triangle.corners[int(k)] - first_vertex;
+            coordinates[k].setZero();
+            if (mesh->HasTextureCoords(0)) // v of assimp points up
+                coordinates[k] = Vec2(mesh->mTextureCoords[0][v].x, 1.0 - mesh->mTextureCoords[0][v].y);
+            colours[k].setOnes();
+            if (mesh->HasVertexColors(0)) {
+                const aiColor4D& colour = mesh->mColors[0][v];
+                colours[k] = Eigen::Vector4d(colour.r, colour.g, colour.b, colour.a);
+            }
+        }
+        const SurfaceMaterial& material = appearance.materials[mesh->mMaterialIndex];
+        const bool is_bare = !material.colour && !material.texture;
+        appearance.material.push_back(is_bare && mesh->HasVertexColors(0) ? white
+                                                                          : int(mesh->mMaterialIndex));
+        appearance.coordinates.push_back(coordinates);
+        appearance.colours.push_back(colours);
+    }
+
     const aiScene& scene_;
     std::string source_;
     ModelBuilder builder_;
+    std::map<int, const aiMesh*> mesh_from_;          ///< by first vertex
     std::vector<std::pair<unsigned, int>> instances_; ///< mesh index, joint of its node
 };
 
@@ -194,19 +286,45 @@ ChildBounds bounds_for(const std::filesystem::path& file)
     return {std::chrono::seconds(20 + 2 * megabytes), (1000 + 100 * megabytes) << 20};
 }
 
+enum class Images { Keep, LeaveOut };
+
+/// Lets materials name the images in their file by number: assimp's own format keeps no other name of them.
+void number_images(aiScene& scene)
+{
+    for (unsigned i = 0; i < scene.mNumMaterials; ++i)
+        for (const aiTextureType type : kColourTextures) {
+            aiMaterial& material = *scene.mMaterials[i];
+            aiString name;
+            if (material.GetTexture(type, 0, &name) != aiReturn_SUCCESS)
+                continue;
+            if (const int number = scene.GetEmbeddedTextureAndIndex(name.C_Str()).second; number >= 0) {
+                name = "*";
+                name.Append(std::to_string(number).c_str());
+                material.AddProperty(&name, AI_MATKEY_TEXTURE(type, 0));
+            }
+        }
+}
+
 /// Content of a file in assimp's own format.
-std::string in_own_format(const std::filesystem::path& file)
+std::string in_own_format(const std::filesystem::path& file, Images images)
 {
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     // Pivots as extra nodes would tip an FBX body onto its side once a motion file without them drives it.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+    unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType;
+    if (images == Images::LeaveOut) {
+        importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_TEXTURES);
+        steps |= aiProcess_RemoveComponent;
+    }
+    importer.ReadFile(file.string(), steps);
+    const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
     if (!scene || !scene->mRootNode)
         refuse(file, importer);
+    number_images(*scene);
     Assimp::Exporter exporter;
-    const aiExportDataBlob* content = exporter.ExportToBlob(scene, kOwnFormat);
+    const aiExportDataBlob* content = exporter.ExportToBlob(scene.get(), kOwnFormat);
     if (!content)
         refuse(file, exporter.GetErrorString());
     return {static_cast<const char*>(content->data), content->size};
@@ -215,11 +333,12 @@ std::string in_own_format(const std::filesystem::path& file)
 /// Reads the file in a child process: assimp's readers crash, loop and fill the memory for some damaged
 /// files.
 /// @param importer  owns the result
-const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& file)
+const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& file,
+                          Images images = Images::LeaveOut)
 {
     std::string content;
     try {
-        content = in_child_process([&] { return in_own_format(file); }, bounds_for(file));
+        content = in_child_process([&] { return in_own_format(file, images); }, bounds_for(file));
     } catch (const ChildStopped& stop) {
         throw InvalidInput(file.string() + ": can't be read: assimp's reader " + stop.what() +
                            "; export the model again, best as .glb");
@@ -237,6 +356,13 @@ RiggedModel import_rigged_model(const std::filesystem::path& file)
     Assimp::Importer importer;
     const aiScene* scene = read_scene(importer, file);
     return SceneReader(*scene, file.string()).read();
+}
+
+Appearance import_model_appearance(const std::filesystem::path& file)
+{
+    Assimp::Importer importer;
+    const aiScene* scene = read_scene(importer, file, Images::Keep);
+    return SceneReader(*scene, file.string()).read_appearance();
 }
 
 SkeletalMotion import_skeletal_motion(const std::filesystem::path& file)

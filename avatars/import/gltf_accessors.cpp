@@ -15,14 +15,13 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
 
-constexpr std::uint64_t kMaxInteger = std::uint64_t(1) << 53;
 constexpr std::uint64_t kFirstComponentType = 5120;
 
 int width_of(std::string_view type)
 {
     if (type == "SCALAR")
         return 1;
-    return type == "VEC3" ? 3 : type == "VEC4" ? 4 : 16;
+    return type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 16;
 }
 
 size_t size_of(unsigned component_type)
@@ -105,12 +104,6 @@ bool flag_of(const GltfValue& object, const char* key)
     return value && value->flag();
 }
 
-std::uint64_t offset_of(const GltfValue& object)
-{
-    const std::optional<GltfValue> value = object.find("byteOffset");
-    return value ? value->whole(0, kMaxInteger) : 0;
-}
-
 } // namespace
 
 Elements GltfAccessors::read(const GltfValue& reference, const AccessorRule& rule, int count)
@@ -155,16 +148,10 @@ Elements GltfAccessors::read(const GltfValue& reference, const AccessorRule& rul
 /// Bytes of the view that `owner` (an accessor, or a part of a sparse one) names, from the owner's offset on.
 GltfAccessors::Range GltfAccessors::range(const GltfValue& owner, const GltfValue& count, size_t element_size)
 {
-    // The view must lie in its buffer.
     const GltfValue views = file_.list("bufferViews");
     const GltfValue view = views[owner.at("bufferView").index(views.size(), "bufferViews")];
-    const Bytes buffer = file_.buffer(view.at("buffer").index(file_.list("buffers").size(), "buffers"));
-    const std::uint64_t start = offset_of(view);
-    const GltfValue byte_length = view.at("byteLength");
-    const std::uint64_t length = byte_length.whole(1, kMaxInteger);
-    if (start > buffer.size() || length > buffer.size() - start)
-        byte_length.refuse("with offset " + std::to_string(start) + " the view ends after its buffer of " +
-                           std::to_string(buffer.size()) + " bytes");
+    const Bytes bytes = file_.view(view);
+    const std::uint64_t length = bytes.size();
 
     // The elements must lie in the view.
     Range range;
@@ -178,7 +165,7 @@ GltfAccessors::Range GltfAccessors::range(const GltfValue& owner, const GltfValu
         count.refuse("elements of " + std::to_string(element_size) + " bytes, " +
                      std::to_string(range.stride) + " apart, from offset " + std::to_string(offset) +
                      " end after their view of " + std::to_string(length) + " bytes");
-    range.bytes = buffer.subspan(size_t(start + offset), size_t(length - offset));
+    range.bytes = bytes.subspan(size_t(offset));
     return range;
 }
 

@@ -20,7 +20,7 @@ enum ComponentTypes : unsigned {
 
 /// What glTF allows at a place that names an accessor.
 struct AccessorRule {
-    std::string_view type;    ///< "SCALAR", "VEC3", "VEC4" or "MAT4"
+    std::string_view type;    ///< "SCALAR", "VEC2", "VEC3", "VEC4" or "MAT4"
     unsigned component_types; ///< of ComponentTypes
 };
 

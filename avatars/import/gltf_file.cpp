@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::string_view kMagic = "glTF";
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr std::uint64_t kMaxInteger = std::uint64_t(1) << 53; ///< that doubles hold exactly
 constexpr size_t kHeaderSize = 12, kChunkHeaderSize = 8;
 
 /// Extensions that change no position, by the start of their name.
@@ -73,6 +74,12 @@ std::string remedy_for(const std::string& extension)
 }
 
 } // namespace
+
+std::uint64_t offset_of(const GltfValue& object)
+{
+    const std::optional<GltfValue> value = object.find("byteOffset");
+    return value ? value->whole(0, kMaxInteger) : 0;
+}
 
 GltfFile::GltfFile(const std::filesystem::path& file)
     : file_(file), source_(file.string()),
@@ -158,7 +165,7 @@ Bytes GltfFile::buffer(int i)
 {
     const GltfValue buffer = list("buffers")[i];
     const GltfValue length = buffer.at("byteLength");
-    const size_t size = length.whole(1, std::uint64_t(1) << 53);
+    const size_t size = length.whole(1, kMaxInteger);
     const auto require = [&](size_t available) {
         if (available < size)
             length.refuse("the buffer has " + std::to_string(available) + " bytes; the file is cut off");
@@ -181,15 +188,42 @@ Bytes GltfFile::buffer(int i)
         require(bytes.size());
         bytes.resize(size);
     } else {
-        const std::filesystem::path other = file_.parent_path() / decode_path(*uri);
-        if (std::error_code error; !std::filesystem::is_regular_file(other, error))
-            uri->refuse("no such file beside this one");
+        const std::filesystem::path other = file_beside(*uri);
         const std::string place = uri->place_and_value();
         require(size_of(other, place));
         bytes = read_start<std::vector<unsigned char>>(other, size, place);
     }
     byte_count_ += bytes.size();
     return bytes;
+}
+
+std::filesystem::path GltfFile::file_beside(const GltfValue& uri) const
+{
+    std::filesystem::path file = file_.parent_path() / decode_path(uri);
+    if (std::error_code error; !std::filesystem::is_regular_file(file, error))
+        uri.refuse("no such file beside this one");
+    return file;
+}
+
+std::vector<unsigned char> GltfFile::content_of(const GltfValue& uri) const
+{
+    if (is_data_uri(uri.text()))
+        return decode_data_uri(uri);
+    const std::filesystem::path file = file_beside(uri);
+    const std::string place = uri.place_and_value();
+    return read_start<std::vector<unsigned char>>(file, size_of(file, place), place);
+}
+
+Bytes GltfFile::view(const GltfValue& view)
+{
+    const Bytes bytes = buffer(view.at("buffer").index(list("buffers").size(), "buffers"));
+    const std::uint64_t start = offset_of(view);
+    const GltfValue byte_length = view.at("byteLength");
+    const std::uint64_t length = byte_length.whole(1, kMaxInteger);
+    if (start > bytes.size() || length > bytes.size() - start)
+        byte_length.refuse("with offset " + std::to_string(start) + " the view ends after its buffer of " +
+                           std::to_string(bytes.size()) + " bytes");
+    return bytes.subspan(size_t(start), size_t(length));
 }
 
 void GltfFile::spend(const GltfValue& place, std::uint64_t elements)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <span>
@@ -11,6 +12,9 @@
 namespace toile::avatars {
 
 using Bytes = std::span<const unsigned char>;
+
+/// Offset of an accessor or view [bytes], 0 without one.
+std::uint64_t offset_of(const GltfValue& object);
 
 /// A glTF file: its JSON, and its buffers from wherever they are.        [glTF 2.0, sections 3.6.1, 4]
 class GltfFile {
@@ -34,6 +38,14 @@ public:
     /// @throws InvalidInput for a missing or short file, and bad base64.
     Bytes buffer(int i);
 
+    /// Bytes of a buffer view.
+    /// @throws InvalidInput for a view outside of its buffer, and as buffer()
+    Bytes view(const GltfValue& view);
+
+    /// Whole content of what a URI names: embedded, or another file.
+    /// @throws InvalidInput for a missing file, and bad base64
+    std::vector<unsigned char> content_of(const GltfValue& uri) const;
+
     /// Counts elements that are about to be read for `place`. A few kilobytes can name one accessor from a
     /// million places, so that memory would not be bounded by the size of the file.
     /// @throws InvalidInput beyond one element per byte and kMaxRepeats.
@@ -44,6 +56,7 @@ private:
     std::string_view split_glb();
     void require_version() const;
     void require_known_extensions() const;
+    std::filesystem::path file_beside(const GltfValue& uri) const;
 
     std::filesystem::path file_;
     std::string source_;

@@ -104,6 +104,13 @@ bool GltfValue::flag() const
     return json_->get<bool>();
 }
 
+double GltfValue::number() const
+{
+    if (!json_->is_number())
+        refuse("must be a number");
+    return json_->get<double>();
+}
+
 const std::string& GltfValue::text() const
 {
     if (!json_->is_string())

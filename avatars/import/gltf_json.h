@@ -45,6 +45,7 @@ public:
     /// Index in a top-level array of the file, below `count`.
     int index(int count, const std::string& of_what) const;
     bool flag() const;
+    double number() const;
     const std::string& text() const;
     /// "name" of this object on one line; `otherwise` if it has none.
     std::string name_or(const std::string& otherwise) const;

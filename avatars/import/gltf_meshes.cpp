@@ -169,6 +169,7 @@ void GltfMeshes::add_primitive(const GltfValue& primitive, const Binding& bindin
                            " corners; triangles take a multiple of 3");
     const std::vector<Triangle> triangles = triangles_of(corners, mode);
     std::vector<Triangle>& all = builder_.mesh().rest.triangles;
+    primitives_.push_back({primitive, int(all.size()), vertices->second.first, vertices->second.count});
     all.insert(all.end(), triangles.begin(), triangles.end());
 }
 

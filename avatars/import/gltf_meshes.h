@@ -17,6 +17,14 @@ struct ShapeRange {
     int count = 0;
 };
 
+/// Triangles that a primitive adds to a model.
+struct PrimitiveFaces {
+    GltfValue primitive;
+    int first_triangle = 0;
+    int first_vertex = 0; ///< of vertex_count, which other primitives may share
+    int vertex_count = 0;
+};
+
 /// Adds the meshes of all drawn nodes to a model.        [glTF 2.0, section 3.7]
 class GltfMeshes {
 public:
@@ -32,6 +40,9 @@ public:
     /// @return blend shapes of every animated node that is drawn
     /// @throws InvalidInput naming the primitive, attribute or skin that is wrong.
     std::map<int, ShapeRange> read();
+
+    /// What read() has added, by ascending triangles.
+    const std::vector<PrimitiveFaces>& primitives() const { return primitives_; }
 
 private:
     /// What the vertices of a node follow.
@@ -68,6 +79,7 @@ private:
     const NodeTree& tree_;
     const std::set<int>& animated_nodes_;
     ModelBuilder& builder_;
+    std::vector<PrimitiveFaces> primitives_;
     std::map<int, Binding> of_skin_; ///< what read() has met so far
     std::vector<int> space_of_bone_; ///< [bones of the model] -1: none yet
     int space_count_ = 0;

@@ -88,11 +88,23 @@ RiggedModel ModelBuilder::finish()
     require_surface();
     normalise_weights(model_.mesh, source_);
     turn_mirrored_triangles();
-    weld_seams(model_.mesh, kSeamDistance * bounds(model_.mesh.rest.positions).diagonal());
+    weld();
     if (model_.mesh.rest.triangles.empty())
         throw InvalidInput(source_ +
                            ": every triangle has two corners in one point; an avatar needs a surface");
     return std::move(model_);
+}
+
+void ModelBuilder::weld()
+{
+    const std::vector<Triangle> added = model_.mesh.rest.triangles;
+    const std::vector<int> welded_of =
+        weld_seams(model_.mesh, kSeamDistance * bounds(model_.mesh.rest.positions).diagonal());
+    for (size_t i = 0; i < added.size(); ++i) {
+        const Triangle& t = added[i];
+        if (has_three_corners({welded_of[size_t(t[0])], welded_of[size_t(t[1])], welded_of[size_t(t[2])]}))
+            added_triangles_.push_back({int(i), t});
+    }
 }
 
 SkeletalMotion ModelBuilder::motion()

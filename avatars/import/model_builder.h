@@ -23,6 +23,13 @@ void require_usable(const Track<Vec3>& track, const std::string& place);
 void require_usable(const Track<Eigen::Quaterniond>& track, const std::string& place);
 void require_usable(const Track<double>& track, const std::string& place);
 
+/// A triangle of a finished model, as the importer added it. What differs on both sides of a seam, such as
+/// texture coordinates, is found by it.
+struct AddedTriangle {
+    int index = 0;    ///< among those added
+    Triangle corners; ///< vertices as they were added; corner k is corner k of the finished triangle
+};
+
 /// Assembles a RiggedModel from the parts that an importer finds. The importer adds joints and vertices in
 /// the file's order, the builder completes them.
 class ModelBuilder {
@@ -45,15 +52,20 @@ public:
     /// finite.
     RiggedModel finish();
 
+    /// [triangles of finish()]
+    const std::vector<AddedTriangle>& added_triangles() const { return added_triangles_; }
+
     /// Joints and clips alone, of a file that needs no surface.
     SkeletalMotion motion();
 
 private:
     void require_surface() const;
     void turn_mirrored_triangles();
+    void weld();
 
     std::string source_;
     RiggedModel model_;
+    std::vector<AddedTriangle> added_triangles_;
     std::map<std::vector<double>, int> index_of_bone_; ///< by joint and matrix
 };
 

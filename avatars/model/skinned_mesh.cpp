@@ -47,7 +47,7 @@ std::vector<Triangle> renumbered(const std::vector<Triangle>& triangles, const s
     std::vector<Triangle> result;
     for (const Triangle& t : triangles) {
         const Triangle moved(new_of[t[0]], new_of[t[1]], new_of[t[2]]);
-        if (moved[0] != moved[1] && moved[1] != moved[2] && moved[2] != moved[0])
+        if (has_three_corners(moved))
             result.push_back(moved);
     }
     return result;
@@ -109,9 +109,10 @@ void join_offsets(const SkinnedMesh& mesh, const std::vector<std::vector<int>>& 
 }
 
 /// The mesh with every vertex replaced by its leader.
-SkinnedMesh joined(const SkinnedMesh& mesh, const std::vector<int>& leader)
+/// @param new_of  [old vertices] out: their new indices
+SkinnedMesh joined(const SkinnedMesh& mesh, const std::vector<int>& leader, std::vector<int>& new_of)
 {
-    std::vector<int> new_of(leader.size());
+    new_of.resize(leader.size());
     std::vector<std::vector<int>> members;
     for (size_t v = 0; v < leader.size(); ++v) {
         if (leader[v] == int(v)) {
@@ -170,7 +171,7 @@ void normalise_weights(SkinnedMesh& mesh, const std::string& source)
     mesh.influences = std::move(kept);
 }
 
-void weld_seams(SkinnedMesh& mesh, double distance)
+std::vector<int> weld_seams(SkinnedMesh& mesh, double distance)
 {
     const int vertex_count = mesh.rest.vertex_count();
     std::vector<char> joinable =
@@ -191,8 +192,9 @@ void weld_seams(SkinnedMesh& mesh, double distance)
                 changed = true;
             }
         if (!changed) {
-            mesh = joined(mesh, leader);
-            return;
+            std::vector<int> new_of;
+            mesh = joined(mesh, leader, new_of);
+            return new_of;
         }
     }
 }

@@ -44,7 +44,11 @@ void normalise_weights(SkinnedMesh& mesh, const std::string& source);
 /// eyelids) are two sheets that touch. A weld that would give an edge more than two triangles is undone.
 /// Weights and offsets of welded vertices are averaged.
 /// @param distance  below which two positions are coincident [mesh units]
-void weld_seams(SkinnedMesh& mesh, double distance);
+/// @return [old vertices] their new indices
+std::vector<int> weld_seams(SkinnedMesh& mesh, double distance);
+
+/// False for a triangle that has lost a corner.
+inline bool has_three_corners(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
 
 /// Joint with the largest weight over the corners of each triangle; on a tie, the lowest. [triangles]
 std::vector<int> heaviest_joints(const SkinnedMesh& mesh);

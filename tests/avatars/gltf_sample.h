@@ -45,7 +45,11 @@ struct GltfSample {
         json["buffers"].push_back(
             {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}});
         json["bufferViews"].push_back({{"buffer", json["buffers"].size() - 1}, {"byteLength", bytes.size()}});
-        const size_t width = type == "SCALAR" ? 1 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 16;
+        const size_t width = type == "SCALAR" ? 1
+                             : type == "VEC2" ? 2
+                             : type == "VEC3" ? 3
+                             : type == "VEC4" ? 4
+                                              : 16;
         json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
                                      {"componentType", component_type(Component())},
                                      {"count", numbers.size() / width},
@@ -76,13 +80,6 @@ struct GltfSample {
         return file;
     }
 
-private:
-    static int component_type(std::int8_t) { return 5120; }
-    static int component_type(std::uint8_t) { return 5121; }
-    static int component_type(std::int16_t) { return 5122; }
-    static int component_type(std::uint16_t) { return 5123; }
-    static int component_type(float) { return 5126; }
-
     static std::string base64(const std::vector<unsigned char>& bytes)
     {
         constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -96,6 +93,13 @@ private:
         }
         return text;
     }
+
+private:
+    static int component_type(std::int8_t) { return 5120; }
+    static int component_type(std::uint8_t) { return 5121; }
+    static int component_type(std::int16_t) { return 5122; }
+    static int component_type(std::uint16_t) { return 5123; }
+    static int component_type(float) { return 5126; }
 };
 
 } // namespace toile::test
