@@ -19,6 +19,7 @@ function(toile_write_third_party)
     get_directory_property(boost_version DIRECTORY collision/check DEFINITION Boost_VERSION_STRING)
     get_directory_property(json_version DIRECTORY scenes/format DEFINITION nlohmann_json_VERSION)
     get_directory_property(png_version DIRECTORY apps/preview DEFINITION PNG_VERSION_STRING)
+    get_directory_property(jpeg_version DIRECTORY apps/preview DEFINITION JPEG_VERSION)
     get_directory_property(zlib_version DIRECTORY apps/preview DEFINITION ZLIB_VERSION_STRING)
     get_directory_property(cli_version DIRECTORY apps/toile DEFINITION CLI11_VERSION)
 

@@ -22,6 +22,9 @@ constexpr float kNormalReach = 0.1f;
 /// Distance from the plane of the pixel, over the distance, at which it does [-].
 constexpr float kPlaneReach = 0.1f;
 
+/// Difference of the colours of paint [-] at which it does.
+constexpr float kPaintReach = 0.02f;
+
 /// Variance [-] that 8-bit colours do not show; it is not worth a pass.
 constexpr float kInvisible = 1e-8f;
 
@@ -77,8 +80,9 @@ float likeness(const NoisyPixel& p, const NoisyPixel& q)
     const float color = (q.color - p.color).squaredNorm() /
                         (kColorReach * kColorReach * std::max(p.variance + q.variance, 1e-12f));
     const float normal = (q.normal - p.normal).squaredNorm() / (kNormalReach * kNormalReach);
+    const float paint = (q.paint - p.paint).squaredNorm() / (kPaintReach * kPaintReach);
     const float plane = off_plane * off_plane / (kPlaneReach * kPlaneReach * distance);
-    return std::exp(-0.5f * (color + normal + plane));
+    return std::exp(-0.5f * (color + normal + paint + plane));
 }
 
 /// A pass of the wavelet for one pixel.

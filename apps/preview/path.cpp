@@ -81,6 +81,8 @@ PathTracer::PathTracer(const RenderScene& scene, const std::vector<std::vector<V
         size_ = std::max(box.diagonal(), 1e-6);
     }
     step_off_ = kStepOff * size_;
+    for (const RenderMesh& mesh : scene_.meshes)
+        has_gaps_ = has_gaps_ || (mesh.paint && mesh.paint->has_gaps());
 
     sun_frame_ = frame_around(lighting_.to_sun);
 }
@@ -96,9 +98,10 @@ PathSample PathTracer::trace(double x, double y, const PixelSampler& sampler, in
     if (scene_.ground_height && direction.y() < 0.0 && camera_.origin.y() > *scene_.ground_height)
         t_ground = (*scene_.ground_height - camera_.origin.y()) / direction.y();
 
-    if (const auto hit = rays_.closest_hit(camera_.origin, direction, t_ground)) {
+    if (const auto hit = closest_hit(camera_.origin, direction, t_ground)) {
         const SurfacePoint at = surface_point(camera_.origin, direction, *hit);
-        return {tone_map(shade(at, -direction, sampler, sample)), at.surface, at.position, at.normal};
+        return {tone_map(shade(at, -direction, sampler, sample)), at.surface, at.position, at.normal,
+                at.paint};
     }
     if (t_ground < 1e30) {
         const Vec3 at = camera_.origin + t_ground * direction;
@@ -143,7 +146,9 @@ SurfacePoint PathTracer::surface_point(const Vec3& origin, const Vec3& direction
 
     at.surface = 1 + 3 * hit.mesh + (is_front ? 1 : 0);
     at.albedo = is_front ? mesh.material.front : mesh.material.back;
-    if (is_front && mesh.material.print != Print::Plain) {
+    if (mesh.paint)
+        at.albedo = at.paint = paint_at(hit).value_or(at.albedo);
+    else if (is_front && mesh.material.print != Print::Plain) {
         const std::array<Vec2, 3>& uv = mesh.corner_coordinates[size_t(hit.triangle)];
         if (second_color(mesh.material, weight[0] * uv[0] + weight[1] * uv[1] + weight[2] * uv[2])) {
             at.albedo = mesh.material.print_front;
@@ -184,14 +189,43 @@ Vec3 PathTracer::shade(const SurfacePoint& at, const Vec3& to_viewer, const Pixe
     return (at.albedo + sheen_tint).cwiseProduct(light) + highlight * lighting_.sun;
 }
 
+/// None in a gap of the paint.
+std::optional<Vec3> PathTracer::paint_at(const collision::RayHit& hit) const
+{
+    return scene_.meshes[size_t(hit.mesh)].paint->colour(hit.triangle,
+                                                         Vec3(1.0 - hit.u - hit.v, hit.u, hit.v));
+}
+
+/// Rays go on through gaps in paint.
+std::optional<collision::RayHit> PathTracer::closest_hit(const Vec3& origin, const Vec3& direction,
+                                                         double t_max) const
+{
+    auto hit = rays_.closest_hit(origin, direction, t_max);
+    for (double passed = 0.0; has_gaps_ && hit;) {
+        hit->t += passed;
+        if (!scene_.meshes[size_t(hit->mesh)].paint || paint_at(*hit))
+            break;
+        passed = hit->t + step_off_;
+        hit = rays_.closest_hit(origin + passed * direction, direction, t_max - passed);
+    }
+    return hit;
+}
+
+bool PathTracer::occluded(const Vec3& origin, const Vec3& direction, double t_max) const
+{
+    return has_gaps_ ? closest_hit(origin, direction, t_max).has_value()
+                     : rays_.occluded(origin, direction, t_max);
+}
+
 Vec3 PathTracer::sky_light(const Vec3& from, const Vec3& normal, const Vec2& random) const
 {
     const Vec3 direction = cosine_direction(normal, random);
-    const auto hit = rays_.closest_hit(from, direction, 2.0 * size_);
+    const auto hit = closest_hit(from, direction, 2.0 * size_);
     if (!hit)
         return lighting_.from(direction);
     const RenderMesh& mesh = scene_.meshes[size_t(hit->mesh)];
-    return kBounce * mesh.material.front.cwiseProduct(lighting_.horizon);
+    const Vec3 albedo = mesh.paint ? paint_at(*hit).value_or(mesh.material.front) : mesh.material.front;
+    return kBounce * albedo.cwiseProduct(lighting_.horizon);
 }
 
 bool PathTracer::sun_reaches(const Vec3& from, const Vec3& facet_normal, const Vec2& random) const
@@ -200,7 +234,7 @@ bool PathTracer::sun_reaches(const Vec3& from, const Vec3& facet_normal, const V
     const double angle = 2.0 * std::numbers::pi * random.y();
     const Vec3 across = std::cos(angle) * sun_frame_.first + std::sin(angle) * sun_frame_.second;
     const Vec3 direction = (lighting_.to_sun + radius * across).normalized();
-    return facet_normal.dot(direction) > -0.2 && !rays_.occluded(from, direction, 4.0 * size_);
+    return facet_normal.dot(direction) > -0.2 && !occluded(from, direction, 4.0 * size_);
 }
 
 Vec3 PathTracer::ground_color(const Vec3& at, const Vec3& background, const PixelSampler& sampler,
@@ -215,7 +249,7 @@ Vec3 PathTracer::ground_color(const Vec3& at, const Vec3& background, const Pixe
     // Ratio of arriving light to that in the open.
     const Vec3 from = at + step_off_ * Vec3::UnitY();
     const Vec3 to_sky = cosine_direction(Vec3::UnitY(), sampler.point(sample, 1));
-    const double sky = rays_.occluded(from, to_sky, 2.0 * size_) ? kHiddenSky : 1.0;
+    const double sky = occluded(from, to_sky, 2.0 * size_) ? kHiddenSky : 1.0;
     const double sun = sun_reaches(from, Vec3::UnitY(), sampler.point(sample, 2)) ? 1.0 : 0.0;
     const Vec3 sky_part = 0.5 * (lighting_.zenith + lighting_.horizon);
     const Vec3 sun_part = lighting_.to_sun.y() * lighting_.sun;

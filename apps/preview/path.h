@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct SurfacePoint {
     Vec3 normal = Vec3::UnitY();       ///< smooth, on the viewer's side, unit
     Vec3 facet_normal = Vec3::UnitY(); ///< of the triangle, on the viewer's side, unit
     Vec3 albedo = Vec3::Zero();        ///< linear RGB
+    Vec3 paint = Vec3::Zero();         ///< the same, if the mesh has paint
     const Material* material = nullptr;
     int surface = 0; ///< PathSample::surface
 };
@@ -28,6 +30,7 @@ struct PathSample {
     int surface = kBackground;    ///< a side of a mesh, or a colour of its print
     Vec3 position = Vec3::Zero(); ///< [m]
     Vec3 normal = Vec3::Zero();   ///< smooth, on the viewer's side, unit
+    Vec3 paint = Vec3::Zero();    ///< linear RGB, if the mesh has paint
 
     static constexpr int kBackground = -1, kGround = 0;
 };
@@ -47,6 +50,10 @@ private:
     Vec3 shade(const SurfacePoint& at, const Vec3& to_viewer, const PixelSampler& sampler, int sample) const;
     Vec3 ground_color(const Vec3& at, const Vec3& background, const PixelSampler& sampler, int sample) const;
     Vec3 sky_light(const Vec3& from, const Vec3& normal, const Vec2& random) const;
+    std::optional<Vec3> paint_at(const collision::RayHit& hit) const;
+    std::optional<collision::RayHit> closest_hit(const Vec3& origin, const Vec3& direction,
+                                                 double t_max) const;
+    bool occluded(const Vec3& origin, const Vec3& direction, double t_max) const;
     bool sun_reaches(const Vec3& from, const Vec3& facet_normal, const Vec2& random) const;
 
     const RenderScene& scene_;
@@ -57,6 +64,7 @@ private:
     std::pair<Vec3, Vec3> sun_frame_; ///< unit, across the direction to the sun
     Vec3 center_ = Vec3::Zero();      ///< of all meshes [m]
     double size_ = 1.0;               ///< diagonal of all meshes [m]
+    bool has_gaps_ = false;           ///< in the paint of any mesh
     double step_off_ = 1e-5;          ///< [m] start of secondary rays above the surface they leave
 };
 

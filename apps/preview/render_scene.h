@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "apps/preview/paint/paint.h"
 #include "core/compute/types.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -37,6 +39,8 @@ struct RenderMesh {
 
     /// Print coordinates per triangle corner, from texture or rest coordinates; only for prints.
     std::vector<std::array<Vec2, 3>> corner_coordinates;
+
+    std::shared_ptr<const Paint> paint; ///< in place of the material's colours and print; may be null
 };
 
 /// Corner coordinates from a 2-D rest shape [vertices] [m].

@@ -62,7 +62,8 @@ struct ShadePixel {
     {
         const int x = pixel % width, y = pixel / width;
         const PixelSampler sampler(pixel);
-        Vec3 sum = Vec3::Zero(), first_half = Vec3::Zero(), lowest = Vec3::Ones(), highest = Vec3::Zero();
+        Vec3 sum = Vec3::Zero(), paint = Vec3::Zero(), first_half = Vec3::Zero(), lowest = Vec3::Ones(),
+             highest = Vec3::Zero();
         PathSample first;
         bool is_one_surface = true;
         const int probes = std::max(kProbeSamples, int(kProbeFraction * samples));
@@ -76,6 +77,7 @@ struct ShadePixel {
             else
                 is_one_surface = is_one_surface && continues(first, path);
             sum += path.color;
+            paint += path.paint;
             lowest = lowest.cwiseMin(path.color);
             highest = highest.cwiseMax(path.color);
             ++taken;
@@ -91,6 +93,7 @@ struct ShadePixel {
             return;
         result.surface = first.surface;
         result.normal = first.normal.cast<float>();
+        result.paint = (paint / taken).cast<float>();
         result.position = (first.position - camera.origin).cast<float>();
         // Halves of a low-discrepancy sequence are such sequences: their difference is twice the error.
         if (taken == samples && samples > 1)

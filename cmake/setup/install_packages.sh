@@ -23,6 +23,7 @@ BUILD=(
     nlohmann-json3-dev
     libtinygltf-dev    # header-only as it is used
     libpng-dev
+    libjpeg-dev        # libjpeg-turbo
     libcli11-dev
     libgtest-dev
 )
