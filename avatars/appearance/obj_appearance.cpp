@@ -149,10 +149,14 @@ Appearance import_obj_appearance(const std::filesystem::path& file)
     if (mesh.colours.empty())
         return appearance;
     std::replace(appearance.material.begin(), appearance.material.end(), -1, appearance.add_white());
-    for (const Triangle& t : appearance.triangles)
-        appearance.colours.push_back({linear_rgba(mesh.colours[size_t(t[0])]),
-                                      linear_rgba(mesh.colours[size_t(t[1])]),
-                                      linear_rgba(mesh.colours[size_t(t[2])])});
+    for (size_t t = 0; t < appearance.triangles.size(); ++t) {
+        const bool is_textured = appearance.materials[size_t(appearance.material[t])].texture.has_value();
+        CornerColours& colours = appearance.colours.emplace_back();
+        for (size_t k = 0; k < 3; ++k) {
+            const Vec3& own = mesh.colours[size_t(appearance.triangles[t][int(k)])];
+            colours[k] = linear_rgba(is_textured ? Vec3(Vec3::Ones()) : own);
+        }
+    }
     return appearance;
 }
 

@@ -229,6 +229,9 @@ private:
     void add_corners(const AddedTriangle& triangle, int white, Appearance& appearance) const
     {
         const auto [first_vertex, mesh] = *std::prev(mesh_from_.upper_bound(triangle.corners[0]));
+        const SurfaceMaterial& material = appearance.materials[mesh->mMaterialIndex];
+        // Colours of vertices under a texture are masks of other programs.
+        const bool has_colours = mesh->HasVertexColors(0) && !material.texture;
         CornerCoordinates coordinates;
         CornerColours colours;
         for (size_t k = 0; k < 3; ++k) {
@@ -237,15 +240,12 @@ private:
             if (mesh->HasTextureCoords(0)) // v of assimp points up
                 coordinates[k] = Vec2(mesh->mTextureCoords[0][v].x, 1.0 - mesh->mTextureCoords[0][v].y);
             colours[k].setOnes();
-            if (mesh->HasVertexColors(0)) {
+            if (has_colours) {
                 const aiColor4D& colour = mesh->mColors[0][v];
                 colours[k] = Eigen::Vector4d(colour.r, colour.g, colour.b, colour.a);
             }
         }
-        const SurfaceMaterial& material = appearance.materials[mesh->mMaterialIndex];
-        const bool is_bare = !material.colour && !material.texture;
-        appearance.material.push_back(is_bare && mesh->HasVertexColors(0) ? white
-                                                                          : int(mesh->mMaterialIndex));
+        appearance.material.push_back(has_colours && !material.colour ? white : int(mesh->mMaterialIndex));
         appearance.coordinates.push_back(coordinates);
         appearance.colours.push_back(colours);
     }

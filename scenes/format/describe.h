@@ -141,7 +141,7 @@ void describe(V& v, Avatar& a)
         "exclude_bones", a.exclude_bones,
         "Cloth passes through the faces that follow these bones or bones below them; pictures show them.");
     v.field("friction", a.friction, between(0.0, 10.0), "Coulomb coefficient; absent: contact.friction.");
-    v.field("color", a.color, kColor, "Red, green, blue in pictures.");
+    v.field("color", a.color, kColor, "Red, green, blue in pictures, of a body whose file has no colours.");
 }
 
 template <typename V>

@@ -203,6 +203,45 @@ TEST(Appearance, ReadsMaterialsOfObj)
     EXPECT_EQ(appearance.coordinates[0][0], Vec2(0.25, 1.0)); // v of OBJ points up
 }
 
+TEST(Appearance, ReadsModelsThatAssimpReads)
+{
+    const TemporaryFolder folder;
+    folder.write("skin.png", "\x01\x02");
+    const auto file = folder.write("body.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit meter="1"/><up_axis>Y_UP</up_axis></asset>
+  <library_images><image id="skin"><init_from>skin.png</init_from></image></library_images>
+  <library_effects><effect id="e"><profile_COMMON>
+    <newparam sid="f"><surface type="2D"><init_from>skin</init_from></surface></newparam>
+    <newparam sid="s"><sampler2D><source>f</source></sampler2D></newparam>
+    <technique sid="t"><phong><diffuse><texture texture="s" texcoord="UV"/></diffuse></phong></technique>
+  </profile_COMMON></effect></library_effects>
+  <library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+  <library_geometries><geometry id="g"><mesh>
+    <source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+      <accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+        <param name="Z" type="float"/></accessor></technique_common></source>
+    <source id="u"><float_array id="ua" count="6">0 0.25 1 0 1 1</float_array><technique_common>
+      <accessor source="#ua" count="3" stride="2"><param name="S" type="float"/><param name="T" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+    <triangles count="1" material="k"><input semantic="VERTEX" source="#v" offset="0"/>
+      <input semantic="TEXCOORD" source="#u" offset="1" set="0"/><p>0 0 1 1 2 2</p></triangles>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="vs"><node id="n"><instance_geometry url="#g"><bind_material>
+    <technique_common><instance_material symbol="k" target="#m"/></technique_common></bind_material>
+  </instance_geometry></node></visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#vs"/></scene>
+</COLLADA>)");
+    const Appearance appearance = appearance_of(file);
+    ASSERT_EQ(appearance.triangles.size(), 1u);
+    ASSERT_EQ(appearance.images.size(), 1u);
+    EXPECT_THAT(appearance.images[0].bytes, ElementsAre(1, 2));
+    EXPECT_TRUE(appearance.materials[size_t(appearance.material[0])].texture);
+    ASSERT_EQ(appearance.triangles[0][0], 0);
+    EXPECT_EQ(appearance.coordinates[0][0], Vec2(0.0, 0.75)); // v of Collada points up
+}
+
 TEST(Appearance, ReadsColoursOfObjVerticesAsSrgb)
 {
     const TemporaryFolder folder;

@@ -1,3 +1,4 @@
+#include "avatars/appearance/load_appearance.h"
 #include "avatars/load_avatar.h"
 #include "core/base/error.h"
 #include "tests/fuzz/input_file.h"
@@ -16,6 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (int clip = 0; clip < int(avatar->clips().size()); ++clip)
             avatar->pose({clip, 0.5 * avatar->clips()[std::size_t(clip)].duration},
                          avatars::identity_affine(), x);
+        avatars::load_appearance(settings.file, avatar->triangles());
     } catch (const InvalidInput&) {
     }
     return 0;

@@ -5,6 +5,7 @@
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/maps/skin.h"
+#include "apps/toile/render/body_paint.h"
 #include "apps/toile/render/print.h"
 #include "core/base/error.h"
 #include "core/base/long_work.h"
@@ -184,6 +185,22 @@ Bounds Film::bounds_of(int frame, const std::string& name)
     return box;
 }
 
+void Film::paint_bodies(const std::function<void(const std::string&)>& warn)
+{
+    paints_.clear();
+    for (const scenes::SceneBody& body : bodies_)
+        paints_.push_back(paint_of(body, warn));
+}
+
+std::vector<std::filesystem::path> Film::paint_files() const
+{
+    std::vector<std::filesystem::path> files;
+    for (const std::shared_ptr<const preview::Paint>& paint : paints_)
+        if (paint)
+            files.insert(files.end(), paint->appearance().files.begin(), paint->appearance().files.end());
+    return files;
+}
+
 void Film::put_floor_below_avatars()
 {
     show_bodies(0);
@@ -248,10 +265,12 @@ preview::RenderScene Film::render_scene(int frame) const
         scene.meshes.push_back(track.mesh);
         scene.meshes.back().positions = positions(track, frame);
     }
-    for (const scenes::SceneBody& body : bodies_) {
+    for (size_t i = 0; i < bodies_.size(); ++i) {
+        const scenes::SceneBody& body = bodies_[i];
         if (!is_shown(body))
             continue;
         preview::RenderMesh mesh;
+        mesh.paint = paints_.empty() ? nullptr : paints_[i];
         mesh.positions = body.surface().positions;
         mesh.triangles = body.surface().triangles;
         mesh.material = body_material(body.settings().color);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +38,13 @@ public:
     int frame_count() const { return frame_count_; }
     double fps() const { return settings_.fps; }
     scene::Render& render() { return settings_.render; } ///< size, view and samples; may be changed
+
+    /// Gives the avatars the colours of their files.
+    /// @param warn  receives what can't be shown, one line each
+    void paint_bodies(const std::function<void(const std::string&)>& warn);
+
+    /// Files that paint_bodies() has read, beside those of the scene.
+    std::vector<std::filesystem::path> paint_files() const;
 
     /// Puts the floor at the lowest point of the avatars in their first pose, if there are any and a floor.
     void put_floor_below_avatars();
@@ -89,6 +98,7 @@ private:
 
     scenes::Scene settings_; ///< fps, render; defaults for caches without a scene
     std::vector<scenes::SceneBody> bodies_;
+    std::vector<std::shared_ptr<const preview::Paint>> paints_; ///< [bodies] or empty
     std::vector<scenes::ClothState> surfaces_; ///< cloths and then solids of the scene; caches refer to them
     std::vector<Track> tracks_;
     int frame_count_ = 0;

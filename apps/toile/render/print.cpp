@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "avatars/model/appearance.h"
 #include "core/mesh/obj.h"
 #include "scenes/meshes/rigid_motion.h"
 
@@ -65,11 +66,7 @@ std::vector<FlatTriangle> of_cut(const scene::Cloth& cloth, const ObjMesh& rest,
 
 } // namespace
 
-Vec3 linear_color(const Vec3& srgb)
-{
-    return srgb.unaryExpr(
-        [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); });
-}
+Vec3 linear_color(const Vec3& srgb) { return srgb.unaryExpr(&avatars::linear_from_srgb); }
 
 void apply_print(const scene::Cloth& cloth, const scenes::ClothState& state, preview::RenderMesh& mesh)
 {

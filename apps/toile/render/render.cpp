@@ -37,6 +37,7 @@ struct RenderOptions {
     int turntable = 0; ///< pictures around; 0: none
     ViewpointOptions viewpoint;
     MapOptions map;
+    bool no_textures = false;
     bool quiet = false;
 };
 
@@ -45,9 +46,8 @@ constexpr double kTurntableFps = 24.0;
 
 bool is_scene(const std::filesystem::path& input) { return lower_case_extension(input) == ".json"; }
 
-Film open_film(const RenderOptions& options)
+Film open_film(const RenderOptions& options, SetupProgress& progress)
 {
-    SetupProgress progress(options.quiet);
     const LongWork::Scope loading(
         [&](const LongWork::Progress& now) { progress.update("loading", now.fraction); });
     if (is_scene(options.inputs[0])) {
@@ -78,6 +78,15 @@ void replace_if_given(int& value, int given, const char* option)
 }
 
 /// Frames to render: the last for a single picture, all for a film, a sheet or a folder.
+Film painted_film(const RenderOptions& options)
+{
+    SetupProgress progress(options.quiet);
+    Film film = open_film(options, progress);
+    if (!options.no_textures && !options.map.is_given())
+        film.paint_bodies([&](const std::string& text) { progress.warn(text); });
+    return film;
+}
+
 std::vector<int> chosen_frames(const RenderOptions& options, const Film& film, bool is_single)
 {
     const std::string text = options.frames.empty() && is_single ? "-1" : options.frames;
@@ -191,7 +200,7 @@ void write_folder(Pictures& pictures, const Shots& shots, const std::filesystem:
 }
 
 /// Refuses pictures that would replace a file that they are made from, or could not be written.
-void require_safe_output(const RenderOptions& options, const std::filesystem::path& output,
+void require_safe_output(const RenderOptions& options, const Film& film, const std::filesystem::path& output,
                          const std::vector<int>& numbers)
 {
     FilePlan plan;
@@ -199,6 +208,8 @@ void require_safe_output(const RenderOptions& options, const std::filesystem::pa
         plan.add_input(exports::archive_of(input), "an input");
     if (is_scene(options.inputs[0]) || !options.scene.empty())
         add_inputs(plan, scenes::read_scene(is_scene(options.inputs[0]) ? options.inputs[0] : options.scene));
+    for (const std::filesystem::path& file : film.paint_files())
+        plan.add_input(file, "a texture or material of an avatar");
     if (!output.extension().empty()) {
         plan.add_output(output, "the picture");
         require_writable(output);
@@ -241,7 +252,7 @@ int render(RenderOptions options)
     const CameraTarget target = options.viewpoint.target();
     const preview::Crop crop = options.viewpoint.crop();
 
-    Film film = open_film(options);
+    Film film = painted_film(options);
     replace_if_given(film.render().width, options.width, "--width");
     replace_if_given(film.render().height, options.height, "--height");
     replace_if_given(film.render().samples, options.samples, "--samples");
@@ -251,7 +262,7 @@ int render(RenderOptions options)
     const bool is_png = extension == ".png", is_picture = is_png && options.sheet == 0;
     const Shots shots = chosen_shots(options, film, is_picture);
 
-    require_safe_output(options, output, shots.numbers);
+    require_safe_output(options, film, output, shots.numbers);
     film.choose(shots.shots, target, crop);
     Pictures pictures(film, options);
     if (is_picture)
@@ -287,6 +298,8 @@ Command add_render(CLI::App& parser)
     add.add_option("--samples", options->samples, "Light paths per pixel, instead of the scene's");
     options->viewpoint.add_to(add);
     options->map.add_to(add);
+    add.add_flag("--no-textures", options->no_textures,
+                 "Avatars in their color, not in the colors and images of their files");
     add.add_option("--turntable", options->turntable, "Once around one frame, in this many pictures")
         ->expected(0, 1)
         ->default_str("96");
