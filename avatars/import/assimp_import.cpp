@@ -318,10 +318,10 @@ std::string in_own_format(const std::filesystem::path& file, Images images)
         importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_TEXTURES);
         steps |= aiProcess_RemoveComponent;
     }
-    importer.ReadFile(file.string(), steps);
-    const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
-    if (!scene || !scene->mRootNode)
+    const aiScene* read = importer.ReadFile(file.string(), steps);
+    if (!read || !read->mRootNode)
         refuse(file, importer);
+    const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene()); // forgets what was wrong
     number_images(*scene);
     Assimp::Exporter exporter;
     const aiExportDataBlob* content = exporter.ExportToBlob(scene.get(), kOwnFormat);

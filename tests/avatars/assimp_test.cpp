@@ -82,6 +82,13 @@ TEST(AssimpImport, RefusesKeysThatAreNotFinite)
     EXPECT_NE(message.find("has a value that is not finite"), std::string::npos) << message;
 }
 
+TEST(AssimpImport, SaysWhatAssimpSays)
+{
+    const std::string message = refusal("<COLLADA");
+    EXPECT_NE(message.find("can't be read as a model ("), std::string::npos) << message;
+    EXPECT_EQ(message.find("()"), std::string::npos) << message;
+}
+
 /// Files for which assimp 5.2 stops at an assert of its own, dies of an access out of bounds or fills the
 /// memory.
 TEST(AssimpImport, SurvivesItsReaders)
