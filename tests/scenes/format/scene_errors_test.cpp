@@ -322,7 +322,7 @@ TEST(SceneErrors, KeepExportsToWhatTheirFormatHolds)
         {two(R"({"file": "x.abc", "attributes": ["strain", "strain"]})"),
          R"(bad.json: export[0].attributes: "strain" is there twice; name it once)"},
         {two(R"({"file": "x.abc", "attributes": ["stress"]})"),
-         R"(bad.json: export[0].attributes[0]: "stress" is unknown; did you mean "strain"?)"},
+         R"(bad.json: export[0].attributes[0]: "stress" is unknown; write "strain", "gap" or "panel")"},
         {two(R"({"file": "x.abc", "attributes": ["gap"]})"),
          R"(bad.json: export[0].attributes: "gap" is the distance from avatars, and the scene has none but planes; add one, or leave gap out)"},
         {two(R"({"file": "x.abc", "unit": "mm"})"),
