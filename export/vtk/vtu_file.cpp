@@ -54,10 +54,9 @@ public:
     std::string add(const std::string& type, const std::string& name, int components,
                     const std::string& array)
     {
-        const std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name +
-                                    "\" NumberOfComponents=\"" + std::to_string(components) +
-                                    "\" format=\"appended\" offset=\"" + std::to_string(bytes_.size()) +
-                                    "\"/>\n";
+        std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                              std::to_string(components) + "\" format=\"appended\" offset=\"" +
+                              std::to_string(bytes_.size()) + "\"/>\n";
         append(bytes_, std::uint64_t(array.size()));
         bytes_ += array;
         return element;

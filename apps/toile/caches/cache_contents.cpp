@@ -68,6 +68,7 @@ ExportedSurface::ExportedSurface(const scene::Export& entry, const scenes::Cloth
 void ExportedSurface::number_panels(const std::vector<exports::MeshPart>& groups)
 {
     std::vector<std::string> names;
+    names.reserve(groups.size());
     for (const exports::MeshPart& group : groups)
         names.push_back(group.name);
     for (size_t m = 0; m < meshes_.size(); ++m)
