@@ -40,6 +40,7 @@ test-dcc: packages ## Compare caches of every format, as Blender and VTK play th
 	@test -x build/dcc/bin/python || python3 -m venv build/dcc
 	@build/dcc/bin/python -m pip install --quiet --disable-pip-version-check -r tests/dcc/requirements.txt
 	@build/dcc/bin/python tests/dcc/compare_all.py $(TOILE) build/dcc/caches
+	@build/dcc/bin/python tests/dcc/attributes.py $(TOILE) build/dcc/attributes
 
 bench: packages ## Build toile-bench, which measures
 	@$(call configure,default,-DTOILE_CUDA=AUTO)

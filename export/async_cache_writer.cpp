@@ -13,17 +13,18 @@ AsyncCacheWriter::AsyncCacheWriter(std::unique_ptr<CacheWriter> target, int queu
 
 AsyncCacheWriter::~AsyncCacheWriter() { close(); }
 
-void AsyncCacheWriter::write(int frame, View<const Vec3> positions)
+void AsyncCacheWriter::write(int frame, const SampleView& sample)
 {
     Frame copy = take_free(frame);
-    copy.positions.assign(positions.begin(), positions.end());
+    copy.sample.positions.assign(sample.positions.begin(), sample.positions.end());
+    copy.sample.attributes.assign(sample.attributes.begin(), sample.attributes.end());
     enqueue(std::move(copy));
 }
 
-void AsyncCacheWriter::write_later(int frame, LatePositions positions)
+void AsyncCacheWriter::write_later(int frame, LateSample sample)
 {
     Frame late = take_free(frame);
-    late.late = std::move(positions);
+    late.late = std::move(sample);
     enqueue(std::move(late));
 }
 
@@ -81,9 +82,9 @@ void AsyncCacheWriter::deliver_until_closed()
 std::exception_ptr AsyncCacheWriter::deliver(const Frame& frame)
 {
     try {
-        const std::vector<Vec3> late = frame.late ? frame.late() : std::vector<Vec3>{};
+        const CacheSample late = frame.late ? frame.late() : CacheSample{};
         target_failed_ = true;
-        target_->write(frame.index, frame.late ? late : frame.positions);
+        target_->write(frame.index, frame.late ? late : frame.sample);
         target_failed_ = false;
     } catch (...) {
         return std::current_exception();

@@ -14,7 +14,7 @@
 namespace toile::exports {
 
 /// Writes to another cache on a separate thread, in the order of the calls, so that the simulation does not
-/// wait for the disk. The caller may change its positions as soon as write() returns.
+/// wait for the disk. The caller may change its arrays as soon as write() returns.
 class AsyncCacheWriter final : public CacheWriter {
 public:
     /// @param queue_limit  maximum frames in memory (1 or more); write() waits while all are in use
@@ -24,14 +24,14 @@ public:
     ~AsyncCacheWriter() override;
 
     /// Queues a copy. @throws the exception of an earlier failed write; nothing is written after that.
-    void write(int frame, View<const Vec3> positions) override;
+    void write(int frame, const SampleView& sample) override;
 
-    /// Returns a frame's positions [vertices] [m] when they are due for writing, or throws on failure. It is
-    /// called once, on the writer's thread, and destroyed when the frame is written.
-    using LatePositions = std::function<std::vector<Vec3>()>;
+    /// Returns a frame when it is due for writing, or throws on failure. It is called once, on the writer's
+    /// thread, and destroyed when the frame is written.
+    using LateSample = std::function<CacheSample()>;
 
-    /// Queues positions that may not have arrived yet, without a copy. @throws as write()
-    void write_later(int frame, LatePositions positions);
+    /// Queues a frame that may not have arrived yet, without a copy. @throws as write()
+    void write_later(int frame, LateSample sample);
 
     /// Waits for the queue and completes the target. @throws its exception, or that of an earlier write.
     std::filesystem::path complete() override;
@@ -50,8 +50,8 @@ public:
 private:
     struct Frame {
         int index = 0;
-        LatePositions late;          ///< empty: `positions` is valid
-        std::vector<Vec3> positions; ///< [vertices] [m]
+        LateSample late; ///< empty: `sample` is valid
+        CacheSample sample;
     };
 
     Frame take_free(int index);

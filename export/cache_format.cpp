@@ -81,14 +81,20 @@ CacheFeatures features_of(CacheFormat format)
         return {.times = true};
     case CacheFormat::Abc:
     case CacheFormat::Usd:
-        return {.faces = true, .several = true, .normals = true, .times = true, .time_line = true};
+        return {.faces = true,
+                .several = true,
+                .normals = true,
+                .attributes = true,
+                .times = true,
+                .time_line = true};
     case CacheFormat::Obj:
-    case CacheFormat::Ply:
         return {.faces = true, .numbered = true};
+    case CacheFormat::Ply:
+        return {.faces = true, .attributes = true, .numbered = true};
     case CacheFormat::Glb:
         return {.faces = true, .several = true, .times = true, .read_back = false};
     case CacheFormat::Vtk:
-        return {.faces = true, .times = true, .numbered = true, .read_back = false};
+        return {.faces = true, .attributes = true, .times = true, .numbered = true, .read_back = false};
     }
     return {};
 }

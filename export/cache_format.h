@@ -28,10 +28,11 @@ struct CacheFeatures {
     bool faces = false;   ///< that they play on
     bool several = false; ///< any number of meshes
     bool normals = false;
-    bool times = false;     ///< of their frames
-    bool time_line = false; ///< frames numbered as a scene's, which begins at 1 in most programs
-    bool numbered = false;  ///< a file for each of several frames
-    bool read_back = true;  ///< read_cache() reads them; others are for other programs only
+    bool attributes = false; ///< numbers at vertices and faces
+    bool times = false;      ///< of their frames
+    bool time_line = false;  ///< frames numbered as a scene's, which begins at 1 in most programs
+    bool numbered = false;   ///< a file for each of several frames
+    bool read_back = true;   ///< read_cache() reads them; others are for other programs only
 };
 CacheFeatures features_of(CacheFormat format);
 

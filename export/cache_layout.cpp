@@ -1,5 +1,7 @@
 #include "export/cache_layout.h"
 
+#include <algorithm>
+
 namespace toile::exports {
 
 ObjMesh faces_only(ObjMesh mesh)
@@ -14,6 +16,21 @@ int CacheLayout::vertex_count() const
     for (const CacheMesh& mesh : meshes)
         count += mesh.vertex_count;
     return count;
+}
+
+int CacheLayout::attribute_count() const
+{
+    int count = 0;
+    for (const CacheMesh& mesh : meshes)
+        count += int(mesh.attributes.size()) * mesh.vertex_count;
+    return count;
+}
+
+bool CacheLayout::has_attributes() const
+{
+    return std::any_of(meshes.begin(), meshes.end(), [](const CacheMesh& mesh) {
+        return !mesh.attributes.empty() || !mesh.panels.of_face.empty();
+    });
 }
 
 CacheLayout cache_layout(const ObjMesh& mesh, int frame_count)

@@ -6,6 +6,7 @@
 #include "core/compute/types.h"
 #include "core/mesh/obj.h"
 #include "export/axes.h"
+#include "export/mesh/face_panels.h"
 
 namespace toile::exports {
 
@@ -15,6 +16,9 @@ struct CacheMesh {
     std::string parent; ///< group that it lies in, in Alembic and USD; empty: none
     int vertex_count = 0;
     ObjMesh faces; ///< polygons, texture coordinates and groups; positions are ignored
+
+    std::vector<std::string> attributes = {}; ///< names of numbers that each vertex has in every sample
+    FacePanels panels = {};                   ///< stored as kPanelAttribute; empty: they are not
 };
 
 /// A mesh without its positions.
@@ -34,7 +38,9 @@ struct CacheLayout {
     bool normals = false;     ///< the same
     double max_error = 0.001; ///< [m] of a vertex in any frame; .glb approximates
 
-    int vertex_count() const; ///< of all meshes together
+    int vertex_count() const;    ///< of all meshes together
+    int attribute_count() const; ///< numbers of CacheSample::attributes
+    bool has_attributes() const; ///< those, or panels
 
     double samples_per_second() const { return fps * subframes; }
     /// Time [frames] of a sample.

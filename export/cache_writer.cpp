@@ -1,12 +1,14 @@
 #include "export/cache_writer.h"
 
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/extension.h"
 #include "export/alembic/abc_writer.h"
+#include "export/archive/names.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
 #include "export/gltf/glb_writer.h"
@@ -72,6 +74,26 @@ void require_one_mesh(const path& file, const CacheLayout& layout)
                            "; write each to a file, or all to an .abc, .usda or .glb");
 }
 
+/// Refuses attributes that the format has no place for, and panels of other faces.
+void require_attributes(const path& file, const CacheLayout& layout)
+{
+    if (layout.has_attributes() && !features_of(cache_format(file)).attributes)
+        throw InvalidInput(file.string() +
+                           ": stores no attributes; write an .abc, .usda, .usdc, .ply or .pvd");
+    for (const CacheMesh& mesh : layout.meshes) {
+        std::set<std::string> taken{kPanelAttribute};
+        for (const std::string& name : mesh.attributes)
+            if (clean_name(name) != name || !taken.insert(name).second)
+                throw InvalidInput(file.string() + ": has an attribute \"" + name +
+                                   "\"; give each a name of its own, of letters, digits and underscores, and "
+                                   "not \"panel\"");
+        if (!mesh.panels.of_face.empty() && mesh.panels.of_face.size() != mesh.faces.polygons.size())
+            throw InvalidInput(file.string() + ": has panels of " +
+                               std::to_string(mesh.panels.of_face.size()) + " faces, and the layout has " +
+                               std::to_string(mesh.faces.polygons.size()));
+    }
+}
+
 void require_numbers(const path& file, const CacheLayout& layout)
 {
     if (layout.start_frame < 0.0 || layout.start_frame != std::floor(layout.start_frame))
@@ -127,6 +149,7 @@ std::unique_ptr<CacheWriter> open_writer(const path& file, const CacheLayout& la
     const CacheFormat format = cache_format(file);
     if (!features_of(format).several)
         require_one_mesh(file, layout);
+    require_attributes(file, layout);
     if (features_of(format).numbered && layout.subframes > 1)
         throw InvalidInput(file.string() + ": has a file for each frame and none between, and there are " +
                            std::to_string(layout.subframes) + " samples a frame; write an .abc or .usda");

@@ -6,6 +6,7 @@
 
 #include "core/compute/types.h"
 #include "export/cache_layout.h"
+#include "export/mesh/cache_sample.h"
 
 namespace toile::exports {
 
@@ -25,10 +26,9 @@ public:
     virtual ~CacheWriter() = default;
 
     /// Appends a sample. Samples come in order, from CacheLayout::resume_at on.
-    /// @param positions  [vertices] of all meshes, one after the other, in the layout's axes
-    /// @throws InvalidInput for a frame out of order or of another vertex count, DeviceError if the disk
-    /// refuses.
-    virtual void write(int frame, View<const Vec3> positions) = 0;
+    /// @param sample  of all meshes; positions alone where no mesh has attributes
+    /// @throws InvalidInput for a frame out of order or of another size, DeviceError if the disk refuses.
+    virtual void write(int frame, const SampleView& sample) = 0;
 
     /// Completes the partial: every byte of the cache is on the disk.
     /// @return the complete cache under its partial name, for read_cache() where CacheFeatures::read_back
@@ -78,7 +78,7 @@ protected:
 ///   .pvd   a list of numbered .vtu files for ParaView; can't be resumed
 /// @throws InvalidInput before the simulation: an unknown extension, an unwritable location, a layout
 ///         without vertices, frames or (all but PC2 and MDD) faces, several meshes where the format holds
-///         one, no cache to resume.
+///         one, attributes where it has none, panels that are not those of the faces, no cache to resume.
 std::unique_ptr<CacheWriter> make_cache_writer(const std::filesystem::path& file, const CacheLayout& layout);
 
 } // namespace toile::exports

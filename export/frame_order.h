@@ -15,7 +15,7 @@ public:
     int next() const { return next_; }
 
     /// @throws InvalidInput unless this is the next frame, planned, and of the right size.
-    void require_next(int frame, View<const Vec3> positions) const;
+    void require_next(int frame, const SampleView& sample) const;
     void advance() { ++next_; }
 
     /// @throws InvalidInput naming the partial if frames are missing.
@@ -24,6 +24,7 @@ public:
 private:
     std::filesystem::path file_;
     int vertex_count_;
+    int attribute_count_;
     int frame_count_;
     int next_;
 };

@@ -36,8 +36,7 @@ std::string bytes_of(std::int32_t value)
 } // namespace
 
 AbcArchive::AbcArchive(const std::filesystem::path& file, const CacheLayout& layout, std::string application)
-    : file_(file), layout_(layout), application_(std::move(application)),
-      velocities_(layout.samples_per_second())
+    : file_(file), layout_(layout), application_(std::move(application)), moving_(layout.samples_per_second())
 {
     for (CacheMesh& mesh : layout_.meshes) {
         meshes_.emplace_back(file_, mesh, AbcMesh::Options{layout.velocities, layout.normals});
@@ -45,22 +44,18 @@ AbcArchive::AbcArchive(const std::filesystem::path& file, const CacheLayout& lay
     }
 }
 
-void AbcArchive::write(View<const Vec3> positions)
+void AbcArchive::write(const SampleView& sample)
 {
     file_.require_in_place();
-    if (velocities_.advance(positions))
+    if (moving_.advance(sample))
         write_sample();
 }
 
 void AbcArchive::write_sample()
 {
-    int first = 0;
-    for (size_t m = 0; m < meshes_.size(); ++m) {
-        const int count = layout_.meshes[m].vertex_count;
-        meshes_[m].add_sample(file_, {velocities_.positions().data() + first, count},
-                              {velocities_.velocities().data() + first, count});
-        first += count;
-    }
+    const std::vector<MovingSample> samples = by_mesh(moving_.completed(), layout_.meshes);
+    for (size_t m = 0; m < meshes_.size(); ++m)
+        meshes_[m].add_sample(file_, samples[m]);
     ++frames_;
     if (frames_ - indexed_ >= index_interval(frames_))
         write_index();
@@ -97,7 +92,7 @@ void AbcArchive::write_index()
 
 void AbcArchive::complete()
 {
-    if (velocities_.finish())
+    if (moving_.finish())
         write_sample();
     write_index();
     file_.sync();

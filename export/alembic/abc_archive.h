@@ -26,8 +26,8 @@ public:
     AbcArchive(const AbcArchive&) = delete;
     AbcArchive& operator=(const AbcArchive&) = delete;
 
-    /// Appends a frame. @param positions  [vertices] of all meshes, one after the other
-    void write(View<const Vec3> positions);
+    /// Appends a frame of all meshes.
+    void write(const SampleView& sample);
 
     /// Writes what waits. Every byte is then on the disk.
     void complete();
@@ -43,7 +43,7 @@ private:
     CacheLayout layout_; ///< without faces
     std::string application_;
     std::vector<AbcMesh> meshes_;
-    FrameVelocities velocities_;
+    FrameVelocities moving_;
     int frames_ = 0, indexed_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "export/alembic/abc_mesh.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "export/archive/face_groups.h"
 #include "export/archive/names.h"
@@ -42,12 +43,28 @@ std::string bytes_of(View<const Vec3> vectors)
     return bytes;
 }
 
-/// Metadata is a list of key=value;
+std::string bytes_of(View<const float> numbers)
+{
+    std::string bytes;
+    bytes.reserve(sizeof(float) * size_t(numbers.size()));
+    for (const float number : numbers)
+        append(bytes, number);
+    return bytes;
+}
+
+/// Metadata is a list of key=value; and some values are lists.
 std::string without_separators(std::string text)
 {
     std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == ';' || c == '='; }, '_');
+        text.begin(), text.end(), [](char c) { return c == ';' || c == '=' || c == ','; }, '_');
     return text;
+}
+
+/// Metadata of one number for each vertex (vtx) or face (uni).
+std::string numbers_of(const std::string& scope, const std::string& type)
+{
+    return "arrayExtent=1;geoScope=" + scope +
+           ";interpretation=;isGeomParam=true;podExtent=1;podName=" + type;
 }
 
 /// Indices at corners, in the order of clockwise faces.
@@ -124,6 +141,23 @@ AbcMesh::AbcMesh(OgawaFile& file, const CacheMesh& mesh, const Options& options)
     if (!faces.polygon_uvs.empty())
         add_texture(file, faces);
     add_face_sets(file, faces);
+    for (const std::string& name : mesh.attributes)
+        attributes_.push_back(
+            AbcProperty({name, Kind::Array, AbcType::Float32, 1, numbers_of("vtx", "float32_t"), kFrames}));
+    if (!mesh.panels.of_face.empty())
+        add_panels(file, mesh.panels);
+}
+
+void AbcMesh::add_panels(OgawaFile& file, const FacePanels& panels)
+{
+    std::string names, numbers;
+    for (const std::string& name : panels.names)
+        names += (names.empty() ? "" : ",") + without_separators(name);
+    for (const int panel : panels.of_face)
+        append(numbers, std::int32_t(panel));
+    panels_ = AbcProperty({kPanelAttribute, Kind::Array, AbcType::Int32, 1,
+                           numbers_of("uni", "int32_t") + ";toile_names=" + names});
+    panels_->add_sample(file, numbers);
 }
 
 void AbcMesh::add_texture(OgawaFile& file, const ObjMesh& faces)
@@ -147,13 +181,16 @@ void AbcMesh::add_face_sets(OgawaFile& file, const ObjMesh& faces)
     }
 }
 
-void AbcMesh::add_sample(OgawaFile& file, View<const Vec3> x, View<const Vec3> v)
+void AbcMesh::add_sample(OgawaFile& file, const MovingSample& sample)
 {
+    const View<const Vec3> x = sample.positions;
     positions_.add_sample(file, bytes_of(x));
     if (velocities_)
-        velocities_->add_sample(file, bytes_of(v));
+        velocities_->add_sample(file, bytes_of(sample.velocities));
     if (corner_normals_)
         normals_.add_sample(file, bytes_of(corner_normals_->at(x)));
+    for (size_t k = 0; k < attributes_.size(); ++k)
+        attributes_[k].add_sample(file, bytes_of(sample.attributes.subview(int(k) * x.size(), x.size())));
     const Bounds box = bounds(x);
     std::string bytes;
     for (const Vec3& corner : {box.lower, box.upper})
@@ -173,6 +210,13 @@ AbcCompound AbcMesh::geometry() const
         geometry.compounds.push_back(at_corners("uv", "vector", 2, texture_, texture_indices_));
     if (corner_normals_)
         geometry.compounds.push_back(at_corners("N", "normal", 3, normals_, normal_indices_));
+    AbcCompound others{".arbGeomParams", ""};
+    for (const AbcProperty& attribute : attributes_)
+        others.properties.push_back(&attribute);
+    if (panels_)
+        others.properties.push_back(&*panels_);
+    if (!others.properties.empty())
+        geometry.compounds.push_back(std::move(others));
     return geometry;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/mesh/obj.h"
 #include "export/alembic/abc_property.h"
+#include "export/archive/frame_velocities.h"
 #include "export/cache_layout.h"
 #include "export/corner_normals.h"
 
@@ -25,7 +26,8 @@ OgawaNode add_object(OgawaFile& file, OgawaNode properties, const std::vector<Ab
 AbcObject add_transform(OgawaFile& file, const std::string& name, const std::vector<AbcObject>& children);
 
 /// A mesh of an Alembic archive that moves with constant topology: a transform /NAME, for programs that show
-/// no mesh without one, above the mesh NAMEShape, with a face set for each group. Faces are clockwise in
+/// no mesh without one, above the mesh NAMEShape, with a face set for each group, and attributes
+/// and panels among the .arbGeomParams. Faces are clockwise in
 /// Alembic, and so is all that is stored per corner.
 class AbcMesh {
 public:
@@ -37,8 +39,7 @@ public:
     /// Writes the faces.
     AbcMesh(OgawaFile& file, const CacheMesh& mesh, const Options& options);
 
-    /// Appends a sample. @param x, v  [vertices] positions, and velocities per second
-    void add_sample(OgawaFile& file, View<const Vec3> x, View<const Vec3> v);
+    void add_sample(OgawaFile& file, const MovingSample& sample);
 
     /// Writes the nodes of all samples so far.
     AbcObject add_object(OgawaFile& file) const;
@@ -51,6 +52,7 @@ private:
 
     void add_texture(OgawaFile& file, const ObjMesh& faces);
     void add_face_sets(OgawaFile& file, const ObjMesh& faces);
+    void add_panels(OgawaFile& file, const FacePanels& panels);
     AbcCompound geometry() const;
 
     std::string name_; ///< as given
@@ -59,6 +61,8 @@ private:
     std::optional<CornerNormals> corner_normals_;
     AbcProperty normals_, normal_indices_; ///< empty without the former
     std::vector<FaceSet> face_sets_;
+    std::vector<AbcProperty> attributes_; ///< of the vertices
+    std::optional<AbcProperty> panels_;
 };
 
 } // namespace toile::exports

@@ -20,14 +20,14 @@ AbcWriter::AbcWriter(std::filesystem::path file, const CacheLayout& layout)
                                             "write a .pc2");
 }
 
-void AbcWriter::write(int frame, View<const Vec3> positions)
+void AbcWriter::write(int frame, const SampleView& sample)
 {
-    order_.require_next(frame, positions);
+    order_.require_next(frame, sample);
     if (!archive_) {
         archive_.emplace(partial_, layout_, "toile");
         layout_ = {};
     }
-    archive_->write(positions);
+    archive_->write(sample);
     order_.advance();
 }
 

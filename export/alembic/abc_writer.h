@@ -15,7 +15,7 @@ public:
     /// @throws InvalidInput as make_cache_writer().
     AbcWriter(std::filesystem::path file, const CacheLayout& layout);
 
-    void write(int frame, View<const Vec3> positions) override;
+    void write(int frame, const SampleView& sample) override;
     std::filesystem::path complete() override;
     void keep() override;
     int readable_samples() const override { return archive_ ? archive_->readable_frames() : 0; }

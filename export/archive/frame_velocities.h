@@ -2,9 +2,20 @@
 
 #include <vector>
 
-#include "core/compute/types.h"
+#include "export/cache_layout.h"
+#include "export/mesh/cache_sample.h"
 
 namespace toile::exports {
+
+/// A sample of meshes and their velocities.
+struct MovingSample {
+    View<const Vec3> positions;
+    View<const Vec3> velocities;  ///< [vertices] per second; may be empty
+    View<const float> attributes; ///< as CacheSample::attributes
+};
+
+/// What each of the meshes has of a sample of all.
+std::vector<MovingSample> by_mesh(const MovingSample& sample, const std::vector<CacheMesh>& meshes);
 
 /// Velocities of frames by central differences, one-sided at the first and the last. A frame is complete when
 /// the next one is known, or finish() says that there is none.
@@ -13,19 +24,19 @@ public:
     explicit FrameVelocities(double frames_per_second) : frames_per_second_(frames_per_second) {}
 
     /// Takes a frame. @return whether that completes the one before
-    bool advance(View<const Vec3> positions);
+    bool advance(const SampleView& sample);
     /// Completes the last frame. @return whether one was left
     bool finish();
 
-    /// Of the frame completed last; velocities are per second.
-    const std::vector<Vec3>& positions() const { return before_; }
-    const std::vector<Vec3>& velocities() const { return velocities_; }
+    /// The frame completed last, until the next call.
+    MovingSample completed() const { return {before_.positions, velocities_, before_.attributes}; }
 
 private:
-    void differentiate(const std::vector<Vec3>& next);
+    void differentiate(const CacheSample& next);
 
     double frames_per_second_;
-    std::vector<Vec3> before_, waiting_, velocities_; ///< empty: none
+    CacheSample before_, waiting_; ///< empty: none
+    std::vector<Vec3> velocities_;
 };
 
 } // namespace toile::exports

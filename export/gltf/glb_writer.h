@@ -21,7 +21,7 @@ public:
     /// @throws InvalidInput as make_cache_writer().
     GlbWriter(std::filesystem::path file, const CacheLayout& layout);
 
-    void write(int frame, View<const Vec3> positions) override { frames_.write(frame, positions); }
+    void write(int frame, const SampleView& sample) override { frames_.write(frame, sample); }
 
     /// @throws InvalidInput also if 64 shapes do not keep to the error: the number that would be needed, and
     ///         the error that can be kept

@@ -18,7 +18,7 @@ public:
     /// @throws InvalidInput as make_cache_writer().
     MddWriter(std::filesystem::path file, const CacheLayout& layout);
 
-    void write(int frame, View<const Vec3> positions) override { frames_.write(frame, positions); }
+    void write(int frame, const SampleView& sample) override { frames_.write(frame, sample); }
     std::filesystem::path complete() override;
     void publish() override;
     std::filesystem::path partial() const override { return frames_.partial(); }

@@ -1,8 +1,8 @@
 #include "export/mesh/mesh_part.h"
 
 #include <algorithm>
-#include <map>
-#include <utility>
+
+#include "export/mesh/face_panels.h"
 
 namespace toile::exports {
 
@@ -26,17 +26,12 @@ std::vector<int> renumber(std::vector<std::vector<int>>& polygons)
 
 std::vector<MeshPart> parts_of(const ObjMesh& faces)
 {
+    const FacePanels panels = face_panels(faces);
     std::vector<MeshPart> parts;
-    std::map<std::string, size_t> part_of;
-    size_t group = 0;
-    std::string name = "other";
+    for (const std::string& name : panels.names)
+        parts.push_back({name, {}, {}});
     for (size_t p = 0; p < faces.polygons.size(); ++p) {
-        for (; group < faces.groups.size() && faces.groups[group].first_polygon <= int(p); ++group)
-            name = faces.groups[group].name.empty() ? "other" : faces.groups[group].name;
-        const auto [at, is_new] = part_of.try_emplace(name, parts.size());
-        if (is_new)
-            parts.push_back({name, {}, {}});
-        ObjMesh& part = parts[at->second].faces;
+        ObjMesh& part = parts[size_t(panels.of_face[p])].faces;
         part.polygons.push_back(faces.polygons[p]);
         if (!faces.polygon_uvs.empty())
             part.polygon_uvs.push_back(faces.polygon_uvs[p]);

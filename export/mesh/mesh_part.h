@@ -14,7 +14,7 @@ struct MeshPart {
     ObjMesh faces;             ///< polygons of those, by their places in `vertices`
 };
 
-/// The groups of a mesh that have faces, in the order of their first.
+/// The groups of a mesh that have faces, in the order of face_panels().
 /// @param faces  polygons, texture coordinates and groups; positions are ignored
 std::vector<MeshPart> parts_of(const ObjMesh& faces);
 

@@ -7,8 +7,8 @@ namespace toile::exports {
 MeshFileWriter obj_file_writer(const CacheLayout& layout)
 {
     return [mesh = layout.meshes.front().faces](const std::filesystem::path& file,
-                                                View<const Vec3> positions) mutable {
-        mesh.positions.assign(positions.begin(), positions.end());
+                                                const SampleView& sample) mutable {
+        mesh.positions.assign(sample.positions.begin(), sample.positions.end());
         write_obj(file, mesh);
     };
 }

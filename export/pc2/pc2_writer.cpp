@@ -67,12 +67,13 @@ void Pc2Writer::set_sample_count(int samples)
     stream_->write_at(kPc2SampleCountAt, std::string_view(count, sizeof count));
 }
 
-void Pc2Writer::write(int frame, View<const Vec3> positions)
+void Pc2Writer::write(int frame, const SampleView& sample)
 {
-    order_.require_next(frame, positions);
-    for (int v = 0; v < positions.size(); ++v)
+    order_.require_next(frame, sample);
+    for (int v = 0; v < sample.positions.size(); ++v)
         for (int axis = 0; axis < 3; ++axis)
-            put<kLittle>(&sample_[12 * std::size_t(v) + 4 * std::size_t(axis)], float(positions[v][axis]));
+            put<kLittle>(&sample_[12 * std::size_t(v) + 4 * std::size_t(axis)],
+                         float(sample.positions[v][axis]));
 
     if (stream_) {
         stream_->require_in_place();

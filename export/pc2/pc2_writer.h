@@ -26,7 +26,7 @@ public:
     /// @throws InvalidInput as make_cache_writer().
     Pc2Writer(std::filesystem::path file, const std::filesystem::path& partial, const CacheLayout& layout);
 
-    void write(int frame, View<const Vec3> positions) override;
+    void write(int frame, const SampleView& sample) override;
     std::filesystem::path complete() override;
     void publish() override;
     std::filesystem::path partial() const override { return partial_; }

@@ -12,7 +12,8 @@ namespace toile::exports {
 
 /// Writes PLY files of a layout of one mesh, binary little endian: float x, y, z, and per polygon a list
 /// vertex_indices, and a list texcoord with the texture coordinates of its corners, as MeshLab reads them. A
-/// comment says the unit and the upward axis.
+/// comment says the unit and the upward axis. Attributes are further properties of the vertices, panels of
+/// the faces, with a comment for the name of each.
 MeshFileWriter ply_file_writer(const CacheLayout& layout);
 
 /// Reads positions, polygons and texture coordinates: those of corners (texcoord) or else those of vertices

@@ -28,10 +28,10 @@ MeshFileCache::MeshFileCache(std::filesystem::path file, const CacheLayout& layo
     require_writable(partial_);
 }
 
-void MeshFileCache::write(int frame, View<const Vec3> positions)
+void MeshFileCache::write(int frame, const SampleView& sample)
 {
-    order_.require_next(frame, positions);
-    write_mesh_(partial_, positions);
+    order_.require_next(frame, sample);
+    write_mesh_(partial_, sample);
     order_.advance();
 }
 
@@ -72,12 +72,12 @@ void MeshSequenceCache::remove_other_frames()
             std::filesystem::remove(unfinished_.file(old));
 }
 
-void MeshSequenceCache::write(int frame, View<const Vec3> positions)
+void MeshSequenceCache::write(int frame, const SampleView& sample)
 {
-    order_.require_next(frame, positions);
+    order_.require_next(frame, sample);
     if (frame == resume_at_)
         remove_other_frames();
-    write_mesh_(unfinished_file(frame), positions);
+    write_mesh_(unfinished_file(frame), sample);
     order_.advance();
 }
 

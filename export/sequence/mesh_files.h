@@ -9,9 +9,8 @@
 
 namespace toile::exports {
 
-/// Writes the positions of a frame [vertices] with the faces of its layout to a file, which appears complete
-/// or not at all.
-using MeshFileWriter = std::function<void(const std::filesystem::path& file, View<const Vec3> positions)>;
+/// Writes a frame with the faces of its layout to a file, which appears complete or not at all.
+using MeshFileWriter = std::function<void(const std::filesystem::path& file, const SampleView& sample)>;
 
 /// Writes a cache of one frame as one file.
 class MeshFileCache final : public CacheWriter {
@@ -19,7 +18,7 @@ public:
     /// @throws InvalidInput as make_cache_writer().
     MeshFileCache(std::filesystem::path file, const CacheLayout& layout, MeshFileWriter write_mesh);
 
-    void write(int frame, View<const Vec3> positions) override;
+    void write(int frame, const SampleView& sample) override;
     std::filesystem::path complete() override;
     void publish() override;
     std::filesystem::path partial() const override { return partial_; }
@@ -41,7 +40,7 @@ public:
     MeshSequenceCache(const std::filesystem::path& pattern, const CacheLayout& layout,
                       MeshFileWriter write_mesh);
 
-    void write(int frame, View<const Vec3> positions) override;
+    void write(int frame, const SampleView& sample) override;
     std::filesystem::path complete() override;
     void publish() override;
     std::filesystem::path partial() const override { return sequence_.unfinished_folder(); }

@@ -34,44 +34,57 @@ std::vector<int> joined(const std::vector<std::vector<int>>& lists)
 }
 
 constexpr const char* kAtCorners = " (interpolation = \"faceVarying\")";
+constexpr const char* kAtVertices = " (interpolation = \"vertex\")";
 
 } // namespace
 
 UsdMesh::UsdMesh(const CacheMesh& mesh, const Options& options)
     : name_(clean_name(mesh.name) + "Shape"), faces_(mesh.faces), groups_(face_groups(mesh.faces)),
-      extent_("float3[] extent", 3), points_("point3f[] points", 3)
+      panels_(mesh.panels), has_velocities_(options.velocities)
 {
-    if (options.velocities)
-        velocities_.emplace("vector3f[] velocities", 3);
+    tracks_.emplace_back("float3[] extent", 3);
+    tracks_.emplace_back("point3f[] points", 3);
+    if (has_velocities_)
+        tracks_.emplace_back("vector3f[] velocities", 3);
     if (options.normals) {
         corner_normals_.emplace(mesh.faces);
-        normals_.emplace("normal3f[] normals", 3, kAtCorners);
+        tracks_.emplace_back("normal3f[] normals", 3, kAtCorners);
+    }
+    for (const std::string& name : mesh.attributes)
+        tracks_.emplace_back("float[] primvars:" + name, 1, kAtVertices);
+}
+
+void UsdMesh::add_sample(const MovingSample& sample)
+{
+    const View<const Vec3> x = sample.positions;
+    const Bounds box = bounds(x);
+    auto track = tracks_.begin();
+    (track++)->add(floats_of(std::vector<Vec3>{box.lower, box.upper}));
+    (track++)->add(floats_of(x));
+    if (has_velocities_)
+        (track++)->add(floats_of(sample.velocities));
+    if (corner_normals_)
+        (track++)->add(normals_at(x));
+    for (int first = 0; first < sample.attributes.size(); first += x.size()) {
+        const View<const float> numbers = sample.attributes.subview(first, x.size());
+        (track++)->add({numbers.begin(), numbers.end()});
     }
 }
 
-void UsdMesh::add_sample(View<const Vec3> x, View<const Vec3> v)
+std::vector<float> UsdMesh::normals_at(View<const Vec3> x) const
 {
-    const Bounds box = bounds(x);
-    extent_.add(floats_of(std::vector<Vec3>{box.lower, box.upper}));
-    points_.add(floats_of(x));
-    if (velocities_)
-        velocities_->add(floats_of(v));
-    if (!normals_)
-        return;
     const std::vector<Vec3> normals = corner_normals_->at(x);
     std::vector<float> at_corners;
     for (const std::vector<int>& indices : corner_normals_->indices())
         for (const int index : indices)
             append(at_corners, normals[size_t(index)]);
-    normals_->add(std::move(at_corners));
+    return at_corners;
 }
 
 void UsdMesh::drop_all_but_last()
 {
-    for (UsdTrack* track :
-         {&extent_, &points_, velocities_ ? &*velocities_ : nullptr, normals_ ? &*normals_ : nullptr})
-        if (track)
-            track->drop_all_but_last();
+    for (UsdTrack& track : tracks_)
+        track.drop_all_but_last();
 }
 
 void UsdMesh::write(UsdFile& file, UsdLayer layer, const std::string& parent, const std::string& indent,
@@ -82,16 +95,13 @@ void UsdMesh::write(UsdFile& file, UsdLayer layer, const std::string& parent, co
     file << indent << (has_faces ? "def Mesh \"" : "over \"") << name_ << "\"\n" << indent << "{\n";
     if (has_faces)
         write_faces(file, inner);
-    for (const UsdTrack* track :
-         {&extent_, &points_, velocities_ ? &*velocities_ : nullptr, normals_ ? &*normals_ : nullptr}) {
-        if (!track)
-            continue;
+    for (const UsdTrack& track : tracks_) {
         if (layer == UsdLayer::Whole)
-            track->write(file, inner, times);
+            track.write(file, inner, times);
         else if (layer == UsdLayer::Clip)
-            track->write_all(file, inner, times);
+            track.write_all(file, inner, times);
         else
-            track->declare(file, inner);
+            track.declare(file, inner);
     }
     if (has_faces)
         write_groups(file, parent, inner);
@@ -111,6 +121,7 @@ void UsdMesh::write_faces(UsdFile& file, const std::string& indent) const
     file.append(joined(faces_.polygons));
     file << "\n" << indent << "uniform token orientation = \"rightHanded\"\n";
     file << indent << "uniform token subdivisionScheme = \"none\"\n";
+    write_panels(file, indent);
     if (faces_.polygon_uvs.empty())
         return;
     std::vector<float> texture;
@@ -123,6 +134,18 @@ void UsdMesh::write_faces(UsdFile& file, const std::string& indent) const
     file << kAtCorners << "\n" << indent << "int[] primvars:st:indices = ";
     file.append(joined(faces_.polygon_uvs));
     file << "\n";
+}
+
+void UsdMesh::write_panels(UsdFile& file, const std::string& indent) const
+{
+    if (panels_.of_face.empty())
+        return;
+    file << indent << "int[] primvars:" << kPanelAttribute << " = ";
+    file.append(panels_.of_face);
+    file << " (\n" << indent << "    customData = {\n" << indent << "        string[] names = [";
+    for (size_t k = 0; k < panels_.names.size(); ++k)
+        file << (k == 0 ? "" : ", ") << usd_quoted(panels_.names[k]);
+    file << "]\n" << indent << "    }\n" << indent << "    interpolation = \"uniform\"\n" << indent << ")\n";
 }
 
 void UsdMesh::write_groups(UsdFile& file, const std::string& parent, const std::string& indent) const

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "export/archive/face_groups.h"
+#include "export/archive/frame_velocities.h"
 #include "export/cache_layout.h"
 #include "export/corner_normals.h"
 #include "export/usd/usd_track.h"
@@ -20,7 +21,8 @@ enum class UsdLayer {
 };
 
 /// A mesh of a USD stage that moves with constant topology, and its latest samples: polygons, texture
-/// coordinates (primvars:st), groups as subsets of the family materialBind, velocities, normals and extent.
+/// coordinates (primvars:st), groups as subsets of the family materialBind, velocities, normals and extent;
+/// attributes and panels as primvars.
 class UsdMesh {
 public:
     struct Options {
@@ -30,8 +32,7 @@ public:
 
     UsdMesh(const CacheMesh& mesh, const Options& options);
 
-    /// @param x, v  [vertices] positions, and velocities per second
-    void add_sample(View<const Vec3> x, View<const Vec3> v);
+    void add_sample(const MovingSample& sample);
     void drop_all_but_last();
 
     /// Writes the prim NAMEShape, and beside it a material for each group, from which Blender makes a slot.
@@ -41,7 +42,10 @@ public:
                const std::vector<double>& times) const;
 
 private:
+    /// [corners x 3]
+    std::vector<float> normals_at(View<const Vec3> x) const;
     void write_faces(UsdFile& file, const std::string& indent) const;
+    void write_panels(UsdFile& file, const std::string& indent) const;
     void write_groups(UsdFile& file, const std::string& parent, const std::string& indent) const;
     void write_materials(UsdFile& file, const std::string& indent) const;
     /// Of the material of a group: like the group's, but not like the mesh's.
@@ -51,8 +55,9 @@ private:
     ObjMesh faces_; ///< without positions
     std::vector<FaceGroup> groups_;
     std::optional<CornerNormals> corner_normals_;
-    UsdTrack extent_, points_;
-    std::optional<UsdTrack> velocities_, normals_;
+    FacePanels panels_; ///< empty: none
+    bool has_velocities_;
+    std::vector<UsdTrack> tracks_; ///< extent, points, velocities and normals if stored, attributes
 };
 
 } // namespace toile::exports

@@ -46,14 +46,11 @@ UsdStage::Group UsdStage::tree_of(const std::string& name, const CacheLayout& la
     return all;
 }
 
-void UsdStage::add_sample(View<const Vec3> x, View<const Vec3> v)
+void UsdStage::add_sample(const MovingSample& sample)
 {
-    int first = 0;
-    for (size_t m = 0; m < meshes_.size(); ++m) {
-        const int count = layout_.meshes[m].vertex_count;
-        meshes_[m].add_sample(x.subview(first, count), v.subview(first, count));
-        first += count;
-    }
+    const std::vector<MovingSample> samples = by_mesh(sample, layout_.meshes);
+    for (size_t m = 0; m < meshes_.size(); ++m)
+        meshes_[m].add_sample(samples[m]);
     times_.push_back(layout_.frame_of(next_sample_++));
 }
 

@@ -18,8 +18,8 @@ public:
     /// @param layout  with names: with_names()
     UsdStage(const std::string& name, const CacheLayout& layout);
 
-    /// Appends a sample of all meshes. @param v  [vertices] velocities per second
-    void add_sample(View<const Vec3> x, View<const Vec3> v);
+    /// Appends a sample of all meshes.
+    void add_sample(const MovingSample& sample);
     int sample_count() const { return int(times_.size()); } ///< that are kept
     void drop_all_but_last();
 

@@ -29,7 +29,7 @@ void require_plain_name(const std::filesystem::path& file)
 UsdWriter::UsdWriter(std::filesystem::path file, const CacheLayout& layout, const std::string& name)
     : files_(std::move(file)), unfinished_(unfinished_usd(files_.root(), layout.frame_count)),
       order_(files_.root(), layout), name_(name), layout_(with_names(files_.root(), layout)),
-      clip_count_(usd_clip_count(layout.frame_count)), velocities_(layout.samples_per_second())
+      clip_count_(usd_clip_count(layout.frame_count)), moving_(layout.samples_per_second())
 {
     require_plain_name(files_.root());
     require_writable(unfinished_.root());
@@ -41,9 +41,9 @@ UsdWriter::UsdWriter(std::filesystem::path file, const CacheLayout& layout, cons
                            "write a .pc2");
 }
 
-void UsdWriter::write(int frame, View<const Vec3> positions)
+void UsdWriter::write(int frame, const SampleView& sample)
 {
-    order_.require_next(frame, positions);
+    order_.require_next(frame, sample);
     if (!stage_) {
         remove_partial(); // of an earlier run
         stage_.emplace(name_, layout_);
@@ -51,7 +51,7 @@ void UsdWriter::write(int frame, View<const Vec3> positions)
         if (clip_count_ > 0)
             stage_->write_manifest(unfinished_.manifest());
     }
-    if (velocities_.advance(positions))
+    if (moving_.advance(sample))
         add_sample();
     order_.advance();
 }
@@ -59,7 +59,7 @@ void UsdWriter::write(int frame, View<const Vec3> positions)
 /// The first sample of the next clip ends each, so that there is one to interpolate to.
 void UsdWriter::add_sample()
 {
-    stage_->add_sample(velocities_.positions(), velocities_.velocities());
+    stage_->add_sample(moving_.completed());
     if (clip_count_ > 0 && stage_->sample_count() > kUsdSamplesPerFile)
         write_clip();
 }
@@ -85,7 +85,7 @@ std::filesystem::path UsdWriter::complete()
 
 void UsdWriter::keep()
 {
-    if (velocities_.finish())
+    if (moving_.finish())
         add_sample();
     if (readable_ == order_.next())
         return;

@@ -26,7 +26,7 @@ public:
     /// @throws InvalidInput as make_cache_writer().
     UsdWriter(std::filesystem::path file, const CacheLayout& layout, const std::string& name);
 
-    void write(int frame, View<const Vec3> positions) override;
+    void write(int frame, const SampleView& sample) override;
     std::filesystem::path complete() override;
     void keep() override;
     int readable_samples() const override { return readable_; }
@@ -45,7 +45,7 @@ private:
     std::string name_;
     CacheLayout layout_; ///< until the first frame
     int clip_count_;     ///< when complete; 0: one file
-    FrameVelocities velocities_;
+    FrameVelocities moving_;
     std::optional<UsdStage> stage_; ///< from the first frame on
     std::vector<UsdStage::Clip> clips_;
     int readable_ = 0; ///< samples that the root shows

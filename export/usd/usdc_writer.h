@@ -15,7 +15,7 @@ public:
     /// @throws InvalidInput as make_cache_writer(), and where there is no Python with USD.
     UsdcWriter(std::filesystem::path file, const CacheLayout& layout);
 
-    void write(int frame, View<const Vec3> positions) override { frames_.write(frame, positions); }
+    void write(int frame, const SampleView& sample) override { frames_.write(frame, sample); }
     std::filesystem::path complete() override;
     void keep() override { frames_.keep(); }
     int readable_samples() const override { return frames_.readable_samples(); }

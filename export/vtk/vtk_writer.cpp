@@ -25,30 +25,31 @@ CacheLayout without_faces(const std::filesystem::path& file, CacheLayout layout)
 
 VtkWriter::VtkWriter(std::filesystem::path file, const CacheLayout& layout)
     : file_(std::move(file)), layout_(without_faces(file_, layout)), order_(file_, layout),
-      mesh_(layout.meshes.front().faces),
-      files_(frames_of_pvd(file_).pattern(), layout_,
-             [this](const std::filesystem::path& frame, View<const Vec3> positions) {
-                 const double time = layout_.frame_of(written_) / layout_.fps;
-                 write_atomically(frame, mesh_.bytes(time, positions, velocities_));
-             }),
+      mesh_(layout.meshes.front()),
+      files_(
+          frames_of_pvd(file_).pattern(), layout_,
+          [this](const std::filesystem::path& frame, const SampleView& sample) {
+              const double time = layout_.frame_of(written_) / layout_.fps;
+              write_atomically(frame, mesh_.bytes(time, {sample.positions, velocities_, sample.attributes}));
+          }),
       list_(files_.partial() / file_.filename()), moving_(layout.samples_per_second())
 {
 }
 
-void VtkWriter::write(int frame, View<const Vec3> positions)
+void VtkWriter::write(int frame, const SampleView& sample)
 {
-    order_.require_next(frame, positions);
+    order_.require_next(frame, sample);
     if (!layout_.velocities)
-        write_frame(positions, {});
-    else if (moving_.advance(positions))
-        write_frame(moving_.positions(), moving_.velocities());
+        write_frame({sample.positions, {}, sample.attributes});
+    else if (moving_.advance(sample))
+        write_frame(moving_.completed());
     order_.advance();
 }
 
-void VtkWriter::write_frame(View<const Vec3> positions, View<const Vec3> velocities)
+void VtkWriter::write_frame(const MovingSample& sample)
 {
-    velocities_ = velocities;
-    files_.write(written_, positions);
+    velocities_ = sample.velocities;
+    files_.write(written_, {sample.positions, sample.attributes});
     list_.add(layout_.frame_of(written_) / layout_.fps, files_.unfinished_file(written_).filename().string());
     ++written_;
 }
@@ -65,7 +66,7 @@ std::filesystem::path VtkWriter::complete()
 void VtkWriter::keep()
 {
     if (moving_.finish())
-        write_frame(moving_.positions(), moving_.velocities());
+        write_frame(moving_.completed());
 }
 
 void VtkWriter::publish()

@@ -20,7 +20,7 @@ public:
     /// @throws InvalidInput as make_cache_writer().
     VtkWriter(std::filesystem::path file, const CacheLayout& layout);
 
-    void write(int frame, View<const Vec3> positions) override;
+    void write(int frame, const SampleView& sample) override;
     std::filesystem::path complete() override;
     void keep() override;
     void publish() override;
@@ -28,7 +28,7 @@ public:
     int readable_samples() const override { return written_; }
 
 private:
-    void write_frame(View<const Vec3> positions, View<const Vec3> velocities);
+    void write_frame(const MovingSample& sample);
 
     std::filesystem::path file_;
     CacheLayout layout_; ///< without faces

@@ -495,6 +495,11 @@ void describe(V& v, Export& e)
     v.field("thickness", e.thickness, "Close each cloth with its thickness: two sides and a rim.");
     v.field("weld", e.weld,
             "Write a cloth as one mesh; false: one for each group of its faces, such as a panel.");
+    v.field(
+        "attributes", e.attributes,
+        "Numbers to store with cloths, in formats that have them: strain (larger principal strain) and gap "
+        "(distance from the skin of the avatars, negative inside, in the unit) of vertices, panel (number of "
+        "the group) of faces.");
 }
 
 template <typename V>

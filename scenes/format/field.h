@@ -80,6 +80,14 @@ struct Words<ExportUnit> {
 };
 
 template <>
+struct Words<ExportAttribute> {
+    static constexpr std::array<std::pair<const char*, ExportAttribute>, 3> kAll{
+        {{"strain", ExportAttribute::Strain},
+         {"gap", ExportAttribute::Gap},
+         {"panel", ExportAttribute::Panel}}};
+};
+
+template <>
 struct Words<UpAxis> {
     static constexpr std::array<std::pair<const char*, UpAxis>, 2> kAll{{{"y", UpAxis::Y}, {"z", UpAxis::Z}}};
 };

@@ -376,6 +376,9 @@ struct Solver {
 
 enum class ExportUnit { Metre, Centimetre };
 
+/// Numbers of a cloth beside its positions.
+enum class ExportAttribute { Strain, Gap, Panel };
+
 /// A cache to write; the extension gives its format.
 struct Export {
     std::filesystem::path file;      ///< relative to the output folder
@@ -391,7 +394,12 @@ struct Export {
     bool normals = false;   ///< the same; creased at seams
     bool thickness = false; ///< closes each cloth with its thickness
     bool weld = true;       ///< false: one mesh for each group of faces, such as a panel
+    std::vector<ExportAttribute> attributes;
 
+    bool stores(ExportAttribute attribute) const
+    {
+        return std::find(attributes.begin(), attributes.end(), attribute) != attributes.end();
+    }
     bool operator==(const Export&) const = default;
 };
 

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
-#include "apps/toile/check/strain.h"
+#include "apps/toile/cloth/strain.h"
 #include "apps/toile/render/frame_range.h"
 #include "apps/toile/terminal/progress.h"
 #include "apps/toile/terminal/setup_progress.h"

@@ -51,10 +51,10 @@ TEST_F(AsyncCacheWriterTest, RequestsLatePositionsOnTheWriterThread)
     for (int frame = 0; frame < 9; ++frame) {
         const auto positions = std::make_shared<const std::vector<Vec3>>(frame_positions(frame, 7));
         given.push_back(positions);
-        later.write_later(frame, [&, positions, caller = std::this_thread::get_id()]() -> std::vector<Vec3> {
+        later.write_later(frame, [&, positions, caller = std::this_thread::get_id()]() -> CacheSample {
             ++asked;
             asked_here += std::this_thread::get_id() == caller;
-            return *positions;
+            return {*positions, {}};
         });
     }
     later.finish();
@@ -69,7 +69,7 @@ TEST_F(AsyncCacheWriterTest, RethrowsErrorsOfLatePositions)
 {
     AsyncCacheWriter writer(make_cache_writer(file("a.pc2"), cache_layout(quad_mesh(), 9)), 2);
     writer.write(0, frame_positions(0, 7));
-    writer.write_later(1, []() -> std::vector<Vec3> { throw DeviceError("the GPU is gone"); });
+    writer.write_later(1, []() -> CacheSample { throw DeviceError("the GPU is gone"); });
     EXPECT_THROW(writer.finish(), DeviceError);
     EXPECT_EQ(writer.close(), 1);
     EXPECT_EQ(read_cache(file("a.partial.pc2")).frame_count(), 1);
@@ -92,7 +92,7 @@ TEST_F(AsyncCacheWriterTest, KeepsAllDeliveredFramesWhenClosed)
         CacheLayout layout = cache_layout(quad_mesh(), 200);
         AsyncCacheWriter writer(make_cache_writer(file(name), layout));
         write_frames(writer, 0, 70, 7);
-        writer.write_later(70, []() -> std::vector<Vec3> { throw DeviceError("the GPU is gone"); });
+        writer.write_later(70, []() -> CacheSample { throw DeviceError("the GPU is gone"); });
         EXPECT_EQ(writer.close(), 70) << name;
         EXPECT_EQ(writer.close(), 70) << name;
     }
@@ -108,7 +108,7 @@ TEST_F(AsyncCacheWriterTest, KeepsAllDeliveredFramesWhenClosed)
 class FullDisk final : public CacheWriter {
 public:
     explicit FullDisk(std::vector<int>& written) : written_(written) {}
-    void write(int frame, View<const Vec3>) override
+    void write(int frame, const SampleView&) override
     {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
         if (frame == 3)

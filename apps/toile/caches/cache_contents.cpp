@@ -5,14 +5,20 @@
 #include <utility>
 
 #include "apps/toile/caches/exports.h"
+#include "apps/toile/cloth/skin.h"
 #include "core/base/error.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
-#include "export/mesh/mesh_part.h"
 
 namespace toile::app {
 
 namespace {
+
+/// Vertex of the cloth that one of the file is, or follows.
+int own_vertex(const scenes::ClothState& state, int file_vertex)
+{
+    return state.has_file_order() ? state.numbers.vertex[size_t(file_vertex)] : file_vertex;
+}
 
 /// [file vertices] [m]
 std::vector<double> thickness_of(const scenes::ClothState& state)
@@ -23,14 +29,21 @@ std::vector<double> thickness_of(const scenes::ClothState& state)
     std::vector<double> thickness;
     thickness.reserve(state.file_mesh().positions.size());
     for (int v = 0; v < int(state.file_mesh().positions.size()); ++v)
-        thickness.push_back(of_vertex(state.has_file_order() ? state.numbers.vertex[size_t(v)] : v));
+        thickness.push_back(of_vertex(own_vertex(state, v)));
     return thickness;
+}
+
+/// A solid has no attributes.
+scene::Export without_attributes(scene::Export entry)
+{
+    entry.attributes.clear();
+    return entry;
 }
 
 } // namespace
 
 ExportedSurface::ExportedSurface(const scene::Export& entry, const scenes::ClothState& state)
-    : state_(&state), thickness_(thickness_of(state))
+    : state_(&state), attributes_(entry, state), thickness_(thickness_of(state))
 {
     const ObjMesh& whole = state.file_mesh();
     const std::vector<exports::MeshPart> groups =
@@ -39,17 +52,33 @@ ExportedSurface::ExportedSurface(const scene::Export& entry, const scenes::Cloth
         for (const exports::MeshPart& group : groups)
             add_part(entry, {group.name, state.name, int(group.vertices.size()), group.faces},
                      group.vertices);
+        if (entry.stores(scene::ExportAttribute::Panel))
+            number_panels(groups);
         return;
     }
     exports::CacheMesh mesh{state.name, "", int(whole.positions.size()), exports::faces_only(whole)};
     std::vector<int> all(whole.positions.size());
     std::iota(all.begin(), all.end(), 0);
     add_part(entry, std::move(mesh), std::move(all));
+    if (entry.stores(scene::ExportAttribute::Panel))
+        meshes_.front().panels = exports::face_panels(meshes_.front().faces);
+}
+
+/// Each mesh is a panel.
+void ExportedSurface::number_panels(const std::vector<exports::MeshPart>& groups)
+{
+    std::vector<std::string> names;
+    names.reserve(groups.size());
+    for (const exports::MeshPart& group : groups)
+        names.push_back(group.name);
+    for (size_t m = 0; m < meshes_.size(); ++m)
+        meshes_[m].panels = {std::vector<int>(meshes_[m].faces.polygons.size(), int(m)), names};
 }
 
 void ExportedSurface::add_part(const scene::Export& entry, exports::CacheMesh mesh, std::vector<int> vertices)
 {
     Part part{std::move(vertices), std::nullopt};
+    mesh.attributes = vertex_attributes(entry);
     if (entry.thickness) {
         std::vector<double> thickness;
         for (const int v : part.vertices)
@@ -74,6 +103,19 @@ void ExportedSurface::append(View<const Vec3> x, std::vector<Vec3>& positions) c
             of_part = part.closed->positions(of_part);
         positions.insert(positions.end(), of_part.begin(), of_part.end());
     }
+}
+
+void ExportedSurface::append_attributes(View<const Vec3> x, const SkinDistance* skin,
+                                        std::vector<float>& numbers) const
+{
+    if (attributes_.is_empty())
+        return;
+    const std::vector<std::vector<double>> values = attributes_.at(x, skin);
+    for (const Part& part : parts_)
+        for (const std::vector<double>& of_vertex : values)
+            for (int side = 0; side < (part.closed ? 2 : 1); ++side)
+                for (const int v : part.vertices)
+                    numbers.push_back(float(of_vertex[size_t(own_vertex(*state_, v))]));
 }
 
 std::vector<Vec3> ExportedSurface::file_positions(const std::vector<std::vector<Vec3>>& meshes) const
@@ -102,13 +144,16 @@ CacheContents::CacheContents(const scene::Export& entry, const scenes::Scene& sc
     : numbers_(surfaces_of(scene, entry)), has_avatars_(entry.avatars)
 {
     for (const int number : numbers_) {
-        surfaces_.emplace_back(entry, surfaces[number]);
+        const bool is_cloth = number < int(scene.cloths.size());
+        surfaces_.emplace_back(is_cloth ? entry : without_attributes(entry), surfaces[number]);
         for (const exports::CacheMesh& mesh : surfaces_.back().meshes())
             layout_.meshes.push_back(mesh);
     }
     if (has_avatars_)
         for (const auto& [name, mesh] : avatars)
             layout_.meshes.push_back({name, "", mesh->vertex_count(), exports::faces_only(faces_of(*mesh))});
+    if (entry.stores(scene::ExportAttribute::Gap))
+        add_skin(scene, avatars);
     layout_.frame_count = sample_count(scene, entry);
     layout_.fps = scene.fps;
     layout_.subframes = entry.subframes;
@@ -118,18 +163,47 @@ CacheContents::CacheContents(const scene::Export& entry, const scenes::Scene& sc
     layout_.normals = entry.normals;
 }
 
-std::vector<Vec3> CacheContents::positions(const std::function<View<const Vec3>(int surface)>& surface,
-                                           const std::vector<std::vector<Vec3>>& avatars) const
+/// The skin of toile render: avatars but planes (cloth/skin.h).
+void CacheContents::add_skin(const scenes::Scene& scene,
+                             const std::vector<std::pair<std::string, const TriangleMesh*>>& avatars)
 {
-    std::vector<Vec3> positions;
-    positions.reserve(size_t(layout_.vertex_count()));
-    for (size_t s = 0; s < surfaces_.size(); ++s)
-        surfaces_[s].append(surface(numbers_[s]), positions);
+    TriangleMesh skin;
+    for (size_t k = 0; k < avatars.size(); ++k) {
+        if (std::holds_alternative<scene::Plane>(scene.avatars[k].shape))
+            continue;
+        append(skin, avatars[k].second->positions, avatars[k].second->triangles);
+        skinned_.push_back(k);
+    }
+    skin_.emplace(std::move(skin.triangles));
+}
+
+exports::CacheSample CacheContents::sample(const std::function<View<const Vec3>(int surface)>& surface,
+                                           const std::vector<std::vector<Vec3>>& avatars)
+{
+    if (skin_) {
+        std::vector<Vec3> skin;
+        for (const size_t avatar : skinned_)
+            skin.insert(skin.end(), avatars[avatar].begin(), avatars[avatar].end());
+        skin_->move(skin);
+    }
+    exports::CacheSample sample;
+    sample.positions.reserve(size_t(layout_.vertex_count()));
+    sample.attributes.reserve(size_t(layout_.attribute_count()));
+    for (size_t s = 0; s < surfaces_.size(); ++s) {
+        const View<const Vec3> x = surface(numbers_[s]);
+        surfaces_[s].append(x, sample.positions);
+        surfaces_[s].append_attributes(x, skin_ ? &*skin_ : nullptr, sample.attributes);
+    }
     if (has_avatars_)
         for (const std::vector<Vec3>& avatar : avatars)
-            positions.insert(positions.end(), avatar.begin(), avatar.end());
-    exports::change_axes({}, layout_.axes, positions);
-    return positions;
+            sample.positions.insert(sample.positions.end(), avatar.begin(), avatar.end());
+    exports::change_axes({}, layout_.axes, sample.positions);
+    return sample;
+}
+
+bool needs_avatars(const scene::Export& entry)
+{
+    return entry.avatars || entry.stores(scene::ExportAttribute::Gap);
 }
 
 namespace {

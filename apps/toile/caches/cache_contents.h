@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "apps/toile/caches/cloth_attributes.h"
 #include "core/mesh/triangle_mesh.h"
 #include "export/cache_layout.h"
+#include "export/mesh/cache_sample.h"
 #include "export/mesh/closed_surface.h"
+#include "export/mesh/mesh_part.h"
 #include "export/point_cache.h"
 #include "scenes/format/scene.h"
 #include "scenes/surfaces/cloth_state.h"
@@ -27,6 +30,9 @@ public:
     /// Appends positions of all meshes. @param x  [vertices] of the cloth as simulated [m]
     void append(View<const Vec3> x, std::vector<Vec3>& positions) const;
 
+    /// Appends the attributes of all meshes at that moment. @param skin  as ClothAttributes::at()
+    void append_attributes(View<const Vec3> x, const SkinDistance* skin, std::vector<float>& numbers) const;
+
     /// Positions of the cloth's file_mesh() for those of all meshes, one vector each.
     std::vector<Vec3> file_positions(const std::vector<std::vector<Vec3>>& meshes) const;
 
@@ -36,36 +42,46 @@ private:
         std::optional<exports::ClosedSurface> closed;
     };
     void add_part(const scene::Export& entry, exports::CacheMesh mesh, std::vector<int> vertices);
+    void number_panels(const std::vector<exports::MeshPart>& groups);
 
     const scenes::ClothState* state_;
+    ClothAttributes attributes_;
     std::vector<double> thickness_; ///< [file vertices] [m]
     std::vector<exports::CacheMesh> meshes_;
     std::vector<Part> parts_; ///< [meshes]
 };
 
-/// What a scene's export writes: surfaces, and avatars after them.
+/// What a scene's export writes: surfaces, and avatars after them. Cloths have the attributes of the entry.
 class CacheContents {
 public:
     /// @param surfaces  of the scene; outlive this
-    /// @param avatars   of the scene, with their names; only those of an export that has them are used
+    /// @param avatars   of the scene, with their names; used if needs_avatars()
     CacheContents(const scene::Export& entry, const scenes::Scene& scene,
                   View<const scenes::ClothState> surfaces,
                   const std::vector<std::pair<std::string, const TriangleMesh*>>& avatars);
 
     const exports::CacheLayout& layout() const { return layout_; }
 
-    /// Positions of all meshes in the export's axes.
+    /// Positions of all meshes in the export's axes, and their attributes. Called by one thread at a time.
     /// @param surface  gives the positions of a surface, numbered as World::surfaces() [m]
-    /// @param avatars  [avatars of the scene] [m]; not used by an export without them
-    std::vector<Vec3> positions(const std::function<View<const Vec3>(int surface)>& surface,
-                                const std::vector<std::vector<Vec3>>& avatars) const;
+    /// @param avatars  [avatars of the scene] [m]; used if needs_avatars()
+    exports::CacheSample sample(const std::function<View<const Vec3>(int surface)>& surface,
+                                const std::vector<std::vector<Vec3>>& avatars);
 
 private:
+    void add_skin(const scenes::Scene& scene,
+                  const std::vector<std::pair<std::string, const TriangleMesh*>>& avatars);
+
     std::vector<int> numbers_; ///< of the surfaces
     std::vector<ExportedSurface> surfaces_;
     bool has_avatars_;
+    std::vector<size_t> skinned_; ///< avatars whose surfaces are the skin
+    std::optional<SkinDistance> skin_;
     exports::CacheLayout layout_;
 };
+
+/// Whether an export depends on the avatars.
+bool needs_avatars(const scene::Export& entry);
 
 /// Opens the cache of a cloth in the file of an export: whole frames, in the order of the cloth's
 /// file_mesh(), in metres with Y up. Its start frame

@@ -7,7 +7,7 @@
 #include "apps/toile/check/avatar_crossings.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/check/penetration.h"
-#include "apps/toile/check/strain.h"
+#include "apps/toile/cloth/strain.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/setup_progress.h"
 #include "collision/check/find_crossings.h"

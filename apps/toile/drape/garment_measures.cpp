@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "apps/toile/check/strain.h"
+#include "apps/toile/cloth/strain.h"
 
 namespace toile::app {
 

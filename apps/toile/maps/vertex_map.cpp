@@ -4,7 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/toile/check/strain.h"
+#include "apps/toile/cloth/strain.h"
+#include "apps/toile/cloth/vertex_values.h"
 #include "collision/geometry/surface_proximity.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/membrane.h"
@@ -31,22 +32,6 @@ double rounded_up(double value)
 preview::ColourScale scale_of(const std::vector<double>& values, double least)
 {
     return {preview::ColourMap::Turbo, 0.0, rounded_up(std::max(quantile(values, kColoured), least))};
-}
-
-/// @param of_triangle  [triangles]
-/// @param area         [triangles]
-std::vector<double> mean_at_vertices(const TriangleMesh& mesh, const std::vector<double>& of_triangle,
-                                     const std::vector<double>& area)
-{
-    std::vector<double> sum(mesh.positions.size(), 0.0), weight(mesh.positions.size(), 0.0);
-    for (size_t t = 0; t < mesh.triangles.size(); ++t)
-        for (const int v : mesh.triangles[t]) {
-            sum[size_t(v)] += area[t] * of_triangle[t];
-            weight[size_t(v)] += area[t];
-        }
-    for (size_t v = 0; v < sum.size(); ++v)
-        sum[v] /= weight[v] > 0.0 ? weight[v] : 1.0;
-    return sum;
 }
 
 /// Elasticity of a fabric in its plane.
@@ -164,32 +149,30 @@ VertexMap tension_map(const FittedGarment& garment)
     std::vector<double> tension;
     for (int t = 0; t < garment.mesh.triangle_count(); ++t)
         tension.push_back(std::max(larger_principal(stress(t), stress.gradient(t)), 0.0));
-    VertexMap map{"tension", "N/m", mean_at_vertices(garment.mesh, tension, stress.rest().areas),
-                  {},        "N/m", 1.0};
+    VertexMap map{
+        "tension",
+        "N/m",
+        mean_at_vertices(garment.mesh.triangles, garment.mesh.vertex_count(), tension, stress.rest().areas),
+        {},
+        "N/m",
+        1.0};
     map.scale = scale_of(map.values, 1.0);
     return map;
 }
 
 VertexMap strain_map(const FittedGarment& garment)
 {
-    const StrainMeter meter(garment.rest, garment.mesh.triangles);
-    std::vector<double> strain, area;
-    for (int t = 0; t < meter.triangle_count(); ++t) {
-        strain.push_back(meter.stretches(garment.mesh.positions, t).larger - 1.0);
-        area.push_back(meter.rest_area(t));
-    }
-    VertexMap map{"strain", "", mean_at_vertices(garment.mesh, strain, area), {}, "%", 100.0};
+    const VertexStrain strain(StrainMeter(garment.rest, garment.mesh.triangles), garment.mesh.triangles);
+    VertexMap map{"strain", "", strain.at(garment.mesh.positions), {}, "%", 100.0};
     map.scale = scale_of(map.values, 0.01);
     return map;
 }
 
 VertexMap gap_map(const FittedGarment& garment, const TriangleMesh& body)
 {
-    const collision::SurfaceProximity skin(body.triangles, body.positions);
-    VertexMap map{"gap", "m", std::vector<double>(garment.mesh.positions.size()), {}, "mm", 1000.0};
-    parallel_for(kCpu, "fit/gap", garment.mesh.vertex_count(), [&](int v) {
-        map.values[size_t(v)] = skin.closest(garment.mesh.positions[size_t(v)]).value().signed_distance;
-    });
+    SkinDistance skin(body.triangles);
+    skin.move(body.positions);
+    VertexMap map{"gap", "m", skin.at(garment.mesh.positions), {}, "mm", 1000.0};
     map.scale = {preview::ColourMap::Viridis, 0.0, kWidestGap};
     return map;
 }
@@ -215,8 +198,13 @@ VertexMap pressure_map(const FittedGarment& garment, const TriangleMesh& body)
         }
         pressure.push_back(on > 0.0 ? pushed / on : 0.0);
     }
-    VertexMap map{"pressure", "Pa", mean_at_vertices(garment.mesh, pressure, stress.rest().areas),
-                  {},         "Pa", 1.0};
+    VertexMap map{
+        "pressure",
+        "Pa",
+        mean_at_vertices(garment.mesh.triangles, garment.mesh.vertex_count(), pressure, stress.rest().areas),
+        {},
+        "Pa",
+        1.0};
     map.scale = scale_of(map.values, 1.0);
     return map;
 }

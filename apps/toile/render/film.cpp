@@ -4,7 +4,7 @@
 
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/check/cache_cloth.h"
-#include "apps/toile/maps/skin.h"
+#include "apps/toile/cloth/skin.h"
 #include "apps/toile/render/body_paint.h"
 #include "apps/toile/render/print.h"
 #include "core/base/error.h"

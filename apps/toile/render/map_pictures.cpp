@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "apps/preview/value_view.h"
-#include "apps/toile/maps/skin.h"
+#include "apps/toile/cloth/skin.h"
 #include "apps/toile/render/number_list.h"
 #include "apps/toile/terminal/progress.h"
 #include "core/base/error.h"

@@ -19,7 +19,8 @@ RunFiles::RunFiles(const SceneJob& job, const scenes::World& world, const RunLog
     for (const std::filesystem::path& folder : output_folders_of(job))
         locks_.all.emplace_back(folder, [&](const std::string& text) { log.note("warning: " + text); });
     const std::vector<ExportFile> caches = caches_of(job);
-    if (std::any_of(caches.begin(), caches.end(), [](const ExportFile& file) { return file.entry.avatars; }))
+    if (std::any_of(caches.begin(), caches.end(),
+                    [](const ExportFile& file) { return needs_avatars(file.entry); }))
         avatars_ = scenes::make_bodies(job.scene);
     std::vector<std::pair<std::string, const TriangleMesh*>> avatars;
     for (const scenes::SceneBody& avatar : avatars_)
@@ -32,10 +33,10 @@ RunFiles::RunFiles(const SceneJob& job, const scenes::World& world, const RunLog
         caches_.push_back({cache, std::move(contents), std::move(writer), {}});
     }
     for (const ExportFile& mesh : start_meshes_of(job)) {
-        const CacheContents contents(mesh.entry, job.scene, surfaces, {});
+        CacheContents contents(mesh.entry, job.scene, surfaces, {});
         meshes_.push_back({mesh.file, contents.layout().meshes.front().faces});
-        meshes_.back().mesh.positions = contents.positions(
-            [&](int surface) { return View<const Vec3>(surfaces[surface].positions); }, {});
+        const auto start = [&](int surface) { return View<const Vec3>(surfaces[surface].positions); };
+        meshes_.back().mesh.positions = contents.sample(start, {}).positions;
     }
 }
 
@@ -71,7 +72,7 @@ void RunFiles::write_sample(const scenes::World& world)
         if (world.frame() % apart != 0)
             continue;
         cache.writer->write_later(world.frame() / apart, [snapshot, avatars, contents = cache.contents] {
-            return contents->positions([&](int surface) { return snapshot->positions(surface); }, *avatars);
+            return contents->sample([&](int surface) { return snapshot->positions(surface); }, *avatars);
         });
     }
 }

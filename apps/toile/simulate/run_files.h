@@ -62,7 +62,7 @@ public:
 private:
     struct Cache {
         ExportFile target;
-        std::shared_ptr<const CacheContents> contents; ///< also of what waits in the writer
+        std::shared_ptr<CacheContents> contents; ///< also of what waits in the writer
         std::unique_ptr<exports::AsyncCacheWriter> writer;
         std::filesystem::path complete; ///< partial name of the complete cache
     };
@@ -85,7 +85,7 @@ private:
 
     const SceneJob& job_;
     int subframes_;
-    std::vector<scenes::SceneBody> avatars_; ///< empty: no cache has them
+    std::vector<scenes::SceneBody> avatars_; ///< empty: no cache needs them
     Locks locks_;                            ///< before the caches: released after them
     std::vector<Cache> caches_;
     std::vector<StartMesh> meshes_;

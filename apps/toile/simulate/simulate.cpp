@@ -36,6 +36,7 @@ struct SimulateOptions {
     std::vector<std::filesystem::path> exports; ///< caches instead of the scene's
     scene::Export export_keys;                  ///< of these
     std::string export_unit = "m", export_up = "y";
+    std::vector<std::string> export_attributes;
     bool no_velocities = false, no_weld = false;
     bool no_cache = false;
     bool no_check = false;
@@ -76,6 +77,8 @@ std::vector<scene::Export> exports_of(const SimulateOptions& options)
         entry.up = scene_format::value_of<scene::UpAxis>(options.export_up);
         entry.velocities = !options.no_velocities;
         entry.weld = !options.no_weld;
+        for (const std::string& word : options.export_attributes)
+            entry.attributes.push_back(scene_format::value_of<scene::ExportAttribute>(word));
     }
     return exports;
 }
@@ -173,6 +176,10 @@ void add_export_options(CLI::App& add, SimulateOptions& options)
               ->check(CLI::IsMember(scene_format::words_of<scene::ExportUnit>())),
           add.add_option("--up", options.export_up, "Upward axis of the numbers [y]")
               ->check(CLI::IsMember(scene_format::words_of<scene::UpAxis>())),
+          add.add_option("--attributes", options.export_attributes,
+                         "Numbers to store with cloths: strain, gap, panel")
+              ->delimiter(',')
+              ->check(CLI::IsMember(scene_format::words_of<scene::ExportAttribute>())),
           add.add_flag("--avatars", keys.avatars, "Also write the avatars"),
           add.add_flag("--normals", keys.normals, "Store normals, creased at seams"),
           add.add_flag("--thickness", keys.thickness, "Close each cloth with its thickness"),

@@ -7,6 +7,7 @@
 
 #include "core/base/extension.h"
 #include "export/cache_format.h"
+#include "scenes/format/field.h"
 #include "scenes/format/names.h"
 
 namespace toile::scene_format {
@@ -74,6 +75,31 @@ void check_export_features(const Document& document, const std::string& key_path
                             as_written(*solver.substeps) + "; give a divisor of it, or leave substeps out");
 }
 
+/// Checks attributes that need another format, a body, or a cloth.
+void check_export_attributes(const Document& document, const std::string& key_path, const Export& entry,
+                             const scenes::Scene& scene)
+{
+    if (entry.attributes.empty())
+        return;
+    const std::string at = below(key_path, "attributes");
+    if (!exports::features_of(exports::cache_format(entry.file)).attributes)
+        document.refuse(at, as_written(lower_case_extension(entry.file)) +
+                                " stores no attributes; write an .abc, .usda, .usdc, .ply or .pvd");
+    for (auto attribute = entry.attributes.begin(); attribute != entry.attributes.end(); ++attribute)
+        if (std::find(entry.attributes.begin(), attribute, *attribute) != attribute)
+            document.refuse(at, as_written(word_of(*attribute)) + " is there twice; name it once");
+    const auto has_skin = [](const Avatar& avatar) { return !std::holds_alternative<Plane>(avatar.shape); };
+    if (entry.stores(ExportAttribute::Gap) &&
+        std::none_of(scene.avatars.begin(), scene.avatars.end(), has_skin))
+        document.refuse(at,
+                        "\"gap\" is the distance from avatars, and the scene has none but planes; add one, "
+                        "or leave gap out");
+    const auto is_solid = [&](const std::string& name) { return contains(names_of(scene.solids), name); };
+    if (scene.cloths.empty() ||
+        (!entry.cloths.empty() && std::all_of(entry.cloths.begin(), entry.cloths.end(), is_solid)))
+        document.refuse(at, "are of cloths, and the entry writes solids; leave them out");
+}
+
 } // namespace
 
 void check_exports(const Document& document, const scenes::Scene& scene)
@@ -90,6 +116,7 @@ void check_exports(const Document& document, const scenes::Scene& scene)
                                          " is written by an earlier entry; choose another file");
         check_exported_cloths(document, key_path, entry, scene);
         check_export_features(document, key_path, entry, scene.solver);
+        check_export_attributes(document, key_path, entry, scene);
         if (entry.subframes > 1 && subframes > 1 && entry.subframes != subframes)
             document.refuse(below(key_path, "subframes"),
                             as_written(entry.subframes) + ", and an earlier entry has " +

@@ -16,14 +16,14 @@ TEST(FrameVelocities, AreCentralDifferencesAndOneSidedAtTheEnds)
     const auto at = [](double x) { return std::vector<Vec3>{Vec3(x, 0, 0)}; };
     EXPECT_FALSE(velocities.advance(at(0.0)));
     ASSERT_TRUE(velocities.advance(at(1.0)));
-    EXPECT_EQ(velocities.positions()[0].x(), 0.0);
-    EXPECT_EQ(velocities.velocities()[0].x(), 10.0);
+    EXPECT_EQ(velocities.completed().positions[0].x(), 0.0);
+    EXPECT_EQ(velocities.completed().velocities[0].x(), 10.0);
     ASSERT_TRUE(velocities.advance(at(4.0)));
-    EXPECT_EQ(velocities.positions()[0].x(), 1.0);
-    EXPECT_EQ(velocities.velocities()[0].x(), 20.0);
+    EXPECT_EQ(velocities.completed().positions[0].x(), 1.0);
+    EXPECT_EQ(velocities.completed().velocities[0].x(), 20.0);
     ASSERT_TRUE(velocities.finish());
-    EXPECT_EQ(velocities.positions()[0].x(), 4.0);
-    EXPECT_EQ(velocities.velocities()[0].x(), 30.0);
+    EXPECT_EQ(velocities.completed().positions[0].x(), 4.0);
+    EXPECT_EQ(velocities.completed().velocities[0].x(), 30.0);
     EXPECT_FALSE(velocities.finish());
 }
 
@@ -32,7 +32,7 @@ TEST(FrameVelocities, AreZeroForASingleFrame)
     FrameVelocities velocities(24.0);
     velocities.advance(std::vector<Vec3>{Vec3(1, 2, 3)});
     ASSERT_TRUE(velocities.finish());
-    EXPECT_EQ(velocities.velocities()[0], Vec3(0, 0, 0));
+    EXPECT_EQ(velocities.completed().velocities[0], Vec3(0, 0, 0));
 }
 
 TEST(FaceGroups, JoinWhatHasOneNameAndKeepOthersApart)

@@ -1,4 +1,4 @@
-#include "apps/toile/maps/skin.h"
+#include "apps/toile/cloth/skin.h"
 
 namespace toile::app {
 

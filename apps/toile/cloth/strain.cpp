@@ -1,4 +1,4 @@
-#include "apps/toile/check/strain.h"
+#include "apps/toile/cloth/strain.h"
 
 #include <cmath>
 
