@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 #include "export/alembic/abc_cache.h"
@@ -11,10 +12,10 @@
 #include "export/byte_order.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
-#include "export/frame_times.h"
 #include "export/pc2/pc2_writer.h"
 #include "export/ply/ply_file.h"
 #include "export/sequence/numbered_files.h"
+#include "export/times/frame_times.h"
 #include "export/usd/usd_cache.h"
 
 namespace toile::exports {
@@ -129,18 +130,20 @@ public:
             refuse(file, "the header says " + std::to_string(frame_count) + " frames (byte 0) and " +
                              std::to_string(vertex_count) + " points (byte 4); this is no MDD file");
         first_frame_at_ = 8 + 4 * std::int64_t(frame_count);
-        const std::string times = read_head(file_, first_frame_at_, "MDD");
+        const std::string head = read_head(file_, first_frame_at_, "MDD");
         require_size("MDD", false);
 
         if (frame_count < 2)
             return;
         std::vector<double> seconds;
-        for (size_t at = 8; at < times.size(); at += 4)
-            seconds.push_back(double(get<kBig, float>(&times[at])));
+        for (size_t at = 8; at < head.size(); at += 4)
+            seconds.push_back(double(get<kBig, float>(&head[at])));
         const double largest = std::max(std::fabs(seconds.front()), std::fabs(seconds.back()));
         if (const auto found = frame_times(seconds, largest * kSingleRounding, std::nullopt)) {
             fps = found->fps;
             start_frame = found->start_frame;
+        } else {
+            times = std::move(seconds);
         }
     }
 };

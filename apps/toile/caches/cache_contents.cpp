@@ -110,6 +110,7 @@ CacheContents::CacheContents(const scene::Export& entry, const scenes::Scene& sc
         for (const auto& [name, mesh] : avatars)
             layout_.meshes.push_back({name, "", mesh->vertex_count(), exports::faces_only(faces_of(*mesh))});
     layout_.frame_count = sample_count(scene, entry);
+        times = first.times();
     layout_.fps = scene.fps;
     layout_.subframes = entry.subframes;
     layout_.start_frame = start_frame_of(entry);
