@@ -405,6 +405,35 @@ TEST_F(CachedBody, NamesTheSampleThatIsNoNumber)
     EXPECT_THAT(said, HasSubstr("tube.pc2: vertex 7 of sample 1 is at (nan, "));
 }
 
+/// The scene has 8 frames at 32 a second: it ends at 0.219 s.
+TEST_F(CachedBody, WarnsWhereItStandsStillBeforeTheSceneEnds)
+{
+    exports::CacheLayout layout;
+    layout.fps = 32.0;
+    write_tube(file("short.abc"), 5, layout);
+    write_tube(file("whole.abc"), 8, layout);
+    write_tube(file("still.abc"), 1, layout);
+    const auto warnings = [&](const std::string& avatar) {
+        std::string all;
+        WorldOptions options;
+        options.warn = [&](const std::string& text) { all += text; };
+        const World world(scene(avatar), options);
+        return all;
+    };
+    EXPECT_THAT(warnings(R"("file": "short.abc")"),
+                HasSubstr("short.abc: ends at 0.125 s, and the scene at 0.219 s; it is held there"));
+    EXPECT_THAT(warnings(R"("file": "whole.abc", "start": 0.125)"), HasSubstr("ends at 0.0938 s"));
+    EXPECT_THAT(warnings(R"("file": "whole.abc", "preroll": {"hold": 1})"),
+                HasSubstr("does not move, for its preroll holds it for 1 s, and the scene ends at 0.219 s"));
+    EXPECT_THAT(warnings(R"("file": "still.abc", "preroll": {"hold": 0.1})"),
+                HasSubstr("still.abc: has one sample, so its preroll has no effect"));
+    for (const std::string meant :
+         {R"("file": "whole.abc")", R"("file": "short.abc", "loop": true)",
+          R"("file": "short.abc", "speed": 0)", R"("file": "short.abc", "speed": 0.5)",
+          R"("file": "short.abc", "preroll": {"hold": 0.1})", R"("file": "still.abc")"})
+        EXPECT_EQ(warnings(meant), "") << meant;
+}
+
 TEST_F(CachedBody, WarnsOfAUnitThatMakesItAGiant)
 {
     exports::CacheLayout layout = exports::cache_layout(tube(), 1);
