@@ -151,12 +151,11 @@ public:
 /// Reads a mesh, or its positions alone.
 struct MeshFileReader {
     ObjMesh (*mesh)(const path&);
-    std::vector<Vec3> (*positions)(const path&);
+    std::vector<Vec3> (*positions)(const path&); ///< null: of a format that does not tell when it is cut off
     std::optional<Axes> (*axes)(const path&);
 };
 
-constexpr MeshFileReader kObjReader{[](const path& file) { return read_obj(file); },
-                                    [](const path& file) { return read_obj(file).positions; },
+constexpr MeshFileReader kObjReader{[](const path& file) { return read_obj(file); }, nullptr,
                                     [](const path&) { return std::optional<Axes>(); }};
 constexpr MeshFileReader kPlyReader{read_ply, read_ply_positions, read_ply_axes};
 
@@ -176,15 +175,38 @@ public:
     std::vector<Vec3> frame(int index) const override
     {
         const path& file = files_[size_t(index)];
+        if (reader_.positions == nullptr)
+            return positions_of_whole(file);
         std::vector<Vec3> positions = reader_.positions(file);
-        if (int(positions.size()) != vertex_count)
-            refuse(file, "has " + std::to_string(positions.size()) + " vertices and " +
-                             files_.front().string() + " " + std::to_string(vertex_count) +
-                             "; all frames of a sequence need the same mesh");
+        require_same("vertices", file, positions.size(), size_t(vertex_count));
         return positions;
     }
 
 private:
+    /// The faces follow the vertices: where they are those of the first file, nothing is missing.
+    std::vector<Vec3> positions_of_whole(const path& file) const
+    {
+        ObjMesh whole = reader_.mesh(file);
+        require_same("vertices", file, whole.positions.size(), size_t(vertex_count));
+        require_same("faces", file, whole.polygons.size(), mesh.polygons.size());
+        const auto [mine, first] =
+            std::mismatch(whole.polygons.begin(), whole.polygons.end(), mesh.polygons.begin());
+        if (mine != whole.polygons.end())
+            refuse(file, "its face " + std::to_string(first - mesh.polygons.begin()) + " is not that of " +
+                             files_.front().string() + kSameMesh);
+        return std::move(whole.positions);
+    }
+
+    void require_same(const char* what, const path& file, size_t count, size_t of_first) const
+    {
+        if (count != of_first)
+            refuse(file, "has " + std::to_string(count) + " " + what + " and " + files_.front().string() +
+                             " " + std::to_string(of_first) + kSameMesh);
+    }
+
+    static constexpr const char* kSameMesh =
+        "; all frames of a sequence need the same mesh, and one of these is of another or cut off";
+
     std::vector<path> files_;
     MeshFileReader reader_;
 };
