@@ -105,7 +105,8 @@ std::vector<double> AbcReader::times_of(const AbcReadProperty& property, int obj
     std::vector<double> times;
     for (int k = 0; k < property.samples; ++k) {
         const double start = cycle.starts.empty() ? 0.0 : cycle.starts[size_t(k % count)];
-        times.push_back(k < count ? start : start + (k / count) * cycle.duration);
+        const int repetition = k / count;
+        times.push_back(repetition == 0 ? start : start + repetition * cycle.duration);
     }
     if (const std::string fault = fault_of_times(times); !fault.empty())
         refuse(object, fault + "; export it again");

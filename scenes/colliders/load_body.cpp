@@ -26,6 +26,7 @@ std::vector<double> times_of(const exports::PointCache& cache, const CacheSettin
         throw InvalidInput(source + ": has no times; give the avatar's fps");
     const double rate = cache.fps().value_or(settings.fps.value_or(1.0)) * cache.subframes();
     std::vector<double> times;
+    times.reserve(size_t(cache.frame_count()));
     for (int k = 0; k < cache.frame_count(); ++k)
         times.push_back(k / rate);
     return times;

@@ -60,7 +60,8 @@ TEST_F(IrregularTimes, RepeatWithTheCycleOfAnArchive)
     const PointCache cache = read_cache(kArchive.string() + "#/shutter");
     ASSERT_EQ(cache.times().size(), 4u);
     for (int k = 0; k < 4; ++k) {
-        EXPECT_NEAR(cache.times()[size_t(k)], (k / 2 + 0.25 * (k % 2)) / 24.0, 1e-15);
+        const int frame = k / 2;
+        EXPECT_NEAR(cache.times()[size_t(k)], (frame + 0.25 * (k % 2)) / 24.0, 1e-15);
         EXPECT_EQ(cache.frame(k)[2], Vec3(1, k + 1, 0));
     }
 }
