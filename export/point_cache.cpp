@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 #include "export/alembic/abc_cache.h"
@@ -11,10 +12,10 @@
 #include "export/byte_order.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
-#include "export/frame_times.h"
 #include "export/pc2/pc2_writer.h"
 #include "export/ply/ply_file.h"
 #include "export/sequence/numbered_files.h"
+#include "export/times/frame_times.h"
 #include "export/usd/usd_cache.h"
 
 namespace toile::exports {
@@ -129,18 +130,20 @@ public:
             refuse(file, "the header says " + std::to_string(frame_count) + " frames (byte 0) and " +
                              std::to_string(vertex_count) + " points (byte 4); this is no MDD file");
         first_frame_at_ = 8 + 4 * std::int64_t(frame_count);
-        const std::string times = read_head(file_, first_frame_at_, "MDD");
+        const std::string head = read_head(file_, first_frame_at_, "MDD");
         require_size("MDD", false);
 
         if (frame_count < 2)
             return;
         std::vector<double> seconds;
-        for (size_t at = 8; at < times.size(); at += 4)
-            seconds.push_back(double(get<kBig, float>(&times[at])));
+        for (size_t at = 8; at < head.size(); at += 4)
+            seconds.push_back(double(get<kBig, float>(&head[at])));
         const double largest = std::max(std::fabs(seconds.front()), std::fabs(seconds.back()));
         if (const auto found = frame_times(seconds, largest * kSingleRounding, std::nullopt)) {
             fps = found->fps;
             start_frame = found->start_frame;
+        } else {
+            times = std::move(seconds);
         }
     }
 };
@@ -148,12 +151,11 @@ public:
 /// Reads a mesh, or its positions alone.
 struct MeshFileReader {
     ObjMesh (*mesh)(const path&);
-    std::vector<Vec3> (*positions)(const path&);
+    std::vector<Vec3> (*positions)(const path&); ///< null: of a format that does not tell when it is cut off
     std::optional<Axes> (*axes)(const path&);
 };
 
-constexpr MeshFileReader kObjReader{[](const path& file) { return read_obj(file); },
-                                    [](const path& file) { return read_obj(file).positions; },
+constexpr MeshFileReader kObjReader{[](const path& file) { return read_obj(file); }, nullptr,
                                     [](const path&) { return std::optional<Axes>(); }};
 constexpr MeshFileReader kPlyReader{read_ply, read_ply_positions, read_ply_axes};
 
@@ -173,15 +175,38 @@ public:
     std::vector<Vec3> frame(int index) const override
     {
         const path& file = files_[size_t(index)];
+        if (reader_.positions == nullptr)
+            return positions_of_whole(file);
         std::vector<Vec3> positions = reader_.positions(file);
-        if (int(positions.size()) != vertex_count)
-            refuse(file, "has " + std::to_string(positions.size()) + " vertices and " +
-                             files_.front().string() + " " + std::to_string(vertex_count) +
-                             "; all frames of a sequence need the same mesh");
+        require_same("vertices", file, positions.size(), size_t(vertex_count));
         return positions;
     }
 
 private:
+    /// The faces follow the vertices: where they are those of the first file, nothing is missing.
+    std::vector<Vec3> positions_of_whole(const path& file) const
+    {
+        ObjMesh whole = reader_.mesh(file);
+        require_same("vertices", file, whole.positions.size(), size_t(vertex_count));
+        require_same("faces", file, whole.polygons.size(), mesh.polygons.size());
+        const auto [mine, first] =
+            std::mismatch(whole.polygons.begin(), whole.polygons.end(), mesh.polygons.begin());
+        if (mine != whole.polygons.end())
+            refuse(file, "its face " + std::to_string(first - mesh.polygons.begin()) + " is not that of " +
+                             files_.front().string() + kSameMesh);
+        return std::move(whole.positions);
+    }
+
+    void require_same(const char* what, const path& file, size_t count, size_t of_first) const
+    {
+        if (count != of_first)
+            refuse(file, "has " + std::to_string(count) + " " + what + " and " + files_.front().string() +
+                             " " + std::to_string(of_first) + kSameMesh);
+    }
+
+    static constexpr const char* kSameMesh =
+        "; all frames of a sequence need the same mesh, and one of these is of another or cut off";
+
     std::vector<path> files_;
     MeshFileReader reader_;
 };

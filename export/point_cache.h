@@ -23,6 +23,7 @@ public:
         int vertex_count = 0;
         int frame_count = 0;
         std::optional<double> fps; ///< [frames/s] empty if the format has no rate or there is a single frame
+        std::vector<double> times; ///< [frames] [s] where the format has times without a rate; else empty
         int subframes = 1;         ///< samples per frame
         double start_frame = 0.0;
         std::optional<Axes> axes; ///< of the positions; empty if the format does not say
@@ -34,6 +35,8 @@ public:
     int vertex_count() const { return source_->vertex_count; }
     int frame_count() const { return source_->frame_count; }
     std::optional<double> fps() const { return source_->fps; }
+    /// Times of frames that are at irregular ones, as they are stored: fault_of_times() may find some. [s]
+    const std::vector<double>& times() const { return source_->times; }
     int subframes() const { return source_->subframes; }
     double start_frame() const { return source_->start_frame; }
     std::optional<Axes> axes() const { return source_->axes; }

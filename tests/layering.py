@@ -25,6 +25,7 @@ MAY_INCLUDE = {
     "core/base": [],
     "core/compute/cuda/runtime": ["core/base"],
     "core/compute": ["core/base", "core/compute/cuda/runtime"],
+    "core/time": [],
     "core/mesh": ["core/base", "core/compute"],
     "core/linear": ["core/base", "core/compute", "core/mesh"],
     "core/quadrature/clusters": ["core/base", "core/compute", "core/mesh", "core/linear"],

@@ -19,6 +19,7 @@
 #include "export/cache_path.h"
 #include "export/point_cache.h"
 #include "export/sequence/numbered_files.h"
+#include "export/times/frame_times.h"
 #include "scenes/format/cache_files.h"
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
@@ -193,6 +194,14 @@ void print_avatar(const std::filesystem::path& file)
         print_joints(skinned->model().skeleton);
 }
 
+std::string times_text(const std::vector<double>& times)
+{
+    const std::string fault = exports::fault_of_times(times);
+    return fault.empty()
+               ? "irregular, " + short_text(times.front()) + " to " + short_text(times.back()) + " s"
+               : "unusable, for " + fault;
+}
+
 void print_cache(const std::filesystem::path& file)
 {
     const exports::PointCache cache = exports::read_cache(file);
@@ -203,7 +212,10 @@ void print_cache(const std::filesystem::path& file)
     if (cache.subframes() > 1)
         print("samples",
               std::to_string(cache.frame_count()) + ", " + std::to_string(cache.subframes()) + " per frame");
-    print("start frame", cache.start_frame());
+    if (cache.times().empty())
+        print("start frame", cache.start_frame());
+    else
+        print("times", times_text(cache.times()));
     if (cache.axes())
         print("axes", cache.axes()->unit + ", " + cache.axes()->up + " up");
     if (cache.frame_count() == 0)

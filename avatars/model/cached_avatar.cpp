@@ -1,7 +1,6 @@
 #include "avatars/model/cached_avatar.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -9,23 +8,20 @@
 #include "core/base/number.h"
 #include "core/compute/parallel.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/time/sample_times.h"
 
 namespace toile::avatars {
 
 namespace {
-
-/// Distance in time from a sample at which it is taken as it is [samples]: times of frames are quotients with
-/// rounding errors.
-constexpr double kSnap = 1e-9;
 
 /// Edges from a vertex to those over which its rotation is averaged.
 constexpr int kRings = 4;
 
 std::vector<Avatar::ClipName> clip_of(const GeometryCache& cache)
 {
-    if (cache.sample_count < 2)
+    if (cache.times.size() < 2)
         return {};
-    return {{CachedAvatar::kClip, (cache.sample_count - 1) / cache.rate}};
+    return {{CachedAvatar::kClip, cache.times.back() - cache.times.front()}};
 }
 
 /// Right-handed axes: tangential along the edge, tangential across it, normal. The identity where there are
@@ -136,13 +132,10 @@ CachedAvatar::Positions CachedAvatar::at(const PoseAt& at)
 {
     if (at.clip < 0 || at.bind_weight >= 1.0)
         return *sample(0);
-    const double position = std::clamp(at.time * cache_.rate, 0.0, double(cache_.sample_count - 1));
-    const double nearest = std::round(position);
-    const bool is_sample = std::fabs(position - nearest) < kSnap;
-    const double first = is_sample ? nearest : std::floor(position);
-    Positions x = *sample(int(first));
-    if (!is_sample)
-        blend(position - first, *sample(int(first) + 1), x);
+    const SamplePlace place = place_in(cache_.times, cache_.times.front() + at.time);
+    Positions x = *sample(place.sample);
+    if (place.part > 0.0)
+        blend(place.part, *sample(place.sample + 1), x);
     if (at.bind_weight > 0.0)
         blend(at.bind_weight, *sample(0), x);
     return x;

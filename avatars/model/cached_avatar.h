@@ -8,12 +8,11 @@
 
 namespace toile::avatars {
 
-/// A surface whose positions are stored sample by sample, at regular times.
+/// A surface whose positions are stored sample by sample.
 struct GeometryCache {
     std::vector<Triangle> triangles;
     int vertex_count = 0;
-    int sample_count = 0; ///< at least 1
-    double rate = 0.0;    ///< [1/s] samples per second; of no meaning for one sample
+    std::vector<double> times; ///< [samples] [s] strictly increasing, at least one
 
     /// Reads the positions of a sample, [vertices] in the units and axes of the file.
     std::function<std::vector<Vec3>(int sample)> positions;
@@ -24,10 +23,10 @@ struct GeometryCache {
 
 /// A body that was animated elsewhere: its vertices are where a cache has them.
 ///
-///   x_v(t) = (1 - u) x_v^k + u x_v^(k+1),   k + u = rate t
+///   x_v(t) = (1 - u) x_v^k + u x_v^(k+1),   u = (t - t^k) / (t^(k+1) - t^k)
 ///
-/// The only clip, "cache", begins with sample 0 and ends with the last; sample 0 is the bind pose. A cache of
-/// one sample has no clip. Samples are read when they are needed, and the last kSamples are kept.
+/// The only clip, "cache", begins at the time of sample 0 and ends with the last; sample 0 is the bind pose.
+/// A cache of one sample has no clip. Samples are read when they are needed, and the last kSamples are kept.
 ///
 /// Every vertex follows a bone of its own, which is at the vertex and turns with the surface around it. All
 /// that is done with skins works: insets of skin, bounds of motion, posing on a GPU.

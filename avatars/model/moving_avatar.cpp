@@ -107,6 +107,13 @@ PoseAt MovingAvatar::at(double t) const
     return pose_at(motion_, clip_, clip_ < 0 ? 0.0 : avatar_->clips()[clip_].duration, t);
 }
 
+std::optional<double> MovingAvatar::end_time() const
+{
+    if (clip_ < 0 || motion_.loop || motion_.speed == 0.0)
+        return std::nullopt;
+    return avatars::end_time(motion_, avatar_->clips()[size_t(clip_)].duration);
+}
+
 PoseAt MovingAvatar::shape_at(double t) const
 {
     PoseAt shape = at(t);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "avatars/model/avatar.h"
 #include "avatars/model/motion.h"
@@ -53,6 +54,9 @@ public:
 
     /// True if the avatar never moves by itself: no clip, or a frozen one.
     bool is_static() const { return shows_one_pose(motion_); }
+
+    /// Simulation time [s] from which on it shows the last pose of its clip; none if it never does.
+    std::optional<double> end_time() const;
 
     /// False if both ends of the current step are equal.
     bool moved() const { return moved_; }

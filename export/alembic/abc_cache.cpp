@@ -9,16 +9,20 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/time/sample_times.h"
 #include "export/alembic/abc_reader.h"
 #include "export/alembic/abc_transform.h"
 #include "export/archive/polygons.h"
 #include "export/byte_order.h"
 #include "export/cache_path.h"
-#include "export/frame_times.h"
+#include "export/times/frame_times.h"
 
 namespace toile::exports {
 
 namespace {
+
+/// Times that differ by less are one [s].
+constexpr double kSameTime = 1e-6;
 
 bool is_mesh(const AbcReadObject& object) { return object.is("PolyMesh") || object.is("SubD"); }
 
@@ -53,13 +57,9 @@ public:
         : reader_(file), object_(mesh_in(reader_, mesh_path)), transform_(reader_, object_)
     {
         positions_ = required("P", AbcType::Float32, 3);
-        if (positions_.samples > 1) {
-            frame_count = positions_.samples;
-            times_ = reader_.times_of(positions_.time_sampling);
-        } else {
-            frame_count = std::max(transform_.sample_count(), 1);
-            times_ = transform_.times();
-        }
+        point_times_ = reader_.times_of(positions_, object_);
+        times_ = all_times();
+        frame_count = int(times_.size());
         vertex_count = int(reader_.sample(positions_, 0).size() / kPoint);
         read_times();
         read_axes();
@@ -70,16 +70,15 @@ public:
 
     std::vector<Vec3> frame(int index) const override
     {
-        const std::vector<float> values =
-            values_of<float>(reader_.sample(positions_, std::min(index, positions_.samples - 1)));
-        if (values.size() != 3 * size_t(vertex_count))
-            refuse("has " + std::to_string(values.size() / 3) + " points in sample " + std::to_string(index) +
-                   " and " + std::to_string(vertex_count) + " in the first; a cache can't change its points");
-        std::vector<Vec3> x;
-        x.reserve(size_t(vertex_count));
-        for (size_t k = 0; k < values.size(); k += 3)
-            x.push_back(Vec3(values[k], values[k + 1], values[k + 2]));
-        transform_.apply(time_of(times_, index), x);
+        const double t = times_[size_t(index)];
+        const SamplePlace place = place_in(point_times_, t);
+        std::vector<Vec3> x = points(place.sample);
+        if (place.part > 0.0) {
+            const std::vector<Vec3> next = points(place.sample + 1);
+            for (size_t v = 0; v < x.size(); ++v)
+                x[v] += place.part * (next[v] - x[v]);
+        }
+        transform_.apply(t, x);
         return x;
     }
 
@@ -97,19 +96,44 @@ private:
         return *property;
     }
 
+    std::vector<Vec3> points(int sample) const
+    {
+        const std::vector<float> values = values_of<float>(reader_.sample(positions_, sample));
+        if (values.size() != 3 * size_t(vertex_count))
+            refuse("has " + std::to_string(values.size() / 3) + " points in sample " +
+                   std::to_string(sample) + " and " + std::to_string(vertex_count) +
+                   " in the first; a cache can't change its points");
+        std::vector<Vec3> x;
+        x.reserve(size_t(vertex_count));
+        for (size_t k = 0; k < values.size(); k += 3)
+            x.push_back(Vec3(values[k], values[k + 1], values[k + 2]));
+        return x;
+    }
+
+    /// Times of the samples of points and of transforms, each once.
+    std::vector<double> all_times() const
+    {
+        std::vector<double> all = transform_.times();
+        if (positions_.samples > 1 || all.empty())
+            all.insert(all.end(), point_times_.begin(), point_times_.end());
+        std::sort(all.begin(), all.end());
+        const auto is_same = [](double a, double b) { return b - a < kSameTime; };
+        all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
+        return all;
+    }
+
     /// Samples at regular times have a rate. Programs that write several per frame leave that of frames in
     /// the archive.
     void read_times()
     {
         if (frame_count < 2)
             return;
-        std::vector<double> times;
-        for (int k = 0; k < frame_count; ++k)
-            times.push_back(time_of(times_, k));
-        if (const auto found = frame_times(times, 0.0, reader_.frames_per_second())) {
+        if (const auto found = frame_times(times_, 0.0, reader_.frames_per_second())) {
             fps = found->fps;
             subframes = found->subframes;
             start_frame = found->start_frame;
+        } else {
+            times = times_;
         }
     }
 
@@ -206,7 +230,8 @@ private:
     int object_;
     AbcTransform transform_;
     AbcReadProperty positions_;
-    AbcTimes times_;
+    std::vector<double> point_times_; ///< [samples of the points] [s]
+    std::vector<double> times_;       ///< [frames] [s]
 };
 
 } // namespace

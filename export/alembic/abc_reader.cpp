@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "export/byte_order.h"
+#include "export/times/frame_times.h"
 
 namespace toile::exports {
 
@@ -93,12 +94,23 @@ AbcReader::AbcReader(const std::filesystem::path& file) : file_(file)
     read_objects(root[2], 0, 0);
 }
 
-const AbcTimes& AbcReader::times_of(int number) const
+std::vector<double> AbcReader::times_of(const AbcReadProperty& property, int object) const
 {
-    if (size_t(number) >= times_.size())
-        throw InvalidInput(path().string() + ": a property names the times " + std::to_string(number) +
-                           "; the archive has " + std::to_string(times_.size()));
-    return times_[size_t(number)];
+    if (size_t(property.time_sampling) >= times_.size())
+        throw InvalidInput(path().string() + ": a property names the times " +
+                           std::to_string(property.time_sampling) + "; the archive has " +
+                           std::to_string(times_.size()));
+    const Cycle& cycle = times_[size_t(property.time_sampling)];
+    const int count = std::max(int(cycle.starts.size()), 1);
+    std::vector<double> times;
+    for (int k = 0; k < property.samples; ++k) {
+        const double start = cycle.starts.empty() ? 0.0 : cycle.starts[size_t(k % count)];
+        const int repetition = k / count;
+        times.push_back(repetition == 0 ? start : start + repetition * cycle.duration);
+    }
+    if (const std::string fault = fault_of_times(times); !fault.empty())
+        refuse(object, fault + "; export it again");
+    return times;
 }
 
 std::string AbcReader::path_of(int object) const
@@ -118,13 +130,13 @@ void AbcReader::read_times(OgawaNode node)
 {
     for (Headers list(file_, node); !list.is_at_end();) {
         list.next<std::uint32_t>(); // number of samples
-        AbcTimes times;
-        times.cycle = list.next<double>();
+        Cycle times;
+        times.duration = list.next<double>();
         for (auto count = list.next<std::uint32_t>(); count > 0; --count)
             times.starts.push_back(list.next<double>());
         const bool are_finite =
             std::all_of(times.starts.begin(), times.starts.end(), [](double t) { return std::isfinite(t); });
-        if (!are_finite || !std::isfinite(times.cycle) || times.cycle < 0.0)
+        if (!are_finite || !std::isfinite(times.duration) || times.duration < 0.0)
             file_.refuse(node, "times of samples are not finite");
         times_.push_back(std::move(times));
     }

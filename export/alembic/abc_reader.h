@@ -12,12 +12,6 @@
 
 namespace toile::exports {
 
-/// Times of the samples of a property [s].
-struct AbcTimes {
-    double cycle = 1.0;         ///< [s] from one cycle of samples to the next
-    std::vector<double> starts; ///< [samples of a cycle]
-};
-
 /// A property of an archive that is read.
 struct AbcReadProperty {
     std::string name, metadata;
@@ -50,8 +44,9 @@ public:
     const std::vector<AbcReadObject>& objects() const { return objects_; } ///< parents first
     /// Names of all objects above one and its own, each after a slash.
     std::string path_of(int object) const;
-    /// @param number  of a property: AbcReadProperty::time_sampling
-    const AbcTimes& times_of(int number) const;
+    /// Times of the samples of an object's property. [samples] [s]
+    /// @throws InvalidInput for times that do not increase
+    std::vector<double> times_of(const AbcReadProperty& property, int object) const;
     /// Rate that the archive's metadata names; samples may be at another one.
     std::optional<double> frames_per_second() const;
     /// Value of a key of the archive's metadata; empty: none.
@@ -71,14 +66,19 @@ public:
     const std::filesystem::path& path() const { return file_.path(); }
 
 private:
+    /// Times that repeat.
+    struct Cycle {
+        double duration = 1.0;      ///< [s]
+        std::vector<double> starts; ///< [samples of the first cycle] [s]
+    };
     void read_times(OgawaNode node);
     void read_metadata(OgawaNode node);
     void read_objects(OgawaNode group, int parent, int depth);
 
     OgawaReader file_;
     std::vector<std::string> metadata_; ///< by the numbers in headers
-    std::vector<AbcTimes> times_;
-    std::string archive_metadata_; ///< key=value;key=value
+    std::vector<Cycle> times_;          ///< by AbcReadProperty::time_sampling
+    std::string archive_metadata_;      ///< key=value;key=value
     std::vector<AbcReadObject> objects_;
     std::set<OgawaNode> read_; ///< groups of objects_ and lists of their names
 };

@@ -1,12 +1,12 @@
 #include "export/alembic/abc_transform.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include "core/time/sample_times.h"
 #include "export/byte_order.h"
 
 namespace toile::exports {
@@ -55,14 +55,6 @@ Matrix4d matrix_of(int operation, const double* values)
 
 } // namespace
 
-double time_of(const AbcTimes& times, int index)
-{
-    const int count = std::max(int(times.starts.size()), 1);
-    const int cycle = index / count;
-    const double start = times.starts.empty() ? 0.0 : times.starts[size_t(index % count)];
-    return cycle == 0 ? start : start + cycle * times.cycle;
-}
-
 AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader)
 {
     for (int at = object; at >= 0; at = reader.objects()[size_t(at)].parent) {
@@ -81,7 +73,9 @@ AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader
                 count += size_t(value_count(operation));
             }
             added.values = *values;
-            added.times = reader.times_of(values->time_sampling);
+            added.times = reader.times_of(*values, at);
+            if (values->last_changed == 0)
+                added.times.resize(1);
             if (values->type != int(AbcType::Float64) ||
                 reader.sample(*values, 0).size() != sizeof(double) * count)
                 reader.refuse(at, "its transform has not " + std::to_string(count) +
@@ -111,38 +105,19 @@ Matrix4d AbcTransform::matrix(const Level& level, int sample) const
 
 Matrix4d AbcTransform::matrix_at(const Level& level, double t) const
 {
-    const int samples = level.values.last_changed > 0 ? level.values.samples : 1;
-    int after = 0, end = samples; // the first sample at t or later
-    while (after < end) {
-        const int middle = after + (end - after) / 2;
-        if (time_of(level.times, middle) < t)
-            after = middle + 1;
-        else
-            end = middle;
-    }
-    if (after == 0 || after == samples)
-        return matrix(level, std::min(after, samples - 1));
-    const double t0 = time_of(level.times, after - 1), t1 = time_of(level.times, after);
-    if (!(t1 > t0))
-        return matrix(level, after);
-    const double part = (t - t0) / (t1 - t0);
-    return (1.0 - part) * matrix(level, after - 1) + part * matrix(level, after);
+    const SamplePlace place = place_in(level.times, t);
+    if (place.part == 0.0)
+        return matrix(level, place.sample);
+    return (1.0 - place.part) * matrix(level, place.sample) + place.part * matrix(level, place.sample + 1);
 }
 
-int AbcTransform::sample_count() const
+std::vector<double> AbcTransform::times() const
 {
-    int count = 0;
+    std::vector<double> times;
     for (const Level& level : levels_)
-        count = std::max(count, level.values.last_changed > 0 ? level.values.samples : 1);
-    return count;
-}
-
-AbcTimes AbcTransform::times() const
-{
-    for (const Level& level : levels_)
-        if (level.values.last_changed > 0 && level.values.samples == sample_count())
-            return level.times;
-    return {};
+        if (level.times.size() > 1)
+            times.insert(times.end(), level.times.begin(), level.times.end());
+    return times;
 }
 
 void AbcTransform::apply(double t, View<Vec3> points) const

@@ -7,21 +7,18 @@
 
 namespace toile::exports {
 
-/// Time of a sample [s].
-double time_of(const AbcTimes& times, int index);
-
 /// Transforms of an object of an archive and of all above it, which may move.
 class AbcTransform {
 public:
     /// @param object  in reader.objects(); the reader is borrowed
-    /// @throws InvalidInput for an operation that is unknown
+    /// @throws InvalidInput for an operation that is unknown, and times that do not increase
     AbcTransform(const AbcReader& reader, int object);
 
-    /// Samples of the transform that has most, and their times.
-    int sample_count() const;
-    AbcTimes times() const;
+    /// Times of the samples of all that move [s]. In no order.
+    std::vector<double> times() const;
 
-    /// Moves points [m] as at time t [s]: linear between samples, held outside of them.
+    /// Moves points [m] as at time t [s]. Each number of a matrix is linear between the samples of that
+    /// matrix, and held outside of them.
     void apply(double t, View<Vec3> points) const;
 
 private:
@@ -30,7 +27,7 @@ private:
         int object;
         std::vector<int> operations;
         AbcReadProperty values;
-        AbcTimes times;
+        std::vector<double> times; ///< [samples] [s]; one for a transform that does not move
     };
     Eigen::Matrix4d matrix(const Level& level, int sample) const;
     Eigen::Matrix4d matrix_at(const Level& level, double t) const;

@@ -113,6 +113,10 @@ class Mesh:
             self.release_clips()
         return sorted(times)
 
+    def transforms_move(self):
+        return any(transform.TransformMightBeTimeVarying()
+                   for prim in mesh_prims(self.stage) for transform in transforms_above(prim))
+
     def samples_in(self, interval):
         times = []
         for prim in mesh_prims(self.stage):
@@ -146,7 +150,8 @@ def has_clips(prim):
 
 
 class Sampling:
-    """Times of the frames: regular, and such that every sample is one of them where that is possible."""
+    """Times of the frames: regular, and such that every sample is one of them; where that is not possible, those of
+    the samples."""
 
     def __init__(self, mesh):
         stage = mesh.stage
@@ -155,6 +160,7 @@ class Sampling:
         self.fps = stage.GetFramesPerSecond() if layer.HasFramesPerSecond() else codes_per_second
         if not (0 < self.fps < 1e9 and 0 < codes_per_second < 1e9):
             refuse(f"has {self.fps:g} frames and {codes_per_second:g} time codes a second; they must be positive")
+        self.codes_per_second = codes_per_second
         self.step = codes_per_second / self.fps  # time codes of a frame
         first, last = 0.0, 0.0
         if stage.HasAuthoredTimeCodeRange():
@@ -169,17 +175,33 @@ class Sampling:
         self.start = first / self.step
         within = [(time - first) / self.step for time in self.samples if first <= time <= last]
         self.subframes = told if is_told else self.subframes_of(within)
+        self.is_regular = self.subframes is not None
+        self.subframes = self.subframes or 1
         count = int((last - first) / self.step * self.subframes + NEAR) + 1
         if count > MAX_FRAMES:
             refuse(f"has {count} frames; {MAX_FRAMES} are the most that are read")
         self.times = [self.nearest(first + k * self.step / self.subframes) for k in range(count)]
+        if not self.is_regular:
+            self.times = self.irregular(mesh, first, last)
+
+    def irregular(self, mesh, first, last):
+        """Those of the samples, and the frames where transforms move: between samples USD turns their angles."""
+        times = [first, last, *(time for time in self.samples if first < time < last)]
+        if mesh.transforms_move():
+            times += self.times
+        times.sort()
+        kept = times[:1]
+        for time in times[1:]:
+            if time - kept[-1] > NEAR * self.step:
+                kept.append(time)
+        return kept
 
     @staticmethod
     def subframes_of(times):
         for count in range(1, MAX_SUBFRAMES + 1):
             if all(abs(time * count - round(time * count)) < NEAR for time in times):
                 return count
-        return 1
+        return None
 
     def nearest(self, time):
         """The sample at a time, whose code may be rounded otherwise."""
@@ -237,6 +259,8 @@ def write_head(out, mesh, sampling, time):
         "<IIIdddIII", len(mesh.points(time)), len(sampling.times), sampling.subframes, sampling.fps, sampling.start,
         UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z,
         geometry.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded, scope))
+    times = [] if sampling.is_regular else [time / sampling.codes_per_second for time in sampling.times]
+    out.write(struct.pack(f"<I{len(times)}d", len(times), *times))
     for array in (counts, indices, values, at):
         write_array(out, array)
     named = list(groups(mesh, time))

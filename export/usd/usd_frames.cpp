@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "export/archive/polygons.h"
 #include "export/byte_order.h"
-#include "export/frame_times.h"
+#include "export/times/frame_times.h"
 
 namespace toile::exports {
 
@@ -31,6 +31,7 @@ public:
         : file_(std::move(file)), name_(std::move(name)), size_(file_->size())
     {
         read_head();
+        read_times();
         read_faces();
         read_texture();
         read_groups();
@@ -127,6 +128,20 @@ private:
         const bool is_cm = std::fabs(metres - 0.01) < 1e-9;
         scale_ = is_cm || std::fabs(metres - 1.0) < 1e-9 ? 1.0 : metres;
         axes = Axes{is_cm ? "cm" : "m", has_z_up ? "z" : "y"};
+    }
+
+    void read_times()
+    {
+        times = next_array<double>();
+        if (times.empty())
+            return;
+        if (int(times.size()) != frame_count)
+            refuse("has " + std::to_string(times.size()) + " times of " + std::to_string(frame_count) +
+                   " frames");
+        if (const std::string fault = fault_of_times(times); !fault.empty())
+            refuse(fault);
+        fps.reset();
+        start_frame = 0.0;
     }
 
     void read_faces()

@@ -14,6 +14,7 @@ namespace toile::exports {
 ///   uint32    points, frames, samples a frame
 ///   double    frames a second, start frame, metres of a unit
 ///   uint32    1: Z is up; 1: faces are clockwise; scope of texture coordinates: 0 none, 1 corners, 2 points
+///   uint32 n, double[n]       times of the frames [s], where they are irregular; else n = 0
 ///   uint32 n, int32[n]        corners of each face
 ///   uint32 n, int32[n]        points of the corners
 ///   uint32 n, float[n][2]     texture coordinates
@@ -24,7 +25,7 @@ namespace toile::exports {
 /// Units other than metres and centimetres are converted into metres.
 /// @param name  of what was read, for errors
 /// @throws InvalidInput for sizes that are not those of the file, points of faces out of range, and frames
-///         without a rate
+///         without a rate or times
 std::unique_ptr<const PointCache::Source> open_usd_frames(std::unique_ptr<const BinaryFile> file,
                                                           const std::string& name);
 

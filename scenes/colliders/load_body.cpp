@@ -5,6 +5,7 @@
 #include "avatars/model/cached_avatar.h"
 #include "core/base/error.h"
 #include "export/point_cache.h"
+#include "export/times/frame_times.h"
 #include "scenes/format/cache_files.h"
 #include "scenes/format/field.h"
 #include "scenes/meshes/mesh_file.h"
@@ -13,16 +14,22 @@ namespace toile::scenes {
 
 namespace {
 
-/// Samples per second of a cache.
-double rate_of(const exports::PointCache& cache, const CacheSettings& settings, const std::string& source)
+/// Times of the samples of a cache [s].
+std::vector<double> times_of(const exports::PointCache& cache, const CacheSettings& settings,
+                             const std::string& source)
 {
-    if (cache.fps())
-        return *cache.fps() * cache.subframes();
-    if (cache.frame_count() > 1 && scene_format::has_times(source))
-        throw InvalidInput(source + ": its samples are not at regular times; export it with a fixed step");
-    if (cache.frame_count() > 1 && !settings.fps)
+    if (const std::string fault = exports::fault_of_times(cache.times()); !fault.empty())
+        throw InvalidInput(source + ": " + fault + "; export it again");
+    if (!cache.times().empty())
+        return cache.times();
+    if (!cache.fps() && !settings.fps && cache.frame_count() > 1)
         throw InvalidInput(source + ": has no times; give the avatar's fps");
-    return settings.fps.value_or(1.0) * cache.subframes();
+    const double rate = cache.fps().value_or(settings.fps.value_or(1.0)) * cache.subframes();
+    std::vector<double> times;
+    times.reserve(size_t(cache.frame_count()));
+    for (int k = 0; k < cache.frame_count(); ++k)
+        times.push_back(k / rate);
+    return times;
 }
 
 /// Faces of a cache: its own, or those of the mesh on which it plays.
@@ -55,8 +62,7 @@ std::unique_ptr<avatars::Avatar> load_cached_body(avatars::AvatarSettings settin
     avatars::GeometryCache samples;
     samples.triangles = faces_of(cache, more, source).triangles;
     samples.vertex_count = cache.vertex_count();
-    samples.sample_count = cache.frame_count();
-    samples.rate = rate_of(cache, more, source);
+    samples.times = times_of(cache, more, source);
     samples.positions = [cache](int sample) { return cache.frame(sample); };
     samples.metres_from_file = avatars::metres_from_file(settings);
     samples.turns_bones = more.turns_bones;

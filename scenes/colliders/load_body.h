@@ -18,8 +18,8 @@ struct CacheSettings {
 
 /// Loads a body: the mannequin, a file of load_avatar(), or a cache (CachedAvatar).
 /// @param settings  unit and axis are those of a cache's file where they are empty
-/// @throws InvalidInput for a file that can't be read, a cache without samples, rate, faces or area, or with
-///         another number of vertices than its mesh
+/// @throws InvalidInput for a file that can't be read, a cache without samples, times, faces or area, with
+///         times that do not increase, or with another number of vertices than its mesh
 std::unique_ptr<avatars::Avatar> load_body(avatars::AvatarSettings settings, const CacheSettings& cache);
 
 /// Loads the body of an avatar that is no shape. Its `motion` is not added.

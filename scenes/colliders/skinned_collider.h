@@ -41,6 +41,9 @@ public:
     }
     bool is_all_collidable() const { return !contact_; }
 
+    /// See MovingAvatar.
+    std::optional<double> end_time() const { return avatar_.end_time(); }
+
     /// Index in triangles() of a face of the contact surface, -1 for a lid over a cut.
     int face_of(int contact_triangle) const
     {

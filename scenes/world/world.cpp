@@ -1,4 +1,5 @@
 #include "scenes/world/world.h"
+#include "scenes/colliders/time_warnings.h"
 
 #include <algorithm>
 #include <atomic>
@@ -148,9 +149,12 @@ struct World::Parts {
             const LongWork::Part part(kAvatars, kCloths);
             cloths = make_cloths(scene, colliders, options);
         }
-        if (options.warn)
+        if (options.warn) {
             for (const std::string& warning : unit_warnings(scene, cloths, colliders))
                 options.warn(warning);
+            for (const std::string& warning : time_warnings(scene, colliders))
+                options.warn(warning);
+        }
         if (options.backend == Backend::Auto)
             space = space_with_capacity(space, vertex_count(cloths), options.warn);
         const LongWork::Part part(kCloths, 1.0);

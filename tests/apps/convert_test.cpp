@@ -115,6 +115,91 @@ TEST_F(ConvertTest, RefusesWhatCannotBeInOneLine)
     expect_refused({"a.abc#/b", "b.pc2"}, "a.abc: has no mesh /b; its meshes are /a/aShape");
 }
 
+/// tests/export/alembic/samples/make_samples.py says what is in it.
+TEST_F(ConvertTest, ResamplesIrregularTimesAtAGivenRate)
+{
+    std::filesystem::copy(TOILE_SOURCE_DIR "/tests/export/alembic/samples/irregular.abc", file("a.abc"));
+    expect_refused({"a.abc#/mover/square", "b.abc"},
+                   "has samples at irregular times, from 0 to 1.7 s; give --fps to resample it at this rate");
+    ASSERT_EQ(convert({"a.abc#/mover/square", "b.abc", "--fps", "20"}).exit_code, 0);
+    const PointCache cache = read_cache(file("b.abc"));
+    EXPECT_EQ(*cache.fps(), 20.0);
+    ASSERT_EQ(cache.frame_count(), 35);
+    EXPECT_LT((cache.frame(3)[2] - Vec3(2.5, 1.5, 0.0)).norm(), 1e-6) << "0.15 s";
+    EXPECT_EQ(cache.frame(34)[2], Vec3(6, 4, 0));
+    const std::string info = run_toile({"info", "a.abc"}, folder_).output;
+    EXPECT_THAT(info, HasSubstr("mesh: /mover/square\n"));
+    EXPECT_THAT(info, HasSubstr("frames: 7\n"));
+    EXPECT_THAT(info, HasSubstr("times: irregular, 0 to 1.7 s\n"));
+}
+
+/// Two panels in nine samples, four a frame, that rises by 1 m a sample.
+class ConvertPanels : public ConvertTest {
+protected:
+    void SetUp() override
+    {
+        ObjMesh mesh;
+        mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}, {2, 0, 0}, {2, 0, -1}};
+        mesh.polygons = {{0, 1, 2, 3}, {1, 4, 5, 2}};
+        mesh.groups = {{0, "left"}, {1, "right"}};
+        CacheLayout layout = cache_layout(mesh, 9);
+        layout.subframes = 4;
+        layout.start_frame = 5.0;
+        const auto writer = make_cache_writer(file("tee.abc"), layout);
+        for (int k = 0; k < 9; ++k) {
+            for (Vec3& x : mesh.positions)
+                x.y() = k;
+            writer->write(k, mesh.positions);
+        }
+        writer->finish();
+    }
+};
+
+TEST_F(ConvertPanels, ClosesThemWithAThickness)
+{
+    ASSERT_EQ(convert({"tee.abc", "b.abc", "--thickness", "0.02", "--unit", "cm"}).exit_code, 0);
+    const PointCache cache = read_cache(file("b.abc"));
+    ASSERT_EQ(cache.vertex_count(), 12);
+    EXPECT_EQ(cache.mesh()->polygons.size(), 4u + 6u) << "two sides and a rim";
+    EXPECT_LT((cache.frame(8)[0] - Vec3(0, 801, 0)).norm(), 1e-4);
+    EXPECT_LT((cache.frame(8)[6] - Vec3(0, 799, 0)).norm(), 1e-4);
+}
+
+TEST_F(ConvertPanels, WritesAMeshForEach)
+{
+    ASSERT_EQ(convert({"tee.abc", "b.abc", "--no-weld"}).exit_code, 0);
+    const std::string archive = file("b.abc").string();
+    EXPECT_EQ(meshes_of_cache(archive),
+              (std::vector<std::filesystem::path>{archive + "#/tee/left/leftShape",
+                                                  archive + "#/tee/right/rightShape"}));
+    EXPECT_EQ(read_cache(archive + "#/tee/right/rightShape").frame(3),
+              (std::vector<Vec3>{{1, 3, 0}, {1, 3, -1}, {2, 3, 0}, {2, 3, -1}}));
+}
+
+TEST_F(ConvertPanels, LeavesSamplesOut)
+{
+    for (const int subframes : {1, 2}) {
+        ASSERT_EQ(convert({"tee.abc", "b.abc", "--subframes", std::to_string(subframes)}).exit_code, 0);
+        const PointCache cache = read_cache(file("b.abc"));
+        EXPECT_EQ(cache.subframes(), subframes);
+        EXPECT_EQ(cache.start_frame(), 5.0);
+        ASSERT_EQ(cache.frame_count(), 2 * subframes + 1);
+        for (int k = 0; k < cache.frame_count(); ++k)
+            EXPECT_EQ(cache.frame(k)[0].y(), k * 4 / subframes);
+    }
+}
+
+TEST_F(ConvertPanels, RefusesWhatACacheAloneCannotGive)
+{
+    expect_refused({"tee.abc", "b.abc", "--avatars"}, "--avatars: a cache has no avatars");
+    expect_refused({"tee.abc", "b.abc", "--subframes", "3"},
+                   "--subframes 3: tee.abc has 4 samples a frame; give a divisor of that");
+    expect_refused({"tee.abc", "b.abc", "--thickness", "0"}, "--thickness 0: is no thickness of cloth");
+    expect_refused({"tee.abc", "b.pc2", "--no-weld"}, "--no-weld: b.pc2 holds one mesh");
+    ASSERT_EQ(convert({"tee.abc", "b.pc2"}).exit_code, 0);
+    expect_refused({"b.pc2", "c.pc2", "--thickness", "0.01"}, "--thickness: b.pc2 has no faces");
+}
+
 TEST_F(ConvertTest, SaysHowManyShapesAGltfHasAndTheirError)
 {
     write("a.abc");

@@ -210,6 +210,35 @@ TEST_F(ExportsTest, CachesThatTheSceneDoesNotListAreCheckedInTheirUnit)
     EXPECT_EQ(told.exit_code, 0) << told.errors;
 }
 
+/// The certificate says what a run with --export wrote, which the scene does not.
+TEST_F(ExportsTest, FoldersAreCheckedByWhatTheirRunWrote)
+{
+    const std::string disc = R"([{"file": "disc.pc2", "cloth": "disc"}])";
+    simulate_well("e", disc,
+                  {"--export", "shot.abc", "--unit", "cm", "--up", "z", "--thickness", "--no-weld"});
+    simulate_well("f", disc, {"--export", "disc.mdd", "--export-cloth", "disc", "--unit", "cm"});
+    for (const std::string name : {"e", "f"}) {
+        SCOPED_TRACE(name);
+        const std::vector<std::string> check{"check", name, "--scene", name + ".json", "--quiet"};
+        for (int time = 0; time < 2; ++time) { // the second by the certificate that the first has written
+            const Finished run = run_toile(check, folder_);
+            EXPECT_EQ(run.exit_code, 0) << run.errors;
+        }
+        EXPECT_THAT(bytes_of(file(name + "/certificate.json")),
+                    HasSubstr(name == "e" ? "shot.abc" : "disc.mdd"));
+        std::filesystem::remove(file(name + "/certificate.json"));
+        const Finished lost = run_toile(check, folder_);
+        EXPECT_EQ(lost.exit_code, 2);
+        EXPECT_THAT(lost.errors,
+                    HasSubstr("looked for disc.pc2; name other caches, such as those of simulate "
+                              "--export, one by one"));
+    }
+    temporary_.write("f/certificate.json", R"({"exports": [{"file": "disc.mdd", "cloth": "dics"}]})");
+    const Finished other = run_toile({"check", "f", "--scene", "f.json", "--quiet"}, folder_);
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_THAT(other.errors, HasSubstr("f/certificate.json: its exports do not suit the scene"));
+}
+
 TEST_F(ExportsTest, CachesOfOneNameAreToldByTheirFolders)
 {
     simulate_well("n", R"([{"file": "a/c.pc2", "cloth": "sheet"},

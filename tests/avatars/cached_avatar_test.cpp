@@ -36,8 +36,8 @@ GeometryCache cache_of(int samples, double rate, double angle = 0.0)
     GeometryCache cache;
     cache.triangles = kFaces;
     cache.vertex_count = int(kRest.size());
-    cache.sample_count = samples;
-    cache.rate = rate;
+    for (int k = 0; k < samples; ++k)
+        cache.times.push_back(k / rate);
     cache.positions = [angle](int sample) { return moved(sample, angle); };
     return cache;
 }
@@ -71,6 +71,20 @@ TEST(CachedAvatar, GivesItsSamplesAtTheTimesOfFrames)
         for (const int k : {1, 2, 3, 7, 100, 1111, 1999})
             EXPECT_EQ(posed(avatar, at_time(k / fps)), moved(k, 0.1)) << k << " at " << fps;
     }
+}
+
+TEST(CachedAvatar, HasSamplesAtAnyTimes)
+{
+    GeometryCache cache = cache_of(4, 1.0);
+    cache.times = {10.0, 10.1, 10.5, 12.5};
+    CachedAvatar avatar("body.abc", std::move(cache));
+    EXPECT_EQ(avatar.clips()[0].duration, 2.5);
+    EXPECT_EQ(posed(avatar, at_time(0.0)), moved(0, 0.0));
+    EXPECT_EQ(posed(avatar, at_time(0.5)), moved(2, 0.0));
+    EXPECT_NEAR(posed(avatar, at_time(0.2))[0].x(), 1.25, 1e-12);
+    EXPECT_NEAR(posed(avatar, at_time(1.5))[0].x(), 2.5, 1e-12);
+    EXPECT_EQ(posed(avatar, at_time(2.5)), moved(3, 0.0));
+    EXPECT_EQ(posed(avatar, at_time(7.0)), moved(3, 0.0));
 }
 
 TEST(CachedAvatar, ReadsEverySampleOnceAndKeepsFew)

@@ -1,7 +1,7 @@
 #include "apps/toile/caches/cache_contents.h"
 
 #include <memory>
-#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "apps/toile/caches/exports.h"
@@ -43,66 +43,17 @@ scene::Export without_attributes(scene::Export entry)
 } // namespace
 
 ExportedSurface::ExportedSurface(const scene::Export& entry, const scenes::ClothState& state)
-    : state_(&state), attributes_(entry, state), thickness_(thickness_of(state))
+    : state_(&state), attributes_(entry, state),
+      mesh_({state.name, "", int(state.file_mesh().positions.size()), exports::faces_only(state.file_mesh()),
+             vertex_attributes(entry)},
+            {entry.weld, entry.stores(scene::ExportAttribute::Panel)},
+            entry.thickness ? thickness_of(state) : std::vector<double>{})
 {
-    const ObjMesh& whole = state.file_mesh();
-    const std::vector<exports::MeshPart> groups =
-        entry.weld ? std::vector<exports::MeshPart>{} : exports::parts_of(whole);
-    if (groups.size() > 1) {
-        for (const exports::MeshPart& group : groups)
-            add_part(entry, {group.name, state.name, int(group.vertices.size()), group.faces},
-                     group.vertices);
-        if (entry.stores(scene::ExportAttribute::Panel))
-            number_panels(groups);
-        return;
-    }
-    exports::CacheMesh mesh{state.name, "", int(whole.positions.size()), exports::faces_only(whole)};
-    std::vector<int> all(whole.positions.size());
-    std::iota(all.begin(), all.end(), 0);
-    add_part(entry, std::move(mesh), std::move(all));
-    if (entry.stores(scene::ExportAttribute::Panel))
-        meshes_.front().panels = exports::face_panels(meshes_.front().faces);
-}
-
-/// Each mesh is a panel.
-void ExportedSurface::number_panels(const std::vector<exports::MeshPart>& groups)
-{
-    std::vector<std::string> names;
-    names.reserve(groups.size());
-    for (const exports::MeshPart& group : groups)
-        names.push_back(group.name);
-    for (size_t m = 0; m < meshes_.size(); ++m)
-        meshes_[m].panels = {std::vector<int>(meshes_[m].faces.polygons.size(), int(m)), names};
-}
-
-void ExportedSurface::add_part(const scene::Export& entry, exports::CacheMesh mesh, std::vector<int> vertices)
-{
-    Part part{std::move(vertices), std::nullopt};
-    mesh.attributes = vertex_attributes(entry);
-    if (entry.thickness) {
-        std::vector<double> thickness;
-        for (const int v : part.vertices)
-            thickness.push_back(thickness_[size_t(v)]);
-        part.closed.emplace(mesh.faces, std::move(thickness));
-        mesh.vertex_count *= 2;
-        mesh.faces = part.closed->faces();
-    }
-    meshes_.push_back(std::move(mesh));
-    parts_.push_back(std::move(part));
 }
 
 void ExportedSurface::append(View<const Vec3> x, std::vector<Vec3>& positions) const
 {
-    const std::vector<Vec3> file = state_->to_file(x);
-    for (const Part& part : parts_) {
-        std::vector<Vec3> of_part;
-        of_part.reserve(part.vertices.size());
-        for (const int v : part.vertices)
-            of_part.push_back(file[size_t(v)]);
-        if (part.closed)
-            of_part = part.closed->positions(of_part);
-        positions.insert(positions.end(), of_part.begin(), of_part.end());
-    }
+    mesh_.append(state_->to_file(x), positions);
 }
 
 void ExportedSurface::append_attributes(View<const Vec3> x, const SkinDistance* skin,
@@ -110,30 +61,26 @@ void ExportedSurface::append_attributes(View<const Vec3> x, const SkinDistance* 
 {
     if (attributes_.is_empty())
         return;
-    const std::vector<std::vector<double>> values = attributes_.at(x, skin);
-    for (const Part& part : parts_)
-        for (const std::vector<double>& of_vertex : values)
-            for (int side = 0; side < (part.closed ? 2 : 1); ++side)
-                for (const int v : part.vertices)
-                    numbers.push_back(float(of_vertex[size_t(own_vertex(*state_, v))]));
+    std::vector<std::vector<double>> of_file;
+    for (const std::vector<double>& of_vertex : attributes_.at(x, skin)) {
+        std::vector<double>& values = of_file.emplace_back();
+        for (int v = 0; v < int(state_->file_mesh().positions.size()); ++v)
+            values.push_back(of_vertex[size_t(own_vertex(*state_, v))]);
+    }
+    mesh_.append_values(of_file, numbers);
 }
 
 std::vector<Vec3> ExportedSurface::file_positions(const std::vector<std::vector<Vec3>>& meshes) const
 {
-    std::vector<Vec3> file(state_->file_mesh().positions.size(), Vec3::Zero());
-    std::vector<bool> is_stored(file.size(), false);
-    for (size_t m = 0; m < parts_.size(); ++m) {
-        const std::vector<Vec3> of_part =
-            parts_[m].closed ? exports::ClosedSurface::middle(meshes[m]) : meshes[m];
-        for (size_t k = 0; k < of_part.size(); ++k) {
-            file[size_t(parts_[m].vertices[k])] = of_part[k];
-            is_stored[size_t(parts_[m].vertices[k])] = true;
-        }
-    }
+    const std::vector<std::optional<Vec3>> stored = mesh_.whole(meshes);
+    std::vector<Vec3> file;
+    file.reserve(stored.size());
+    for (const std::optional<Vec3>& x : stored)
+        file.push_back(x.value_or(Vec3::Zero()));
     // Vertices without a face are in no group; they follow the cloth.
     const std::vector<Vec3> followed = state_->to_file(state_->from_file(file));
     for (size_t v = 0; v < file.size(); ++v)
-        if (!is_stored[v])
+        if (!stored[v])
             file[v] = followed[v];
     return file;
 }
@@ -225,6 +172,7 @@ public:
         subframes_ = first.subframes() > 1 ? first.subframes() : entry.subframes;
         frame_count = (first.frame_count() + subframes_ - 1) / subframes_;
         fps = first.fps();
+        times = first.times();
         if (fps && first.subframes() == 1)
             *fps /= subframes_;
         const double first_frame = first.start_frame() / (first.subframes() > 1 ? 1 : subframes_);

@@ -2,30 +2,27 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/toile/caches/cloth_attributes.h"
+#include "apps/toile/caches/exported_mesh.h"
 #include "core/mesh/triangle_mesh.h"
 #include "export/cache_layout.h"
 #include "export/mesh/cache_sample.h"
-#include "export/mesh/closed_surface.h"
-#include "export/mesh/mesh_part.h"
 #include "export/point_cache.h"
 #include "scenes/format/scene.h"
 #include "scenes/surfaces/cloth_state.h"
 
 namespace toile::app {
 
-/// The meshes that a cloth or solid becomes in a cache: itself, or one for each group of its faces; each with
-/// or without its thickness.
+/// The meshes that a cloth or solid becomes in a cache (ExportedMesh).
 class ExportedSurface {
 public:
     /// @param state  outlives this; its positions are ignored
     ExportedSurface(const scene::Export& entry, const scenes::ClothState& state);
 
-    const std::vector<exports::CacheMesh>& meshes() const { return meshes_; }
+    const std::vector<exports::CacheMesh>& meshes() const { return mesh_.meshes(); }
 
     /// Appends positions of all meshes. @param x  [vertices] of the cloth as simulated [m]
     void append(View<const Vec3> x, std::vector<Vec3>& positions) const;
@@ -37,18 +34,9 @@ public:
     std::vector<Vec3> file_positions(const std::vector<std::vector<Vec3>>& meshes) const;
 
 private:
-    struct Part {
-        std::vector<int> vertices; ///< of the file's mesh
-        std::optional<exports::ClosedSurface> closed;
-    };
-    void add_part(const scene::Export& entry, exports::CacheMesh mesh, std::vector<int> vertices);
-    void number_panels(const std::vector<exports::MeshPart>& groups);
-
     const scenes::ClothState* state_;
     ClothAttributes attributes_;
-    std::vector<double> thickness_; ///< [file vertices] [m]
-    std::vector<exports::CacheMesh> meshes_;
-    std::vector<Part> parts_; ///< [meshes]
+    ExportedMesh mesh_;
 };
 
 /// What a scene's export writes: surfaces, and avatars after them. Cloths have the attributes of the entry.

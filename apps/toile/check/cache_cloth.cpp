@@ -153,6 +153,11 @@ void require_same_times(const exports::PointCache& cache, const std::filesystem:
                         int frame_count)
 {
     char text[160];
+    if (!cache.times().empty()) {
+        std::snprintf(text, sizeof text, ": has samples at irregular times, but the scene has %.6g a second",
+                      fps);
+        throw InvalidInput(file.string() + text + "; give the scene that the cache was made from");
+    }
     if (cache.fps() && std::abs(*cache.fps() - fps) > kSameRate * fps) {
         std::snprintf(text, sizeof text, ": has %.6g frames a second, but the scene has %.6g", *cache.fps(),
                       fps);

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/toile/caches/written_exports.h"
 #include "apps/toile/terminal/version.h"
 
 namespace toile::app {
@@ -155,6 +156,7 @@ std::string to_json(const Certificate& certificate)
         {"solver", certificate.solver},
         {"version", version()},
         {"cloths", cloths},
+        {"exports", json_of(certificate.exports)},
         {"cloths_left_out", certificate.left_out},
         {"avatar_bones_left_out", certificate.excluded_bones},
         {"holds", certificate.holds()},

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/compute/types.h"
+#include "scenes/format/scene.h"
 
 namespace toile::app {
 
@@ -84,7 +85,8 @@ struct Certificate {
     };
 
     std::filesystem::path scene;
-    std::string solver; ///< solver.method of the scene
+    std::vector<scene::Export> exports; ///< that the caches were written as, relative to the certificate
+    std::string solver;                 ///< solver.method of the scene
     CertificateLimits limits;
     std::vector<Cloth> cloths;
     std::vector<std::string> left_out; ///< cloths of the scene whose caches were not given

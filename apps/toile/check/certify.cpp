@@ -287,6 +287,7 @@ Certificate blank_certificate(const scenes::Scene& scene, const CertificateLimit
 {
     Certificate certificate;
     certificate.scene = scene.source;
+    certificate.exports = exports_of(scene);
     certificate.solver = scene_format::word_of(scene.solver.method);
     certificate.limits = limits;
     certificate.frames_expected = scene.frames;

@@ -7,6 +7,8 @@
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/caches/cache_files.h"
 #include "apps/toile/caches/exports.h"
+#include "apps/toile/caches/unlisted.h"
+#include "apps/toile/caches/written_exports.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/check/certify.h"
 #include "apps/toile/terminal/command_line.h"
@@ -22,8 +24,8 @@
 #include "export/cache_path.h"
 #include "export/folder_lock.h"
 #include "export/sequence/numbered_files.h"
-#include "scenes/format/field.h"
 #include "scenes/format/read_scene.h"
+#include "scenes/format/validate.h"
 #include "scenes/surfaces/load_cloth.h"
 
 namespace toile::app {
@@ -37,7 +39,7 @@ struct CheckOptions {
     std::string cloth;
     CertificateLimits limits;
     std::optional<int> frames;
-    std::string unit = "m", up = "y"; ///< of caches that the scene does not list
+    UnlistedOptions unlisted;
     bool quiet = false;
 };
 
@@ -71,8 +73,49 @@ std::vector<ClothInCache> caches_in(const std::filesystem::path& folder, const s
             caches.push_back({files[*checked], entries[*checked], surface});
     if (caches.empty())
         throw InvalidInput(folder.string() + ": has no cache of " + scene.source.string() + "; looked for " +
-                           searched + "; name other caches one by one");
+                           searched + "; name other caches, such as those of simulate --export, one by one");
     return caches;
+}
+
+/// Gives a scene the exports of the run that wrote into a folder, which its certificate has: those of
+/// `simulate --export` are not in the scene.
+void use_exports_of_run(const std::filesystem::path& folder, scenes::Scene& scene)
+{
+    const std::filesystem::path certificate = folder / kCertificateName;
+    const std::optional<std::vector<scene::Export>> exports = exports_in(certificate);
+    if (!exports || exports->empty())
+        return;
+    scene.exports = *exports;
+    try {
+        require_valid(scene);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(certificate.string() +
+                           ": its exports do not suit the scene; name the caches one by one (" +
+                           error.what() + ")");
+    }
+}
+
+/// The caches as exports of a run whose folder is that of the certificate.
+std::vector<scene::Export> exports_beside(const std::filesystem::path& certificate,
+                                          const std::vector<ClothInCache>& caches,
+                                          const std::vector<std::string>& names)
+{
+    std::vector<scene::Export> exports;
+    for (const ClothInCache& cache : caches) {
+        const std::string& name = names[size_t(cache.surface)];
+        const std::filesystem::path file =
+            exports::archive_of(cache.file).lexically_proximate(certificate.parent_path());
+        const auto same = std::find_if(exports.begin(), exports.end(),
+                                       [&](const auto& other) { return other.file == file; });
+        if (same != exports.end()) {
+            same->cloths.push_back(name);
+            continue;
+        }
+        exports.push_back(cache.entry);
+        exports.back().file = file;
+        exports.back().cloths = {name};
+    }
+    return exports;
 }
 
 /// Pairs each cache with its cloths.
@@ -141,13 +184,14 @@ int check(const CheckOptions& options)
             throw InvalidInput(cache.string() + ": no such folder; check the path");
     scenes::Scene scene = scenes::read_scene(options.scene);
     scene.frames = options.frames.value_or(scene.frames);
-    scene::Export unlisted;
-    unlisted.unit = scene_format::value_of<scene::ExportUnit>(options.unit);
-    unlisted.up = scene_format::value_of<scene::UpAxis>(options.up);
+    if (is_folder)
+        use_exports_of_run(options.caches[0], scene);
     const std::vector<ClothInCache> caches =
         is_folder ? caches_in(options.caches[0], scene)
-                  : named_caches(options.caches, scene, options.cloth, unlisted);
+                  : named_caches(options.caches, scene, options.cloth, options.unlisted.entry());
     const std::filesystem::path output = certificate_path_of(options);
+    if (!is_folder)
+        scene.exports = exports_beside(output, caches, surface_names(scene));
     require_safe_output(output, scene, caches);
     const InterruptGuard interrupt;
     const RunLog log(options.quiet);
@@ -193,10 +237,7 @@ Command add_check(CLI::App& parser)
         ->capture_default_str();
     add.add_option("--frames", options->frames, "Number of frames that the caches must have [the scene's]")
         ->check(CLI::Range(1, 1000000));
-    add.add_option("--from-unit", options->unit, "Unit of caches that the scene does not list [m]")
-        ->check(CLI::IsMember(scene_format::words_of<scene::ExportUnit>()));
-    add.add_option("--from-up", options->up, "Upward axis of caches that the scene does not list [y]")
-        ->check(CLI::IsMember(scene_format::words_of<scene::UpAxis>()));
+    options->unlisted.add_to(add);
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return check(*options); };
     return command;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "apps/toile/caches/cache_files.h"
+#include "apps/toile/caches/exported_mesh.h"
 #include "apps/toile/check/certify.h"
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
@@ -16,6 +17,7 @@
 #include "export/cache_writer.h"
 #include "export/folder_lock.h"
 #include "export/point_cache.h"
+#include "export/times/resampled_cache.h"
 
 namespace toile::app {
 
@@ -24,6 +26,8 @@ namespace {
 /// Rate [frames/s] of a cache that has none, where the format written stores times.
 constexpr double kUsualFps = 24.0;
 constexpr double kMinFps = 0.001, kMaxFps = 10000.0;
+
+constexpr double kMaxThickness = 0.1; ///< [m]
 
 /// Largest coordinate that is written: far below what single precision holds.
 constexpr double kMaxCoordinate = 1e30;
@@ -35,7 +39,10 @@ struct ConvertOptions {
     std::optional<double> start_frame;
     std::string from_unit, from_up; ///< empty: the cache's
     exports::Axes to;
-    bool normals = false, no_velocities = false;
+    bool normals = false, no_velocities = false, no_weld = false;
+    bool avatars = false;                                ///< refused
+    std::optional<double> thickness;                     ///< [m]
+    std::optional<int> subframes;                        ///< empty: the cache's
     double max_error = exports::CacheLayout{}.max_error; ///< [m]
     bool quiet = false;
 };
@@ -59,6 +66,21 @@ exports::Axes axes_of(const ConvertOptions& options, const std::optional<exports
     return axes;
 }
 
+/// Refuses options that no cache can follow, or that the output has no place for.
+void require_possible(const ConvertOptions& options)
+{
+    const exports::CacheFeatures features = exports::features_of(exports::cache_format(options.output));
+    if (options.avatars)
+        throw InvalidInput("--avatars: a cache has no avatars but the meshes in it; simulate --export FILE "
+                           "--avatars writes those of a scene");
+    if (options.thickness && !(*options.thickness > 0.0 && *options.thickness <= kMaxThickness))
+        throw InvalidInput("--thickness " + short_text(*options.thickness) +
+                           ": is no thickness of cloth; give metres, above 0 and up to 0.1");
+    if (options.no_weld && !features.several)
+        throw InvalidInput("--no-weld: " + options.output.string() +
+                           " holds one mesh; write an .abc or .usda");
+}
+
 /// @throws InvalidInput for numbers that no cache can hold
 void require_finite(const std::filesystem::path& file, int frame, const std::vector<Vec3>& positions)
 {
@@ -68,10 +90,11 @@ void require_finite(const std::filesystem::path& file, int frame, const std::vec
                                std::to_string(frame) + " is not finite, or beyond 1e30; export it again");
 }
 
-/// A mesh of the input.
+/// A mesh of the input, and what becomes of it.
 struct InputMesh {
     std::filesystem::path path;
     exports::PointCache cache;
+    std::optional<ExportedMesh> exported = std::nullopt; ///< once its faces are known
 };
 
 bool have_same_times(const exports::PointCache& a, const exports::PointCache& b)
@@ -86,12 +109,43 @@ std::string times_text(const exports::PointCache& cache)
            (cache.fps() ? " at " + short_text(*cache.fps()) + " a second" : "");
 }
 
+/// Rate of --fps; none without it.
+std::optional<double> given_fps(const ConvertOptions& options)
+{
+    if (options.fps.empty())
+        return std::nullopt;
+    const double fps = quotient_in(options.fps).value_or(0.0);
+    if (!(fps >= kMinFps && fps <= kMaxFps))
+        throw InvalidInput("--fps " + options.fps +
+                           ": is no rate; write a number from 0.001 to 10000, or two as 24000/1001");
+    return fps;
+}
+
+/// A mesh of the input at regular times.
+exports::PointCache open_mesh(const std::filesystem::path& mesh, const ConvertOptions& options)
+{
+    exports::PointCache cache = exports::read_cache(mesh);
+    if (cache.times().empty())
+        return cache;
+    const std::optional<double> fps = given_fps(options);
+    if (!fps)
+        throw InvalidInput(mesh.string() + ": has samples at irregular times, from " +
+                           short_text(cache.times().front()) + " to " + short_text(cache.times().back()) +
+                           " s; give --fps to resample it at this rate");
+    exports::PointCache frames = exports::resampled(cache, *fps, mesh);
+    if (!options.quiet)
+        std::cerr << "toile: " << mesh.string() << ": " << cache.frame_count()
+                  << " samples at irregular times, resampled as " << frames.frame_count() << " frames from "
+                  << frames.start_frame() << " at " << short_text(*fps) << " a second\n";
+    return frames;
+}
+
 /// All meshes of the input, with the same frames.
 std::vector<InputMesh> open_input(const ConvertOptions& options)
 {
     std::vector<InputMesh> meshes;
     for (const std::filesystem::path& path : exports::meshes_of_cache(options.input))
-        meshes.push_back({path, exports::read_cache(path)});
+        meshes.push_back({path, open_mesh(path, options)});
     if (meshes.empty() || meshes.front().cache.frame_count() == 0)
         throw InvalidInput(options.input.string() + ": has no " + (meshes.empty() ? "mesh" : "frame") +
                            "; nothing is there to be converted");
@@ -119,13 +173,8 @@ ObjMesh faces_of(const ConvertOptions& options, const exports::PointCache& cache
 
 double fps_of(const ConvertOptions& options, const exports::PointCache& cache)
 {
-    if (!options.fps.empty()) {
-        const double fps = quotient_in(options.fps).value_or(0.0);
-        if (!(fps >= kMinFps && fps <= kMaxFps))
-            throw InvalidInput("--fps " + options.fps +
-                               ": is no rate; write a number from 0.001 to 10000, or two as 24000/1001");
-        return fps;
-    }
+    if (const std::optional<double> fps = given_fps(options))
+        return *fps;
     if (!cache.fps() && exports::features_of(exports::cache_format(options.output)).times &&
         cache.frame_count() > 1 && !options.quiet)
         std::cerr << "toile: " << options.input.string()
@@ -178,23 +227,52 @@ void name_mesh(exports::CacheMesh& mesh, const std::filesystem::path& path)
     mesh.parent = is_usd && !group.parent_path().has_filename() ? "" : group.filename().string();
 }
 
-exports::CacheLayout layout_of(const ConvertOptions& options, const std::vector<InputMesh>& meshes)
+/// Samples of a frame that are written.
+int subframes_of(const ConvertOptions& options, const exports::PointCache& cache)
+{
+    const int subframes = options.subframes.value_or(cache.subframes());
+    if (subframes < 1 || cache.subframes() % subframes != 0)
+        throw InvalidInput("--subframes " + std::to_string(subframes) + ": " + options.input.string() +
+                           " has " + std::to_string(cache.subframes()) +
+                           (cache.subframes() == 1 ? " sample" : " samples") +
+                           " a frame; give a divisor of that, for samples can only be left out");
+    return subframes;
+}
+
+/// Thickness of each vertex in the units written; empty: none.
+std::vector<double> thickness_of(const ConvertOptions& options, const exports::CacheMesh& mesh)
+{
+    if (!options.thickness)
+        return {};
+    if (mesh.faces.polygons.empty())
+        throw InvalidInput("--thickness: " + options.input.string() +
+                           " has no faces; name the mesh that it plays on with --mesh");
+    const double metre = options.to.unit == "cm" ? 100.0 : 1.0;
+    return std::vector<double>(size_t(mesh.vertex_count), *options.thickness * metre);
+}
+
+/// Also makes the meshes that the input becomes.
+exports::CacheLayout layout_of(const ConvertOptions& options, std::vector<InputMesh>& meshes)
 {
     if (!options.mesh.empty() && meshes.size() > 1)
         throw InvalidInput("--mesh: has the faces of one mesh, and " + options.input.string() + " has " +
                            std::to_string(meshes.size()) + "; leave it out");
     const exports::PointCache& first = meshes.front().cache;
     exports::CacheLayout layout;
-    for (const InputMesh& input : meshes) {
-        exports::CacheMesh& mesh = layout.meshes.emplace_back();
+    for (InputMesh& input : meshes) {
+        exports::CacheMesh mesh;
         mesh.vertex_count = input.cache.vertex_count();
         mesh.faces = faces_of(options, input.cache);
         if (!exports::mesh_path_of(input.path).empty())
             name_mesh(mesh, input.path);
+        input.exported.emplace(mesh, ExportedMesh::Parts{.weld = !options.no_weld},
+                               thickness_of(options, mesh));
+        const std::vector<exports::CacheMesh>& written = input.exported->meshes();
+        layout.meshes.insert(layout.meshes.end(), written.begin(), written.end());
     }
-    layout.frame_count = first.frame_count();
+    layout.subframes = subframes_of(options, first);
+    layout.frame_count = (first.frame_count() - 1) * layout.subframes / first.subframes() + 1;
     layout.fps = fps_of(options, first);
-    layout.subframes = first.subframes();
     layout.start_frame = options.start_frame.value_or(first.start_frame());
     layout.axes = options.to;
     layout.velocities = !options.no_velocities;
@@ -203,7 +281,7 @@ exports::CacheLayout layout_of(const ConvertOptions& options, const std::vector<
     return layout;
 }
 
-/// Positions of all meshes in a frame.
+/// Positions of all meshes in a sample of the input.
 std::vector<Vec3> positions_of(const ConvertOptions& options, const std::vector<InputMesh>& meshes, int frame)
 {
     std::vector<Vec3> all;
@@ -211,7 +289,7 @@ std::vector<Vec3> positions_of(const ConvertOptions& options, const std::vector<
         std::vector<Vec3> positions = mesh.cache.frame(frame);
         exports::change_axes(axes_of(options, mesh.cache.axes()), options.to, positions);
         require_finite(mesh.path, frame, positions);
-        all.insert(all.end(), positions.begin(), positions.end());
+        mesh.exported->append(positions, all);
     }
     return all;
 }
@@ -220,15 +298,17 @@ int convert(const ConvertOptions& options)
 {
     require_known(options.to, "--unit", "--up");
     require_known(axes_of(options, std::nullopt), "--from-unit", "--from-up");
-    const std::vector<InputMesh> meshes = open_input(options);
+    require_possible(options);
+    std::vector<InputMesh> meshes = open_input(options);
     const exports::CacheLayout layout = layout_of(options, meshes);
     require_faces(options, layout);
     const std::unique_ptr<exports::CacheWriter> writer = exports::make_cache_writer(options.output, layout);
     require_safe_output(options, layout);
     const exports::FolderLock lock(options.output.parent_path());
+    const int step = meshes.front().cache.subframes() / layout.subframes;
     Progress progress("convert", layout.frame_count, options.quiet);
     for (int k = 0; k < layout.frame_count; ++k) {
-        writer->write(k, positions_of(options, meshes, k));
+        writer->write(k, positions_of(options, meshes, k * step));
         progress.update(k + 1);
     }
     writer->complete();
@@ -265,6 +345,12 @@ Command add_convert(CLI::App& parser)
     add.add_option("--up", options->to.up, "Upward axis of the numbers written: y or z");
     add.add_flag("--normals", options->normals, "Store normals, creased at seams (.abc, .usda, .usdc)");
     add.add_flag("--no-velocities", options->no_velocities, "Store no velocities (.abc, .usda, .usdc, .pvd)");
+    add.add_option("--thickness", options->thickness, "Close each mesh with this thickness [m]");
+    add.add_flag("--no-weld", options->no_weld,
+                 "Write one mesh for each group of faces (.abc, .usda, .usdc)");
+    add.add_option("--subframes", options->subframes,
+                   "Samples per frame, fewer than the cache's; without it the cache's");
+    add.add_flag("--avatars", options->avatars)->group("");
     add.add_option("--max-error", options->max_error,
                    "Largest error of a vertex in any frame [m], for outputs that approximate (.glb)")
         ->capture_default_str();

@@ -2,6 +2,7 @@
 
 #include "apps/toile/caches/cache_contents.h"
 #include "apps/toile/caches/cache_files.h"
+#include "apps/toile/caches/unlisted.h"
 #include "apps/toile/check/cache_cloth.h"
 #include "apps/toile/cloth/skin.h"
 #include "apps/toile/fit/fit_files.h"
@@ -29,6 +30,7 @@ struct FitOptions {
     std::string cloth;
     int frame = -1; ///< negative: from the end
     int threads = 0;
+    UnlistedOptions unlisted;
 };
 
 /// A cloth of the scene as a frame of its cache has it.
@@ -61,7 +63,8 @@ int frame_of(const exports::PointCache& cache, const std::filesystem::path& file
 CacheFrame read_frame(const scenes::Scene& scene, const std::filesystem::path& file,
                       const FitOptions& options)
 {
-    const std::vector<ClothInCache> cloths = cloths_of_cache(scene, file, options.cloth);
+    const std::vector<ClothInCache> cloths =
+        cloths_of_cache(scene, file, options.cloth, options.unlisted.entry());
     if (cloths.size() > 1)
         throw InvalidInput(file.string() + ": has " + std::to_string(cloths.size()) +
                            " cloths; give --cloth with one of them");
@@ -132,6 +135,7 @@ Command add_fit(CLI::App& parser)
     add.add_option("--frame", options->frame, "Frame of the caches; negative: from the end")
         ->capture_default_str();
     add.add_option("--cloth", options->cloth, "Cloth of the scene [from the cache's name]");
+    options->unlisted.add_to(add);
     add.add_option("-o,--output", options->folder, "Folder of the results")->capture_default_str();
     add.add_option("--threads", options->threads, "CPU threads; 0: all")->capture_default_str();
     command.run = [options] { return fit(*options); };

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/long_work.h"
 #include "export/cache_path.h"
+#include "export/times/resampled_cache.h"
 #include "scenes/surfaces/load_cloth.h"
 #include "scenes/world/world.h"
 
@@ -71,7 +72,7 @@ Film Film::of_scene(const scenes::Scene& scene, const scenes::WorldOptions& opti
 }
 
 Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesystem::path>& caches,
-                     const std::string& cloth)
+                     const std::string& cloth, const scene::Export& unlisted)
 {
     Film film;
     film.settings_ = scene;
@@ -79,7 +80,7 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
     const LongWork::Part part(kOfBodies, 1.0);
     film.surfaces_ = scenes::load_surfaces(scene);
     for (const std::filesystem::path& file : caches) {
-        for (const ClothInCache& in_cache : cloths_of_cache(scene, file, cloth)) {
+        for (const ClothInCache& in_cache : cloths_of_cache(scene, file, cloth, unlisted)) {
             const scenes::ClothState& state = film.surfaces_[size_t(in_cache.surface)];
             const exports::PointCache cache = open_cloth(file, in_cache.entry, state);
             require_same_points(cache, file, state.name, int(state.file_mesh().positions.size()));
@@ -89,13 +90,15 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
     return film;
 }
 
-Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches)
+Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches, const exports::Axes& axes)
 {
     Film film;
     film.settings_.render.ground.reset();
     for (const std::filesystem::path& file : caches)
         for (const std::filesystem::path& mesh : exports::meshes_of_cache(file)) {
-            const exports::PointCache cache = exports::read_cache(mesh);
+            exports::PointCache cache = exports::read_cache(mesh);
+            if (!cache.times().empty())
+                cache = exports::resampled(cache, film.settings_.fps, mesh);
             if (cache.mesh() == nullptr)
                 throw InvalidInput(file.string() +
                                    ": has points without faces; give --scene with the scene that it " +
@@ -103,6 +106,7 @@ Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches)
             film.settings_.fps = cache.fps().value_or(film.settings_.fps) * cache.subframes();
             film.add_cloth(name_in_cache(mesh), {}, cache.mesh()->triangulated().triangles,
                            cache.mesh()->positions, cache, mesh);
+            film.tracks_.back().axes = axes;
         }
     return film;
 }
@@ -141,7 +145,8 @@ std::vector<Vec3> Film::positions(const Track& track, int frame) const
     if (!track.cache)
         return track.start;
     const int shown = std::min(frame, track.cache->frame_count() - 1);
-    const std::vector<Vec3> x = track.cache->frame_in_metres(shown);
+    std::vector<Vec3> x = track.cache->frame(shown);
+    exports::change_axes(track.cache->axes().value_or(track.axes), {}, x);
     require_in_range(x, track.file.string() + ": frame " + std::to_string(shown));
     return track.cloth ? track.cloth->from_file(x) : x;
 }

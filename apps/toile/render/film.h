@@ -24,12 +24,15 @@ public:
     /// The start state of a scene.
     static Film of_scene(const scenes::Scene& scene, const scenes::WorldOptions& options);
     /// Caches of a scene's cloths and solids among its avatars; surfaces without a cache are omitted.
-    /// @param cloth  cloth of a single cache; empty: from its name
+    /// @param cloth     cloth of a single cache; empty: from its name
+    /// @param unlisted  keys of caches that the scene does not export
     static Film of_caches(const scenes::Scene& scene, const std::vector<std::filesystem::path>& caches,
-                          const std::string& cloth);
-    /// OBJ caches, which contain their faces.
+                          const std::string& cloth, const scene::Export& unlisted = {});
+    /// Caches that contain their faces. Those of irregular times are resampled at the rate of a scene without
+    /// fps.
+    /// @param axes  of caches that do not say theirs
     /// @throws InvalidInput for a cache without faces.
-    static Film of_obj_caches(const std::vector<std::filesystem::path>& caches);
+    static Film of_obj_caches(const std::vector<std::filesystem::path>& caches, const exports::Axes& axes);
 
     Film(Film&&) = default;
     Film& operator=(Film&&) = default;
@@ -78,6 +81,7 @@ private:
         std::string name;                          ///< of the cloth, solid or mesh
         std::optional<exports::PointCache> cache;  ///< absent: `start` at all times
         std::filesystem::path file;                ///< of the cache
+        exports::Axes axes = {};                   ///< of a cache that does not say its own
         const scenes::ClothState* cloth = nullptr; ///< of surfaces_, with a scene
         std::vector<Vec3> start;                   ///< [vertices] [m]
         preview::RenderMesh mesh;

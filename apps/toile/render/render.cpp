@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
 #include "apps/preview/video.h"
 #include "apps/toile/caches/cache_files.h"
+#include "apps/toile/caches/exports.h"
+#include "apps/toile/caches/unlisted.h"
 #include "apps/toile/render/film.h"
 #include "apps/toile/render/frame_range.h"
 #include "apps/toile/render/map_pictures.h"
@@ -17,6 +20,7 @@
 #include "core/base/extension.h"
 #include "core/base/file_plan.h"
 #include "core/base/long_work.h"
+#include "core/base/number.h"
 #include "export/cache_path.h"
 #include "scenes/format/read_scene.h"
 
@@ -34,15 +38,20 @@ struct RenderOptions {
     int width = 0; ///< 0: the scene's
     int height = 0;
     int samples = 0;
-    int turntable = 0; ///< pictures around; 0: none
+    std::string turntable_text; ///< number of pictures, or the first input
+    int turntable = 0;          ///< pictures around; 0: none
     ViewpointOptions viewpoint;
     MapOptions map;
     bool no_textures = false;
+    UnlistedOptions unlisted;
     bool quiet = false;
 };
 
 /// Pictures of a turntable in a second.
 constexpr double kTurntableFps = 24.0;
+
+/// Pictures of a turntable: where no number is given, and at most.
+constexpr int kTurntable = 96, kMaxTurntable = 3600;
 
 bool is_scene(const std::filesystem::path& input) { return lower_case_extension(input) == ".json"; }
 
@@ -63,9 +72,9 @@ Film open_film(const RenderOptions& options, SetupProgress& progress)
     if (!options.cloth.empty() && options.inputs.size() > 1)
         throw InvalidInput("--cloth: names one cloth, but there are " +
                            std::to_string(options.inputs.size()) + " caches; leave it out");
-    return options.scene.empty()
-               ? Film::of_obj_caches(options.inputs)
-               : Film::of_caches(scenes::read_scene(options.scene), options.inputs, options.cloth);
+    return options.scene.empty() ? Film::of_obj_caches(options.inputs, axes_of(options.unlisted.entry()))
+                                 : Film::of_caches(scenes::read_scene(options.scene), options.inputs,
+                                                   options.cloth, options.unlisted.entry());
 }
 
 void replace_if_given(int& value, int given, const char* option)
@@ -230,8 +239,8 @@ void require_possible(const RenderOptions& options)
                            ": pictures are .png or .mp4; a name without extension is a folder");
     if (options.sheet < 0 || (options.sheet > 0 && extension != ".png"))
         throw InvalidInput("--sheet: needs a number of columns above 0 and an output ending in .png");
-    if (options.turntable < 0 || options.turntable == 1 || options.turntable > 3600)
-        throw InvalidInput("--turntable: " + std::to_string(options.turntable) +
+    if (options.turntable < 0 || options.turntable == 1 || options.turntable > kMaxTurntable)
+        throw InvalidInput("--turntable: " + options.turntable_text +
                            " pictures; give a number from 2 to 3600");
     if (options.turntable > 0 && extension == ".png" && options.sheet == 0)
         throw InvalidInput(options.output.string() + ": is one picture, but --turntable makes " +
@@ -244,8 +253,22 @@ void require_possible(const RenderOptions& options)
             "shape at rest, its fabric and the body");
 }
 
+/// The number behind --turntable may be left out; what is none there is an input.
+void read_turntable(RenderOptions& options)
+{
+    if (const std::optional<std::int64_t> count = whole_number_in(options.turntable_text))
+        options.turntable = int(std::clamp<std::int64_t>(*count, -1, kMaxTurntable + 1));
+    else if (!options.turntable_text.empty()) {
+        options.inputs.insert(options.inputs.begin(), options.turntable_text);
+        options.turntable = kTurntable;
+    }
+    if (options.inputs.empty())
+        throw InvalidInput("inputs is required; toile render --help says what it is");
+}
+
 int render(RenderOptions options)
 {
+    read_turntable(options);
     if (options.output.empty())
         options.output = options.inputs[0].stem().string() + ".png";
     require_possible(options);
@@ -286,13 +309,14 @@ Command add_render(CLI::App& parser)
         parser.add_subcommand("render", "Render preview pictures of caches or of a scene's start");
     auto options = std::make_shared<RenderOptions>();
     CLI::App& add = *command.options;
-    add.add_option("inputs", options->inputs, "Caches (" + readable_extensions() + "), or one scene (.json)")
-        ->required();
+    add.add_option("inputs", options->inputs,
+                   "Caches (" + readable_extensions() + "), or one scene (.json); required");
     add.add_option("--scene", options->scene, "Scene that the caches were made from");
     add.add_option("-o,--output", options->output, "PNG, MP4, or folder for numbered PNGs [NAME.png]");
     add.add_option("--frames", options->frames, "FIRST:LAST:STEP [last for a PNG, else all]");
     add.add_option("--sheet", options->sheet, "One PNG of all frames in this many columns");
     add.add_option("--cloth", options->cloth, "Cloth of the scene [from the cache's name]");
+    options->unlisted.add_to(add);
     add.add_option("--width", options->width, "Pixels, instead of the scene's");
     add.add_option("--height", options->height, "Pixels, instead of the scene's");
     add.add_option("--samples", options->samples, "Light paths per pixel, instead of the scene's");
@@ -300,9 +324,9 @@ Command add_render(CLI::App& parser)
     options->map.add_to(add);
     add.add_flag("--no-textures", options->no_textures,
                  "Avatars in their color, not in the colors and images of their files");
-    add.add_option("--turntable", options->turntable, "Once around one frame, in this many pictures")
+    add.add_option("--turntable", options->turntable_text, "Once around one frame, in this many pictures")
         ->expected(0, 1)
-        ->default_str("96");
+        ->default_str(std::to_string(kTurntable));
     add.add_flag("--quiet", options->quiet, "No progress on stderr");
     command.run = [options] { return render(*options); };
     return command;

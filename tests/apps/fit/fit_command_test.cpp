@@ -72,6 +72,30 @@ TEST_F(FitCommand, MeasuresTheClothOfACache)
                 HasSubstr("two legs can't be found"));
 }
 
+TEST_F(FitCommand, ReadsCachesInAnotherUnitAndAxis)
+{
+    TriangleMesh other = tube(1.03 * kSkirt);
+    for (Vec3& x : other.positions)
+        x = 100.0 * Vec3(x.x(), -x.z(), x.y());
+    write_obj(file("other.obj"), other);
+    ASSERT_EQ(fit({"now.obj", "--scene", "scene.json", "-o", "a"}).exit_code, 0);
+    const Finished told =
+        fit({"other.obj", "--scene", "scene.json", "-o", "b", "--from-unit", "cm", "--from-up", "z"});
+    ASSERT_EQ(told.exit_code, 0) << told.errors;
+    const auto mean_gap = [&](const std::string& folder) {
+        std::istringstream table(bytes_of(file(folder + "/skirt_fit.csv")));
+        std::string line;
+        std::getline(table, line);
+        double sum = 0.0;
+        int rows = 0;
+        for (double vertex, tension, strain, gap; std::getline(table, line); sum += gap, ++rows)
+            EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &vertex, &tension, &strain, &gap), 4);
+        return sum / rows;
+    };
+    EXPECT_NEAR(mean_gap("b"), 1.03 * kSkirt - kBody, 1e-6);
+    EXPECT_NEAR(mean_gap("a"), mean_gap("b"), 1e-6);
+}
+
 TEST_F(FitCommand, RefusesWhatDoesNotFit)
 {
     expect_refusal({"now.obj", "--scene", "scene.json", "--frame", "1"},

@@ -177,5 +177,68 @@ TEST_F(RenderCommand, RefusesMapsWithoutWhatTheyMeasure)
     EXPECT_EQ(render({"--scene", "bare.json", "-o", "b.png", "--map", "strain"}).exit_code, 0);
 }
 
+TEST_F(RenderCommand, ReadsCachesInAnotherUnitAndAxis)
+{
+    TriangleMesh other = tube(1.03 * kSkirt);
+    for (Vec3& x : other.positions)
+        x = 100.0 * Vec3(x.x(), -x.z(), x.y());
+    write_obj(file("other.obj"), other);
+    const std::vector<std::string> size{"--width", "96", "--height", "64", "--samples", "4", "--quiet"};
+    const auto blue = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "render");
+        arguments.insert(arguments.end(), size.begin(), size.end());
+        arguments.insert(arguments.end(), {"-o", "p.png"});
+        const Finished drawn = run_toile(arguments, folder_);
+        EXPECT_EQ(drawn.exit_code, 0) << drawn.errors;
+        return read_png(file("p.png")).rgb;
+    };
+    const std::vector<std::string> told{"--from-unit", "cm", "--from-up", "z"};
+    for (const bool has_scene : {true, false}) {
+        std::vector<std::string> first{"now.obj"}, second{"other.obj"};
+        second.insert(second.end(), told.begin(), told.end());
+        if (has_scene)
+            for (auto* arguments : {&first, &second})
+                arguments->insert(arguments->end(), {"--scene", "scene.json"});
+        const auto expected = blue(first), found = blue(second);
+        ASSERT_EQ(expected.size(), found.size());
+        int different = 0;
+        for (size_t k = 0; k < found.size(); ++k)
+            different += std::abs(int(expected[k]) - int(found[k])) > 40;
+        EXPECT_LT(different, int(found.size()) / 50) << has_scene;
+    }
+}
+
+/// Seconds 0 to 1.7 are 52 frames at 30 a second, the rate of a cache that has none.
+TEST_F(RenderCommand, ShowsACacheOfIrregularTimesAtARate)
+{
+    const std::string archive = TOILE_SOURCE_DIR "/tests/export/alembic/samples/irregular.abc#/mover/square";
+    const Finished drawn = run_toile({"render", archive, "-o", "f", "--frames", "0:-1:17", "--width", "16",
+                                      "--height", "16", "--samples", "1", "--quiet"},
+                                     folder_);
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.errors;
+    EXPECT_TRUE(std::filesystem::exists(file("f/frame_0051.png")));
+}
+
+/// The number may be left out, so what follows may be the cache.
+TEST_F(RenderCommand, TakesACacheBehindTurntable)
+{
+    const std::vector<std::string> small{"--width", "16", "--height", "16", "--samples", "1", "--quiet"};
+    const auto around = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "render");
+        arguments.insert(arguments.end(), small.begin(), small.end());
+        return run_toile(arguments, folder_);
+    };
+    EXPECT_EQ(around({"--turntable", "now.obj", "-o", "a"}).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(file("a/frame_0095.png")));
+    EXPECT_EQ(around({"--turntable", "3", "now.obj", "-o", "b"}).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(file("b/frame_0002.png")));
+    EXPECT_FALSE(std::filesystem::exists(file("b/frame_0003.png")));
+    EXPECT_EQ(around({"now.obj", "-o", "c", "--turntable"}).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(file("c/frame_0095.png")));
+    const Finished nothing = around({"--turntable", "3"});
+    EXPECT_EQ(nothing.exit_code, 2);
+    EXPECT_THAT(nothing.errors, HasSubstr("inputs"));
+}
+
 } // namespace
 } // namespace toile::test

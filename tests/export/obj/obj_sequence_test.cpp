@@ -84,6 +84,29 @@ TEST_F(ObjSequenceTest, KeepsTheEarlierSequenceUntilTheNewOneIsComplete)
     EXPECT_EQ(read_cache(file("skirt.partial/skirt.obj")).frame_count(), 2);
 }
 
+/// Vertices come before faces: wherever a file is cut off, a face is missing or another one.
+TEST_F(ObjSequenceTest, RefusesAFrameThatIsCutOff)
+{
+    for (const std::string cut : {"skirt_0000.obj", "skirt_0001.obj"}) {
+        write_sequence(file("skirt.obj"), 2, 0.0);
+        const std::string whole = bytes_of(file(cut));
+        for (size_t size = 0; size + 1 < whole.size(); ++size) {
+            write_bytes(file(cut), whole.substr(0, size));
+            const std::string said = refusal([&] { read_cache(file("skirt.obj")).frame(1); });
+            EXPECT_THAT(said, HasSubstr(".obj")) << cut << " cut off at byte " << size;
+        }
+    }
+    write_sequence(file("skirt.obj"), 2, 0.0);
+    std::string other = bytes_of(file("skirt_0001.obj"));
+    other.resize(other.rfind("\nf"));
+    write_bytes(file("skirt_0001.obj"), other);
+    EXPECT_THAT(
+        refusal([&] { read_cache(file("skirt.obj")).frame(1); }),
+        HasSubstr("skirt_0001.obj: has 2 faces and " + file("skirt_0000.obj").string() +
+                  " 3; all frames of a sequence need the same mesh, and one of these is of another or "
+                  "cut off"));
+}
+
 TEST_F(ObjSequenceTest, NamesTheMissingAndTheMisfittingFrame)
 {
     write_sequence(file("skirt.obj"), 4, 0.0);

@@ -16,6 +16,7 @@ struct FrameFile {
     std::uint32_t points = 5, frames = 2, subframes = 1;
     double fps = 24.0, start = 10.0, metres = 1.0;
     std::uint32_t has_z_up = 0, is_clockwise = 0, scope = 1;
+    std::vector<double> times; ///< irregular ones
     std::vector<std::int32_t> counts{4, 3}, corners{0, 1, 2, 3, 0, 3, 4};
     std::vector<float> texture{0, 0, 1, 0, 1, 1};
     std::vector<std::int32_t> at{0, 1, 2, 0, 1, 2, 0};
@@ -31,6 +32,7 @@ struct FrameFile {
             append(bytes, number);
         for (const std::uint32_t number : {has_z_up, is_clockwise, scope})
             append(bytes, number);
+        append_array(bytes, times, 1);
         append_array(bytes, counts, 1);
         append_array(bytes, corners, 1);
         append_array(bytes, texture, 2);
@@ -142,6 +144,20 @@ TEST_F(UsdFramesTest, TakesTextureCoordinatesPerPoint)
     EXPECT_EQ(open(frames)->mesh.polygon_uvs, (std::vector<std::vector<int>>{{0, 1, 2, 1}, {0, 1, 0}}));
     frames.at[4] = 3; // there is no such one
     EXPECT_TRUE(open(frames)->mesh.polygon_uvs.empty());
+}
+
+TEST_F(UsdFramesTest, HasTimesInsteadOfARateWhereTheyAreIrregular)
+{
+    FrameFile frames;
+    frames.times = {0.5, 2.0};
+    const auto cache = open(frames);
+    EXPECT_EQ(cache->times, frames.times);
+    EXPECT_FALSE(cache->fps);
+    EXPECT_EQ(cache->frame(1), frame_positions(1, 5));
+    frames.times = {0.5};
+    EXPECT_THAT(said(frames), HasSubstr("has 1 times of 2 frames"));
+    frames.times = {0.5, 0.5};
+    EXPECT_THAT(said(frames), HasSubstr("sample 1 is at 0.5 s and the one before at 0.5 s"));
 }
 
 TEST_F(UsdFramesTest, IsRefusedWhereNumbersContradictEachOther)

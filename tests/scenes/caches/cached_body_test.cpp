@@ -137,6 +137,25 @@ TEST_F(CachedBody, MovesEvenlyAtAnyRateOfTheScene)
     }
 }
 
+/// tests/export/alembic/samples/make_samples.py says what is in it: heights of 1 to 4 m at 0.1, 0.2, 0.7 and
+/// 1.7 s, and places of 0, 4 and 5 m at 0, 0.4 and 1 s.
+TEST_F(CachedBody, HasSamplesAtTimesOfItsOwn)
+{
+    const std::string archive = TOILE_SOURCE_DIR "/tests/export/alembic/samples/irregular.abc";
+    SceneBody body(cached_avatar(archive + "#/mover/square"));
+    const auto corner = [&](double t) { return positions_at(body, t)[2]; };
+    EXPECT_LT((corner(0.0) - Vec3(1.0, 1.0, 0.0)).norm(), 1e-12);
+    EXPECT_LT((corner(0.15) - Vec3(2.5, 1.5, 0.0)).norm(), 1e-12);
+    EXPECT_LT((corner(0.45) - Vec3(1.0 + 4.0 + 0.25 / 3.0, 2.5, 0.0)).norm(), 1e-12);
+    EXPECT_LT((corner(1.2) - Vec3(6.0, 3.5, 0.0)).norm(), 1e-12);
+    EXPECT_LT((corner(9.0) - Vec3(6.0, 4.0, 0.0)).norm(), 1e-12);
+    scene::Avatar slow = cached_avatar(archive + "#/mover/square");
+    slow.start = 0.7;
+    slow.speed = 0.5;
+    SceneBody late(slow);
+    EXPECT_LT((positions_at(late, 1.0)[2] - Vec3(6.0, 3.5, 0.0)).norm(), 1e-12);
+}
+
 TEST_F(CachedBody, StartsRunsAndRepeatsAsAClip)
 {
     exports::CacheLayout layout;
@@ -362,13 +381,13 @@ TEST_F(CachedBody, IsRefusedIfItsMeshChanges)
     EXPECT_THAT(said, HasSubstr("all frames of a sequence need the same mesh"));
 }
 
-TEST_F(CachedBody, IsRefusedWithoutRegularTimes)
+TEST_F(CachedBody, IsRefusedWhereItsTimesDoNotIncrease)
 {
     write_tube(file("tube.mdd"), 3);
     write_obj(file("tube.obj"), tube());
     temporary_.write("tube.mdd", bytes_of(file("tube.mdd")).replace(8, 12, std::string(12, '\0')));
     EXPECT_THAT(complaint(R"("file": "tube.mdd", "mesh": "tube.obj")"),
-                HasSubstr("tube.mdd: its samples are not at regular times"));
+                HasSubstr("tube.mdd: sample 1 is at 0 s and the one before at 0 s; times must increase"));
 }
 
 TEST_F(CachedBody, NamesTheSampleThatIsNoNumber)
@@ -384,6 +403,35 @@ TEST_F(CachedBody, NamesTheSampleThatIsNoNumber)
         static_cast<void>(world.advance_frame());
     });
     EXPECT_THAT(said, HasSubstr("tube.pc2: vertex 7 of sample 1 is at (nan, "));
+}
+
+/// The scene has 8 frames at 32 a second: it ends at 0.219 s.
+TEST_F(CachedBody, WarnsWhereItStandsStillBeforeTheSceneEnds)
+{
+    exports::CacheLayout layout;
+    layout.fps = 32.0;
+    write_tube(file("short.abc"), 5, layout);
+    write_tube(file("whole.abc"), 8, layout);
+    write_tube(file("still.abc"), 1, layout);
+    const auto warnings = [&](const std::string& avatar) {
+        std::string all;
+        WorldOptions options;
+        options.warn = [&](const std::string& text) { all += text; };
+        const World world(scene(avatar), options);
+        return all;
+    };
+    EXPECT_THAT(warnings(R"("file": "short.abc")"),
+                HasSubstr("short.abc: ends at 0.125 s, and the scene at 0.219 s; it is held there"));
+    EXPECT_THAT(warnings(R"("file": "whole.abc", "start": 0.125)"), HasSubstr("ends at 0.0938 s"));
+    EXPECT_THAT(warnings(R"("file": "whole.abc", "preroll": {"hold": 1})"),
+                HasSubstr("does not move, for its preroll holds it for 1 s, and the scene ends at 0.219 s"));
+    EXPECT_THAT(warnings(R"("file": "still.abc", "preroll": {"hold": 0.1})"),
+                HasSubstr("still.abc: has one sample, so its preroll has no effect"));
+    for (const std::string meant :
+         {R"("file": "whole.abc")", R"("file": "short.abc", "loop": true)",
+          R"("file": "short.abc", "speed": 0)", R"("file": "short.abc", "speed": 0.5)",
+          R"("file": "short.abc", "preroll": {"hold": 0.1})", R"("file": "still.abc")"})
+        EXPECT_EQ(warnings(meant), "") << meant;
 }
 
 TEST_F(CachedBody, WarnsOfAUnitThatMakesItAGiant)

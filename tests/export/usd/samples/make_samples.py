@@ -1,4 +1,4 @@
-"""Writes moving_quad.usda and changing.usda beside this file with Pixar's library: pip install usd-core
+"""Writes moving_quad.usda, changing.usda, irregular.usda and turning.usda beside this file with Pixar's library: pip install usd-core
 
 moving_quad.usda: a quad and a triangle of five points, clockwise, under two transforms, in millimetres with Z up and
 30 frames a second. The outer transform moves by 1 unit along X a frame and is turned by 90 degrees about Z; the inner
@@ -7,6 +7,10 @@ Texture coordinates are stored per point, without indices; the triangle is the s
 does not move.
 
 changing.usda: a triangle that becomes another one, and one that a skeleton moves.
+
+irregular.usda: a square that grows by 1 m along Y a sample, at codes that are on no grid, of 24 a second.
+
+turning.usda: a square of two samples, at code 1 and at one that is on no grid; it turns once meanwhile.
 """
 
 import pathlib
@@ -68,4 +72,24 @@ skin.CreatePointsAttr(points(0))
 skin.CreateFaceVertexCountsAttr([3])
 skin.CreateFaceVertexIndicesAttr([0, 1, 2])
 UsdSkel.BindingAPI.Apply(skin.GetPrim()).CreateSkeletonRel().SetTargets(["/body/skeleton"])
+stage.Save()
+
+
+def square_stage(name, codes):
+    stage = new_stage(name)
+    stage.SetTimeCodesPerSecond(24)
+    mesh = UsdGeom.Mesh.Define(stage, "/square")
+    for height, code in enumerate(codes, 1):
+        mesh.CreatePointsAttr().Set([(0, 0, 0), (1, 0, 0), (1, height, 0), (0, height, 0)], code)
+    mesh.CreateFaceVertexCountsAttr([4])
+    mesh.CreateFaceVertexIndicesAttr([0, 1, 2, 3])
+    return stage, mesh
+
+
+square_stage("irregular.usda", [2.4, 4.8137, 16.8, 40.8])[0].Save()
+
+stage, mesh = square_stage("turning.usda", [1, 25.0137])
+turn = mesh.AddRotateZOp()
+turn.Set(0.0, 1)
+turn.Set(360.0, 25.0137)
 stage.Save()

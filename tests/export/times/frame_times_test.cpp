@@ -1,4 +1,4 @@
-#include "export/frame_times.h"
+#include "export/times/frame_times.h"
 
 #include <cmath>
 

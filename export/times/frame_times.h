@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace toile::exports {
@@ -24,5 +25,9 @@ struct FrameTimes {
 /// @return none for samples that are not at regular times
 std::optional<FrameTimes> frame_times(const std::vector<double>& times, double rounding,
                                       std::optional<double> fps);
+
+/// What is wrong with times of samples [s], which must increase and be within 1e9 s of zero: "sample 3 is at
+/// 0.5 s ..."; empty for good ones.
+std::string fault_of_times(const std::vector<double>& times);
 
 } // namespace toile::exports

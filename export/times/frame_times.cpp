@@ -1,7 +1,10 @@
-#include "export/frame_times.h"
+#include "export/times/frame_times.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "core/base/number.h"
+#include "core/time/sample_times.h"
 
 namespace toile::exports {
 
@@ -9,6 +12,9 @@ namespace {
 
 /// Relative error of rates and steps that is rounding in any case.
 constexpr double kRounding = 1e-6;
+
+/// Times beyond which none is meant [s]: Alembic's library fills up with larger ones.
+constexpr double kMaxTime = 1e9;
 
 /// Frames between a first sample and the frame that it means, in any case.
 constexpr double kStartRounding = 1e-4;
@@ -50,6 +56,19 @@ std::optional<FrameTimes> frame_times(const std::vector<double>& times, double r
         std::fabs(start - whole) <= kStartRounding + rounding / step + tolerance * std::fabs(start);
     found.start_frame = (is_whole ? whole : start) / found.subframes;
     return found;
+}
+
+std::string fault_of_times(const std::vector<double>& times)
+{
+    for (size_t k = 0; k < times.size(); ++k)
+        if (!(std::fabs(times[k]) <= kMaxTime))
+            return "sample " + std::to_string(k) + " is at " + short_text(times[k]) + " s";
+    const std::optional<int> wrong = first_not_increasing(times);
+    if (!wrong)
+        return "";
+    const size_t k = size_t(*wrong);
+    return "sample " + std::to_string(k) + " is at " + shortest_text(times[k]) + " s and the one before at " +
+           shortest_text(times[k - 1]) + " s; times must increase";
 }
 
 } // namespace toile::exports
