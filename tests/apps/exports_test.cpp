@@ -15,6 +15,7 @@ using namespace exports;
 
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 /// Two cloths and a ball that moves at constant speed; what a scene's export makes of them.
@@ -215,7 +216,8 @@ TEST_F(ExportsTest, FoldersAreCheckedByWhatTheirRunWrote)
 {
     const std::string disc = R"([{"file": "disc.pc2", "cloth": "disc"}])";
     simulate_well("e", disc,
-                  {"--export", "shot.abc", "--unit", "cm", "--up", "z", "--thickness", "--no-weld"});
+                  {"--export", "shot.abc", "--unit", "cm", "--up", "z", "--thickness", "--no-weld",
+                   "--attributes", "strain,gap,panel"});
     simulate_well("f", disc, {"--export", "disc.mdd", "--export-cloth", "disc", "--unit", "cm"});
     for (const std::string name : {"e", "f"}) {
         SCOPED_TRACE(name);
@@ -224,8 +226,12 @@ TEST_F(ExportsTest, FoldersAreCheckedByWhatTheirRunWrote)
             const Finished run = run_toile(check, folder_);
             EXPECT_EQ(run.exit_code, 0) << run.errors;
         }
-        EXPECT_THAT(bytes_of(file(name + "/certificate.json")),
-                    HasSubstr(name == "e" ? "shot.abc" : "disc.mdd"));
+        const std::string cache = name == "e" ? "shot.abc" : "disc.mdd";
+        EXPECT_THAT(bytes_of(file(name + "/certificate.json")), HasSubstr("\"" + cache + "\""));
+        std::vector<std::string> elsewhere = check;
+        elsewhere.insert(elsewhere.end(), {"-o", "elsewhere.json"});
+        EXPECT_EQ(run_toile(elsewhere, folder_).exit_code, 0);
+        EXPECT_THAT(bytes_of(file("elsewhere.json")), HasSubstr("\"file\": \"" + name + "/" + cache + "\""));
         std::filesystem::remove(file(name + "/certificate.json"));
         const Finished lost = run_toile(check, folder_);
         EXPECT_EQ(lost.exit_code, 2);
@@ -243,9 +249,11 @@ TEST_F(ExportsTest, CachesOfOneNameAreToldByTheirFolders)
 {
     simulate_well("n", R"([{"file": "a/c.pc2", "cloth": "sheet"},
                            {"file": "b/c.pc2", "cloth": "disc", "unit": "cm"}])");
-    const Finished run = run_toile({"check", "n/b/c.pc2", "--scene", "n.json", "-o", "b.json"}, folder_);
+    const std::filesystem::path certificate = file("n/b.json"); // not relative, as the cache is
+    const Finished run =
+        run_toile({"check", "n/b/c.pc2", "--scene", "n.json", "-o", certificate.string()}, folder_);
     EXPECT_EQ(run.exit_code, 0) << run.errors;
-    EXPECT_THAT(bytes_of(file("b.json")), HasSubstr("\"disc\""));
+    EXPECT_THAT(bytes_of(certificate), AllOf(HasSubstr("\"disc\""), HasSubstr("\"b/c.pc2\"")));
     std::filesystem::copy_file(file("n/b/c.pc2"), file("c.pc2"));
     const Finished unclear = run_toile({"check", "c.pc2", "--scene", "n.json"}, folder_);
     EXPECT_EQ(unclear.exit_code, 2);

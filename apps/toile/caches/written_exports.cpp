@@ -22,6 +22,14 @@ public:
             json_[key] = value;
     }
     template <typename T, typename... Rest>
+    requires std::is_enum_v<T>
+    void field(const char* key, const std::vector<T>& values, const Rest&...)
+    {
+        json_[key] = nlohmann::ordered_json::array();
+        for (const T value : values)
+            json_[key].push_back(scene_format::word_of(value));
+    }
+    template <typename T, typename... Rest>
     void field(const char* key, const std::optional<T>& value, const Rest&... rest)
     {
         if (value)
@@ -63,7 +71,7 @@ nlohmann::ordered_json json_of(const std::vector<scene::Export>& exports)
 
 std::optional<std::vector<scene::Export>> exports_in(const std::filesystem::path& certificate)
 {
-    if (!std::filesystem::is_regular_file(certificate))
+    if (std::error_code error; !std::filesystem::is_regular_file(certificate, error))
         return std::nullopt;
     const scene_format::Document document(certificate);
     const scene_format::Json json = document.parse(scene_format::read_document(certificate, "certificate"));

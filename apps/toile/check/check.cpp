@@ -95,6 +95,26 @@ void use_exports_of_run(const std::filesystem::path& folder, scenes::Scene& scen
     }
 }
 
+/// A path from the folder of a certificate.
+std::filesystem::path from_certificate(const std::filesystem::path& certificate,
+                                       const std::filesystem::path& file)
+{
+    const auto whole = [](const std::filesystem::path& path) {
+        return std::filesystem::absolute(path).lexically_normal();
+    };
+    return whole(file).lexically_proximate(whole(certificate).parent_path());
+}
+
+/// Exports of a run into `folder`, with their files from the folder of the certificate.
+std::vector<scene::Export> exports_in_folder(const std::filesystem::path& certificate,
+                                             const std::filesystem::path& folder,
+                                             std::vector<scene::Export> exports)
+{
+    for (scene::Export& entry : exports)
+        entry.file = from_certificate(certificate, folder / entry.file);
+    return exports;
+}
+
 /// The caches as exports of a run whose folder is that of the certificate.
 std::vector<scene::Export> exports_beside(const std::filesystem::path& certificate,
                                           const std::vector<ClothInCache>& caches,
@@ -103,8 +123,7 @@ std::vector<scene::Export> exports_beside(const std::filesystem::path& certifica
     std::vector<scene::Export> exports;
     for (const ClothInCache& cache : caches) {
         const std::string& name = names[size_t(cache.surface)];
-        const std::filesystem::path file =
-            exports::archive_of(cache.file).lexically_proximate(certificate.parent_path());
+        const std::filesystem::path file = from_certificate(certificate, exports::archive_of(cache.file));
         const auto same = std::find_if(exports.begin(), exports.end(),
                                        [&](const auto& other) { return other.file == file; });
         if (same != exports.end()) {
@@ -190,8 +209,8 @@ int check(const CheckOptions& options)
         is_folder ? caches_in(options.caches[0], scene)
                   : named_caches(options.caches, scene, options.cloth, options.unlisted.entry());
     const std::filesystem::path output = certificate_path_of(options);
-    if (!is_folder)
-        scene.exports = exports_beside(output, caches, surface_names(scene));
+    scene.exports = is_folder ? exports_in_folder(output, options.caches[0], exports_of(scene))
+                              : exports_beside(output, caches, surface_names(scene));
     require_safe_output(output, scene, caches);
     const InterruptGuard interrupt;
     const RunLog log(options.quiet);
