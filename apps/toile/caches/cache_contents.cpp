@@ -169,10 +169,10 @@ public:
             caches_.push_back(exports::read_cache(path_of(of_surface, in_file)));
         const exports::PointCache& first = caches_.front();
         axes_ = first.axes().value_or(axes_of(entry));
-        subframes_ = first.subframes() > 1 ? first.subframes() : entry.subframes;
+        times = first.times();
+        subframes_ = first.subframes() > 1 || !times.empty() ? first.subframes() : entry.subframes;
         frame_count = (first.frame_count() + subframes_ - 1) / subframes_;
         fps = first.fps();
-        times = first.times();
         if (fps && first.subframes() == 1)
             *fps /= subframes_;
         const double first_frame = first.start_frame() / (first.subframes() > 1 ? 1 : subframes_);

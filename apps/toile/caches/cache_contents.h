@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/toile/caches/cloth_attributes.h"
@@ -72,8 +74,8 @@ private:
 bool needs_avatars(const scene::Export& entry);
 
 /// Opens the cache of a cloth in the file of an export: whole frames, in the order of the cloth's
-/// file_mesh(), in metres with Y up. Its start frame
-/// counts from that of the entry, or is 0 if the entry has none.
+/// file_mesh(), in metres with Y up. Its start frame counts from that of the entry, or is 0 if the entry has
+/// none. Samples at irregular times are all there, with their times.
 /// @param file   the export's, or what it is named until it is complete; may name the cloth's mesh
 /// @param state  outlives the cache
 /// @throws InvalidInput as read_cache(), or if the file has other meshes

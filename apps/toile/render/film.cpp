@@ -56,6 +56,12 @@ std::vector<scenes::SceneBody> load_bodies(const scenes::Scene& scene)
     return scenes::make_bodies(scene);
 }
 
+exports::PointCache at_regular_times(const exports::PointCache& cache, double fps,
+                                     const std::filesystem::path& file)
+{
+    return cache.times().empty() ? cache : exports::resampled(cache, fps, file);
+}
+
 } // namespace
 
 Film Film::of_scene(const scenes::Scene& scene, const scenes::WorldOptions& options)
@@ -82,7 +88,8 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
     for (const std::filesystem::path& file : caches) {
         for (const ClothInCache& in_cache : cloths_of_cache(scene, file, cloth, unlisted)) {
             const scenes::ClothState& state = film.surfaces_[size_t(in_cache.surface)];
-            const exports::PointCache cache = open_cloth(file, in_cache.entry, state);
+            const exports::PointCache cache =
+                at_regular_times(open_cloth(file, in_cache.entry, state), scene.fps, file);
             require_same_points(cache, file, state.name, int(state.file_mesh().positions.size()));
             film.add_surface(in_cache.surface, cache, file);
         }
@@ -90,15 +97,14 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
     return film;
 }
 
-Film Film::of_obj_caches(const std::vector<std::filesystem::path>& caches, const exports::Axes& axes)
+Film Film::of_caches_with_faces(const std::vector<std::filesystem::path>& caches, const exports::Axes& axes)
 {
     Film film;
     film.settings_.render.ground.reset();
     for (const std::filesystem::path& file : caches)
         for (const std::filesystem::path& mesh : exports::meshes_of_cache(file)) {
-            exports::PointCache cache = exports::read_cache(mesh);
-            if (!cache.times().empty())
-                cache = exports::resampled(cache, film.settings_.fps, mesh);
+            const exports::PointCache cache =
+                at_regular_times(exports::read_cache(mesh), film.settings_.fps, mesh);
             if (cache.mesh() == nullptr)
                 throw InvalidInput(file.string() +
                                    ": has points without faces; give --scene with the scene that it " +

@@ -23,16 +23,18 @@ class Film {
 public:
     /// The start state of a scene.
     static Film of_scene(const scenes::Scene& scene, const scenes::WorldOptions& options);
-    /// Caches of a scene's cloths and solids among its avatars; surfaces without a cache are omitted.
+    /// Caches of a scene's cloths and solids among its avatars; surfaces without a cache are omitted. Those
+    /// of irregular times are resampled at the scene's rate.
     /// @param cloth     cloth of a single cache; empty: from its name
     /// @param unlisted  keys of caches that the scene does not export
     static Film of_caches(const scenes::Scene& scene, const std::vector<std::filesystem::path>& caches,
                           const std::string& cloth, const scene::Export& unlisted = {});
-    /// Caches that contain their faces. Those of irregular times are resampled at the rate of a scene without
-    /// fps.
+    /// Caches that contain their faces. Those of irregular times are resampled at the rate of the cache
+    /// before, the first at that of a scene without fps.
     /// @param axes  of caches that do not say theirs
     /// @throws InvalidInput for a cache without faces.
-    static Film of_obj_caches(const std::vector<std::filesystem::path>& caches, const exports::Axes& axes);
+    static Film of_caches_with_faces(const std::vector<std::filesystem::path>& caches,
+                                     const exports::Axes& axes);
 
     Film(Film&&) = default;
     Film& operator=(Film&&) = default;

@@ -72,9 +72,10 @@ Film open_film(const RenderOptions& options, SetupProgress& progress)
     if (!options.cloth.empty() && options.inputs.size() > 1)
         throw InvalidInput("--cloth: names one cloth, but there are " +
                            std::to_string(options.inputs.size()) + " caches; leave it out");
-    return options.scene.empty() ? Film::of_obj_caches(options.inputs, axes_of(options.unlisted.entry()))
-                                 : Film::of_caches(scenes::read_scene(options.scene), options.inputs,
-                                                   options.cloth, options.unlisted.entry());
+    return options.scene.empty()
+               ? Film::of_caches_with_faces(options.inputs, axes_of(options.unlisted.entry()))
+               : Film::of_caches(scenes::read_scene(options.scene), options.inputs, options.cloth,
+                                 options.unlisted.entry());
 }
 
 void replace_if_given(int& value, int given, const char* option)
@@ -86,7 +87,6 @@ void replace_if_given(int& value, int given, const char* option)
         value = given;
 }
 
-/// Frames to render: the last for a single picture, all for a film, a sheet or a folder.
 Film painted_film(const RenderOptions& options)
 {
     SetupProgress progress(options.quiet);
@@ -96,6 +96,7 @@ Film painted_film(const RenderOptions& options)
     return film;
 }
 
+/// Frames to render: the last for a single picture, all for a film, a sheet or a folder.
 std::vector<int> chosen_frames(const RenderOptions& options, const Film& film, bool is_single)
 {
     const std::string text = options.frames.empty() && is_single ? "-1" : options.frames;

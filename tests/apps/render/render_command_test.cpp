@@ -208,15 +208,27 @@ TEST_F(RenderCommand, ReadsCachesInAnotherUnitAndAxis)
     }
 }
 
-/// Seconds 0 to 1.7 are 52 frames at 30 a second, the rate of a cache that has none.
+/// Seconds 0 to 1.7 are 52 frames at 30 a second, the rate of a cache that has none, and 35 at the
+/// scene's 20.
 TEST_F(RenderCommand, ShowsACacheOfIrregularTimesAtARate)
 {
     const std::string archive = TOILE_SOURCE_DIR "/tests/export/alembic/samples/irregular.abc#/mover/square";
-    const Finished drawn = run_toile({"render", archive, "-o", "f", "--frames", "0:-1:17", "--width", "16",
-                                      "--height", "16", "--samples", "1", "--quiet"},
-                                     folder_);
-    EXPECT_EQ(drawn.exit_code, 0) << drawn.errors;
-    EXPECT_TRUE(std::filesystem::exists(file("f/frame_0051.png")));
+    const auto draw = [&](const std::string& folder, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"render",    archive,   "-o",     folder,     "--frames",
+                                           "0:-1:17",   "--width", "16",     "--height", "16",
+                                           "--samples", "1",       "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Finished drawn = run_toile(arguments, folder_);
+        EXPECT_EQ(drawn.exit_code, 0) << drawn.errors;
+    };
+    draw("alone", {});
+    EXPECT_TRUE(std::filesystem::exists(file("alone/frame_0051.png")));
+    temporary_.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    temporary_.write("square.json", R"({"toile": 1, "frames": 35, "fps": 20, "cloths": [
+        {"name": "square", "file": "square.obj"}],
+        "export": [{"file": "irregular.abc", "subframes": 4}]})");
+    draw("with_scene", {"--scene", "square.json"});
+    EXPECT_TRUE(std::filesystem::exists(file("with_scene/frame_0034.png")));
 }
 
 /// The number may be left out, so what follows may be the cache.
