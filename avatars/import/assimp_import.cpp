@@ -218,10 +218,14 @@ private:
             texture.image = appearance.add_image_file(source_, name.C_Str(), place);
             return texture;
         }
-        const auto* bytes = reinterpret_cast<const unsigned char*>(embedded->pcData);
-        const size_t size = embedded->mHeight == 0 ? embedded->mWidth : 0; // else texels, which no FBX has
         texture.image = int(appearance.images.size());
-        appearance.images.push_back({place, {bytes, bytes + size}});
+        StoredImage& image = appearance.images.emplace_back(StoredImage{place, {}});
+        const auto* bytes = reinterpret_cast<const unsigned char*>(embedded->pcData);
+        const bool is_file = embedded->mHeight == 0; // else its texels
+        if (is_file && bytes != nullptr)
+            image.bytes.assign(bytes, bytes + embedded->mWidth);
+        if (image.bytes.empty())
+            appearance.left_out.push_back(place + ": its image is neither PNG nor JPEG");
         return texture;
     }
 
@@ -229,7 +233,8 @@ private:
     void add_corners(const AddedTriangle& triangle, int white, Appearance& appearance) const
     {
         const auto [first_vertex, mesh] = *std::prev(mesh_from_.upper_bound(triangle.corners[0]));
-        const SurfaceMaterial& material = appearance.materials[mesh->mMaterialIndex];
+        const int index = mesh->mMaterialIndex < scene_.mNumMaterials ? int(mesh->mMaterialIndex) : -1;
+        const SurfaceMaterial material = index < 0 ? SurfaceMaterial{} : appearance.materials[size_t(index)];
         // Colours of vertices under a texture are masks of other programs.
         const bool has_colours = mesh->HasVertexColors(0) && !material.texture;
         CornerCoordinates coordinates;
@@ -245,7 +250,7 @@ private:
                 colours[k] = Eigen::Vector4d(colour.r, colour.g, colour.b, colour.a);
             }
         }
-        appearance.material.push_back(has_colours && !material.colour ? white : int(mesh->mMaterialIndex));
+        appearance.material.push_back(has_colours && !material.colour ? white : index);
         appearance.coordinates.push_back(coordinates);
         appearance.colours.push_back(colours);
     }

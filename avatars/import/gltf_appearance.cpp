@@ -244,8 +244,12 @@ private:
     std::vector<unsigned char> content(const GltfValue& image)
     {
         try {
-            if (const auto uri = image.find("uri"))
-                return file_.content_of(*uri);
+            if (const auto uri = image.find("uri")) {
+                std::vector<unsigned char> bytes = file_.content_of(*uri);
+                if (bytes.empty())
+                    uri->refuse("is empty");
+                return bytes;
+            }
             const GltfValue views = file_.list("bufferViews");
             const Bytes bytes = file_.view(views[image.at("bufferView").index(views.size(), "bufferViews")]);
             return {bytes.begin(), bytes.end()};

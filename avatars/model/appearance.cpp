@@ -49,19 +49,21 @@ int Appearance::add_image_file(const std::filesystem::path& model, const std::st
     std::string slashed = name;
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
     const std::filesystem::path path(slashed);
+    const std::array candidates{model.parent_path() / path, model.parent_path() / path.filename()};
+    const auto file = std::find_if(candidates.begin(), candidates.end(), [](const auto& candidate) {
+        std::error_code unreadable;
+        return std::filesystem::is_regular_file(candidate, unreadable);
+    });
+    const bool is_there = file != candidates.end();
     StoredImage image{place, {}};
-    std::error_code unreadable;
-    for (const std::filesystem::path& file :
-         {model.parent_path() / path, model.parent_path() / path.filename()}) {
-        if (!std::filesystem::is_regular_file(file, unreadable))
-            continue;
-        std::ifstream stream(file, std::ios::binary);
-        image = {file.string(), {std::istreambuf_iterator<char>(stream), {}}};
-        files.push_back(file);
-        break;
+    if (is_there) {
+        std::ifstream stream(*file, std::ios::binary);
+        image = {file->string(), {std::istreambuf_iterator<char>(stream), {}}};
+        files.push_back(*file);
     }
     if (image.bytes.empty())
-        left_out.push_back(place + ": image \"" + name + "\": no such file");
+        left_out.push_back(place + ": image \"" + name +
+                           (is_there ? "\": is empty, or can't be read" : "\": no such file"));
     images.push_back(std::move(image));
     return int(images.size()) - 1;
 }

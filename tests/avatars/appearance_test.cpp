@@ -162,6 +162,8 @@ TEST(Appearance, TellsWhatItLeavesOut)
     GltfSample missing = textured_triangle();
     missing.at("/images/0/uri") = "no.png";
     EXPECT_THAT(left_out(missing), HasSubstr("images[0].uri = \"no.png\": no such file beside this one"));
+    missing.at("/images/0/uri") = "data:image/png;base64,";
+    EXPECT_THAT(left_out(missing), HasSubstr("images[0].uri = \"data:image/png;base64,\": is empty"));
     GltfSample compressed = textured_triangle();
     compressed.json["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}};
     EXPECT_THAT(left_out(compressed), HasSubstr("textures[0] names no PNG or JPEG image"));
@@ -184,8 +186,10 @@ TEST(Appearance, ReadsMaterialsOfObj)
 {
     const TemporaryFolder folder;
     folder.write("skin.png", "\x01\x02");
+    folder.write("empty.png", "");
     folder.write("body.mtl", "newmtl shirt\r\nKd 0 0 0\r\nmap_Kd -clamp on -s 1 1 1 C:\\art\\skin.png\r\n"
-                             "newmtl eyes\nKd 0.1 0.2 0.3\nnewmtl hat\nmap_Kd lost.png\n");
+                             "newmtl eyes\nKd 0.1 0.2 0.3\nnewmtl hat\nmap_Kd lost.png\n"
+                             "newmtl shoe\nmap_Kd empty.png\n");
     const auto file =
         folder.write("body.obj", "mtllib body.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
                                  "vt 0.25 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -197,8 +201,11 @@ TEST(Appearance, ReadsMaterialsOfObj)
     ASSERT_TRUE(appearance.materials[0].texture);
     EXPECT_THAT(appearance.materials[0].texture->wrap, ElementsAre(Wrap::Clamp, Wrap::Clamp));
     EXPECT_THAT(appearance.images[0].bytes, ElementsAre(1, 2));
-    EXPECT_THAT(appearance.files, ElementsAre(folder.path() / "body.mtl", folder.path() / "skin.png"));
-    EXPECT_THAT(appearance.left_out, ElementsAre(HasSubstr("body.mtl:7: image \"lost.png\": no such file")));
+    EXPECT_THAT(appearance.files, ElementsAre(folder.path() / "body.mtl", folder.path() / "skin.png",
+                                              folder.path() / "empty.png"));
+    EXPECT_THAT(appearance.left_out,
+                ElementsAre(HasSubstr("body.mtl:7: image \"lost.png\": no such file"),
+                            HasSubstr("body.mtl:9: image \"empty.png\": is empty, or can't be read")));
     ASSERT_EQ(appearance.triangles[0][0], 0);
     EXPECT_EQ(appearance.coordinates[0][0], Vec2(0.25, 1.0)); // v of OBJ points up
 }

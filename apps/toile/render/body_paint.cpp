@@ -20,8 +20,9 @@ std::shared_ptr<const preview::Paint> paint_of(const scenes::SceneBody& body,
         if (appearance.is_empty() && appearance.left_out.empty())
             return nullptr;
         auto paint = std::make_shared<preview::Paint>(std::move(appearance), linear_color(settings.color));
+        const std::string consequence = "; " + name + " is drawn without it";
         for (const std::string& fact : paint->appearance().left_out)
-            warn(fact + "; " + name + " is drawn without it");
+            warn(fact + consequence);
         return paint;
     } catch (const InvalidInput& error) {
         warn(error.what() + ("; " + name + " is drawn in its color"));
