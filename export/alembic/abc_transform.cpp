@@ -73,9 +73,7 @@ AbcTransform::AbcTransform(const AbcReader& reader, int object) : reader_(reader
                 count += size_t(value_count(operation));
             }
             added.values = *values;
-            added.times = reader.times_of(*values, at);
-            if (values->last_changed == 0)
-                added.times.resize(1);
+            added.times = values->last_changed > 0 ? reader.times_of(*values, at) : std::vector<double>{0.0};
             if (values->type != int(AbcType::Float64) ||
                 reader.sample(*values, 0).size() != sizeof(double) * count)
                 reader.refuse(at, "its transform has not " + std::to_string(count) +

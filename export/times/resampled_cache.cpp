@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/time/sample_times.h"
 #include "export/times/frame_times.h"
 
@@ -27,8 +28,8 @@ public:
         first_ = std::floor(cache_.times().front() * rate + kRounding);
         const double last = std::ceil(cache_.times().back() * rate - kRounding);
         if (!(last - first_ < kMaxFrames))
-            throw InvalidInput(file.string() + ": lasts " + std::to_string(last - first_) + " frames at " +
-                               std::to_string(rate) + " a second; " + std::to_string(int(kMaxFrames)) +
+            throw InvalidInput(file.string() + ": lasts " + short_text(last - first_) + " frames at " +
+                               short_text(rate) + " a second; " + std::to_string(int(kMaxFrames)) +
                                " are the most");
         vertex_count = cache_.vertex_count();
         frame_count = int(last - first_) + 1;
