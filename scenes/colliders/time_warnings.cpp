@@ -17,7 +17,7 @@ std::string warning_of(const scene::Avatar& settings, const SkinnedCollider& bod
 {
     const scene::Preroll& preroll = settings.preroll;
     if (body.avatar().is_static())
-        return preroll.hold > 0.0 || preroll.ease > 0.0 ? "has one sample, so its preroll has no effect" : "";
+        return preroll.hold > 0.0 || preroll.ease > 0.0 ? "shows one pose, so its preroll has no effect" : "";
     if (preroll.hold >= scene_end && scene_end > 0.0)
         return "does not move, for its preroll holds it for " + seconds(preroll.hold) +
                ", and the scene ends at " + seconds(scene_end);

@@ -1,5 +1,4 @@
 #include "scenes/world/world.h"
-#include "scenes/colliders/time_warnings.h"
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +12,7 @@
 #include "core/base/long_work.h"
 #include "core/compute/cuda/runtime/device.h"
 #include "core/compute/parallel.h"
+#include "scenes/colliders/time_warnings.h"
 #include "scenes/format/validate.h"
 #include "scenes/method/solver_choice.h"
 #include "scenes/world/cloth_group.h"

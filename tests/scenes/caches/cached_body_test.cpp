@@ -426,7 +426,7 @@ TEST_F(CachedBody, WarnsWhereItStandsStillBeforeTheSceneEnds)
     EXPECT_THAT(warnings(R"("file": "whole.abc", "preroll": {"hold": 1})"),
                 HasSubstr("does not move, for its preroll holds it for 1 s, and the scene ends at 0.219 s"));
     EXPECT_THAT(warnings(R"("file": "still.abc", "preroll": {"hold": 0.1})"),
-                HasSubstr("still.abc: has one sample, so its preroll has no effect"));
+                HasSubstr("still.abc: shows one pose, so its preroll has no effect"));
     for (const std::string meant :
          {R"("file": "whole.abc")", R"("file": "short.abc", "loop": true)",
           R"("file": "short.abc", "speed": 0)", R"("file": "short.abc", "speed": 0.5)",
