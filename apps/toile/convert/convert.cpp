@@ -239,6 +239,12 @@ int subframes_of(const ConvertOptions& options, const exports::PointCache& cache
     return subframes;
 }
 
+/// Samples of the input from one that is written to the next.
+int samples_apart(const exports::PointCache& cache, const exports::CacheLayout& layout)
+{
+    return cache.subframes() / layout.subframes;
+}
+
 /// Thickness of each vertex in the units written; empty: none.
 std::vector<double> thickness_of(const ConvertOptions& options, const exports::CacheMesh& mesh)
 {
@@ -271,7 +277,7 @@ exports::CacheLayout layout_of(const ConvertOptions& options, std::vector<InputM
         layout.meshes.insert(layout.meshes.end(), written.begin(), written.end());
     }
     layout.subframes = subframes_of(options, first);
-    layout.frame_count = (first.frame_count() - 1) * layout.subframes / first.subframes() + 1;
+    layout.frame_count = (first.frame_count() - 1) / samples_apart(first, layout) + 1;
     layout.fps = fps_of(options, first);
     layout.start_frame = options.start_frame.value_or(first.start_frame());
     layout.axes = options.to;
@@ -305,10 +311,10 @@ int convert(const ConvertOptions& options)
     const std::unique_ptr<exports::CacheWriter> writer = exports::make_cache_writer(options.output, layout);
     require_safe_output(options, layout);
     const exports::FolderLock lock(options.output.parent_path());
-    const int step = meshes.front().cache.subframes() / layout.subframes;
+    const int apart = samples_apart(meshes.front().cache, layout);
     Progress progress("convert", layout.frame_count, options.quiet);
     for (int k = 0; k < layout.frame_count; ++k) {
-        writer->write(k, positions_of(options, meshes, k * step));
+        writer->write(k, positions_of(options, meshes, k * apart));
         progress.update(k + 1);
     }
     writer->complete();
@@ -347,7 +353,7 @@ Command add_convert(CLI::App& parser)
     add.add_flag("--no-velocities", options->no_velocities, "Store no velocities (.abc, .usda, .usdc, .pvd)");
     add.add_option("--thickness", options->thickness, "Close each mesh with this thickness [m]");
     add.add_flag("--no-weld", options->no_weld,
-                 "Write one mesh for each group of faces (.abc, .usda, .usdc)");
+                 "Write one mesh for each group of faces (.abc, .usda, .usdc, .glb)");
     add.add_option("--subframes", options->subframes,
                    "Samples per frame, fewer than the cache's; without it the cache's");
     add.add_flag("--avatars", options->avatars)->group("");
