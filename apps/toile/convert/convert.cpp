@@ -253,8 +253,7 @@ std::vector<double> thickness_of(const ConvertOptions& options, const exports::C
     if (mesh.faces.polygons.empty())
         throw InvalidInput("--thickness: " + options.input.string() +
                            " has no faces; name the mesh that it plays on with --mesh");
-    const double metre = options.to.unit == "cm" ? 100.0 : 1.0;
-    return std::vector<double>(size_t(mesh.vertex_count), *options.thickness * metre);
+    return std::vector<double>(size_t(mesh.vertex_count), *options.thickness / options.to.metres_per_unit());
 }
 
 /// Also makes the meshes that the input becomes.
