@@ -26,9 +26,8 @@ OgawaNode add_object(OgawaFile& file, OgawaNode properties, const std::vector<Ab
 AbcObject add_transform(OgawaFile& file, const std::string& name, const std::vector<AbcObject>& children);
 
 /// A mesh of an Alembic archive that moves with constant topology: a transform /NAME, for programs that show
-/// no mesh without one, above the mesh NAMEShape, with a face set for each group, and attributes
-/// and panels among the .arbGeomParams. Faces are clockwise in
-/// Alembic, and so is all that is stored per corner.
+/// no mesh without one, above the mesh NAMEShape, with a face set for each group, and attributes and panels
+/// among the .arbGeomParams. Faces are clockwise in Alembic, and so is all that is stored per corner.
 class AbcMesh {
 public:
     struct Options {
