@@ -29,7 +29,9 @@ struct Bar {
         : block(make_block({length, kSide, kSide},
                            {int(std::lround(std::max(length / kSide, 1.0))) * across, across, across})),
           rest(std::make_shared<RestTets>(rest_tets(block.mesh, "bar"))),
-          statics(std::make_shared<ElasticSolid>(rest, ElasticMaterial{kYoung, poisson}.lame("bar")),
+          statics(std::make_shared<ElasticSolid>(
+                      rest, std::vector<Lame>(block.mesh.tets.size(),
+                                              ElasticMaterial{kYoung, poisson}.lame("bar"))),
                   block.mesh.positions)
     {
     }

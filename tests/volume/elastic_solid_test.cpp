@@ -22,7 +22,7 @@ const ElasticMaterial kMaterial{1e4, 0.3};
 std::shared_ptr<ElasticSolid> make_solid(const Block& block, const ElasticMaterial& material)
 {
     return std::make_shared<ElasticSolid>(std::make_shared<RestTets>(rest_tets(block.mesh, "block")),
-                                          material.lame("block"));
+                                          std::vector<Lame>(block.mesh.tets.size(), material.lame("block")));
 }
 
 std::vector<Vec3> shaken(std::vector<Vec3> x, double size, unsigned seed = 1)

@@ -5,10 +5,12 @@
 namespace toile::volume {
 
 /// Lame's constants [Pa].
-struct Lame {
-    double mu = 0.0;     ///< shear modulus
-    double lambda = 0.0; ///< 0 for a Poisson's ratio of 0
+template <typename T>
+struct LameOf {
+    T mu;     ///< shear modulus
+    T lambda; ///< 0 for a Poisson's ratio of 0
 };
+using Lame = LameOf<double>;
 
 /// Derivatives of the energy per volume by the singular values of F; see ElasticSolid.
 template <typename T>
@@ -26,9 +28,10 @@ struct SingularValueEnergy {
 constexpr double kLeastTwist = 1e-3;
 
 template <typename T>
-TOILE_HD SingularValueEnergy<T> singular_value_energy(const Vec3Of<T>& s, const Lame& lame)
+TOILE_HD SingularValueEnergy<T> singular_value_energy(const Vec3Of<T>& s, const LameOf<T>& lame)
 {
-    const T mu(lame.mu), lambda(lame.lambda), one(1.0), two(2.0), least(kLeastTwist);
+    const T &mu = lame.mu, &lambda = lame.lambda;
+    const T one(1.0), two(2.0), least(kLeastTwist);
     const T excess = s[0] * s[1] * s[2] - one; // of volume
     SingularValueEnergy<T> W;
     W.energy = T(0.5) * lambda * excess * excess;
@@ -57,7 +60,7 @@ struct ElasticResponse {
 /// @param volume    at rest [m^3]
 template <typename T>
 TOILE_HD ElasticResponse<T> elastic_response(const Mat3Of<T>& F, const Mat3Of<T>& rest_inv, const T& volume,
-                                             const Lame& lame)
+                                             const LameOf<T>& lame)
 {
     const Svd<T> svd = singular_values<T>(F);
     const SingularValueEnergy<T> W = singular_value_energy<T>(svd.sigma, lame);
@@ -99,7 +102,7 @@ TOILE_HD Mat3Of<T> positive_part(const Mat3Of<T>& A)
 }
 
 template <typename T>
-TOILE_HD ElasticCurvature<T> elastic_curvature(const Mat3Of<T>& F, const Lame& lame, bool is_projected)
+TOILE_HD ElasticCurvature<T> elastic_curvature(const Mat3Of<T>& F, const LameOf<T>& lame, bool is_projected)
 {
     const T zero(0.0), half(0.5);
     const Svd<T> svd = singular_values<T>(F);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
 
@@ -19,15 +20,18 @@ Lame ElasticMaterial::lame(const std::string& source) const
     return {young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))};
 }
 
-ElasticSolid::ElasticSolid(std::shared_ptr<const RestTets> rest, const Lame& lame)
-    : rest_(std::move(rest)), lame_(lame)
+ElasticSolid::ElasticSolid(std::shared_ptr<const RestTets> rest, std::vector<Lame> lame)
+    : rest_(std::move(rest)), lame_(std::move(lame))
 {
     const int tets = rest_->tet_count();
+    TOILE_ASSERT(int(lame_.size()) == tets);
     for (int first = 0; first < tets; first += kLanes) {
         Block& block = blocks_.emplace_back();
         for (int k = 0; k < 9; ++k)
             block.rest_inv(k) = gather(first, tets, [&](int t) { return rest_->edges_inv[t](k); });
         block.volume = gather(first, tets, [&](int t) { return rest_->volumes[t]; });
+        block.lame.mu = gather(first, tets, [&](int t) { return lame_[t].mu; });
+        block.lame.lambda = gather(first, tets, [&](int t) { return lame_[t].lambda; });
     }
     corner_gradient_.resize(tets);
     energy_.resize(tets);
@@ -40,7 +44,7 @@ void ElasticSolid::add_hessian(Triplets& H) const
         hats.bottomRows<3>() = rest_->edges_inv[t];
         hats.row(0) = -hats.bottomRows<3>().colwise().sum();
         const Eigen::Matrix4d block =
-            rest_->volumes[t] * (2.0 * lame_.mu + lame_.lambda) * hats * hats.transpose();
+            rest_->volumes[t] * (2.0 * lame_[t].mu + lame_[t].lambda) * hats * hats.transpose();
         for (int i = 0; i < 4; ++i)
             for (int j = 0; j < 4; ++j)
                 H.emplace_back(rest_->tets[t][i], rest_->tets[t][j], block(i, j));
@@ -65,8 +69,9 @@ double ElasticSolid::add_gradient(View<const Vec3> x, View<Vec3> gradient)
 {
     const int tets = rest_->tet_count();
     parallel_for(kCpu, "elastic/project", int(blocks_.size()), [&](int block) {
-        const ElasticResponse<Lanes> response = elastic_response<Lanes>(
-            deformation_gradients(x, block), blocks_[block].rest_inv, blocks_[block].volume, lame_);
+        const ElasticResponse<Lanes> response =
+            elastic_response<Lanes>(deformation_gradients(x, block), blocks_[block].rest_inv,
+                                    blocks_[block].volume, blocks_[block].lame);
         const int first = block * kLanes, lanes = std::min(kLanes, tets - first);
         for (int k = 0; k < lanes; ++k) {
             energy_[first + k] = response.energy[k];
@@ -112,8 +117,8 @@ void ElasticSolid::add_curvature(View<const Vec3> x, Definiteness definiteness, 
     const int tets = rest_->tet_count();
     curvature_.resize(tets);
     parallel_for(kCpu, "elastic/curvature", int(blocks_.size()), [&](int block) {
-        const ElasticCurvature<Lanes> H = elastic_curvature<Lanes>(deformation_gradients(x, block), lame_,
-                                                                   definiteness == Definiteness::Projected);
+        const ElasticCurvature<Lanes> H = elastic_curvature<Lanes>(
+            deformation_gradients(x, block), blocks_[block].lame, definiteness == Definiteness::Projected);
         const int first = block * kLanes, lanes = std::min(kLanes, tets - first);
         for (int k = 0; k < lanes; ++k) {
             ElasticCurvature<double>& one = curvature_[first + k];

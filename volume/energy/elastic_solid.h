@@ -28,7 +28,8 @@ struct ElasticMaterial {
 /// nothing; a tetrahedron that is turned inside out has a finite energy, which turns it back.
 class ElasticSolid : public Energy {
 public:
-    ElasticSolid(std::shared_ptr<const RestTets> rest, const Lame& lame);
+    /// @param lame  [tets]
+    ElasticSolid(std::shared_ptr<const RestTets> rest, std::vector<Lame> lame);
 
     std::string_view name() const override { return "volume/elastic"; }
 
@@ -42,15 +43,16 @@ public:
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
 
 private:
-    /// Inverse rest edge matrix and volume of a block of eight tetrahedra.
+    /// Eight tetrahedra.
     struct Block {
-        Mat3Of<Lanes> rest_inv;
-        Lanes volume;
+        Mat3Of<Lanes> rest_inv; ///< inverse rest edge matrix [1/m]
+        Lanes volume;           ///< [m^3]
+        LameOf<Lanes> lame;
     };
     Mat3Of<Lanes> deformation_gradients(View<const Vec3> x, int block) const;
 
     std::shared_ptr<const RestTets> rest_;
-    Lame lame_;
+    std::vector<Lame> lame_; ///< [tets]
     std::vector<Block> blocks_;
     std::vector<Mat3> corner_gradient_;               ///< [tets] scratch: columns dW/dx1, dW/dx2, dW/dx3
     std::vector<double> energy_;                      ///< [tets] scratch

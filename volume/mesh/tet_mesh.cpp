@@ -48,6 +48,26 @@ std::vector<Face> sorted_faces(View<const Tet> tets)
     return faces;
 }
 
+/// Removes vertices that no element uses, and numbers those of the elements anew.
+template <typename Element>
+void keep_used(std::vector<Vec3>& positions, std::vector<Element>& elements)
+{
+    std::vector<int> number(positions.size(), -1);
+    for (const Element& element : elements)
+        for (const int v : element)
+            number[v] = 0;
+    int used = 0;
+    for (size_t v = 0; v < number.size(); ++v)
+        if (number[v] == 0) {
+            positions[used] = positions[v];
+            number[v] = used++;
+        }
+    positions.resize(used);
+    for (Element& element : elements)
+        for (int& v : element)
+            v = number[v];
+}
+
 } // namespace
 
 double volume_of(const Tet& tet, View<const Vec3> x)
@@ -88,22 +108,12 @@ std::vector<Triangle> boundary_triangles(View<const Tet> tets)
     return boundary;
 }
 
+void remove_unused_vertices(TetMesh& mesh) { keep_used(mesh.positions, mesh.tets); }
+
 TriangleMesh boundary_surface(const TetMesh& mesh)
 {
-    TriangleMesh surface;
-    surface.triangles = boundary_triangles(mesh.tets);
-    std::vector<int> number(mesh.positions.size(), -1);
-    for (const Triangle& face : surface.triangles)
-        for (const int v : face)
-            number[v] = 0;
-    for (size_t v = 0; v < number.size(); ++v)
-        if (number[v] == 0) {
-            number[v] = surface.vertex_count();
-            surface.positions.push_back(mesh.positions[v]);
-        }
-    for (Triangle& face : surface.triangles)
-        for (int& v : face)
-            v = number[v];
+    TriangleMesh surface{mesh.positions, boundary_triangles(mesh.tets)};
+    keep_used(surface.positions, surface.triangles);
     return surface;
 }
 

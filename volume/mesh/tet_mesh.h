@@ -31,6 +31,9 @@ double volume_of(const Tet& tet, View<const Vec3> x);
 ///         face
 void orient(TetMesh& mesh, const std::function<std::string(int tet)>& name_of, const std::string& source);
 
+/// Removes vertices that no tetrahedron uses; the others keep their order.
+void remove_unused_vertices(TetMesh& mesh);
+
 /// Triangles that belong to only one tetrahedron, counter-clockwise seen from outside.
 std::vector<Triangle> boundary_triangles(View<const Tet> tets);
 

@@ -49,6 +49,7 @@ public:
                    " cells is a tetrahedron (10); a surface is read as .obj");
         orient(
             mesh_, [this](int t) { return "cell " + std::to_string(cell_of_tet_[t]); }, source_);
+        remove_unused_vertices(mesh_);
         return std::move(mesh_);
     }
 
