@@ -10,7 +10,7 @@ install(TARGETS toile RUNTIME)
 install(TARGETS toile-bench RUNTIME OPTIONAL)
 
 # The libraries below toile::toile; each is toile::<name>, as in this build.
-set(libraries core quadrature2d volume garment pattern_mesh collision collision_check collision_repair collision_skin avatars
+set(libraries core quadrature2d volume volume_meshing garment pattern_mesh collision collision_check collision_repair collision_skin avatars
     export scene_format garment_format scenes drape)
 foreach(name IN LISTS libraries ITEMS abi)
     set_property(TARGET toile_${name} PROPERTY EXPORT_NAME ${name})

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/volume/blocks.h"
 
 namespace toile::test {
 
@@ -103,6 +104,16 @@ TEST_F(MshTest, ReadsVersion4AsBytes)
                     point(1, 0, 0) + point(0, 1, 0) + point(0, 0, 1) + point(1, 1, 1) +
                     "\n$EndNodes\n$Elements\n" + sizes(2, 3, 1, 3) + bytes(2, 0, 2) + sizes(1, 1, 1, 2, 3) +
                     bytes(3, 0, 4) + sizes(2, 2, 1, 2, 3, 4, 3, 2, 3, 4, 7) + "\n$EndElements\n");
+}
+
+TEST_F(MshTest, ReadsWhatItWrites)
+{
+    const TetMesh mesh = make_block({1.0, 0.1, 3.0}, {3, 2, 4}, 0.2).mesh;
+    const std::filesystem::path file = folder.path() / "new/block.msh";
+    write_msh(file, mesh);
+    const TetMesh read = read_msh_tets(file);
+    EXPECT_EQ(read.positions, mesh.positions);
+    EXPECT_EQ(read.tets, mesh.tets);
 }
 
 TEST_F(MshTest, NamesTheErrorAndItsPlace)

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
 
@@ -335,5 +336,24 @@ private:
 } // namespace
 
 TetMesh read_msh_tets(const std::filesystem::path& file) { return MshReader(file).read(); }
+
+void write_msh(const std::filesystem::path& file, const TetMesh& mesh)
+{
+    const std::string nodes = std::to_string(mesh.vertex_count()), tets = std::to_string(mesh.tet_count());
+    std::string text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+    text += "$Nodes\n1 " + nodes + " 1 " + nodes + "\n3 1 0 " + nodes + "\n";
+    for (int v = 1; v <= mesh.vertex_count(); ++v)
+        text += std::to_string(v) + "\n";
+    for (const Vec3& x : mesh.positions)
+        text += shortest_text(x.x()) + " " + shortest_text(x.y()) + " " + shortest_text(x.z()) + "\n";
+    text += "$EndNodes\n$Elements\n1 " + tets + " 1 " + tets + "\n3 1 4 " + tets + "\n";
+    for (int t = 0; t < mesh.tet_count(); ++t) {
+        text += std::to_string(t + 1);
+        for (const int v : mesh.tets[t])
+            text += " " + std::to_string(v + 1);
+        text += "\n";
+    }
+    write_atomically(file, text + "$EndElements\n");
+}
 
 } // namespace toile::volume

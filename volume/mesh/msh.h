@@ -14,4 +14,9 @@ namespace toile::volume {
 ///         overlap.
 TetMesh read_msh_tets(const std::filesystem::path& file);
 
+/// Writes a Gmsh file of version 4.1 in ASCII: nodes and elements from 1, in the mesh's order. Numbers read
+/// back as the same.
+/// @throws InvalidInput if it can't be created; DeviceError if the write breaks off, with nothing left
+void write_msh(const std::filesystem::path& file, const TetMesh& mesh);
+
 } // namespace toile::volume
