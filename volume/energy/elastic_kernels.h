@@ -124,40 +124,42 @@ TOILE_HD ElasticCurvature<T> elastic_curvature(const Mat3Of<T>& F, const LameOf<
     return H;
 }
 
-/// Blocks between one corner of an element and its corners.
-class ElasticCornerBlocks {
-public:
-    /// @param rest_inv  inverse rest edge matrix [1/m]
-    /// @param volume    at rest [m^3]
-    TOILE_HD ElasticCornerBlocks(const ElasticCurvature<double>& H, const Mat3& rest_inv, double volume,
-                                 int corner)
-        : H_(H)
-    {
-        for (int k = 1; k < 4; ++k)
-            g_[k] = H.V.transpose().lazyProduct(rest_inv.row(k - 1).transpose());
-        g_[0] = -g_[1] - g_[2] - g_[3];
-        weighted_ = volume * g_[corner];
-    }
+/// Blocks between the corners of an element [N/m]; those of (j, i) are the transposes of those of (i, j).
+template <typename T>
+struct ElasticBlocks {
+    static constexpr int kCount = 10;
+    Mat3Of<T> of[kCount];
 
-    /// [N/m]
-    TOILE_HD Mat3 with(int other) const
-    {
-        const Vec3 &a = weighted_, &b = g_[other];
-        Mat3 K;
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3, k = (i + 2) % 3;
-            K(i, i) = H_.stretch(i, i) * a[i] * b[i] + H_.shear[k] * a[j] * b[j] + H_.shear[j] * a[k] * b[k];
-            K(i, j) = H_.stretch(i, j) * a[i] * b[j] + H_.turn[k] * a[j] * b[i];
-            K(j, i) = H_.stretch(i, j) * a[j] * b[i] + H_.turn[k] * a[i] * b[j];
-        }
-        const Mat3 UK = H_.U.lazyProduct(K);
-        return UK.lazyProduct(H_.U.transpose());
-    }
-
-private:
-    const ElasticCurvature<double>& H_;
-    Vec3 g_[4];     ///< gradients of the corners' hat functions, in the axes of V [1/m]
-    Vec3 weighted_; ///< that of the corner times the volume [m^2]
+    /// Number of the block of corners i <= j.
+    TOILE_HD static constexpr int number(int i, int j) { return i * (7 - i) / 2 + j; }
 };
+
+/// @param rest_inv  inverse rest edge matrix [1/m]
+/// @param volume    at rest [m^3]
+template <typename T>
+TOILE_HD ElasticBlocks<T> elastic_blocks(const ElasticCurvature<T>& H, const Mat3Of<T>& rest_inv,
+                                         const T& volume)
+{
+    Vec3Of<T> hats[4]; // gradients of the corners' hat functions, in the axes of V [1/m]
+    for (int k = 1; k < 4; ++k)
+        hats[k] = H.V.transpose().lazyProduct(rest_inv.row(k - 1).transpose());
+    hats[0] = -hats[1] - hats[2] - hats[3];
+    ElasticBlocks<T> blocks;
+    for (int first = 0; first < 4; ++first)
+        for (int second = first; second < 4; ++second) {
+            const Vec3Of<T> a = volume * hats[first];
+            const Vec3Of<T>& b = hats[second];
+            Mat3Of<T> K;
+            for (int i = 0; i < 3; ++i) {
+                const int j = (i + 1) % 3, k = (i + 2) % 3;
+                K(i, i) = H.stretch(i, i) * a[i] * b[i] + H.shear[k] * a[j] * b[j] + H.shear[j] * a[k] * b[k];
+                K(i, j) = H.stretch(i, j) * a[i] * b[j] + H.turn[k] * a[j] * b[i];
+                K(j, i) = H.stretch(i, j) * a[j] * b[i] + H.turn[k] * a[i] * b[j];
+            }
+            const Mat3Of<T> UK = H.U.lazyProduct(K);
+            blocks.of[ElasticBlocks<T>::number(first, second)] = UK.lazyProduct(H.U.transpose());
+        }
+    return blocks;
+}
 
 } // namespace toile::volume

@@ -117,29 +117,28 @@ void ElasticSolid::add_curvature(View<const Vec3> x, Definiteness definiteness, 
     const int tets = rest_->tet_count();
     curvature_.resize(tets);
     parallel_for(kCpu, "elastic/curvature", int(blocks_.size()), [&](int block) {
-        const ElasticCurvature<Lanes> H = elastic_curvature<Lanes>(
-            deformation_gradients(x, block), blocks_[block].lame, definiteness == Definiteness::Projected);
+        const ElasticBlocks<Lanes> of_eight = elastic_blocks<Lanes>(
+            elastic_curvature<Lanes>(deformation_gradients(x, block), blocks_[block].lame,
+                                     definiteness == Definiteness::Projected),
+            blocks_[block].rest_inv, blocks_[block].volume);
         const int first = block * kLanes, lanes = std::min(kLanes, tets - first);
-        for (int k = 0; k < lanes; ++k) {
-            ElasticCurvature<double>& one = curvature_[first + k];
-            for (int i = 0; i < 9; ++i) {
-                one.U(i) = H.U(i)[k];
-                one.V(i) = H.V(i)[k];
-                one.stretch(i) = H.stretch(i)[k];
-            }
-            for (int i = 0; i < 3; ++i) {
-                one.shear[i] = H.shear[i][k];
-                one.turn[i] = H.turn[i][k];
-            }
-        }
+        for (int lane = 0; lane < lanes; ++lane)
+            for (int k = 0; k < ElasticBlocks<double>::kCount; ++k)
+                for (int i = 0; i < 9; ++i)
+                    curvature_[first + lane].of[k](i) = of_eight.of[k](i)[lane];
     });
     const Incidence& corners = rest_->corners_of_vertex;
     parallel_for(kCpu, "elastic/gather_curvature", rest_->vertex_count(), [&](int v) {
+        Mat3* const row = K.values(v);
         for (const int item : corners.of(v)) {
-            const int t = item / 4;
-            const ElasticCornerBlocks blocks(curvature_[t], rest_->edges_inv[t], rest_->volumes[t], item % 4);
+            const ElasticBlocks<double>& blocks = curvature_[item / 4];
+            const int corner = item % 4;
             for (int k = 0; k < 4; ++k)
-                K.values(v)[position_[item][k]] += blocks.with(k);
+                if (k < corner)
+                    row[position_[item][k]] +=
+                        blocks.of[ElasticBlocks<double>::number(k, corner)].transpose();
+                else
+                    row[position_[item][k]] += blocks.of[ElasticBlocks<double>::number(corner, k)];
         }
     });
 }

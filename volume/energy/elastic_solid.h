@@ -54,10 +54,10 @@ private:
     std::shared_ptr<const RestTets> rest_;
     std::vector<Lame> lame_; ///< [tets]
     std::vector<Block> blocks_;
-    std::vector<Mat3> corner_gradient_;               ///< [tets] scratch: columns dW/dx1, dW/dx2, dW/dx3
-    std::vector<double> energy_;                      ///< [tets] scratch
-    std::vector<ElasticCurvature<double>> curvature_; ///< [tets] scratch
-    std::vector<std::array<int, 4>> position_;        ///< [4 tets] of a corner's blocks in its row
+    std::vector<Mat3> corner_gradient_;            ///< [tets] scratch: columns dW/dx1, dW/dx2, dW/dx3
+    std::vector<double> energy_;                   ///< [tets] scratch
+    std::vector<ElasticBlocks<double>> curvature_; ///< [tets] scratch
+    std::vector<std::array<int, 4>> position_;     ///< [4 tets] of a corner's blocks in its row
 };
 
 } // namespace toile::volume

@@ -82,10 +82,6 @@ RestTets rest_tets(const TetMesh& mesh, const std::string& source)
         rest.volumes.push_back(volume_of(mesh.tets[t], mesh.positions));
     }
     rest.corners_of_vertex = corners_of_vertices(rest.tets, mesh.vertex_count());
-    for (int v = 0; v < mesh.vertex_count(); ++v)
-        if (rest.corners_of_vertex.of(v).size() == 0)
-            throw InvalidInput(source + ": vertex " + std::to_string(v) +
-                               " belongs to no tetrahedron; remove it");
     return rest;
 }
 

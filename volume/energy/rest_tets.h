@@ -26,7 +26,7 @@ struct RestTets {
 };
 
 /// @throws InvalidInput naming `source` and the first tetrahedron whose height is below kMinHeightRatio of
-///         its longest edge, or a vertex without tetrahedra
+///         its longest edge
 RestTets rest_tets(const TetMesh& mesh, const std::string& source);
 
 } // namespace toile::volume
