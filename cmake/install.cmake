@@ -10,7 +10,7 @@ install(TARGETS toile RUNTIME)
 install(TARGETS toile-bench RUNTIME OPTIONAL)
 
 # The libraries below toile::toile; each is toile::<name>, as in this build.
-set(libraries core quadrature2d garment pattern_mesh collision collision_check collision_repair collision_skin avatars
+set(libraries core quadrature2d volume volume_meshing garment pattern_mesh collision collision_check collision_repair collision_skin avatars
     export scene_format garment_format scenes drape)
 foreach(name IN LISTS libraries ITEMS abi)
     set_property(TARGET toile_${name} PROPERTY EXPORT_NAME ${name})
@@ -22,7 +22,7 @@ install(TARGETS ${libraries} toile_library toile_abi EXPORT toileTargets
 
 # Without headers that show nlohmann_json or CGAL, which are for sources of their own folder alone, and folders without headers.
 install(FILES toile.h DESTINATION "${headers_dir}")
-install(DIRECTORY core quadrature2d garment collision avatars export scenes DESTINATION "${headers_dir}"
+install(DIRECTORY core quadrature2d volume garment collision avatars export scenes DESTINATION "${headers_dir}"
     FILES_MATCHING PATTERN "*.h" PATTERN "*.cuh"
     REGEX "garment/pattern/mesh/panel_triangulation\\.h$" EXCLUDE
     REGEX "avatars/import/gltf_(accessors|clips|file|json|meshes|nodes|uri)\\.h$" EXCLUDE

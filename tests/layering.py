@@ -43,7 +43,9 @@ MAY_INCLUDE = {
     "core/pd/cuda": ["core/base", "core/compute", "core/linear", "core/quadrature", "core/pd/energy",
                      "core/pd/preconditioner", "core/pd/minimiser", "core/pd/newton", "core/pd/step"],
     "quadrature2d": CORE,
-    "volume": CORE,
+    "volume/mesh": CORE,
+    "volume/meshing": CORE + ["volume/mesh"],
+    "volume/energy": CORE + ["volume/mesh"],
     "garment/fabric": CORE,
     "garment/energy": CORE,
     "garment/energy/air": CORE + ["garment/energy"],
@@ -123,7 +125,7 @@ FOLDER_OF_MODULE = {"scene_format": "scenes/format", "garment_format": "scenes/g
                     "benchmarks": "research/benchmarks", "quadrature_figures": "research/benchmarks/quadrature",
                     "collision_check": "collision/check", "collision_repair": "collision/repair",
                     "collision_skin": "collision/skin",
-                    "pattern_mesh": "garment/pattern/mesh"}
+                    "pattern_mesh": "garment/pattern/mesh", "volume_meshing": "volume/meshing"}
 
 # Folders of programs within a module's folder.
 PROGRAMS = ["research/bench"]

@@ -14,7 +14,6 @@
 #include "core/base/number.h"
 #include "core/mesh/obj.h"
 #include "core/mesh/topology.h"
-#include "core/mesh/vtk.h"
 #include "export/cache_format.h"
 #include "export/cache_path.h"
 #include "export/point_cache.h"
@@ -24,6 +23,7 @@
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/surfaces/uv_rest.h"
+#include "volume/mesh/vtk.h"
 
 namespace toile::app {
 
@@ -136,8 +136,8 @@ void print_obj(const std::filesystem::path& file)
 
 void print_tets(const std::filesystem::path& file)
 {
-    const TetMesh mesh = read_vtk_tets(file);
-    const TriangleMesh surface = boundary_surface(mesh);
+    const volume::TetMesh mesh = volume::read_vtk_tets(file);
+    const TriangleMesh surface = volume::boundary_surface(mesh);
     print("vertices", mesh.positions.size());
     print("tetrahedra", mesh.tets.size());
     print("vertices of the surface", surface.vertex_count());

@@ -15,6 +15,7 @@ std::vector<toile::app::Command> add_commands(CLI::App& parser)
             add_info(parser),
             add_measure(parser),
             add_convert(parser),
+            add_mesh(parser),
             add_pattern(parser),
             add_schema(parser)};
 }

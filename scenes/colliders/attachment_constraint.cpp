@@ -9,6 +9,9 @@ namespace toile::scenes {
 
 namespace {
 
+/// Acceleration [m/s^2] at which springs still hold cloth on an avatar: three times that of gravity.
+constexpr double kMaxAcceleration = 30.0;
+
 /// Stretch [m] of springs to an avatar under the load of the whole cloth.
 constexpr double kMaxStretch = 1e-3;
 
@@ -24,7 +27,7 @@ Vec3 mean_of(View<const Vec3> x, const std::vector<int>& vertices)
 
 AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, std::vector<int> vertices,
                                            View<const Vec3> start, const std::vector<Collider>& colliders,
-                                           std::optional<double> load, const std::string& location)
+                                           std::optional<double> mass, const std::string& location)
     : settings_(settings), location_(location), vertices_(std::move(vertices))
 {
     if (settings.to == scene::kFixed) {
@@ -32,9 +35,9 @@ AttachmentConstraint::AttachmentConstraint(const scene::Attachment& settings, st
         return;
     }
     collider_ = index_of(colliders, settings.to);
-    if (!settings.exact && !settings.stiffness && load)
-        settings_.stiffness =
-            std::max(scene::kSkinStiffness, *load / (kMaxStretch * double(vertices_.size())));
+    if (!settings.exact && !settings.stiffness && mass)
+        settings_.stiffness = std::max(scene::kSkinStiffness,
+                                       kMaxAcceleration * *mass / (kMaxStretch * double(vertices_.size())));
 }
 
 void AttachmentConstraint::tie(View<const Vec3> x, View<const Triangle> triangles, double gap,

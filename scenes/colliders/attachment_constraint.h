@@ -13,14 +13,14 @@ namespace toile::scenes {
 class AttachmentConstraint {
 public:
     /// Attaches vertices to the world or to a collider's surface. Springs to an avatar have 300 N/m a vertex
-    /// by default, or as much as holds `load` within 1 mm.
+    /// by default, or as much as holds the cloth within 1 mm.
     /// @param vertices  of the cloth, ascending
     /// @param start     [vertices of the cloth] [m]
-    /// @param load  [N] of the whole cloth; none: the method knows no springs, so that attachments are exact
-    /// where not asked otherwise
+    /// @param mass  [kg] of the whole cloth, which springs hold at three times the acceleration of gravity;
+    /// none: the method knows no springs, so that attachments are exact where not asked otherwise
     /// @param location  named in errors, e.g. "tablecloth.json: attachments[0]"
     AttachmentConstraint(const scene::Attachment& settings, std::vector<int> vertices, View<const Vec3> start,
-                         const std::vector<Collider>& colliders, std::optional<double> load,
+                         const std::vector<Collider>& colliders, std::optional<double> mass,
                          const std::string& location);
 
     /// Attaches the vertices where they are. Those on an avatar are lifted so that neither they nor the edges

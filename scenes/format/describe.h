@@ -329,6 +329,27 @@ void describe(V& v, Solid& s)
 }
 
 template <typename V>
+void describe(V& v, SoftBody& s)
+{
+    v.required("name", s.name, "Name, for attachments, friction pairs, messages and the cache's file.");
+    v.required("file", s.file, "Tetrahedra (.msh of Gmsh, .vtk of the legacy format).");
+    v.field("unit", s.unit, "Length unit of the file.");
+    v.field("scale", s.scale, above_zero(1e6), "Factor on the body's lengths.");
+    v.field("translate", s.translate, kPosition, "Moves the body, after scale and rotate_deg.");
+    v.field("rotate_deg", s.rotate_deg, kAngle, "Rotates about the fixed X axis, then Y, then Z.");
+    v.field("density", s.density, above_zero(1e5, "kg/m^3"), "Mass per volume.");
+    v.field("young", s.young, above_zero(1e12, "Pa"), "Young's modulus: resistance to stretch.");
+    v.field("poisson", s.poisson, between(0.0, 0.49),
+            "Poisson's ratio: how much it narrows under a pull; near 0.5 it keeps its volume.");
+    v.field("damping", s.damping, between(0.0, 1000.0, "1/s"), "Decay rate of velocities.");
+    v.field("velocity", s.velocity, between(-100.0, 100.0, "m/s"), "Velocity at the start.");
+    v.field("friction", s.friction, between(0.0, 10.0),
+            "Coulomb coefficient if no friction pair applies; two solids use the smaller one. Absent: "
+            "contact.friction, or the avatar's.");
+    v.field("color", s.color, kColor, "Red, green, blue in pictures.");
+}
+
+template <typename V>
 void describe(V& v, Fabric& f)
 {
     // Warp and weft are independent; both directions of a pair share one range and one sentence.
@@ -530,8 +551,10 @@ void describe(V& v, scenes::Scene& s)
     v.field("settle", s.settle, between(0.0, 600.0, "s"),
             "Time simulated before sample 0, with avatars in their first pose.");
     v.field("avatars", s.avatars, "Bodies that cloth collides with.");
-    v.required("cloths", s.cloths, "Cloths to simulate; at least one, or a solid.");
+    v.required("cloths", s.cloths, "Cloths to simulate; at least one, or a solid or soft body.");
     v.field("solids", s.solids, "Rigid bodies simulated together with the cloth. Need contact.self.");
+    v.field("soft_bodies", s.soft_bodies,
+            "Bodies that deform, simulated together with the cloth. Need contact.self.");
     v.field("fabrics", s.fabrics, "Fabrics of the scene's own, by name.");
     v.field("attachments", s.attachments, "Vertices attached to the world or to avatars.");
     v.field("contact", s.contact, "Contact of cloth and solids with avatars, themselves and each other.");

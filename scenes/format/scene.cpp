@@ -1,5 +1,7 @@
 #include "scenes/format/scene.h"
 
+#include "scenes/format/names.h"
+
 namespace toile::scene {
 
 double metres_per(LengthUnit unit)
@@ -18,3 +20,16 @@ double metres_per(LengthUnit unit)
 }
 
 } // namespace toile::scene
+
+namespace toile::scenes {
+
+std::vector<std::string> surface_names(const Scene& scene)
+{
+    std::vector<std::string> all;
+    for (const auto& names : {scene_format::names_of(scene.cloths), scene_format::names_of(scene.solids),
+                              scene_format::names_of(scene.soft_bodies)})
+        all.insert(all.end(), names.begin(), names.end());
+    return all;
+}
+
+} // namespace toile::scenes

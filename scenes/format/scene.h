@@ -278,6 +278,23 @@ struct Solid {
     Vec3 color = Vec3(0.85, 0.85, 0.88); ///< [-] sRGB
 };
 
+/// A soft body: a solid that deforms, simulated with the cloth.
+struct SoftBody {
+    std::string name;
+    std::filesystem::path file;          ///< of tetrahedra
+    LengthUnit unit = LengthUnit::Metre; ///< of the file
+    double scale = 1.0;                  ///< [-]
+    Vec3 translate = Vec3::Zero();       ///< [m]
+    Vec3 rotate_deg = Vec3::Zero();
+    double density = 1000.0;           ///< [kg/m^3]
+    double young = 1e5;                ///< [Pa]
+    double poisson = 0.3;              ///< [-]
+    double damping = 0.0;              ///< [1/s] as Fabric::damping
+    Vec3 velocity = Vec3::Zero();      ///< [m/s] at the start
+    std::optional<double> friction;    ///< [-] as Solid::friction
+    Vec3 color = Vec3(0.8, 0.55, 0.5); ///< [-] sRGB
+};
+
 // --- attachments ----------------------------------------------------------------------------------------
 
 /// Vertices inside an upright box, in start positions.
@@ -430,11 +447,12 @@ struct Scene {
     std::vector<scene::Avatar> avatars;
     std::vector<scene::Cloth> cloths;
     std::vector<scene::Solid> solids;
+    std::vector<scene::SoftBody> soft_bodies;
     std::map<std::string, scene::Fabric> fabrics;
     std::vector<scene::Attachment> attachments;
     scene::Contact contact;
     scene::Solver solver;
-    std::vector<scene::Export> exports; ///< empty: one PC2 per cloth and solid, named after it
+    std::vector<scene::Export> exports; ///< empty: one PC2 per surface, named after it
     scene::Render render;
 
     /// Time between samples [s].
@@ -445,5 +463,8 @@ struct Scene {
         return frame_duration() / solver.substeps.value_or(scene::Solver::kSubsteps);
     }
 };
+
+/// Names of the cloths, solids and soft bodies, in the order of World::surfaces().
+std::vector<std::string> surface_names(const Scene& scene);
 
 } // namespace toile::scenes

@@ -18,7 +18,8 @@ struct ClothState {
     ObjMesh rest; ///< start placement, faces and texture coordinates as simulated
     /// [triangles] rest shape, each corner in the plane of its panel [m]; empty: the triangles of `rest`.
     std::vector<FlatTriangle> panels;
-    garment::Fabric fabric; ///< of a solid: none, and a strain limit of 0; thickness: the largest
+    garment::Fabric fabric; ///< of a solid: none, and a strain limit of 0, of a soft body infinity;
+                            ///< thickness: the largest
     std::vector<garment::Fabric> group_fabrics; ///< of groups that have their own
     /// [triangles] 0: `fabric`; k: group_fabrics[k - 1]. Empty: all are of `fabric`.
     std::vector<int> fabric_of_triangle;

@@ -14,6 +14,7 @@
 #include "scenes/meshes/rigid_motion.h"
 #include "scenes/surfaces/cloth_elastics.h"
 #include "scenes/surfaces/fold_edges.h"
+#include "scenes/surfaces/load_soft_body.h"
 #include "scenes/surfaces/load_solid.h"
 #include "scenes/surfaces/paint.h"
 #include "scenes/surfaces/uv_rest.h"
@@ -215,7 +216,8 @@ std::string attachment_location(const Scene& scene, size_t attachment)
 
 std::vector<ClothState> load_surfaces(const Scene& scene)
 {
-    const std::size_t count = scene.avatars.size() + scene.cloths.size() + scene.solids.size();
+    const std::size_t count =
+        scene.avatars.size() + scene.cloths.size() + scene.solids.size() + scene.soft_bodies.size();
     std::size_t loaded = 0;
     std::vector<Collider> colliders;
     for (const scene::Avatar& avatar : scene.avatars) {
@@ -231,6 +233,10 @@ std::vector<ClothState> load_surfaces(const Scene& scene)
     for (const scene::Solid& solid : scene.solids) {
         const LongWork::Part part = LongWork::item(loaded++, count);
         surfaces.push_back(load_solid(solid));
+    }
+    for (const scene::SoftBody& body : scene.soft_bodies) {
+        const LongWork::Part part = LongWork::item(loaded++, count);
+        surfaces.push_back(load_soft_body(body).surface);
     }
     LongWork::update(1.0);
     return surfaces;

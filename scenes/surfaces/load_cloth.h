@@ -35,8 +35,7 @@ LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
 /// Name of an attachment in errors: tablecloth.json: attachments[0].
 std::string attachment_location(const Scene& scene, size_t attachment);
 
-/// Cloths and then solids of a scene as they start, unrepaired, each in the order of the scene: World's
-/// surfaces(), without loading what moves them.
+/// Surfaces of a scene as they start, unrepaired: World's surfaces(), without loading what moves them.
 /// @throws InvalidInput as load_cloth() and load_solid()
 std::vector<ClothState> load_surfaces(const Scene& scene);
 

@@ -1,10 +1,10 @@
 #include "scenes/surfaces/load_solid.h"
 
 #include "core/base/extension.h"
-#include "core/mesh/vtk.h"
 #include "core/mesh/weld.h"
 #include "scenes/meshes/rigid_motion.h"
 #include "scenes/meshes/shape_mesh.h"
+#include "volume/mesh/vtk.h"
 
 namespace toile::scenes {
 
@@ -25,7 +25,7 @@ TriangleMesh surface_of(const scene::Solid& solid)
     const auto* file = std::get_if<std::filesystem::path>(&solid.shape);
     if (!file)
         return weld(shape_mesh(shape_of(solid.shape), 0.0), 0.0).mesh; // welds the corners of a box
-    return lower_case_extension(*file) == ".vtk" ? boundary_surface(read_vtk_tets(*file))
+    return lower_case_extension(*file) == ".vtk" ? volume::boundary_surface(volume::read_vtk_tets(*file))
                                                  : read_obj(*file).triangulated();
 }
 

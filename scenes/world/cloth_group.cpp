@@ -53,11 +53,11 @@ std::vector<Vec3> ClothGroup::start_positions() const
     return all;
 }
 
-/// Current positions of the cloths, then of the surfaces of solids.
+/// Current positions of the cloths, then of the surfaces of soft bodies and solids.
 std::vector<Vec3> ClothGroup::surfaces() const
 {
-    const View<const Vec3> cloths = body_->positions().subview(0, first_.back());
-    std::vector<Vec3> all(cloths.begin(), cloths.end());
+    const View<const Vec3> deforming = body_->positions().subview(0, first_solid_);
+    std::vector<Vec3> all(deforming.begin(), deforming.end());
     if (solids_)
         all.insert(all.end(), solids_->bodies().surface().begin(), solids_->bodies().surface().end());
     return all;
@@ -70,6 +70,12 @@ View<T> ClothGroup::part(View<T> all, int cloth) const
 }
 
 View<const Vec3> ClothGroup::positions_of(int cloth) const { return part(body_->positions(), cloth); }
+
+View<const Vec3> ClothGroup::surface_of_soft_body(int body) const
+{
+    return body_->positions().subview(soft_bodies_->first_vertex(body),
+                                      int(soft_bodies_->state(body).positions.size()));
+}
 
 void ClothGroup::add_cloths_to(Snapshot& snapshot) const
 {
@@ -86,12 +92,16 @@ void ClothGroup::tie(double gap, const std::vector<Collider>& colliders,
 {
     for (SceneCloth& cloth : cloths_)
         cloth.tie(gap, colliders, warn);
+    if (soft_bodies_)
+        soft_bodies_->tie(colliders);
 }
 
 void ClothGroup::mark_fixed(double t_t1)
 {
     for (int i = 0; i < int(cloths_.size()); ++i)
         cloths_[i].mark_fixed(t_t1, part(View<unsigned char>(fixed_), i));
+    if (soft_bodies_)
+        soft_bodies_->mark_fixed(t_t1, fixed_);
 }
 
 void ClothGroup::prepare(double dt, double t_t1)
@@ -114,6 +124,8 @@ StepReport ClothGroup::step(double dt, double t_t1, const std::vector<Collider>&
     mark_fixed(t_t1);
     for (int i = 0; i < int(cloths_.size()); ++i)
         cloths_[i].update_targets(t_t1, colliders, part(View<Vec3>(targets_), i));
+    if (soft_bodies_)
+        soft_bodies_->update_targets(t_t1, colliders, targets_);
     if (loads_)
         loads_->set_step(t_t1, !is_relaxing_);
     else
@@ -201,7 +213,7 @@ void ClothGroup::find_displaced(const std::vector<Collider>& colliders, StepRepo
     if (!any_held || !contact_ || !contact_->keeps_cloth_apart())
         return;
     const View<const Vec3> x = body_->positions();
-    for (int v = 0; v < first_.back(); ++v)
+    for (int v = 0; v < x.size(); ++v)
         if (fixed_[v] != 0 && (x[v] - targets_[v]).norm() > kTolerated) {
             if (report.displaced.count++ == 0)
                 report.displaced.place = place_of(v, colliders);
@@ -230,11 +242,14 @@ StepReport ClothGroup::relax(double dt, double t_t1, const std::vector<Collider>
 std::string ClothGroup::place_of(int vertex, const std::vector<Collider>& colliders) const
 {
     const Vec3& x = body_->positions()[vertex];
+    char at[80];
+    std::snprintf(at, sizeof at, " near (%.3f, %.3f, %.3f) m", x.x(), x.y(), x.z());
+    if (vertex >= first_.back())
+        return "soft body \"" + soft_bodies_->state(soft_bodies_->body_of(vertex)).name + "\"" + at +
+               nearest_bone(x, colliders);
     int cloth = 0;
     while (cloth + 1 < int(cloths_.size()) && vertex >= first_[cloth + 1])
         ++cloth;
-    char at[80];
-    std::snprintf(at, sizeof at, " near (%.3f, %.3f, %.3f) m", x.x(), x.y(), x.z());
     const int number = cloths_[cloth].state().file_vertex(vertex - first_[cloth]);
     return "vertex " + std::to_string(number) + " of \"" + cloths_[cloth].state().name + "\"" + at +
            nearest_bone(x, colliders);
@@ -248,6 +263,8 @@ void ClothGroup::accelerate(double dt, double t_t1)
         cloths_[i].accelerate(dt, t_t1, part(x, i), part(v, i), part(View<Vec3>(acceleration_), i));
         cloths_[i].begin_step(part(x, i), dt, t_t1);
     }
+    if (soft_bodies_)
+        soft_bodies_->accelerate(dt, v, acceleration_);
 }
 
 /// Marks vertices of crossing triangles of cloth, solids and bodies, by exact predicates. Runs at the first
@@ -286,7 +303,7 @@ void ClothGroup::mark_crossings()
         crossing_bodies_ = 0;
         std::vector<std::pair<int, int>> body_crossings;
         for (const collision::Crossing& crossing : crossings) {
-            if (triangles_[crossing.a][0] >= first_.back() || contact_->lets_through(triangles_[crossing.a]))
+            if (triangles_[crossing.a][0] >= first_solid_ || contact_->lets_through(triangles_[crossing.a]))
                 continue; // a solid, or let through
             if (crossing_bodies_++ == 0)
                 first_crossing_ = triangles_[crossing.a][0];
@@ -310,7 +327,7 @@ std::vector<unsigned char> ClothGroup::mark_inside(const collision::BodySurfaces
     if (crossing_bodies_ == 0 && !has_jump_ && !has_cloth_inside_)
         return {};
     std::vector<unsigned char> inside(x.size(), 0);
-    parallel_for(kCpu, "scenes/inside", first_.back(), [&](int v) {
+    parallel_for(kCpu, "scenes/inside", first_solid_, [&](int v) {
         inside[v] = (unsigned char)(!contact_->lets_through(v) && bodies.is_inside(x[v]) ? 1 : 0);
     });
     const bool any = std::find(inside.begin(), inside.end(), 1) != inside.end();
@@ -320,7 +337,7 @@ std::vector<unsigned char> ClothGroup::mark_inside(const collision::BodySurfaces
 /// Solid that owns a triangle of triangles_, -1 for cloth.
 int ClothGroup::solid_of(int triangle) const
 {
-    const int v = triangles_[triangle][0] - first_.back();
+    const int v = triangles_[triangle][0] - first_solid_;
     int solid = -1;
     while (solid + 1 < solids_->count() && solids_->bodies().first_vertex(solid + 1) <= v)
         ++solid;
@@ -329,6 +346,8 @@ int ClothGroup::solid_of(int triangle) const
 
 ActiveSetEnergy* ClothGroup::active() const
 {
+    if (surface_contact_)
+        return surface_contact_.get();
     return rigid_contact_ ? static_cast<ActiveSetEnergy*>(rigid_contact_.get()) : contact_.get();
 }
 
@@ -339,7 +358,7 @@ void ClothGroup::begin_solids(double dt)
         return;
     std::vector<Vec3> q(body_->positions().begin(), body_->positions().end());
     std::vector<Vec3> v(body_->velocities().begin(), body_->velocities().end());
-    const int first = first_.back(), count = solids_->bodies().unknown_count();
+    const int first = first_solid_, count = solids_->bodies().unknown_count();
     solids_->bodies().begin_step(dt, View<Vec3>(q).subview(first, count),
                                  View<Vec3>(v).subview(first, count));
     body_->set_positions(q);
@@ -350,26 +369,27 @@ void ClothGroup::end_solids()
 {
     if (!solids_)
         return;
-    const int first = first_.back(), count = solids_->bodies().unknown_count();
+    const int first = first_solid_, count = solids_->bodies().unknown_count();
     solids_->bodies().end_step(body_->positions().subview(first, count),
                                body_->velocities().subview(first, count));
 }
 
-/// Names for messages: cloth "skirt", or cloths "skirt", "vest" and solids "bowl".
+/// Names for messages: cloth "skirt", or cloths "skirt", "vest" and solid "bowl".
 std::string ClothGroup::names() const
 {
-    const auto list = [](std::string word, int count, const auto& name_of) {
-        word += count == 1 ? "" : "s";
-        for (int i = 0; i < count; ++i)
-            word += (i == 0 ? " \"" : ", \"") + name_of(i) + "\"";
-        return word;
-    };
     std::string names;
-    if (!cloths_.empty())
-        names = list("cloth", int(cloths_.size()), [&](int i) { return cloths_[i].state().name; });
+    const auto add = [&](const char* word, const char* words, int count, const auto& name_of) {
+        for (int i = 0; i < count; ++i)
+            names += (i > 0 ? ", "
+                            : (names.empty() ? "" : " and ") + std::string(count == 1 ? word : words) + " ") +
+                     "\"" + name_of(i) + "\"";
+    };
+    add("cloth", "cloths", int(cloths_.size()), [&](int i) { return cloths_[i].state().name; });
+    if (soft_bodies_)
+        add("soft body", "soft bodies", soft_bodies_->count(),
+            [&](int i) { return soft_bodies_->state(i).name; });
     if (solids_)
-        names += (names.empty() ? "" : " and ") +
-                 list("solid", solids_->count(), [&](int i) { return solids_->state(i).name; });
+        add("solid", "solids", solids_->count(), [&](int i) { return solids_->state(i).name; });
     return names;
 }
 
@@ -407,13 +427,16 @@ void ClothGroup::watch_rest(bool is_stuck, double dt)
     }
 }
 
-/// True if the RMS displacement of the vertices of a cloth or of a solid exceeds what sleep allows.
+/// True if the RMS displacement of the vertices of a surface exceeds what sleep allows.
 bool ClothGroup::has_moved(View<const Vec3> from, View<const Vec3> to) const
 {
     std::vector<int> first = first_;
+    if (soft_bodies_)
+        for (int k = 1; k <= soft_bodies_->count(); ++k)
+            first.push_back(k < soft_bodies_->count() ? soft_bodies_->first_vertex(k) : first_solid_);
     if (solids_)
         for (int k = 1; k <= solids_->count(); ++k)
-            first.push_back(k < solids_->count() ? first_.back() + solids_->bodies().first_vertex(k)
+            first.push_back(k < solids_->count() ? first_solid_ + solids_->bodies().first_vertex(k)
                                                  : int(to.size()));
     for (int k = 0; k + 1 < int(first.size()); ++k) {
         double sum = 0.0;
@@ -436,7 +459,8 @@ bool ClothGroup::is_asleep(double t_t1, const std::vector<Collider>& colliders)
     const bool disturbed = std::any_of(colliders.begin(), colliders.end(),
                                        [](const Collider& collider) { return collider.moved(); }) ||
                            std::any_of(cloths_.begin(), cloths_.end(),
-                                       [&](const SceneCloth& cloth) { return cloth.is_disturbed(t_t1); });
+                                       [&](const SceneCloth& cloth) { return cloth.is_disturbed(t_t1); }) ||
+                           (soft_bodies_ && soft_bodies_->is_disturbed(t_t1));
     if (disturbed) {
         still_time_ = 0.0;
         still_.clear();
@@ -468,14 +492,23 @@ std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> 
         members.back().push_back(std::move(cloth));
     }
     std::unique_ptr<SceneSolids> solids;
-    if (!scene.solids.empty()) {
+    if (!scene.solids.empty())
         solids = std::make_unique<SceneSolids>(scene);
+    if (!scene.solids.empty() || !scene.soft_bodies.empty())
         members.resize(1); // one group of all cloths, if any
+    std::unique_ptr<SceneSoftBodies> soft_bodies;
+    if (!scene.soft_bodies.empty()) {
+        int vertices = 0;
+        for (const SceneCloth& cloth : members.front())
+            vertices += cloth.vertex_count();
+        soft_bodies = std::make_unique<SceneSoftBodies>(scene, colliders, vertices,
+                                                        solids ? solids->bodies().unknown_count() : 0);
     }
     std::vector<ClothGroup> groups;
     groups.reserve(members.size());
     for (auto& group : members)
-        groups.emplace_back(scene, std::move(group), std::move(solids), colliders, options, space);
+        groups.emplace_back(scene, std::move(group), std::move(solids), std::move(soft_bodies), colliders,
+                            options, space);
     return groups;
 }
 

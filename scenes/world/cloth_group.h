@@ -4,10 +4,12 @@
 #include <vector>
 
 #include "collision/contact/contact.h"
+#include "core/pd/energy/leading_active_set.h"
 #include "core/pd/rigid/rigid_active_set.h"
 #include "core/pd/step/point_masses.h"
 #include "garment/energy/strain_limit/joint_strain_limit.h"
 #include "scenes/world/scene_cloth.h"
+#include "scenes/world/scene_soft_bodies.h"
 #include "scenes/world/scene_solids.h"
 #include "scenes/world/snapshot.h"
 
@@ -17,15 +19,18 @@ class DeviceLoads;
 
 namespace toile::scenes {
 
-/// Cloths and solids that may collide, simulated together. One minimisation per step over all vertices of
-/// cloth, numbered cloth after cloth, followed by the unknowns of the solids (RigidBodies).
+/// Cloths, soft bodies and solids that may collide, simulated together. One minimisation per step over all
+/// vertices of cloth, numbered cloth after cloth, followed by the vertices of the surfaces of soft bodies,
+/// the unknowns of the solids (RigidBodies), and the vertices inside soft bodies.
 class ClothGroup {
 public:
     /// @throws InvalidInput if the scene's method does not support one of the cloths.
-    /// @param solids  null: none
+    /// @param solids       null: none
+    /// @param soft_bodies  null: none
     /// @param space   GPU on which steps are minimised, borrowed; null: the CPU
     ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, std::unique_ptr<SceneSolids> solids,
-               const std::vector<Collider>& colliders, const WorldOptions& options, const CudaSpace* space);
+               std::unique_ptr<SceneSoftBodies> soft_bodies, const std::vector<Collider>& colliders,
+               const WorldOptions& options, const CudaSpace* space);
 
     /// Cloths with their start positions, as changed by place().
     const std::vector<SceneCloth>& cloths() const { return cloths_; }
@@ -36,7 +41,9 @@ public:
     /// Adds all cloths in their current state, without waiting for the GPU.
     void add_cloths_to(Snapshot& snapshot) const;
 
-    const SceneSolids* solids() const { return solids_.get(); } ///< null: none
+    const SceneSolids* solids() const { return solids_.get(); }               ///< null: none
+    const SceneSoftBodies* soft_bodies() const { return soft_bodies_.get(); } ///< null: none
+    View<const Vec3> surface_of_soft_body(int body) const;                    ///< as positions_of()
 
     /// Attaches cloth where it is. See SceneCloth::tie.
     void tie(double gap, const std::vector<Collider>& colliders,
@@ -76,6 +83,7 @@ private:
     std::unique_ptr<garment::DeviceLoads> make_loads(const Scene& scene, const CudaSpace& space) const;
     std::unique_ptr<collision::Contact>
     make_contact(const Scene& scene, const std::vector<Collider>& colliders, const CudaSpace* space);
+    int unknown_count() const;
     std::vector<Vec3> start_positions() const;
     std::vector<Vec3> surfaces() const;
     template <typename T>
@@ -99,12 +107,16 @@ private:
 
     scene::Sleep sleep_;
     std::vector<SceneCloth> cloths_;
-    std::unique_ptr<SceneSolids> solids_; ///< null: none
-    std::vector<int> first_;              ///< [cloths + 1] first vertex of each cloth
+    std::unique_ptr<SceneSolids> solids_;          ///< null: none
+    std::unique_ptr<SceneSoftBodies> soft_bodies_; ///< null: none
+    std::vector<int> first_;                       ///< [cloths + 1] first vertex of each cloth
+    int first_solid_ = 0; ///< unknown, after the vertices of all surfaces that deform
     std::unique_ptr<garment::JointStrainLimit> limits_;
     std::unique_ptr<collision::Contact> contact_; ///< null if nothing can collide
     std::unique_ptr<RigidActiveSet>
-        rigid_contact_; ///< contact_ in the minimiser's unknowns; null without solids
+        rigid_contact_; ///< contact_ with the solids' unknowns; null without solids
+    std::unique_ptr<LeadingActiveSet>
+        surface_contact_; ///< the same in all unknowns; null without soft bodies
     std::unique_ptr<PointMasses> body_;
     bool is_relaxing_ = false;              ///< within relax()
     garment::DeviceLoads* loads_ = nullptr; ///< owned by body_, on a GPU; null: accelerate()

@@ -30,24 +30,33 @@ TableSource source_of_tables(const WorldOptions& options, const std::string& clo
 } // namespace
 
 ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
-                       std::unique_ptr<SceneSolids> solids, const std::vector<Collider>& colliders,
-                       const WorldOptions& options, const CudaSpace* space)
-    : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), solids_(std::move(solids)), first_{0}
+                       std::unique_ptr<SceneSolids> solids, std::unique_ptr<SceneSoftBodies> soft_bodies,
+                       const std::vector<Collider>& colliders, const WorldOptions& options,
+                       const CudaSpace* space)
+    : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), solids_(std::move(solids)),
+      soft_bodies_(std::move(soft_bodies)), first_{0}
 {
     for (const SceneCloth& cloth : cloths_)
         first_.push_back(first_.back() + cloth.vertex_count());
     for (size_t i = 0; i < cloths_.size(); ++i)
         for (const Triangle& t : cloths_[i].state().triangles)
             triangles_.push_back(t + Triangle::Constant(first_[i]));
+    first_solid_ = first_.back() + (soft_bodies_ ? soft_bodies_->surface_count() : 0);
+    if (soft_bodies_)
+        soft_bodies_->append_triangles(triangles_);
     if (solids_)
-        solids_->append_triangles(first_.back(), triangles_);
+        solids_->append_triangles(first_solid_, triangles_);
     if (replaces_minimiser(scene.solver.method))
         body_ = options.baselines->make_body(scene.solver, start_positions(), cloths_.front().model());
     else
         body_ = space != nullptr ? make_device_body(scene, options, *space) : make_body(scene, options);
     contact_ = make_contact(scene, colliders, space);
     if (solids_)
-        rigid_contact_ = std::make_unique<RigidActiveSet>(*contact_, solids_->bodies(), first_.back());
+        rigid_contact_ = std::make_unique<RigidActiveSet>(*contact_, solids_->bodies(), first_solid_);
+    if (soft_bodies_)
+        surface_contact_ = std::make_unique<LeadingActiveSet>(
+            rigid_contact_ ? static_cast<ActiveSetEnergy&>(*rigid_contact_) : *contact_,
+            first_solid_ + (solids_ ? solids_->bodies().unknown_count() : 0), unknown_count());
     std::vector<garment::JointStrainLimit::Part> limits;
     for (size_t i = 0; i < cloths_.size(); ++i)
         limits.push_back({&cloths_[i].strain_limit(), first_[i], cloths_[i].vertex_count()});
@@ -60,7 +69,7 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
     acceleration_.assign(loads_ ? 0 : unknowns, Vec3::Zero());
     if (solids_)
         for (int i = 0; i < solids_->count(); ++i)
-            acceleration_[first_.back() + 2 * i] = scene.gravity;
+            acceleration_[first_solid_ + 2 * i] = scene.gravity;
 }
 
 std::vector<double> ClothGroup::masses() const
@@ -78,10 +87,21 @@ std::vector<std::shared_ptr<Energy>> ClothGroup::make_energies(OuterMethod outer
     for (size_t i = 0; i < cloths_.size(); ++i)
         for (auto& energy : cloths_[i].make_energies(outer))
             energies.push_back(
-                cloths_.size() == 1 && !solids_
+                cloths_.size() == 1 && !solids_ && !soft_bodies_
                     ? energy
                     : std::make_shared<SlicedEnergy>(energy, first_[i], cloths_[i].vertex_count()));
+    if (soft_bodies_)
+        for (auto& energy : soft_bodies_->energies())
+            energies.push_back(energy);
     return energies;
+}
+
+/// Unknowns of the minimiser.
+int ClothGroup::unknown_count() const
+{
+    if (soft_bodies_)
+        return soft_bodies_->unknown_count();
+    return first_solid_ + (solids_ ? solids_->bodies().unknown_count() : 0);
 }
 
 /// Projective dynamics on the CPU: every cloth keeps a separate global solver.
@@ -96,13 +116,17 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
              make_global_solver(scene.solver.method, cloth.rest_shape(), {state.positions, state.triangles},
                                 cloth.source(), source_of_tables(options, state.name), options.baselines)});
     }
-    std::vector<Vec3> unknowns = start_positions();
+    std::vector<Vec3> unknowns = start_positions(), velocities(size_t(unknown_count()), Vec3::Zero());
+    unknowns.resize(velocities.size(), Vec3::Zero()); // begin_solids() fills in those of solids
+    masses.resize(unknowns.size(), 0.0);
+    if (soft_bodies_)
+        soft_bodies_->set_start(unknowns, velocities, masses);
     if (solids_) {
         const std::vector<double> solid_masses = solids_->bodies().masses();
-        masses.insert(masses.end(), solid_masses.begin(), solid_masses.end());
-        unknowns.resize(masses.size(), Vec3::Zero()); // begin_solids() fills them in
-        blocks.push_back({int(solid_masses.size()), std::make_unique<DirectSolver>()});
+        std::copy(solid_masses.begin(), solid_masses.end(), masses.begin() + first_solid_);
     }
+    if (const int others = unknown_count() - first_.back(); others > 0)
+        blocks.push_back({others, std::make_unique<DirectSolver>()});
     std::unique_ptr<GlobalSolver> solver;
     if (blocks.size() == 1)
         solver = std::move(blocks.front().solver);
@@ -119,10 +143,12 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
-    return std::make_unique<Body>(
+    auto body = std::make_unique<Body>(
         std::move(unknowns),
         std::make_unique<System>(std::move(masses), make_energies(method.outer), std::move(solver)),
         settings);
+    body->set_velocities(velocities);
+    return body;
 }
 
 /// Projective dynamics with the fields on a GPU. Equal cloths use the same tables.
@@ -171,9 +197,9 @@ ClothGroup::make_contact(const Scene& scene, const std::vector<Collider>& collid
     const collision::Contact::Settings settings = contact_settings(scene);
     if (colliders.empty() && !settings.cloth_with_cloth)
         return nullptr;
-    return std::make_unique<collision::Contact>(triangles_, surfaces(),
-                                                contact_cloths(scene, cloths_, solids_.get(), colliders),
-                                                contact_colliders(colliders), settings, space);
+    return std::make_unique<collision::Contact>(
+        triangles_, surfaces(), contact_cloths(scene, cloths_, soft_bodies_.get(), solids_.get(), colliders),
+        contact_colliders(colliders), settings, space);
 }
 
 } // namespace toile::scenes

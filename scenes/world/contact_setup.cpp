@@ -26,22 +26,24 @@ const scene::Cloth& cloth_named(const Scene& scene, const std::string& name)
                          [&](const scene::Cloth& cloth) { return cloth.name == name; });
 }
 
-/// Minimum contact thickness around solids [m], for scenes without a gap: the contact force needs a depth.
+/// Minimum contact thickness around soft bodies and solids [m], for scenes without a gap: the contact force
+/// needs a depth.
 constexpr double kMinSkin = 1e-4;
 
-/// Name of a cloth's fabric or of a solid in friction pairs, and its default coefficient.
+/// Name of a cloth's fabric, of a soft body or solid in friction pairs, and its default coefficient.
 struct FrictionBody {
     std::string name;
-    std::optional<double> friction; ///< of a solid with a coefficient
+    std::optional<double> friction; ///< of a soft body or solid with a coefficient
 };
 
 std::vector<FrictionBody> friction_bodies_of(const Scene& scene, const std::vector<SceneCloth>& cloths,
-                                             const SceneSolids* solids)
+                                             const SceneSoftBodies* soft_bodies, const SceneSolids* solids)
 {
     std::vector<FrictionBody> all;
-    all.reserve(cloths.size() + (solids ? solids->count() : 0));
     for (const SceneCloth& cloth : cloths)
         all.push_back({cloth_named(scene, cloth.state().name).fabric, std::nullopt});
+    for (int i = 0; soft_bodies && i < soft_bodies->count(); ++i)
+        all.push_back({scene.soft_bodies[i].name, scene.soft_bodies[i].friction});
     for (int i = 0; solids && i < solids->count(); ++i)
         all.push_back({scene.solids[i].name, scene.solids[i].friction});
     return all;
@@ -67,6 +69,7 @@ collision::Contact::Settings contact_settings(const Scene& scene)
 }
 
 std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const std::vector<SceneCloth>& cloths,
+                                                    const SceneSoftBodies* soft_bodies,
                                                     const SceneSolids* solids,
                                                     const std::vector<Collider>& colliders)
 {
@@ -79,16 +82,21 @@ std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const st
         one.vertex_thickness = cloth.state().vertex_thickness;
         one.gap = scene.contact.gap + 0.5 * one.thickness;
     }
-    for (int i = 0; solids && i < solids->count(); ++i) {
+    const auto add_body = [&](const ClothState& surface, double mass) {
         collision::ContactCloth& one = all.emplace_back();
-        one.vertex_count = int(solids->state(i).positions.size());
-        one.mass = solids->bodies().shape(i).mass;
-        one.is_rigid = true;
+        one.vertex_count = int(surface.positions.size());
+        one.mass = mass;
         one.thickness = std::max(scene.contact.gap, kMinSkin);
         one.gap = one.thickness;
+    };
+    for (int i = 0; soft_bodies && i < soft_bodies->count(); ++i)
+        add_body(soft_bodies->state(i), soft_bodies->mass(i));
+    for (int i = 0; solids && i < solids->count(); ++i) {
+        add_body(solids->state(i), solids->bodies().shape(i).mass);
+        all.back().is_rigid = true;
     }
 
-    const std::vector<FrictionBody> friction_bodies = friction_bodies_of(scene, cloths, solids);
+    const std::vector<FrictionBody> friction_bodies = friction_bodies_of(scene, cloths, soft_bodies, solids);
     for (size_t i = 0; i < all.size(); ++i) {
         for (const Collider& collider : colliders)
             all[i].collider_friction.push_back(

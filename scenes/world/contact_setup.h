@@ -4,6 +4,7 @@
 
 #include "collision/contact/contact.h"
 #include "scenes/world/scene_cloth.h"
+#include "scenes/world/scene_soft_bodies.h"
 #include "scenes/world/scene_solids.h"
 
 namespace toile::scenes {
@@ -11,9 +12,10 @@ namespace toile::scenes {
 /// Settings of Contact for a scene.
 collision::Contact::Settings contact_settings(const Scene& scene);
 
-/// Gaps, thicknesses and friction of the cloths and then of the solids.
-/// @param solids  null: none
+/// Gaps, thicknesses and friction of the cloths, then of the soft bodies, then of the solids.
+/// @param soft_bodies, solids  null: none
 std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const std::vector<SceneCloth>& cloths,
+                                                    const SceneSoftBodies* soft_bodies,
                                                     const SceneSolids* solids,
                                                     const std::vector<Collider>& colliders);
 

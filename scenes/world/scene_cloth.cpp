@@ -28,9 +28,6 @@ namespace {
 /// elastic energy; above it something has moved the cloth that is stronger, such as bodies that close on it.
 constexpr double kYielding = 0.045;
 
-/// Acceleration [m/s^2] at which springs still hold cloth on an avatar: three times that of gravity.
-constexpr double kMaxAcceleration = 30.0;
-
 /// Distance from an avatar [m] beyond which attached cloth is not on it.
 constexpr double kFar = 0.05;
 
@@ -124,9 +121,9 @@ void SceneCloth::add_pressure(const std::function<void(const std::string&)>& war
 
 void SceneCloth::add_attachments(const Scene& scene, const std::vector<Collider>& colliders)
 {
-    std::optional<double> load;
+    std::optional<double> mass;
     if (!replaces_minimiser(scene.solver.method))
-        load = kMaxAcceleration * std::accumulate(masses_.begin(), masses_.end(), 0.0);
+        mass = std::accumulate(masses_.begin(), masses_.end(), 0.0);
     auto selected = state_.attachments.begin();
     for (size_t i = 0; i < scene.attachments.size(); ++i) {
         const scene::Attachment& attachment = scene.attachments[i];
@@ -134,7 +131,7 @@ void SceneCloth::add_attachments(const Scene& scene, const std::vector<Collider>
             continue;
         const std::string location = attachment_location(scene, i);
         require_method_supports(scene.solver.method, attachment, location);
-        attachments_.emplace_back(attachment, (selected++)->vertices, state_.positions, colliders, load,
+        attachments_.emplace_back(attachment, (selected++)->vertices, state_.positions, colliders, mass,
                                   location);
     }
     require_one_owner(attachments_, state_);

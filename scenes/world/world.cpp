@@ -241,6 +241,11 @@ struct World::Parts {
             if (const SceneSolids* solids = group.solids())
                 for (int i = 0; i < solids->count(); ++i)
                     states[cloth++].positions = solids->positions(i);
+        for (const ClothGroup& group : groups)
+            for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i) {
+                const View<const Vec3> x = group.surface_of_soft_body(i);
+                states[cloth++].positions.assign(x.begin(), x.end());
+            }
         is_shown = true;
     }
 };
@@ -315,6 +320,9 @@ World::World(const Scene& scene, const WorldOptions& options)
         if (const SceneSolids* solids = group.solids())
             for (int i = 0; i < solids->count(); ++i)
                 parts_->states.push_back(solids->state(i));
+    for (const ClothGroup& group : parts_->groups)
+        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
+            parts_->states.push_back(group.soft_bodies()->state(i));
 }
 
 World::~World() = default;
@@ -417,6 +425,9 @@ std::shared_ptr<const Snapshot> World::snapshot() const
         if (const SceneSolids* solids = group.solids())
             for (int i = 0; i < solids->count(); ++i)
                 snapshot->add(solids->positions(i));
+    for (const ClothGroup& group : parts().groups)
+        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
+            snapshot->add(group.surface_of_soft_body(i));
     return snapshot;
 }
 const collision::StartReport& World::start() const { return parts().start; }

@@ -67,7 +67,8 @@ public:
     /// @throws DeviceError if the GPU no longer responds
     View<const ClothState> cloths() const;
 
-    /// States of all cloths and then all solids, each in the order of the scene. See cloths().
+    /// States of all cloths, then all solids, then the surfaces of all soft bodies, each in the order of the
+    /// scene. See cloths().
     View<const ClothState> surfaces() const;
 
     /// Current positions of surfaces(), without waiting for a GPU. Must not outlive the World.

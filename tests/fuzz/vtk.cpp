@@ -1,4 +1,4 @@
-#include "core/mesh/vtk.h"
+#include "volume/mesh/vtk.h"
 #include "core/base/error.h"
 #include "tests/fuzz/input_file.h"
 
@@ -7,7 +7,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     static const toile::test::InputFile file(".vtk");
     try {
-        toile::boundary_surface(toile::read_vtk_tets(file.write(data, size)));
+        toile::volume::boundary_surface(toile::volume::read_vtk_tets(file.write(data, size)));
     } catch (const toile::InvalidInput&) {
     }
     return 0;

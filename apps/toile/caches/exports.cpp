@@ -12,7 +12,7 @@ std::vector<scene::Export> exports_of(const scenes::Scene& scene)
     if (!scene.exports.empty())
         return scene.exports;
     std::vector<scene::Export> exports;
-    for (const std::string& name : surface_names(scene)) {
+    for (const std::string& name : scenes::surface_names(scene)) {
         scene::Export& entry = exports.emplace_back();
         entry.file = name + ".pc2";
         entry.cloths = {name};
@@ -20,19 +20,9 @@ std::vector<scene::Export> exports_of(const scenes::Scene& scene)
     return exports;
 }
 
-std::vector<std::string> surface_names(const scenes::Scene& scene)
-{
-    std::vector<std::string> names;
-    for (const scene::Cloth& cloth : scene.cloths)
-        names.push_back(cloth.name);
-    for (const scene::Solid& solid : scene.solids)
-        names.push_back(solid.name);
-    return names;
-}
-
 std::vector<int> surfaces_of(const scenes::Scene& scene, const scene::Export& entry)
 {
-    const std::vector<std::string> names = surface_names(scene);
+    const std::vector<std::string> names = scenes::surface_names(scene);
     std::vector<int> surfaces;
     for (const std::string& name : entry.cloths)
         if (const auto at = std::find(names.begin(), names.end(), name); at != names.end())

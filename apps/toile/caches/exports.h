@@ -13,10 +13,7 @@ namespace toile::app {
 /// Exports of the scene: its list, or one PC2 per cloth and solid.
 std::vector<scene::Export> exports_of(const scenes::Scene& scene);
 
-/// Names of the scene's cloths and then of its solids: the order of World::surfaces().
-std::vector<std::string> surface_names(const scenes::Scene& scene);
-
-/// Indices in surface_names() of the cloths and solids that an export writes.
+/// Indices in scenes::surface_names() of the surfaces that an export writes.
 std::vector<int> surfaces_of(const scenes::Scene& scene, const scene::Export& entry);
 
 /// Number of the first frame in an export's file.

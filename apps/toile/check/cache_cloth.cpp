@@ -108,7 +108,7 @@ int named_surface(const scenes::Scene& scene, const std::vector<std::string>& na
 std::vector<ClothInCache> cloths_of_cache(const scenes::Scene& scene, const std::filesystem::path& cache,
                                           const std::string& named, const scene::Export& unlisted)
 {
-    const std::vector<std::string> names = surface_names(scene);
+    const std::vector<std::string> names = scenes::surface_names(scene);
     const scene::Export* const listed = listed_entry(scene, cache);
     scene::Export entry = listed != nullptr ? *listed : unlisted;
     if (listed != nullptr)

@@ -57,7 +57,7 @@ std::vector<StrainPart> strain_parts_of(const scenes::ClothState& cloth, double 
     const std::vector<std::vector<int>> numbers = cloth.triangles_by_fabric();
     std::vector<StrainPart> parts;
     for (size_t f = 0; f < numbers.size(); ++f)
-        if (!numbers[f].empty())
+        if (!numbers[f].empty() && std::isfinite(cloth.fabrics()[f].strain_limit))
             parts.push_back(part(numbers[f], cloth.fabrics()[f].strain_limit));
     return parts;
 }
@@ -317,7 +317,7 @@ void describe(Certificate& certificate, const scenes::Scene& scene, const std::v
                                       largest_limit(*cloths[i].cloth) + certificate.limits.strain_margin,
                                       int(cloths[i].cloth->file_mesh().positions.size()),
                                       int(cloths[i].cloth->file_mesh().polygons.size())});
-    for (const std::string& name : surface_names(scene))
+    for (const std::string& name : scenes::surface_names(scene))
         if (std::none_of(cloths.begin(), cloths.end(),
                          [&](const CachedCloth& cached) { return cached.cloth->name == name; }))
             certificate.left_out.push_back(name);

@@ -68,7 +68,7 @@ std::vector<ClothInCache> caches_in(const std::filesystem::path& folder, const s
         files.push_back(file);
     }
     std::vector<ClothInCache> caches;
-    for (int surface = 0; surface < int(surface_names(scene).size()); ++surface)
+    for (int surface = 0; surface < int(scenes::surface_names(scene).size()); ++surface)
         if (const std::optional<size_t> checked = export_to_check(scene, entries, surface))
             caches.push_back({files[*checked], entries[*checked], surface});
     if (caches.empty())
@@ -148,7 +148,7 @@ std::vector<ClothInCache> named_caches(const std::vector<std::filesystem::path>&
             for (const ClothInCache& other : caches)
                 if (other.surface == cloth.surface)
                     throw InvalidInput(file.string() + ": is of the same cloth \"" +
-                                       surface_names(scene)[size_t(cloth.surface)] + "\" as " +
+                                       scenes::surface_names(scene)[size_t(cloth.surface)] + "\" as " +
                                        other.file.string() + "; give one cache of each cloth");
             caches.push_back(cloth);
         }

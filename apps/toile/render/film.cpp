@@ -121,13 +121,14 @@ Film Film::of_caches_with_faces(const std::vector<std::filesystem::path>& caches
 void Film::add_surface(int index, std::optional<exports::PointCache> cache, const std::filesystem::path& file)
 {
     const scenes::ClothState& state = surfaces_[size_t(index)];
-    const int solid = index - int(settings_.cloths.size());
+    const int solid = index - int(settings_.cloths.size()), soft = solid - int(settings_.solids.size());
     const scene::Cloth settings = solid < 0 ? settings_.cloths[size_t(index)] : scene::Cloth{};
     add_cloth(state.name, settings, state.triangles, state.positions, std::move(cache), file);
     tracks_.back().cloth = &state;
     apply_print(settings, state, tracks_.back().mesh);
     if (solid >= 0)
-        tracks_.back().mesh.material = body_material(settings_.solids[size_t(solid)].color);
+        tracks_.back().mesh.material = body_material(soft < 0 ? settings_.solids[size_t(solid)].color
+                                                              : settings_.soft_bodies[size_t(soft)].color);
 }
 
 void Film::add_cloth(const std::string& name, const scene::Cloth& settings,

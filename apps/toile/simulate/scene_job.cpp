@@ -27,7 +27,7 @@ using std::filesystem::path;
 /// The surfaces of an export, for messages.
 std::string contents_of(const scenes::Scene& scene, const scene::Export& entry)
 {
-    const std::vector<std::string> names = surface_names(scene);
+    const std::vector<std::string> names = scenes::surface_names(scene);
     std::string list;
     for (const int surface : surfaces_of(scene, entry))
         list += (list.empty() ? "\"" : ", \"") + names[size_t(surface)] + "\"";
@@ -124,7 +124,7 @@ std::vector<path> certificates_of(const SceneJob& job)
 
 void require_checkable(const SceneJob& job)
 {
-    const std::vector<std::string> names = surface_names(job.scene);
+    const std::vector<std::string> names = scenes::surface_names(job.scene);
     const std::vector<scene::Export> entries = exports_of(job.scene);
     for (int surface = 0; surface < int(names.size()); ++surface) {
         const std::string remedy =

@@ -27,6 +27,7 @@ Command add_drape(CLI::App& parser);
 Command add_fit(CLI::App& parser);
 Command add_info(CLI::App& parser);
 Command add_measure(CLI::App& parser);
+Command add_mesh(CLI::App& parser);
 Command add_pattern(CLI::App& parser);
 Command add_schema(CLI::App& parser);
 

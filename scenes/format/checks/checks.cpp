@@ -299,7 +299,7 @@ void check_groups(const Document& document, const std::string& key_path, const C
 
 void check_cloths(const Document& document, const scenes::Scene& scene)
 {
-    if (scene.cloths.empty() && scene.solids.empty())
+    if (scene.cloths.empty() && scene.solids.empty() && scene.soft_bodies.empty())
         document.refuse("cloths", "the list is empty; add a cloth");
     check_names(document, "cloths", names_of(scene.cloths));
     for (size_t i = 0; i < scene.cloths.size(); ++i) {
@@ -326,35 +326,62 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
     }
 }
 
-// --- solids ---
+// --- solids and soft bodies ---
 
-/// Checks solids. Their names serve caches and friction pairs, so no cloth or avatar may share them.
+/// Checks names, which serve caches and friction pairs: none may be that of another object.
+void check_body_names(const Document& document, const std::string& list,
+                      const std::vector<std::string>& names, const std::vector<std::string>& others,
+                      const std::string& kinds)
+{
+    check_names(document, list, names);
+    for (size_t i = 0; i < names.size(); ++i)
+        if (contains(others, names[i]))
+            document.refuse(below(below(list, i), "name"),
+                            as_written(names[i]) + " is the name of a " + kinds + "; choose another name");
+}
+
+/// Checks what bodies that are simulated need of the rest of a scene.
+void check_contact_of_bodies(const Document& document, const scenes::Scene& scene, const std::string& list)
+{
+    if (!scene.contact.self)
+        document.refuse(below("contact", "self"),
+                        "false leaves " + list + " without contact; remove it or the " + list);
+    const SolverMethod method = scene.solver.method;
+    if (replaces_minimiser(method))
+        document.refuse(below("solver", "method"),
+                        as_written(word_of(method)) +
+                            " moves cloth only; choose another method, or remove the " + list);
+}
+
 void check_solids(const Document& document, const scenes::Scene& scene)
 {
-    check_names(document, "solids", names_of(scene.solids));
-    const std::vector<std::string> cloths = names_of(scene.cloths), avatars = names_of(scene.avatars);
+    std::vector<std::string> others = names_of(scene.cloths);
+    for (const std::string& avatar : names_of(scene.avatars))
+        others.push_back(avatar);
+    check_body_names(document, "solids", names_of(scene.solids), others, "cloth or avatar");
     for (size_t i = 0; i < scene.solids.size(); ++i) {
         const Solid& solid = scene.solids[i];
         const std::string key_path = below("solids", i);
-        if (contains(cloths, solid.name) || contains(avatars, solid.name))
-            document.refuse(below(key_path, "name"),
-                            as_written(solid.name) +
-                                " is the name of a cloth or avatar; choose another name");
         if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
             check_extension(document, below(key_path, "file"), *file, {".obj", ".vtk"});
         else if (solid.unit != LengthUnit::Metre)
             document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
     }
-    if (scene.solids.empty())
-        return;
-    if (!scene.contact.self)
-        document.refuse(below("contact", "self"),
-                        "false leaves solids without contact; remove it or the solids");
-    const SolverMethod method = scene.solver.method;
-    if (replaces_minimiser(method))
-        document.refuse(below("solver", "method"),
-                        as_written(word_of(method)) +
-                            " moves cloth only; choose another method, or remove the " + "solids");
+    if (!scene.solids.empty())
+        check_contact_of_bodies(document, scene, "solids");
+}
+
+void check_soft_bodies(const Document& document, const scenes::Scene& scene)
+{
+    std::vector<std::string> others = names_of(scene.cloths);
+    for (const auto& names : {names_of(scene.avatars), names_of(scene.solids)})
+        others.insert(others.end(), names.begin(), names.end());
+    check_body_names(document, "soft_bodies", names_of(scene.soft_bodies), others, "cloth, avatar or solid");
+    for (size_t i = 0; i < scene.soft_bodies.size(); ++i)
+        check_extension(document, below(below("soft_bodies", i), "file"), scene.soft_bodies[i].file,
+                        {".msh", ".vtk"});
+    if (!scene.soft_bodies.empty())
+        check_contact_of_bodies(document, scene, "soft bodies");
 }
 
 // --- fabrics ---
@@ -403,15 +430,22 @@ void check_selection(const Document& document, const std::string& key_path, cons
 
 void check_attachments(const Document& document, const scenes::Scene& scene)
 {
-    const std::vector<std::string> cloths = names_of(scene.cloths);
+    std::vector<std::string> attached = names_of(scene.cloths);
+    for (const SoftBody& body : scene.soft_bodies)
+        attached.push_back(body.name);
+    const char* const kind = scene.soft_bodies.empty() ? "cloth" : "cloth or soft body";
     const std::vector<std::string> avatars = names_of(scene.avatars);
     std::vector<std::string> targets = avatars;
     targets.emplace_back(kFixed);
     for (size_t i = 0; i < scene.attachments.size(); ++i) {
         const Attachment& attachment = scene.attachments[i];
         const std::string key_path = below("attachments", i);
-        require_known(document, below(key_path, "cloth"), "cloth", attachment.cloth, cloths);
+        require_known(document, below(key_path, "cloth"), kind, attachment.cloth, attached);
         check_selection(document, below(key_path, "select"), attachment.select, avatars);
+        if (contains(names_of(scene.soft_bodies), attachment.cloth) &&
+            std::holds_alternative<std::vector<int>>(attachment.select.by))
+            document.refuse(below(below(key_path, "select"), "vertices"),
+                            "a soft body is not selected by numbers; use box, nearest or all_within");
         require_known(document, below(key_path, "to"), "avatar", attachment.to, targets);
         if (!attachment.keyframes.empty() && attachment.to != kFixed)
             document.refuse(below(key_path, "keyframes"),
@@ -434,6 +468,8 @@ void check_contact(const Document& document, const scenes::Scene& scene)
     const std::vector<std::string> avatars = names_of(scene.avatars), solids = names_of(scene.solids);
     std::vector<std::string> known = avatars;
     known.insert(known.end(), solids.begin(), solids.end());
+    for (const SoftBody& body : scene.soft_bodies)
+        known.push_back(body.name);
     for (const Cloth& cloth : scene.cloths)
         if (!contains(known, cloth.fabric))
             known.push_back(cloth.fabric);
@@ -443,7 +479,7 @@ void check_contact(const Document& document, const scenes::Scene& scene)
         if (pairs[i].between.size() != 2)
             document.refuse(key_path, std::to_string(pairs[i].between.size()) + " names; give exactly two");
         for (const std::string& name : pairs[i].between)
-            require_known(document, key_path, "fabric in use, avatar or solid", name, known);
+            require_known(document, key_path, "fabric in use, avatar, solid or soft body", name, known);
         if (contains(avatars, pairs[i].between[0]) && contains(avatars, pairs[i].between[1]))
             document.refuse(key_path, "avatars have no friction with each other; name a fabric or solid");
     }
@@ -456,6 +492,7 @@ void require_consistent(const Document& document, const scenes::Scene& scene)
     check_avatars(document, scene);
     check_cloths(document, scene);
     check_solids(document, scene);
+    check_soft_bodies(document, scene);
     check_fabrics(document, scene);
     check_attachments(document, scene);
     check_contact(document, scene);

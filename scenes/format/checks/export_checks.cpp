@@ -30,10 +30,9 @@ void check_export_file(const Document& document, const std::string& at_file,
 void check_exported_cloths(const Document& document, const std::string& key_path, const Export& entry,
                            const scenes::Scene& scene)
 {
-    std::vector<std::string> known = names_of(scene.cloths);
-    for (const Solid& solid : scene.solids)
-        known.push_back(solid.name);
-    const char* const kind = scene.solids.empty() ? "cloth" : "cloth or solid";
+    const std::vector<std::string> known = scenes::surface_names(scene);
+    const bool is_of_cloths = known.size() == scene.cloths.size();
+    const char* const kind = is_of_cloths ? "cloth" : "cloth, solid or soft body";
     const bool is_all = entry.cloths == std::vector<std::string>{"all"} && !contains(known, "all");
     std::set<std::string> seen;
     for (const std::string& name : entry.cloths) {
@@ -50,7 +49,7 @@ void check_exported_cloths(const Document& document, const std::string& key_path
                         one_mesh + "write one file each, or an .abc or .usda of all");
     if (entry.cloths.empty() && known.size() > 1)
         document.refuse(key_path, "the scene has " + std::to_string(known.size()) +
-                                      (scene.solids.empty() ? " cloths" : " cloths and solids") +
+                                      (is_of_cloths ? " cloths" : " cloths, solids and soft bodies") +
                                       "; name the one to write with the key \"cloth\"");
     if (entry.avatars)
         document.refuse(below(key_path, "avatars"), one_mesh + "write the avatars to an .abc or .usda");

@@ -1,4 +1,4 @@
-#include "core/mesh/vtk.h"
+#include "volume/mesh/vtk.h"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,8 @@
 #include "tests/support/temporary_folder.h"
 
 namespace toile::test {
+
+using namespace volume;
 
 namespace {
 
@@ -86,7 +88,7 @@ TEST_F(VtkTest, NamesTheErrorAndItsLine)
         {kHead + kPoints + "CELLS 2 4\nOFFSETS int\n0 9\nCONNECTIVITY int\n1 2 3 4" + types,
          "the offsets of the cells"},
         {kHead + kPoints + "CELLS 2 10\n4 1 2 3 4\n4 4 3 2 1\nCELL_TYPES 2\n10\n10\n",
-         "cells 0 and 1 lie on the same side of a face"},
+         "cell 0 and cell 1 lie on the same side of a face"},
         {"# vtk DataFile Version 2.0\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n1234",
          "byte 77: 18 numbers are announced, the file ends after 1"},
     };

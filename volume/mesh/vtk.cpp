@@ -1,42 +1,17 @@
-#include "core/mesh/vtk.h"
+#include "volume/mesh/vtk.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <string>
 
-#include <Eigen/Geometry>
-
 #include "core/base/error.h"
-#include "core/mesh/vtk_file.h"
+#include "volume/mesh/vtk_file.h"
 
-namespace toile {
+namespace toile::volume {
 
 namespace {
 
 /// Cell type VTK_TETRA, and the last of the linear types without a volume: points, lines, triangles, quads.
 constexpr std::int64_t kTetrahedron = 10, kLastFlatType = 9;
-
-//        d
-//       /|\        faces seen from outside, (b - a) x (c - a) . (d - a) > 0:
-//      a-+-c       (a, c, b), (a, b, d), (b, c, d), (a, d, c)
-//       \|/
-//        b
-constexpr int kFaces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-
-Triangle face_of(const std::array<int, 4>& tet, int face)
-{
-    const auto& corner = kFaces[face];
-    return {tet[corner[0]], tet[corner[1]], tet[corner[2]]};
-}
-
-/// Corners in ascending order, for matching.
-std::array<int, 3> key_of(const Triangle& face)
-{
-    std::array<int, 3> key{face[0], face[1], face[2]};
-    std::sort(key.begin(), key.end());
-    return key;
-}
 
 /// Cells as lists of points: those of cell i are points[first[i] .. first[i + 1]).
 struct Cells {
@@ -72,7 +47,9 @@ public:
         if (mesh_.tets.empty())
             refuse("none of the " + std::to_string(cells.count()) +
                    " cells is a tetrahedron (10); a surface is read as .obj");
-        require_faces_of_two();
+        orient(
+            mesh_, [this](int t) { return "cell " + std::to_string(cell_of_tet_[t]); }, source_);
+        remove_unused_vertices(mesh_);
         return std::move(mesh_);
     }
 
@@ -127,7 +104,7 @@ private:
         const std::int64_t begin = cells.first[size_t(i)], corners = cells.first[size_t(i) + 1] - begin;
         if (corners != 4)
             refuse(name + " has " + std::to_string(corners) + " corners; a tetrahedron has 4");
-        std::array<int, 4> tet{};
+        Tet tet{};
         for (int k = 0; k < 4; ++k) {
             const std::int64_t v = cells.points[size_t(begin + k)];
             if (v < 0 || v >= std::int64_t(mesh_.positions.size()))
@@ -135,32 +112,8 @@ private:
                        std::to_string(std::int64_t(mesh_.positions.size()) - 1));
             tet[k] = int(v);
         }
-        const Vec3& a = mesh_.positions[tet[0]];
-        const double volume =
-            (mesh_.positions[tet[1]] - a).cross(mesh_.positions[tet[2]] - a).dot(mesh_.positions[tet[3]] - a);
-        if (volume == 0.0)
-            refuse(name + " is flat; a tetrahedron has a volume");
-        if (volume < 0.0)
-            std::swap(tet[2], tet[3]);
         mesh_.tets.push_back(tet);
         cell_of_tet_.push_back(i);
-    }
-
-    /// Refuses tetrahedra that lie in each other: those on one side of a face.
-    void require_faces_of_two() const
-    {
-        std::map<std::array<int, 3>, std::int64_t> seen_ascending, seen_descending;
-        for (size_t t = 0; t < mesh_.tets.size(); ++t)
-            for (int f = 0; f < 4; ++f) {
-                const Triangle face = face_of(mesh_.tets[t], f);
-                const std::array<int, 3> key = key_of(face);
-                const auto first = std::find(face.begin(), face.end(), key[0]) - face.begin();
-                auto& seen = face[(first + 1) % 3] == key[1] ? seen_ascending : seen_descending;
-                if (const auto [other, is_new] = seen.try_emplace(key, cell_of_tet_[t]); !is_new)
-                    refuse("cells " + std::to_string(other->second) + " and " +
-                           std::to_string(cell_of_tet_[t]) + " lie on the same side of a face that they " +
-                           "share; remove one of them");
-            }
     }
 
     [[noreturn]] void refuse(const std::string& why) const { throw InvalidInput(source_ + ": " + why); }
@@ -175,33 +128,4 @@ private:
 
 TetMesh read_vtk_tets(const std::filesystem::path& file) { return TetReader(file).read(); }
 
-TriangleMesh boundary_surface(const TetMesh& mesh)
-{
-    std::map<std::array<int, 3>, int> uses; // by key_of()
-    std::vector<Triangle> faces;
-    for (const std::array<int, 4>& tet : mesh.tets)
-        for (int f = 0; f < 4; ++f) {
-            faces.push_back(face_of(tet, f));
-            ++uses[key_of(faces.back())];
-        }
-
-    TriangleMesh surface;
-    std::vector<int> number(mesh.positions.size(), -1);
-    for (const Triangle& face : faces)
-        if (uses[key_of(face)] == 1) {
-            surface.triangles.push_back(face);
-            for (const int v : face)
-                number[v] = 0;
-        }
-    for (size_t v = 0; v < number.size(); ++v)
-        if (number[v] == 0) {
-            number[v] = surface.vertex_count();
-            surface.positions.push_back(mesh.positions[v]);
-        }
-    for (Triangle& face : surface.triangles)
-        for (int& v : face)
-            v = number[v];
-    return surface;
-}
-
-} // namespace toile
+} // namespace toile::volume

@@ -1,4 +1,4 @@
-#include "core/mesh/vtk_file.h"
+#include "volume/mesh/vtk_file.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/number.h"
 
-namespace toile {
+namespace toile::volume {
 
 namespace {
 
@@ -236,4 +236,4 @@ std::vector<Number> VtkFile::values(std::int64_t count, const std::string& type)
     return result;
 }
 
-} // namespace toile
+} // namespace toile::volume

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace toile {
+namespace toile::volume {
 
 /// A file in the legacy VTK format: words, and arrays in ASCII or as big-endian numbers.
 /// Every refusal is an InvalidInput naming the file and the line, or the byte behind binary numbers.
@@ -53,4 +53,4 @@ private:
     bool has_read_binary_ = false; ///< lines can't be counted any more
 };
 
-} // namespace toile
+} // namespace toile::volume

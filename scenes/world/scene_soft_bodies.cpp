@@ -1,0 +1,187 @@
+#include "scenes/world/scene_soft_bodies.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/compute/parallel.h"
+#include "garment/energy/air/loads_kernels.h"
+#include "scenes/colliders/select_vertices.h"
+#include "scenes/surfaces/load_cloth.h"
+
+namespace toile::scenes {
+
+SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>& colliders,
+                                 int first_surface, int between)
+    : gravity_(scene.gravity), between_(between), first_inner_(first_surface + between)
+{
+    std::vector<LoadedSoftBody> loaded;
+    for (const scene::SoftBody& settings : scene.soft_bodies)
+        first_inner_ += int(loaded.emplace_back(load_soft_body(settings)).surface.positions.size());
+
+    volume::TetMesh all; // by unknowns
+    std::vector<volume::Lame> lame;
+    int next_surface = first_surface, next_inner = first_inner_;
+    for (size_t i = 0; i < loaded.size(); ++i) {
+        const scene::SoftBody& settings = scene.soft_bodies[i];
+        const volume::TetMesh& mesh = loaded[i].mesh;
+        rest_tets(mesh, loaded[i].source); // checks it, with the numbers of its own
+        Body& body = bodies_.emplace_back();
+        body.first_surface = next_surface;
+        body.first_inner = next_inner;
+        body.density = settings.density;
+        body.damping = settings.damping;
+        body.velocity = settings.velocity;
+        body.surface = std::move(loaded[i].surface);
+        body.positions = mesh.positions;
+        body.tets = mesh.tets;
+        next_surface += body.surface_count();
+        next_inner += body.vertex_count() - body.surface_count();
+        for (const volume::Tet& tet : mesh.tets)
+            all.tets.push_back(
+                {body.unknown(tet[0]), body.unknown(tet[1]), body.unknown(tet[2]), body.unknown(tet[3])});
+        lame.resize(all.tets.size(),
+                    volume::ElasticMaterial{settings.young, settings.poisson}.lame(loaded[i].source));
+        add_attachments(scene, colliders, body);
+    }
+    all.positions.resize(next_inner, Vec3::Zero());
+    for (const Body& body : bodies_)
+        for (int v = 0; v < body.vertex_count(); ++v)
+            all.positions[body.unknown(v)] = body.positions[v];
+    rest_ = std::make_shared<volume::RestTets>(rest_tets(all, "soft bodies"));
+    elastic_ = std::make_shared<volume::ElasticSolid>(rest_, std::move(lame));
+    add_springs();
+}
+
+void SceneSoftBodies::add_attachments(const Scene& scene, const std::vector<Collider>& colliders, Body& body)
+{
+    for (size_t i = 0; i < scene.attachments.size(); ++i) {
+        const scene::Attachment& attachment = scene.attachments[i];
+        if (attachment.cloth != body.surface.name)
+            continue;
+        const std::string location = attachment_location(scene, i);
+        std::vector<int> vertices = select_vertices(attachment.select, body.positions, colliders);
+        if (vertices.empty())
+            throw InvalidInput(location + ": selects no vertex of \"" + body.surface.name +
+                               "\"; move the selection to where the body starts");
+        body.attachments.emplace_back(attachment, std::move(vertices), body.positions, colliders, mass(body),
+                                      location);
+    }
+}
+
+int SceneSoftBodies::body_of(int unknown) const
+{
+    int body = 0;
+    while (body + 1 < count() && unknown >= (unknown < first_inner_ ? bodies_[body + 1].first_surface
+                                                                    : bodies_[body + 1].first_inner))
+        ++body;
+    return body;
+}
+
+/// Of a body [kg].
+double SceneSoftBodies::mass(const Body& body)
+{
+    double sum = 0.0; // [m^3]
+    for (const volume::Tet& tet : body.tets)
+        sum += volume::volume_of(tet, body.positions);
+    return body.density * sum;
+}
+
+void SceneSoftBodies::add_springs()
+{
+    std::vector<garment::Springs::Spring> springs;
+    for (const Body& body : bodies_)
+        for (const AttachmentConstraint& attachment : body.attachments)
+            if (attachment.stiffness())
+                for (const int v : attachment.vertices())
+                    springs.push_back({body.unknown(v), *attachment.stiffness()});
+    if (!springs.empty())
+        springs_ = std::make_shared<garment::Springs>(springs);
+}
+
+std::vector<std::shared_ptr<Energy>> SceneSoftBodies::energies() const
+{
+    std::vector<std::shared_ptr<Energy>> energies{elastic_};
+    if (springs_)
+        energies.push_back(springs_);
+    return energies;
+}
+
+void SceneSoftBodies::set_start(View<Vec3> positions, View<Vec3> velocities, View<double> masses) const
+{
+    const std::vector<double> volumes = rest_->vertex_volumes();
+    for (const Body& body : bodies_)
+        for (int v = 0; v < body.vertex_count(); ++v) {
+            const int i = body.unknown(v);
+            positions[i] = body.positions[v];
+            velocities[i] = body.velocity;
+            masses[i] = body.density * volumes[i];
+        }
+}
+
+void SceneSoftBodies::append_triangles(std::vector<Triangle>& triangles) const
+{
+    for (const Body& body : bodies_)
+        for (const Triangle& t : body.surface.triangles)
+            triangles.push_back(t + Triangle::Constant(body.first_surface));
+}
+
+void SceneSoftBodies::tie(const std::vector<Collider>& colliders)
+{
+    // Not lifted to the skin: a body may enclose what it is attached to.
+    constexpr double kAnywhere = -std::numeric_limits<double>::infinity();
+    for (Body& body : bodies_)
+        for (AttachmentConstraint& attachment : body.attachments)
+            attachment.tie(body.positions, {}, kAnywhere, colliders);
+}
+
+void SceneSoftBodies::mark_fixed(double t_t1, View<unsigned char> fixed) const
+{
+    for (const Body& body : bodies_) {
+        for (int v = 0; v < body.vertex_count(); ++v)
+            fixed[body.unknown(v)] = 0;
+        for (const AttachmentConstraint& attachment : body.attachments)
+            if (!attachment.stiffness() && attachment.is_active_at(t_t1))
+                for (const int v : attachment.vertices())
+                    fixed[body.unknown(v)] = 1;
+    }
+}
+
+void SceneSoftBodies::update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets)
+{
+    int spring = 0;
+    for (Body& body : bodies_)
+        for (AttachmentConstraint& attachment : body.attachments) {
+            const bool is_active = attachment.is_active_at(t_t1);
+            if (is_active)
+                attachment.follow(t_t1, colliders);
+            for (int k = 0; k < int(attachment.vertices().size()); ++k)
+                if (!attachment.stiffness()) {
+                    if (is_active)
+                        targets[body.unknown(attachment.vertices()[k])] = attachment.target(k);
+                } else if (is_active)
+                    springs_->set_target(spring++, attachment.target(k));
+                else
+                    springs_->release(spring++);
+        }
+}
+
+void SceneSoftBodies::accelerate(double dt, View<const Vec3> v, View<Vec3> acceleration) const
+{
+    const garment::FallDamped fall{gravity_, v, acceleration};
+    for (const Body& body : bodies_) {
+        const double decay = garment::FallDamped::decay(body.damping, dt);
+        parallel_for(kCpu, "scenes/accelerate", body.vertex_count(),
+                     [&](int i) { fall.at(body.unknown(i), decay); });
+    }
+}
+
+bool SceneSoftBodies::is_disturbed(double t) const
+{
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+        return std::any_of(body.attachments.begin(), body.attachments.end(),
+                           [&](const AttachmentConstraint& attachment) { return attachment.changes_at(t); });
+    });
+}
+
+} // namespace toile::scenes

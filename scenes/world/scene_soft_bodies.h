@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "garment/energy/springs.h"
+#include "scenes/colliders/attachment_constraint.h"
+#include "scenes/surfaces/load_soft_body.h"
+#include "volume/energy/elastic_solid.h"
+
+namespace toile::scenes {
+
+/// The soft bodies of a running scene. Their ClothGroup moves them, among its unknowns: the vertices of all
+/// surfaces follow each other, and so do those inside. Fields here are of all unknowns of the group.
+class SceneSoftBodies {
+public:
+    /// @param first_surface   unknown of the first vertex of a surface
+    /// @param between         unknowns between the surfaces and what is inside
+    /// @throws InvalidInput for a mesh, material or attachment that does not work
+    SceneSoftBodies(const Scene& scene, const std::vector<Collider>& colliders, int first_surface,
+                    int between);
+
+    int count() const { return int(bodies_.size()); }
+    const ClothState& state(int body) const { return bodies_[body].surface; } ///< at the start
+
+    int surface_count() const { return first_inner_ - between_ - bodies_.front().first_surface; }
+    int unknown_count() const { return int(rest_->corners_of_vertex.first.size()) - 1; } ///< of the group
+    int first_vertex(int body) const { return bodies_[body].first_surface; }
+    int body_of(int unknown) const;                             ///< of a vertex
+    double mass(int body) const { return mass(bodies_[body]); } ///< [kg]
+
+    void set_start(View<Vec3> positions, View<Vec3> velocities, View<double> masses) const;
+    std::vector<std::shared_ptr<Energy>> energies() const;
+
+    /// Appends the triangles of all surfaces.
+    void append_triangles(std::vector<Triangle>& triangles) const;
+
+    /// See SceneCloth.
+    void tie(const std::vector<Collider>& colliders);
+    void mark_fixed(double t_t1, View<unsigned char> fixed) const;
+    void update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets);
+    void accelerate(double dt, View<const Vec3> v, View<Vec3> acceleration) const;
+    bool is_disturbed(double t) const;
+
+private:
+    struct Body {
+        int first_surface, first_inner; ///< unknowns
+        double density, damping;        ///< [kg/m^3], [1/s]
+        Vec3 velocity;                  ///< [m/s]
+        ClothState surface;
+        std::vector<Vec3> positions; ///< [vertices] at the start [m]
+        std::vector<volume::Tet> tets;
+        std::vector<AttachmentConstraint> attachments;
+
+        int surface_count() const { return int(surface.positions.size()); }
+        int vertex_count() const { return int(positions.size()); }
+        int unknown(int vertex) const
+        {
+            return vertex < surface_count() ? first_surface + vertex : first_inner + vertex - surface_count();
+        }
+    };
+    void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, Body& body);
+    void add_springs();
+    static double mass(const Body& body);
+
+    Vec3 gravity_;
+    int between_, first_inner_;
+    std::vector<Body> bodies_;
+    std::shared_ptr<const volume::RestTets> rest_; ///< of all, by unknowns
+    std::shared_ptr<volume::ElasticSolid> elastic_;
+    std::shared_ptr<garment::Springs> springs_; ///< null without attachments by springs
+};
+
+} // namespace toile::scenes

@@ -1,0 +1,235 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/check/find_crossings.h"
+#include "core/base/error.h"
+#include "core/mesh/solid_moments.h"
+#include "scenes/format/read_scene.h"
+#include "scenes/world/world.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/volume/blocks.h"
+#include "volume/mesh/msh.h"
+
+namespace toile::test {
+
+using namespace scenes;
+
+namespace {
+
+const std::string kFloor = R"("avatars": [{"name": "floor", "plane": {}}], )";
+
+class SoftBodies : public testing::Test {
+protected:
+    /// A file with a block of edge 0.1 m, its lowest corner in the origin.
+    SoftBodies()
+    {
+        write_msh(folder.path() / "block.msh", make_block(Vec3::Constant(0.1), {4, 4, 4}, 0.1).mesh);
+    }
+
+    World world_of(const std::string& keys, const WorldOptions& options = {}) const
+    {
+        return World(parse_scene("{\"toile\": 1, " + keys + "}", folder.path() / "test.json"), options);
+    }
+    std::string block(const std::string& name, const std::string& keys) const
+    {
+        return R"({"name": ")" + name + R"(", "file": "block.msh", )" + keys + "}";
+    }
+    std::string refusal(const std::string& keys) const
+    {
+        try {
+            world_of(keys);
+        } catch (const InvalidInput& error) {
+            return error.what();
+        }
+        return "";
+    }
+    TemporaryFolder folder;
+};
+
+Vec3 mean(const std::vector<Vec3>& points)
+{
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& p : points)
+        sum += p;
+    return sum / double(points.size());
+}
+
+double lowest(const std::vector<Vec3>& points)
+{
+    double y = INFINITY;
+    for (const Vec3& p : points)
+        y = std::min(y, p.y());
+    return y;
+}
+
+double volume_of(const ClothState& surface)
+{
+    return solid_moments({surface.positions, surface.triangles}, surface.name).volume;
+}
+
+/// Pairs of triangles of all surfaces that cross.
+size_t crossings(const World& world)
+{
+    std::vector<Vec3> x;
+    std::vector<Triangle> triangles;
+    for (const ClothState& surface : world.surfaces()) {
+        for (const Triangle& t : surface.triangles)
+            triangles.push_back(t + Triangle::Constant(int(x.size())));
+        x.insert(x.end(), surface.positions.begin(), surface.positions.end());
+    }
+    return collision::find_crossings(triangles, x).size();
+}
+
+/// Advances to the last frame; every step must end converged.
+void run(World& world)
+{
+    while (world.frame() + 1 < world.frame_count()) {
+        const StepReport report = world.advance_frame();
+        ASSERT_EQ(report.status, StepReport::Status::Converged) << world.frame() << ": " << report.message;
+        ASSERT_EQ(crossings(world), 0U) << world.frame();
+    }
+}
+
+TEST_F(SoftBodies, FallFreelyAndUndeformed)
+{
+    World world = world_of(R"("frames": 11, "cloths": [], "soft_bodies": [)" +
+                           block("jelly", R"("young": 1000, "velocity": [1, 2, 0])") + "]");
+    const std::vector<Vec3> start = world.surfaces()[0].positions;
+    run(world);
+    const double t = 10.0 / 30.0;
+    const Vec3 moved = Vec3(t, 2.0 * t - 0.5 * 9.81 * t * t, 0.0);
+    for (size_t v = 0; v < start.size(); ++v)
+        EXPECT_LT((world.surfaces()[0].positions[v] - start[v] - moved).norm(), 2e-3);
+    EXPECT_NEAR(volume_of(world.surfaces()[0]), 1e-3, 1e-8);
+}
+
+TEST_F(SoftBodies, LandRestAtTheGapAndSleep)
+{
+    World world = world_of(
+        kFloor + R"("frames": 90, "cloths": [], "soft_bodies": [)" +
+        block("jelly",
+              R"("young": 20000, "damping": 2, "translate": [0, 0.1, 0], "rotate_deg": [20, 0, 30])") +
+        "]");
+    run(world);
+    EXPECT_GT(lowest(world.surfaces()[0].positions), 0.0005);
+    EXPECT_LT(lowest(world.surfaces()[0].positions), 0.0025);
+    // It lies on a face: compressed by rho g h / 2 E in the mean.
+    EXPECT_NEAR(mean(world.surfaces()[0].positions).y(), 0.05, 0.003);
+}
+
+TEST_F(SoftBodies, SqueezeByTheirOwnWeightAsLinearElasticityHasIt)
+{
+    // Held below without friction or bulging: nu = 0. The top sinks by rho g h^2 / 2 E.
+    World world =
+        world_of(R"("frames": 60, "cloths": [], "solver": {"velocity_tolerance": 1e-4}, "soft_bodies": [)" +
+                 block("jelly", R"("young": 50000, "poisson": 0, "damping": 20)") + R"(],
+        "attachments": [{"cloth": "jelly", "select": {"box": {"lower": [-1, -0.001, -1], "upper": [1, 0.001, 1]}}}])");
+    run(world);
+    double top = 0.0;
+    for (const Vec3& p : world.surfaces()[0].positions)
+        top = std::max(top, p.y());
+    const double sinks = 1000.0 * 9.81 * 0.01 / (2.0 * 50000.0);
+    EXPECT_NEAR(0.1 - top, sinks, 0.1 * sinks);
+}
+
+TEST_F(SoftBodies, FollowKeyframes)
+{
+    World world = world_of(R"("frames": 31, "gravity": [0, 0, 0], "cloths": [], "soft_bodies": [)" +
+                           block("jelly", R"("damping": 5)") + R"(], "attachments": [
+        {"cloth": "jelly", "select": {"box": {"lower": [-1, -1, -1], "upper": [0.001, 1, 1]}}},
+        {"cloth": "jelly", "select": {"box": {"lower": [0.099, -1, -1], "upper": [1, 1, 1]}},
+         "keyframes": [{"time": 0, "translate": [0, 0, 0]}, {"time": 0.5, "translate": [0.05, 0, 0]}]}])");
+    run(world);
+    Bounds box = bounds(world.surfaces()[0].positions);
+    EXPECT_NEAR(box.upper.x(), 0.15, 1e-6);
+    EXPECT_NEAR(box.lower.x(), 0.0, 1e-6);
+    double waist = 0.0;
+    for (const Vec3& p : world.surfaces()[0].positions)
+        if (std::abs(p.x() - 0.075) < 0.02)
+            waist = std::max(waist, p.y());
+    EXPECT_LT(waist, 0.095); // it narrows
+}
+
+TEST_F(SoftBodies, CarryClothAndSolidsAndEachOther)
+{
+    World world =
+        world_of(kFloor + R"("frames": 40,
+        "cloths": [{"name": "blanket", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02}, "translate": [0.05, 0.215, 0.05]}],
+        "solids": [{"name": "ball", "sphere": {"radius": 0.03}, "density": 500, "translate": [0.05, 0.26, 0.05]}],
+        "soft_bodies": [)" +
+                 block("lower", R"("young": 30000, "damping": 2, "translate": [0, 0.003, 0])") + ", " +
+                 block("upper", R"("young": 30000, "damping": 2, "translate": [0.02, 0.108, 0.01])") + "]");
+    run(world);
+    const View<const ClothState> surfaces = world.surfaces();
+    ASSERT_EQ(surfaces.size(), 4);
+    EXPECT_EQ(surfaces[0].name, "blanket");
+    EXPECT_EQ(surfaces[1].name, "ball");
+    EXPECT_EQ(surfaces[2].name, "lower");
+    EXPECT_EQ(surfaces[3].name, "upper");
+    EXPECT_GT(mean(surfaces[3].positions).y(), 0.13); // on the lower one
+    EXPECT_GT(mean(surfaces[1].positions).y(), 0.2);  // on the upper one and the blanket
+    for (const int body : {2, 3})
+        EXPECT_NEAR(volume_of(surfaces[body]), 1e-3, 2e-5);
+}
+
+TEST_F(SoftBodies, HaveTheSameBitsForEveryThreadCount)
+{
+    std::vector<std::vector<Vec3>> found;
+    for (const int threads : {1, 2, 5}) {
+        World world = world_of(
+            kFloor + R"("frames": 12, "cloths": [], "solver": {"threads": )" + std::to_string(threads) +
+            R"(}, "soft_bodies": [)" +
+            block("jelly", R"("young": 5000, "translate": [0, 0.02, 0], "rotate_deg": [20, 0, 30])") + "]");
+        run(world);
+        found.push_back(world.surfaces()[0].positions);
+    }
+    EXPECT_EQ(found[0], found[1]);
+    EXPECT_EQ(found[0], found[2]);
+}
+
+TEST_F(SoftBodies, DoNotBurdenScenesWithoutThem)
+{
+    World world = world_of(
+        R"("frames": 3, "cloths": [{"name": "sheet", "rectangle": {"size": [0.1, 0.1], "resolution": 0.02}}])");
+    run(world);
+    EXPECT_EQ(world.stages().calls("elastic/project"), 0);
+}
+
+TEST_F(SoftBodies, AreRefusedWithTheReason)
+{
+    const auto with = [&](const std::string& keys) {
+        return R"("frames": 1, "cloths": [], "soft_bodies": [)" + block("jelly", keys) + "]";
+    };
+    EXPECT_NE(refusal(with(R"("poisson": 0.5)")).find("soft_bodies[0].poisson"), std::string::npos);
+    EXPECT_NE(refusal(with(R"("young": 0)")).find("soft_bodies[0].young"), std::string::npos);
+    EXPECT_NE(refusal(with(R"("density": -1)")).find("soft_bodies[0].density"), std::string::npos);
+    EXPECT_NE(refusal(with(R"("young": 1e3)") + R"(, "contact": {"self": false})").find("contact.self"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"("frames": 1, "cloths": [], "soft_bodies": [{"name": "a", "file": "missing.msh"}])")
+                  .find("missing.msh"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal(R"("frames": 1, "cloths": [], "soft_bodies": [{"name": "a", "file": "a.stl"}])").find(".msh"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal(
+            R"("frames": 1, "cloths": [], "solids": [{"name": "jelly", "sphere": {"radius": 1}}], "soft_bodies": [)" +
+            block("jelly", R"("young": 1e3)") + "]")
+            .find("is the name of a cloth, avatar or solid"),
+        std::string::npos);
+    EXPECT_NE(refusal(with(R"("young": 1e3)") +
+                      R"(, "attachments": [{"cloth": "jelly", "select": {"vertices": [0]}}])")
+                  .find("select"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal(
+            with(R"("young": 1e3)") +
+            R"(, "attachments": [{"cloth": "jelly", "select": {"box": {"lower": [5, 5, 5], "upper": [6, 6, 6]}}}])")
+            .find("selects no vertex of \"jelly\""),
+        std::string::npos);
+}
+
+} // namespace
+} // namespace toile::test

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "volume/mesh/tet_mesh.h"
+
+namespace toile::volume {
+
+/// Shape of the tetrahedra of a mesh.
+struct MeshQuality {
+    int inverted = 0;               ///< tetrahedra of negative volume, or none
+    double smallest_dihedral = 0.0; ///< [degrees] angle between two faces of one
+    double mean_edge = 0.0;         ///< [m]
+    double volume = 0.0;            ///< [m^3] of all
+};
+MeshQuality quality_of(const TetMesh& mesh);
+
+} // namespace toile::volume

@@ -1,0 +1,117 @@
+#include "volume/meshing/fill_surface.h"
+
+#include <cstdio>
+#include <map>
+#include <vector>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_polyhedron_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Polyhedral_mesh_domain_with_features_3.h>
+#include <CGAL/Random.h>
+#include <CGAL/make_mesh_3.h>
+
+#include "core/base/error.h"
+#include "core/base/number.h"
+#include "core/mesh/solid_moments.h"
+
+namespace toile::volume {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Polyhedron = CGAL::Mesh_polyhedron_3<Kernel>::type;
+using Domain = CGAL::Polyhedral_mesh_domain_with_features_3<Kernel>;
+using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
+using Complex =
+    CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
+using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
+
+/// Angle between faces [degrees] from which an edge is sharp.
+constexpr double kSharp = 60.0;
+
+/// Volume of a regular tetrahedron with edges of length 1.
+constexpr double kRegularVolume = 0.11785;
+
+void require_fillable(const TriangleMesh& surface, double cell, const std::string& source)
+{
+    const double volume = solid_moments(surface, source).volume;
+    const double tets = volume / (kRegularVolume * cell * cell * cell);
+    if (tets > kMaxTets)
+        throw InvalidInput(source + ": cells of " + short_text(cell) + " m make about " + short_text(tets) +
+                           " tetrahedra, and at most " + short_text(kMaxTets) + " are made; choose " +
+                           short_text(std::cbrt(volume / (kRegularVolume * kMaxTets))) + " m or more");
+}
+
+Polyhedron polyhedron_of(const TriangleMesh& surface, const std::string& source)
+{
+    namespace processing = CGAL::Polygon_mesh_processing;
+    std::vector<Kernel::Point_3> points;
+    std::vector<std::vector<std::size_t>> faces;
+    for (const Vec3& x : surface.positions)
+        points.emplace_back(x.x(), x.y(), x.z());
+    for (const Triangle& t : surface.triangles)
+        faces.push_back({std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2])});
+    if (!processing::is_polygon_soup_a_polygon_mesh(faces))
+        throw InvalidInput(source + ": parts of the surface touch in an edge or vertex; separate them");
+    Polyhedron polyhedron;
+    processing::polygon_soup_to_polygon_mesh(points, faces, polyhedron);
+    if (processing::does_self_intersect(polyhedron))
+        throw InvalidInput(source +
+                           ": the surface crosses itself; a body can't be filled that has no clear inside");
+    return polyhedron;
+}
+
+TetMesh mesh_of(const Complex& complex)
+{
+    TetMesh mesh;
+    std::map<Triangulation::Vertex_handle, int> number;
+    for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
+        Tet tet;
+        for (int k = 0; k < 4; ++k) {
+            const auto [at, is_new] = number.try_emplace(cell->vertex(k), mesh.vertex_count());
+            if (is_new) {
+                const auto& x = cell->vertex(k)->point();
+                mesh.positions.emplace_back(CGAL::to_double(x.x()), CGAL::to_double(x.y()),
+                                            CGAL::to_double(x.z()));
+            }
+            tet[k] = at->second;
+        }
+        mesh.tets.push_back(tet);
+    }
+    return mesh;
+}
+
+} // namespace
+
+TetMesh fill_surface(const TriangleMesh& surface, double cell, const std::string& source)
+{
+    require_fillable(surface, cell, source);
+    CGAL::get_default_random() = CGAL::Random(0);
+    Polyhedron polyhedron = polyhedron_of(surface, source);
+    Domain domain(polyhedron, &CGAL::get_default_random());
+    domain.detect_features(kSharp);
+
+    // Sizes bound the radii of circles and spheres around triangles and tetrahedra.
+    namespace parameters = CGAL::parameters;
+    constexpr double kTriangle = 0.6, kTetrahedron = 0.65, kDistance = 0.1; // of an edge
+    const Criteria criteria(
+        parameters::edge_size = cell, parameters::facet_angle = 25.0,
+        parameters::facet_size = kTriangle * cell, parameters::facet_distance = kDistance * cell,
+        parameters::cell_radius_edge_ratio = 2.0, parameters::cell_size = kTetrahedron * cell);
+    const Complex complex =
+        CGAL::make_mesh_3<Complex>(domain, criteria, parameters::perturb(), parameters::exude());
+    TetMesh mesh = mesh_of(complex);
+    if (mesh.tets.empty())
+        throw InvalidInput(source + ": cells of " + short_text(cell) +
+                           " m are too large to fill it; choose smaller ones");
+    orient(
+        mesh, [](int t) { return "tetrahedron " + std::to_string(t); }, source);
+    return mesh;
+}
+
+} // namespace toile::volume

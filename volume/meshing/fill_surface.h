@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "core/mesh/triangle_mesh.h"
+#include "volume/mesh/tet_mesh.h"
+
+namespace toile::volume {
+
+/// Largest number of tetrahedra that a surface is filled with.
+inline constexpr double kMaxTets = 5e6;
+
+/// Fills a closed surface with tetrahedra by Delaunay refinement, then moves and reweights vertices to remove
+/// slivers [Jamin et al. 2015, CGALmesh]. Edges at which the surface bends by more than 60 degrees are kept.
+/// The same bytes for the same input.
+/// @param surface  [m]
+/// @param cell     length of edges [m]
+/// @throws InvalidInput naming `source` for a surface that is not closed, inside out or crosses itself, and
+/// for
+///         a cell that would need more than kMaxTets or leaves nothing
+TetMesh fill_surface(const TriangleMesh& surface, double cell, const std::string& source);
+
+} // namespace toile::volume
