@@ -69,7 +69,7 @@ void require_faces(const path& file, const CacheLayout& layout)
 void require_one_mesh(const path& file, const CacheLayout& layout)
 {
     if (layout.meshes.size() > 1)
-        throw InvalidInput(file.string() + ": holds one mesh, and the layout has " +
+        throw InvalidInput(file.string() + ": holds one mesh, and there are " +
                            std::to_string(layout.meshes.size()) +
                            "; write each to a file, or all to an .abc, .usda or .glb");
 }

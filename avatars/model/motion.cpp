@@ -103,9 +103,17 @@ double blend_duration(Avatar& avatar, const Motion& motion, double max_speed)
 double end_time(const Motion& motion, double clip_duration)
 {
     const PreRoll& pre_roll = motion.pre_roll;
-    const double ramp_end = pre_roll.hold + (pre_roll.from_bind ? 2.0 : 1.0) * pre_roll.ease;
-    const double shown = motion.start + ramped_time(pre_roll.ease, pre_roll.ease, motion.speed);
-    return ramp_end + std::max(0.0, clip_duration - shown) / motion.speed;
+    const double ease = pre_roll.ease, ramp_begin = pre_roll.hold + (pre_roll.from_bind ? ease : 0.0);
+    const double left = std::max(0.0, clip_duration - motion.start);
+    const double shown = ramped_time(ease, ease, motion.speed);
+    if (left >= shown)
+        return ramp_begin + ease + (left - shown) / motion.speed;
+    double early = 0.0, late = ease; // within the ramp, which never turns back
+    for (int halving = 0; halving < 60; ++halving) {
+        const double middle = 0.5 * (early + late);
+        (ramped_time(middle, ease, motion.speed) < left ? early : late) = middle;
+    }
+    return ramp_begin + late;
 }
 
 bool shows_one_pose(const Motion& motion)

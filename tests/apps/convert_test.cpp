@@ -197,7 +197,8 @@ TEST_F(ConvertPanels, RefusesWhatACacheAloneCannotGive)
     expect_refused({"tee.abc", "b.abc", "--thickness", "0"}, "--thickness 0: is no thickness of cloth");
     expect_refused({"tee.abc", "b.pc2", "--no-weld"}, "--no-weld: b.pc2 holds one mesh");
     ASSERT_EQ(convert({"tee.abc", "b.pc2"}).exit_code, 0);
-    expect_refused({"b.pc2", "c.pc2", "--thickness", "0.01"}, "--thickness: b.pc2 has no faces");
+    expect_refused({"b.pc2", "c.pc2", "--thickness", "0.01"}, "--thickness: c.pc2 stores no faces");
+    expect_refused({"b.pc2", "c.obj", "--thickness", "0.01"}, "--thickness: b.pc2 has no faces");
 }
 
 TEST_F(ConvertTest, SaysHowManyShapesAGltfHasAndTheirError)

@@ -119,7 +119,16 @@ TEST(EndTime, IsWhenTheLastPoseBegins)
     const double end = end_time(motion, kDuration);
     EXPECT_EQ(pose_at(motion, 0, kDuration, end + 1e-9).time, kDuration);
     EXPECT_LT(pose_at(motion, 0, kDuration, end - 1e-3).time, kDuration - 1e-3);
-    EXPECT_EQ(end_time(motion, 0.5), 4.0) << "in the ramp";
+}
+
+TEST(EndTime, MayLieInTheRamp)
+{
+    const Motion motion = rolled_in();
+    const double duration = motion.start + 0.1, end = end_time(motion, duration);
+    EXPECT_EQ(pose_at(motion, 0, duration, end + 1e-9).time, duration);
+    EXPECT_LT(pose_at(motion, 0, duration, end - 1e-3).time, duration);
+    EXPECT_EQ(end_time(motion, motion.start), motion.pre_roll.hold + motion.pre_roll.ease)
+        << "it begins with its last pose";
 }
 
 TEST(Motion, HoldsTheLastPoseWithoutLoop)

@@ -146,7 +146,10 @@ void require_same_points(const exports::PointCache& cache, const std::filesystem
     if (cache.vertex_count() != vertex_count)
         throw InvalidInput(file.string() + ": has " + std::to_string(cache.vertex_count()) +
                            " points, but the cloth \"" + cloth + "\" has " + std::to_string(vertex_count) +
-                           "; give the scene that the cache was made from");
+                           (cache.vertex_count() == 2 * vertex_count
+                                ? "; it seems to be closed with a thickness: check the folder of its run, or "
+                                  "add the export with \"thickness\" to the scene"
+                                : "; give the scene that the cache was made from"));
 }
 
 void require_same_times(const exports::PointCache& cache, const std::filesystem::path& file, double fps,

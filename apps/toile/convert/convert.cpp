@@ -76,6 +76,10 @@ void require_possible(const ConvertOptions& options)
     if (options.thickness && !(*options.thickness > 0.0 && *options.thickness <= kMaxThickness))
         throw InvalidInput("--thickness " + short_text(*options.thickness) +
                            ": is no thickness of cloth; give metres, above 0 and up to 0.1");
+    if (options.thickness && !features.faces)
+        throw InvalidInput(
+            "--thickness: " + options.output.string() +
+            " stores no faces, and closing a sheet makes new ones; write an .abc, .usda or .obj");
     if (options.no_weld && !features.several)
         throw InvalidInput("--no-weld: " + options.output.string() +
                            " holds one mesh; write an .abc or .usda");
@@ -136,7 +140,7 @@ exports::PointCache open_mesh(const std::filesystem::path& mesh, const ConvertOp
     if (!options.quiet)
         std::cerr << "toile: " << mesh.string() << ": " << cache.frame_count()
                   << " samples at irregular times, resampled as " << frames.frame_count() << " frames from "
-                  << frames.start_frame() << " at " << short_text(*fps) << " a second\n";
+                  << frames.start_frame() << " at " << options.fps << " a second\n";
     return frames;
 }
 

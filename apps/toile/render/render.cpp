@@ -240,7 +240,7 @@ void require_possible(const RenderOptions& options)
                            ": pictures are .png or .mp4; a name without extension is a folder");
     if (options.sheet < 0 || (options.sheet > 0 && extension != ".png"))
         throw InvalidInput("--sheet: needs a number of columns above 0 and an output ending in .png");
-    if (options.turntable < 0 || options.turntable == 1 || options.turntable > kMaxTurntable)
+    if (!options.turntable_text.empty() && (options.turntable < 2 || options.turntable > kMaxTurntable))
         throw InvalidInput("--turntable: " + options.turntable_text +
                            " pictures; give a number from 2 to 3600");
     if (options.turntable > 0 && extension == ".png" && options.sheet == 0)
