@@ -12,9 +12,9 @@ ARCHITECTURES := $(if $(CARD),native,90-real)
 # The demo runs on the CPU unless a GPU is here. GPU=1: kernels are compiled all the same.
 DEMO_CUDA := $(if $(filter-out 0,$(GPU)),ON,$(if $(CARD),AUTO,OFF))
 
-FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf obj pattern ply scene usd_frames vtk)
+FUZZ_TARGETS := $(addprefix fuzz_,abc cache gltf msh obj pattern ply scene usd_frames vtk)
 # What ships; research and the tests of GPUs would double the time.
-SANITIZED_TESTS := $(addprefix test_,core quadrature2d garment collision avatars export garment_format scenes preview) $(FUZZ_TARGETS)
+SANITIZED_TESTS := $(addprefix test_,core quadrature2d volume garment collision avatars export garment_format scenes preview) $(FUZZ_TARGETS)
 
 configure = cmake --preset $(1) --log-level=WARNING --no-warn-unused-cli -DCMAKE_CUDA_ARCHITECTURES=$(ARCHITECTURES) $(2)
 
