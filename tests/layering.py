@@ -142,7 +142,7 @@ OWNERS = {
     r"embree[34]/": ["collision/bvh", "research/benchmarks/near_pairs"],
     r"assimp/": ["avatars/import"],
     r"tiny_gltf\.h": ["export/gltf"],
-    r"CGAL/": ["collision/check", "garment/pattern/mesh"],
+    r"CGAL/": ["collision/check", "garment/pattern/mesh", "volume/meshing"],
     r"(libpng/)?png\.h": ["apps/preview"],
     r"j(peglib|error)\.h": ["apps/preview"],
     r"zlib\.h": [],  # comes with libpng; checksums of the tests

@@ -8,9 +8,9 @@
 #include "core/pd/rigid/rigid_active_set.h"
 #include "core/pd/step/point_masses.h"
 #include "garment/energy/strain_limit/joint_strain_limit.h"
+#include "scenes/world/bodies/scene_soft_bodies.h"
+#include "scenes/world/bodies/scene_solids.h"
 #include "scenes/world/scene_cloth.h"
-#include "scenes/world/scene_soft_bodies.h"
-#include "scenes/world/scene_solids.h"
 #include "scenes/world/snapshot.h"
 
 namespace toile::garment {

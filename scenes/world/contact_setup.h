@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "collision/contact/contact.h"
+#include "scenes/world/bodies/scene_soft_bodies.h"
+#include "scenes/world/bodies/scene_solids.h"
 #include "scenes/world/scene_cloth.h"
-#include "scenes/world/scene_soft_bodies.h"
-#include "scenes/world/scene_solids.h"
 
 namespace toile::scenes {
 

@@ -159,8 +159,8 @@ TEST_F(SoftBodies, CarryClothAndSolidsAndEachOther)
         "cloths": [{"name": "blanket", "rectangle": {"size": [0.3, 0.3], "resolution": 0.02}, "translate": [0.05, 0.215, 0.05]}],
         "solids": [{"name": "ball", "sphere": {"radius": 0.03}, "density": 500, "translate": [0.05, 0.26, 0.05]}],
         "soft_bodies": [)" +
-                 block("lower", R"("young": 30000, "damping": 2, "translate": [0, 0.003, 0])") + ", " +
-                 block("upper", R"("young": 30000, "damping": 2, "translate": [0.02, 0.108, 0.01])") + "]");
+                 block("lower", R"("young": 200000, "damping": 2, "translate": [0, 0.003, 0])") + ", " +
+                 block("upper", R"("young": 200000, "damping": 2, "translate": [0.02, 0.108, 0.01])") + "]");
     run(world);
     const View<const ClothState> surfaces = world.surfaces();
     ASSERT_EQ(surfaces.size(), 4);

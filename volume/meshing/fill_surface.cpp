@@ -34,6 +34,10 @@ using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 /// Angle between faces [degrees] from which an edge is sharp.
 constexpr double kSharp = 60.0;
 
+/// Sweeps of smoothing. CGAL's perturbation and exudation would leave better angles, but go through cells in
+/// the order of their addresses, so that no two runs agree.
+constexpr int kSmoothings = 20;
+
 /// Volume of a regular tetrahedron with edges of length 1.
 constexpr double kRegularVolume = 0.11785;
 
@@ -103,8 +107,9 @@ TetMesh fill_surface(const TriangleMesh& surface, double cell, const std::string
         parameters::edge_size = cell, parameters::facet_angle = 25.0,
         parameters::facet_size = kTriangle * cell, parameters::facet_distance = kDistance * cell,
         parameters::cell_radius_edge_ratio = 2.0, parameters::cell_size = kTetrahedron * cell);
-    const Complex complex =
-        CGAL::make_mesh_3<Complex>(domain, criteria, parameters::perturb(), parameters::exude());
+    const Complex complex = CGAL::make_mesh_3<Complex>(
+        domain, criteria, parameters::odt(parameters::max_iteration_number = kSmoothings),
+        parameters::no_perturb(), parameters::no_exude());
     TetMesh mesh = mesh_of(complex);
     if (mesh.tets.empty())
         throw InvalidInput(source + ": cells of " + short_text(cell) +

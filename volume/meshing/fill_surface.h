@@ -10,9 +10,9 @@ namespace toile::volume {
 /// Largest number of tetrahedra that a surface is filled with.
 inline constexpr double kMaxTets = 5e6;
 
-/// Fills a closed surface with tetrahedra by Delaunay refinement, then moves and reweights vertices to remove
-/// slivers [Jamin et al. 2015, CGALmesh]. Edges at which the surface bends by more than 60 degrees are kept.
-/// The same bytes for the same input.
+/// Fills a closed surface with tetrahedra by Delaunay refinement [Jamin et al. 2015, CGALmesh] and smoothing
+/// towards an optimal Delaunay triangulation [Alliez et al. 2005]. Edges at which the surface bends by more
+/// than 60 degrees are kept. The same bytes for the same input.
 /// @param surface  [m]
 /// @param cell     length of edges [m]
 /// @throws InvalidInput naming `source` for a surface that is not closed, inside out or crosses itself, and

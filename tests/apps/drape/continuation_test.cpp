@@ -114,7 +114,7 @@ TEST_F(Continued, BlendsIntoAMotionFromFarAtAMetreASecond)
     EXPECT_EQ(scene.avatars[0].motion->file, file);
     EXPECT_EQ(scene.avatars[0].motion->map, "names");
     EXPECT_EQ(scene.avatars[0].preroll.ease, 4.5);
-    EXPECT_EQ(scene.frames, 271);
+    EXPECT_EQ(scene.frames, 231);
 }
 
 TEST_F(Continued, PlaysOneOfTheClipsOfAMotion)

@@ -111,7 +111,7 @@ TEST_F(AbcTest, HoldsSeveralMeshes)
     EXPECT_THAT(refusal([&] { read_cache(file("all.abc#/vest")); }),
                 HasSubstr("all.abc: has no mesh /vest; its meshes are /skirt/skirtShape"));
     EXPECT_THAT(refusal([&] { make_cache_writer(file("all.pc2"), two); }),
-                HasSubstr("all.pc2: holds one mesh, and the layout has 2"));
+                HasSubstr("all.pc2: holds one mesh, and there are 2"));
     two.meshes[0].name = "a b";
     two.meshes[1].name = "a-b";
     EXPECT_THAT(refusal([&] { make_cache_writer(file("two.abc"), two); }),

@@ -160,7 +160,7 @@ TEST(SceneErrors, NameTheExpectedType)
     expect_complaints({
         {"[]",
          "bad.json: [] is not an object; write {...} with keys among toile, name, description, frames, fps, "
-         "gravity, wind, air, settle, avatars, cloths, solids, fabrics, attachments, contact, solver, export "
+         "gravity, wind, air, settle, avatars, cloths, solids, soft_bodies, fabrics, attachments, contact, solver, export "
          "and render"},
         {scene_with(R"("name": 3)"), "bad.json: name: 3 is not text; write it in double quotes"},
         {scene_with(R"("avatars": {})"), "bad.json: avatars: {} is not a list; write [...]"},

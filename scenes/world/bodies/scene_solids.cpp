@@ -1,4 +1,4 @@
-#include "scenes/world/scene_solids.h"
+#include "scenes/world/bodies/scene_solids.h"
 
 #include "scenes/surfaces/load_solid.h"
 

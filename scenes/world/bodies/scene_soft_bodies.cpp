@@ -1,4 +1,4 @@
-#include "scenes/world/scene_soft_bodies.h"
+#include "scenes/world/bodies/scene_soft_bodies.h"
 
 #include <algorithm>
 #include <limits>
