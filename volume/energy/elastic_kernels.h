@@ -36,7 +36,8 @@ TOILE_HD SingularValueEnergy<T> singular_value_energy(const Vec3Of<T>& s, const 
     SingularValueEnergy<T> W;
     W.energy = T(0.5) * lambda * excess * excess;
     for (int k = 0; k < 3; ++k) {
-        const T a = s[(k + 1) % 3], b = s[(k + 2) % 3], stretch = s[k] - one;
+        const T &a = s[(k + 1) % 3], &b = s[(k + 2) % 3];
+        const T stretch = s[k] - one;
         W.energy += mu * stretch * stretch;
         W.gradient[k] = two * mu * stretch + lambda * excess * a * b;
         W.diagonal[k] = two * mu + lambda * a * a * b * b;
