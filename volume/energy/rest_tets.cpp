@@ -50,11 +50,6 @@ Incidence corners_of_vertices(View<const Tet> tets, int vertex_count)
 
 } // namespace
 
-Mat3 RestTets::deformation_gradient(int tet, View<const Vec3> x) const
-{
-    return edges_of(tets[tet], x) * edges_inv[tet];
-}
-
 std::vector<double> RestTets::vertex_volumes() const
 {
     std::vector<double> of_vertex(size_t(vertex_count()), 0.0);

@@ -18,9 +18,6 @@ struct RestTets {
     int vertex_count() const { return int(corners_of_vertex.first.size()) - 1; }
     int tet_count() const { return int(tets.size()); }
 
-    /// F_t [-]: maps rest edges of a tetrahedron to its edges at x [vertices] [m].
-    Mat3 deformation_gradient(int tet, View<const Vec3> x) const;
-
     /// Lumped vertex volumes: a quarter of every adjacent tetrahedron [m^3].
     std::vector<double> vertex_volumes() const;
 };
