@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/compute/types.h"
+
 namespace toile::exports {
 
 /// Stores a 32-bit integer or float at `bytes` in the byte order of the file, on any machine.
@@ -66,6 +68,25 @@ void append(std::string& bytes, T value)
     if constexpr (std::endian::native != std::endian::little)
         std::reverse(word, word + sizeof value);
     bytes.append(word, sizeof word);
+}
+
+/// Bytes of numbers in single precision, little endian.
+inline std::string bytes_of(View<const float> numbers)
+{
+    std::string bytes;
+    bytes.reserve(sizeof(float) * size_t(numbers.size()));
+    for (const float number : numbers)
+        append(bytes, number);
+    return bytes;
+}
+inline std::string bytes_of(View<const Vec3> vectors)
+{
+    std::string bytes;
+    bytes.reserve(3 * sizeof(float) * size_t(vectors.size()));
+    for (const Vec3& vector : vectors)
+        for (int axis = 0; axis < 3; ++axis)
+            append(bytes, float(vector[axis]));
+    return bytes;
 }
 
 } // namespace toile::exports

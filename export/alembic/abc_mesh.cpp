@@ -33,25 +33,6 @@ AbcProperty integers(const std::string& name) { return AbcProperty({name, Kind::
 
 AbcProperty corner_indices() { return AbcProperty({".indices", Kind::Array, AbcType::Uint32, 1}); }
 
-std::string bytes_of(View<const Vec3> vectors)
-{
-    std::string bytes;
-    bytes.reserve(12 * size_t(vectors.size()));
-    for (const Vec3& at : vectors)
-        for (int axis = 0; axis < 3; ++axis)
-            append(bytes, float(at[axis]));
-    return bytes;
-}
-
-std::string bytes_of(View<const float> numbers)
-{
-    std::string bytes;
-    bytes.reserve(sizeof(float) * size_t(numbers.size()));
-    for (const float number : numbers)
-        append(bytes, number);
-    return bytes;
-}
-
 /// Metadata is a list of key=value; and some values are lists.
 std::string without_separators(std::string text)
 {

@@ -13,15 +13,6 @@ constexpr std::uint8_t kTriangle = 5, kPolygon = 7, kQuad = 9; // of VTK
 
 std::uint8_t cell_type(size_t corners) { return corners == 3 ? kTriangle : corners == 4 ? kQuad : kPolygon; }
 
-std::string bytes_of(View<const float> numbers)
-{
-    std::string bytes;
-    bytes.reserve(sizeof(float) * size_t(numbers.size()));
-    for (const float number : numbers)
-        append(bytes, number);
-    return bytes;
-}
-
 /// Field data of texts: the codes of their bytes, and a zero behind each.
 std::string text_array(const std::string& name, const std::vector<std::string>& texts)
 {
@@ -33,16 +24,6 @@ std::string text_array(const std::string& name, const std::vector<std::string>& 
         array += "0 ";
     }
     return array + "</Array>\n";
-}
-
-std::string bytes_of(View<const Vec3> vectors)
-{
-    std::string bytes;
-    bytes.reserve(12 * size_t(vectors.size()));
-    for (const Vec3& vector : vectors)
-        for (const double coordinate : vector)
-            append(bytes, float(coordinate));
-    return bytes;
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "scenes/surfaces/load_soft_body.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/base/extension.h"
@@ -12,10 +13,12 @@ namespace toile::scenes {
 namespace {
 
 /// Numbers the vertices of the surface first; both parts keep their order.
-void put_surface_first(volume::TetMesh& mesh)
+/// @return the surface's triangles
+std::vector<Triangle> put_surface_first(volume::TetMesh& mesh)
 {
+    std::vector<Triangle> surface = volume::boundary_triangles(mesh.tets);
     std::vector<char> is_on_surface(mesh.positions.size(), 0);
-    for (const Triangle& face : volume::boundary_triangles(mesh.tets))
+    for (const Triangle& face : surface)
         for (const int v : face)
             is_on_surface[v] = 1;
     int next = 0;
@@ -31,6 +34,10 @@ void put_surface_first(volume::TetMesh& mesh)
     for (volume::Tet& tet : mesh.tets)
         for (int& v : tet)
             v = number[v];
+    for (Triangle& face : surface)
+        for (int& v : face)
+            v = number[v];
+    return surface;
 }
 
 } // namespace
@@ -46,9 +53,12 @@ LoadedSoftBody load_soft_body(const scene::SoftBody& body)
     for (Vec3& p : loaded.mesh.positions)
         p = body.translate + rotation * (scale * p);
     require_in_range(loaded.mesh.positions, loaded.source);
-    put_surface_first(loaded.mesh);
 
-    TriangleMesh surface = volume::boundary_surface(loaded.mesh);
+    TriangleMesh surface{{}, put_surface_first(loaded.mesh)};
+    int vertices = 0;
+    for (const Triangle& face : surface.triangles)
+        vertices = std::max(vertices, face.maxCoeff() + 1);
+    surface.positions.assign(loaded.mesh.positions.begin(), loaded.mesh.positions.begin() + vertices);
     loaded.surface.name = body.name;
     loaded.surface.rest = faces_of(surface);
     loaded.surface.positions = std::move(surface.positions);
