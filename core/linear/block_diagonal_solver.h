@@ -7,13 +7,13 @@
 
 namespace toile {
 
-/// Global solver for several cloths that are stepped together. H is block-diagonal, and every block keeps the
-/// solver that its cloth would have alone, so equal cloths still share factors and tables.
+/// Global solver for several bodies that are stepped together. H is block-diagonal, and every block keeps the
+/// solver that its body would have alone, so equal bodies still share factors and tables.
 class BlockDiagonalSolver : public GlobalSolver {
 public:
-    /// Size of a block of H, in ascending order of rows, and its solver.
+    /// Rows of H that belong together, ascending, and their solver. Every row is of one block.
     struct Block {
-        int size;
+        std::vector<int> rows;
         std::unique_ptr<GlobalSolver> solver;
     };
 
@@ -27,8 +27,9 @@ public:
 
 private:
     struct Part {
-        int first, size;
+        std::vector<int> rows;
         std::unique_ptr<GlobalSolver> solver;
+        mutable std::vector<Vec3> of_rows; ///< scratch of solve(), empty if the rows follow each other
     };
     std::vector<Part> parts_;
 };

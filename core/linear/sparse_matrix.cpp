@@ -1,5 +1,6 @@
 #include "core/linear/sparse_matrix.h"
 
+#include <numeric>
 #include <string>
 
 #include "core/base/error.h"
@@ -16,20 +17,27 @@ Hash128 hash_of(const SparseMatrix& A)
     return hasher.result();
 }
 
-SparseMatrix diagonal_block(const SparseMatrix& H, int first, int size)
+std::vector<int> consecutive_rows(int first, int count)
 {
-    Eigen::VectorXi counts(size);
-    for (int i = 0; i < size; ++i)
-        counts[i] = H.outerIndexPtr()[first + i + 1] - H.outerIndexPtr()[first + i];
-    SparseMatrix block(size, size);
+    std::vector<int> rows(count);
+    std::iota(rows.begin(), rows.end(), first);
+    return rows;
+}
+
+SparseMatrix diagonal_block(const SparseMatrix& H, View<const int> rows)
+{
+    Eigen::VectorXi counts(rows.size());
+    for (int i = 0; i < rows.size(); ++i)
+        counts[i] = H.outerIndexPtr()[rows[i] + 1] - H.outerIndexPtr()[rows[i]];
+    SparseMatrix block(rows.size(), rows.size());
     block.reserve(counts);
-    for (int i = 0; i < size; ++i)
-        for (SparseMatrix::InnerIterator entry(H, first + i); entry; ++entry) {
-            const int column = int(entry.col()) - first;
-            if (column < 0 || column >= size)
-                throw InvalidInput("row " + std::to_string(first + i) + " of H is coupled to row " +
+    for (int i = 0; i < rows.size(); ++i)
+        for (SparseMatrix::InnerIterator entry(H, rows[i]); entry; ++entry) {
+            const int* const column = std::lower_bound(rows.begin(), rows.end(), int(entry.col()));
+            if (column == rows.end() || *column != entry.col())
+                throw InvalidInput("row " + std::to_string(rows[i]) + " of H is coupled to row " +
                                    std::to_string(entry.col()) + " of another block");
-            block.insert(i, column) = entry.value();
+            block.insert(i, int(column - rows.begin())) = entry.value();
         }
     block.makeCompressed();
     return block;

@@ -60,8 +60,12 @@ inline Vec3 row_times(const SparseMatrix& A, int row, View<const Vec3> x)
     return row_times<Vec3>(A, row, x);
 }
 
-/// Rows and columns [first, first + size) of H.
+/// Numbers of `count` rows that follow each other.
+std::vector<int> consecutive_rows(int first, int count);
+
+/// These rows and columns of H, numbered from 0.
+/// @param rows  ascending
 /// @throws InvalidInput if an entry of these rows lies outside the block
-SparseMatrix diagonal_block(const SparseMatrix& H, int first, int size);
+SparseMatrix diagonal_block(const SparseMatrix& H, View<const int> rows);
 
 } // namespace toile

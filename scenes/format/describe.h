@@ -332,7 +332,10 @@ template <typename V>
 void describe(V& v, SoftBody& s)
 {
     v.required("name", s.name, "Name, for attachments, friction pairs, messages and the cache's file.");
-    v.required("file", s.file, "Tetrahedra (.msh of Gmsh, .vtk of the legacy format).");
+    v.required("file", s.file,
+               "Tetrahedra (.msh of Gmsh, .vtk of the legacy format), or a closed surface (.obj).");
+    v.field("cell", s.cell, above_zero(10.0, "m"),
+            "Length of edges of the tetrahedra that fill a surface (.obj), after scale.");
     v.field("unit", s.unit, "Length unit of the file.");
     v.field("scale", s.scale, above_zero(1e6), "Factor on the body's lengths.");
     v.field("translate", s.translate, kPosition, "Moves the body, after scale and rotate_deg.");

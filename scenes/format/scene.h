@@ -281,7 +281,8 @@ struct Solid {
 /// A soft body: a solid that deforms, simulated with the cloth.
 struct SoftBody {
     std::string name;
-    std::filesystem::path file;          ///< of tetrahedra
+    std::filesystem::path file;          ///< of tetrahedra, or of a closed surface
+    std::optional<double> cell;          ///< [m] edges of the tetrahedra that fill a surface
     LengthUnit unit = LengthUnit::Metre; ///< of the file
     double scale = 1.0;                  ///< [-]
     Vec3 translate = Vec3::Zero();       ///< [m]

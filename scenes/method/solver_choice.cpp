@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/linear/direct_solver.h"
+#include "core/pd/newton/embedded_points.h"
 #include "core/quadrature/auto_solver.h"
 #include "core/quadrature/quadrature_solver.h"
 #include "quadrature2d/geodesic_embedding.h"
@@ -130,6 +131,15 @@ std::unique_ptr<GlobalSolver> make_global_solver(SolverMethod method,
     default:
         return baselines->make_global_solver(method, start, source);
     }
+}
+
+std::unique_ptr<GlobalSolver> make_solver_of_volume(SolverMethod method, const std::vector<Vec3>& rest,
+                                                    const TableSource& tables)
+{
+    if (method == SolverMethod::Quadrature)
+        return std::make_unique<QuadratureSolver>(embedded(rest), kTablesOfVolumes, tables.store,
+                                                  tables.listener);
+    return std::make_unique<DirectSolver>();
 }
 
 void require_methods(const Scene& scene, const BaselineMethods* baselines)

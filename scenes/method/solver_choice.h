@@ -33,6 +33,14 @@ std::unique_ptr<GlobalSolver> make_global_solver(scene::SolverMethod method,
                                                  const TriangleMesh& start, const std::string& source,
                                                  const TableSource& tables, const BaselineMethods* baselines);
 
+/// Makes the global solver of a soft body: quadrature where the scene's method is, else the factor.
+/// @param rest  [vertices] undeformed positions [m]
+std::unique_ptr<GlobalSolver> make_solver_of_volume(scene::SolverMethod method, const std::vector<Vec3>& rest,
+                                                    const TableSource& tables);
+
+/// Quadrature in a volume. Its accuracy was measured in docs/journal/quadrature.md.
+constexpr QuadratureTables::Settings kTablesOfVolumes{{0.07}, Extent::Volume};
+
 /// Embedded points of a cloth's vertices for quadrature.
 std::vector<EmbeddedPoint> embedding_of(const garment::RestShape& rest);
 

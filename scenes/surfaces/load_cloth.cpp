@@ -14,7 +14,7 @@
 #include "scenes/meshes/rigid_motion.h"
 #include "scenes/surfaces/cloth_elastics.h"
 #include "scenes/surfaces/fold_edges.h"
-#include "scenes/surfaces/load_soft_body.h"
+#include "scenes/surfaces/load_soft_bodies.h"
 #include "scenes/surfaces/load_solid.h"
 #include "scenes/surfaces/paint.h"
 #include "scenes/surfaces/uv_rest.h"
@@ -234,9 +234,9 @@ std::vector<ClothState> load_surfaces(const Scene& scene)
         const LongWork::Part part = LongWork::item(loaded++, count);
         surfaces.push_back(load_solid(solid));
     }
-    for (const scene::SoftBody& body : scene.soft_bodies) {
+    for (LoadedSoftBody& body : load_soft_bodies(scene.soft_bodies)) {
         const LongWork::Part part = LongWork::item(loaded++, count);
-        surfaces.push_back(load_soft_body(body).surface);
+        surfaces.push_back(std::move(body.surface));
     }
     LongWork::update(1.0);
     return surfaces;

@@ -45,8 +45,6 @@ std::string why_not_on_gpu(const Scene& scene)
                            scene_format::word_of(solver.contact_preconditioner));
     if (!scene.solids.empty())
         return "solids run on the CPU only";
-    if (!scene.soft_bodies.empty())
-        return "soft bodies run on the CPU only";
     for (const scene::Cloth& cloth : scene.cloths) {
         if (!cloth.groups.empty())
             return "cloth of several fabrics runs on the CPU only";

@@ -45,14 +45,6 @@ std::string nearest_bone(const Vec3& x, const std::vector<Collider>& colliders)
 
 } // namespace
 
-std::vector<Vec3> ClothGroup::start_positions() const
-{
-    std::vector<Vec3> all;
-    for (const SceneCloth& cloth : cloths_)
-        all.insert(all.end(), cloth.state().positions.begin(), cloth.state().positions.end());
-    return all;
-}
-
 /// Current positions of the cloths, then of the surfaces of soft bodies and solids.
 std::vector<Vec3> ClothGroup::surfaces() const
 {
@@ -77,14 +69,21 @@ View<const Vec3> ClothGroup::surface_of_soft_body(int body) const
                                       int(soft_bodies_->state(body).positions.size()));
 }
 
-void ClothGroup::add_cloths_to(Snapshot& snapshot) const
+void ClothGroup::add_to(Snapshot& snapshot) const
 {
     const std::shared_ptr<const Readback<Vec3>> coming = body_->read_back_positions();
-    for (int i = 0; i < int(cloths_.size()); ++i)
+    const auto add = [&](int first, int count) {
         if (coming)
-            snapshot.add(coming, first_[i], first_[i + 1] - first_[i]);
+            snapshot.add(coming, first, count);
         else
-            snapshot.add(positions_of(i));
+            snapshot.add(body_->positions().subview(first, count));
+    };
+    for (int i = 0; i < int(cloths_.size()); ++i)
+        add(first_[i], first_[i + 1] - first_[i]);
+    for (int i = 0; solids_ && i < solids_->count(); ++i)
+        snapshot.add(solids_->positions(i));
+    for (int i = 0; soft_bodies_ && i < soft_bodies_->count(); ++i)
+        add(soft_bodies_->first_vertex(i), int(soft_bodies_->state(i).positions.size()));
 }
 
 void ClothGroup::tie(double gap, const std::vector<Collider>& colliders,
@@ -480,7 +479,7 @@ std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collid
     return cloths;
 }
 
-std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths,
+std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths, SceneBodies bodies,
                                     const std::vector<Collider>& colliders, const WorldOptions& options,
                                     const CudaSpace* space)
 {
@@ -491,24 +490,12 @@ std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> 
             members.emplace_back();
         members.back().push_back(std::move(cloth));
     }
-    std::unique_ptr<SceneSolids> solids;
-    if (!scene.solids.empty())
-        solids = std::make_unique<SceneSolids>(scene);
-    if (!scene.solids.empty() || !scene.soft_bodies.empty())
+    if (bodies.any())
         members.resize(1); // one group of all cloths, if any
-    std::unique_ptr<SceneSoftBodies> soft_bodies;
-    if (!scene.soft_bodies.empty()) {
-        int vertices = 0;
-        for (const SceneCloth& cloth : members.front())
-            vertices += cloth.vertex_count();
-        soft_bodies = std::make_unique<SceneSoftBodies>(scene, colliders, vertices,
-                                                        solids ? solids->bodies().unknown_count() : 0);
-    }
     std::vector<ClothGroup> groups;
     groups.reserve(members.size());
     for (auto& group : members)
-        groups.emplace_back(scene, std::move(group), std::move(solids), std::move(soft_bodies), colliders,
-                            options, space);
+        groups.emplace_back(scene, std::move(group), std::move(bodies), colliders, options, space);
     return groups;
 }
 

@@ -8,8 +8,7 @@
 #include "core/pd/rigid/rigid_active_set.h"
 #include "core/pd/step/point_masses.h"
 #include "garment/energy/strain_limit/joint_strain_limit.h"
-#include "scenes/world/bodies/scene_soft_bodies.h"
-#include "scenes/world/bodies/scene_solids.h"
+#include "scenes/world/bodies/scene_bodies.h"
 #include "scenes/world/scene_cloth.h"
 #include "scenes/world/snapshot.h"
 
@@ -25,12 +24,10 @@ namespace toile::scenes {
 class ClothGroup {
 public:
     /// @throws InvalidInput if the scene's method does not support one of the cloths.
-    /// @param solids       null: none
-    /// @param soft_bodies  null: none
+    /// @param bodies  of the whole scene, in its only group; of several groups, none
     /// @param space   GPU on which steps are minimised, borrowed; null: the CPU
-    ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, std::unique_ptr<SceneSolids> solids,
-               std::unique_ptr<SceneSoftBodies> soft_bodies, const std::vector<Collider>& colliders,
-               const WorldOptions& options, const CudaSpace* space);
+    ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, SceneBodies bodies,
+               const std::vector<Collider>& colliders, const WorldOptions& options, const CudaSpace* space);
 
     /// Cloths with their start positions, as changed by place().
     const std::vector<SceneCloth>& cloths() const { return cloths_; }
@@ -38,8 +35,8 @@ public:
     /// Current positions of one cloth, valid until the next step [m]. Copied from the GPU if there is one.
     View<const Vec3> positions_of(int cloth) const;
 
-    /// Adds all cloths in their current state, without waiting for the GPU.
-    void add_cloths_to(Snapshot& snapshot) const;
+    /// Adds all cloths, solids and soft bodies in their current state, without waiting for the GPU.
+    void add_to(Snapshot& snapshot) const;
 
     const SceneSolids* solids() const { return solids_.get(); }               ///< null: none
     const SceneSoftBodies* soft_bodies() const { return soft_bodies_.get(); } ///< null: none
@@ -78,13 +75,16 @@ private:
     std::unique_ptr<PointMasses> make_body(const Scene& scene, const WorldOptions& options);
     std::unique_ptr<PointMasses> make_device_body(const Scene& scene, const WorldOptions& options,
                                                   const CudaSpace& space);
-    std::vector<double> masses() const;
+    struct Start {
+        std::vector<Vec3> positions, velocities; ///< [unknowns] [m], [m/s]
+        std::vector<double> masses;              ///< [unknowns] [kg]
+    };
+    Start start() const;
     std::vector<std::shared_ptr<Energy>> make_energies(OuterMethod outer);
     std::unique_ptr<garment::DeviceLoads> make_loads(const Scene& scene, const CudaSpace& space) const;
     std::unique_ptr<collision::Contact>
     make_contact(const Scene& scene, const std::vector<Collider>& colliders, const CudaSpace* space);
     int unknown_count() const;
-    std::vector<Vec3> start_positions() const;
     std::vector<Vec3> surfaces() const;
     template <typename T>
     View<T> part(View<T> all, int cloth) const;
@@ -139,7 +139,7 @@ std::vector<SceneCloth> make_cloths(const Scene& scene, const std::vector<Collid
 
 /// Groups the cloths: one group of all if they may collide, else one each. Solids belong to the group of all.
 /// @param space  see ClothGroup
-std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths,
+std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> cloths, SceneBodies bodies,
                                     const std::vector<Collider>& colliders, const WorldOptions& options,
                                     const CudaSpace* space);
 

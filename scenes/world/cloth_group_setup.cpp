@@ -1,6 +1,9 @@
+#include <algorithm>
+
 #include "core/linear/block_diagonal_solver.h"
 #include "core/pd/cuda/body.h"
 #include "core/pd/energy/sliced_energy.h"
+#include "core/pd/newton/embedded_points.h"
 #include "core/pd/step/body.h"
 #include "core/quadrature/cuda/quadrature_solver.h"
 #include "garment/energy/air/cuda/loads.h"
@@ -29,12 +32,11 @@ TableSource source_of_tables(const WorldOptions& options, const std::string& clo
 
 } // namespace
 
-ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
-                       std::unique_ptr<SceneSolids> solids, std::unique_ptr<SceneSoftBodies> soft_bodies,
+ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths, SceneBodies bodies,
                        const std::vector<Collider>& colliders, const WorldOptions& options,
                        const CudaSpace* space)
-    : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), solids_(std::move(solids)),
-      soft_bodies_(std::move(soft_bodies)), first_{0}
+    : sleep_(scene.solver.sleep), cloths_(std::move(cloths)), solids_(std::move(bodies.solids)),
+      soft_bodies_(std::move(bodies.soft_bodies)), first_{0}
 {
     for (const SceneCloth& cloth : cloths_)
         first_.push_back(first_.back() + cloth.vertex_count());
@@ -47,7 +49,7 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
     if (solids_)
         solids_->append_triangles(first_solid_, triangles_);
     if (replaces_minimiser(scene.solver.method))
-        body_ = options.baselines->make_body(scene.solver, start_positions(), cloths_.front().model());
+        body_ = options.baselines->make_body(scene.solver, start().positions, cloths_.front().model());
     else
         body_ = space != nullptr ? make_device_body(scene, options, *space) : make_body(scene, options);
     contact_ = make_contact(scene, colliders, space);
@@ -72,12 +74,25 @@ ClothGroup::ClothGroup(const Scene& scene, std::vector<SceneCloth> cloths,
             acceleration_[first_solid_ + 2 * i] = scene.gravity;
 }
 
-std::vector<double> ClothGroup::masses() const
+/// State of the unknowns at the start. begin_solids() completes that of solids.
+ClothGroup::Start ClothGroup::start() const
 {
-    std::vector<double> masses;
-    for (const SceneCloth& cloth : cloths_)
-        masses.insert(masses.end(), cloth.masses().begin(), cloth.masses().end());
-    return masses;
+    Start start;
+    for (const SceneCloth& cloth : cloths_) {
+        const std::vector<Vec3>& positions = cloth.state().positions;
+        start.positions.insert(start.positions.end(), positions.begin(), positions.end());
+        start.masses.insert(start.masses.end(), cloth.masses().begin(), cloth.masses().end());
+    }
+    start.positions.resize(unknown_count(), Vec3::Zero());
+    start.velocities.resize(unknown_count(), Vec3::Zero());
+    start.masses.resize(unknown_count(), 0.0);
+    if (soft_bodies_)
+        soft_bodies_->set_start(start.positions, start.velocities, start.masses);
+    if (solids_) {
+        const std::vector<double> masses = solids_->bodies().masses();
+        std::copy(masses.begin(), masses.end(), start.masses.begin() + first_solid_);
+    }
+    return start;
 }
 
 /// All energies of every cloth.
@@ -104,29 +119,25 @@ int ClothGroup::unknown_count() const
     return first_solid_ + (solids_ ? solids_->bodies().unknown_count() : 0);
 }
 
-/// Projective dynamics on the CPU: every cloth keeps a separate global solver.
+/// Projective dynamics on the CPU: every cloth and soft body keeps a separate global solver.
 std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const WorldOptions& options)
 {
-    std::vector<double> masses = this->masses();
     std::vector<BlockDiagonalSolver::Block> blocks;
-    for (const SceneCloth& cloth : cloths_) {
+    for (size_t i = 0; i < cloths_.size(); ++i) {
+        const SceneCloth& cloth = cloths_[i];
         const ClothState& state = cloth.state();
         blocks.push_back(
-            {cloth.vertex_count(),
+            {consecutive_rows(first_[i], cloth.vertex_count()),
              make_global_solver(scene.solver.method, cloth.rest_shape(), {state.positions, state.triangles},
                                 cloth.source(), source_of_tables(options, state.name), options.baselines)});
     }
-    std::vector<Vec3> unknowns = start_positions(), velocities(size_t(unknown_count()), Vec3::Zero());
-    unknowns.resize(velocities.size(), Vec3::Zero()); // begin_solids() fills in those of solids
-    masses.resize(unknowns.size(), 0.0);
-    if (soft_bodies_)
-        soft_bodies_->set_start(unknowns, velocities, masses);
-    if (solids_) {
-        const std::vector<double> solid_masses = solids_->bodies().masses();
-        std::copy(solid_masses.begin(), solid_masses.end(), masses.begin() + first_solid_);
-    }
-    if (const int others = unknown_count() - first_.back(); others > 0)
-        blocks.push_back({others, std::make_unique<DirectSolver>()});
+    for (int i = 0; soft_bodies_ && i < soft_bodies_->count(); ++i)
+        blocks.push_back({soft_bodies_->unknowns(i),
+                          make_solver_of_volume(scene.solver.method, soft_bodies_->rest_positions(i),
+                                                source_of_tables(options, soft_bodies_->state(i).name))});
+    if (solids_)
+        blocks.push_back({consecutive_rows(first_solid_, solids_->bodies().unknown_count()),
+                          std::make_unique<DirectSolver>()});
     std::unique_ptr<GlobalSolver> solver;
     if (blocks.size() == 1)
         solver = std::move(blocks.front().solver);
@@ -143,15 +154,16 @@ std::unique_ptr<PointMasses> ClothGroup::make_body(const Scene& scene, const Wor
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;
     settings.contact_solve.preconditioner = scene.solver.contact_preconditioner;
+    Start start = this->start();
     auto body = std::make_unique<Body>(
-        std::move(unknowns),
-        std::make_unique<System>(std::move(masses), make_energies(method.outer), std::move(solver)),
+        std::move(start.positions),
+        std::make_unique<System>(std::move(start.masses), make_energies(method.outer), std::move(solver)),
         settings);
-    body->set_velocities(velocities);
+    body->set_velocities(start.velocities);
     return body;
 }
 
-/// Projective dynamics with the fields on a GPU. Equal cloths use the same tables.
+/// Projective dynamics with the fields on a GPU. Equal cloths and soft bodies use the same tables.
 std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, const WorldOptions& options,
                                                           const CudaSpace& space)
 {
@@ -159,6 +171,10 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
     for (const SceneCloth& cloth : cloths_)
         parts.push_back(
             {embedding_of(*cloth.rest_shape()), source_of_tables(options, cloth.state().name).listener});
+    for (int i = 0; soft_bodies_ && i < soft_bodies_->count(); ++i)
+        parts.push_back({embedded(soft_bodies_->rest_positions(i)),
+                         source_of_tables(options, soft_bodies_->state(i).name).listener, kTablesOfVolumes,
+                         soft_bodies_->unknowns(i)});
     DeviceBody::Settings settings;
     const StepMethod method = step_method_of(scene);
     settings.tolerance = method.velocity_tolerance * scene.step_duration();
@@ -168,13 +184,14 @@ std::unique_ptr<PointMasses> ClothGroup::make_device_body(const Scene& scene, co
     settings.max_iterations = method.max_iterations;
     settings.outer = method.outer;
     settings.speed_tolerance = method.velocity_tolerance;
+    Start start = this->start();
     auto body = std::make_unique<DeviceBody>(
-        space, start_positions(),
-        std::make_unique<System>(
-            masses(), make_energies(method.outer),
-            std::make_unique<DeviceQuadratureSolver>(space, std::move(parts), QuadratureTables::Settings{},
-                                                     source_of_tables(options, "").store)),
+        space, start.positions,
+        std::make_unique<System>(std::move(start.masses), make_energies(method.outer),
+                                 std::make_unique<DeviceQuadratureSolver>(
+                                     space, std::move(parts), source_of_tables(options, "").store)),
         settings);
+    body->set_velocities(start.velocities);
     auto loads = make_loads(scene, space);
     loads_ = loads.get();
     body->accelerate_by(std::move(loads));
@@ -188,6 +205,8 @@ std::unique_ptr<garment::DeviceLoads> ClothGroup::make_loads(const Scene& scene,
         gusts_of(scene.wind));
     for (size_t i = 0; i < cloths_.size(); ++i)
         cloths_[i].add_loads(*loads, first_[i]);
+    if (soft_bodies_)
+        soft_bodies_->add_loads(*loads);
     return loads;
 }
 

@@ -155,10 +155,11 @@ struct World::Parts {
             for (const std::string& warning : time_warnings(scene, colliders))
                 options.warn(warning);
         }
+        SceneBodies bodies = make_bodies(scene, colliders, int(vertex_count(cloths)));
         if (options.backend == Backend::Auto)
-            space = space_with_capacity(space, vertex_count(cloths), options.warn);
+            space = space_with_capacity(space, vertex_count(cloths) + bodies.vertex_count(), options.warn);
         const LongWork::Part part(kCloths, 1.0);
-        groups = make_groups(scene, std::move(cloths), colliders, options, space.get());
+        groups = make_groups(scene, std::move(cloths), std::move(bodies), colliders, options, space.get());
         LongWork::update(1.0);
     }
 
@@ -420,14 +421,7 @@ std::shared_ptr<const Snapshot> World::snapshot() const
 {
     auto snapshot = std::make_shared<Snapshot>();
     for (const ClothGroup& group : parts().groups)
-        group.add_cloths_to(*snapshot);
-    for (const ClothGroup& group : parts().groups)
-        if (const SceneSolids* solids = group.solids())
-            for (int i = 0; i < solids->count(); ++i)
-                snapshot->add(solids->positions(i));
-    for (const ClothGroup& group : parts().groups)
-        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
-            snapshot->add(group.surface_of_soft_body(i));
+        group.add_to(*snapshot);
     return snapshot;
 }
 const collision::StartReport& World::start() const { return parts().start; }

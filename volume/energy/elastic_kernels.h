@@ -132,34 +132,55 @@ struct ElasticBlocks {
     Mat3Of<T> of[kCount];
 
     /// Number of the block of corners i <= j.
-    TOILE_HD static constexpr int number(int i, int j) { return i * (7 - i) / 2 + j; }
+    static constexpr int number(int i, int j) { return i * (7 - i) / 2 + j; }
+};
+
+/// Second derivatives of an element between its corners.
+template <typename T>
+class ElasticCorners {
+public:
+    /// @param rest_inv  inverse rest edge matrix [1/m]
+    /// @param volume    at rest [m^3]
+    TOILE_HD ElasticCorners(const ElasticCurvature<T>& H, const Mat3Of<T>& rest_inv, const T& volume)
+        : H_(H), volume_(volume)
+    {
+        for (int k = 1; k < 4; ++k)
+            hats_[k] = H.V.transpose().lazyProduct(rest_inv.row(k - 1).transpose());
+        hats_[0] = -hats_[1] - hats_[2] - hats_[3];
+    }
+
+    /// Block of two corners [N/m].
+    TOILE_HD Mat3Of<T> block(int first, int second) const
+    {
+        const Vec3Of<T> a = volume_ * hats_[first];
+        const Vec3Of<T>& b = hats_[second];
+        Mat3Of<T> K;
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            K(i, i) = H_.stretch(i, i) * a[i] * b[i] + H_.shear[k] * a[j] * b[j] + H_.shear[j] * a[k] * b[k];
+            K(i, j) = H_.stretch(i, j) * a[i] * b[j] + H_.turn[k] * a[j] * b[i];
+            K(j, i) = H_.stretch(i, j) * a[j] * b[i] + H_.turn[k] * a[i] * b[j];
+        }
+        const Mat3Of<T> UK = H_.U.lazyProduct(K);
+        return UK.lazyProduct(H_.U.transpose());
+    }
+
+private:
+    const ElasticCurvature<T>& H_;
+    T volume_;
+    Vec3Of<T> hats_[4]; ///< gradients of the corners' hat functions, in the axes of V [1/m]
 };
 
 /// @param rest_inv  inverse rest edge matrix [1/m]
 /// @param volume    at rest [m^3]
 template <typename T>
-TOILE_HD ElasticBlocks<T> elastic_blocks(const ElasticCurvature<T>& H, const Mat3Of<T>& rest_inv,
-                                         const T& volume)
+ElasticBlocks<T> elastic_blocks(const ElasticCurvature<T>& H, const Mat3Of<T>& rest_inv, const T& volume)
 {
-    Vec3Of<T> hats[4]; // gradients of the corners' hat functions, in the axes of V [1/m]
-    for (int k = 1; k < 4; ++k)
-        hats[k] = H.V.transpose().lazyProduct(rest_inv.row(k - 1).transpose());
-    hats[0] = -hats[1] - hats[2] - hats[3];
+    const ElasticCorners<T> corners(H, rest_inv, volume);
     ElasticBlocks<T> blocks;
     for (int first = 0; first < 4; ++first)
-        for (int second = first; second < 4; ++second) {
-            const Vec3Of<T> a = volume * hats[first];
-            const Vec3Of<T>& b = hats[second];
-            Mat3Of<T> K;
-            for (int i = 0; i < 3; ++i) {
-                const int j = (i + 1) % 3, k = (i + 2) % 3;
-                K(i, i) = H.stretch(i, i) * a[i] * b[i] + H.shear[k] * a[j] * b[j] + H.shear[j] * a[k] * b[k];
-                K(i, j) = H.stretch(i, j) * a[i] * b[j] + H.turn[k] * a[j] * b[i];
-                K(j, i) = H.stretch(i, j) * a[j] * b[i] + H.turn[k] * a[i] * b[j];
-            }
-            const Mat3Of<T> UK = H.U.lazyProduct(K);
-            blocks.of[ElasticBlocks<T>::number(first, second)] = UK.lazyProduct(H.U.transpose());
-        }
+        for (int second = first; second < 4; ++second)
+            blocks.of[ElasticBlocks<T>::number(first, second)] = corners.block(first, second);
     return blocks;
 }
 

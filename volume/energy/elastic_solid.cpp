@@ -7,6 +7,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
+#include "volume/energy/cuda/elastic_solid.h"
 
 namespace toile::volume {
 
@@ -141,6 +142,12 @@ void ElasticSolid::add_curvature(View<const Vec3> x, Definiteness definiteness, 
                     row[position_[item][k]] += blocks.of[ElasticBlocks<double>::number(corner, k)];
         }
     });
+}
+
+bool ElasticSolid::add_to(DeviceEnergies& energies, int first_vertex)
+{
+    energies.of_kind<DeviceElasticSolid>().add(*rest_, lame_, first_vertex);
+    return true;
 }
 
 } // namespace toile::volume

@@ -41,6 +41,7 @@ public:
     void add_couplings(std::vector<std::pair<int, int>>& couplings) const override;
     bool find_entries(SparseWindow S, BlockWindow K) override;
     void add_curvature(View<const Vec3> x, Definiteness definiteness, BlockWindow K) override;
+    bool add_to(DeviceEnergies& energies, int first_vertex) override;
 
 private:
     /// Eight tetrahedra.

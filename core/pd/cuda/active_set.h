@@ -52,6 +52,14 @@ struct alignas(16) FrozenRow {
     }
 };
 
+/// The list of terms that belongs to a vertex.
+struct ListOfVertex {
+    View<const int> number; ///< [vertices that may have one] of the vertex's list plus 1; 0: none
+
+    /// -1: none
+    TOILE_HD int operator[](int vertex) const { return vertex < number.size() ? number[vertex] - 1 : -1; }
+};
+
 /// Rows of active frozen terms by vertex: list k begins at first[k] and has active_count[k] rows.
 struct FrozenRows {
     View<const int> first;  ///< [lists + 1]
@@ -65,7 +73,7 @@ class DeviceActiveSet {
 public:
     /// Frozen Hessian by vertex: one "list" of terms per vertex with frozen terms.
     struct Frozen {
-        View<const int> list_of;  ///< [vertices] number of the vertex's list plus 1; 0: none
+        ListOfVertex list_of;
         View<const int> vertices; ///< [lists]
         FrozenRows rows;
         View<const Mat3> blocks;  ///< [lists] bounds, as FrozenHessian::diagonal_blocks() [N/m]

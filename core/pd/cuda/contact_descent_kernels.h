@@ -59,7 +59,7 @@ struct MeasureContactTrial {
     {
         ContactTrialSums sums;
         sums.value = fields.partial_energy(i);
-        sums.active_count = local.list > 0 ? contact.rows.active_count[local.list - 1] : 0;
+        sums.active_count = local.list >= 0 ? contact.rows.active_count[local.list] : 0;
         if (step == 0.0)
             return sums;
         const Vec3 d = unpadded(local.direction);

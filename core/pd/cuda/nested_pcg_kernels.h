@@ -105,7 +105,7 @@ struct SystemRows {
 
 /// E = (D + blocks)^-1: 1 / D at vertices without frozen terms.
 struct BlocksInverse {
-    View<const int> list_of;     ///< [vertices] as DeviceActiveSet::Frozen's
+    ListOfVertex list_of;
     View<const Mat3> inverse;    ///< [lists]
     View<const double> diagonal; ///< [vertices]
 
@@ -126,9 +126,9 @@ struct BlocksInverse {
     TOILE_HD OfVertex of(int i) const
     {
         const int list = list_of[i];
-        OfVertex local{diagonal[i], list > 0, {}};
+        OfVertex local{diagonal[i], list >= 0, {}};
         if (local.is_frozen)
-            local.inverse = inverse[list - 1];
+            local.inverse = inverse[list];
         return local;
     }
 };
@@ -143,10 +143,10 @@ struct InvertBlocks {
     TOILE_HD BlocksInverse::OfVertex operator()(int i) const
     {
         const int list = frozen.list_of[i];
-        BlocksInverse::OfVertex local{diagonal[i], list > 0, {}};
+        BlocksInverse::OfVertex local{diagonal[i], list >= 0, {}};
         if (local.is_frozen) {
-            local.inverse = Mat3(frozen.blocks[list - 1] + local.diagonal * Mat3::Identity()).inverse();
-            inverse[list - 1] = local.inverse;
+            local.inverse = Mat3(frozen.blocks[list] + local.diagonal * Mat3::Identity()).inverse();
+            inverse[list] = local.inverse;
         }
         return local;
     }
@@ -195,7 +195,7 @@ struct FinishPrecondition {
 struct MultiplySystem {
     PcgFields fields;
     SystemRows H;
-    View<const int> list_of;         ///< [vertices]
+    ListOfVertex list_of;
     View<const Vec3> frozen_product; ///< [lists] dH z [N]
 
     /// Data independent of the product of frozen terms, including H z.
@@ -219,8 +219,8 @@ struct MultiplySystem {
     {
         const auto& [r, Kp, p, previous, z, Hz, list, is_fixed] = local;
         PaddedVec3 Kz = Hz;
-        if (list > 0 && !is_fixed)
-            Kz += padded(frozen_product[list - 1]);
+        if (list >= 0 && !is_fixed)
+            Kz += padded(frozen_product[list]);
         fields.Kz[i] = Kz;
         PcgSums sums;
         sums.r_z = dot(r, z);

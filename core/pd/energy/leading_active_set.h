@@ -18,9 +18,17 @@ public:
 
     void begin_step(const StepStart& start) override
     {
-        leading_.begin_step({first(start.x), first(start.prediction), first(start.diagonal),
-                             first(start.fixed), first(start.masses), start.dt, first(start.inertia),
-                             start.wants_true_hessian});
+        leading_.begin_step(
+            {first(start.x),
+             first(start.prediction),
+             first(start.diagonal),
+             first(start.fixed),
+             first(start.masses),
+             start.dt,
+             first(start.inertia),
+             start.wants_true_hessian,
+             {first(start.device.x), first(start.device.prediction), first(start.device.diagonal),
+              first(start.device.fixed), first(start.device.masses)}});
     }
     bool may_be_active() const override { return leading_.may_be_active(); }
     bool make_feasible(StepField x) const override { return leading_.make_feasible(first(x)); }
@@ -41,6 +49,7 @@ public:
         leading_.add_hessian_product(first(p), first(out));
     }
     View<const Mat3> diagonal_blocks() const override { return blocks_; }
+    DeviceActiveSet* on_device(const CudaSpace& space) override { return leading_.on_device(space); }
     void append_terms(std::vector<FrozenTerm>& terms) const override { leading_.append_terms(terms); }
     bool has_all_terms() const override { return leading_.has_all_terms(); }
     void mark_touching(StepField x, View<unsigned char> touches) override
@@ -63,7 +72,7 @@ private:
     {
         return all.empty() ? all : all.subview(0, count_);
     }
-    StepField first(StepField all) const { return first(all.change_on_host()); }
+    StepField first(StepField all) const { return all.leading(count_); }
 
     ActiveSetEnergy& leading_;
     int count_;

@@ -15,11 +15,14 @@ class MirroredArray;
 class StepField {
 public:
     // Conversions, so that callers can pass their fields.
-    StepField(View<Vec3> of_host) : of_host_(of_host) {}
-    StepField(std::vector<Vec3>& of_host) : of_host_(of_host) {}
-    StepField(MirroredArray<Vec3>& mirrored) : mirrored_(&mirrored) {}
+    StepField(View<Vec3> of_host) : of_host_(of_host), size_(of_host.size()) {}
+    StepField(std::vector<Vec3>& of_host) : StepField(View<Vec3>(of_host)) {}
+    StepField(MirroredArray<Vec3>& mirrored);
 
-    int size() const;
+    int size() const { return size_; }
+
+    /// The first `count` of it.
+    StepField leading(int count) const;
 
     View<const Vec3> host() const;
     View<Vec3> change_on_host() const;
@@ -31,6 +34,7 @@ public:
 private:
     View<Vec3> of_host_;
     MirroredArray<Vec3>* mirrored_ = nullptr; ///< null: host only
+    int size_ = 0;                            ///< may be less than that of the array
 };
 
 } // namespace toile

@@ -75,6 +75,15 @@ struct MomentsOfBodies {
     }
 };
 
+/// Slots of equal bodies: those of the leaves first, then nodes outside all leaves.
+struct SlotsOfBodies {
+    View<const int> rows; ///< [bodies * count] node of every slot among those of all bodies, -1 where padded
+    int count;            ///< of one body
+
+    TOILE_HD int bodies() const { return rows.size() / count; }
+    TOILE_HD int row(int body, int slot) const { return rows[body * count + slot]; }
+};
+
 /// Source and sink that are arrays (other sources and sinks: DeviceQuadrature::begin_solve).
 struct LoadField {
     View<const Vec3> b; ///< [nodes of all bodies]
@@ -111,12 +120,11 @@ struct UpwardPassFromLeaves {
     static_assert(Rank <= ClusterTree::kLeaf && kLeaves / 2 * Rank <= kThreads);
 
     MomentsOfBodies<Rank> moments;
-    View<const int> nodes; ///< [slots] of one body, -1 where padded
-    View<const int> first; ///< [bodies] first node of each body among those of all
+    SlotsOfBodies slots;
     Source source;
     View<PaddedVec3> sources; ///< [bodies * slots] out
 
-    TOILE_HD int blocks_of_body() const { return (nodes.size() + kThreads - 1) / kThreads; }
+    TOILE_HD int blocks_of_body() const { return (slots.count + kThreads - 1) / kThreads; }
 
     /// Data that no launch changes: leaves of a block, a thread's slot and node, its weights. Plus the
     /// source's prologue.
@@ -136,10 +144,9 @@ struct UpwardPassFromLeaves {
         local.first_leaf = k % blocks_of_body() * kLeaves;
         local.leaves = moments.nodes_of(0, local.first_leaf, kLeaves);
         local.slot = local.first_leaf * ClusterTree::kLeaf + block.thread;
-        local.exists = local.slot < nodes.size();
+        local.exists = local.slot < slots.count;
         local.is_of_leaf = block.thread < local.leaves * ClusterTree::kLeaf;
-        const int v = local.exists ? nodes[local.slot] : -1;
-        local.node = v >= 0 ? first[local.body] + v : -1;
+        local.node = local.exists ? slots.row(local.body, local.slot) : -1;
         if (local.node >= 0)
             local.source = source.prologue(local.node);
         for (int r = 0; r < Rank; ++r)
@@ -159,7 +166,7 @@ struct UpwardPassFromLeaves {
     {
         const PaddedVec3 at_node = local.node >= 0 ? source(local.node, local.source) : PaddedVec3(0.0F);
         if (local.exists)
-            sources[local.body * nodes.size() + local.slot] = at_node;
+            sources[local.body * slots.count + local.slot] = at_node;
         gather_leaf(block, local, at_node);
         block.wait();
         moments.template upward_pass<kLevels>(block, local.body, 0, local.first_leaf, local.leaves, levels(),
@@ -241,16 +248,15 @@ struct GatherLeafByTeam {
     KernelView rest;                ///< entries that are not packed
     View<const PaddedVec3> sources; ///< [bodies * slots]
     View<const PaddedVec3> moments; ///< [bodies * clusters * rank]
-    View<const int> nodes;          ///< [slots] those of leaves first
-    int leaves;                     ///< of one body
-    View<const int> first;          ///< [bodies] first node of each body among those of all
-    bool has_level_passes;          ///< sources are older than the previous launch, a pass between levels
+    SlotsOfBodies slots;
+    int leaves;            ///< of one body
+    bool has_level_passes; ///< sources are older than the previous launch, a pass between levels
     Sink sink;
 
-    TOILE_HD int leaves_of_all() const { return first.size() * leaves; }
+    TOILE_HD int leaves_of_all() const { return slots.bodies() * leaves; }
     TOILE_HD int teams(int team_size) const
     {
-        return leaves_of_all() + (first.size() * others() + team_size - 1) / team_size;
+        return leaves_of_all() + (slots.bodies() * others() + team_size - 1) / team_size;
     }
 
     /// Data that no launch changes: the far lists and the target that the thread writes. With
@@ -302,13 +308,13 @@ struct GatherLeafByTeam {
     }
 
 private:
-    TOILE_HD int others() const { return nodes.size() - leaves * ClusterTree::kLeaf; }
+    TOILE_HD int others() const { return slots.count - leaves * ClusterTree::kLeaf; }
     TOILE_HD int leaf_of(int k) const { return k % leaves; }
 
     /// Part of an array of all bodies that belongs to team k's body.
     TOILE_HD View<const PaddedVec3> of_body(View<const PaddedVec3> all, int k) const
     {
-        const int count = all.size() / first.size();
+        const int count = all.size() / slots.bodies();
         return all.subview(k / leaves * count, count);
     }
 
@@ -319,8 +325,7 @@ private:
         constexpr int kOfTarget = Team::kThreads / KernelView::kTargets; ///< threads that hold its sum
         if (team.thread % kOfTarget != 0)
             return -1;
-        const int v = nodes[leaf_of(k) * ClusterTree::kLeaf + team.thread / kOfTarget];
-        return v >= 0 ? first[k / leaves] + v : -1;
+        return slots.row(k / leaves, leaf_of(k) * ClusterTree::kLeaf + team.thread / kOfTarget);
     }
 
     template <typename Team>
@@ -354,10 +359,10 @@ private:
 
     TOILE_HD void pass_other(int k) const
     {
-        if (k >= first.size() * others())
+        if (k >= slots.bodies() * others())
             return;
         const int body = k / others(), slot = leaves * ClusterTree::kLeaf + k % others();
-        sink(first[body] + nodes[slot], sources[body * nodes.size() + slot]);
+        sink(slots.row(body, slot), sources[body * slots.count + slot]);
     }
 };
 

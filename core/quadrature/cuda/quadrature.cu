@@ -25,29 +25,37 @@ std::vector<int> with_others(View<const int> of_leaves, int node_count)
     return slots;
 }
 
+/// SlotsOfBodies::rows
+std::vector<int> rows_of(const std::vector<int>& slots, const std::vector<std::vector<int>>& rows)
+{
+    std::vector<int> all;
+    all.reserve(rows.size() * slots.size());
+    for (const std::vector<int>& of_body : rows)
+        for (const int v : slots)
+            all.push_back(v < 0 ? -1 : of_body[v]);
+    return all;
+}
+
 } // namespace
 
-DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
-                                   const std::vector<int>& first, const PackingAccuracy& packing)
-    : DeviceQuadrature(space, tables.basis, DeviceKernelTable(space, tables.kernel), node_count, first,
-                       packing)
+DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables,
+                                   const std::vector<std::vector<int>>& rows, const PackingAccuracy& packing)
+    : DeviceQuadrature(space, tables.basis, DeviceKernelTable(space, tables.kernel), rows, packing)
 {
 }
 
 DeviceQuadrature::DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis,
-                                   DeviceKernelTable kernel, int node_count, const std::vector<int>& first,
+                                   DeviceKernelTable kernel, const std::vector<std::vector<int>>& rows,
                                    const PackingAccuracy& packing)
     : space_(space), kernel_(pack_table(space, std::move(kernel), basis.tree(), packing)),
       leaves_(space, "quadrature/leaves"), transfers_(space, "quadrature/transfers"),
-      nodes_(space, "quadrature/nodes"), first_(space, "quadrature/first"),
-      sources_(space, "quadrature/sources"),
-      moments_(space, "quadrature/moments", int(first.size()) * basis.rank() * basis.tree().cluster_count())
+      bodies_(int(rows.size())), rows_(space, "quadrature/rows"), sources_(space, "quadrature/sources"),
+      moments_(space, "quadrature/moments", bodies_ * basis.rank() * basis.tree().cluster_count())
 {
     leaves_.upload(single(basis.leaves()));
     transfers_.upload(single(basis.transfers()));
-    nodes_.upload(with_others(basis.tree().nodes(), node_count));
-    first_.upload(first);
-    sources_.resize(first_.size() * nodes_.size());
+    rows_.upload(rows_of(with_others(basis.tree().nodes(), int(rows.front().size())), rows));
+    sources_.resize(rows_.size());
 
     const BasisView<double>& view = basis.view();
     basis_.rank = view.rank;

@@ -27,7 +27,7 @@ void DeviceQuadrature::end_solve(Operators all, const Sink& sink)
 template <int Rank>
 MomentsOfBodies<Rank> DeviceQuadrature::moments()
 {
-    return {basis_, moments_.view(), moments_.size() / (first_.size() * Rank)};
+    return {basis_, moments_.view(), moments_.size() / (bodies_ * Rank)};
 }
 
 /// Leaves of the largest operator with that rank; 0 if there is none.
@@ -52,9 +52,9 @@ void DeviceQuadrature::upward_pass(Operators all, const Source& source)
         DeviceQuadrature& one = all[k];
         if (one.basis_.rank != Rank)
             return {};
-        const FromLeaves kernel{one.template moments<Rank>(), one.nodes_.view(), one.first_.view(), source,
+        const FromLeaves kernel{one.template moments<Rank>(), one.slots(), source,
                                 one.sources_.view()};
-        return {kernel, one.first_.size() * kernel.blocks_of_body()};
+        return {kernel, one.bodies_ * kernel.blocks_of_body()};
     };
     const CudaSpace& space = all[0].space_;
     parallel_for_blocks<FromLeaves::kThreads, FromLeaves>(space, "quadrature/leaf_moments", all.size(),
@@ -69,7 +69,7 @@ void DeviceQuadrature::upward_pass(Operators all, const Source& source)
                 return {};
             const FromLevel kernel{one.template moments<Rank>(), level,
                                    upward_levels(one.basis_.leaf_count, level, FromLevel::kLevels)};
-            return {kernel, one.first_.size() * kernel.blocks_of_body()};
+            return {kernel, one.bodies_ * kernel.blocks_of_body()};
         };
         parallel_for_blocks<FromLevel::kThreads, FromLevel>(space, "quadrature/moments", all.size(),
                                                             from_level, FromLevel::kSharedBytes);
@@ -91,9 +91,8 @@ void DeviceQuadrature::gather_leaves(Operators all, const Sink& sink)
                             one.kernel_.rest.view(),
                             one.sources_.view(),
                             one.moments_.view(),
-                            one.nodes_.view(),
+                            one.slots(),
                             one.basis_.leaf_count,
-                            one.first_.view(),
                             one.basis_.leaf_count > kLeavesOfBlock,
                             sink};
         return {kernel, kernel.teams(Gather::kThreads)};

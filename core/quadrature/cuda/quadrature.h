@@ -18,18 +18,16 @@ class DeviceQuadrature {
 public:
     /// @param space   borrowed; device of the tables
     /// @param tables  of one body, not needed afterwards
-    /// @param node_count  of one body
-    /// @param first   [bodies] first node of each body among those of all
+    /// @param rows    [bodies][nodes of one] place of every node among those of all bodies
     /// @param packing  accuracy that decides which weights may be bytes
     /// @throws DeviceError if the device has too little memory
-    DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables, int node_count,
-                     const std::vector<int>& first = {0}, const PackingAccuracy& packing = {});
+    DeviceQuadrature(const CudaSpace& space, const QuadratureTables& tables,
+                     const std::vector<std::vector<int>>& rows, const PackingAccuracy& packing = {});
 
     /// Takes a table that was built on the device.
     /// @param basis  basis of that table, not needed afterwards
     DeviceQuadrature(const CudaSpace& space, const ClusterBasis& basis, DeviceKernelTable kernel,
-                     int node_count, const std::vector<int>& first = {0},
-                     const PackingAccuracy& packing = {});
+                     const std::vector<std::vector<int>>& rows, const PackingAccuracy& packing = {});
 
     /// Operators of one space that are applied together, each to its own nodes.
     using Operators = View<DeviceQuadrature>;
@@ -65,13 +63,14 @@ private:
     static int max_leaves(Operators all);
     template <int Rank>
     MomentsOfBodies<Rank> moments();
+    SlotsOfBodies slots() const { return {rows_.view(), rows_.size() / bodies_}; }
 
     const CudaSpace& space_;
     BasisView<float> basis_;
     PackedTable kernel_;
     DeviceArray<float> leaves_, transfers_;
-    DeviceArray<int> nodes_; ///< [slots] of leaves first, then nodes outside all leaves
-    DeviceArray<int> first_;
+    int bodies_;
+    DeviceArray<int> rows_; ///< see SlotsOfBodies
     DeviceArray<PaddedVec3> sources_, moments_;
 };
 

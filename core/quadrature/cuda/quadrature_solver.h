@@ -13,10 +13,12 @@ namespace toile {
 /// and are solved together.
 class DeviceQuadratureSolver : public DeviceSolver {
 public:
-    /// Rows of H of one body; parts are in ascending order.
+    /// One body.
     struct Part {
         std::vector<EmbeddedPoint> points; ///< of its nodes
         TableListener listener;            ///< called while update() prepares tables
+        QuadratureTables::Settings settings = {};
+        std::vector<int> rows = {}; ///< of H, ascending; empty: those after the previous part's
     };
 
     /// Format of the weights: single numbers, or bytes if that is accurate enough (PackingRule).
@@ -25,7 +27,6 @@ public:
     /// @param space  borrowed
     /// @param store  source of the tables
     DeviceQuadratureSolver(const CudaSpace& space, std::vector<Part> parts,
-                           QuadratureTables::Settings settings = {},
                            std::shared_ptr<TableStore> store = TableStore::of_process(),
                            Weights weights = Weights::Bytes);
 
@@ -55,7 +56,6 @@ private:
     DeviceQuadrature make_operator(const Group& group) const;
 
     std::vector<Part> parts_;
-    QuadratureTables::Settings settings_;
     std::shared_ptr<TableStore> store_;
     Weights weights_;
     mutable std::vector<DeviceQuadrature> operators_; ///< per group of equal bodies; a solve writes scratch

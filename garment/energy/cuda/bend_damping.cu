@@ -2,7 +2,7 @@
 
 #include "core/compute/cuda/teams.cuh"
 #include "core/pd/cuda/newton/hessian_pattern.h"
-#include "garment/energy/cuda/pair_lists.h"
+#include "core/pd/cuda/newton/pair_lists.h"
 
 namespace toile::garment {
 

@@ -129,7 +129,7 @@ void DeviceElasticity::project(const DeviceEvaluation& at, const Viscosity& visc
 
 void DeviceElasticity::find_entries(const HessianPattern& pattern)
 {
-    side_blocks_.find_entries(host_.triangles, pattern);
+    side_blocks_.find_entries(sides_of(host_.triangles), 3, pattern);
 }
 
 void DeviceElasticity::add_curvature(const DeviceCurvature& at)
@@ -147,7 +147,7 @@ void DeviceElasticity::curve(View<const Vec3> x, const Viscosity& viscosity)
     parallel_for(space_, "membrane/curvature", triangles_.size(),
                  CurveMembraneTriangle<Viscosity>{x, triangles_.view(), rest_inv_.view(), area_.view(),
                                                   fabric_.view(), weights_.view(), viscosity,
-                                                  side_blocks_.sides()});
+                                                  side_blocks_.of_elements()});
 }
 
 } // namespace toile::garment

@@ -5,7 +5,7 @@
 #include "core/compute/cuda/array.h"
 #include "core/linear/sliced_rows.h"
 #include "core/pd/cuda/energy.h"
-#include "garment/energy/cuda/side_blocks.h"
+#include "core/pd/cuda/newton/element_blocks.h"
 #include "garment/energy/rest_shape.h"
 #include "garment/energy/viscosity_kernels.h"
 
@@ -69,7 +69,7 @@ private:
     DeviceArray<int> viscous_fabric_;             ///< this and the next two are empty without viscosity
     DeviceArray<ViscousWeights> viscous_weights_; ///< of this step; zero before the first
     DeviceArray<GreenStrain<double>> start_;      ///< [triangles] at the start of this step
-    DeviceSideBlocks side_blocks_;
+    DeviceElementBlocks side_blocks_;
     DeviceArray<int> first_corner_, corners_;
     DeviceArray<CornerPair> corner_gradient_; ///< [triangles] [N]
     DeviceArray<int> bending_first_;          ///< SlicedRows of K

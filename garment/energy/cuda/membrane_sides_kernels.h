@@ -1,6 +1,6 @@
 #pragma once
 
-#include "garment/energy/cuda/side_blocks_kernels.h"
+#include "garment/energy/cuda/triangle_sides.h"
 #include "garment/energy/viscosity_kernels.h"
 
 namespace toile::garment {

@@ -56,7 +56,7 @@ Apply measure_apply(const CudaSpace& space, int vertices, double stiffness, doub
     result.cpu_us = 1e3 * best_ms(0.2, [&] { cpu.solve(load, on_cpu); });
 
     const Eigen::VectorXd diagonal = system->matrix().diagonal();
-    DeviceQuadrature device(space, *tables, result.vertices, {0},
+    DeviceQuadrature device(space, *tables, {consecutive_rows(0, result.vertices)},
                             {{diagonal.data(), int(diagonal.size())}, KernelTable::Settings().tolerance});
     result.table_mb = double(device.table_bytes()) / kMega;
     DeviceArray<Vec3> b(space, "benchmarks/b"), x(space, "benchmarks/x", result.vertices);

@@ -39,8 +39,7 @@ std::unique_ptr<PointMasses> make_body(const CudaSpace& space, const solvers::Pr
 std::unique_ptr<GlobalSolver> make_quadrature(const CudaSpace& space, const solvers::Problem& problem)
 {
     return std::make_unique<DeviceQuadratureSolver>(
-        space, std::vector<DeviceQuadratureSolver::Part>{{problem.points(), {}}},
-        QuadratureTables::Settings{}, problem.tables);
+        space, std::vector<DeviceQuadratureSolver::Part>{{problem.points(), {}}}, problem.tables);
 }
 
 template <typename Solver>

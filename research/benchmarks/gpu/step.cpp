@@ -54,7 +54,7 @@ public:
         std::vector<BlockDiagonalSolver::Block> blocks;
         blocks.reserve(what_.cloths);
         for (int k = 0; k < what_.cloths; ++k)
-            blocks.push_back({one_.vertex_count(),
+            blocks.push_back({consecutive_rows(k * one_.vertex_count(), one_.vertex_count()),
                               std::make_unique<QuadratureSolver>(one_.points(), QuadratureSolver::Settings{},
                                                                  one_.tables)});
         return std::make_unique<BlockDiagonalSolver>(std::move(blocks));
@@ -63,8 +63,8 @@ public:
                                                 DeviceQuadratureSolver::Weights weights) const
     {
         return std::make_unique<DeviceQuadratureSolver>(
-            space, std::vector<DeviceQuadratureSolver::Part>(what_.cloths, {one_.points(), {}}),
-            QuadratureTables::Settings{}, one_.tables, weights);
+            space, std::vector<DeviceQuadratureSolver::Part>(what_.cloths, {one_.points(), {}}), one_.tables,
+            weights);
     }
 
     std::vector<Vec3> start;

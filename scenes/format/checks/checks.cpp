@@ -377,9 +377,19 @@ void check_soft_bodies(const Document& document, const scenes::Scene& scene)
     for (const auto& names : {names_of(scene.avatars), names_of(scene.solids)})
         others.insert(others.end(), names.begin(), names.end());
     check_body_names(document, "soft_bodies", names_of(scene.soft_bodies), others, "cloth, avatar or solid");
-    for (size_t i = 0; i < scene.soft_bodies.size(); ++i)
-        check_extension(document, below(below("soft_bodies", i), "file"), scene.soft_bodies[i].file,
-                        {".msh", ".vtk"});
+    for (size_t i = 0; i < scene.soft_bodies.size(); ++i) {
+        const SoftBody& body = scene.soft_bodies[i];
+        const std::string key_path = below("soft_bodies", i);
+        check_extension(document, below(key_path, "file"), body.file, {".msh", ".vtk", ".obj"});
+        const bool is_surface = lower_case_extension(body.file) == ".obj";
+        if (is_surface && !body.cell)
+            document.refuse(key_path, as_written(body.file.string()) +
+                                          " is a surface; say how fine it is filled with tetrahedra: "
+                                          "\"cell\": 0.02 has edges of 2 cm");
+        if (!is_surface && body.cell)
+            document.refuse(below(key_path, "cell"), "only a surface (.obj) is filled with tetrahedra; " +
+                                                         as_written(body.file.string()) + " has them");
+    }
     if (!scene.soft_bodies.empty())
         check_contact_of_bodies(document, scene, "soft bodies");
 }

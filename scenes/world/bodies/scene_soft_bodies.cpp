@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
-#include "garment/energy/air/loads_kernels.h"
+#include "garment/energy/air/cuda/loads.h"
 #include "scenes/colliders/select_vertices.h"
 #include "scenes/surfaces/load_cloth.h"
 
@@ -15,17 +15,16 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
                                  int first_surface, int between)
     : gravity_(scene.gravity), between_(between), first_inner_(first_surface + between)
 {
-    std::vector<LoadedSoftBody> loaded;
-    for (const scene::SoftBody& settings : scene.soft_bodies)
-        first_inner_ += int(loaded.emplace_back(load_soft_body(settings)).surface.positions.size());
+    std::vector<LoadedSoftBody> loaded = load_soft_bodies(scene.soft_bodies);
+    for (const LoadedSoftBody& body : loaded)
+        first_inner_ += int(body.surface.positions.size());
 
     volume::TetMesh all; // by unknowns
     std::vector<volume::Lame> lame;
     int next_surface = first_surface, next_inner = first_inner_;
     for (size_t i = 0; i < loaded.size(); ++i) {
         const scene::SoftBody& settings = scene.soft_bodies[i];
-        const volume::TetMesh& mesh = loaded[i].mesh;
-        rest_tets(mesh, loaded[i].source); // checks it, with the numbers of its own
+        rest_tets(loaded[i].rest, loaded[i].source); // checks it, with the numbers of its own
         Body& body = bodies_.emplace_back();
         body.first_surface = next_surface;
         body.first_inner = next_inner;
@@ -33,11 +32,11 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
         body.damping = settings.damping;
         body.velocity = settings.velocity;
         body.surface = std::move(loaded[i].surface);
-        body.positions = mesh.positions;
-        body.tets = mesh.tets;
+        body.rest = std::move(loaded[i].rest);
+        body.positions = std::move(loaded[i].positions);
         next_surface += body.surface_count();
         next_inner += body.vertex_count() - body.surface_count();
-        for (const volume::Tet& tet : mesh.tets)
+        for (const volume::Tet& tet : body.rest.tets)
             all.tets.push_back(
                 {body.unknown(tet[0]), body.unknown(tet[1]), body.unknown(tet[2]), body.unknown(tet[3])});
         lame.resize(all.tets.size(),
@@ -47,7 +46,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
     all.positions.resize(next_inner, Vec3::Zero());
     for (const Body& body : bodies_)
         for (int v = 0; v < body.vertex_count(); ++v)
-            all.positions[body.unknown(v)] = body.positions[v];
+            all.positions[body.unknown(v)] = body.rest.positions[v];
     rest_ = std::make_shared<volume::RestTets>(rest_tets(all, "soft bodies"));
     elastic_ = std::make_shared<volume::ElasticSolid>(rest_, std::move(lame));
     add_springs();
@@ -82,8 +81,8 @@ int SceneSoftBodies::body_of(int unknown) const
 double SceneSoftBodies::mass(const Body& body)
 {
     double sum = 0.0; // [m^3]
-    for (const volume::Tet& tet : body.tets)
-        sum += volume::volume_of(tet, body.positions);
+    for (const volume::Tet& tet : body.rest.tets)
+        sum += volume::volume_of(tet, body.rest.positions);
     return body.density * sum;
 }
 
@@ -97,6 +96,14 @@ void SceneSoftBodies::add_springs()
                     springs.push_back({body.unknown(v), *attachment.stiffness()});
     if (!springs.empty())
         springs_ = std::make_shared<garment::Springs>(springs);
+}
+
+std::vector<int> SceneSoftBodies::unknowns(int body) const
+{
+    std::vector<int> unknowns;
+    for (int v = 0; v < bodies_[body].vertex_count(); ++v)
+        unknowns.push_back(bodies_[body].unknown(v));
+    return unknowns;
 }
 
 std::vector<std::shared_ptr<Energy>> SceneSoftBodies::energies() const
@@ -164,6 +171,12 @@ void SceneSoftBodies::update_targets(double t_t1, const std::vector<Collider>& c
                 else
                     springs_->release(spring++);
         }
+}
+
+void SceneSoftBodies::add_loads(garment::DeviceLoads& loads) const
+{
+    for (int i = 0; i < count(); ++i)
+        loads.add_without_air(unknowns(i), bodies_[i].damping);
 }
 
 void SceneSoftBodies::accelerate(double dt, View<const Vec3> v, View<Vec3> acceleration) const

@@ -5,8 +5,12 @@
 
 #include "garment/energy/springs.h"
 #include "scenes/colliders/attachment_constraint.h"
-#include "scenes/surfaces/load_soft_body.h"
+#include "scenes/surfaces/load_soft_bodies.h"
 #include "volume/energy/elastic_solid.h"
+
+namespace toile::garment {
+class DeviceLoads;
+} // namespace toile::garment
 
 namespace toile::scenes {
 
@@ -28,6 +32,10 @@ public:
     int first_vertex(int body) const { return bodies_[body].first_surface; }
     int body_of(int unknown) const;                             ///< of a vertex
     double mass(int body) const { return mass(bodies_[body]); } ///< [kg]
+    std::vector<int> unknowns(int body) const;                  ///< [vertices of the body] ascending
+
+    /// [vertices of the body] at rest, in the body's own axes [m]
+    const std::vector<Vec3>& rest_positions(int body) const { return bodies_[body].rest.positions; }
 
     void set_start(View<Vec3> positions, View<Vec3> velocities, View<double> masses) const;
     std::vector<std::shared_ptr<Energy>> energies() const;
@@ -40,6 +48,7 @@ public:
     void mark_fixed(double t_t1, View<unsigned char> fixed) const;
     void update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets);
     void accelerate(double dt, View<const Vec3> v, View<Vec3> acceleration) const;
+    void add_loads(garment::DeviceLoads& loads) const; ///< the same on a GPU
     bool is_disturbed(double t) const;
 
 private:
@@ -48,8 +57,8 @@ private:
         double density, damping;        ///< [kg/m^3], [1/s]
         Vec3 velocity;                  ///< [m/s]
         ClothState surface;
+        volume::TetMesh rest;        ///< [m] in its own axes
         std::vector<Vec3> positions; ///< [vertices] at the start [m]
-        std::vector<volume::Tet> tets;
         std::vector<AttachmentConstraint> attachments;
 
         int surface_count() const { return int(surface.positions.size()); }

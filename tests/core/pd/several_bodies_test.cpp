@@ -48,8 +48,8 @@ SparseMatrix side_by_side(const SparseMatrix& A, const SparseMatrix& B, double c
 BlockDiagonalSolver two_blocks(int first, int second)
 {
     std::vector<BlockDiagonalSolver::Block> blocks;
-    blocks.push_back({first, std::make_unique<DirectSolver>()});
-    blocks.push_back({second, std::make_unique<DirectSolver>()});
+    blocks.push_back({consecutive_rows(0, first), std::make_unique<DirectSolver>()});
+    blocks.push_back({consecutive_rows(first, second), std::make_unique<DirectSolver>()});
     return BlockDiagonalSolver(std::move(blocks));
 }
 

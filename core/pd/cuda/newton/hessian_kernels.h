@@ -91,7 +91,7 @@ private:
 
 /// Terms of an active set in the Hessian; empty views without any.
 struct FrozenTerms {
-    View<const int> list_of; ///< [vertices] see DeviceActiveSet::Frozen
+    ListOfVertex list_of;
     FrozenRows rows;
     View<const Mat3> blocks; ///< [lists] [N/m]
     View<const Vec3> product;
@@ -100,9 +100,6 @@ struct FrozenTerms {
     {
         return {frozen.list_of, frozen.rows, frozen.blocks, frozen.product};
     }
-
-    /// Number of the list of vertex i, -1: none.
-    TOILE_HD int list(int i) const { return list_of.empty() ? -1 : list_of[i] - 1; }
 };
 
 /// Begins a Hessian: its diagonal with the inertia, its scalars with their constant part, its blocks with

@@ -130,7 +130,7 @@ private:
         };
         hessian.for_blocks(v, [&](int j, const Eigen::Matrix3f&) { add(j); });
         hessian.for_scalars(v, [&](int j, float) { add(j); });
-        if (const int list = terms.list(v); list >= 0)
+        if (const int list = terms.list_of[v]; list >= 0)
             for (int e = 0; e < terms.rows.active_count[list]; ++e) {
                 const FrozenRow& term = terms.rows.rows[terms.rows.first[list] + e];
                 for (int k = 0; k < 4 && term.vertex[k] >= 0; ++k)
@@ -170,7 +170,7 @@ private:
             if (const float f = factor(j); f != 0.0F)
                 sum.diagonal().array() += double(f * s);
         });
-        if (const int list = terms.list(v); list >= 0)
+        if (const int list = terms.list_of[v]; list >= 0)
             for (int e = 0; e < terms.rows.active_count[list]; ++e) {
                 const FrozenRow& term = terms.rows.rows[terms.rows.first[list] + e];
                 float f = 0.0F;

@@ -47,7 +47,7 @@ struct InvertDiagonal {
         double scalar = 0.0;
         hessian.for_scalars(i, [&](int, float s) { scalar -= double(s); });
         block.diagonal().array() += scalar;
-        if (const int list = terms.list(i); list >= 0)
+        if (const int list = terms.list_of[i]; list >= 0)
             block += terms.blocks[list];
         const Mat3 symmetric = 0.5 * (block + block.transpose());
         const Mat3 inverse = fixed[i] ? Mat3(Mat3::Zero()) : Mat3(symmetric.inverse());
@@ -108,7 +108,7 @@ struct MultiplyHessian {
             product.value[k] = team.sum(1, part[k]);
         if (team.thread != 0 || !is_in_range)
             return;
-        if (const int list = terms.list(i); list >= 0)
+        if (const int list = terms.list_of[i]; list >= 0)
             product += padded(terms.product[list]);
         fields.Kz[i] = fixed[i] != 0 ? PaddedVec3(0.0F) : product;
     }

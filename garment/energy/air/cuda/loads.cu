@@ -1,5 +1,7 @@
 #include "garment/energy/air/cuda/loads.h"
 
+#include <algorithm>
+
 #include "core/compute/cuda/parallel.cuh"
 
 namespace toile::garment {
@@ -16,10 +18,7 @@ DeviceLoads::DeviceLoads(const CudaSpace& space, const Settings& settings, const
 void DeviceLoads::add(const RestShape& rest, View<const double> masses, double damping, int first_vertex)
 {
     TOILE_ASSERT(first_vertex >= int(host_.cloth.size()) && masses.size() == rest.vertex_count());
-    // Vertices before this cloth that belong to no cloth have no corners.
-    host_.cloth.resize(first_vertex, -1);
-    host_.masses.resize(first_vertex, 1.0);
-    host_.first_corner.resize(first_vertex + 1, int(host_.corners.size()));
+    resize(first_vertex);
     const int first_triangle = int(host_.triangles.size());
     for (const Triangle& corner : rest.triangles)
         host_.triangles.push_back(corner + Triangle::Constant(first_vertex));
@@ -32,6 +31,23 @@ void DeviceLoads::add(const RestShape& rest, View<const double> masses, double d
     host_.masses.insert(host_.masses.end(), masses.begin(), masses.end());
     host_.damping.push_back(damping);
     upload();
+}
+
+void DeviceLoads::add_without_air(View<const int> vertices, double damping)
+{
+    resize(std::max(int(host_.cloth.size()), 1 + *std::max_element(vertices.begin(), vertices.end())));
+    for (const int v : vertices)
+        host_.cloth[v] = int(host_.damping.size());
+    host_.damping.push_back(damping);
+    upload();
+}
+
+/// New vertices belong to no cloth and have no corners.
+void DeviceLoads::resize(int vertex_count)
+{
+    host_.cloth.resize(vertex_count, -1);
+    host_.masses.resize(vertex_count, 1.0);
+    host_.first_corner.resize(vertex_count + 1, int(host_.corners.size()));
 }
 
 void DeviceLoads::upload()

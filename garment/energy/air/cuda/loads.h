@@ -10,8 +10,8 @@
 
 namespace toile::garment {
 
-/// Gravity, fabric damping and air with gusts on all cloths of a body on a GPU: the counterpart of
-/// Aerodynamics and Gusts on the CPU, with the same kernels.
+/// Gravity, damping and air with gusts on all cloths of a body on a GPU: the counterpart of Aerodynamics and
+/// Gusts on the CPU, with the same kernels.
 class DeviceLoads : public DeviceAcceleration {
 public:
     struct Settings {
@@ -23,11 +23,17 @@ public:
     /// @param gusts  deviations from the mean wind
     DeviceLoads(const CudaSpace& space, const Settings& settings, const Gusts& gusts);
 
-    /// Adds a cloth after the previous ones; all are added before the first step.
+    /// Adds a cloth after the previous ones and before vertices without air; all are added before the first
+    /// step.
     /// @param masses        [vertices] of the cloth [kg]
     /// @param damping       of its fabric [1/s]
     /// @param first_vertex  first vertex of the cloth in the body
     void add(const RestShape& rest, View<const double> masses, double damping, int first_vertex);
+
+    /// Adds vertices that gravity and damping move, but no air.
+    /// @param vertices  in the body
+    /// @param damping   [1/s]
+    void add_without_air(View<const int> vertices, double damping);
 
     /// Sets the end [s] of the coming step, on which gusts depend, and whether there are loads in it at all.
     void set_step(double t_t1, bool is_loaded)
@@ -46,6 +52,7 @@ private:
         std::vector<int> cloth, first_corner{0}, corners;
         std::vector<double> masses, damping;
     };
+    void resize(int vertex_count);
     void upload();
 
     const CudaSpace& space_;

@@ -110,13 +110,13 @@ void DeviceStretchTension::add_gradient(const DeviceEvaluation& at)
 
 void DeviceStretchTension::find_entries(const HessianPattern& pattern)
 {
-    side_blocks_.find_entries(host_.triangles, pattern);
+    side_blocks_.find_entries(sides_of(host_.triangles), 3, pattern);
 }
 
 void DeviceStretchTension::add_curvature(const DeviceCurvature& at)
 {
     parallel_for(space_, "stretch_tension/curvature", triangles_.size(),
-                 CurveTensionTriangle{pull(at.x), near_.view(), exceeds_.view(), side_blocks_.sides()});
+                 CurveTensionTriangle{pull(at.x), near_.view(), exceeds_.view(), side_blocks_.of_elements()});
     side_blocks_.add_to(at.blocks, "stretch_tension/gather_curvature", exceeds_.view());
 }
 

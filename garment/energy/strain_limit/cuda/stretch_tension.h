@@ -5,7 +5,7 @@
 #include "core/compute/cuda/array.h"
 #include "core/compute/cuda/scan.h"
 #include "core/pd/cuda/energy.h"
-#include "garment/energy/cuda/side_blocks.h"
+#include "core/pd/cuda/newton/element_blocks.h"
 #include "garment/energy/strain_limit/stretch_tension.h"
 
 namespace toile::garment {
@@ -65,7 +65,7 @@ private:
     DeviceArray<int> watched_, watched_count_;   ///< vertices with a triangle that is near, [1] their number
     DeviceScratch scratch_;
     DeviceArray<unsigned char> exceeds_; ///< [triangles] at the last add_curvature()
-    DeviceSideBlocks side_blocks_;
+    DeviceElementBlocks side_blocks_;
 };
 
 } // namespace toile::garment

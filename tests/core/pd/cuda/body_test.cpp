@@ -88,8 +88,9 @@ public:
         std::vector<BlockDiagonalSolver::Block> blocks;
         blocks.reserve(count_);
         for (int k = 0; k < count_; ++k)
-            blocks.push_back({int(swing_.fixed.size()), std::make_unique<QuadratureSolver>(
-                                                            swing_.points(), QuadratureSolver::Settings{})});
+            blocks.push_back(
+                {consecutive_rows(k * int(swing_.fixed.size()), int(swing_.fixed.size())),
+                 std::make_unique<QuadratureSolver>(swing_.points(), QuadratureSolver::Settings{})});
         return std::make_unique<BlockDiagonalSolver>(std::move(blocks));
     }
     /// @param weights  single ones for the iterates of the CPU
@@ -99,7 +100,7 @@ public:
     {
         return std::make_unique<DeviceQuadratureSolver>(
             space, std::vector<DeviceQuadratureSolver::Part>(count_, {swing_.points(), {}}),
-            QuadratureTables::Settings{}, TableStore::of_process(), weights);
+            TableStore::of_process(), weights);
     }
 
     const std::vector<Vec3>& start() const { return x_; }

@@ -48,7 +48,8 @@ protected:
         b_ = std::make_unique<DeviceArray<Vec3>>(space(), "test/b");
         x_ = std::make_unique<DeviceArray<Vec3>>(space(), "test/x", int(H.rows()));
         b_->upload(load_);
-        device_ = std::make_unique<DeviceQuadrature>(space(), *tables_, int(H.rows()));
+        device_ = std::make_unique<DeviceQuadrature>(space(), *tables_,
+                                                     std::vector{consecutive_rows(0, int(H.rows()))});
     }
     std::vector<Vec3> by_device()
     {
@@ -153,7 +154,7 @@ TEST_F(DeviceQuadratureTest, SolvesEqualAndDifferentBodiesWithTablesOfEitherBuil
     std::vector<BlockDiagonalSolver::Block> blocks;
     blocks.reserve(3);
     for (int k = 0; k < 3; ++k)
-        blocks.push_back({int(soft.rows()),
+        blocks.push_back({consecutive_rows(k * int(soft.rows()), int(soft.rows())),
                           std::make_unique<QuadratureSolver>(grid.points, QuadratureSolver::Settings{})});
     BlockDiagonalSolver cpu(std::move(blocks));
     cpu.update(H, fixed);
@@ -166,7 +167,7 @@ TEST_F(DeviceQuadratureTest, SolvesEqualAndDifferentBodiesWithTablesOfEitherBuil
         for (const auto& [weights, tolerance] :
              {std::pair(Weights::Single, kTolerance), std::pair(Weights::Bytes, kToleranceOfBytes)}) {
             DeviceQuadratureSolver gpu(
-                space(), std::vector<DeviceQuadratureSolver::Part>(3, {grid.points, {}}), {}, store, weights);
+                space(), std::vector<DeviceQuadratureSolver::Part>(3, {grid.points, {}}), store, weights);
             gpu.update(H, fixed);
             gpu.solve(load, found);
             EXPECT_LT(difference(found, expected), tolerance);
@@ -187,14 +188,14 @@ TEST_F(DeviceQuadratureTest, HasTheSameBitsSideBySideAndAlone)
     std::vector<unsigned char> fixed(H.rows(), 0);
     const std::vector<Vec3> load = random_field(int(H.rows()), 5);
     std::vector<Vec3> found(load.size());
-    DeviceQuadratureSolver together(space(), parts, {}, std::make_shared<TableStore>());
+    DeviceQuadratureSolver together(space(), parts, std::make_shared<TableStore>());
     together.update(H, fixed);
     together.solve(load, found);
 
     int first = 0;
     for (size_t k = 0; k < parts.size(); ++k) {
         const int count = int(parts[k].points.size());
-        DeviceQuadratureSolver alone(space(), {parts[k]}, {}, std::make_shared<TableStore>());
+        DeviceQuadratureSolver alone(space(), {parts[k]}, std::make_shared<TableStore>());
         alone.update(blocks[k], View<const unsigned char>(fixed).subview(first, count));
         std::vector<Vec3> expected(count);
         alone.solve(View<const Vec3>(load).subview(first, count), expected);

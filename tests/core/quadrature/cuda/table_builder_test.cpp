@@ -162,7 +162,8 @@ TEST_F(DeviceTableBuilderTest, SolvesWithTablesThatStayOnTheDevice)
 {
     const Problem problem = grid(50, 40, 1e-3);
     const std::shared_ptr<const QuadratureTables> tables = build_tables(problem.input(), {});
-    DeviceQuadrature device(space(), tables->basis, *built(problem, tables->basis), int(problem.H.rows()));
+    DeviceQuadrature device(space(), tables->basis, *built(problem, tables->basis),
+                            {consecutive_rows(0, int(problem.H.rows()))});
     const std::vector<Vec3> load = random_field(int(problem.H.rows()), 3);
     DeviceArray<Vec3> b(space(), "test/b"), x(space(), "test/x", int(load.size()));
     b.upload(load);

@@ -6,7 +6,7 @@
 
 #include "core/base/assert.h"
 
-namespace toile::garment {
+namespace toile {
 
 /// Items that belong to pairs of vertices, such as the sides of triangles, listed by pair. A pair (i, j), i <
 /// j, has two entries in a Hessian, to which one thread adds all of its items.
@@ -44,4 +44,4 @@ struct PairLists {
     }
 };
 
-} // namespace toile::garment
+} // namespace toile

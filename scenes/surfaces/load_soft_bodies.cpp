@@ -1,0 +1,114 @@
+#include "scenes/surfaces/load_soft_bodies.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "core/base/extension.h"
+#include "core/mesh/obj.h"
+#include "scenes/meshes/rigid_motion.h"
+#include "volume/mesh/msh.h"
+#include "volume/mesh/vtk.h"
+#include "volume/meshing/fill_surface.h"
+
+namespace toile::scenes {
+
+namespace {
+
+/// Numbers the vertices of the surface first; both parts keep their order.
+/// @return the surface's triangles
+std::vector<Triangle> put_surface_first(volume::TetMesh& mesh)
+{
+    std::vector<Triangle> surface = volume::boundary_triangles(mesh.tets);
+    std::vector<char> is_on_surface(mesh.positions.size(), 0);
+    for (const Triangle& face : surface)
+        for (const int v : face)
+            is_on_surface[v] = 1;
+    int next = 0;
+    std::vector<int> number(mesh.positions.size());
+    std::vector<Vec3> positions(mesh.positions.size());
+    for (const char part : {1, 0})
+        for (size_t v = 0; v < number.size(); ++v)
+            if (is_on_surface[v] == part) {
+                positions[next] = mesh.positions[v];
+                number[v] = next++;
+            }
+    mesh.positions = std::move(positions);
+    for (volume::Tet& tet : mesh.tets)
+        for (int& v : tet)
+            v = number[v];
+    for (Triangle& face : surface)
+        for (int& v : face)
+            v = number[v];
+    return surface;
+}
+
+/// A body in its own axes [m].
+struct RestMesh {
+    volume::TetMesh tets;
+    std::vector<Triangle> surface;
+};
+
+volume::TetMesh tets_of(const scene::SoftBody& body, double scale)
+{
+    const std::string source = body.file.string(), extension = lower_case_extension(body.file);
+    if (extension == ".obj") {
+        TriangleMesh surface = read_obj(body.file).triangulated();
+        for (Vec3& p : surface.positions)
+            p *= scale;
+        require_usable(surface, source);
+        return volume::fill_surface(surface, *body.cell, source);
+    }
+    volume::TetMesh tets =
+        extension == ".msh" ? volume::read_msh_tets(body.file) : volume::read_vtk_tets(body.file);
+    for (Vec3& p : tets.positions)
+        p *= scale;
+    return tets;
+}
+
+RestMesh rest_mesh(const scene::SoftBody& body, double scale)
+{
+    RestMesh rest{tets_of(body, scale), {}};
+    rest.surface = put_surface_first(rest.tets);
+    return rest;
+}
+
+LoadedSoftBody placed(const scene::SoftBody& body, const RestMesh& rest)
+{
+    LoadedSoftBody loaded{body.file.string(), {}, rest.tets, {}};
+    const Mat3 rotation = rotation_of(body.rotate_deg);
+    for (const Vec3& p : rest.tets.positions)
+        loaded.positions.push_back(body.translate + rotation * p);
+    require_in_range(loaded.positions, loaded.source);
+
+    TriangleMesh surface{{}, rest.surface};
+    int vertices = 0;
+    for (const Triangle& face : surface.triangles)
+        vertices = std::max(vertices, face.maxCoeff() + 1);
+    surface.positions.assign(loaded.positions.begin(), loaded.positions.begin() + vertices);
+    loaded.surface.name = body.name;
+    loaded.surface.rest = faces_of(surface);
+    loaded.surface.positions = std::move(surface.positions);
+    loaded.surface.triangles = std::move(surface.triangles);
+    loaded.surface.fabric.strain_limit = std::numeric_limits<double>::infinity();
+    return loaded;
+}
+
+} // namespace
+
+std::vector<LoadedSoftBody> load_soft_bodies(const std::vector<scene::SoftBody>& bodies)
+{
+    std::map<std::tuple<std::filesystem::path, double, double>, RestMesh> known;
+    std::vector<LoadedSoftBody> loaded;
+    for (const scene::SoftBody& body : bodies) {
+        const double scale = body.scale * scene::metres_per(body.unit);
+        const auto [entry, is_new] = known.try_emplace({body.file, scale, body.cell.value_or(0.0)});
+        if (is_new)
+            entry->second = rest_mesh(body, scale);
+        loaded.push_back(placed(body, entry->second));
+    }
+    return loaded;
+}
+
+} // namespace toile::scenes

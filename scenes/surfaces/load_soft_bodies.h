@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenes/format/scene.h"
+#include "scenes/surfaces/cloth_state.h"
+#include "volume/mesh/tet_mesh.h"
+
+namespace toile::scenes {
+
+/// A soft body and its start placement.
+struct LoadedSoftBody {
+    std::string source;          ///< name in errors
+    ClothState surface;          ///< as placed; its vertices are the first of the mesh
+    volume::TetMesh rest;        ///< [m] in its own axes: equal for bodies of one file and scale
+    std::vector<Vec3> positions; ///< [vertices] as placed [m]
+};
+
+/// Reads each file once, and fills each surface once.
+/// @throws InvalidInput for an unusable mesh or surface
+std::vector<LoadedSoftBody> load_soft_bodies(const std::vector<scene::SoftBody>& bodies);
+
+} // namespace toile::scenes
