@@ -4,6 +4,8 @@
 #include <memory>
 #include <set>
 
+#include <nlohmann/json.hpp>
+
 #include "apps/toile/terminal/command_line.h"
 #include "apps/toile/terminal/commands.h"
 #include "avatars/load_avatar.h"
@@ -23,6 +25,8 @@
 #include "scenes/format/read_scene.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/surfaces/uv_rest.h"
+#include "volume/mesh/msh.h"
+#include "volume/mesh/quality.h"
 #include "volume/mesh/vtk.h"
 
 namespace toile::app {
@@ -134,16 +138,54 @@ void print_obj(const std::filesystem::path& file)
     print_extent("extent", mesh.positions);
 }
 
+volume::TetMesh read_tets(const std::filesystem::path& file)
+{
+    return lower_case_extension(file) == ".msh" ? volume::read_msh_tets(file) : volume::read_vtk_tets(file);
+}
+
 void print_tets(const std::filesystem::path& file)
 {
-    const volume::TetMesh mesh = volume::read_vtk_tets(file);
+    const volume::TetMesh mesh = read_tets(file);
+    const volume::MeshQuality quality = volume::quality_of(mesh);
     const TriangleMesh surface = volume::boundary_surface(mesh);
-    print("vertices", mesh.positions.size());
-    print("tetrahedra", mesh.tets.size());
+    print("vertices", mesh.vertex_count());
+    print("tetrahedra", mesh.tet_count());
+    print("tetrahedra inside out",
+          std::to_string(mesh.turned) + (mesh.turned > 0 ? " (they are turned when read)" : ""));
+    print("smallest dihedral angle", short_text(quality.smallest_dihedral) + " degrees");
+    print("mean edge", quality.mean_edge);
+    print("volume", quality.volume);
     print("vertices of the surface", surface.vertex_count());
     print("triangles of the surface", surface.triangle_count());
     print_topology(surface_topology(surface.triangles));
     print_extent("extent", surface.positions);
+}
+
+/// With the keys of `toile mesh --json`, and more.
+void print_tets_as_json(const std::filesystem::path& file)
+{
+    const volume::TetMesh mesh = read_tets(file);
+    const volume::MeshQuality quality = volume::quality_of(mesh);
+    const TriangleMesh surface = volume::boundary_surface(mesh);
+    const SurfaceTopology topology = surface_topology(surface.triangles);
+    const Bounds box = bounds(surface.positions);
+    const auto json_of = [](const Vec3& p) { return nlohmann::ordered_json{p.x(), p.y(), p.z()}; };
+    std::cout << nlohmann::ordered_json{{"file", file.string()},
+                                        {"vertices", mesh.vertex_count()},
+                                        {"tetrahedra", mesh.tet_count()},
+                                        {"inverted", mesh.turned},
+                                        {"smallest_dihedral_deg", quality.smallest_dihedral},
+                                        {"mean_edge", quality.mean_edge},
+                                        {"volume", quality.volume},
+                                        {"surface",
+                                         {{"vertices", surface.vertex_count()},
+                                          {"triangles", surface.triangle_count()},
+                                          {"pieces", topology.pieces},
+                                          {"euler_characteristic", topology.euler_characteristic}}},
+                                        {"lower", json_of(box.lower)},
+                                        {"upper", json_of(box.upper)}}
+                     .dump(2)
+              << '\n';
 }
 
 void print_clip(const std::string& name, double duration)
@@ -280,24 +322,20 @@ bool is_sequence(const std::filesystem::path& file)
            !exports::NumberedFiles(file).existing().empty();
 }
 
-int info(const std::filesystem::path& file)
+int info(const std::filesystem::path& file, bool json)
 {
     static const std::map<std::string, void (*)(const std::filesystem::path&)> kPrinters{
-        {".obj", print_obj},
-        {".vtk", print_tets},
-        {".glb", print_avatar},
-        {".gltf", print_avatar},
-        {".fbx", print_avatar},
-        {".bvh", print_motion_file},
-        {".pc2", print_cache},
-        {".mdd", print_cache},
-        {".abc", print_archive},
-        {".usda", print_archive},
-        {".usdc", print_archive},
-        {".usd", print_archive},
-        {".ply", print_cache_with_faces},
-        {".pvd", print_cache},
-        {".json", print_scene}};
+        {".obj", print_obj},         {".msh", print_tets},
+        {".vtk", print_tets},        {".glb", print_avatar},
+        {".gltf", print_avatar},     {".fbx", print_avatar},
+        {".bvh", print_motion_file}, {".pc2", print_cache},
+        {".mdd", print_cache},       {".abc", print_archive},
+        {".usda", print_archive},    {".usdc", print_archive},
+        {".usd", print_archive},     {".ply", print_cache_with_faces},
+        {".pvd", print_cache},       {".json", print_scene}};
+    const std::string extension = lower_case_extension(exports::archive_of(file));
+    if (json && extension != ".msh" && extension != ".vtk")
+        throw InvalidInput(file.string() + ": --json is for tetrahedra; name a .msh or .vtk");
     if (!std::filesystem::is_regular_file(exports::archive_of(file))) {
         if (is_sequence(file)) {
             print_cache_with_faces(file);
@@ -305,13 +343,13 @@ int info(const std::filesystem::path& file)
         }
         throw InvalidInput(file.string() + ": can't be found; name a file");
     }
-    const auto printer = kPrinters.find(lower_case_extension(exports::archive_of(file)));
+    const auto printer = kPrinters.find(extension);
     if (printer == kPrinters.end())
         throw InvalidInput(
             file.string() +
-            ": is of an unknown format; known are .obj, .vtk, .glb, .gltf, .fbx, .bvh, .pc2, .mdd, " +
+            ": is of an unknown format; known are .obj, .msh, .vtk, .glb, .gltf, .fbx, .bvh, .pc2, .mdd, " +
             ".abc, .usda, .usdc, .usd, .ply and .json (scene)");
-    printer->second(file);
+    json ? print_tets_as_json(file) : printer->second(file);
     return kExitOk;
 }
 
@@ -322,9 +360,14 @@ Command add_info(CLI::App& parser)
     Command command;
     command.options =
         parser.add_subcommand("info", "Describe the contents of a mesh, avatar, cache or scene");
-    auto file = std::make_shared<std::filesystem::path>();
-    command.options->add_option("file", *file, "File")->required();
-    command.run = [file] { return info(*file); };
+    struct Options {
+        std::filesystem::path file;
+        bool json = false;
+    };
+    auto options = std::make_shared<Options>();
+    command.options->add_option("file", options->file, "File")->required();
+    command.options->add_flag("--json", options->json, "Print tetrahedra (.msh, .vtk) as JSON");
+    command.run = [options] { return info(options->file, options->json); };
     return command;
 }
 

@@ -69,6 +69,11 @@ View<const Vec3> ClothGroup::surface_of_soft_body(int body) const
                                       int(soft_bodies_->state(body).positions.size()));
 }
 
+int ClothGroup::inverted_tets_of(int soft_body) const
+{
+    return soft_bodies_->inverted_count(soft_body, body_->positions());
+}
+
 void ClothGroup::add_to(Snapshot& snapshot) const
 {
     const std::shared_ptr<const Readback<Vec3>> coming = body_->read_back_positions();

@@ -41,6 +41,7 @@ public:
     const SceneSolids* solids() const { return solids_.get(); }               ///< null: none
     const SceneSoftBodies* soft_bodies() const { return soft_bodies_.get(); } ///< null: none
     View<const Vec3> surface_of_soft_body(int body) const;                    ///< as positions_of()
+    int inverted_tets_of(int soft_body) const; ///< see SceneSoftBodies::inverted_count()
 
     /// Attaches cloth where it is. See SceneCloth::tie.
     void tie(double gap, const std::vector<Collider>& colliders,

@@ -417,6 +417,14 @@ View<const ClothState> World::cloths() const
 {
     return surfaces().subview(0, int(parts().scene.cloths.size()));
 }
+std::vector<int> World::inverted_tets() const
+{
+    std::vector<int> counts;
+    for (const ClothGroup& group : parts().groups)
+        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
+            counts.push_back(group.inverted_tets_of(i));
+    return counts;
+}
 std::shared_ptr<const Snapshot> World::snapshot() const
 {
     auto snapshot = std::make_shared<Snapshot>();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "collision/repair/start_report.h"
 #include "core/base/stages.h"
@@ -70,6 +71,9 @@ public:
     /// States of all cloths, then all solids, then the surfaces of all soft bodies, each in the order of the
     /// scene. See cloths().
     View<const ClothState> surfaces() const;
+
+    /// Tetrahedra of each soft body that are flat or inside out at the current sample [soft bodies].
+    std::vector<int> inverted_tets() const;
 
     /// Current positions of surfaces(), without waiting for a GPU. Must not outlive the World.
     std::shared_ptr<const Snapshot> snapshot() const;

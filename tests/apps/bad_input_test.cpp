@@ -146,6 +146,7 @@ const std::vector<BadRun> kBadRuns{
     {{"check", ".", "--scene", "good.json", "--cloth", "sheet"}, {"--cloth", "single cache"}},
     {{"info", "none.obj"}, {"none.obj", "can't be found"}},
     {{"info", "text.xyz"}, {"text.xyz", "known are"}},
+    {{"info", "mesh.obj", "--json"}, {"mesh.obj", "--json", ".msh or .vtk"}},
     {{"info", "archive.obj"}, {"archive.obj: is no OBJ", "binary"}},
     {{"info", "mesh.obj"}, {"mesh.obj:2", "decimal number"}},
 };

@@ -8,6 +8,8 @@
 #include "export/cache_writer.h"
 #include "export/point_cache.h"
 #include "tests/apps/program.h"
+#include "tests/volume/blocks.h"
+#include "volume/mesh/msh.h"
 
 namespace toile::test {
 
@@ -75,6 +77,7 @@ TEST(Certificate, HasTheDocumentedKeys)
     EXPECT_EQ(found["cloths"][0]["name"], "sheet");
     EXPECT_TRUE(found["cloths_left_out"].empty());
     EXPECT_TRUE(found["first_crossing"].is_null());
+    EXPECT_FALSE(found.contains("soft_bodies"));
 }
 
 /// OBJ of a sheet of 0.44 m x 0.2 m.
@@ -300,6 +303,69 @@ TEST(Simulate, ChecksItsOutputAtTheEnd)
     unchecked.push_back("--no-check");
     EXPECT_EQ(run_toile(unchecked, folder.path()).exit_code, 0);
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "certificate.json"));
+}
+
+/// Two blocks of 2 x 2 x 2 cells in the air, "near" and "far". The vertex inside "near" is held, and moves
+/// out through its right face within the first two of three frames.
+void write_soft_blocks(const TemporaryFolder& folder)
+{
+    volume::write_msh(folder.path() / "block.msh", make_block(Vec3::Constant(0.1), {2, 2, 2}).mesh);
+    folder.write("blocks.json",
+                 R"({"toile": 1, "frames": 3, "gravity": [0, 0, 0], "cloths": [], "soft_bodies": [
+        {"name": "far", "file": "block.msh", "translate": [1, 0, 0]}, {"name": "near", "file": "block.msh"}],
+        "attachments": [
+        {"cloth": "near", "select": {"box": {"lower": [-1, -1, -1], "upper": [0.01, 1, 1]}}},
+        {"cloth": "near", "select": {"box": {"lower": [0.09, -1, -1], "upper": [0.11, 1, 1]}}},
+        {"cloth": "near", "select": {"box": {"lower": [0.01, 0.01, 0.01], "upper": [0.09, 0.09, 0.09]}},
+         "keyframes": [{"time": 0, "translate": [0, 0, 0]}, {"time": 0.0666, "translate": [0.08, 0, 0]}]}]})");
+}
+
+TEST(Certificate, ReportsTetrahedraInsideOutByBody)
+{
+    const TemporaryFolder folder;
+    write_soft_blocks(folder);
+    const Finished run = run_toile({"simulate", "blocks.json", "-o", "out"}, folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    const Json found = json_in(folder, "out/certificate.json");
+    EXPECT_EQ(found["holds"], true);
+    ASSERT_EQ(found["soft_bodies"].size(), 2u);
+    const Json &far = found["soft_bodies"][0], &near = found["soft_bodies"][1];
+    EXPECT_EQ(far["name"], "far");
+    EXPECT_EQ(far["inverted_tets"], 0);
+    EXPECT_NEAR(far["volume_error"], 0.0, 1e-6);
+    EXPECT_EQ(near["name"], "near");
+    EXPECT_GT(near["inverted_tets"], 0);
+    EXPECT_EQ(near["inverted_tets_frame"], 2);
+    const std::string text =
+        "\"near\" has " + near["inverted_tets"].dump() + " tetrahedra inside out in frame 2";
+    EXPECT_NE(run.errors.find(text), std::string::npos) << run.errors;
+    EXPECT_EQ(run.errors.find("\"far\" has"), std::string::npos) << run.errors;
+}
+
+TEST(Certificate, MeasuresTheVolumeOfSoftBodiesFromTheirSurfaces)
+{
+    const TemporaryFolder folder;
+    write_soft_blocks(folder);
+    ASSERT_EQ(run_toile({"simulate", "blocks.json", "-o", "out", "--no-check"}, folder.path()).exit_code, 0);
+    std::vector<Vec3> start;
+    rewrite(folder.path() / "out/near.pc2", [&](int frame, std::vector<Vec3>& x) {
+        if (frame == 0)
+            start = x;
+        x = start;
+        for (Vec3& p : x)
+            p *= frame == 1 ? 0.9 : 1.0;
+    });
+    const Finished run = run_toile({"check", "out/near.pc2", "--scene", "blocks.json"}, folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_NE(run.errors.find("volume off by 27.1 % at most, that of \"near\" in frame 1"), std::string::npos)
+        << run.errors;
+    const Json found = json_in(folder, "out/near.certificate.json");
+    const Json &far = found["soft_bodies"][0], &near = found["soft_bodies"][1];
+    EXPECT_TRUE(far["volume_error"].is_null());
+    EXPECT_NEAR(near["volume_error"], 1.0 - 0.9 * 0.9 * 0.9, 1e-5);
+    EXPECT_EQ(near["volume_error_frame"], 1);
+    EXPECT_TRUE(near["inverted_tets"].is_null()) << "caches hold surfaces only";
+    EXPECT_TRUE(near["inverted_tets_frame"].is_null());
 }
 
 } // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <regex>
 
 #include <nlohmann/json.hpp>
@@ -237,6 +239,44 @@ TEST(Info, DescribesEveryKindOfFile)
                  "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
                  "0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
     says("tet.vtk", "triangles of the surface: 4\npieces: 1\nborder loops: 0\nEuler characteristic: 2\n");
+}
+
+/// A corner of a cube of 2 m, whose tetrahedron is inside out in the file, and a flatter one on its face.
+TEST(Info, MeasuresTetrahedra)
+{
+    const TemporaryFolder folder;
+    folder.write("two.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 2 0 0\n3 0 2 0\n"
+                            "4 0 0 2\n5 0 0 -1\n6 9 9 9\n$EndNodes\n$Elements\n2\n1 4 2 0 1 1 3 2 4\n"
+                            "2 4 2 0 1 1 3 2 5\n$EndElements\n");
+    folder.write("two.vtk",
+                 "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n"
+                 "0 0 0 2 0 0 0 2 0 0 0 2 0 0 -1\nCELLS 2 10\n4 0 2 1 3\n4 0 2 1 4\n"
+                 "CELL_TYPES 2\n10\n10\n");
+    const double right = std::sqrt(5.0), diagonal = std::sqrt(8.0);
+    for (const char* file : {"two.msh", "two.vtk"}) {
+        const Finished run = run_toile({"info", file, "--json"}, folder.path());
+        ASSERT_EQ(run.exit_code, 0) << run.errors;
+        const auto found = nlohmann::json::parse(run.output);
+        EXPECT_EQ(found["file"], file);
+        EXPECT_EQ(found["vertices"], 5) << "no tetrahedron has the sixth";
+        EXPECT_EQ(found["tetrahedra"], 2);
+        EXPECT_EQ(found["inverted"], 1);
+        EXPECT_NEAR(found["volume"], 8.0 / 6.0 + 4.0 / 6.0, 1e-12);
+        // Between the faces through the three axes' ends and through the plane z = 0.
+        EXPECT_NEAR(found["smallest_dihedral_deg"],
+                    std::atan(1.0 / std::sqrt(2.0)) * 180.0 / std::numbers::pi, 1e-9);
+        EXPECT_NEAR(found["mean_edge"], (3 * 2 + 3 * diagonal + 2 * 2 + 1 + diagonal + 2 * right) / 12.0,
+                    1e-12);
+        EXPECT_EQ(found["surface"]["vertices"], 5);
+        EXPECT_EQ(found["surface"]["triangles"], 6);
+        EXPECT_EQ(found["lower"], nlohmann::json({0.0, 0.0, -1.0}));
+        EXPECT_EQ(found["upper"], nlohmann::json({2.0, 2.0, 2.0}));
+        const std::string text = run_toile({"info", file}, folder.path()).output;
+        for (const char* line : {"tetrahedra: 2\n", "tetrahedra inside out: 1 (they are turned when read)\n",
+                                 "smallest dihedral angle: 35.3 degrees\n", "volume: 2\n",
+                                 "extent: x 0 to 2, y 0 to 2, z -1 to 2\n"})
+            EXPECT_NE(text.find(line), std::string::npos) << text;
+    }
 }
 
 TEST(Schema, PrintsJsonAndTables)

@@ -218,6 +218,40 @@ TEST_F(SoftBodies, FillSurfaces)
     EXPECT_GT(lowest(world.surfaces()[0].positions), 0.0);
 }
 
+TEST_F(SoftBodies, CountTetrahedraThatAreInsideOut)
+{
+    // All vertices are held. The one inside a block of 2 x 2 x 2 cells moves out through a face.
+    const Block block = make_block(Vec3::Constant(0.1), {2, 2, 2});
+    write_msh(folder.path() / "coarse.msh", block.mesh);
+    World world = world_of(R"("frames": 3, "gravity": [0, 0, 0], "cloths": [], "soft_bodies": [
+        {"name": "first", "file": "coarse.msh", "translate": [1, 0, 0]}, {"name": "jelly", "file": "coarse.msh"}],
+        "attachments": [
+        {"cloth": "jelly", "select": {"box": {"lower": [-1, -1, -1], "upper": [1, 0.01, 1]}}},
+        {"cloth": "jelly", "select": {"box": {"lower": [-1, 0.09, -1], "upper": [1, 1, 1]}}},
+        {"cloth": "jelly", "select": {"box": {"lower": [-1, 0.01, -1], "upper": [0.01, 0.09, 1]}}},
+        {"cloth": "jelly", "select": {"box": {"lower": [0.09, 0.01, -1], "upper": [1, 0.09, 1]}}},
+        {"cloth": "jelly", "select": {"box": {"lower": [0.01, 0.01, -1], "upper": [0.09, 0.09, 0.01]}}},
+        {"cloth": "jelly", "select": {"box": {"lower": [0.01, 0.01, 0.09], "upper": [0.09, 0.09, 1]}}},
+        {"cloth": "jelly", "select": {"box": {"lower": [0.01, 0.01, 0.01], "upper": [0.09, 0.09, 0.09]}},
+         "keyframes": [{"time": 0, "translate": [0, 0, 0]}, {"time": 0.0667, "translate": [0.08, 0, 0]}]}])");
+    EXPECT_EQ(world.inverted_tets(), std::vector<int>({0, 0}));
+    world.advance_frame();
+    EXPECT_EQ(world.inverted_tets(), std::vector<int>({0, 0}));
+    world.advance_frame();
+
+    std::vector<Vec3> x = block.mesh.positions;
+    x[size_t(block.at(1, 1, 1))].x() += 0.08;
+    int expected = 0;
+    for (const volume::Tet& tet : block.mesh.tets) {
+        Mat3 edges;
+        for (int k = 0; k < 3; ++k)
+            edges.col(k) = x[size_t(tet[size_t(k) + 1])] - x[size_t(tet[0])];
+        expected += edges.determinant() <= 0.0 ? 1 : 0;
+    }
+    ASSERT_GT(expected, 0);
+    EXPECT_EQ(world.inverted_tets(), std::vector<int>({0, expected}));
+}
+
 TEST_F(SoftBodies, HaveTheSameBitsForEveryThreadCount)
 {
     std::vector<std::vector<Vec3>> found;

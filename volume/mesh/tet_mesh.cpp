@@ -82,8 +82,10 @@ void orient(TetMesh& mesh, const std::function<std::string(int tet)>& name_of, c
         const double volume = volume_of(mesh.tets[t], mesh.positions);
         if (volume == 0.0)
             throw InvalidInput(source + ": " + name_of(t) + " is flat; a tetrahedron has a volume");
-        if (volume < 0.0)
+        if (volume < 0.0) {
             std::swap(mesh.tets[t][2], mesh.tets[t][3]);
+            ++mesh.turned;
+        }
     }
     const std::vector<Face> faces = sorted_faces(mesh.tets);
     for (size_t i = 0; i + 1 < faces.size(); ++i)

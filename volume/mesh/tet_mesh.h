@@ -17,6 +17,7 @@ using Tet = std::array<int, 4>;
 struct TetMesh {
     std::vector<Vec3> positions; ///< [vertices] [m]
     std::vector<Tet> tets;       ///< [tets]
+    int turned = 0;              ///< of these, tetrahedra that orient() has turned
 
     int vertex_count() const { return int(positions.size()); }
     int tet_count() const { return int(tets.size()); }

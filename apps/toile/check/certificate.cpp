@@ -1,5 +1,7 @@
 #include "apps/toile/check/certificate.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -88,6 +90,40 @@ Json json_or_null(const std::optional<T>& value)
     return value ? Json(*value) : Json(nullptr);
 }
 
+Json json_of(const std::vector<Certificate::SoftBody>& soft_bodies)
+{
+    Json json = Json::array();
+    for (const Certificate::SoftBody& body : soft_bodies)
+        json.push_back(
+            {{"name", body.name},
+             {"inverted_tets", json_or_null(body.inverted)},
+             {"inverted_tets_frame", body.inverted ? Json(body.inverted_frame) : Json(nullptr)},
+             {"volume_error", json_or_null(body.volume_error)},
+             {"volume_error_frame", body.volume_error ? Json(body.volume_error_frame) : Json(nullptr)}});
+    return json;
+}
+
+/// Soft bodies with tetrahedra inside out, and that whose volume changes most.
+std::string text_of(const std::vector<Certificate::SoftBody>& soft_bodies)
+{
+    std::string all;
+    const Certificate::SoftBody* worst = nullptr;
+    for (const Certificate::SoftBody& body : soft_bodies) {
+        if (body.inverted.value_or(0) > 0)
+            all += "; \"" + body.name + "\" has " + std::to_string(*body.inverted) +
+                   (*body.inverted == 1 ? " tetrahedron" : " tetrahedra") + " inside out in frame " +
+                   std::to_string(body.inverted_frame);
+        if (body.volume_error && (worst == nullptr || *body.volume_error > *worst->volume_error))
+            worst = &body;
+    }
+    if (worst == nullptr)
+        return all;
+    char text[80];
+    std::snprintf(text, sizeof text, "volume off by %.3g %% at most", 1e2 * *worst->volume_error);
+    return all + "; " + text + ", that of \"" + worst->name + "\" in frame " +
+           std::to_string(worst->volume_error_frame);
+}
+
 } // namespace
 
 void Certificate::add(const FrameFindings& found)
@@ -133,10 +169,29 @@ void Certificate::add(const FrameFindings& found)
         worst.area = found.area;
         smallest_area_frame = frame;
     }
+    for (size_t i = 0; i < found.volumes.size(); ++i) {
+        SoftBody& body = soft_bodies[i];
+        const std::optional<double>& volume = found.volumes[i];
+        if (!volume || std::abs(*volume - 1.0) <= body.volume_error.value_or(-1.0))
+            continue;
+        body.volume_error = std::abs(*volume - 1.0);
+        body.volume_error_frame = frame;
+    }
     worst.pinched_depth = std::max(worst.pinched_depth, found.pinched_depth);
     if (const std::string reason = reason_of(found, limits); !reason.empty() && first_bad_frame < 0) {
         first_bad_frame = frame;
         first_bad_reason = reason;
+    }
+}
+
+void Certificate::add_inverted(int frame, const std::vector<int>& counts)
+{
+    for (size_t i = 0; i < counts.size(); ++i) {
+        SoftBody& body = soft_bodies[i];
+        if (counts[i] <= body.inverted.value_or(-1))
+            continue;
+        body.inverted = counts[i];
+        body.inverted_frame = frame;
     }
 }
 
@@ -151,7 +206,7 @@ std::string to_json(const Certificate& certificate)
         strain_limits[cloth.name] = cloth.strain_limit;
     }
     const bool has_crossing = certificate.first_crossing.has_value();
-    const Json json = {
+    Json json = {
         {"scene", certificate.scene.string()},
         {"solver", certificate.solver},
         {"version", version()},
@@ -197,6 +252,8 @@ std::string to_json(const Certificate& certificate)
          {{"penetration_m", certificate.limits.penetration},
           {"strain", strain_limits},
           {"gap_reach_m", kGapReach}}}};
+    if (!certificate.soft_bodies.empty())
+        json["soft_bodies"] = json_of(certificate.soft_bodies);
     // Names of files may have bytes that are not UTF-8.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -211,7 +268,7 @@ std::string summary_of(const Certificate& certificate)
         if (certificate.first_bad_frame >= 0)
             why += "; first bad frame " + std::to_string(certificate.first_bad_frame) + ": " +
                    certificate.first_bad_reason;
-        return "the certificate does not hold" + why;
+        return "the certificate does not hold" + why + text_of(certificate.soft_bodies);
     }
     char text[160];
     std::snprintf(text, sizeof text,
@@ -230,7 +287,7 @@ std::string summary_of(const Certificate& certificate)
     for (const auto& [avatar, bones] : certificate.excluded_bones)
         left_out += "; " + std::to_string(bones.size()) + (bones.size() == 1 ? " bone of " : " bones of ") +
                     avatar + " left out";
-    return text + left_out;
+    return text + left_out + text_of(certificate.soft_bodies);
 }
 
 } // namespace toile::app

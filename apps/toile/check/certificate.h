@@ -69,6 +69,8 @@ struct FrameFindings {
     };
     std::optional<Overstretch> overstretch; ///< that with the largest excess
     double area = 1.0; ///< [-] smallest area of a cloth relative to that at rest, at most 1
+    std::vector<std::optional<double>>
+        volumes; ///< [soft bodies] relative to that at rest [-]; none: no cache
 };
 
 /// Maximum distance at which gaps of cloth to cloth are measured [m]: several thicknesses of thick cloth.
@@ -84,12 +86,22 @@ struct Certificate {
         int vertices, faces; ///< faces as in the mesh's file
     };
 
+    /// Worst frames of a soft body. They are reported, and no defect.
+    struct SoftBody {
+        std::string name;
+        std::optional<double> volume_error; ///< [-] largest |V / V0 - 1|; none: no cache
+        int volume_error_frame = 0;
+        std::optional<int> inverted; ///< largest number of tetrahedra with det F <= 0; none: not counted
+        int inverted_frame = 0;
+    };
+
     std::filesystem::path scene;
     std::vector<scene::Export> exports; ///< that the caches were written as, relative to the certificate
     std::string solver;                 ///< solver.method of the scene
     CertificateLimits limits;
     std::vector<Cloth> cloths;
     std::vector<std::string> left_out; ///< cloths of the scene whose caches were not given
+    std::vector<SoftBody> soft_bodies; ///< of the scene
 
     /// Bones with excluded faces, by avatar; only avatars that have such bones.
     std::map<std::string, std::vector<std::string>> excluded_bones;
@@ -123,6 +135,10 @@ struct Certificate {
 
     /// Adds the findings of the next frame.
     void add(const FrameFindings& found);
+
+    /// Adds what only a simulation can count, since caches hold surfaces.
+    /// @param counts  [soft bodies] tetrahedra that are flat or inside out
+    void add_inverted(int frame, const std::vector<int>& counts);
 };
 
 /// The certificate as JSON, ending with a newline. docs/reference/commands.md explains the keys.

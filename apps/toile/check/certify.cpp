@@ -1,6 +1,7 @@
 #include "apps/toile/check/certify.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "apps/toile/caches/exports.h"
@@ -30,6 +31,16 @@ double area_of(View<const Vec3> x, View<const Triangle> triangles)
     for (const Triangle& t : triangles)
         twice += (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).norm();
     return 0.5 * twice;
+}
+
+/// Volume inside a closed surface, by the divergence theorem [m^3].
+double volume_in(View<const Vec3> x, View<const Triangle> triangles)
+{
+    const Vec3 origin = x[triangles[0][0]]; // near, so that little cancels
+    double volume = 0.0;
+    for (const Triangle& t : triangles)
+        volume += (x[t[0]] - origin).dot((x[t[1]] - origin).cross(x[t[2]] - origin)) / 6.0;
+    return volume;
 }
 
 /// Triangles of one fabric.
@@ -70,7 +81,17 @@ struct MeasuredCloth {
     collision::ClothSamples samples;
     int first_vertex, first_triangle;                      ///< in the arrays of all cloths
     std::vector<collision::PenetrationMeter::Sides> sides; ///< [avatars]
+    std::optional<size_t> soft_body;                       ///< none: a cloth or solid
 };
+
+/// Number of a soft body; none: the name is of a cloth or solid.
+std::optional<size_t> soft_body_named(const scenes::Scene& scene, const std::string& name)
+{
+    for (size_t i = 0; i < scene.soft_bodies.size(); ++i)
+        if (scene.soft_bodies[i].name == name)
+            return i;
+    return std::nullopt;
+}
 
 /// All cloths of a certificate as one list of triangles.
 class Examiner {
@@ -88,12 +109,14 @@ private:
     void load(int frame, FrameFindings& found);
     void pose_avatars(int frame, double time, FrameFindings& found);
     void measure_each(double time, FrameFindings& found);
+    void measure_volumes(FrameFindings& found) const;
     void find_cloth_crossings(int frame, FrameFindings& found) const;
     void find_all_avatar_crossings(int frame, FrameFindings& found) const;
     FrameFindings::Side side(int triangle) const;
     FrameFindings::Side avatar_side(int body, int contact_triangle) const;
 
     std::vector<MeasuredCloth> cloths_;
+    size_t soft_body_count_;
     int frame_count_ = 0, longest_ = 0;
     std::vector<Triangle> triangles_; ///< of all cloths
     std::vector<Vec3> x_;             ///< [vertices of all cloths] [m]
@@ -104,7 +127,7 @@ private:
 
 Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& cloths,
                    const CertificateLimits& limits)
-    : avatars_(scene)
+    : soft_body_count_(scene.soft_bodies.size()), avatars_(scene)
 {
     std::vector<Vec3> rest;
     for (const CachedCloth& cached : cloths) {
@@ -121,7 +144,8 @@ Examiner::Examiner(const scenes::Scene& scene, const std::vector<CachedCloth>& c
                            collision::ClothSamples(cloth.triangles, vertex_count),
                            int(rest.size()),
                            int(triangles_.size()),
-                           {}});
+                           {},
+                           soft_body_named(scene, cloth.name)});
         for (const Triangle& t : cloth.triangles)
             triangles_.push_back(t + Triangle::Constant(int(rest.size())));
         rest.insert(rest.end(), cloth.rest.positions.begin(), cloth.rest.positions.end());
@@ -156,6 +180,7 @@ FrameFindings Examiner::examine(int frame, double time)
     pose_avatars(frame, time, found);
     Cancellation::check();
     measure_each(time, found);
+    measure_volumes(found);
     Cancellation::check();
     find_cloth_crossings(frame, found);
     Cancellation::check();
@@ -230,6 +255,19 @@ void Examiner::measure_each(double time, FrameFindings& found)
     }
 }
 
+void Examiner::measure_volumes(FrameFindings& found) const
+{
+    found.volumes.resize(soft_body_count_);
+    for (const MeasuredCloth& cloth : cloths_) {
+        if (!cloth.soft_body)
+            continue;
+        const View<const Vec3> rest = cloth.state.rest.positions;
+        const View<const Vec3> x(x_.data() + cloth.first_vertex, rest.size());
+        found.volumes[*cloth.soft_body] =
+            volume_in(x, cloth.state.triangles) / volume_in(rest, cloth.state.triangles);
+    }
+}
+
 void Examiner::find_cloth_crossings(int frame, FrameFindings& found) const
 {
     const std::vector<collision::Crossing> crossings = collision::find_crossings(triangles_, x_);
@@ -295,6 +333,8 @@ Certificate blank_certificate(const scenes::Scene& scene, const CertificateLimit
     for (const scene::Avatar& avatar : scene.avatars)
         if (!avatar.exclude_bones.empty())
             certificate.excluded_bones[avatar.name] = avatar.exclude_bones;
+    for (const scene::SoftBody& body : scene.soft_bodies)
+        certificate.soft_bodies.emplace_back().name = body.name;
     return certificate;
 }
 

@@ -183,6 +183,7 @@ SceneRun::Outcome SceneRun::run_frames(RunFiles& files, RunReport& report)
     const int count = job_.scene.frames;
     frames_ = std::unique_ptr<Progress>(new Progress(log_.progress("frame", count)));
     files.write_sample(world_);
+    inverted_.push_back(world_.inverted_tets());
     frames_->update(1);
     for (int frame = 1; frame < count; ++frame) {
         frame_start_ = std::chrono::steady_clock::now();
@@ -192,6 +193,7 @@ SceneRun::Outcome SceneRun::run_frames(RunFiles& files, RunReport& report)
         unmet.add(frame, step);
         if (step.status == StepReport::Status::NonFinite)
             return {"failed", step.message};
+        inverted_.push_back(world_.inverted_tets());
         frames_->update(frame + 1, note_of(step));
     }
     files.complete();
@@ -222,6 +224,8 @@ std::optional<Certificate> SceneRun::check(const RunFiles& files) const
     const bool was_able = succeeds(log_, [&] {
         const ThreadLimit threads(job_.scene.solver.threads);
         certificate = certify(job_.scene, files.cloths_to_check(world_), {}, log_, *interrupt_);
+        for (int frame = 0; certificate && frame < int(inverted_.size()); ++frame)
+            certificate->add_inverted(frame, inverted_[size_t(frame)]);
     });
     if (was_able && !certificate)
         log_.error("interrupted while checking; the caches are complete, toile check " + checked_files(job_) +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "apps/toile/check/certificate.h"
 #include "apps/toile/simulate/run_files.h"
@@ -63,6 +64,7 @@ private:
     int subframes_;         ///< samples of the world per frame
     scenes::Scene sampled_; ///< the job's, with a frame for each sample
     scenes::World world_;
+    std::vector<std::vector<int>> inverted_; ///< [frames] World::inverted_tets()
 };
 
 } // namespace toile::app

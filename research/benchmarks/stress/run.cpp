@@ -3,29 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <random>
 
 #include "core/linear/field.h"
 #include "research/benchmarks/stress/energy_meter.h"
+#include "research/benchmarks/stress/random_positions.h"
 
 namespace toile::research::stress {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Random positions that are equal on every platform, unlike std::uniform_real_distribution.
-std::vector<Vec3> random_positions(const RandomStart& start, size_t count)
-{
-    std::mt19937 random(start.seed);
-    std::vector<Vec3> positions(count);
-    for (Vec3& p : positions)
-        for (int axis = 0; axis < 3; ++axis) {
-            const double fraction = double(random()) / double(std::mt19937::max());
-            p[axis] = start.lower[axis] + fraction * (start.upper[axis] - start.lower[axis]);
-        }
-    return positions;
-}
 
 scenes::World make_world(const Case& trial)
 {

@@ -37,8 +37,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
         next_surface += body.surface_count();
         next_inner += body.vertex_count() - body.surface_count();
         for (const volume::Tet& tet : body.rest.tets)
-            all.tets.push_back(
-                {body.unknown(tet[0]), body.unknown(tet[1]), body.unknown(tet[2]), body.unknown(tet[3])});
+            all.tets.push_back(body.unknowns(tet));
         lame.resize(all.tets.size(),
                     volume::ElasticMaterial{settings.young, settings.poisson}.lame(loaded[i].source));
         add_attachments(scene, colliders, body);
@@ -84,6 +83,15 @@ double SceneSoftBodies::mass(const Body& body)
     for (const volume::Tet& tet : body.rest.tets)
         sum += volume::volume_of(tet, body.rest.positions);
     return body.density * sum;
+}
+
+int SceneSoftBodies::inverted_count(int body, View<const Vec3> x) const
+{
+    const Body& of = bodies_[body];
+    // Rest volumes are positive, so the volume has the sign of det F.
+    return int(std::count_if(of.rest.tets.begin(), of.rest.tets.end(), [&](const volume::Tet& tet) {
+        return !(volume::volume_of(of.unknowns(tet), x) > 0.0);
+    }));
 }
 
 void SceneSoftBodies::add_springs()

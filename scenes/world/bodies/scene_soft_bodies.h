@@ -37,6 +37,9 @@ public:
     /// [vertices of the body] at rest, in the body's own axes [m]
     const std::vector<Vec3>& rest_positions(int body) const { return bodies_[body].rest.positions; }
 
+    /// Tetrahedra of a body that are flat or inside out: det F <= 0.
+    int inverted_count(int body, View<const Vec3> x) const;
+
     void set_start(View<Vec3> positions, View<Vec3> velocities, View<double> masses) const;
     std::vector<std::shared_ptr<Energy>> energies() const;
 
@@ -66,6 +69,10 @@ private:
         int unknown(int vertex) const
         {
             return vertex < surface_count() ? first_surface + vertex : first_inner + vertex - surface_count();
+        }
+        volume::Tet unknowns(const volume::Tet& tet) const
+        {
+            return {unknown(tet[0]), unknown(tet[1]), unknown(tet[2]), unknown(tet[3])};
         }
     };
     void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, Body& body);
