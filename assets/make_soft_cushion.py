@@ -35,7 +35,12 @@ def tetrahedra(cell):
         for axis in order:
             corner[axis] = last[axis]
             tet.append(number(corner))
-        yield tet
+        is_mirrored = (is_odd(order) + sum(cell)) % 2 == 1
+        yield [tet[i] for i in (0, 1, 3, 2)] if is_mirrored else tet
+
+
+def is_odd(order):
+    return sum(order[i] > order[j] for i, j in itertools.combinations(range(3), 2)) % 2
 
 
 def main():
