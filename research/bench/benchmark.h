@@ -29,6 +29,7 @@ int bench_accuracy(const BenchOptions& options);
 int bench_contact(const BenchOptions& options);
 int bench_error_time(const BenchOptions& options);
 int bench_gpu(const BenchOptions& options);
+int bench_paper(const BenchOptions& options);
 int bench_scaling(const BenchOptions& options);
 int bench_sheet(const BenchOptions& options);
 int bench_solvers(const BenchOptions& options);

@@ -49,7 +49,7 @@ const std::vector<gpu::SceneCase> kScenes{
     {"runway_120", "scenes/benchmarks/runway.json", 60, 0, 2},
     {"runway_240", "scenes/benchmarks/runway.json", 20, 0, 4},
     {"runway_1m", "scenes/benchmarks/runway_1m.json", 5},
-    {"dance", "scenes/data/dance.json", 90, 5, 0, {}, true},
+    {.name = "dance", .file = "scenes/data/dance.json", .frames = 90, .cpu_frames = 5, .needs_data = true},
 };
 const std::vector<gpu::SceneCase> kQuickScenes{{"tablecloth", "scenes/demo/tablecloth.json", 8, 8}};
 

@@ -40,6 +40,8 @@ constexpr Benchmark kBenchmarks[] = {
      "Whole scenes at default and other settings, and by methods of the literature: error, milliseconds",
      bench_error_time, kOnly},
     {"gpu", "One GPU: the global solve by pass, beside the CPU and the card's bandwidth", bench_gpu, kOnly},
+    {"paper", "The volumetric scenes of the paper's Table 1 on one GPU, beside its figures", bench_paper,
+     kScenes},
     {"scaling", "A tablecloth of 1 000 to 80 000 vertices: milliseconds per frame, memory per vertex",
      bench_scaling, kScenes},
     {"sheet", "A hanging sheet of 10 000 vertices: milliseconds per step against the error", bench_sheet,

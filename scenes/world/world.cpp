@@ -433,6 +433,16 @@ std::shared_ptr<const Snapshot> World::snapshot() const
     return snapshot;
 }
 const collision::StartReport& World::start() const { return parts().start; }
+int World::vertex_count() const
+{
+    int count = 0;
+    for (const ClothState& surface : surfaces())
+        count += int(surface.positions.size());
+    for (const ClothGroup& group : parts().groups)
+        if (group.soft_bodies())
+            count += group.soft_bodies()->inner_count();
+    return count;
+}
 const CudaDevice* World::device() const { return parts().space ? &parts().space->device() : nullptr; }
 const Stages& World::stages() const { return parts().stages; }
 

@@ -72,6 +72,8 @@ public:
     /// scene. See cloths().
     View<const ClothState> surfaces() const;
 
+    int vertex_count() const; ///< of all surfaces, and inside soft bodies
+
     /// Tetrahedra of each soft body that are flat or inside out at the current sample [soft bodies].
     std::vector<int> inverted_tets() const;
 

@@ -8,10 +8,10 @@ int crossing_count(const World& world)
 {
     std::vector<Triangle> triangles;
     std::vector<Vec3> x;
-    for (const ClothState& cloth : world.cloths()) {
-        for (const Triangle& t : cloth.triangles)
+    for (const ClothState& surface : world.surfaces()) {
+        for (const Triangle& t : surface.triangles)
             triangles.push_back(t + Triangle::Constant(int(x.size())));
-        x.insert(x.end(), cloth.positions.begin(), cloth.positions.end());
+        x.insert(x.end(), surface.positions.begin(), surface.positions.end());
     }
     return int(collision::find_crossings(triangles, x).size());
 }

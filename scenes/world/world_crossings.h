@@ -4,7 +4,7 @@
 
 namespace toile::scenes {
 
-/// Number of crossing pairs of triangles of all cloths now, by exact predicates (find_crossings).
+/// Number of crossing pairs of triangles of all surfaces now, by exact predicates (find_crossings).
 int crossing_count(const World& world);
 
 } // namespace toile::scenes

@@ -18,6 +18,8 @@ struct SceneCase {
     int cpu_frames = 0; ///< number of them run on the CPU too; then the GPU has a row for these as well
     int substeps = 0;   ///< per frame, instead of the scene's; 0: the scene's
     std::optional<StepStop> stop = {}; ///< instead of the scene's
+    double move = 1e-3;                ///< change of positions at which L-BFGS ends [m]
+    bool keeps_solver = false;         ///< the scene's own, instead of L-BFGS with quadrature
     bool needs_data = false;           ///< skipped if TOILE_DATA_DIR lacks files of the scene
 };
 
@@ -25,12 +27,12 @@ struct SceneCase {
 struct SceneRun {
     std::string name, backend;
     std::string skipped; ///< reason for not running; empty: it ran
-    int vertices = 0, frames = 0, steps = 0;
+    int vertices = 0, bodies = 0, frames = 0, steps = 0;
     double dt = 0.0;                                  ///< [s]
     double iterations = 0.0, linear_iterations = 0.0; ///< per step
     double contacts = 0.0;                            ///< active pairs at the end of a frame, mean
     int frames_at_limit = 0;                          ///< with a step that reached the iteration limit
-    int crossings_before = 0;                         ///< crossing pairs of cloth's triangles, after settling
+    int crossings_before = 0;                         ///< crossing pairs of triangles, after settling
     int crossings = 0;                                ///< at the end
     double max_strain = 0.0;                          ///< [-] maximum of all frames
     double total_ms = 0.0;

@@ -28,6 +28,7 @@ public:
     const ClothState& state(int body) const { return bodies_[body].surface; } ///< at the start
 
     int surface_count() const { return first_inner_ - between_ - bodies_.front().first_surface; }
+    int inner_count() const { return unknown_count() - first_inner_; }
     int unknown_count() const { return int(rest_->corners_of_vertex.first.size()) - 1; } ///< of the group
     int first_vertex(int body) const { return bodies_[body].first_surface; }
     int body_of(int unknown) const;                             ///< of a vertex
