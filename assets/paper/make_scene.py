@@ -183,11 +183,11 @@ def blender(folder, count):
         body = tube(p, [(0, 0, 0), (0, 0.08, 0)], [0.03, 0.03])
         for k in range(4):
             blade = Rotation.from_euler("xy", [25, 90 * k], degrees=True).as_matrix()
-            body = np.minimum(body, box((p - [0, 0.05, 0]) @ blade, [0.15, 0, 0], [0.26, 0.025, 0.07], 0.01))
+            body = np.minimum(body, box((p - [0, 0.05, 0]) @ blade, [0.18, 0, 0], [0.32, 0.025, 0.08], 0.01))
         return body
 
-    blades = folder.surface("blades", *contour(Solid(rotor, (-0.29, -0.04, -0.29), (0.29, 0.12, 0.29)), 0.008))
-    jar = [(0.36, 1.2), (0.36, 0.02), (1e-3, 0.02), (1e-3, 0.0), (0.38, 0.0), (0.38, 1.2)]
+    blades = folder.surface("blades", *contour(Solid(rotor, (-0.35, -0.04, -0.35), (0.35, 0.12, 0.35)), 0.008))
+    jar = [(0.42, 1.2), (0.42, 0.02), (1e-3, 0.02), (1e-3, 0.0), (0.44, 0.0), (0.44, 1.2)]
     return {
         "name": "Animals in a blender",
         "frames": 120,
@@ -197,7 +197,7 @@ def blender(folder, count):
             {"name": "blades", "file": blades, "translate": [0, 0.08, 0], "friction": 0.1, "color": METAL,
              "keyframes": [{"time": 0.5}, {"time": 4.0, "rotate_deg": [0, 1890, 0]}]},
         ],
-        "soft_bodies": animals(folder, count, layers(count, 3, (0.16, 0.23), 0.24), young=2e5),
+        "soft_bodies": animals(folder, count, layers(count, 3, (0.2, 0.24), 0.24), young=2e5),
         "render": {"azimuth_deg": 30, "elevation_deg": 50},
     }
 
@@ -225,12 +225,12 @@ def puffers(folder, count):
 SCENES = {
     "letters": (letters, (0.03, 17), (0.0046, 17)),
     "stiff_letters": (stiff_letters, (0.03, 17), (0.0046, 17)),
-    "ship": (ships, (0.05, 1), (0.006, 1)),
-    "ships": (ships, (0.05, 4), (0.006, 20)),
+    "ship": (ships, (0.05, 1), (0.0042, 1)),
+    "ships": (ships, (0.05, 4), (0.0042, 20)),
     "funnel": (funnel, (0.03, 6), (0.0042, 6)),
-    "tree": (tree, (0.03, 200), (0.007, 23500)),
+    "tree": (tree, (0.03, 100), (0.007, 3000)),
     "octopi": (octopi, (0.04, 3), (0.006, 3)),
-    "blender": (blender, (0.03, 36), (0.0082, 36)),
+    "blender": (blender, (0.03, 36), (0.0084, 36)),
     "puffers": (puffers, (0.025, 8), (0.0045, 50)),
 }
 

@@ -89,8 +89,9 @@ def with_leaves(vertices, tetrahedra, distance, count, length):
         a, b, c = vertices[bark[face]]
         around = vertices[np.concatenate([rings[v] for v in bark[face]])]
         normal = np.cross(b - a, c - a)
-        rises = ((around - a) @ normal).max() > 0.05 * length * np.linalg.norm(normal)
-        if close or rises or middle[1] < LOWEST_LEAF or distance(leaf[1:]).min() < 0.2 * length:
+        rises = ((around - a) @ normal).max() > 0.02 * np.linalg.norm(b - a) * np.linalg.norm(normal)
+        small = np.linalg.norm(normal) < (0.15 * length) ** 2
+        if small or close or rises or middle[1] < LOWEST_LEAF or distance(leaf[1:]).min() < 0.2 * length:
             continue
         middles.setdefault(tuple(cell), []).append(middle)
         first_vertex = len(vertices) + 4 * (len(points) - 1)
