@@ -84,7 +84,8 @@ def with_leaves(vertices, tetrahedra, distance, count, length):
         leaf, middle = leaf_on(*vertices[bark[face]], length)
         cell = np.floor(middle / length).astype(int)
         cells_around = [tuple(cell + shift) for shift in itertools.product((-1, 0, 1), repeat=3)]
-        close = [other for key in cells_around for other in middles.get(key, ()) if np.linalg.norm(middle - other) < length]
+        others = [other for key in cells_around for other in middles.get(key, ())]
+        close = any(np.linalg.norm(middle - other) < length for other in others)
         # The bark about the triangle bends away from the leaf, and the rest of the tree is not near.
         a, b, c = vertices[bark[face]]
         around = vertices[np.concatenate([rings[v] for v in bark[face]])]
