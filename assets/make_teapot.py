@@ -2,7 +2,7 @@
 """Writes teapot.obj: a round pot with a lid, a knob, a spout and a handle, 42 cm from tip to handle.
 
 A solid given by its distance function, blended where parts meet, and cut into triangles by marching cubes.
-Metres, Y up, standing on y = 0; closed, triangles counter-clockwise seen from outside. Needs numpy and scikit-image.
+Metres, Y up, standing on y = 0; closed, triangles counter-clockwise seen from outside. Needs numpy, scipy and scikit-image.
 Run it in this folder:  python3 make_teapot.py
 """
 
@@ -11,44 +11,23 @@ from pathlib import Path
 import numpy as np
 from skimage.measure import marching_cubes
 
+from paper.solids import blended, ellipsoid, tube
+
 CELL = 0.007  # [m] of the grid that the surface is cut on
 BLEND = 0.012  # [m] over which parts run into each other
 LOWER, UPPER = np.array([-0.26, -0.02, -0.15]), np.array([0.26, 0.28, 0.15])
 
 
-def ellipsoid(p, centre, radii):
-    """About the distance to an ellipsoid: exact on it and for spheres."""
-    q = (p - centre) / radii
-    size = np.linalg.norm(q, axis=-1)
-    return size * (size - 1.0) / np.maximum(np.linalg.norm(q / radii, axis=-1), 1e-9)
-
-
-def tube(p, points, radii):
-    """Distance to a chain of capsules whose radius changes along it."""
-    nearest = np.full(p.shape[:-1], np.inf)
-    for a, b, ra, rb in zip(points, points[1:], radii, radii[1:]):
-        a, b = np.array(a), np.array(b)
-        t = np.clip((p - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
-        nearest = np.minimum(nearest, np.linalg.norm(p - a - t[..., None] * (b - a), axis=-1) - (ra + t * (rb - ra)))
-    return nearest
-
-
-def blended(a, b):
-    """Smooth union."""
-    h = np.clip(0.5 + 0.5 * (b - a) / BLEND, 0.0, 1.0)
-    return b + h * (a - b) - BLEND * h * (1.0 - h)
-
-
 def teapot(p):
     pot = ellipsoid(p, [0.0, 0.095, 0.0], np.array([0.125, 0.095, 0.125]))
     pot = np.maximum(pot, 0.004 - p[..., 1])  # stands on a flat foot
-    pot = blended(pot, ellipsoid(p, [0.0, 0.185, 0.0], np.array([0.07, 0.02, 0.07])))
-    pot = blended(pot, ellipsoid(p, [0.0, 0.222, 0.0], np.array([0.017, 0.017, 0.017])))
+    pot = blended(pot, ellipsoid(p, [0.0, 0.185, 0.0], np.array([0.07, 0.02, 0.07])), BLEND)
+    pot = blended(pot, ellipsoid(p, [0.0, 0.222, 0.0], np.array([0.017, 0.017, 0.017])), BLEND)
     spout = [(0.10, 0.07, 0.0), (0.16, 0.10, 0.0), (0.185, 0.15, 0.0), (0.215, 0.18, 0.0)]
-    pot = blended(pot, tube(p, spout, [0.032, 0.024, 0.017, 0.015]))
+    pot = blended(pot, tube(p, spout, [0.032, 0.024, 0.017, 0.015]), BLEND)
     angle = np.linspace(0.0, np.pi, 9)
     handle = [(-0.11 - 0.085 * np.sin(a), 0.10 + 0.055 * np.cos(a), 0.0) for a in angle]
-    return blended(pot, tube(p, handle, [0.012] * len(handle)))
+    return blended(pot, tube(p, handle, [0.012] * len(handle)), BLEND)
 
 
 def evened(vertices, faces):

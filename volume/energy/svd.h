@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "core/compute/lanes.h"
 
 namespace toile::volume {
