@@ -23,7 +23,7 @@ namespace toile::scenes {
 
 namespace {
 
-long vertex_count(const std::vector<SceneCloth>& cloths)
+long total_vertices(const std::vector<SceneCloth>& cloths)
 {
     long count = 0;
     for (const SceneCloth& cloth : cloths)
@@ -155,9 +155,9 @@ struct World::Parts {
             for (const std::string& warning : time_warnings(scene, colliders))
                 options.warn(warning);
         }
-        SceneBodies bodies = make_bodies(scene, colliders, int(vertex_count(cloths)));
+        SceneBodies bodies = make_bodies(scene, colliders, int(total_vertices(cloths)));
         if (options.backend == Backend::Auto)
-            space = space_with_capacity(space, vertex_count(cloths) + bodies.vertex_count(), options.warn);
+            space = space_with_capacity(space, total_vertices(cloths) + bodies.vertex_count(), options.warn);
         const LongWork::Part part(kCloths, 1.0);
         groups = make_groups(scene, std::move(cloths), std::move(bodies), colliders, options, space.get());
         LongWork::update(1.0);

@@ -67,7 +67,7 @@ public:
         run.narrow_ms = of_step({"contact/make", "contact/make_on_device", "collision/collision_free_step",
                                  "collision/collision_free_step_to_host"}) +
                         pressing_ms;
-        run.minimise_ms = of_step({"pd/descend"});
+        run.minimise_ms = of_step({"pd/descend", "newton/hessian", "newton/coarse", "newton/pcg"});
         run.limit_ms = of_step({"pd/limits"});
         run.iterations /= run.steps;
         run.linear_iterations /= run.steps;

@@ -39,7 +39,7 @@ struct SceneRun {
     double slowest_ms = 0.0;  ///< per step of the slowest frame
     double cull_ms = 0.0;     ///< search for pairs with colliders and of cloth, both phases
     double narrow_ms = 0.0;   ///< test which pairs press, their terms, collision-free step
-    double minimise_ms = 0.0; ///< descents: local steps, global solves, PCG
+    double minimise_ms = 0.0; ///< descents: local steps, global solves, PCG; Newton's Hessians and solves
     double limit_ms = 0.0;    ///< strain limits
     double load_s = 0.0;      ///< meshes and start pose
     double prepare_s = 0.0;   ///< factors and tables

@@ -48,8 +48,8 @@ protected:
         b_ = std::make_unique<DeviceArray<Vec3>>(space(), "test/b");
         x_ = std::make_unique<DeviceArray<Vec3>>(space(), "test/x", int(H.rows()));
         b_->upload(load_);
-        device_ = std::make_unique<DeviceQuadrature>(space(), *tables_,
-                                                     std::vector{consecutive_rows(0, int(H.rows()))});
+        device_ = std::make_unique<DeviceQuadrature>(
+            space(), *tables_, std::vector<std::vector<int>>{consecutive_rows(0, int(H.rows()))});
     }
     std::vector<Vec3> by_device()
     {
