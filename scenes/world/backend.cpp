@@ -16,9 +16,10 @@ std::string only_on_cpu(const std::string& key, std::string_view word)
     return key + " \"" + std::string(word) + "\" runs on the CPU only";
 }
 
-/// Estimated memory of a scene on a GPU [bytes]. 12 kB per vertex have been measured; a scene has
-/// other data too.
-constexpr std::size_t kBytesOfScene = std::size_t(64) << 20, kBytesOfVertex = 14'000;
+/// Estimated memory of a scene on a GPU [bytes]. 12 kB per vertex of cloth and 15.5 kB per vertex of soft
+/// bodies have been measured; a scene has other data too.
+constexpr std::size_t kBytesOfScene = std::size_t(64) << 20, kBytesOfClothVertex = 14'000,
+                      kBytesOfBodyVertex = 20'000;
 
 std::shared_ptr<const CudaSpace> take_cpu(const std::string& why,
                                           const std::function<void(const std::string&)>& warn)
@@ -91,17 +92,20 @@ std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const
     return take_cpu(why_cpu, warn);
 }
 
-std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space, long vertices,
+std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space,
+                                                     long cloth_vertices, long body_vertices,
                                                      const std::function<void(const std::string&)>& warn)
 {
     if (!space)
         return nullptr;
-    const std::size_t needed = kBytesOfScene + kBytesOfVertex * std::size_t(vertices),
+    const std::size_t needed = kBytesOfScene + kBytesOfClothVertex * std::size_t(cloth_vertices) +
+                               kBytesOfBodyVertex * std::size_t(body_vertices),
                       free = space->free_memory();
     if (needed <= free)
         return space;
-    return take_cpu(space->described() + " has " + in_mebibytes(free) + " left, " + std::to_string(vertices) +
-                        " vertices may take " + in_mebibytes(needed),
+    return take_cpu(space->described() + " has " + in_mebibytes(free) + " left, " +
+                        std::to_string(cloth_vertices + body_vertices) + " vertices may take " +
+                        in_mebibytes(needed),
                     warn);
 }
 

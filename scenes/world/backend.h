@@ -33,10 +33,11 @@ void require_runs_on_gpu(const Scene& scene);
 std::shared_ptr<const CudaSpace> open_backend(Backend backend, int device, const Scene& scene,
                                               const std::function<void(const std::string&)>& warn);
 
-/// Returns `space`, or null if a scene with this many cloth vertices may not fit into its memory. The
-/// estimate is conservative, from measured scenes with self-contact (docs/journal/gpu.md).
+/// Returns `space`, or null if a scene with this many vertices of cloth and of soft bodies may not fit into
+/// its memory. The estimate is conservative, from measured scenes with self-contact (docs/journal/gpu.md).
 /// @param warn  receives both sizes if it does not fit; may be empty
-std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space, long vertices,
+std::shared_ptr<const CudaSpace> space_with_capacity(std::shared_ptr<const CudaSpace> space,
+                                                     long cloth_vertices, long body_vertices,
                                                      const std::function<void(const std::string&)>& warn);
 
 } // namespace toile::scenes

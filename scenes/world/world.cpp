@@ -157,7 +157,7 @@ struct World::Parts {
         }
         SceneBodies bodies = make_bodies(scene, colliders, int(total_vertices(cloths)));
         if (options.backend == Backend::Auto)
-            space = space_with_capacity(space, total_vertices(cloths) + bodies.vertex_count(), options.warn);
+            space = space_with_capacity(space, total_vertices(cloths), bodies.vertex_count(), options.warn);
         const LongWork::Part part(kCloths, 1.0);
         groups = make_groups(scene, std::move(cloths), std::move(bodies), colliders, options, space.get());
         LongWork::update(1.0);
