@@ -16,7 +16,7 @@ std::string only_on_cpu(const std::string& key, std::string_view word)
     return key + " \"" + std::string(word) + "\" runs on the CPU only";
 }
 
-/// Estimated memory of a scene on a GPU [bytes]. 12 kB per vertex of cloth and 15.5 kB per vertex of soft
+/// Estimated memory of a scene on a GPU [bytes]. 12 kB per vertex of cloth and 17 kB per vertex of soft
 /// bodies have been measured; a scene has other data too.
 constexpr std::size_t kBytesOfScene = std::size_t(64) << 20, kBytesOfClothVertex = 14'000,
                       kBytesOfBodyVertex = 20'000;

@@ -20,15 +20,12 @@ struct CountedKernel {
 
 /// Kernels of one type that one launch runs side by side. A larger capacity costs the host time in every
 /// launch.
-template <typename Kernel>
+template <typename Kernel, int Capacity>
 struct KernelBatch {
-    static constexpr int kParameterBytes = 4096; ///< limit of a launch
-    static constexpr int kMax =
-        std::min(4, (kParameterBytes - 8) / int(sizeof(CountedKernel<Kernel>) + sizeof(int)));
-    static_assert(kMax >= 1, "a kernel has too many parameters to be launched");
+    static_assert(Capacity >= 1, "a kernel has too many parameters to be launched");
 
-    CountedKernel<Kernel> all[kMax];
-    int end_block[kMax]; ///< end of the blocks of each kernel
+    CountedKernel<Kernel> all[Capacity];
+    int end_block[Capacity]; ///< end of the blocks of each kernel
     int size = 0;
 
     int blocks() const { return size == 0 ? 0 : end_block[size - 1]; }
@@ -67,8 +64,8 @@ __global__ void run_teams(int count, const Kernel kernel)
     run_team<Threads>(int(blockIdx.x), count, kernel);
 }
 
-template <int Threads, typename Kernel>
-__global__ void run_teams_batch(const __grid_constant__ KernelBatch<Kernel> batch)
+template <int Threads, typename Kernel, int Capacity>
+__global__ void run_teams_batch(const __grid_constant__ KernelBatch<Kernel, Capacity> batch)
 {
     const int k = batch.of_block(int(blockIdx.x));
     run_team<Threads>(int(blockIdx.x) - batch.first_block(k), batch.all[k].count, batch.all[k].kernel);
@@ -81,8 +78,9 @@ __global__ void __launch_bounds__(Threads) run_blocks(const Kernel kernel)
     run_after_dependency(kernel, int(blockIdx.x), Block<Threads>{int(threadIdx.x), memory});
 }
 
-template <int Threads, typename Kernel>
-__global__ void __launch_bounds__(Threads) run_blocks_batch(const __grid_constant__ KernelBatch<Kernel> batch)
+template <int Threads, typename Kernel, int Capacity>
+__global__ void __launch_bounds__(Threads)
+    run_blocks_batch(const __grid_constant__ KernelBatch<Kernel, Capacity> batch)
 {
     extern __shared__ float4 memory[];
     const int k = batch.of_block(int(blockIdx.x));
@@ -92,17 +90,17 @@ __global__ void __launch_bounds__(Threads) run_blocks_batch(const __grid_constan
 
 #endif
 
-/// Calls launch(batch) with all of kernel_at(0 .. size - 1) that have items, in one or more batches.
-/// @param blocks_of  items -> blocks
-template <typename Kernel, typename KernelAt, typename BlocksOf, typename Launch>
-void launch_batches(int size, const KernelAt& kernel_at, const BlocksOf& blocks_of, const Launch& launch)
+/// Calls launch(batch) with all of kernel_at(0 .. size - 1) that have items, in batches of at most
+/// `Capacity`.
+template <typename Kernel, int Capacity, typename KernelAt, typename BlocksOf, typename Launch>
+void launch_batches_of(int size, const KernelAt& kernel_at, const BlocksOf& blocks_of, const Launch& launch)
 {
-    KernelBatch<Kernel> batch;
+    KernelBatch<Kernel, Capacity> batch;
     for (int k = 0; k < size; ++k) {
         const CountedKernel<Kernel> kernel = kernel_at(k);
         if (kernel.count <= 0)
             continue;
-        if (batch.size == KernelBatch<Kernel>::kMax) {
+        if (batch.size == Capacity) {
             launch(batch);
             batch.size = 0;
         }
@@ -110,6 +108,20 @@ void launch_batches(int size, const KernelAt& kernel_at, const BlocksOf& blocks_
     }
     if (batch.size > 0)
         launch(batch);
+}
+
+/// The same, in one batch or, if there are many kernels, a few.
+/// @param blocks_of  items -> blocks
+template <typename Kernel, typename KernelAt, typename BlocksOf, typename Launch>
+void launch_batches(int size, const KernelAt& kernel_at, const BlocksOf& blocks_of, const Launch& launch)
+{
+    constexpr int kParameterBytes = 4096; ///< limit of a launch
+    constexpr int kLargest = (kParameterBytes - 8) / int(sizeof(CountedKernel<Kernel>) + sizeof(int));
+    constexpr int kSmall = std::min(4, kLargest);
+    if (size <= kSmall)
+        launch_batches_of<Kernel, kSmall>(size, kernel_at, blocks_of, launch);
+    else
+        launch_batches_of<Kernel, kLargest>(size, kernel_at, blocks_of, launch);
 }
 
 /// Launches kernel(i, team, is_in_range) for i in [0, count), a team each, in stream order and returns.
@@ -141,14 +153,14 @@ void parallel_for_teams(const CudaSpace& space, std::string_view name, int size,
 {
     launch_batches<Kernel>(
         size, kernel_at, [&](int count) { return block_count(count, block / Threads); },
-        [&](const KernelBatch<Kernel>& batch) {
+        [&]<int Capacity>(const KernelBatch<Kernel, Capacity>& batch) {
             if (batch.size == 1)
                 return parallel_for_teams<Threads>(space, name, batch.all[0].count, batch.all[0].kernel,
                                                    block, where);
             const StageScope stage(name);
             const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-            launch_kernel(space, run_teams_batch<Threads, Kernel>, batch.blocks(), block, 0, batch);
+            launch_kernel(space, run_teams_batch<Threads, Kernel, Capacity>, batch.blocks(), block, 0, batch);
 #endif
             launch.done();
         });
@@ -179,15 +191,15 @@ void parallel_for_blocks(const CudaSpace& space, std::string_view name, int size
 {
     launch_batches<Kernel>(
         size, kernel_at, [](int count) { return count; },
-        [&](const KernelBatch<Kernel>& batch) {
+        [&]<int Capacity>(const KernelBatch<Kernel, Capacity>& batch) {
             if (batch.size == 1)
                 return parallel_for_blocks<Threads>(space, name, batch.all[0].count, shared_bytes,
                                                     batch.all[0].kernel, where);
             const StageScope stage(name);
             const CudaLaunch launch(space, name, where);
 #ifdef __CUDACC__
-            launch_kernel(space, run_blocks_batch<Threads, Kernel>, batch.blocks(), Threads, shared_bytes,
-                          batch);
+            launch_kernel(space, run_blocks_batch<Threads, Kernel, Capacity>, batch.blocks(), Threads,
+                          shared_bytes, batch);
 #endif
             launch.done();
         });

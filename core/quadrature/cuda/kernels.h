@@ -242,7 +242,9 @@ private:
 /// those of the leaves set x = b at nodes outside the table, which are fixed.
 template <int Rank, typename Sink>
 struct GatherLeafByTeam {
-    static constexpr int kThreads = 16; ///< of a team: with 32 the reduction doubles the time, 8 are too few
+    /// Of a team. On surfaces with 32 the reduction doubles the time, and 8 are too few; lists of volumes are
+    /// longer.
+    static constexpr int kThreads = Rank == rank_of(Extent::Surface) ? 16 : 32;
 
     PackedView packed;
     KernelView rest;                ///< entries that are not packed
