@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "collision/check/find_crossings.h"
 #include "core/base/long_work.h"
@@ -500,7 +501,7 @@ std::vector<ClothGroup> make_groups(const Scene& scene, std::vector<SceneCloth> 
     std::vector<ClothGroup> groups;
     groups.reserve(members.size());
     for (auto& group : members)
-        groups.emplace_back(scene, std::move(group), std::move(bodies), colliders, options, space);
+        groups.emplace_back(scene, std::move(group), std::exchange(bodies, {}), colliders, options, space);
     return groups;
 }
 

@@ -36,7 +36,7 @@ double area_of(View<const Vec3> x, View<const Triangle> triangles)
 /// Volume inside a closed surface, by the divergence theorem [m^3].
 double volume_in(View<const Vec3> x, View<const Triangle> triangles)
 {
-    const Vec3 origin = x[triangles[0][0]]; // near, so that little cancels
+    const Vec3& origin = x[triangles[0][0]]; // near, so that little cancels
     double volume = 0.0;
     for (const Triangle& t : triangles)
         volume += (x[t[0]] - origin).dot((x[t[1]] - origin).cross(x[t[2]] - origin)) / 6.0;

@@ -52,8 +52,7 @@ void DeviceQuadrature::upward_pass(Operators all, const Source& source)
         DeviceQuadrature& one = all[k];
         if (one.basis_.rank != Rank)
             return {};
-        const FromLeaves kernel{one.template moments<Rank>(), one.slots(), source,
-                                one.sources_.view()};
+        const FromLeaves kernel{one.template moments<Rank>(), one.slots(), source, one.sources_.view()};
         return {kernel, one.bodies_ * kernel.blocks_of_body()};
     };
     const CudaSpace& space = all[0].space_;

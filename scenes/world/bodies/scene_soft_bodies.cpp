@@ -109,6 +109,7 @@ void SceneSoftBodies::add_springs()
 std::vector<int> SceneSoftBodies::unknowns(int body) const
 {
     std::vector<int> unknowns;
+    unknowns.reserve(bodies_[body].positions.size());
     for (int v = 0; v < bodies_[body].vertex_count(); ++v)
         unknowns.push_back(bodies_[body].unknown(v));
     return unknowns;

@@ -73,8 +73,7 @@ TEST(RemoveNoise, MixesNoSurfacesNormalsOrDepths)
 {
     const auto color = [](int x) { return x < kSide / 2 ? 0.5f : 0.52f; };
     const std::vector<std::function<void(NoisyPixel&)>> changes{
-        [](NoisyPixel& pixel) { pixel.surface = 1; },
-        [](NoisyPixel& pixel) { pixel.paint.x() = 0.2f; },
+        [](NoisyPixel& pixel) { pixel.surface = 1; }, [](NoisyPixel& pixel) { pixel.paint.x() = 0.2f; },
         [](NoisyPixel& pixel) { pixel.normal = Eigen::Vector3f(0.6f, 0.0f, 0.8f); },
         [](NoisyPixel& pixel) { pixel.position.z() -= 1.0f; }};
     for (size_t k = 0; k < changes.size(); ++k) {

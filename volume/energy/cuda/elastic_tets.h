@@ -18,7 +18,7 @@ struct ElasticTets {
 
     TOILE_HD Mat3 deformation_gradient(View<const Vec3> x, int t) const
     {
-        const Vec3 x0 = x[tets[t][0]];
+        const Vec3& x0 = x[tets[t][0]];
         Mat3 edges;
         for (int k = 0; k < 3; ++k)
             edges.col(k) = x[tets[t][k + 1]] - x0;
