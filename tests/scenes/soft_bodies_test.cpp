@@ -4,12 +4,11 @@
 #include <cmath>
 #include <fstream>
 
-#include "collision/check/find_crossings.h"
 #include "core/base/error.h"
 #include "core/mesh/solid_moments.h"
 #include "core/quadrature/tables/table_store.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world/world.h"
+#include "scenes/world/world_crossings.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/volume/blocks.h"
 #include "volume/mesh/msh.h"
@@ -71,26 +70,13 @@ double volume_of(const ClothState& surface)
     return solid_moments({surface.positions, surface.triangles}, surface.name).volume;
 }
 
-/// Pairs of triangles of all surfaces that cross.
-size_t crossings(const World& world)
-{
-    std::vector<Vec3> x;
-    std::vector<Triangle> triangles;
-    for (const ClothState& surface : world.surfaces()) {
-        for (const Triangle& t : surface.triangles)
-            triangles.push_back(t + Triangle::Constant(int(x.size())));
-        x.insert(x.end(), surface.positions.begin(), surface.positions.end());
-    }
-    return collision::find_crossings(triangles, x).size();
-}
-
 /// Advances to the last frame; every step must end converged.
 void run(World& world)
 {
     while (world.frame() + 1 < world.frame_count()) {
         const StepReport report = world.advance_frame();
         ASSERT_EQ(report.status, StepReport::Status::Converged) << world.frame() << ": " << report.message;
-        ASSERT_EQ(crossings(world), 0U) << world.frame();
+        ASSERT_EQ(crossing_count(world), 0) << world.frame();
     }
 }
 

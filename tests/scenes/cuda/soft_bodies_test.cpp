@@ -1,9 +1,8 @@
 #include <algorithm>
 
-#include "collision/check/find_crossings.h"
 #include "core/quadrature/tables/table_store.h"
 #include "scenes/format/read_scene.h"
-#include "scenes/world/world.h"
+#include "scenes/world/world_crossings.h"
 #include "tests/core/compute/cuda/on_device.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/volume/blocks.h"
@@ -56,18 +55,6 @@ double max_distance(const World& a, const World& b)
     return max;
 }
 
-size_t crossings(const World& world)
-{
-    std::vector<Vec3> x;
-    std::vector<Triangle> triangles;
-    for (const ClothState& surface : world.surfaces()) {
-        for (const Triangle& t : surface.triangles)
-            triangles.push_back(t + Triangle::Constant(int(x.size())));
-        x.insert(x.end(), surface.positions.begin(), surface.positions.end());
-    }
-    return collision::find_crossings(triangles, x).size();
-}
-
 TEST_F(DeviceSoftBodiesTest, MoveAsOnTheCpu)
 {
     const std::string exact = R"("velocity_tolerance": 1e-4, "substeps": 4)";
@@ -87,7 +74,7 @@ TEST_F(DeviceSoftBodiesTest, PileUpUncrossedWithTheSameBitsEveryTime)
     for (int frame = 1; frame <= 12; ++frame) {
         first.advance_frame();
         second.advance_frame();
-        EXPECT_EQ(crossings(first), 0u) << frame;
+        EXPECT_EQ(crossing_count(first), 0) << frame;
     }
     EXPECT_EQ(max_distance(first, second), 0.0);
 }
