@@ -23,6 +23,12 @@ double metres_per(LengthUnit unit)
 
 namespace toile::scenes {
 
+bool moves_core(const Scene& scene, const std::string& avatar)
+{
+    return std::any_of(scene.soft_bodies.begin(), scene.soft_bodies.end(),
+                       [&](const scene::SoftBody& body) { return body.core && body.core->avatar == avatar; });
+}
+
 std::vector<std::string> surface_names(const Scene& scene)
 {
     std::vector<std::string> all;

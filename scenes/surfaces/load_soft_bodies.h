@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/colliders/collider.h"
 #include "scenes/format/scene.h"
 #include "scenes/surfaces/cloth_state.h"
 #include "volume/mesh/tet_mesh.h"
@@ -18,7 +19,9 @@ struct LoadedSoftBody {
 };
 
 /// Reads each file once, and fills each surface once.
+/// @param colliders  at the start: those whose surfaces are filled, or more
 /// @throws InvalidInput for an unusable mesh or surface
-std::vector<LoadedSoftBody> load_soft_bodies(const std::vector<scene::SoftBody>& bodies);
+std::vector<LoadedSoftBody> load_soft_bodies(const std::vector<scene::SoftBody>& bodies,
+                                             const std::vector<Collider>& colliders);
 
 } // namespace toile::scenes

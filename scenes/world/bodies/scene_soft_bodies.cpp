@@ -15,7 +15,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
                                  int first_surface, int between)
     : gravity_(scene.gravity), between_(between), first_inner_(first_surface + between)
 {
-    std::vector<LoadedSoftBody> loaded = load_soft_bodies(scene.soft_bodies);
+    std::vector<LoadedSoftBody> loaded = load_soft_bodies(scene.soft_bodies, colliders);
     for (const LoadedSoftBody& body : loaded)
         first_inner_ += int(body.surface.positions.size());
 
@@ -40,6 +40,9 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
             all.tets.push_back(body.unknowns(tet));
         lame.resize(all.tets.size(),
                     volume::ElasticMaterial{settings.young, settings.poisson}.lame(loaded[i].source));
+        if (settings.core)
+            body.core.emplace(*settings.core, body.positions, colliders,
+                              scene.source.string() + ": soft_bodies[" + std::to_string(i) + "].core");
         add_attachments(scene, colliders, body);
     }
     all.positions.resize(next_inner, Vec3::Zero());
@@ -156,6 +159,9 @@ void SceneSoftBodies::mark_fixed(double t_t1, View<unsigned char> fixed) const
     for (const Body& body : bodies_) {
         for (int v = 0; v < body.vertex_count(); ++v)
             fixed[body.unknown(v)] = 0;
+        if (body.core)
+            for (const int v : body.core->vertices())
+                fixed[body.unknown(v)] = 1;
         for (const AttachmentConstraint& attachment : body.attachments)
             if (!attachment.stiffness() && attachment.is_active_at(t_t1))
                 for (const int v : attachment.vertices())
@@ -165,6 +171,12 @@ void SceneSoftBodies::mark_fixed(double t_t1, View<unsigned char> fixed) const
 
 void SceneSoftBodies::update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets)
 {
+    for (Body& body : bodies_)
+        if (body.core) {
+            body.core->follow(colliders);
+            for (int k = 0; k < int(body.core->vertices().size()); ++k)
+                targets[body.unknown(body.core->vertices()[k])] = body.core->target(k);
+        }
     int spring = 0;
     for (Body& body : bodies_)
         for (AttachmentConstraint& attachment : body.attachments) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "garment/energy/springs.h"
 #include "scenes/colliders/attachment_constraint.h"
+#include "scenes/colliders/core_constraint.h"
 #include "scenes/surfaces/load_soft_bodies.h"
 #include "volume/energy/elastic_solid.h"
 
@@ -63,6 +65,7 @@ private:
         ClothState surface;
         volume::TetMesh rest;        ///< [m] in its own axes
         std::vector<Vec3> positions; ///< [vertices] at the start [m]
+        std::optional<CoreConstraint> core;
         std::vector<AttachmentConstraint> attachments;
 
         int surface_count() const { return int(surface.positions.size()); }
