@@ -15,14 +15,18 @@ CoreConstraint::CoreConstraint(const scene::Core& settings, View<const Vec3> sta
 {
     const Collider& collider = colliders[collider_];
     const collision::MeshCollider& mesh = *collider.contact_collider().mesh;
+    const SkinnedCollider& body = *collider.body().skinned();
+    std::vector<unsigned char> is_rigid(mesh.triangles().size(), 0);
+    if (!settings.rigid_bones.empty())
+        is_rigid = body.avatar().faces_on_bones(settings.rigid_bones, location + ".rigid_bones");
     double deepest = std::numeric_limits<double>::lowest();
     for (int v = 0; v < start.size(); ++v) {
         const collision::SurfacePoint at = *mesh.surface().closest(start[v]);
         deepest = std::max(deepest, -at.signed_distance);
-        if (-at.signed_distance < settings.depth)
+        if (-at.signed_distance < settings.depth && is_rigid[at.triangle] == 0)
             continue;
         vertices_.push_back(v);
-        bind(start[v], at, mesh.triangles()[at.triangle], *collider.body().skinned());
+        bind(start[v], at, mesh.triangles()[at.triangle], body);
     }
     const std::string below = " m below the surface of \"" + settings.avatar + "\" at the start";
     if (vertices_.empty())
@@ -31,6 +35,7 @@ CoreConstraint::CoreConstraint(const scene::Core& settings, View<const Vec3> sta
                            " m. Give a smaller depth or cell, or move the body to where the avatar starts");
     if (int(vertices_.size()) == start.size())
         throw InvalidInput(location + ": all vertices are at least " + short_text(settings.depth) + below +
+                           (settings.rigid_bones.empty() ? "" : " or at rigid_bones") +
                            ", so nothing is soft; give a larger depth");
     targets_.resize(vertices_.size());
 }

@@ -16,7 +16,7 @@ public:
     /// @param start      [vertices of the body] [m]
     /// @param colliders  at the start
     /// @param location   named in errors, e.g. "dance.json: soft_bodies[0].core"
-    /// @throws InvalidInput for a depth that leaves nothing in the core, or nothing outside it
+    /// @throws InvalidInput for unknown bones, and a depth that leaves nothing in the core or outside it
     CoreConstraint(const scene::Core& settings, View<const Vec3> start,
                    const std::vector<Collider>& colliders, const std::string& location);
 

@@ -334,6 +334,8 @@ void describe(V& v, Core& c)
     v.required("avatar", c.avatar, "Name of the avatar, with a mesh, that moves it.");
     v.field("depth", c.depth, between(0.0, 10.0, "m"),
             "Vertices that start at least as deep below the avatar's surface move as its bones do.");
+    v.field("rigid_bones", c.rigid_bones,
+            "Bones around which all is core, such as those of hands and feet; with their descendants.");
 }
 
 template <typename V>

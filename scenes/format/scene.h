@@ -288,7 +288,8 @@ struct Solid {
 /// and caches.
 struct Core {
     std::string avatar;
-    double depth = 0.02; ///< [m] from the avatar's surface at the start down to the core
+    double depth = 0.02;                  ///< [m] from the avatar's surface at the start down to the core
+    std::vector<std::string> rigid_bones; ///< what is nearest to skin that follows these is core throughout
 };
 
 /// A soft body: a solid that deforms, simulated with the cloth.
