@@ -9,6 +9,7 @@
 #include "scenes/surfaces/load_cloth.h"
 #include "scenes/world/world_crossings.h"
 #include "tests/avatars/column.h"
+#include "tests/scenes/caches/cached_body.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/volume/blocks.h"
@@ -114,7 +115,7 @@ TEST_F(SoftCores, AreBoundAsTheSkinAboveThemIs)
     std::vector<Vec3> points{Vec3(0.0, 2.0, 0.0)};
     for (int v = 0; v < column.body_vertex_count(); ++v)
         points.push_back(column.vertex_t1(v) + 1e-7 * (Vec3(0.0, 0.5, 0.0) - column.vertex_t1(v)));
-    CoreConstraint core({"column", 0.0}, points, colliders, "here");
+    CoreConstraint core({"column", 0.0, {}}, points, colliders, "here");
     ASSERT_EQ(int(core.vertices().size()), column.body_vertex_count());
     for (const double t : {0.0, 0.4, 1.0}) {
         colliders[0].advance_to(t);
@@ -124,6 +125,56 @@ TEST_F(SoftCores, AreBoundAsTheSkinAboveThemIs)
             EXPECT_LT((core.target(v) - column.vertex_t1(v)).norm(), 1e-6) << v << " at " << t;
         }
     }
+}
+
+TEST_F(SoftCores, HaveNoSoftLayerAtRigidBones)
+{
+    const Scene scene = scene_of(R"("frames": 1, "cloths": [], "avatars": [)" + kColumn + R"(],
+        "soft_bodies": [)" + kFilled +
+                                 "]");
+    std::vector<Collider> colliders;
+    colliders.emplace_back(scene.avatars[0], 0.3);
+    const std::vector<Vec3> points{
+        {0.099, 0.2, 0.0}, {0.0, 0.2, 0.0}, {0.099, 0.9, 0.0}, {0.101, 0.9, 0.0}, {0.0, 0.9, 0.0}};
+    EXPECT_EQ(CoreConstraint({"column", 0.05, {}}, points, colliders, "here").vertices(),
+              (std::vector<int>{1, 4}));
+    EXPECT_EQ(CoreConstraint({"column", 0.05, {"tip"}}, points, colliders, "here").vertices(),
+              (std::vector<int>{1, 2, 3, 4}));
+    EXPECT_NE(refusal([&] {
+                  CoreConstraint({"column", 0.05, {"top"}}, points, colliders, "here");
+              }).find("here.rigid_bones"),
+              std::string::npos);
+}
+
+TEST_F(SoftCores, FollowCachesAsTheyDoRigs)
+{
+    // A column that bends by 60 degrees in half a second.
+    std::vector<Vec3> points{Vec3(0.0, 2.0, 0.0)};
+    for (int k = 0; k < 16; ++k)
+        points.push_back(Vec3(0.03 * (k % 2), 0.05 * k + 0.025, 0.0));
+    const auto core_at_end = [&](const std::string& file, const std::string& clip) {
+        scene::Avatar column;
+        column.name = "column";
+        column.shape = baked(file);
+        column.clip = clip;
+        std::vector<Collider> colliders;
+        colliders.emplace_back(column, 0.3);
+        CoreConstraint core({"column", 0.01, {}}, points, colliders, "here");
+        colliders[0].advance_to(0.5);
+        core.follow(colliders);
+        std::vector<Vec3> targets;
+        for (size_t k = 0; k < core.vertices().size(); ++k)
+            targets.push_back(core.target(int(k)));
+        return targets;
+    };
+    const std::vector<Vec3> cache = core_at_end("bend.abc", ""), rig = core_at_end("bend.glb", "rigAction");
+    ASSERT_EQ(rig.size(), 16u);
+    ASSERT_EQ(cache.size(), 16u);
+    for (size_t k = 0; k < rig.size(); ++k) {
+        const bool is_by_joint = std::abs(points[k + 1].y() - 0.4) < 0.15; // turns are means there
+        EXPECT_LT((cache[k] - rig[k]).norm(), is_by_joint ? 0.015 : 0.003) << points[k + 1].transpose();
+    }
+    EXPECT_GT((rig.back() - points.back()).norm(), 0.3);
 }
 
 TEST_F(SoftCores, FillTheSurfaceOfTheirAvatar)
@@ -141,6 +192,30 @@ TEST_F(SoftCores, FillTheSurfaceOfTheirAvatar)
         EXPECT_EQ(world.advance_frame().unfinished, 0);
     EXPECT_EQ(world.inverted_tets(), std::vector<int>{0});
     EXPECT_LT(bounds(world.surfaces()[0].positions).lower.x(), -0.2) << "the tip turns by 21 degrees";
+}
+
+TEST_F(SoftCores, CarryFleshThatSwingsInADress)
+{
+    Scene scene = read_scene(std::filesystem::path(TOILE_SOURCE_DIR) / "scenes/details/soft_figure.json");
+    World world(scene);
+    ASSERT_EQ(world.surfaces()[1].name, "flesh");
+    std::vector<Collider> colliders;
+    for (const scene::Avatar& avatar : scene.avatars)
+        colliders.emplace_back(avatar, scene.contact.friction);
+    CoreConstraint skin({"figure", 0.0, {}}, world.surfaces()[1].positions, colliders, "here");
+    double lag = 0.0;
+    for (int frame = 1; frame < 8; ++frame) {
+        EXPECT_EQ(world.advance_frame().unfinished, 0);
+        EXPECT_EQ(crossing_count(world), 0) << frame;
+        EXPECT_EQ(world.inverted_tets(), std::vector<int>{0}) << frame;
+        colliders[0].advance_to(frame / scene.fps);
+        skin.follow(colliders);
+        for (size_t k = 0; k < skin.vertices().size(); ++k)
+            lag = std::max(
+                lag,
+                (world.surfaces()[1].positions[size_t(skin.vertices()[k])] - skin.target(int(k))).norm());
+    }
+    EXPECT_GT(lag, 0.005);
 }
 
 TEST_F(SoftCores, AreRefusedWithTheReason)
