@@ -350,6 +350,10 @@ void describe(V& v, SoftBody& s)
     v.field("core", s.core,
             "Inside that follows an avatar. The soft body replaces the avatar in contact, pictures and "
             "caches.");
+    v.field(
+        "render", s.render,
+        "Surface (.obj) in the file's axes and unit that moves with the tetrahedra, for pictures and caches; "
+        "named NAME_render.");
     v.field("unit", s.unit, "Length unit of the file.");
     v.field("scale", s.scale, above_zero(1e6), "Factor on the body's lengths.");
     v.field("translate", s.translate, kPosition, "Moves the body, after scale and rotate_deg.");

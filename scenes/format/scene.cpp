@@ -35,7 +35,15 @@ std::vector<std::string> surface_names(const Scene& scene)
     for (const auto& names : {scene_format::names_of(scene.cloths), scene_format::names_of(scene.solids),
                               scene_format::names_of(scene.soft_bodies)})
         all.insert(all.end(), names.begin(), names.end());
+    for (const scene::SoftBody& body : scene.soft_bodies)
+        if (body.render)
+            all.push_back(body.render_name());
     return all;
+}
+
+int simulated_count(const Scene& scene)
+{
+    return int(scene.cloths.size() + scene.solids.size() + scene.soft_bodies.size());
 }
 
 } // namespace toile::scenes

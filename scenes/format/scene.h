@@ -299,9 +299,10 @@ struct SoftBody {
                                                ///< of the core's avatar at the start
     std::optional<double> cell;                ///< [m] edges of the tetrahedra that fill a surface
     std::optional<Core> core;
-    LengthUnit unit = LengthUnit::Metre; ///< of the file
-    double scale = 1.0;                  ///< [-]
-    Vec3 translate = Vec3::Zero();       ///< [m]
+    std::optional<std::filesystem::path> render; ///< surface for pictures and caches, where `file` is
+    LengthUnit unit = LengthUnit::Metre;         ///< of the file
+    double scale = 1.0;                          ///< [-]
+    Vec3 translate = Vec3::Zero();               ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
     double density = 1000.0;           ///< [kg/m^3]
     double young = 1e5;                ///< [Pa]
@@ -310,6 +311,9 @@ struct SoftBody {
     Vec3 velocity = Vec3::Zero();      ///< [m/s] at the start
     std::optional<double> friction;    ///< [-] as Solid::friction
     Vec3 color = Vec3(0.8, 0.55, 0.5); ///< [-] sRGB
+
+    /// Name of its surface for pictures and caches.
+    std::string render_name() const { return name + "_render"; }
 };
 
 // --- attachments ----------------------------------------------------------------------------------------
@@ -484,7 +488,11 @@ struct Scene {
 /// True if the core of a soft body follows the avatar of this name, which the soft body then replaces.
 bool moves_core(const Scene& scene, const std::string& avatar);
 
-/// Names of the cloths, solids and soft bodies, in the order of World::surfaces().
+/// Names of the cloths, solids and soft bodies, then of the surfaces that soft bodies have for pictures and
+/// caches, in the order of World::surfaces().
 std::vector<std::string> surface_names(const Scene& scene);
+
+/// Number of the cloths, solids and soft bodies.
+int simulated_count(const Scene& scene);
 
 } // namespace toile::scenes

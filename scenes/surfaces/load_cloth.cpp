@@ -242,10 +242,14 @@ std::vector<ClothState> load_surfaces(const Scene& scene)
         const LongWork::Part part = LongWork::item(loaded++, count);
         surfaces.push_back(load_solid(solid));
     }
-    for (LoadedSoftBody& body : load_soft_bodies(scene.soft_bodies, colliders)) {
+    std::vector<LoadedSoftBody> soft_bodies = load_soft_bodies(scene.soft_bodies, colliders);
+    for (LoadedSoftBody& body : soft_bodies) {
         const LongWork::Part part = LongWork::item(loaded++, count);
         surfaces.push_back(std::move(body.surface));
     }
+    for (LoadedSoftBody& body : soft_bodies)
+        if (body.render)
+            surfaces.push_back(std::move(body.render->state));
     LongWork::update(1.0);
     return surfaces;
 }

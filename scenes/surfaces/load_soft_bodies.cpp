@@ -86,12 +86,36 @@ volume::TetMesh tets_of(const scene::SoftBody& body, double scale, const std::ve
     return tets;
 }
 
+Vec3 placed(const Vec3& p, const scene::SoftBody& body, const Mat3& rotation)
+{
+    return body.translate + rotation * p;
+}
+
+RenderSurface render_surface(const scene::SoftBody& body, double scale, const volume::TetMesh& rest)
+{
+    const std::string source = body.render->string();
+    ObjMesh mesh = read_obj(*body.render);
+    require_usable(mesh, source);
+    for (Vec3& p : mesh.positions)
+        p *= scale;
+    EmbeddedSurface embedding(mesh.positions, rest, source);
+    const Mat3 rotation = rotation_of(body.rotate_deg);
+    for (Vec3& p : mesh.positions)
+        p = placed(p, body, rotation);
+    ClothState state;
+    state.name = body.render_name();
+    state.positions = mesh.positions;
+    state.triangles = mesh.triangulated().triangles;
+    state.rest = std::move(mesh);
+    return {std::move(state), std::move(embedding)};
+}
+
 LoadedSoftBody placed(const scene::SoftBody& body, const RestMesh& rest)
 {
-    LoadedSoftBody loaded{source_of(body), {}, rest.tets, {}};
+    LoadedSoftBody loaded{source_of(body), {}, rest.tets, {}, {}};
     const Mat3 rotation = rotation_of(body.rotate_deg);
     for (const Vec3& p : rest.tets.positions)
-        loaded.positions.push_back(body.translate + rotation * p);
+        loaded.positions.push_back(placed(p, body, rotation));
     require_in_range(loaded.positions, loaded.source);
 
     TriangleMesh surface{{}, rest.surface};
@@ -123,6 +147,8 @@ std::vector<LoadedSoftBody> load_soft_bodies(const std::vector<scene::SoftBody>&
             rest.surface = put_surface_first(rest.tets);
         }
         loaded.push_back(placed(body, entry->second));
+        if (body.render)
+            loaded.back().render = render_surface(body, scale, entry->second.tets);
     }
     return loaded;
 }

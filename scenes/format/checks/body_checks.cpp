@@ -64,6 +64,18 @@ void check_source(const Document& document, const std::string& key_path, const S
             document.refuse(below(key_path, key), "a body without a file is where its avatar is; remove it");
 }
 
+/// Checks the surface for pictures and caches, whose name is that of a cache.
+void check_render(const Document& document, const std::string& key_path, const SoftBody& body,
+                  const scenes::Scene& scene)
+{
+    check_extension(document, key_path, *body.render, {".obj"});
+    for (const auto& names : {names_of(scene.cloths), names_of(scene.avatars), names_of(scene.solids),
+                              names_of(scene.soft_bodies)})
+        if (contains(names, body.render_name()))
+            document.refuse(key_path, "is written as " + as_written(body.render_name()) +
+                                          ", but another object has that name; choose another name for it");
+}
+
 /// Checks the avatar that a core follows. It is in no contact, so keys about its contact are refused.
 void check_core(const Document& document, const std::string& key_path, const SoftBody& body,
                 const scenes::Scene& scene)
@@ -116,6 +128,8 @@ void check_soft_bodies(const Document& document, const scenes::Scene& scene)
         const SoftBody& body = scene.soft_bodies[i];
         const std::string key_path = below("soft_bodies", i);
         check_source(document, key_path, body);
+        if (body.render)
+            check_render(document, below(key_path, "render"), body, scene);
         if (body.core)
             check_core(document, below(key_path, "core"), body, scene);
     }

@@ -34,6 +34,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
         body.surface = std::move(loaded[i].surface);
         body.rest = std::move(loaded[i].rest);
         body.positions = std::move(loaded[i].positions);
+        body.render = std::move(loaded[i].render);
         next_surface += body.surface_count();
         next_inner += body.vertex_count() - body.surface_count();
         for (const volume::Tet& tet : body.rest.tets)
@@ -95,6 +96,12 @@ int SceneSoftBodies::inverted_count(int body, View<const Vec3> x) const
     return int(std::count_if(of.rest.tets.begin(), of.rest.tets.end(), [&](const volume::Tet& tet) {
         return !(volume::volume_of(of.unknowns(tet), x) > 0.0);
     }));
+}
+
+std::vector<Vec3> SceneSoftBodies::render_positions(int body, View<const Vec3> x) const
+{
+    const Body& of = bodies_[body];
+    return of.render->embedding.at([&](int v) { return x[of.unknown(v)]; });
 }
 
 void SceneSoftBodies::add_springs()

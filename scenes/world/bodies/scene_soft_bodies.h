@@ -29,6 +29,14 @@ public:
     int count() const { return int(bodies_.size()); }
     const ClothState& state(int body) const { return bodies_[body].surface; } ///< at the start
 
+    /// Surface of a body for pictures and caches at the start; null: none.
+    const ClothState* render_state(int body) const
+    {
+        return bodies_[body].render ? &bodies_[body].render->state : nullptr;
+    }
+    /// Its positions [m]. @param x  [unknowns] [m]
+    std::vector<Vec3> render_positions(int body, View<const Vec3> x) const;
+
     int surface_count() const { return first_inner_ - between_ - bodies_.front().first_surface; }
     int inner_count() const { return unknown_count() - first_inner_; }
     int unknown_count() const { return int(rest_->corners_of_vertex.first.size()) - 1; } ///< of the group
@@ -65,6 +73,7 @@ private:
         ClothState surface;
         volume::TetMesh rest;        ///< [m] in its own axes
         std::vector<Vec3> positions; ///< [vertices] at the start [m]
+        std::optional<RenderSurface> render;
         std::optional<CoreConstraint> core;
         std::vector<AttachmentConstraint> attachments;
 
