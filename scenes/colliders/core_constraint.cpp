@@ -1,6 +1,7 @@
 #include "scenes/colliders/core_constraint.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/base/error.h"
@@ -8,6 +9,14 @@
 #include "core/compute/parallel.h"
 
 namespace toile::scenes {
+
+namespace {
+
+/// Determinant of a vertex's map over the cube of its norm [-], at most 0.19 and that for turns and equal
+/// scales. At less the map is flat: it has no inverse.
+constexpr double kMinDeterminant = 1e-6;
+
+} // namespace
 
 CoreConstraint::CoreConstraint(const scene::Core& settings, View<const Vec3> start,
                                const std::vector<Collider>& colliders, const std::string& location)
@@ -26,7 +35,7 @@ CoreConstraint::CoreConstraint(const scene::Core& settings, View<const Vec3> sta
         if (-at.signed_distance < settings.depth && is_rigid[at.triangle] == 0)
             continue;
         vertices_.push_back(v);
-        bind(start[v], at, mesh.triangles()[at.triangle], body);
+        bind(start[v], at, mesh.triangles()[at.triangle], body, location);
     }
     const std::string below = " m below the surface of \"" + settings.avatar + "\" at the start";
     if (vertices_.empty())
@@ -42,7 +51,7 @@ CoreConstraint::CoreConstraint(const scene::Core& settings, View<const Vec3> sta
 
 /// Adds a vertex of the core, bound to the bones of a point of the avatar's surface.
 void CoreConstraint::bind(const Vec3& start, const collision::SurfacePoint& at, const Triangle& corners,
-                          const SkinnedCollider& body)
+                          const SkinnedCollider& body, const std::string& location)
 {
     const avatars::SkinView skin = body.avatar().skin();
     avatars::Affine map = avatars::Affine::Zero();
@@ -53,7 +62,17 @@ void CoreConstraint::bind(const Vec3& start, const collision::SurfacePoint& at, 
             map += influences_.back().weight * body.bones_t1()[of_corner.bone];
         }
     first_.push_back(int(influences_.size()));
-    rest_.push_back(map.leftCols<3>().inverse() * (start - map.col(3)));
+    const Mat3 linear = map.leftCols<3>();
+    if (!(std::abs(linear.determinant()) > kMinDeterminant * std::pow(linear.norm(), 3))) {
+        int nearest_corner;
+        at.barycentric.maxCoeff(&nearest_corner);
+        const std::string bone = body.avatar().bone_at(corners[nearest_corner]);
+        throw InvalidInput(location + ": the vertex at (" + short_text(start.x()) + ", " +
+                           short_text(start.y()) + ", " + short_text(start.z()) + ") m can't follow " +
+                           (bone.empty() ? "the avatar" : "bone \"" + bone + "\"") +
+                           ", which is flat at the start; give its bones a scale other than 0 there");
+    }
+    rest_.push_back(linear.inverse() * (start - map.col(3)));
 }
 
 void CoreConstraint::follow(const std::vector<Collider>& colliders)

@@ -16,7 +16,8 @@ public:
     /// @param start      [vertices of the body] [m]
     /// @param colliders  at the start
     /// @param location   named in errors, e.g. "dance.json: soft_bodies[0].core"
-    /// @throws InvalidInput for unknown bones, and a depth that leaves nothing in the core or outside it
+    /// @throws InvalidInput for unknown bones, bones that are flat at the start, and a depth that leaves
+    /// nothing in the core or outside it
     CoreConstraint(const scene::Core& settings, View<const Vec3> start,
                    const std::vector<Collider>& colliders, const std::string& location);
 
@@ -30,7 +31,7 @@ public:
 
 private:
     void bind(const Vec3& start, const collision::SurfacePoint& at, const Triangle& corners,
-              const SkinnedCollider& body);
+              const SkinnedCollider& body, const std::string& location);
 
     int collider_;
     std::vector<int> vertices_;

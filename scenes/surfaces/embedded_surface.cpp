@@ -32,12 +32,13 @@ double squared_distance(const Vec3& p, const Tet& tet, View<const Vec3> x)
 {
     if ((weights_of(p, tet, x).array() >= 0.0).all())
         return 0.0;
-    double least = std::numeric_limits<double>::infinity();
+    double min_distance2 = std::numeric_limits<double>::infinity();
     for (size_t k = 0; k < 4; ++k)
-        least = std::min(least, collision::closest_on_triangle(p, x[tet[(k + 1) % 4]], x[tet[(k + 2) % 4]],
-                                                               x[tet[(k + 3) % 4]])
-                                    .distance2);
-    return least;
+        min_distance2 =
+            std::min(min_distance2, collision::closest_on_triangle(p, x[tet[(k + 1) % 4]],
+                                                                   x[tet[(k + 2) % 4]], x[tet[(k + 3) % 4]])
+                                        .distance2);
+    return min_distance2;
 }
 
 double longest_edge(const Tet& tet, View<const Vec3> x)
@@ -96,12 +97,14 @@ EmbeddedSurface::EmbeddedSurface(View<const Vec3> points, const volume::TetMesh&
     }
 }
 
-std::vector<Vec3> EmbeddedSurface::at(const std::function<Vec3(int vertex)>& x) const
+std::vector<Vec3> EmbeddedSurface::at(View<const Vec3> x) const
 {
     std::vector<Vec3> positions(vertices_.size(), Vec3::Zero());
-    for (size_t v = 0; v < vertices_.size(); ++v)
+    parallel_for(kCpu, "scenes/embedded", int(positions.size()), [&](int v) {
         for (size_t k = 0; k < 4; ++k)
-            positions[v] += vertices_[v].weights[Eigen::Index(k)] * x(vertices_[v].tet[k]);
+            positions[size_t(v)] +=
+                vertices_[size_t(v)].weights[Eigen::Index(k)] * x[vertices_[size_t(v)].tet[k]];
+    });
     return positions;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,8 +18,8 @@ public:
     EmbeddedSurface(View<const Vec3> points, const volume::TetMesh& mesh, const std::string& source);
 
     /// Positions now [vertices of the surface] [m].
-    /// @param x  of a vertex of the mesh now [m]
-    std::vector<Vec3> at(const std::function<Vec3(int vertex)>& x) const;
+    /// @param x  [vertices of the mesh] now [m]
+    std::vector<Vec3> at(View<const Vec3> x) const;
 
 private:
     struct Vertex {

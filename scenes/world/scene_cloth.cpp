@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <iterator>
 #include <numeric>
 
 #include <Eigen/Geometry>
@@ -16,6 +15,7 @@
 #include "garment/energy/bending.h"
 #include "garment/energy/membrane.h"
 #include "garment/seam/sewing.h"
+#include "scenes/colliders/vertex_owner.h"
 #include "scenes/meshes/cloth_mesh.h"
 #include "scenes/method/solver_choice.h"
 #include "scenes/surfaces/load_cloth.h"
@@ -45,29 +45,6 @@ double size_at_rest(const ClothState& cloth, const garment::RestShape& rest)
         posed_area += rest.areas[t] * F.col(0).cross(F.col(1)).norm();
     }
     return posed * std::sqrt(rest_area / posed_area);
-}
-
-/// Attachments that keep vertices where they are may share them.
-/// @throws InvalidInput for a vertex of two attachments that may part
-void require_one_owner(const std::vector<AttachmentConstraint>& attachments, const ClothState& cloth)
-{
-    for (size_t b = 1; b < attachments.size(); ++b)
-        for (size_t a = 0; a < b; ++a) {
-            if (attachments[a].is_at_rest() && attachments[b].is_at_rest())
-                continue;
-            const std::vector<int>&first = attachments[a].vertices(), &second = attachments[b].vertices();
-            std::vector<int> shared;
-            std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
-                                  std::back_inserter(shared));
-            if (shared.empty())
-                continue;
-            throw InvalidInput(
-                attachments[b].location() + ": selects vertex " +
-                std::to_string(cloth.file_vertex(shared[0])) + " of \"" + cloth.name + "\"" +
-                (shared.size() == 1 ? "" : " and " + std::to_string(shared.size() - 1) + " more") +
-                ", which " + attachments[a].location() +
-                " holds already; a vertex can follow one of them only");
-        }
 }
 
 } // namespace
@@ -134,7 +111,11 @@ void SceneCloth::add_attachments(const Scene& scene, const std::vector<Collider>
         attachments_.emplace_back(attachment, (selected++)->vertices, state_.positions, colliders, mass,
                                   location);
     }
-    require_one_owner(attachments_, state_);
+    std::vector<VertexOwner> owners;
+    for (const AttachmentConstraint& attachment : attachments_)
+        owners.push_back(owner_of(attachment));
+    require_one_owner(owners, state_.name,
+                      [&](int v) { return "vertex " + std::to_string(state_.file_vertex(v)); });
 }
 
 /// Membranes with their internal friction, which implicit Euler's own losses hide, and the fixed matrix of

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
 
 #include "scenes/colliders/core_constraint.h"
 #include "scenes/colliders/scene_body.h"
@@ -254,6 +257,67 @@ TEST_F(SoftCores, AreRefusedWithTheReason)
                   "translate": [3, 0, 0])")
                   .find("move the body to where the avatar starts"),
               std::string::npos);
+}
+
+TEST_F(SoftCores, ShareNoVertexWithAnAttachment)
+{
+    const auto of_box = [&](const std::string& lower, const std::string& keys) {
+        return refusal([&] {
+            World(block_scene(R"("frames": 1, "cloths": [], "attachments": [{"cloth": "jelly",
+                "select": {"box": {"lower": [-1, )" +
+                              lower + R"(, -1], "upper": [1, 1, 1]}})" + keys + "}]"));
+        });
+    };
+    EXPECT_EQ(of_box("0.09", ""), "");
+    for (const char* keys : {"", R"(, "stiffness": 100)"}) {
+        const std::string message = of_box("0.01", keys);
+        EXPECT_NE(message.find("test.json: attachments[0]: selects the vertex at ("), std::string::npos)
+            << message;
+        EXPECT_NE(message.find("m of \"jelly\" and 24 more, which "), std::string::npos) << message;
+        EXPECT_NE(message.find("test.json: soft_bodies[0].core holds already"), std::string::npos) << message;
+    }
+}
+
+TEST_F(SoftCores, NeedBonesThatAreNotFlatAtTheStart)
+{
+    std::stringstream content;
+    content << std::ifstream(column_file()).rdbuf();
+    nlohmann::json column = nlohmann::json::parse(content.str());
+    column["nodes"][2]["scale"] = {1.0, 1.0, 0.0};
+    scene::Avatar avatar;
+    avatar.name = "column";
+    avatar.shape = folder.path() / "flat.gltf";
+    std::ofstream(folder.path() / "flat.gltf") << column.dump();
+    std::vector<Collider> colliders;
+    colliders.emplace_back(avatar, 0.3);
+    const std::vector<Vec3> points{Vec3(0.0, 2.0, 0.0), Vec3(0.0, 1.0 - 1e-7, 0.0)};
+    const std::string message = refusal([&] {
+        CoreConstraint({"column", 0.0, {}}, points, colliders, "here");
+    });
+    EXPECT_NE(message.find("here: the vertex at (0, 1"), std::string::npos) << message;
+    EXPECT_NE(message.find("bone \"tip\", which is flat at the start"), std::string::npos) << message;
+}
+
+TEST_F(SoftCores, StandForTheirAvatarInKeysAboutContact)
+{
+    const auto complaint = [&](const std::string& keys) {
+        return refusal([&] {
+            block_scene(R"("frames": 1, "cloths": [{"name": "sheet", "disc": {}, "fabric": "silk"}], )" +
+                        keys);
+        });
+    };
+    const std::string pair = R"("contact": {"friction_pairs": [{"friction": 0.5, "between": ["silk", )";
+    EXPECT_EQ(complaint(pair + R"("jelly"]}]})"), "");
+    EXPECT_NE(complaint(pair + R"("box"]}]})")
+                  .find("contact.friction_pairs[0].between: \"box\" is replaced in contact by soft body "
+                        "\"jelly\"; name that"),
+              std::string::npos);
+    const std::string gap = complaint(R"("export": [{"file": "a.abc", "attributes": ["gap"]}])");
+    EXPECT_NE(
+        gap.find("export[0].attributes: \"gap\" is the distance from avatars, and \"box\" is replaced by "
+                 "soft body \"jelly\"; add another, or leave gap out"),
+        std::string::npos)
+        << gap;
 }
 
 } // namespace

@@ -421,8 +421,12 @@ void check_contact(const Document& document, const scenes::Scene& scene)
         const std::string key_path = below(below(below("contact", "friction_pairs"), i), "between");
         if (pairs[i].between.size() != 2)
             document.refuse(key_path, std::to_string(pairs[i].between.size()) + " names; give exactly two");
-        for (const std::string& name : pairs[i].between)
+        for (const std::string& name : pairs[i].between) {
             require_known(document, key_path, "fabric in use, avatar, solid or soft body", name, known);
+            if (const SoftBody* body = replacement_of(scene, name))
+                document.refuse(key_path, as_written(name) + " is replaced in contact by soft body " +
+                                              as_written(body->name) + "; name that");
+        }
         if (contains(avatars, pairs[i].between[0]) && contains(avatars, pairs[i].between[1]))
             document.refuse(key_path, "avatars have no friction with each other; name a fabric or solid");
     }

@@ -7,6 +7,7 @@
 
 #include "core/base/extension.h"
 #include "export/cache_format.h"
+#include "scenes/format/checks/body_checks.h"
 #include "scenes/format/field.h"
 #include "scenes/format/names.h"
 
@@ -32,7 +33,7 @@ void check_exported_cloths(const Document& document, const std::string& key_path
 {
     const std::vector<std::string> known = scenes::surface_names(scene);
     const bool is_of_cloths = known.size() == scene.cloths.size();
-    const char* const kind = is_of_cloths ? "cloth" : "cloth, solid or soft body";
+    const char* const kind = is_of_cloths ? "cloth" : "surface";
     const bool is_all = entry.cloths == std::vector<std::string>{"all"} && !contains(known, "all");
     std::set<std::string> seen;
     for (const std::string& name : entry.cloths) {
@@ -49,7 +50,7 @@ void check_exported_cloths(const Document& document, const std::string& key_path
                         one_mesh + "write one file each, or an .abc or .usda of all");
     if (entry.cloths.empty() && known.size() > 1)
         document.refuse(key_path, "the scene has " + std::to_string(known.size()) +
-                                      (is_of_cloths ? " cloths" : " cloths, solids and soft bodies") +
+                                      (is_of_cloths ? " cloths" : " surfaces") +
                                       "; name the one to write with the key \"cloth\"");
     if (entry.avatars)
         document.refuse(below(key_path, "avatars"), one_mesh + "write the avatars to an .abc or .usda");
@@ -74,6 +75,25 @@ void check_export_features(const Document& document, const std::string& key_path
                             as_written(*solver.substeps) + "; give a divisor of it, or leave substeps out");
 }
 
+/// Checks that an avatar has a skin from which the gap is measured. An avatar that a soft body replaces has
+/// none.
+void check_gap(const Document& document, const std::string& at, const scenes::Scene& scene)
+{
+    std::string replaced;
+    for (const Avatar& avatar : scene.avatars) {
+        if (std::holds_alternative<Plane>(avatar.shape))
+            continue;
+        const SoftBody* body = replacement_of(scene, avatar.name);
+        if (body == nullptr)
+            return;
+        replaced = as_written(avatar.name) + " is replaced by soft body " + as_written(body->name);
+    }
+    document.refuse(
+        at, "\"gap\" is the distance from avatars, and " +
+                (replaced.empty() ? "the scene has none but planes; add one" : replaced + "; add another") +
+                ", or leave gap out");
+}
+
 /// Checks attributes that need another format, a body, or a cloth.
 void check_export_attributes(const Document& document, const std::string& key_path, const Export& entry,
                              const scenes::Scene& scene)
@@ -87,12 +107,8 @@ void check_export_attributes(const Document& document, const std::string& key_pa
     for (auto attribute = entry.attributes.begin(); attribute != entry.attributes.end(); ++attribute)
         if (std::find(entry.attributes.begin(), attribute, *attribute) != attribute)
             document.refuse(at, as_written(word_of(*attribute)) + " is there twice; name it once");
-    const auto has_skin = [](const Avatar& avatar) { return !std::holds_alternative<Plane>(avatar.shape); };
-    if (entry.stores(ExportAttribute::Gap) &&
-        std::none_of(scene.avatars.begin(), scene.avatars.end(), has_skin))
-        document.refuse(at,
-                        "\"gap\" is the distance from avatars, and the scene has none but planes; add one, "
-                        "or leave gap out");
+    if (entry.stores(ExportAttribute::Gap))
+        check_gap(document, at, scene);
     const auto is_solid = [&](const std::string& name) { return contains(names_of(scene.solids), name); };
     if (scene.cloths.empty() ||
         (!entry.cloths.empty() && std::all_of(entry.cloths.begin(), entry.cloths.end(), is_solid)))

@@ -4,9 +4,11 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/compute/parallel.h"
 #include "garment/energy/air/cuda/loads.h"
 #include "scenes/colliders/select_vertices.h"
+#include "scenes/colliders/vertex_owner.h"
 #include "scenes/surfaces/load_cloth.h"
 
 namespace toile::scenes {
@@ -41,10 +43,12 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
             all.tets.push_back(body.unknowns(tet));
         lame.resize(all.tets.size(),
                     volume::ElasticMaterial{settings.young, settings.poisson}.lame(loaded[i].source));
+        const std::string core_location =
+            scene.source.string() + ": soft_bodies[" + std::to_string(i) + "].core";
         if (settings.core)
-            body.core.emplace(*settings.core, body.positions, colliders,
-                              scene.source.string() + ": soft_bodies[" + std::to_string(i) + "].core");
+            body.core.emplace(*settings.core, body.positions, colliders, core_location);
         add_attachments(scene, colliders, body);
+        require_one_owner(body, core_location);
     }
     all.positions.resize(next_inner, Vec3::Zero());
     for (const Body& body : bodies_)
@@ -69,6 +73,20 @@ void SceneSoftBodies::add_attachments(const Scene& scene, const std::vector<Coll
         body.attachments.emplace_back(attachment, std::move(vertices), body.positions, colliders, mass(body),
                                       location);
     }
+}
+
+void SceneSoftBodies::require_one_owner(const Body& body, const std::string& core_location)
+{
+    std::vector<VertexOwner> owners;
+    if (body.core)
+        owners.push_back({core_location, body.core->vertices(), false});
+    for (const AttachmentConstraint& attachment : body.attachments)
+        owners.push_back(owner_of(attachment));
+    scenes::require_one_owner(owners, body.surface.name, [&](int v) {
+        const Vec3& x = body.positions[size_t(v)];
+        return "the vertex at (" + short_text(x.x()) + ", " + short_text(x.y()) + ", " + short_text(x.z()) +
+               ") m";
+    });
 }
 
 int SceneSoftBodies::body_of(int unknown) const
@@ -101,7 +119,11 @@ int SceneSoftBodies::inverted_count(int body, View<const Vec3> x) const
 std::vector<Vec3> SceneSoftBodies::render_positions(int body, View<const Vec3> x) const
 {
     const Body& of = bodies_[body];
-    return of.render->embedding.at([&](int v) { return x[of.unknown(v)]; });
+    std::vector<Vec3> of_mesh;
+    of_mesh.reserve(of.positions.size());
+    for (int v = 0; v < of.vertex_count(); ++v)
+        of_mesh.push_back(x[of.unknown(v)]);
+    return of.render->embedding.at(of_mesh);
 }
 
 void SceneSoftBodies::add_springs()

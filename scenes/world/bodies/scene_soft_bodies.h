@@ -89,6 +89,7 @@ private:
         }
     };
     void add_attachments(const Scene& scene, const std::vector<Collider>& colliders, Body& body);
+    static void require_one_owner(const Body& body, const std::string& core_location);
     void add_springs();
     static double mass(const Body& body);
 

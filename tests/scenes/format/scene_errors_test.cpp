@@ -160,7 +160,8 @@ TEST(SceneErrors, NameTheExpectedType)
     expect_complaints({
         {"[]",
          "bad.json: [] is not an object; write {...} with keys among toile, name, description, frames, fps, "
-         "gravity, wind, air, settle, avatars, cloths, solids, soft_bodies, fabrics, attachments, contact, solver, export "
+         "gravity, wind, air, settle, avatars, cloths, solids, soft_bodies, fabrics, attachments, contact, "
+         "solver, export "
          "and render"},
         {scene_with(R"("name": 3)"), "bad.json: name: 3 is not text; write it in double quotes"},
         {scene_with(R"("avatars": {})"), "bad.json: avatars: {} is not a list; write [...]"},
@@ -271,6 +272,11 @@ TEST(SceneErrors, RefuseAttachmentsToUnknownObjects)
 
 TEST(SceneErrors, KeepExportsInsideTheOutputFolder)
 {
+    const auto with_render = [](const std::string& entry) {
+        return scene_with(R"("soft_bodies": [{"name": "jelly", "file": "a.msh", "render": "a.obj"}],
+            "export": [)" +
+                          entry + "]");
+    };
     expect_complaints({
         {scene_with(R"("export": [{"file": "../a.pc2"}])"),
          R"(bad.json: export[0].file: "../a.pc2" leaves the output folder; give a path inside it)"},
@@ -283,6 +289,10 @@ TEST(SceneErrors, KeepExportsInsideTheOutputFolder)
         {R"({"toile": 1, "frames": 1, "cloths": [{"name": "a", "disc": {}}, {"name": "b", "disc": {}}],
              "export": [{"file": "a.pc2"}]})",
          R"(bad.json: export[0]: the scene has 2 cloths; name the one to write with the key "cloth")"},
+        {with_render(R"({"file": "a.pc2"})"),
+         R"(bad.json: export[0]: the scene has 3 surfaces; name the one to write with the key "cloth")"},
+        {with_render(R"({"file": "a.pc2", "cloth": "jely_render"})"),
+         R"(bad.json: export[0].cloth: no surface is named "jely_render"; did you mean "jelly_render"?)"},
     });
 }
 
