@@ -33,10 +33,10 @@ public:
 
     double evaluate() override;
     double max_speed() override;
-    Solution find_direction(bool is_first, double increment) override;
+    Solution find_direction(bool is_first, double error) override;
     bool has_contact() override;
     double model(double length) override;
-    Solution correct(double increment) override;
+    Solution correct(double error) override;
     Trial try_step(double length) override;
     double try_rest(double limit) override;
     double try_local_global() override;
@@ -49,11 +49,12 @@ public:
     double gradient_norm() override;
 
 private:
-    Solution solve(View<const Vec3> gradient, const HessianSolver::Stop& stop);
+    Solution solve(View<const Vec3> gradient, double error);
 
     Problem problem_;
     HessianSolver solver_;
-    double first_residual_ = 0.0; ///< HessianSolver::Outcome::residual of find_direction()
+    double stiffness_ = 0.0;    ///< [N/m] of the free vertices' inertia
+    double inverse_ritz_ = 0.0; ///< largest of the minimisation, see HessianSolver::Stop
     std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, kept_;
 
     // Contact ahead, see NewtonSpace::model().
