@@ -67,7 +67,7 @@ void add_options(CLI::App& add, BenchOptions& options, unsigned which)
     if (which & kOnly)
         add.add_option("--only", options.only, "Only cases whose name contains this");
     if (which & kMesh)
-        add.add_option("--mesh", options.mesh, "sheet, skirt or drape, or NAME:VERTICES");
+        add.add_option("--mesh", options.mesh, "sheet, skirt, drape or bar, or NAME:VERTICES");
     if (which & kScenes) {
         add.add_option("scenes", options.scenes, "Scene files (.json)");
         add.add_option("--frames", options.frames, "Samples of each scene, instead of its own")

@@ -9,7 +9,7 @@
 #include "research/linear/subspace_solver.h"
 #include "research/methods/vbd/vertex_block_descent.h"
 #include "research/methods/xpbd/xpbd.h"
-#include "research/paper_rule/paper_rule.h"
+#include "scenes/method/solver_choice.h"
 
 namespace toile::research::solvers {
 
@@ -52,17 +52,6 @@ std::unique_ptr<GlobalSolver> make_plain(const Problem&)
     return std::make_unique<Solver>();
 }
 
-std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem)
-{
-    return std::make_unique<QuadratureSolver>(problem.points(), QuadratureSolver::Settings{}, problem.tables);
-}
-
-/// The paper's rule in the sheet's plane. It needs one flat chart, which a skirt does not have.
-std::unique_ptr<GlobalSolver> make_paper(const Problem& problem)
-{
-    return std::make_unique<PaperRule>(problem.chart(), problem.start.triangles);
-}
-
 Method make_method(const std::string& name, const MakeSolver& make, int iterations,
                    OuterMethod outer = OuterMethod::Lbfgs)
 {
@@ -100,10 +89,25 @@ Method baseline(const std::string& name, const typename Rule::Settings& settings
 
 } // namespace
 
+std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem)
+{
+    return std::make_unique<QuadratureSolver>(
+        problem.points(), problem.solid ? scenes::kTablesOfVolumes : QuadratureSolver::Settings{},
+        problem.tables);
+}
+
+std::unique_ptr<GlobalSolver> make_paper_rule(const Problem& problem, PaperRule::Settings settings)
+{
+    if (problem.solid)
+        return std::make_unique<PaperRule>(problem.start.positions, problem.solid->rest->tets, settings);
+    return std::make_unique<PaperRule>(problem.chart(), problem.start.triangles, settings);
+}
+
 bool applies(const Method& method, const Problem& problem)
 {
-    return problem.vertex_count() <= method.max_vertices && (problem.is_flat || !method.needs_chart) &&
-           (method.knows_energies || !problem.ball);
+    return problem.vertex_count() <= method.max_vertices &&
+           (problem.is_flat || problem.solid || !method.needs_chart) &&
+           (method.knows_energies || !(problem.ball || problem.solid));
 }
 
 std::vector<Method> all_methods()
@@ -125,7 +129,8 @@ std::vector<Method> all_methods()
         methods.push_back(make_method("a-jacobi", make_plain<AggregatedJacobi>, iterations));
         methods.push_back(make_method("jacobi-pcg", make_plain<JacobiPcg>, iterations));
         methods.back().max_vertices = iterations > 8 ? kJacobiPcgSize / iterations : kAnySize;
-        methods.push_back(make_method("paper", make_paper, iterations));
+        methods.push_back(make_method(
+            "paper", [](const Problem& problem) { return make_paper_rule(problem); }, iterations));
         methods.back().max_vertices = kPaperSize;
         methods.back().needs_chart = true;
     }
