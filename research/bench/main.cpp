@@ -39,6 +39,8 @@ constexpr Benchmark kBenchmarks[] = {
     {"error_time",
      "Whole scenes at default and other settings, and by methods of the literature: error, milliseconds",
      bench_error_time, kOnly},
+    {"figures", "The paper's figures 7 to 9, 11 and 12 on a CPU: residual and error by iteration",
+     bench_figures, kOnly},
     {"gpu", "One GPU: the global solve by pass, beside the CPU and the card's bandwidth", bench_gpu, kOnly},
     {"paper", "The volumetric scenes of the paper's Table 1 on one GPU, beside its figures", bench_paper,
      kScenes},
