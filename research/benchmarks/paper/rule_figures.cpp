@@ -151,8 +151,9 @@ void add_curves(const Problem& problem, const System& system,
             curve.loop = loop_name;
             curve.points.clear();
             trace(
-                curve, kIterations, seconds, [&](int iterations) { step.solve(solver, loop, iterations, x); },
-                [&](Curve::Point& point) { step.judge(x, point); });
+                curve, kIterations, seconds,
+                [&, &step = step, loop = loop](int iterations) { step.solve(solver, loop, iterations, x); },
+                [&, &step = step](Curve::Point& point) { step.judge(x, point); });
             curves.push_back(curve);
         }
 }

@@ -92,7 +92,7 @@ void add_curves(const Problem& problem, const System& system, const SampledStep&
     add("plain", [&](int iterations) { iterate(objective, iterations, x); });
     for (const auto& [method, loop] :
          {std::pair(OuterMethod::LocalGlobal, "line search"), std::pair(OuterMethod::Lbfgs, "l-bfgs")})
-        add(loop, [&](int iterations) {
+        add(loop, [&, method = method](int iterations) {
             (void)make_outer_loop(method, kHistory)->minimise(objective, x, {0.0, iterations});
         });
 }

@@ -50,15 +50,16 @@ struct Bar {
     {
         return std::vector<unsigned char>(mesh.positions.size(), 0);
     }
-    const SparseMatrix& H() const { return system->matrix(); }
+    const SparseMatrix& matrix() const { return system->matrix(); }
 
     /// u(i) = G(:, i) / G_ii.
     std::vector<double> kernel_row(int vertex, double* diagonal = nullptr) const
     {
         std::vector<Vec3> column(mesh.positions.size(), Vec3::Zero());
         column[vertex].x() = 1.0;
-        Cholesky(H()).solve(column, column);
+        Cholesky(matrix()).solve(column, column);
         std::vector<double> u;
+        u.reserve(column.size());
         for (const Vec3& entry : column)
             u.push_back(entry.x() / column[vertex].x());
         if (diagonal)
@@ -280,7 +281,7 @@ TEST(SolidPaperRule, MatchesADenseEvaluation)
         settings.denominator = Denominator::Exact;
         settings.rule.near_middle = near_middle;
         PaperRule rule(bar.mesh.positions, bar.mesh.tets, settings);
-        rule.update(bar.H(), bar.none_fixed());
+        rule.update(bar.matrix(), bar.none_fixed());
         std::vector<Vec3> x(b.size());
         rule.solve(b, x);
 
@@ -328,7 +329,7 @@ TEST(SolidPaperRule, DoesNotContractAsAnIteration)
     const Bar bar;
     const std::vector<Vec3> b = bar.smooth_load();
     std::vector<Vec3> exact(b.size());
-    Cholesky(bar.H()).solve(b, exact);
+    Cholesky(bar.matrix()).solve(b, exact);
     for (const Denominator denominator : {Denominator::Exact, Denominator::SameRule}) {
         PaperRule::Settings settings;
         settings.voxels = kVoxels;
@@ -337,7 +338,7 @@ TEST(SolidPaperRule, DoesNotContractAsAnIteration)
         for (const int applications : {1, 10}) {
             settings.applications = applications;
             PaperRule rule(bar.mesh.positions, bar.mesh.tets, settings);
-            rule.update(bar.H(), bar.none_fixed());
+            rule.update(bar.matrix(), bar.none_fixed());
             std::vector<Vec3> x(b.size());
             rule.solve(b, x);
             errors.push_back((as_matrix(x) - as_matrix(exact)).norm() / as_matrix(exact).norm());
