@@ -54,6 +54,8 @@ std::vector<SceneBody> make_bodies(const Scene& scene)
     std::vector<SceneBody> bodies;
     bodies.reserve(scene.avatars.size());
     for (const scene::Avatar& avatar : scene.avatars) {
+        if (moves_core(scene, avatar.name))
+            continue;
         const LongWork::Part part = LongWork::item(bodies.size(), scene.avatars.size());
         bodies.emplace_back(avatar);
         LongWork::update(1.0);

@@ -52,6 +52,7 @@ private:
     TriangleMesh contact_;            ///< if not all of surface_
 };
 
+/// Avatars of a scene but those that a soft body replaces.
 std::vector<SceneBody> make_bodies(const Scene& scene);
 
 } // namespace toile::scenes

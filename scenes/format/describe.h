@@ -329,13 +329,31 @@ void describe(V& v, Solid& s)
 }
 
 template <typename V>
+void describe(V& v, Core& c)
+{
+    v.required("avatar", c.avatar, "Name of the avatar, with a mesh, that moves it.");
+    v.field("depth", c.depth, between(0.0, 10.0, "m"),
+            "Vertices that start at least as deep below the avatar's surface move as its bones do.");
+    v.field("rigid_bones", c.rigid_bones,
+            "Bones around which all is core, such as those of hands and feet; with their descendants.");
+}
+
+template <typename V>
 void describe(V& v, SoftBody& s)
 {
     v.required("name", s.name, "Name, for attachments, friction pairs, messages and the cache's file.");
-    v.required("file", s.file,
-               "Tetrahedra (.msh of Gmsh, .vtk of the legacy format), or a closed surface (.obj).");
+    v.field("file", s.file,
+            "Tetrahedra (.msh of Gmsh, .vtk of the legacy format), or a closed surface (.obj). Absent: the "
+            "surface of core's avatar at the start.");
     v.field("cell", s.cell, above_zero(10.0, "m"),
-            "Length of edges of the tetrahedra that fill a surface (.obj), after scale.");
+            "Length of edges of the tetrahedra that fill a surface, after scale.");
+    v.field("core", s.core,
+            "Inside that follows an avatar. The soft body replaces the avatar in contact, pictures and "
+            "caches.");
+    v.field(
+        "render", s.render,
+        "Surface (.obj) in the file's axes and unit that moves with the tetrahedra, for pictures and caches; "
+        "named NAME_render.");
     v.field("unit", s.unit, "Length unit of the file.");
     v.field("scale", s.scale, above_zero(1e6), "Factor on the body's lengths.");
     v.field("translate", s.translate, kPosition, "Moves the body, after scale and rotate_deg.");

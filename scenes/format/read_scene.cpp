@@ -83,9 +83,11 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& source)
     resolve_files(document, "cloths", scene.cloths);
     resolve_files(document, "solids", scene.solids);
     for (size_t i = 0; i < scene.soft_bodies.size(); ++i) {
-        std::filesystem::path& file = scene.soft_bodies[i].file;
-        file = document.existing_file(file.string(),
-                                      scene_format::below(scene_format::below("soft_bodies", i), "file"));
+        scene::SoftBody& body = scene.soft_bodies[i];
+        for (const auto& [key, file] : {std::pair("file", &body.file), std::pair("render", &body.render)})
+            if (*file)
+                *file = document.existing_file(
+                    (*file)->string(), scene_format::below(scene_format::below("soft_bodies", i), key));
     }
     resolve_rest_files(document, scene.cloths);
     return scene;

@@ -23,13 +23,27 @@ double metres_per(LengthUnit unit)
 
 namespace toile::scenes {
 
+bool moves_core(const Scene& scene, const std::string& avatar)
+{
+    return std::any_of(scene.soft_bodies.begin(), scene.soft_bodies.end(),
+                       [&](const scene::SoftBody& body) { return body.core && body.core->avatar == avatar; });
+}
+
 std::vector<std::string> surface_names(const Scene& scene)
 {
     std::vector<std::string> all;
     for (const auto& names : {scene_format::names_of(scene.cloths), scene_format::names_of(scene.solids),
                               scene_format::names_of(scene.soft_bodies)})
         all.insert(all.end(), names.begin(), names.end());
+    for (const scene::SoftBody& body : scene.soft_bodies)
+        if (body.render)
+            all.push_back(body.render_name());
     return all;
+}
+
+int simulated_count(const Scene& scene)
+{
+    return int(scene.cloths.size() + scene.solids.size() + scene.soft_bodies.size());
 }
 
 } // namespace toile::scenes

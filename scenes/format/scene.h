@@ -121,6 +121,12 @@ struct Avatar {
     std::vector<std::string> exclude_bones; ///< faces that follow these do not collide
     std::optional<double> friction;         ///< [-] Coulomb coefficient; absent: Contact::friction
     Vec3 color = Vec3(0.78, 0.72, 0.66);    ///< [-] sRGB
+
+    bool has_mesh() const
+    {
+        return std::holds_alternative<std::filesystem::path>(shape) ||
+               std::holds_alternative<Mannequin>(shape);
+    }
 };
 
 // --- cloths ---------------------------------------------------------------------------------------------
@@ -278,14 +284,25 @@ struct Solid {
     Vec3 color = Vec3(0.85, 0.85, 0.88); ///< [-] sRGB
 };
 
+/// Inside of a soft body that moves as an avatar does. The soft body replaces the avatar in contact, pictures
+/// and caches.
+struct Core {
+    std::string avatar;
+    double depth = 0.02;                  ///< [m] from the avatar's surface at the start down to the core
+    std::vector<std::string> rigid_bones; ///< what is nearest to skin that follows these is core throughout
+};
+
 /// A soft body: a solid that deforms, simulated with the cloth.
 struct SoftBody {
     std::string name;
-    std::filesystem::path file;          ///< of tetrahedra, or of a closed surface
-    std::optional<double> cell;          ///< [m] edges of the tetrahedra that fill a surface
-    LengthUnit unit = LengthUnit::Metre; ///< of the file
-    double scale = 1.0;                  ///< [-]
-    Vec3 translate = Vec3::Zero();       ///< [m]
+    std::optional<std::filesystem::path> file; ///< of tetrahedra, or of a closed surface; absent: the surface
+                                               ///< of the core's avatar at the start
+    std::optional<double> cell;                ///< [m] edges of the tetrahedra that fill a surface
+    std::optional<Core> core;
+    std::optional<std::filesystem::path> render; ///< surface for pictures and caches, where `file` is
+    LengthUnit unit = LengthUnit::Metre;         ///< of the file
+    double scale = 1.0;                          ///< [-]
+    Vec3 translate = Vec3::Zero();               ///< [m]
     Vec3 rotate_deg = Vec3::Zero();
     double density = 1000.0;           ///< [kg/m^3]
     double young = 1e5;                ///< [Pa]
@@ -294,6 +311,9 @@ struct SoftBody {
     Vec3 velocity = Vec3::Zero();      ///< [m/s] at the start
     std::optional<double> friction;    ///< [-] as Solid::friction
     Vec3 color = Vec3(0.8, 0.55, 0.5); ///< [-] sRGB
+
+    /// Name of its surface for pictures and caches.
+    std::string render_name() const { return name + "_render"; }
 };
 
 // --- attachments ----------------------------------------------------------------------------------------
@@ -465,7 +485,14 @@ struct Scene {
     }
 };
 
-/// Names of the cloths, solids and soft bodies, in the order of World::surfaces().
+/// True if the core of a soft body follows the avatar of this name, which the soft body then replaces.
+bool moves_core(const Scene& scene, const std::string& avatar);
+
+/// Names of the cloths, solids and soft bodies, then of the surfaces that soft bodies have for pictures and
+/// caches, in the order of World::surfaces().
 std::vector<std::string> surface_names(const Scene& scene);
+
+/// Number of the cloths, solids and soft bodies.
+int simulated_count(const Scene& scene);
 
 } // namespace toile::scenes

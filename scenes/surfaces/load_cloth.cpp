@@ -167,6 +167,14 @@ bool is_selected_near(const Scene& scene, const std::string& avatar)
     });
 }
 
+/// True if a soft body fills the surface of this avatar.
+bool is_filled(const Scene& scene, const std::string& avatar)
+{
+    return std::any_of(scene.soft_bodies.begin(), scene.soft_bodies.end(), [&](const scene::SoftBody& body) {
+        return !body.file && body.core->avatar == avatar;
+    });
+}
+
 } // namespace
 
 LoadedCloth load_cloth(const Scene& scene, const scene::Cloth& settings,
@@ -222,7 +230,7 @@ std::vector<ClothState> load_surfaces(const Scene& scene)
     std::vector<Collider> colliders;
     for (const scene::Avatar& avatar : scene.avatars) {
         const LongWork::Part part = LongWork::item(loaded++, count);
-        if (is_selected_near(scene, avatar.name))
+        if (is_selected_near(scene, avatar.name) || is_filled(scene, avatar.name))
             colliders.emplace_back(avatar, scene.contact.friction);
     }
     std::vector<ClothState> surfaces;
@@ -234,10 +242,14 @@ std::vector<ClothState> load_surfaces(const Scene& scene)
         const LongWork::Part part = LongWork::item(loaded++, count);
         surfaces.push_back(load_solid(solid));
     }
-    for (LoadedSoftBody& body : load_soft_bodies(scene.soft_bodies)) {
+    std::vector<LoadedSoftBody> soft_bodies = load_soft_bodies(scene.soft_bodies, colliders);
+    for (LoadedSoftBody& body : soft_bodies) {
         const LongWork::Part part = LongWork::item(loaded++, count);
         surfaces.push_back(std::move(body.surface));
     }
+    for (LoadedSoftBody& body : soft_bodies)
+        if (body.render)
+            surfaces.push_back(std::move(body.render->state));
     LongWork::update(1.0);
     return surfaces;
 }

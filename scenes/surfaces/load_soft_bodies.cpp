@@ -7,6 +7,7 @@
 
 #include "core/base/extension.h"
 #include "core/mesh/obj.h"
+#include "core/mesh/weld.h"
 #include "scenes/meshes/rigid_motion.h"
 #include "volume/mesh/msh.h"
 #include "volume/mesh/vtk.h"
@@ -50,36 +51,71 @@ struct RestMesh {
     std::vector<Triangle> surface;
 };
 
-volume::TetMesh tets_of(const scene::SoftBody& body, double scale)
+std::string source_of(const scene::SoftBody& body)
 {
-    const std::string source = body.file.string(), extension = lower_case_extension(body.file);
-    if (extension == ".obj") {
-        TriangleMesh surface = read_obj(body.file).triangulated();
-        for (Vec3& p : surface.positions)
-            p *= scale;
-        require_usable(surface, source);
-        return volume::fill_surface(surface, *body.cell, source);
+    return body.file ? body.file->string() : "avatar \"" + body.core->avatar + "\"";
+}
+
+/// A surface to fill [m].
+TriangleMesh surface_of(const scene::SoftBody& body, double scale, const std::vector<Collider>& colliders)
+{
+    if (!body.file) {
+        const collision::MeshCollider& mesh =
+            *colliders[index_of(colliders, body.core->avatar)].contact_collider().mesh;
+        const View<const Vec3> x = mesh.x_t1();
+        const View<const Triangle> triangles = mesh.triangles();
+        return weld({{x.begin(), x.end()}, {triangles.begin(), triangles.end()}}, 0.0).mesh;
     }
-    volume::TetMesh tets =
-        extension == ".msh" ? volume::read_msh_tets(body.file) : volume::read_vtk_tets(body.file);
+    TriangleMesh surface = read_obj(*body.file).triangulated();
+    for (Vec3& p : surface.positions)
+        p *= scale;
+    return surface;
+}
+
+volume::TetMesh tets_of(const scene::SoftBody& body, double scale, const std::vector<Collider>& colliders)
+{
+    if (body.cell) {
+        const TriangleMesh surface = surface_of(body, scale, colliders);
+        require_usable(surface, source_of(body));
+        return volume::fill_surface(surface, *body.cell, source_of(body));
+    }
+    volume::TetMesh tets = lower_case_extension(*body.file) == ".msh" ? volume::read_msh_tets(*body.file)
+                                                                      : volume::read_vtk_tets(*body.file);
     for (Vec3& p : tets.positions)
         p *= scale;
     return tets;
 }
 
-RestMesh rest_mesh(const scene::SoftBody& body, double scale)
+Vec3 placed(const Vec3& p, const scene::SoftBody& body, const Mat3& rotation)
 {
-    RestMesh rest{tets_of(body, scale), {}};
-    rest.surface = put_surface_first(rest.tets);
-    return rest;
+    return body.translate + rotation * p;
+}
+
+RenderSurface render_surface(const scene::SoftBody& body, double scale, const volume::TetMesh& rest)
+{
+    const std::string source = body.render->string();
+    ObjMesh mesh = read_obj(*body.render);
+    require_usable(mesh, source);
+    for (Vec3& p : mesh.positions)
+        p *= scale;
+    EmbeddedSurface embedding(mesh.positions, rest, source);
+    const Mat3 rotation = rotation_of(body.rotate_deg);
+    for (Vec3& p : mesh.positions)
+        p = placed(p, body, rotation);
+    ClothState state;
+    state.name = body.render_name();
+    state.positions = mesh.positions;
+    state.triangles = mesh.triangulated().triangles;
+    state.rest = std::move(mesh);
+    return {std::move(state), std::move(embedding)};
 }
 
 LoadedSoftBody placed(const scene::SoftBody& body, const RestMesh& rest)
 {
-    LoadedSoftBody loaded{body.file.string(), {}, rest.tets, {}};
+    LoadedSoftBody loaded{source_of(body), {}, rest.tets, {}, {}};
     const Mat3 rotation = rotation_of(body.rotate_deg);
     for (const Vec3& p : rest.tets.positions)
-        loaded.positions.push_back(body.translate + rotation * p);
+        loaded.positions.push_back(placed(p, body, rotation));
     require_in_range(loaded.positions, loaded.source);
 
     TriangleMesh surface{{}, rest.surface};
@@ -97,16 +133,22 @@ LoadedSoftBody placed(const scene::SoftBody& body, const RestMesh& rest)
 
 } // namespace
 
-std::vector<LoadedSoftBody> load_soft_bodies(const std::vector<scene::SoftBody>& bodies)
+std::vector<LoadedSoftBody> load_soft_bodies(const std::vector<scene::SoftBody>& bodies,
+                                             const std::vector<Collider>& colliders)
 {
-    std::map<std::tuple<std::filesystem::path, double, double>, RestMesh> known;
+    std::map<std::tuple<std::string, double, double>, RestMesh> known;
     std::vector<LoadedSoftBody> loaded;
     for (const scene::SoftBody& body : bodies) {
         const double scale = body.scale * scene::metres_per(body.unit);
-        const auto [entry, is_new] = known.try_emplace({body.file, scale, body.cell.value_or(0.0)});
-        if (is_new)
-            entry->second = rest_mesh(body, scale);
+        const auto [entry, is_new] = known.try_emplace({source_of(body), scale, body.cell.value_or(0.0)});
+        if (is_new) {
+            RestMesh& rest = entry->second;
+            rest.tets = tets_of(body, scale, colliders);
+            rest.surface = put_surface_first(rest.tets);
+        }
         loaded.push_back(placed(body, entry->second));
+        if (body.render)
+            loaded.back().render = render_surface(body, scale, entry->second.tets);
     }
     return loaded;
 }

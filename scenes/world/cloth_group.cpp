@@ -70,6 +70,11 @@ View<const Vec3> ClothGroup::surface_of_soft_body(int body) const
                                       int(soft_bodies_->state(body).positions.size()));
 }
 
+std::vector<Vec3> ClothGroup::render_positions_of(int soft_body) const
+{
+    return soft_bodies_->render_positions(soft_body, body_->positions());
+}
+
 int ClothGroup::inverted_tets_of(int soft_body) const
 {
     return soft_bodies_->inverted_count(soft_body, body_->positions());
@@ -90,6 +95,9 @@ void ClothGroup::add_to(Snapshot& snapshot) const
         snapshot.add(solids_->positions(i));
     for (int i = 0; soft_bodies_ && i < soft_bodies_->count(); ++i)
         add(soft_bodies_->first_vertex(i), int(soft_bodies_->state(i).positions.size()));
+    for (int i = 0; soft_bodies_ && i < soft_bodies_->count(); ++i)
+        if (soft_bodies_->render_state(i))
+            snapshot.add(render_positions_of(i));
 }
 
 void ClothGroup::tie(double gap, const std::vector<Collider>& colliders,

@@ -35,13 +35,15 @@ public:
     /// Current positions of one cloth, valid until the next step [m]. Copied from the GPU if there is one.
     View<const Vec3> positions_of(int cloth) const;
 
-    /// Adds all cloths, solids and soft bodies in their current state, without waiting for the GPU.
+    /// Adds all cloths, solids and soft bodies in their current state, without waiting for the GPU, and then
+    /// the render surfaces of soft bodies, which wait for it.
     void add_to(Snapshot& snapshot) const;
 
     const SceneSolids* solids() const { return solids_.get(); }               ///< null: none
     const SceneSoftBodies* soft_bodies() const { return soft_bodies_.get(); } ///< null: none
     View<const Vec3> surface_of_soft_body(int body) const;                    ///< as positions_of()
-    int inverted_tets_of(int soft_body) const; ///< see SceneSoftBodies::inverted_count()
+    std::vector<Vec3> render_positions_of(int soft_body) const; ///< see SceneSoftBodies::render_positions()
+    int inverted_tets_of(int soft_body) const;                  ///< see SceneSoftBodies::inverted_count()
 
     /// Attaches cloth where it is. See SceneCloth::tie.
     void tie(double gap, const std::vector<Collider>& colliders,

@@ -214,11 +214,12 @@ std::unique_ptr<collision::Contact>
 ClothGroup::make_contact(const Scene& scene, const std::vector<Collider>& colliders, const CudaSpace* space)
 {
     const collision::Contact::Settings settings = contact_settings(scene);
-    if (colliders.empty() && !settings.cloth_with_cloth)
+    const std::vector<const Collider*> in_contact = colliders_in_contact(scene, colliders);
+    if (in_contact.empty() && !settings.cloth_with_cloth)
         return nullptr;
     return std::make_unique<collision::Contact>(
-        triangles_, surfaces(), contact_cloths(scene, cloths_, soft_bodies_.get(), solids_.get(), colliders),
-        contact_colliders(colliders), settings, space);
+        triangles_, surfaces(), contact_cloths(scene, cloths_, soft_bodies_.get(), solids_.get(), in_contact),
+        contact_colliders(in_contact), settings, space);
 }
 
 } // namespace toile::scenes

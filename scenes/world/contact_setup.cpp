@@ -71,7 +71,7 @@ collision::Contact::Settings contact_settings(const Scene& scene)
 std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const std::vector<SceneCloth>& cloths,
                                                     const SceneSoftBodies* soft_bodies,
                                                     const SceneSolids* solids,
-                                                    const std::vector<Collider>& colliders)
+                                                    const std::vector<const Collider*>& colliders)
 {
     std::vector<collision::ContactCloth> all;
     for (const SceneCloth& cloth : cloths) {
@@ -98,10 +98,10 @@ std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const st
 
     const std::vector<FrictionBody> friction_bodies = friction_bodies_of(scene, cloths, soft_bodies, solids);
     for (size_t i = 0; i < all.size(); ++i) {
-        for (const Collider& collider : colliders)
+        for (const Collider* collider : colliders)
             all[i].collider_friction.push_back(
-                friction_between(scene.contact, friction_bodies[i].name, collider.name())
-                    .value_or(friction_bodies[i].friction.value_or(collider.friction())));
+                friction_between(scene.contact, friction_bodies[i].name, collider->name())
+                    .value_or(friction_bodies[i].friction.value_or(collider->friction())));
         for (const FrictionBody& other : friction_bodies)
             all[i].cloth_friction.push_back(friction_of(scene, friction_bodies[i], other));
     }
@@ -116,12 +116,21 @@ double room_for_cloth(const Scene& scene)
     return collision::room_of(scene.contact.gap, thickness);
 }
 
-std::vector<collision::ContactCollider> contact_colliders(const std::vector<Collider>& colliders)
+std::vector<const Collider*> colliders_in_contact(const Scene& scene, const std::vector<Collider>& colliders)
+{
+    std::vector<const Collider*> result;
+    for (const Collider& collider : colliders)
+        if (!moves_core(scene, collider.name()))
+            result.push_back(&collider);
+    return result;
+}
+
+std::vector<collision::ContactCollider> contact_colliders(const std::vector<const Collider*>& colliders)
 {
     std::vector<collision::ContactCollider> result;
     result.reserve(colliders.size());
-    for (const Collider& collider : colliders)
-        result.push_back(collider.contact_collider());
+    for (const Collider* collider : colliders)
+        result.push_back(collider->contact_collider());
     return result;
 }
 

@@ -17,11 +17,14 @@ collision::Contact::Settings contact_settings(const Scene& scene);
 std::vector<collision::ContactCloth> contact_cloths(const Scene& scene, const std::vector<SceneCloth>& cloths,
                                                     const SceneSoftBodies* soft_bodies,
                                                     const SceneSolids* solids,
-                                                    const std::vector<Collider>& colliders);
+                                                    const std::vector<const Collider*>& colliders);
 
 /// Largest room that a cloth of the scene needs between two surfaces that face each other [m].
 double room_for_cloth(const Scene& scene);
 
-std::vector<collision::ContactCollider> contact_colliders(const std::vector<Collider>& colliders);
+/// Avatars in contact: all but those that a soft body replaces.
+std::vector<const Collider*> colliders_in_contact(const Scene& scene, const std::vector<Collider>& colliders);
+
+std::vector<collision::ContactCollider> contact_colliders(const std::vector<const Collider*>& colliders);
 
 } // namespace toile::scenes

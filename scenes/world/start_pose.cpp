@@ -5,6 +5,7 @@
 #include "collision/repair/repair_start.h"
 #include "core/base/error.h"
 #include "core/base/stages.h"
+#include "scenes/world/contact_setup.h"
 
 namespace toile::scenes {
 
@@ -77,20 +78,19 @@ collision::StartReport repair_start_pose(const Scene& scene, std::vector<ClothGr
     for (const ClothGroup& group : groups)
         for (const SceneCloth& cloth : group.cloths())
             starts.push_back(start_of(scene, scene.cloths[starts.size()], cloth));
-    std::vector<collision::ContactCollider> bodies;
-    bodies.reserve(colliders.size());
-    for (const Collider& collider : colliders)
-        bodies.push_back(collider.contact_collider());
-
-    collision::StartReport report =
-        check_and_repair(starts, bodies, scene.contact.repair_start, collision::RepairProgress(progress));
+    const std::vector<const Collider*> bodies = colliders_in_contact(scene, colliders);
+    collision::StartReport report = check_and_repair(
+        starts, contact_colliders(bodies), scene.contact.repair_start, collision::RepairProgress(progress));
+    using Kind = collision::StartDefect::Kind;
+    for (collision::StartDefect& defect : report.defects)
+        if (defect.kind == Kind::InsideBody || defect.kind == Kind::CrossesBody)
+            defect.other = int(bodies[defect.other] - colliders.data()); // number of the avatar
     require_fit(scene, report);
     auto start = starts.begin();
     for (ClothGroup& group : groups)
         for (int i = 0; i < int(group.cloths().size()); ++i, ++start)
             if (report.was_repaired)
                 group.place(i, start->positions);
-    using Kind = collision::StartDefect::Kind;
     if (report.remaining(Kind::Crossing) == 0 && report.remaining(Kind::CrossesBody) == 0)
         for (ClothGroup& group : groups)
             group.assume_no_crossings();

@@ -247,6 +247,10 @@ struct World::Parts {
                 const View<const Vec3> x = group.surface_of_soft_body(i);
                 states[cloth++].positions.assign(x.begin(), x.end());
             }
+        for (const ClothGroup& group : groups)
+            for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
+                if (group.soft_bodies()->render_state(i))
+                    states[cloth++].positions = group.render_positions_of(i);
         is_shown = true;
     }
 };
@@ -324,6 +328,10 @@ World::World(const Scene& scene, const WorldOptions& options)
     for (const ClothGroup& group : parts_->groups)
         for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
             parts_->states.push_back(group.soft_bodies()->state(i));
+    for (const ClothGroup& group : parts_->groups)
+        for (int i = 0; group.soft_bodies() && i < group.soft_bodies()->count(); ++i)
+            if (const ClothState* render = group.soft_bodies()->render_state(i))
+                parts_->states.push_back(*render);
 }
 
 World::~World() = default;
@@ -413,6 +421,10 @@ View<const ClothState> World::surfaces() const
     parts().show();
     return parts().states;
 }
+View<const ClothState> World::simulated() const
+{
+    return surfaces().subview(0, simulated_count(parts().scene));
+}
 View<const ClothState> World::cloths() const
 {
     return surfaces().subview(0, int(parts().scene.cloths.size()));
@@ -436,7 +448,7 @@ const collision::StartReport& World::start() const { return parts().start; }
 int World::vertex_count() const
 {
     int count = 0;
-    for (const ClothState& surface : surfaces())
+    for (const ClothState& surface : simulated())
         count += int(surface.positions.size());
     for (const ClothGroup& group : parts().groups)
         if (group.soft_bodies())

@@ -70,14 +70,18 @@ public:
 
     /// States of all cloths, then all solids, then the surfaces of all soft bodies, each in the order of the
     /// scene. See cloths().
+    View<const ClothState> simulated() const;
+
+    /// The same, and then the surfaces that soft bodies have for pictures and caches.
     View<const ClothState> surfaces() const;
 
-    int vertex_count() const; ///< of all surfaces, and inside soft bodies
+    int vertex_count() const; ///< of all simulated surfaces, and inside soft bodies
 
     /// Tetrahedra of each soft body that are flat or inside out at the current sample [soft bodies].
     std::vector<int> inverted_tets() const;
 
-    /// Current positions of surfaces(), without waiting for a GPU. Must not outlive the World.
+    /// Current positions of surfaces(), without waiting for a GPU unless a soft body has a render surface.
+    /// Must not outlive the World.
     std::shared_ptr<const Snapshot> snapshot() const;
 
     /// Defects of the start pose, and those that its repair left. Cloths and bodies are numbered as in

@@ -204,6 +204,37 @@ TEST_F(SoftBodies, FillSurfaces)
     EXPECT_GT(lowest(world.surfaces()[0].positions), 0.0);
 }
 
+TEST_F(SoftBodies, CarryRenderSurfacesThatNothingTouches)
+{
+    // The surface is a plate through the middle of the block, in its axes and unit; it crosses the block's.
+    std::ofstream(folder.path() / "plate.obj")
+        << "v 0 0.05 0\nv 0.105 0.05 0\nv 0.105 0.05 0.1\nv 0 0.05 0.1\nf 1 4 3 2\n";
+    const std::string keys = R"("frames": 4, "cloths": [], "soft_bodies": [)" +
+                             block("jelly", R"("young": 1e4, "render": "plate.obj", "translate": [0, 1, 0],
+                                   "rotate_deg": [0, 0, 90], "scale": 2)") +
+                             "]";
+    World world = world_of(keys);
+    ASSERT_EQ(world.surfaces().size(), 2);
+    EXPECT_EQ(world.simulated().size(), 1);
+    EXPECT_EQ(world.surfaces()[1].name, "jelly_render");
+    EXPECT_LT((world.surfaces()[1].positions[1] - Vec3(-0.1, 1.21, 0.0)).norm(), 1e-12);
+    run(world);
+    const double fallen = 0.5 * 9.81 * 0.01;
+    EXPECT_NEAR(world.surfaces()[1].positions[1].y(), 1.21 - fallen, 1e-3);
+    EXPECT_EQ(world.snapshot()->positions(1).size(), 4);
+    EXPECT_EQ(world.snapshot()->positions(1)[2], world.surfaces()[1].positions[2]);
+    const auto of_file = [&](const std::string& more) {
+        return refusal(R"("frames": 1, "cloths": [], "soft_bodies": [)" + block("jelly", more) + "]");
+    };
+    EXPECT_NE(of_file(R"("render": "plate.ply")").find("soft_bodies[0].render"), std::string::npos);
+    EXPECT_NE(of_file(R"("render": "missing.obj")").find("missing.obj"), std::string::npos);
+    EXPECT_NE(refusal(R"("frames": 1, "cloths": [], "solids": [{"name": "jelly_render", "sphere": {}}],
+                      "soft_bodies": [)" +
+                      block("jelly", R"("render": "plate.obj")") + "]")
+                  .find("is written as \"jelly_render\""),
+              std::string::npos);
+}
+
 TEST_F(SoftBodies, CountTetrahedraThatAreInsideOut)
 {
     // All vertices are held. The one inside a block of 2 x 2 x 2 cells moves out through a face.

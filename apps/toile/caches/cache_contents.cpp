@@ -116,7 +116,9 @@ void CacheContents::add_skin(const scenes::Scene& scene,
 {
     TriangleMesh skin;
     for (size_t k = 0; k < avatars.size(); ++k) {
-        if (std::holds_alternative<scene::Plane>(scene.avatars[k].shape))
+        const auto named = std::find_if(scene.avatars.begin(), scene.avatars.end(),
+                                        [&](const auto& avatar) { return avatar.name == avatars[k].first; });
+        if (std::holds_alternative<scene::Plane>(named->shape))
             continue;
         append(skin, avatars[k].second->positions, avatars[k].second->triangles);
         skinned_.push_back(k);

@@ -357,7 +357,9 @@ void describe(Certificate& certificate, const scenes::Scene& scene, const std::v
                                       largest_limit(*cloths[i].cloth) + certificate.limits.strain_margin,
                                       int(cloths[i].cloth->file_mesh().positions.size()),
                                       int(cloths[i].cloth->file_mesh().polygons.size())});
-    for (const std::string& name : scenes::surface_names(scene))
+    std::vector<std::string> names = scenes::surface_names(scene);
+    names.resize(size_t(simulated_count(scene)));
+    for (const std::string& name : names)
         if (std::none_of(cloths.begin(), cloths.end(),
                          [&](const CachedCloth& cached) { return cached.cloth->name == name; }))
             certificate.left_out.push_back(name);

@@ -68,7 +68,7 @@ std::vector<ClothInCache> caches_in(const std::filesystem::path& folder, const s
         files.push_back(file);
     }
     std::vector<ClothInCache> caches;
-    for (int surface = 0; surface < int(scenes::surface_names(scene).size()); ++surface)
+    for (int surface = 0; surface < simulated_count(scene); ++surface)
         if (const std::optional<size_t> checked = export_to_check(scene, entries, surface))
             caches.push_back({files[*checked], entries[*checked], surface});
     if (caches.empty())
@@ -145,6 +145,8 @@ std::vector<ClothInCache> named_caches(const std::vector<std::filesystem::path>&
     std::vector<ClothInCache> caches;
     for (const std::filesystem::path& file : files)
         for (const ClothInCache& cloth : cloths_of_cache(scene, file, named, unlisted)) {
+            if (cloth.surface >= simulated_count(scene))
+                continue; // follows a soft body, whose own surface is checked
             for (const ClothInCache& other : caches)
                 if (other.surface == cloth.surface)
                     throw InvalidInput(file.string() + ": is of the same cloth \"" +
@@ -152,6 +154,10 @@ std::vector<ClothInCache> named_caches(const std::vector<std::filesystem::path>&
                                        other.file.string() + "; give one cache of each cloth");
             caches.push_back(cloth);
         }
+    if (caches.empty())
+        throw InvalidInput(files.front().string() +
+                           ": has only a render surface, which nothing collides with; check the cache of its "
+                           "soft body");
     return caches;
 }
 

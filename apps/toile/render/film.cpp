@@ -74,6 +74,7 @@ Film Film::of_scene(const scenes::Scene& scene, const scenes::WorldOptions& opti
     film.surfaces_.assign(world.surfaces().begin(), world.surfaces().end());
     for (int i = 0; i < int(film.surfaces_.size()); ++i)
         film.add_surface(i, std::nullopt, {});
+    film.drop_replaced();
     return film;
 }
 
@@ -94,6 +95,7 @@ Film Film::of_caches(const scenes::Scene& scene, const std::vector<std::filesyst
             film.add_surface(in_cache.surface, cache, file);
         }
     }
+    film.drop_replaced();
     return film;
 }
 
@@ -122,13 +124,29 @@ void Film::add_surface(int index, std::optional<exports::PointCache> cache, cons
 {
     const scenes::ClothState& state = surfaces_[size_t(index)];
     const int solid = index - int(settings_.cloths.size()), soft = solid - int(settings_.solids.size());
+    const auto body =
+        std::find_if(settings_.soft_bodies.begin(), settings_.soft_bodies.end(), [&](const auto& other) {
+            return other.name == state.name || (other.render && other.render_name() == state.name);
+        });
     const scene::Cloth settings = solid < 0 ? settings_.cloths[size_t(index)] : scene::Cloth{};
     add_cloth(state.name, settings, state.triangles, state.positions, std::move(cache), file);
     tracks_.back().cloth = &state;
     apply_print(settings, state, tracks_.back().mesh);
     if (solid >= 0)
-        tracks_.back().mesh.material = body_material(soft < 0 ? settings_.solids[size_t(solid)].color
-                                                              : settings_.soft_bodies[size_t(soft)].color);
+        tracks_.back().mesh.material =
+            body_material(soft < 0 ? settings_.solids[size_t(solid)].color : body->color);
+}
+
+/// Removes soft bodies whose render surfaces are in the film.
+void Film::drop_replaced()
+{
+    const std::vector<std::string> shown = names();
+    std::erase_if(tracks_, [&](const Track& track) {
+        return std::any_of(settings_.soft_bodies.begin(), settings_.soft_bodies.end(), [&](const auto& body) {
+            return body.render && body.name == track.name &&
+                   std::find(shown.begin(), shown.end(), body.render_name()) != shown.end();
+        });
+    });
 }
 
 void Film::add_cloth(const std::string& name, const scene::Cloth& settings,

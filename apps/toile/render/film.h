@@ -90,6 +90,7 @@ private:
     };
 
     void add_surface(int index, std::optional<exports::PointCache> cache, const std::filesystem::path& file);
+    void drop_replaced();
     void add_cloth(const std::string& name, const scene::Cloth& settings,
                    const std::vector<Triangle>& triangles, const std::vector<Vec3>& start,
                    std::optional<exports::PointCache> cache, const std::filesystem::path& file);

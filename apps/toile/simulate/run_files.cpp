@@ -130,7 +130,7 @@ std::vector<std::string> RunFiles::notes() const
 
 std::vector<CachedCloth> RunFiles::cloths_to_check(const scenes::World& world) const
 {
-    const View<const scenes::ClothState> surfaces = world.surfaces();
+    const View<const scenes::ClothState> surfaces = world.simulated();
     std::vector<scene::Export> entries;
     for (const Cache& cache : caches_)
         entries.push_back(cache.target.entry);

@@ -126,7 +126,14 @@ void require_checkable(const SceneJob& job)
 {
     const std::vector<std::string> names = scenes::surface_names(job.scene);
     const std::vector<scene::Export> entries = exports_of(job.scene);
-    for (int surface = 0; surface < int(names.size()); ++surface) {
+    const auto is_simulated = [&](int surface) { return surface < simulated_count(job.scene); };
+    if (std::none_of(entries.begin(), entries.end(), [&](const scene::Export& entry) {
+            const std::vector<int> surfaces = surfaces_of(job.scene, entry);
+            return std::any_of(surfaces.begin(), surfaces.end(), is_simulated);
+        }))
+        throw InvalidInput(job.folder.string() + ": gets render surfaces only, which nothing collides with; "
+                                                 "export their soft bodies as well, or give --no-check");
+    for (int surface = 0; surface < simulated_count(job.scene); ++surface) {
         const std::string remedy =
             "; export \"" + names[size_t(surface)] + "\" to a .pc2 as well, or give --no-check";
         if (const std::optional<size_t> checked = export_to_check(job.scene, entries, surface)) {

@@ -139,7 +139,7 @@ int SceneRun::run(const InterruptGuard& interrupt)
     interrupt_ = &interrupt;
     RunFiles files(job_, world_, log_);
     int vertex_count = 0;
-    for (const auto& cloth : world_.surfaces())
+    for (const auto& cloth : world_.simulated())
         vertex_count += int(cloth.positions.size());
     RunReport report(job_.scene, vertex_count, world_.start(), world_.device());
 

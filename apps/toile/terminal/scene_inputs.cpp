@@ -35,8 +35,12 @@ void add_inputs(FilePlan& plan, const scenes::Scene& scene)
     }
     for (const scene::Solid& solid : scene.solids)
         add_file_of(plan, solid, "solid");
-    for (const scene::SoftBody& body : scene.soft_bodies)
-        plan.add_input(body.file, "the file of soft body \"" + body.name + "\"");
+    for (const scene::SoftBody& body : scene.soft_bodies) {
+        if (body.file)
+            plan.add_input(*body.file, "the file of soft body \"" + body.name + "\"");
+        if (body.render)
+            plan.add_input(*body.render, "the render surface of soft body \"" + body.name + "\"");
+    }
     for (const scene::Avatar& avatar : scene.avatars) {
         add_file_of(plan, avatar, "avatar");
         if (avatar.mesh)

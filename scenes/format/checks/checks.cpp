@@ -11,6 +11,7 @@
 #include "export/cache_format.h"
 #include "garment/fabric/fabric.h"
 #include "scenes/format/cache_files.h"
+#include "scenes/format/checks/body_checks.h"
 #include "scenes/format/checks/export_checks.h"
 #include "scenes/format/field.h"
 #include "scenes/format/names.h"
@@ -324,74 +325,6 @@ void check_cloths(const Document& document, const scenes::Scene& scene)
                             "resolution and subdivide make more than 5 million vertices; choose a " +
                                 std::string("coarser resolution"));
     }
-}
-
-// --- solids and soft bodies ---
-
-/// Checks names, which serve caches and friction pairs: none may be that of another object.
-void check_body_names(const Document& document, const std::string& list,
-                      const std::vector<std::string>& names, const std::vector<std::string>& others,
-                      const std::string& kinds)
-{
-    check_names(document, list, names);
-    for (size_t i = 0; i < names.size(); ++i)
-        if (contains(others, names[i]))
-            document.refuse(below(below(list, i), "name"),
-                            as_written(names[i]) + " is the name of a " + kinds + "; choose another name");
-}
-
-/// Checks what bodies that are simulated need of the rest of a scene.
-void check_contact_of_bodies(const Document& document, const scenes::Scene& scene, const std::string& list)
-{
-    if (!scene.contact.self)
-        document.refuse(below("contact", "self"),
-                        "false leaves " + list + " without contact; remove it or the " + list);
-    const SolverMethod method = scene.solver.method;
-    if (replaces_minimiser(method))
-        document.refuse(below("solver", "method"),
-                        as_written(word_of(method)) +
-                            " moves cloth only; choose another method, or remove the " + list);
-}
-
-void check_solids(const Document& document, const scenes::Scene& scene)
-{
-    std::vector<std::string> others = names_of(scene.cloths);
-    for (const std::string& avatar : names_of(scene.avatars))
-        others.push_back(avatar);
-    check_body_names(document, "solids", names_of(scene.solids), others, "cloth or avatar");
-    for (size_t i = 0; i < scene.solids.size(); ++i) {
-        const Solid& solid = scene.solids[i];
-        const std::string key_path = below("solids", i);
-        if (const auto* file = std::get_if<std::filesystem::path>(&solid.shape))
-            check_extension(document, below(key_path, "file"), *file, {".obj", ".vtk"});
-        else if (solid.unit != LengthUnit::Metre)
-            document.refuse(below(key_path, "unit"), "only a file has a unit; lengths here are in metres");
-    }
-    if (!scene.solids.empty())
-        check_contact_of_bodies(document, scene, "solids");
-}
-
-void check_soft_bodies(const Document& document, const scenes::Scene& scene)
-{
-    std::vector<std::string> others = names_of(scene.cloths);
-    for (const auto& names : {names_of(scene.avatars), names_of(scene.solids)})
-        others.insert(others.end(), names.begin(), names.end());
-    check_body_names(document, "soft_bodies", names_of(scene.soft_bodies), others, "cloth, avatar or solid");
-    for (size_t i = 0; i < scene.soft_bodies.size(); ++i) {
-        const SoftBody& body = scene.soft_bodies[i];
-        const std::string key_path = below("soft_bodies", i);
-        check_extension(document, below(key_path, "file"), body.file, {".msh", ".vtk", ".obj"});
-        const bool is_surface = lower_case_extension(body.file) == ".obj";
-        if (is_surface && !body.cell)
-            document.refuse(key_path, as_written(body.file.string()) +
-                                          " is a surface; say how fine it is filled with tetrahedra: "
-                                          "\"cell\": 0.02 has edges of 2 cm");
-        if (!is_surface && body.cell)
-            document.refuse(below(key_path, "cell"), "only a surface (.obj) is filled with tetrahedra; " +
-                                                         as_written(body.file.string()) + " has them");
-    }
-    if (!scene.soft_bodies.empty())
-        check_contact_of_bodies(document, scene, "soft bodies");
 }
 
 // --- fabrics ---

@@ -15,7 +15,7 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
                                  int first_surface, int between)
     : gravity_(scene.gravity), between_(between), first_inner_(first_surface + between)
 {
-    std::vector<LoadedSoftBody> loaded = load_soft_bodies(scene.soft_bodies);
+    std::vector<LoadedSoftBody> loaded = load_soft_bodies(scene.soft_bodies, colliders);
     for (const LoadedSoftBody& body : loaded)
         first_inner_ += int(body.surface.positions.size());
 
@@ -34,12 +34,16 @@ SceneSoftBodies::SceneSoftBodies(const Scene& scene, const std::vector<Collider>
         body.surface = std::move(loaded[i].surface);
         body.rest = std::move(loaded[i].rest);
         body.positions = std::move(loaded[i].positions);
+        body.render = std::move(loaded[i].render);
         next_surface += body.surface_count();
         next_inner += body.vertex_count() - body.surface_count();
         for (const volume::Tet& tet : body.rest.tets)
             all.tets.push_back(body.unknowns(tet));
         lame.resize(all.tets.size(),
                     volume::ElasticMaterial{settings.young, settings.poisson}.lame(loaded[i].source));
+        if (settings.core)
+            body.core.emplace(*settings.core, body.positions, colliders,
+                              scene.source.string() + ": soft_bodies[" + std::to_string(i) + "].core");
         add_attachments(scene, colliders, body);
     }
     all.positions.resize(next_inner, Vec3::Zero());
@@ -92,6 +96,12 @@ int SceneSoftBodies::inverted_count(int body, View<const Vec3> x) const
     return int(std::count_if(of.rest.tets.begin(), of.rest.tets.end(), [&](const volume::Tet& tet) {
         return !(volume::volume_of(of.unknowns(tet), x) > 0.0);
     }));
+}
+
+std::vector<Vec3> SceneSoftBodies::render_positions(int body, View<const Vec3> x) const
+{
+    const Body& of = bodies_[body];
+    return of.render->embedding.at([&](int v) { return x[of.unknown(v)]; });
 }
 
 void SceneSoftBodies::add_springs()
@@ -156,6 +166,9 @@ void SceneSoftBodies::mark_fixed(double t_t1, View<unsigned char> fixed) const
     for (const Body& body : bodies_) {
         for (int v = 0; v < body.vertex_count(); ++v)
             fixed[body.unknown(v)] = 0;
+        if (body.core)
+            for (const int v : body.core->vertices())
+                fixed[body.unknown(v)] = 1;
         for (const AttachmentConstraint& attachment : body.attachments)
             if (!attachment.stiffness() && attachment.is_active_at(t_t1))
                 for (const int v : attachment.vertices())
@@ -165,6 +178,12 @@ void SceneSoftBodies::mark_fixed(double t_t1, View<unsigned char> fixed) const
 
 void SceneSoftBodies::update_targets(double t_t1, const std::vector<Collider>& colliders, View<Vec3> targets)
 {
+    for (Body& body : bodies_)
+        if (body.core) {
+            body.core->follow(colliders);
+            for (int k = 0; k < int(body.core->vertices().size()); ++k)
+                targets[body.unknown(body.core->vertices()[k])] = body.core->target(k);
+        }
     int spring = 0;
     for (Body& body : bodies_)
         for (AttachmentConstraint& attachment : body.attachments) {

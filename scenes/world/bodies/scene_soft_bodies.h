@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "garment/energy/springs.h"
 #include "scenes/colliders/attachment_constraint.h"
+#include "scenes/colliders/core_constraint.h"
 #include "scenes/surfaces/load_soft_bodies.h"
 #include "volume/energy/elastic_solid.h"
 
@@ -26,6 +28,14 @@ public:
 
     int count() const { return int(bodies_.size()); }
     const ClothState& state(int body) const { return bodies_[body].surface; } ///< at the start
+
+    /// Surface of a body for pictures and caches at the start; null: none.
+    const ClothState* render_state(int body) const
+    {
+        return bodies_[body].render ? &bodies_[body].render->state : nullptr;
+    }
+    /// Its positions [m]. @param x  [unknowns] [m]
+    std::vector<Vec3> render_positions(int body, View<const Vec3> x) const;
 
     int surface_count() const { return first_inner_ - between_ - bodies_.front().first_surface; }
     int inner_count() const { return unknown_count() - first_inner_; }
@@ -63,6 +73,8 @@ private:
         ClothState surface;
         volume::TetMesh rest;        ///< [m] in its own axes
         std::vector<Vec3> positions; ///< [vertices] at the start [m]
+        std::optional<RenderSurface> render;
+        std::optional<CoreConstraint> core;
         std::vector<AttachmentConstraint> attachments;
 
         int surface_count() const { return int(surface.positions.size()); }

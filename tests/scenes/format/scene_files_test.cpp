@@ -117,7 +117,7 @@ TEST(SceneFiles, ReadsTheDemoScenes)
 {
     EXPECT_EQ(read_all(kSource / "scenes/demo"), 2);
     EXPECT_EQ(read_all(kSource / "scenes/contact"), 7);
-    EXPECT_EQ(read_all(kSource / "scenes/details"), 3);
+    EXPECT_EQ(read_all(kSource / "scenes/details"), 4);
     EXPECT_EQ(read_all(kSource / "scenes/benchmarks"), 3);
 }
 
