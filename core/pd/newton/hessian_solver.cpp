@@ -79,6 +79,7 @@ HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, const Stop& stop
         rz = precondition();
         if (!(rz > 0.0)) {
             outcome.is_solved = rz == 0.0;
+            outcome.error = outcome.is_solved ? 0.0 : outcome.error;
             break;
         }
         const double beta = previous > 0.0 ? rz / previous : 0.0;

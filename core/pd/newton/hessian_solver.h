@@ -30,12 +30,13 @@ public:
     /// Errors of d, relative to d in the norm of K [-]: one with which a solve ends, and the largest with
     /// which it may end. Without the latter, cloth that creeps towards its equilibrium would stop short of
     /// it.
-    static constexpr double kRelativeError = 0.2, kLargestRelativeError = 0.5;
+    static constexpr double kRelativeError = 0.2, kMaxRelativeError = 0.5;
 
     /// When a solve ends before kRelativeError is reached.
     struct Stop {
         double error = 0.0;        ///< [J] Outcome::error that is small enough
         double inverse_ritz = 0.0; ///< [-] RitzValue::inverse() of similar solves: a lower bound
+        double size = 0.0;         ///< [J] Outcome::size of the direction that this solve corrects
     };
 
     struct Outcome {
@@ -51,9 +52,10 @@ public:
             ++iterations;
             ritz.add(step, beta);
             size += step * rz;
-            error = rz * std::fmax(ritz.inverse(), stop.inverse_ritz);
-            const auto is_within = [&](double part) { return error <= part * part * size; };
-            is_solved = iterations > 1 && is_within(kLargestRelativeError) &&
+            error = rz * (ritz.inverse() < stop.inverse_ritz ? stop.inverse_ritz : ritz.inverse());
+            const double whole = std::fmax(size, stop.size);
+            const auto is_within = [&](double part) { return error <= part * part * whole; };
+            is_solved = iterations > 1 && is_within(kMaxRelativeError) &&
                         (is_within(kRelativeError) || error <= stop.error);
         }
     };
@@ -68,7 +70,6 @@ private:
     double multiply();
     void add_whole_set();
     double precondition();
-    int cluster_at(int row) const;
 
     AffineSpace coarse_;
     HessianRows rows_;

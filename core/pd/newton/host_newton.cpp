@@ -1,7 +1,6 @@
 #include "core/pd/newton/host_newton.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/error.h"
 #include "core/compute/parallel.h"
@@ -15,9 +14,10 @@ void HostNewton::set_problem(const Problem& problem)
     problem_ = problem;
     for (std::vector<Vec3>* field : {&gradient_, &direction_, &trial_, &trial_gradient_})
         field->resize(problem.x.size());
-    stiffness_ = 0.0;
+    double stiffness = 0.0;
     for (int i = 0; i < problem.x.size(); ++i)
-        stiffness_ += problem.fixed[i] ? 0.0 : problem.inertia[i];
+        stiffness += problem.fixed[i] ? 0.0 : problem.inertia[i];
+    stop_.begin_step(stiffness, problem.dt);
 }
 
 double HostNewton::evaluate() { return problem_.objective->evaluate(problem_.x, gradient_); }
@@ -34,8 +34,7 @@ NewtonSpace::Solution HostNewton::find_direction(bool is_first, double error)
     K->linearise(problem_.x, Definiteness::Projected);
     solver_.update(K->parts(), is_first);
     correction_.resize(problem_.x.size());
-    if (is_first)
-        inverse_ritz_ = 0.0;
+    stop_.begin_direction(is_first);
     const Solution solution = solve(gradient_, error);
     direction_ = correction_;
     return solution;
@@ -43,12 +42,8 @@ NewtonSpace::Solution HostNewton::find_direction(bool is_first, double error)
 
 NewtonSpace::Solution HostNewton::solve(View<const Vec3> gradient, double error)
 {
-    const double moved = error * problem_.dt;
-    const HessianSolver::Outcome outcome =
-        solver_.solve(gradient, {stiffness_ * moved * moved, inverse_ritz_}, correction_);
-    inverse_ritz_ = std::max(inverse_ritz_, outcome.ritz.inverse());
-    const double error_left = stiffness_ > 0.0 ? std::sqrt(outcome.error / stiffness_) / problem_.dt : 0.0;
-    return {outcome.iterations, outcome.is_solved, error_left, -0.5 * dot(gradient, correction_)};
+    const HessianSolver::Outcome outcome = solver_.solve(gradient, stop_.at(error), correction_);
+    return {outcome.iterations, outcome.is_solved, stop_.take(outcome), -0.5 * dot(gradient, correction_)};
 }
 
 bool HostNewton::has_contact()

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/pd/energy/active_set_energy.h"
-#include "core/pd/newton/hessian_solver.h"
+#include "core/pd/newton/direction_stop.h"
 #include "core/pd/newton/newton_space.h"
 
 namespace toile {
@@ -53,8 +53,7 @@ private:
 
     Problem problem_;
     HessianSolver solver_;
-    double stiffness_ = 0.0;    ///< [N/m] of the free vertices' inertia
-    double inverse_ritz_ = 0.0; ///< largest of the minimisation, see HessianSolver::Stop
+    DirectionStop stop_;
     std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, kept_;
 
     // Contact ahead, see NewtonSpace::model().

@@ -13,7 +13,7 @@ namespace toile {
 namespace {
 
 /// Error of a direction that is small enough, relative to the tolerance [-].
-constexpr double kError = 0.3;
+constexpr double kDirectionError = 0.3;
 
 /// Newton step, relative to the tolerance [-], from which on the minimum is near.
 constexpr double kNear = 10.0;
@@ -22,9 +22,9 @@ constexpr double kNear = 10.0;
 /// is made although it is small: unbalanced forces that no step follows would never come to balance.
 constexpr double kNegligible = 0.03;
 
-/// Bound on the estimated number of steps to the minimum [-]: shorter ones than this part of the tolerance
-/// end in any case.
-constexpr double kMostSteps = 1.0 / kNegligible;
+/// Largest estimate of the number of steps to the minimum [-]. A step below kNegligible of the tolerance has
+/// converged whatever the estimate.
+constexpr double kMaxSteps = 1.0 / kNegligible;
 
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
@@ -129,15 +129,15 @@ double steps_to_minimum(const NewtonSpace::Trial& trial, double step)
     if (step == 0.0)
         return 1.0; // rounding hides the rest
     const double curvature = (trial.end_slope - trial.slope) / step;
-    return curvature > 0.0 ? std::clamp(-trial.slope / curvature, 1.0, kMostSteps) : kMostSteps;
+    return curvature > 0.0 ? std::clamp(-trial.slope / curvature, 1.0, kMaxSteps) : kMaxSteps;
 }
 
 /// Makes a Newton step.
 /// @return the accepted part of it, 0 if there is none
 double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::Outcome& outcome)
 {
-    const NewtonSpace::Solution direction =
-        find_corrected_direction(space, outcome.iterations == 0, kError * settings.tolerance, outcome.value);
+    const NewtonSpace::Solution direction = find_corrected_direction(
+        space, outcome.iterations == 0, kDirectionError * settings.tolerance, outcome.value);
     NewtonSpace::Trial trial = space.try_step(1.0);
     LineSearch search{outcome.value, trial.slope};
     double step = 0.0;

@@ -9,8 +9,9 @@ namespace toile {
 /// Inverse of the smallest Ritz value of conjugate gradients with the preconditioner P, a lower bound on that
 /// of the smallest eigenvalue of P A [-]. It estimates the error e of an iterate with the residual r:
 ///
-///   e . A e <= inverse * r . P r
+///   e . A e ~ inverse * r . P r
 ///
+/// With the eigenvalue itself this is a bound. The estimate may be too low until the eigenvalue is seen.
 /// Column by column of the triangular factor of the Lanczos matrix, by the incremental estimator of norms
 /// [Duff & Voemel 2002], as in [Meurant & Tichy 2019, sec. 5].
 class RitzValue {

@@ -39,6 +39,7 @@ void DeviceNewton::set_problem(const Problem& problem)
                                                                  problem.fixed, problem.dt},
                                               start_report_.next(), sums_);
     start_ = start_report_.await();
+    stop_.begin_step(start_.stiffness, problem.dt);
 }
 
 BeginNewtonTrial DeviceNewton::begin_trial()
@@ -107,8 +108,7 @@ NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double error)
 {
     freeze_here();
     solver_.update(problem_.x.device(), problem_.inertia, active(), is_first);
-    if (is_first)
-        inverse_ritz_ = 0.0;
+    stop_.begin_direction(is_first);
     const Solution solution = solve(gradient_.view(), error);
     parallel_for(space_, "newton/copy_direction", direction_.size(),
                  CopyDirection{solver_.direction(), direction_.view()});
@@ -117,17 +117,12 @@ NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double error)
 
 NewtonSpace::Solution DeviceNewton::solve(View<const Vec3> gradient, double error)
 {
-    const double moved = error * problem_.dt;
-    const HessianSolver::Outcome outcome =
-        solver_.solve(gradient, {start_.stiffness * moved * moved, inverse_ritz_});
-    inverse_ritz_ = std::max(inverse_ritz_, outcome.ritz.inverse());
-    const double error_left =
-        start_.stiffness > 0.0 ? std::sqrt(outcome.error / start_.stiffness) / problem_.dt : 0.0;
+    const HessianSolver::Outcome outcome = solver_.solve(gradient, stop_.at(error));
     const double promised = active()
                                 ? parallel_sum(space_, "newton/decrease", gradient.size(), 0.0,
                                                PromisedDecrease{gradient, solver_.direction()}, decrease_)
                                 : 0.0;
-    return {outcome.iterations, outcome.is_solved, error_left, 0.5 * promised};
+    return {outcome.iterations, outcome.is_solved, stop_.take(outcome), 0.5 * promised};
 }
 
 /// Evaluates contact alone, and freezes its terms.

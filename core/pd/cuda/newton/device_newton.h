@@ -5,6 +5,7 @@
 #include "core/pd/cuda/newton/newton_kernels.h"
 #include "core/pd/cuda/newton/solver.h"
 #include "core/pd/energy/active_set_energy.h"
+#include "core/pd/newton/direction_stop.h"
 
 namespace toile {
 
@@ -77,7 +78,7 @@ private:
     DeviceArray<PaddedVec3> direction_; ///< [vertices] [m]
 
     // Contact ahead, see NewtonSpace::model().
-    double inverse_ritz_ = 0.0; ///< largest of the minimisation, see HessianSolver::Stop
+    DirectionStop stop_;
     double contact_here_ = 0.0; ///< [J] contact's energy at the current point
     DeviceArray<PaddedVec3> base_;
     DeviceArray<Vec3> gradient_without_contact_, contact_gradient_, model_gradient_;

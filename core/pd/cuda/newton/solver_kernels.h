@@ -172,6 +172,7 @@ struct FindNewtonStep {
         if (!(sums.r_z > 0.0) || !(all.pKp > 0.0)) {
             all.is_over = true;
             all.outcome.is_solved = sums.r_z == 0.0;
+            all.outcome.error = all.outcome.is_solved ? 0.0 : all.outcome.error;
             all.advances = false;
             return;
         }
