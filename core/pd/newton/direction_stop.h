@@ -20,7 +20,6 @@ public:
     }
     void begin_direction(bool is_first_of_step)
     {
-        size_ = 0.0;
         if (is_first_of_step)
             inverse_ritz_ = 0.0;
     }
@@ -29,20 +28,19 @@ public:
     HessianSolver::Stop at(double error) const
     {
         const double moved = error * dt_;
-        return {stiffness_ * moved * moved, inverse_ritz_, size_};
+        return {stiffness_ * moved * moved, inverse_ritz_};
     }
 
-    /// Takes a solve, for those that correct its direction. @return its error [m/s]
+    /// Takes a solve, for those that follow. @return its error [m/s]
     double take(const HessianSolver::Outcome& outcome)
     {
         inverse_ritz_ = std::max(inverse_ritz_, outcome.ritz.inverse());
-        size_ = std::max(size_, outcome.size);
         return stiffness_ > 0.0 ? std::sqrt(outcome.error / stiffness_) / dt_ : 0.0;
     }
 
 private:
     double stiffness_ = 0.0, dt_ = 0.0;
-    double inverse_ritz_ = 0.0, size_ = 0.0; ///< see HessianSolver::Stop
+    double inverse_ritz_ = 0.0; ///< largest of the minimisation, see HessianSolver::Stop
 };
 
 } // namespace toile

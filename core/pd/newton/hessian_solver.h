@@ -36,7 +36,6 @@ public:
     struct Stop {
         double error = 0.0;        ///< [J] Outcome::error that is small enough
         double inverse_ritz = 0.0; ///< [-] RitzValue::inverse() of similar solves: a lower bound
-        double size = 0.0;         ///< [J] Outcome::size of the direction that this solve corrects
     };
 
     struct Outcome {
@@ -53,8 +52,7 @@ public:
             ritz.add(step, beta);
             size += step * rz;
             error = rz * (ritz.inverse() < stop.inverse_ritz ? stop.inverse_ritz : ritz.inverse());
-            const double whole = std::fmax(size, stop.size);
-            const auto is_within = [&](double part) { return error <= part * part * whole; };
+            const auto is_within = [&](double part) { return error <= part * part * size; };
             is_solved = iterations > 1 && is_within(kMaxRelativeError) &&
                         (is_within(kRelativeError) || error <= stop.error);
         }
