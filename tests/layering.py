@@ -110,6 +110,7 @@ MAY_INCLUDE |= {
     # Nothing that ships includes research.
     "research/linear": CORE,
     "research/methods": CORE + ["garment"],
+    "research/methods/jgs2": CORE,
     "research/methods/xpbd": CORE + ["garment", "research/methods"],
     "research/methods/vbd": CORE + ["garment", "research/methods"],
     "research/paper_rule": CORE + ["quadrature2d"],

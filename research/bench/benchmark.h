@@ -28,6 +28,7 @@ struct BenchOptions {
 int bench_accuracy(const BenchOptions& options);
 int bench_contact(const BenchOptions& options);
 int bench_error_time(const BenchOptions& options);
+int bench_figures(const BenchOptions& options);
 int bench_gpu(const BenchOptions& options);
 int bench_paper(const BenchOptions& options);
 int bench_scaling(const BenchOptions& options);

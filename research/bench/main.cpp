@@ -39,6 +39,8 @@ constexpr Benchmark kBenchmarks[] = {
     {"error_time",
      "Whole scenes at default and other settings, and by methods of the literature: error, milliseconds",
      bench_error_time, kOnly},
+    {"figures", "The paper's figures 7 to 9, 11 and 12 on a CPU: residual and error by iteration",
+     bench_figures, kOnly},
     {"gpu", "One GPU: the global solve by pass, beside the CPU and the card's bandwidth", bench_gpu, kOnly},
     {"paper", "The volumetric scenes of the paper's Table 1 on one GPU, beside its figures", bench_paper,
      kScenes},
@@ -67,7 +69,7 @@ void add_options(CLI::App& add, BenchOptions& options, unsigned which)
     if (which & kOnly)
         add.add_option("--only", options.only, "Only cases whose name contains this");
     if (which & kMesh)
-        add.add_option("--mesh", options.mesh, "sheet, skirt or drape, or NAME:VERTICES");
+        add.add_option("--mesh", options.mesh, "sheet, skirt, drape or bar, or NAME:VERTICES");
     if (which & kScenes) {
         add.add_option("scenes", options.scenes, "Scene files (.json)");
         add.add_option("--frames", options.frames, "Samples of each scene, instead of its own")

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "research/paper_rule/uv_surface.h"
+#include "research/paper_rule/voxelised_mesh.h"
 
 namespace toile::research {
 
-/// Nested domains of one vertex; the far field is the rest of the surface.
+/// Nested domains of one vertex; the far field is the rest of the mesh.
+template <int Dim>
 struct FieldDomains {
-    PixelBox near, middle; ///< near lies in middle, the vertex lies in near
+    VoxelBox<Dim> near, middle; ///< near lies in middle, the vertex lies in near
 };
 
 /// Settings of the growth of boxes in field_domains().
@@ -20,16 +21,17 @@ struct DomainSettings {
     bool only_first_side = false;
 };
 
-/// Near and middle field of `vertex` [multilevel quadrature for PD, Alg. 1, sec. 5.4]. The pixel of the
-/// vertex grows by slices that the surface covers everywhere, always along the axis with the wider
-/// cross-section. It ends when the box holds the wanted fraction of I = integral of |u|, interpolated
-/// linearly on the triangles.
+/// Near and middle field of `vertex` [multilevel quadrature for PD, Alg. 1, sec. 5.4]. The voxel of the
+/// vertex grows by slices that the mesh covers everywhere, along the axis with the widest cross-section that
+/// is not blocked. It ends when the box holds the wanted fraction of I = integral of |u|, interpolated
+/// linearly on the simplices.
 ///
-/// The boxes hold at least their fraction (by less than one slice more), or, if the border of the surface
-/// stops them, as much as they can. Near is a stage of the growth of middle, so that the two are nested; the
-/// paper does not say how it finds its near box.
+/// The boxes hold at least their fraction (by less than one slice more), or, if the border of the mesh stops
+/// them, as much as they can. Near is a stage of the growth of middle, so that the two are nested; the paper
+/// does not say how it finds its near box.
 /// @param u  [vertices] the kernel row u(i) [-]
-FieldDomains field_domains(const UvSurface& surface, int vertex, View<const double> u,
-                           const DomainSettings& settings);
+template <int Dim>
+FieldDomains<Dim> field_domains(const VoxelisedMesh<Dim>& mesh, int vertex, View<const double> u,
+                                const DomainSettings& settings);
 
 } // namespace toile::research

@@ -15,10 +15,14 @@ struct QuadraturePoint {
 };
 
 /// Gauss-Legendre rule of `order` points on [-1, 1]: exact for polynomials of degree 2 order - 1.
-/// @param order  3 or 4
+/// @param order  2, 3 or 4
 inline std::vector<QuadraturePoint<1>> gauss_legendre_line(int order)
 {
-    TOILE_ASSERT(order == 3 || order == 4);
+    TOILE_ASSERT(order >= 2 && order <= 4);
+    if (order == 2) {
+        const double x = std::sqrt(1.0 / 3.0);
+        return {{Point<1>(-x), 1.0}, {Point<1>(x), 1.0}};
+    }
     if (order == 3) {
         const double x = std::sqrt(3.0 / 5.0);
         return {{Point<1>(-x), 5.0 / 9.0}, {Point<1>(0.0), 8.0 / 9.0}, {Point<1>(x), 5.0 / 9.0}};
@@ -51,6 +55,23 @@ std::vector<QuadraturePoint<Dim>> gauss_legendre(const Box<Dim>& box, int order)
         points = std::move(finer);
     }
     return points;
+}
+
+/// Boxes that fill `outer` around `inner`, which lies in it: two beside each pair of faces, those of the
+/// first axis over the whole cross-section. Boxes without volume are left out.
+template <int Dim>
+std::vector<Box<Dim>> boxes_around(const Box<Dim>& inner, Box<Dim> outer)
+{
+    std::vector<Box<Dim>> boxes;
+    for (int a = 0; a < Dim; ++a) {
+        Box<Dim> below = outer, above = outer;
+        below.max()[a] = outer.min()[a] = inner.min()[a];
+        above.min()[a] = outer.max()[a] = inner.max()[a];
+        for (const Box<Dim>& box : {below, above})
+            if (box.volume() > 0.0)
+                boxes.push_back(box);
+    }
+    return boxes;
 }
 
 /// sum_k weight_k phi(xi_k): plain Gauss-Legendre if `points` are its points.

@@ -148,11 +148,15 @@ std::vector<Point<Dim>> face_centers(const Box<Dim>& box)
 
 template struct Gaussian<1>;
 template struct Gaussian<2>;
+template struct Gaussian<3>;
 template Gaussian<1> fit_gaussian(const Point<1>&, const Box<1>&, const GaussianTarget<1>&);
 template Gaussian<2> fit_gaussian(const Point<2>&, const Box<2>&, const GaussianTarget<2>&);
+template Gaussian<3> fit_gaussian(const Point<3>&, const Box<3>&, const GaussianTarget<3>&);
 template std::vector<double> amplitude_weights(const Gaussian<1>&, const GaussianTarget<1>&);
 template std::vector<double> amplitude_weights(const Gaussian<2>&, const GaussianTarget<2>&);
+template std::vector<double> amplitude_weights(const Gaussian<3>&, const GaussianTarget<3>&);
 template std::vector<Point<1>> face_centers(const Box<1>&);
 template std::vector<Point<2>> face_centers(const Box<2>&);
+template std::vector<Point<3>> face_centers(const Box<3>&);
 
 } // namespace toile::research

@@ -8,7 +8,7 @@
 
 namespace toile::research {
 
-/// Point of the line (Dim = 1) or the plane (Dim = 2) [m].
+/// Point of the line, the plane or space [m].
 template <int Dim>
 using Point = Eigen::Matrix<double, Dim, 1>;
 

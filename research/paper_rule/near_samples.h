@@ -10,8 +10,9 @@ namespace toile::research {
 /// then one by one the vertex of the near field with the largest distance from those chosen so far. Fewer if
 /// the near field has fewer vertices.
 ///
-/// Distances are straight in the UV plane, where the near field is a rectangle without holes; the paper takes
-/// geodesic ones.
-std::vector<int> near_samples(const UvSurface& surface, const PixelBox& near, int vertex, int count);
+/// Distances are straight, since the near field is a box without holes; the paper takes geodesic ones.
+template <int Dim>
+std::vector<int> near_samples(const VoxelisedMesh<Dim>& mesh, const VoxelBox<Dim>& near, int vertex,
+                              int count);
 
 } // namespace toile::research

@@ -23,8 +23,9 @@ void require(bool is_usable, const std::string& what, double value, const std::s
         throw InvalidInput("paper rule: " + what + " is " + std::to_string(value) + "; " + range + " needed");
 }
 
-void require_usable(const RuleSettings& rule)
+void require_usable(const PaperRule::Settings& settings)
 {
+    const RuleSettings& rule = settings.rule;
     const DomainSettings& domains = rule.domains;
     require(domains.middle_influence > 0.0 && domains.middle_influence <= 1.0, "middle_influence",
             domains.middle_influence, "above 0 and at most 1");
@@ -34,6 +35,7 @@ void require_usable(const RuleSettings& rule)
     require(rule.penalty >= 0.0, "penalty", rule.penalty, "at least 0");
     require(rule.order == 3 || rule.order == 4, "order", rule.order, "3 or 4");
     require(rule.cluster_count >= 1, "cluster_count", rule.cluster_count, "at least 1");
+    require(settings.applications >= 1, "applications", settings.applications, "at least 1");
 }
 
 /// Runs a kernel with one CPU thread per row.
@@ -46,10 +48,20 @@ void for_each_row(const char* name, int count, const Kernel& kernel)
 } // namespace
 
 PaperRule::PaperRule(View<const Vec2> uv, View<const Triangle> triangles, Settings settings)
-    : settings_(settings), surface_(uv, triangles, settings.pixels)
+    : settings_(settings), mesh_(VoxelisedMesh<2>(uv, triangles, settings.voxels))
 {
-    require_usable(settings.rule);
-    require(settings.applications >= 1, "applications", settings.applications, "at least 1");
+    require_usable(settings);
+}
+
+PaperRule::PaperRule(View<const Vec3> positions, View<const Simplex<3>> tets, Settings settings)
+    : settings_(settings), mesh_(VoxelisedMesh<3>(positions, tets, settings.voxels))
+{
+    require_usable(settings);
+}
+
+int PaperRule::vertex_count() const
+{
+    return std::visit([](const auto& mesh) { return mesh.vertex_count(); }, mesh_);
 }
 
 PaperRule::Table::Table(const std::vector<std::vector<WeightedVertex>>& rows) : first(1, 0)
@@ -72,10 +84,10 @@ PaperRule::Table PaperRule::table_of(const SparseMatrix& H)
 
 void PaperRule::update(const SparseMatrix& H, View<const unsigned char> fixed)
 {
-    const int n = surface_.vertex_count();
+    const int n = vertex_count();
     if (H.rows() != n || H.cols() != n || fixed.size() != n)
         throw InvalidInput("paper rule: H has " + std::to_string(H.rows()) + " rows and " +
-                           std::to_string(fixed.size()) + " vertices may be fixed, but the surface has " +
+                           std::to_string(fixed.size()) + " vertices may be fixed, but the mesh has " +
                            std::to_string(n));
     const Cholesky cholesky(H);
     const InverseColumns inverse(cholesky.factor());
@@ -114,7 +126,9 @@ std::vector<WeightedVertex> PaperRule::tabulate(int vertex, std::vector<double> 
     for (double& value : G)
         value /= diagonal;
     const std::vector<double>& u = G;
-    std::vector<WeightedVertex> weights = rule_weights(surface_, vertex, u, settings_.rule);
+    std::vector<WeightedVertex> weights = std::visit(
+        [&](const auto& mesh) { return rule_weights(mesh, vertex, View<const double>(u), settings_.rule); },
+        mesh_);
 
     // Divide by the rule's denominator, which is l_i times its weight of vertex i.
     double self_weight = 1.0;

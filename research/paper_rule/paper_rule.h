@@ -1,5 +1,6 @@
 #pragma once
 
+#include <variant>
 #include <vector>
 
 #include "core/linear/global_solver.h"
@@ -14,31 +15,35 @@ enum class Denominator {
     Exact,    ///< 1 / G_ii
 };
 
-/// Global step by the paper's multilevel quadrature, word for word, on triangle surfaces [multilevel
-/// quadrature for PD, eq. 7]:
+/// Global step by the paper's multilevel quadrature, word for word, on triangle surfaces and on
+/// tetrahedra [multilevel quadrature for PD, eq. 7]:
 ///
 ///   x_i = u(i)^T b / (u(i)^T H u(i)),  u(i) = G(:, i) / G_ii
 ///
-/// The inner product is taken from about 43 vertices (rule_weights.h). Everything but b is tabulated, so that
-/// an application is one gather.
+/// The inner product is taken from about 43 vertices of a surface, 124 of a solid (rule_weights.h).
+/// Everything but b is tabulated, so that an application is one gather.
 ///
 /// For comparison only: one application is right to some ten per cent for smooth b. x += solve(b - H x)
-/// diverges on every cloth measured. So does the local/global loop around it, unless each step is
+/// diverges on every body measured. So does the local/global loop around it, unless each step is
 /// line-searched. See docs/theory/paper_rule.md. Unsymmetric.
 class PaperRule : public GlobalSolver {
 public:
     struct Settings {
         RuleSettings rule;
         Denominator denominator = Denominator::SameRule;
-        int pixels = 64;      ///< of Alg. 1 along the longer side of the UV bounding box
+        int voxels = 64;      ///< of Alg. 1 along the longest side of the bounding box
         int applications = 1; ///< per solve, at least 1; from the second on x += rule(b - H x)
     };
 
     /// @param uv         [vertices x 2] positions in the plane [m]
     /// @param triangles  [triangles] counter-clockwise in the plane
-    /// @throws InvalidInput  as UvSurface does, or naming the first setting that is out of its range
+    /// @throws InvalidInput  as VoxelisedMesh does, or naming the first setting that is out of its range
     PaperRule(View<const Vec2> uv, View<const Triangle> triangles, Settings settings);
     PaperRule(View<const Vec2> uv, View<const Triangle> triangles) : PaperRule(uv, triangles, Settings{}) {}
+
+    /// @param positions  [vertices] at rest [m]
+    /// @param tets       [tets] positively oriented
+    PaperRule(View<const Vec3> positions, View<const Simplex<3>> tets, Settings settings);
 
     /// Factors H and tabulates the rule of every free vertex. O(n^2) time: n solves, and n clusterings of the
     /// far field.
@@ -61,6 +66,8 @@ public:
     }
 
 private:
+    int vertex_count() const;
+
     /// Rows of weights in one array.
     struct Table {
         std::vector<int> first; ///< [vertices + 1] into entries
@@ -74,7 +81,7 @@ private:
     static Table table_of(const SparseMatrix& H);
 
     Settings settings_;
-    UvSurface surface_;
+    std::variant<VoxelisedMesh<2>, VoxelisedMesh<3>> mesh_;
     Table rule_, H_;
 };
 

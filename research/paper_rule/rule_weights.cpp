@@ -9,66 +9,108 @@ namespace toile::research {
 
 namespace {
 
-/// Weights of phi: the three fields one after the other; a vertex may occur several times.
-std::vector<WeightedVertex> weights_of_density(const UvSurface& surface, int vertex, View<const double> u,
-                                               const RuleSettings& settings)
-{
-    const NearField field = near_field(surface, vertex, u, settings);
-    const std::vector<QuadraturePoint<2>> points = gauss_legendre(field.middle, settings.order);
+/// Points per axis of the alternatives in figures 7 and 8.
+constexpr int kNearOrder = 4;
+constexpr int kSubdividedOrder = 2;
 
-    // Near: the amplitude is a sum over samples. The Gaussian counts for its integral less the points'
-    // estimate of it.
-    std::vector<WeightedVertex> weights;
-    Gaussian<2> unit = field.gaussian;
+/// Rule for near and middle field in terms of phi and of the Gaussian.
+template <int Dim>
+struct NearMiddleRule {
+    std::vector<QuadraturePoint<Dim>> points; ///< of phi
+    double of_amplitude = 0.0;                ///< weight of the Gaussian's amplitude [m^Dim]
+};
+
+/// @param unit  the Gaussian of amplitude 1
+template <int Dim>
+NearMiddleRule<Dim> near_middle_rule(const NearField<Dim>& field, const Gaussian<Dim>& unit,
+                                     const RuleSettings& settings)
+{
+    NearMiddleRule<Dim> rule;
+    const auto add = [&](const Box<Dim>& box, int order) {
+        const std::vector<QuadraturePoint<Dim>> points = gauss_legendre(box, order);
+        rule.points.insert(rule.points.end(), points.begin(), points.end());
+    };
+    switch (settings.near_middle) {
+    case NearMiddle::Stacked:
+        add(field.middle, settings.order);
+        rule.of_amplitude = stacking_correction(unit, field.near, rule.points);
+        break;
+    case NearMiddle::GaussLegendre:
+        add(field.middle, settings.order);
+        std::erase_if(rule.points, [&](const auto& point) { return field.near.contains(point.position); });
+        add(field.near, kNearOrder);
+        break;
+    case NearMiddle::Subdivided:
+        for (const Box<Dim>& box : boxes_around(field.near, field.middle))
+            add(box, kSubdividedOrder);
+        rule.of_amplitude = unit.integral(field.near);
+        break;
+    }
+    return rule;
+}
+
+/// Weights of phi: the three fields one after the other; a vertex may occur several times.
+template <int Dim>
+std::vector<WeightedVertex> weights_of_density(const VoxelisedMesh<Dim>& mesh, int vertex,
+                                               View<const double> u, const RuleSettings& settings)
+{
+    const NearField<Dim> field = near_field(mesh, vertex, u, settings);
+    Gaussian<Dim> unit = field.gaussian;
     unit.amplitude = 1.0;
-    const double correction = stacking_correction(unit, field.near, points);
+    const NearMiddleRule<Dim> rule = near_middle_rule(field, unit, settings);
+
+    // The Gaussian's amplitude is a sum over samples.
+    std::vector<WeightedVertex> weights;
     const std::vector<double> of_amplitude = amplitude_weights(unit, field.target);
     for (size_t s = 0; s < field.samples.size(); ++s)
-        weights.push_back({field.samples[s], correction * of_amplitude[s]});
+        weights.push_back({field.samples[s], rule.of_amplitude * of_amplitude[s]});
 
-    // Middle: locate the points in their triangles.
-    for (const QuadraturePoint<2>& point : points)
-        if (const auto located = surface.locate(point.position))
-            for (int corner = 0; corner < 3; ++corner)
+    // Locate the points in their simplices.
+    for (const QuadraturePoint<Dim>& point : rule.points)
+        if (const auto located = mesh.locate(point.position))
+            for (int corner = 0; corner <= Dim; ++corner)
                 weights.push_back({located->vertex[corner], point.weight * located->weight[corner]});
 
     // Far: one vertex per cluster.
-    for (const FarCluster& cluster : far_clusters(surface, field.domains.middle, u, settings.cluster_count,
+    for (const FarCluster& cluster : far_clusters(mesh, field.domains.middle, u, settings.cluster_count,
                                                   settings.seed + unsigned(vertex)))
-        weights.push_back({cluster.vertex, cluster.area});
+        weights.push_back({cluster.vertex, cluster.volume});
     return weights;
 }
 
 } // namespace
 
-NearField near_field(const UvSurface& surface, int vertex, View<const double> u, const RuleSettings& settings)
+template <int Dim>
+NearField<Dim> near_field(const VoxelisedMesh<Dim>& mesh, int vertex, View<const double> u,
+                          const RuleSettings& settings)
 {
-    NearField field;
-    field.domains = field_domains(surface, vertex, u, settings.domains);
-    field.near = surface.grid().box_of(field.domains.near);
-    field.middle = surface.grid().box_of(field.domains.middle);
-    field.samples = near_samples(surface, field.domains.near, vertex, settings.sample_count);
+    NearField<Dim> field;
+    field.domains = field_domains(mesh, vertex, u, settings.domains);
+    field.near = mesh.grid().box_of(field.domains.near);
+    field.middle = mesh.grid().box_of(field.domains.middle);
+    field.samples = near_samples(mesh, field.domains.near, vertex, settings.sample_count);
     for (const int sample : field.samples) {
-        field.target.samples.push_back(surface.uv(sample));
+        field.target.samples.push_back(mesh.position(sample));
         field.target.values.push_back(u[sample]);
     }
     field.target.faces = face_centers(field.near);
     field.target.penalty = settings.penalty;
-    field.gaussian = fit_gaussian<2>(surface.uv(vertex), field.near, field.target);
+    field.gaussian = fit_gaussian<Dim>(mesh.position(vertex), field.near, field.target);
     return field;
 }
 
-std::vector<WeightedVertex> rule_weights(const UvSurface& surface, int vertex, View<const double> u,
+template <int Dim>
+std::vector<WeightedVertex> rule_weights(const VoxelisedMesh<Dim>& mesh, int vertex, View<const double> u,
                                          const RuleSettings& settings)
 {
-    std::vector<WeightedVertex> weights = weights_of_density(surface, vertex, u, settings);
+    std::vector<WeightedVertex> weights = weights_of_density(mesh, vertex, u, settings);
     std::stable_sort(weights.begin(), weights.end(),
                      [](const WeightedVertex& a, const WeightedVertex& b) { return a.vertex < b.vertex; });
 
     // Sum the entries of each vertex, and go from phi to b.
     std::vector<WeightedVertex> merged;
     for (const WeightedVertex& entry : weights) {
-        const double weight = entry.weight * u[entry.vertex] / surface.area(entry.vertex);
+        const double weight = entry.weight * u[entry.vertex] / mesh.volume(entry.vertex);
         if (!merged.empty() && merged.back().vertex == entry.vertex)
             merged.back().weight += weight;
         else
@@ -76,5 +118,12 @@ std::vector<WeightedVertex> rule_weights(const UvSurface& surface, int vertex, V
     }
     return merged;
 }
+
+template NearField<2> near_field(const VoxelisedMesh<2>&, int, View<const double>, const RuleSettings&);
+template NearField<3> near_field(const VoxelisedMesh<3>&, int, View<const double>, const RuleSettings&);
+template std::vector<WeightedVertex> rule_weights(const VoxelisedMesh<2>&, int, View<const double>,
+                                                  const RuleSettings&);
+template std::vector<WeightedVertex> rule_weights(const VoxelisedMesh<3>&, int, View<const double>,
+                                                  const RuleSettings&);
 
 } // namespace toile::research

@@ -52,7 +52,7 @@ void DeviceBody::set_fixed(const std::vector<unsigned char>& fixed)
     fixed_vertices_.upload(fixed_vertices_on_host_);
     fixed_targets_on_host_.resize(fixed_vertices_.size());
     if (newton_)
-        newton_->set_fixed(fixed, masses());
+        newton_->set_fixed(fixed);
     host_fixed_ = fixed;
 }
 

@@ -1,7 +1,7 @@
 #include "core/pd/newton/hessian_solver.h"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 
 #include "core/compute/parallel.h"
 
@@ -49,107 +49,85 @@ void HessianSolver::update(const HessianParts& K, bool with_coarse)
         has_coarse_ = coarse_.update(K);
 }
 
-/// Runs kernel(row, sums) for all rows, and adds the sums chunk by chunk: the same bits for every thread
-/// count.
+/// Runs kernel(first, last, sum) for the rows of each chunk, and adds the sums chunk by chunk: the same bits
+/// for every thread count.
 template <typename Kernel>
-HessianSolver::Sums HessianSolver::for_chunks(const char* name, const Kernel& kernel)
+double HessianSolver::for_chunks(const char* name, const Kernel& kernel)
 {
     parallel_for(
         kCpu, name, int(sums_.size()),
         [&](int chunk) {
-            Sums sums;
-            kernel(first_of_chunk_[chunk], first_of_chunk_[chunk + 1], sums);
-            sums_[chunk] = sums;
+            sums_[chunk] = 0.0;
+            kernel(first_of_chunk_[chunk], first_of_chunk_[chunk + 1], sums_[chunk]);
         },
         1);
-    Sums total;
-    for (const Sums& sums : sums_)
-        total += sums;
-    return total;
+    return std::accumulate(sums_.begin(), sums_.end(), 0.0);
 }
 
-HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, View<const double> masses, const Stop& stop,
-                                            View<Vec3> d)
+HessianSolver::Outcome HessianSolver::solve(View<const Vec3> g, const Stop& stop, View<Vec3> d)
 {
     const StageScope stage("newton/pcg");
     const View<const int> order = rows_.order();
-    double mass = 0.0;
-    for (const int v : order)
-        mass += masses[v];
-    mass_.resize(order.size());
     for (int i = 0; i < order.size(); ++i) {
-        mass_[i] = float(masses[order[i]] / mass);
         r_[i] = padded(Vec3(-g[order[i]]));
         x_[i] = p_[i] = PaddedVec3(0.0F);
     }
     Outcome outcome;
-    double rz = 0.0, first_rz = 0.0;
-    int small = 0;
-    while (outcome.iterations < kMaxIterations) {
+    double rz = 0.0;
+    while (outcome.iterations < kMaxIterations && !outcome.is_solved) {
         const double previous = rz;
         rz = precondition();
-        if (outcome.iterations == 0)
-            first_rz = rz;
         if (!(rz > 0.0)) {
             outcome.is_solved = rz == 0.0;
+            outcome.error = outcome.is_solved ? 0.0 : outcome.error;
             break;
         }
-        const float beta = previous > 0.0 ? float(rz / previous) : 0.0F;
-        for_chunks("newton/direction", [&](int first, int last, Sums&) {
+        const double beta = previous > 0.0 ? rz / previous : 0.0;
+        for_chunks("newton/direction", [&](int first, int last, double&) {
             for (int i = first; i < last; ++i)
                 for (int k = 0; k < 4; ++k)
-                    p_[i].value[k] = z_[i].value[k] + beta * p_[i].value[k];
+                    p_[i].value[k] = z_[i].value[k] + float(beta) * p_[i].value[k];
         });
-        const Sums curvature = multiply();
-        if (!(curvature.first > 0.0))
+        const double curvature = multiply();
+        if (!(curvature > 0.0))
             break;
-        const double step = rz / curvature.first;
-        for_chunks("newton/advance", [&](int first, int last, Sums&) {
+        const double step = rz / curvature;
+        for_chunks("newton/advance", [&](int first, int last, double&) {
             for (int i = first; i < last; ++i) {
                 add(x_[i], float(step), p_[i]);
                 add(r_[i], -float(step), product_[i]);
             }
         });
-        ++outcome.iterations;
-        small = step * std::sqrt(curvature.second) < stop.increment ? small + 1 : 0;
-        if (small >= 2 && rz <= (stop.residual >= 0.0 ? stop.residual : kReduction * first_rz)) {
-            outcome.is_solved = true;
-            break;
-        }
+        outcome.advance(step, beta, rz, stop);
     }
-    outcome.residual = rz;
     std::fill(d.begin(), d.end(), Vec3::Zero());
     for (int i = 0; i < order.size(); ++i)
         d[order[i]] = unpadded(x_[i]);
     return outcome;
 }
 
-/// product = K p; returns p . product and the mean square of p by mass.
-HessianSolver::Sums HessianSolver::multiply()
+/// product = K p; returns p . product.
+double HessianSolver::multiply()
 {
     const HessianRowsView K = rows_.view();
     if (!K.terms.empty())
         parallel_for(kCpu, "newton/term_forces", K.terms.size(),
                      [&](int t) { term_force_[t] = K.force(t, p_); });
-    const auto add_sums = [&](int i, Sums& sums) {
-        sums.first += dot(p_[i], product_[i]);
-        sums.second += double(mass_[i]) * dot(p_[i], p_[i]);
-    };
     if (whole_set_ == nullptr)
-        return for_chunks("newton/multiply", [&](int first, int last, Sums& sums) {
+        return for_chunks("newton/multiply", [&](int first, int last, double& sum) {
             for (int i = first; i < last; ++i) {
                 product_[i] = K.product(i, p_, term_force_);
-                add_sums(i, sums);
+                sum += dot(p_[i], product_[i]);
             }
         });
-    for_chunks("newton/multiply", [&](int first, int last, Sums&) {
+    for_chunks("newton/multiply", [&](int first, int last, double&) {
         for (int i = first; i < last; ++i)
             product_[i] = K.product(i, p_, term_force_);
     });
     add_whole_set();
-    return for_chunks("newton/sums", [&](int first, int last, Sums& sums) {
+    return for_chunks("newton/sums", [&](int first, int last, double& sum) {
         for (int i = first; i < last; ++i)
-            add_sums(i, sums);
+            sum += dot(p_[i], product_[i]);
     });
 }
 
@@ -170,28 +148,19 @@ void HessianSolver::add_whole_set()
 double HessianSolver::precondition()
 {
     const View<const PaddedMat3> inverse = rows_.inverse_diagonal();
-    if (!has_coarse_)
-        return for_chunks("newton/smooth",
-                          [&](int first, int last, Sums& sums) {
-                              for (int i = first; i < last; ++i) {
-                                  z_[i] = inverse[i] * r_[i];
-                                  sums.first += dot(r_[i], z_[i]);
-                              }
-                          })
-            .first;
-    parallel_for(
-        kCpu, "newton/restrict", coarse_.cluster_count(), [&](int c) { coarse_.restrict_to(c, r_); }, 4);
-    coarse_.solve();
-    return for_chunks("newton/smooth",
-                      [&](int first, int last, Sums& sums) {
-                          for (int i = first; i < last; ++i) {
-                              z_[i] = inverse[i] * r_[i];
-                              if (cluster_of_row_[i] >= 0)
-                                  z_[i] += coarse_.prolonged(cluster_of_row_[i], i);
-                              sums.first += dot(r_[i], z_[i]);
-                          }
-                      })
-        .first;
+    if (has_coarse_) {
+        parallel_for(
+            kCpu, "newton/restrict", coarse_.cluster_count(), [&](int c) { coarse_.restrict_to(c, r_); }, 4);
+        coarse_.solve();
+    }
+    return for_chunks("newton/smooth", [&](int first, int last, double& sum) {
+        for (int i = first; i < last; ++i) {
+            z_[i] = inverse[i] * r_[i];
+            if (has_coarse_ && cluster_of_row_[i] >= 0)
+                z_[i] += coarse_.prolonged(cluster_of_row_[i], i);
+            sum += dot(r_[i], z_[i]);
+        }
+    });
 }
 
 } // namespace toile

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "core/pd/newton/affine_space.h"
 #include "core/pd/newton/hessian_rows.h"
+#include "core/pd/newton/ritz_value.h"
 
 namespace toile {
 
@@ -15,18 +17,8 @@ namespace toile {
 /// of 3 x 3 blocks and an AffineSpace.
 class HessianSolver {
 public:
-    struct Outcome {
-        int iterations = 0;
-        bool is_solved = false; ///< the increments became small; false: stopped by kMaxIterations
-        double residual = 0.0;  ///< [J] r . P r at the last iteration
-    };
-
     /// Limit of iterations.
     static constexpr int kMaxIterations = 200;
-
-    /// Reduction of the residual's square in the preconditioner's norm before small increments count [-].
-    /// Small residuals of stiff cloth begin with small increments, although far from the solution.
-    static constexpr double kReduction = 0.1;
 
     /// @param points  [vertices] undeformed positions
     explicit HessianSolver(std::vector<EmbeddedPoint> points) : coarse_(std::move(points)) {}
@@ -35,33 +27,47 @@ public:
     /// @param with_coarse  also of the coarse space, which may be older
     void update(const HessianParts& K, bool with_coarse);
 
-    /// When a solve ends.
+    /// Errors of d, relative to d in the norm of K [-]: one with which a solve ends, and the largest with
+    /// which it may end. Without the latter, cloth that creeps towards its equilibrium would stop short of
+    /// it.
+    static constexpr double kRelativeError = 0.2, kMaxRelativeError = 0.5;
+
+    /// When a solve ends before kRelativeError is reached.
     struct Stop {
-        double increment = 0.0; ///< [m] RMS of the increment, by mass, twice in succession
-        double residual = -1.0; ///< [J] bound on r . P r as well; negative: kReduction of the first
+        double error = 0.0;        ///< [J] Outcome::error that is small enough
+        double inverse_ritz = 0.0; ///< [-] RitzValue::inverse() of similar solves: a lower bound
     };
 
-    /// @param g       [vertices] [N]
-    /// @param masses  [vertices] [kg]
-    /// @param d       [vertices] out [m]; zero where fixed
-    Outcome solve(View<const Vec3> g, View<const double> masses, const Stop& stop, View<Vec3> d);
+    struct Outcome {
+        int iterations = 0;
+        bool is_solved = false; ///< the error became small; false: stopped by kMaxIterations
+        double error = 0.0;     ///< [J] estimate of e . K e, for the error e of d
+        double size = 0.0;      ///< [J] d . K d
+        RitzValue ritz;
 
-private:
-    struct Sums {
-        double first = 0.0, second = 0.0;
-        Sums& operator+=(const Sums& other)
+        /// Takes an iteration: lengths of p along d, and of the previous p in p [-], and r . P r before [J].
+        TOILE_HD void advance(double step, double beta, double rz, const Stop& stop)
         {
-            first += other.first;
-            second += other.second;
-            return *this;
+            ++iterations;
+            ritz.add(step, beta);
+            size += step * rz;
+            error = rz * (ritz.inverse() < stop.inverse_ritz ? stop.inverse_ritz : ritz.inverse());
+            const auto is_within = [&](double part) { return error <= part * part * size; };
+            is_solved = iterations > 1 && is_within(kMaxRelativeError) &&
+                        (is_within(kRelativeError) || error <= stop.error);
         }
     };
+
+    /// @param g  [vertices] [N]
+    /// @param d  [vertices] out [m]; zero where fixed
+    Outcome solve(View<const Vec3> g, const Stop& stop, View<Vec3> d);
+
+private:
     template <typename Kernel>
-    Sums for_chunks(const char* name, const Kernel& kernel);
-    Sums multiply();
+    double for_chunks(const char* name, const Kernel& kernel);
+    double multiply();
     void add_whole_set();
     double precondition();
-    int cluster_at(int row) const;
 
     AffineSpace coarse_;
     HessianRows rows_;
@@ -71,8 +77,7 @@ private:
     std::vector<int> first_of_chunk_; ///< [chunks + 1] rows of a task
     std::vector<int> cluster_of_row_; ///< [rows] -1: none
     std::vector<PaddedVec3> x_, r_, z_, p_, product_, term_force_;
-    std::vector<float> mass_;                   ///< [rows] divided by their sum
-    std::vector<Sums> sums_;                    ///< [chunks]
+    std::vector<double> sums_;                  ///< [chunks]
     std::vector<Vec3> whole_p_, whole_product_; ///< [vertices] scratch
 };
 

@@ -14,13 +14,17 @@ void HostNewton::set_problem(const Problem& problem)
     problem_ = problem;
     for (std::vector<Vec3>* field : {&gradient_, &direction_, &trial_, &trial_gradient_})
         field->resize(problem.x.size());
+    double stiffness = 0.0;
+    for (int i = 0; i < problem.x.size(); ++i)
+        stiffness += problem.fixed[i] ? 0.0 : problem.inertia[i];
+    stop_.begin_step(stiffness, problem.dt);
 }
 
 double HostNewton::evaluate() { return problem_.objective->evaluate(problem_.x, gradient_); }
 
 double HostNewton::max_speed() { return problem_.objective->max_speed_of(gradient_); }
 
-NewtonSpace::Solution HostNewton::find_direction(bool is_first, double increment)
+NewtonSpace::Solution HostNewton::find_direction(bool is_first, double error)
 {
     Objective& objective = *problem_.objective;
     objective.accept(problem_.x);
@@ -30,17 +34,16 @@ NewtonSpace::Solution HostNewton::find_direction(bool is_first, double increment
     K->linearise(problem_.x, Definiteness::Projected);
     solver_.update(K->parts(), is_first);
     correction_.resize(problem_.x.size());
-    const Solution solution = solve(gradient_, {increment});
+    stop_.begin_direction(is_first);
+    const Solution solution = solve(gradient_, error);
     direction_ = correction_;
     return solution;
 }
 
-NewtonSpace::Solution HostNewton::solve(View<const Vec3> gradient, const HessianSolver::Stop& stop)
+NewtonSpace::Solution HostNewton::solve(View<const Vec3> gradient, double error)
 {
-    const HessianSolver::Outcome outcome = solver_.solve(gradient, problem_.masses, stop, correction_);
-    if (stop.residual < 0.0)
-        first_residual_ = outcome.residual;
-    return {outcome.iterations, outcome.is_solved, -0.5 * dot(gradient, correction_)};
+    const HessianSolver::Outcome outcome = solver_.solve(gradient, stop_.at(error), correction_);
+    return {outcome.iterations, outcome.is_solved, stop_.take(outcome), -0.5 * dot(gradient, correction_)};
 }
 
 bool HostNewton::has_contact()
@@ -76,7 +79,7 @@ double HostNewton::model(double length)
            contact_here_;
 }
 
-NewtonSpace::Solution HostNewton::correct(double increment)
+NewtonSpace::Solution HostNewton::correct(double error)
 {
     base_ = direction_;
     for (int i = 0; i < problem_.x.size(); ++i)
@@ -87,7 +90,7 @@ NewtonSpace::Solution HostNewton::correct(double increment)
     Hessian* const K = problem_.objective->hessian();
     K->update_active_set();
     solver_.update(K->parts(), false);
-    return solve(model_gradient_, {increment, kCorrectionResidual * std::max(first_residual_, 0.0)});
+    return solve(model_gradient_, error);
 }
 
 NewtonSpace::Trial HostNewton::try_step(double length)
@@ -98,6 +101,7 @@ NewtonSpace::Trial HostNewton::try_step(double length)
     Trial trial;
     trial.value = problem_.objective->evaluate(trial_, trial_gradient_);
     trial.slope = dot(gradient_, direction_);
+    trial.end_slope = dot(trial_gradient_, direction_);
     trial.speed = problem_.objective->speed_of(direction_);
     trial.displacement = max_norm(direction_);
     return trial;

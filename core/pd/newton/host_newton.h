@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/pd/energy/active_set_energy.h"
-#include "core/pd/newton/hessian_solver.h"
+#include "core/pd/newton/direction_stop.h"
 #include "core/pd/newton/newton_space.h"
 
 namespace toile {
@@ -33,10 +33,10 @@ public:
 
     double evaluate() override;
     double max_speed() override;
-    Solution find_direction(bool is_first, double increment) override;
+    Solution find_direction(bool is_first, double error) override;
     bool has_contact() override;
     double model(double length) override;
-    Solution correct(double increment) override;
+    Solution correct(double error) override;
     Trial try_step(double length) override;
     double try_rest(double limit) override;
     double try_local_global() override;
@@ -49,11 +49,11 @@ public:
     double gradient_norm() override;
 
 private:
-    Solution solve(View<const Vec3> gradient, const HessianSolver::Stop& stop);
+    Solution solve(View<const Vec3> gradient, double error);
 
     Problem problem_;
     HessianSolver solver_;
-    double first_residual_ = 0.0; ///< HessianSolver::Outcome::residual of find_direction()
+    DirectionStop stop_;
     std::vector<Vec3> gradient_, direction_, trial_, trial_gradient_, kept_;
 
     // Contact ahead, see NewtonSpace::model().

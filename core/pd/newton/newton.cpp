@@ -12,9 +12,8 @@ namespace toile {
 
 namespace {
 
-/// Conjugate gradients stop when the RMS of their increment is below this fraction of the tolerance [-],
-/// twice in succession. With a fixed number of iterations several times the last step would remain.
-constexpr double kIncrement = 0.1;
+/// Error of a direction that is small enough, relative to the tolerance [-].
+constexpr double kDirectionError = 0.3;
 
 /// Newton step, relative to the tolerance [-], from which on the minimum is near.
 constexpr double kNear = 10.0;
@@ -22,6 +21,10 @@ constexpr double kNear = 10.0;
 /// Bound on the Newton step, relative to the tolerance [-], below which no step is made. A larger step
 /// is made although it is small: unbalanced forces that no step follows would never come to balance.
 constexpr double kNegligible = 0.03;
+
+/// Largest estimate of the number of steps to the minimum [-]. A step below kNegligible of the tolerance has
+/// converged whatever the estimate.
+constexpr double kMaxSteps = 1.0 / kNegligible;
 
 /// Iterations without a lower value after which the minimisation ends. Cloth that is moved back because it
 /// would cross, where contact does not hold it, is pushed there again by the next step. If moving it back
@@ -80,10 +83,9 @@ double begin(NewtonSpace& space, bool tries_local_global)
 /// al. 2002].
 /// @param value  of the objective [J]
 /// @return not solved if the direction is not the model's minimum
-NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first, double increment,
-                                               double value)
+NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first, double error, double value)
 {
-    NewtonSpace::Solution found = space.find_direction(is_first, increment);
+    NewtonSpace::Solution found = space.find_direction(is_first, error);
     if (!space.has_contact())
         return found;
     const double noise = kModelNoise * std::fabs(value);
@@ -104,10 +106,11 @@ NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first
         if (correction == kContactCorrections)
             return found;
         reached = now;
-        const NewtonSpace::Solution more = space.correct(increment);
+        const NewtonSpace::Solution more = space.correct(error);
         predicted = more.decrease;
         found.iterations += more.iterations;
         found.is_solved = more.is_solved;
+        found.error = more.error;
     }
 }
 
@@ -118,12 +121,23 @@ MinimiserProgress progress_of(const OuterLoop::Outcome& outcome, double toleranc
     return outcome.speed < kNear * tolerance ? MinimiserProgress::kNear : MinimiserProgress::kFar;
 }
 
+/// Estimate of the distance to the minimum along a direction of which `step` was accepted, at least the whole
+/// direction [-]. K is projected: where it is stiffer than the objective, as in elements that are inside out,
+/// steps are short though the minimum is far.
+double steps_to_minimum(const NewtonSpace::Trial& trial, double step)
+{
+    if (step == 0.0)
+        return 1.0; // rounding hides the rest
+    const double curvature = (trial.end_slope - trial.slope) / step;
+    return curvature > 0.0 ? std::clamp(-trial.slope / curvature, 1.0, kMaxSteps) : kMaxSteps;
+}
+
 /// Makes a Newton step.
 /// @return the accepted part of it, 0 if there is none
 double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::Outcome& outcome)
 {
     const NewtonSpace::Solution direction = find_corrected_direction(
-        space, outcome.iterations == 0, kIncrement * settings.tolerance * settings.dt, outcome.value);
+        space, outcome.iterations == 0, kDirectionError * settings.tolerance, outcome.value);
     NewtonSpace::Trial trial = space.try_step(1.0);
     LineSearch search{outcome.value, trial.slope};
     double step = 0.0;
@@ -137,13 +151,15 @@ double iterate(NewtonSpace& space, const Newton::Settings& settings, OuterLoop::
         if (attempt == LineSearch::kMaxTrials)
             break;
         search.shorten(trial.value);
-        trial.value = space.try_step(search.step).value;
+        trial = space.try_step(search.step);
     }
     ++outcome.iterations;
     outcome.linear_iterations += direction.iterations;
     outcome.speed = trial.speed;
     outcome.displacement = step * trial.displacement;
-    outcome.converged = direction.is_solved && outcome.speed <= settings.tolerance;
+    outcome.converged =
+        direction.is_solved &&
+        steps_to_minimum(trial, step) * std::hypot(trial.speed, direction.error) <= settings.tolerance;
     return step;
 }
 

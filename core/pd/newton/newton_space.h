@@ -12,11 +12,13 @@ public:
     struct Solution {
         int iterations = 0;
         bool is_solved = false; ///< false: stopped by their limit
+        double error = 0.0;     ///< [m/s] estimate of the direction's error, like Trial::speed
         double decrease = 0.0;  ///< [J] that the model predicts
     };
     struct Trial {
         double value = 0.0;        ///< [J] of the objective
         double slope = 0.0;        ///< [J] gradient . direction, at the current point
+        double end_slope = 0.0;    ///< [J] likewise, with the gradient at the trial point
         double speed = 0.0;        ///< [m/s] RMS of the whole direction by mass, per time of the step
         double displacement = 0.0; ///< [m] largest of the whole direction
     };
@@ -29,8 +31,8 @@ public:
 
     /// Finds the direction d by K d = -g, with the Hessian K at the current point.
     /// @param is_first   of the minimisation: the coarse part of the preconditioner is made anew
-    /// @param increment  [m] see HessianSolver::Stop
-    virtual Solution find_direction(bool is_first, double increment) = 0;
+    /// @param error      [m/s] see Solution
+    virtual Solution find_direction(bool is_first, double error) = 0;
 
     // Contact ahead. The direction is d + length e: e is find_direction()'s with d = 0, or correct()'s.
 
@@ -42,7 +44,7 @@ public:
     virtual double model(double length) = 0;
 
     /// Takes d + length e as d, and finds e by the contact there.
-    virtual Solution correct(double increment) = 0;
+    virtual Solution correct(double error) = 0;
 
     // Trial points.
 
@@ -76,10 +78,6 @@ public:
 
     /// Largest entry of the gradient at the current point [N].
     virtual double gradient_norm() = 0;
-
-    /// Bound on the residual of correct(), relative to that where find_direction() has ended [-]. The first
-    /// residual is contact's: stiff, and soon gone, while the rest has hardly moved.
-    static constexpr double kCorrectionResidual = 4.0;
 };
 
 } // namespace toile

@@ -37,7 +37,8 @@ constexpr Variant kVariants[] = {{"block", ContactPreconditioner::Block},
 constexpr std::pair<Kind, const char*> kKinds[] = {{Kind::Floor, "floor"},
                                                    {Kind::Disjoint, "disjoint"},
                                                    {Kind::Stack, "stack"},
-                                                   {Kind::Sticking, "stack sticking"}};
+                                                   {Kind::Sticking, "stack sticking"},
+                                                   {Kind::Bars, "bars"}};
 
 /// Measurement of a variant on a case.
 struct Measurement {

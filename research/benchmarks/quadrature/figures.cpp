@@ -86,7 +86,7 @@ std::string sheets()
 {
     constexpr int kSide = 31;
     const Sheet sheet = unit_sheet(kSide, 0.2);
-    const UvSurface surface(sheet.uv, sheet.triangles, 64);
+    const VoxelisedMesh<2> mesh(sheet.uv, sheet.triangles, 64);
     std::vector<double> b;
     for (const Vec3& force : smooth_load(sheet))
         b.push_back(force.x());
@@ -97,7 +97,7 @@ std::string sheets()
             for (int j = 2; j < kSide; j += 4) {
                 const int vertex = i * kSide + j;
                 csv += number(k) + "," + number(sheet.uv[vertex].x()) + "," + number(sheet.uv[vertex].y()) +
-                       "," + row(errors_on_sheet(surface, vertex, kernel_row(H, vertex), b, {}));
+                       "," + row(errors_on_sheet(mesh, vertex, kernel_row(H, vertex), b, {}));
             }
     }
     return csv;

@@ -149,12 +149,12 @@ IntegrationErrors errors_on_square(const YukawaLine& target_x, const YukawaLine&
                    fit<2>(phi, {target_x.peak(), target_y.peak()}, near));
 }
 
-IntegrationErrors errors_on_sheet(const UvSurface& surface, int vertex, View<const double> u,
+IntegrationErrors errors_on_sheet(const VoxelisedMesh<2>& mesh, int vertex, View<const double> u,
                                   View<const double> b, const RuleSettings& settings)
 {
-    const auto density = [&](int k) { return u[k] * b[k] / surface.area(k); };
+    const auto density = [&](int k) { return u[k] * b[k] / mesh.volume(k); };
     const auto phi = [&](const Vec2& x) {
-        const auto located = surface.locate(x);
+        const auto located = mesh.locate(x);
         double value = 0.0;
         for (int corner = 0; located && corner < 3; ++corner)
             value += located->weight[corner] * density(located->vertex[corner]);
@@ -165,7 +165,7 @@ IntegrationErrors errors_on_sheet(const UvSurface& surface, int vertex, View<con
     const auto gaussian = [&](double penalty) {
         RuleSettings with_penalty = settings;
         with_penalty.penalty = penalty;
-        NearField field = near_field(surface, vertex, u, with_penalty);
+        NearField<2> field = near_field(mesh, vertex, u, with_penalty);
         const std::vector<double> weights = amplitude_weights(field.gaussian, field.target);
         field.gaussian.amplitude = 0.0;
         for (size_t s = 0; s < weights.size(); ++s)
@@ -173,12 +173,12 @@ IntegrationErrors errors_on_sheet(const UvSurface& surface, int vertex, View<con
         return field.gaussian;
     };
 
-    // Integral of the interpolant over the pixels of the middle box.
-    const NearField field = near_field(surface, vertex, u, settings);
+    // Integral of the interpolant over the voxels of the middle box.
+    const NearField<2> field = near_field(mesh, vertex, u, settings);
     double exact = 0.0;
-    for (int pixel = 0; pixel < surface.grid().count(); ++pixel)
-        if (field.domains.middle.contains(surface.grid().at(pixel)))
-            for (SparseMatrix::InnerIterator entry(surface.coverage(), pixel); entry; ++entry)
+    for (int voxel = 0; voxel < mesh.grid().count(); ++voxel)
+        if (field.domains.middle.contains(mesh.grid().at(voxel)))
+            for (SparseMatrix::InnerIterator entry(mesh.coverage(), voxel); entry; ++entry)
                 exact += entry.value() * density(int(entry.col()));
     return compare(phi, exact, field.middle,
                    GaussianFits<2>{field.near, gaussian(0.0), gaussian(settings.penalty)});

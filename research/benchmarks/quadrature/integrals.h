@@ -73,7 +73,7 @@ IntegrationErrors errors_on_square(const YukawaLine& target_x, const YukawaLine&
 /// Errors on a sheet with its own kernel: phi = u(i) b / |Omega| over the middle box of Alg. 1, against the
 /// exact integral of the interpolant over the box.
 /// @param b  [vertices] [N]
-IntegrationErrors errors_on_sheet(const UvSurface& surface, int vertex, View<const double> u,
+IntegrationErrors errors_on_sheet(const VoxelisedMesh<2>& mesh, int vertex, View<const double> u,
                                   View<const double> b, const RuleSettings& settings);
 
 /// Mean of each error.

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/linear/sparse_matrix.h"
-#include "research/paper_rule/uv_surface.h"
+#include "research/paper_rule/voxelised_mesh.h"
 
 /// A flat sheet with the matrix of Projective Dynamics, to measure quadrature rules.
 namespace toile::research {

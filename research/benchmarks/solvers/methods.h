@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "research/benchmarks/solvers/problem.h"
+#include "research/paper_rule/paper_rule.h"
 
 namespace toile::research::solvers {
 
@@ -23,8 +24,8 @@ public:
 struct Method {
     std::string name;           ///< "direct 20": the global solver or whole method, and its budget
     int max_vertices = 0;       ///< larger meshes are skipped: set-up takes too long
-    bool needs_chart = false;   ///< only for cloth that is initially planar
-    bool knows_energies = true; ///< false: supports cloth alone, no ball
+    bool needs_chart = false;   ///< only for cloth that is initially planar, and solids
+    bool knows_energies = true; ///< false: supports cloth alone, no ball and no solid
     bool uses_tables = false;   ///< uses Problem::tables
     std::function<std::unique_ptr<Stepper>(const Problem&)> make;
 };
@@ -33,6 +34,13 @@ struct Method {
 inline constexpr int kPaperSize = 3000;
 
 bool applies(const Method& method, const Problem& problem);
+
+/// Quadrature for the problem's mesh, with the problem's tables.
+std::unique_ptr<GlobalSolver> make_quadrature(const Problem& problem);
+
+/// The paper's rule in the sheet's plane or the solid's volume. It needs one flat chart, which a skirt does
+/// not have.
+std::unique_ptr<GlobalSolver> make_paper_rule(const Problem& problem, PaperRule::Settings settings = {});
 
 /// Projective Dynamics with every global solver at several numbers of outer iterations, then the baseline
 /// methods at several numbers of sweeps or substeps.

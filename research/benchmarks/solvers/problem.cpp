@@ -8,9 +8,11 @@
 #include "core/pd/minimiser/lbfgs.h"
 #include "core/pd/minimiser/newton_direct.h"
 #include "core/pd/minimiser/newton_pcg.h"
+#include "core/pd/newton/embedded_points.h"
 #include "core/pd/step/step_objective.h"
 #include "garment/pattern/shapes.h"
 #include "quadrature2d/geodesic_embedding.h"
+#include "research/benchmarks/bar.h"
 
 namespace toile::research::solvers {
 
@@ -18,6 +20,10 @@ namespace {
 
 constexpr double kArealDensity = 0.15; ///< [kg/m^2]
 constexpr double kRigidity = 5e-6;     ///< [N m]
+
+constexpr double kDensity = 1000.0; ///< of a bar [kg/m^3]
+constexpr double kPoisson = 0.3;
+const Vec3 kBar(0.4, 0.1, 0.1); ///< [m]
 
 /// Maximum decrease expected by Newton's method at a converged reference, as a fraction of the whole decrease
 /// E(q*) - E* of the step [-]. Positions are then exact to about its square root.
@@ -120,8 +126,40 @@ Problem Problem::drape(int vertices, double stiffness, double dt)
     return problem;
 }
 
+Problem Problem::bar(int vertices, double young, double dt)
+{
+    // 4c x c x c cells have about 4 (c + 1/2)^3 vertices.
+    const int across = std::max(1, int(std::lround(std::cbrt(vertices / 4.0) - 0.5)));
+    const volume::TetMesh tets = bar_of_tets(kBar, {4 * across, across, across});
+    Problem problem;
+    problem.mesh = "bar";
+    problem.stiffness = young;
+    problem.dt = dt;
+    problem.is_flat = false;
+    problem.start = {tets.positions, volume::boundary_triangles(tets.tets)};
+    const auto rest = std::make_shared<const volume::RestTets>(rest_tets(tets, problem.mesh));
+    problem.solid = Solid{rest, {young, kPoisson}, rest->vertex_volumes()};
+    for (double& mass : problem.solid->masses)
+        mass *= kDensity;
+    for (const Vec3& p : tets.positions)
+        problem.fixed.push_back(p.x() == 0.0);
+    for (const volume::Tet& tet : tets.tets)
+        for (int a = 0; a < 4; ++a)
+            for (int b = 0; b < a; ++b)
+                problem.mean_edge +=
+                    (tets.positions[tet[a]] - tets.positions[tet[b]]).norm() / (6.0 * tets.tet_count());
+    return problem;
+}
+
 std::unique_ptr<System> Problem::make_system(std::unique_ptr<GlobalSolver> solver) const
 {
+    if (solid) {
+        const std::vector<volume::Lame> lame(solid->rest->tets.size(), solid->material.lame(mesh));
+        return std::make_unique<System>(
+            solid->masses,
+            std::vector<std::shared_ptr<Energy>>{std::make_shared<volume::ElasticSolid>(solid->rest, lame)},
+            std::move(solver));
+    }
     const auto membrane = std::make_shared<garment::Membrane>(cloth.rest, cloth.stretch, mesh);
     const auto bending = std::make_shared<garment::Bending>(cloth.rest, cloth.bending, mesh);
     bending->leave_to(hessian_diagonal(*membrane, vertex_count()));
@@ -141,6 +179,8 @@ std::vector<Vec2> Problem::chart() const
 
 std::vector<EmbeddedPoint> Problem::points() const
 {
+    if (solid)
+        return embedded(start.positions);
     const garment::RestShape& rest = *cloth.rest;
     return quadrature2d::geodesic_embedding(
         rest.vertex_count(), quadrature2d::surface_metric(rest.triangles, rest.edges, rest.topology));

@@ -9,19 +9,28 @@
 #include "core/quadrature/tables/table_store.h"
 #include "research/benchmarks/solvers/ball_penalty.h"
 #include "research/methods/baseline_method.h"
+#include "volume/energy/elastic_solid.h"
 
 namespace toile::research::solvers {
 
-/// One cloth that swings under gravity, attached at a few vertices, or falls onto a ball.
+/// A solid in place of a cloth.
+struct Solid {
+    std::shared_ptr<const volume::RestTets> rest;
+    volume::ElasticMaterial material;
+    std::vector<double> masses; ///< [vertices] [kg]
+};
+
+/// One cloth that swings under gravity, attached at a few vertices, or falls onto a ball; or a bar.
 struct Problem {
-    std::string mesh; ///< "sheet", "skirt" or "drape"
-    TriangleMesh start;
-    garment::ClothModel cloth;
+    std::string mesh;          ///< "sheet", "skirt", "drape" or "bar"
+    TriangleMesh start;        ///< of a solid: all vertices, the surface's triangles
+    garment::ClothModel cloth; ///< unless there is a solid
+    std::optional<Solid> solid;
     std::vector<unsigned char> fixed; ///< [vertices]
-    double stiffness = 0.0;           ///< [N/m] of warp and weft; shear has a fifth
-    double dt = 0.0;                  ///< [s]
-    double mean_edge = 0.0;           ///< [m]
-    bool is_flat = true;              ///< initially in the plane y = 0
+    double stiffness = 0.0; ///< [N/m] of warp and weft, shear has a fifth; of a solid Young's modulus [Pa]
+    double dt = 0.0;        ///< [s]
+    double mean_edge = 0.0; ///< [m]
+    bool is_flat = true;    ///< cloth initially in the plane y = 0
     std::optional<BallPenalty::Ball> ball;
     /// Tables of this problem alone, none from disk: their construction is measured.
     std::shared_ptr<TableStore> tables = std::make_shared<TableStore>();
@@ -34,9 +43,13 @@ struct Problem {
     /// The sheet, free and slightly wavy, above a smooth penalty ball.
     static Problem drape(int vertices, double stiffness, double dt);
 
-    int vertex_count() const { return start.vertex_count(); }
+    /// A bar of tetrahedra, 0.4 m x 0.1 m x 0.1 m, attached at one end.
+    static Problem bar(int vertices, double young, double dt);
 
-    /// The Projective Dynamics objective of the cloth, around a global solver.
+    int vertex_count() const { return start.vertex_count(); }
+    const std::vector<double>& masses() const { return solid ? solid->masses : cloth.masses; } ///< [kg]
+
+    /// The Projective Dynamics objective of the body, around a global solver.
     std::unique_ptr<System> make_system(std::unique_ptr<GlobalSolver> solver) const;
 
     std::vector<Vec3> acceleration() const;    ///< [vertices] gravity [m/s^2]
@@ -64,7 +77,7 @@ void converge(const Problem& problem, const System& system, SampledStep& step);
 /// as converged if a restart of Newton's method moves no vertex by more than 1e-9 m.
 void converge_near(const Problem& problem, const System& system, SampledStep& step);
 
-/// Every `stride`-th of the first stride * count steps of the cloth, converged. The steps between them are
+/// Every `stride`-th of the first stride * count steps of the body, converged. The steps between them are
 /// only minimised well enough for a smooth trajectory that provides the starts of sampled steps.
 /// @throws std::runtime_error  naming the step, if an energy is not finite
 std::vector<SampledStep> sample_steps(const Problem& problem, int count, int stride);

@@ -101,7 +101,8 @@ Result run(const Problem& problem, const std::vector<SampledStep>& steps, const 
             const Stages::Activate activate(stages);
             result.iterations += stepper->step(step) / double(steps.size());
         }
-        result.gradients += double(stages.calls("garment/membrane")) / double(steps.size());
+        result.gradients += double(stages.calls(problem.solid ? "volume/elastic" : "garment/membrane")) /
+                            double(steps.size());
         result.solves += double(stages.calls("linear/solve")) / double(steps.size());
         const std::vector<Vec3> x(stepper->positions().begin(), stepper->positions().end());
         result.is_reference_converged &= step.is_converged;

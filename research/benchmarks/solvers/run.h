@@ -8,7 +8,7 @@ namespace toile::research::solvers {
 struct Result {
     std::string mesh;
     int vertices = 0;
-    double stiffness = 0.0; ///< [N/m]
+    double stiffness = 0.0; ///< [N/m]; [Pa] of a solid
     double dt = 0.0;        ///< [s]
     std::string method;
     int threads = 0;

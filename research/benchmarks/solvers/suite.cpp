@@ -15,9 +15,12 @@ constexpr int kMaxVertices = 200'000;
 struct Mesh {
     const char* name;
     Problem (*make)(int vertices, double stiffness, double dt);
+    double stiffness; ///< [N/m]; [Pa] of a solid
 };
-constexpr Mesh kMeshes[] = {
-    {"sheet", &Problem::sheet}, {"skirt", &Problem::skirt}, {"drape", &Problem::drape}};
+constexpr Mesh kMeshes[] = {{"sheet", &Problem::sheet, 1e3},
+                            {"skirt", &Problem::skirt, 1e3},
+                            {"drape", &Problem::drape, 1e3},
+                            {"bar", &Problem::bar, 2e5}};
 
 /// Sampling of a problem. The last sample is step 32 for every size: two of a large cloth, four of a small
 /// one.
@@ -31,7 +34,7 @@ std::vector<Case> quick_cases()
 {
     std::vector<Case> cases;
     for (const Mesh& mesh : kMeshes)
-        cases.push_back({mesh.make(900, 1e3, kFrame), 2, 8});
+        cases.push_back({mesh.make(900, mesh.stiffness, kFrame), 2, 8});
     return cases;
 }
 
@@ -48,6 +51,9 @@ std::vector<Case> all_cases()
     add(Problem::skirt(5000, 1e3, kFrame));
     for (const int vertices : {1000, 2500, 10'000})
         add(Problem::drape(vertices, 1e3, kFrame));
+    for (const int vertices : {1000, 4000})
+        for (const double young : {2e4, 2e5, 2e6})
+            add(Problem::bar(vertices, young, kFrame));
     add(Problem::sheet(50'000, 1e2, kFrame));
     add(Problem::sheet(50'000, 1e3, kFrame));
     return cases;
@@ -69,7 +75,7 @@ const Mesh& mesh_named(const std::string& name)
     for (const Mesh& mesh : kMeshes)
         if (name == mesh.name)
             return mesh;
-    throw InvalidInput("--mesh: no mesh \"" + name + "\"; must be sheet, skirt or drape");
+    throw InvalidInput("--mesh: no mesh \"" + name + "\"; must be sheet, skirt, drape or bar");
 }
 
 } // namespace
@@ -82,7 +88,7 @@ std::vector<Case> choose_cases(const std::string& mesh, bool quick)
     const size_t colon = mesh.find(':');
     const Mesh& chosen = mesh_named(mesh.substr(0, colon));
     if (colon != std::string::npos)
-        return {sampled(chosen.make(vertices_of(mesh.substr(colon + 1)), 1e3, kFrame))};
+        return {sampled(chosen.make(vertices_of(mesh.substr(colon + 1)), chosen.stiffness, kFrame))};
 
     std::vector<Case> cases = quick ? quick_cases() : all_cases();
     std::erase_if(cases, [&](const Case& c) { return c.problem.mesh != chosen.name; });

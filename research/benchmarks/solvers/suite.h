@@ -14,9 +14,9 @@ struct Case {
     int stride = 0; ///< steps between samples
 };
 
-/// Every problem of the table, or three small ones.
-/// @param mesh  "NAME" selects the problems of a mesh, "NAME:VERTICES" makes one of that size at 1e3 N/m and
-///              1/120 s; empty: all
+/// Every problem of the table, or four small ones.
+/// @param mesh  "NAME" selects the problems of a mesh, "NAME:VERTICES" makes one of that size at 1e3 N/m, a
+///              bar at 2e5 Pa, and 1/120 s; empty: all
 /// @throws InvalidInput  naming an unknown mesh, or a size that is no number or outside 50 to 200 000
 std::vector<Case> choose_cases(const std::string& mesh, bool quick);
 

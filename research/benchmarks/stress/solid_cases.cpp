@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "research/benchmarks/bar.h"
 #include "research/benchmarks/stress/random_positions.h"
 #include "research/benchmarks/text_table.h"
 
@@ -15,38 +16,6 @@ const Vec3 kBar(0.3, 0.1, 0.1); ///< [m]
 
 /// Height of a sliver over that of the tetrahedron that holds it [-].
 constexpr double kSliverHeight = 1e-3;
-
-/// A bar of cells of six tetrahedra around their diagonal.
-volume::TetMesh regular_bar(const std::array<int, 3>& cells)
-{
-    volume::TetMesh mesh;
-    const auto number = [&](const std::array<int, 3>& at) {
-        return at[0] + (cells[0] + 1) * (at[1] + (cells[1] + 1) * at[2]);
-    };
-    for (int k = 0; k <= cells[2]; ++k)
-        for (int j = 0; j <= cells[1]; ++j)
-            for (int i = 0; i <= cells[0]; ++i)
-                mesh.positions.emplace_back(kBar.x() * i / cells[0], kBar.y() * j / cells[1],
-                                            kBar.z() * k / cells[2]);
-    for (int k = 0; k < cells[2]; ++k)
-        for (int j = 0; j < cells[1]; ++j)
-            for (int i = 0; i < cells[0]; ++i) {
-                // A path along the axes, in any order, from the first corner to the last one.
-                std::array<int, 3> axes{0, 1, 2};
-                do {
-                    std::array<int, 3> at{i, j, k};
-                    volume::Tet tet{number(at)};
-                    for (size_t step = 0; step < 3; ++step) {
-                        ++at[size_t(axes[step])];
-                        tet[step + 1] = number(at);
-                    }
-                    mesh.tets.push_back(tet);
-                } while (std::next_permutation(axes.begin(), axes.end()));
-            }
-    volume::orient(
-        mesh, [](int tet) { return "tetrahedron " + std::to_string(tet); }, "bar");
-    return mesh;
-}
 
 /// Splits every sixth tetrahedron at a point just above the middle of a face: one of the four is a sliver.
 volume::TetMesh with_slivers(volume::TetMesh mesh)
@@ -78,7 +47,7 @@ std::vector<Vec3> random_start(const SolidCase& of)
 std::vector<SolidCase> make_solid_cases(Size size)
 {
     const bool quick = size == Size::Quick;
-    const volume::TetMesh regular = regular_bar(quick ? std::array{3, 1, 1} : std::array{6, 2, 2});
+    const volume::TetMesh regular = bar_of_tets(kBar, quick ? std::array{3, 1, 1} : std::array{6, 2, 2});
     const auto values = [&](std::vector<double> all) {
         return quick ? std::vector<double>{all.front(), all.back()} : all;
     };

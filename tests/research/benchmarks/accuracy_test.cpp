@@ -60,7 +60,7 @@ TEST(Accuracy, MeasuresAgainstAConvergedRun)
             trial.reference->solver.velocity_tolerance = 0.01;
             const Result result = run(trial, {}, [] { return true; });
             EXPECT_EQ(result.from, "converged");
-            EXPECT_LT(result.error, 1.0) << "nearly the same run twice";
+            EXPECT_LT(result.error, 3.0) << "nearly the same run twice";
             return;
         }
     FAIL() << "no case has a converged run";

@@ -181,7 +181,7 @@ TEST(SolverSuite, ChoosesByMeshAndSizeAndRefusesUnknownNames)
     const std::vector<Case> one = choose_cases("skirt:300", false);
     ASSERT_EQ(one.size(), 1u);
     EXPECT_NEAR(one[0].problem.vertex_count(), 300, 60);
-    EXPECT_EQ(choose_cases("", true).size(), 3u);
+    EXPECT_EQ(choose_cases("", true).size(), 4u);
 
     for (const char* wrong : {"shirt", "sheet:", "sheet:ten", "sheet:10", "sheet:-900", "sheet:900x",
                               "sheet:99999999999", ":900", "Sheet"})
@@ -189,7 +189,7 @@ TEST(SolverSuite, ChoosesByMeshAndSizeAndRefusesUnknownNames)
     try {
         (void)choose_cases("shirt", false);
     } catch (const InvalidInput& error) {
-        EXPECT_NE(std::string(error.what()).find("sheet, skirt or drape"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("sheet, skirt, drape or bar"), std::string::npos);
     }
     EXPECT_EQ(choose_methods("xpbd").size(), 3u);
     EXPECT_THROW((void)choose_methods("gauss"), InvalidInput);
@@ -198,10 +198,13 @@ TEST(SolverSuite, ChoosesByMeshAndSizeAndRefusesUnknownNames)
 TEST(SolverSuite, SkipsProblemsThatAMethodDoesNotSupport)
 {
     const Problem drape = Problem::drape(100, 1e3, 1.0 / 120.0), skirt = Problem::skirt(200, 1e3, 1.0 / 60.0);
+    const Problem bar = Problem::bar(100, 1e5, 1.0 / 120.0);
     for (const Method& method : choose_methods("xpbd"))
-        EXPECT_FALSE(applies(method, drape)) << "no baseline method knows the ball";
-    for (const Method& method : choose_methods("paper"))
+        EXPECT_FALSE(applies(method, drape) || applies(method, bar)) << "they know neither balls nor solids";
+    for (const Method& method : choose_methods("paper")) {
         EXPECT_FALSE(applies(method, skirt)) << "no chart";
+        EXPECT_TRUE(applies(method, bar));
+    }
     for (const Method& method : choose_methods("direct"))
         EXPECT_TRUE(applies(method, drape) && applies(method, skirt));
 }

@@ -79,7 +79,7 @@ TEST(Stress, NamesEveryCaseOnce)
 
 /// Bound [-] on SolidResult::distance from a random start, where many tetrahedra are inside out:
 /// docs/journal/stress.md explains it.
-constexpr double kFarFromRest = 100.0;
+constexpr double kFarFromRest = 5.0;
 
 TEST(StressOfSolids, StaysFiniteWithoutNewEnergyAndClaimsConvergenceWhereItIs)
 {

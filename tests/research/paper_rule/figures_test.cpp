@@ -28,7 +28,7 @@ IntegrationErrors mean_on_sheet(double k)
 {
     constexpr int kSide = 31;
     const Sheet sheet = unit_sheet(kSide, 0.2);
-    const UvSurface surface(sheet.uv, sheet.triangles, 64);
+    const VoxelisedMesh<2> mesh(sheet.uv, sheet.triangles, 64);
     const SparseMatrix H = sheet_matrix(sheet, k);
     std::vector<double> b;
     for (const Vec3& force : smooth_load(sheet))
@@ -37,7 +37,7 @@ IntegrationErrors mean_on_sheet(double k)
     for (int row = 10; row <= 20; row += 2)
         for (int column = 10; column <= 20; column += 2) {
             const int vertex = row * kSide + column;
-            errors.push_back(errors_on_sheet(surface, vertex, kernel_row(H, vertex), b, {}));
+            errors.push_back(errors_on_sheet(mesh, vertex, kernel_row(H, vertex), b, {}));
         }
     return mean(errors);
 }

@@ -245,7 +245,7 @@ TEST(PaperRule, RefusesAMatrixOfAnotherSize)
     const Sheet sheet = unit_sheet(5);
     PaperRule rule(sheet.uv, sheet.triangles);
     EXPECT_EQ(message_of([&] { rule.update(grid_laplacian(3, 3, 0.1), std::vector<unsigned char>(25, 0)); }),
-              "paper rule: H has 9 rows and 25 vertices may be fixed, but the surface has 25");
+              "paper rule: H has 9 rows and 25 vertices may be fixed, but the mesh has 25");
 }
 
 TEST(PaperRule, NamesASettingOutOfRange)
@@ -265,7 +265,7 @@ TEST(PaperRule, NamesASettingOutOfRange)
               std::string::npos);
     EXPECT_EQ(message([](PaperRule::Settings& s) { s.applications = 0; }),
               "paper rule: applications is 0.000000; at least 1 needed");
-    EXPECT_NE(message([](PaperRule::Settings& s) { s.pixels = 0; }).find("0 pixels"), std::string::npos);
+    EXPECT_NE(message([](PaperRule::Settings& s) { s.voxels = 0; }).find("0 voxels"), std::string::npos);
 }
 
 } // namespace

@@ -39,6 +39,7 @@ void DeviceNewton::set_problem(const Problem& problem)
                                                                  problem.fixed, problem.dt},
                                               start_report_.next(), sums_);
     start_ = start_report_.await();
+    stop_.begin_step(start_.stiffness, problem.dt);
 }
 
 BeginNewtonTrial DeviceNewton::begin_trial()
@@ -103,26 +104,25 @@ double DeviceNewton::evaluate()
 
 double DeviceNewton::max_speed() { return speed(bound_); }
 
-NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double increment)
+NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double error)
 {
     freeze_here();
     solver_.update(problem_.x.device(), problem_.inertia, active(), is_first);
-    const Solution solution = solve(gradient_.view(), {increment});
+    stop_.begin_direction(is_first);
+    const Solution solution = solve(gradient_.view(), error);
     parallel_for(space_, "newton/copy_direction", direction_.size(),
                  CopyDirection{solver_.direction(), direction_.view()});
     return solution;
 }
 
-NewtonSpace::Solution DeviceNewton::solve(View<const Vec3> gradient, const HessianSolver::Stop& stop)
+NewtonSpace::Solution DeviceNewton::solve(View<const Vec3> gradient, double error)
 {
-    const HessianSolver::Outcome outcome = solver_.solve(gradient, stop);
-    if (stop.residual < 0.0)
-        first_residual_ = outcome.residual;
+    const HessianSolver::Outcome outcome = solver_.solve(gradient, stop_.at(error));
     const double promised = active()
                                 ? parallel_sum(space_, "newton/decrease", gradient.size(), 0.0,
                                                PromisedDecrease{gradient, solver_.direction()}, decrease_)
                                 : 0.0;
-    return {outcome.iterations, outcome.is_solved, 0.5 * promised};
+    return {outcome.iterations, outcome.is_solved, stop_.take(outcome), 0.5 * promised};
 }
 
 /// Evaluates contact alone, and freezes its terms.
@@ -169,12 +169,12 @@ double DeviceNewton::model(double length)
     return sums.elastic + sums.contact - contact_here_;
 }
 
-NewtonSpace::Solution DeviceNewton::correct(double increment)
+NewtonSpace::Solution DeviceNewton::correct(double error)
 {
     parallel_for(space_, "newton/copy_direction", direction_.size(),
                  CopyDirection{direction_.view(), base_.view()});
     solver_.update_active_set(active());
-    return solve(model_gradient_.view(), {increment, kCorrectionResidual * std::max(first_residual_, 0.0)});
+    return solve(model_gradient_.view(), error);
 }
 
 NewtonSpace::Trial DeviceNewton::try_step(double length)
@@ -182,7 +182,7 @@ NewtonSpace::Trial DeviceNewton::try_step(double length)
     parallel_for(space_, "newton/try_along", trial_x_.size(),
                  TryAlong{problem_.x.device(), direction_.view(), length, trial_x_.view(), begin_trial()});
     const NewtonTrialSums sums = measure();
-    return {sums.value, sums.slope, speed(sums.mass_square), std::sqrt(sums.largest_square)};
+    return {sums.value, sums.slope, sums.end_slope, speed(sums.mass_square), std::sqrt(sums.largest_square)};
 }
 
 double DeviceNewton::try_rest(double limit)

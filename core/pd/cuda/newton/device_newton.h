@@ -5,6 +5,7 @@
 #include "core/pd/cuda/newton/newton_kernels.h"
 #include "core/pd/cuda/newton/solver.h"
 #include "core/pd/energy/active_set_energy.h"
+#include "core/pd/newton/direction_stop.h"
 
 namespace toile {
 
@@ -29,11 +30,8 @@ public:
     DeviceNewton(const CudaSpace& space, View<const EmbeddedPoint> points, const BlockMatrix& blocks,
                  const SparseMatrix& isotropic, DeviceEnergies& energies, DeviceSolver& global_solver);
 
-    /// Takes other fixed vertices. @param masses  [vertices] [kg]
-    void set_fixed(const std::vector<unsigned char>& fixed, View<const double> masses)
-    {
-        solver_.set_fixed(fixed, masses);
-    }
+    /// Takes other fixed vertices.
+    void set_fixed(const std::vector<unsigned char>& fixed) { solver_.set_fixed(fixed); }
 
     /// Begins a step.
     void set_problem(const Problem& problem);
@@ -42,10 +40,10 @@ public:
 
     double evaluate() override;
     double max_speed() override;
-    Solution find_direction(bool is_first, double increment) override;
+    Solution find_direction(bool is_first, double error) override;
     bool has_contact() override;
     double model(double length) override;
-    Solution correct(double increment) override;
+    Solution correct(double error) override;
     Trial try_step(double length) override;
     double try_rest(double limit) override;
     double try_local_global() override;
@@ -63,7 +61,7 @@ private:
     DeviceActiveSet* active();
     void freeze_here();
     void evaluate_contact(View<const Vec3> x);
-    Solution solve(View<const Vec3> gradient, const HessianSolver::Stop& stop);
+    Solution solve(View<const Vec3> gradient, double error);
     double speed(double mass_square) const;
 
     const CudaSpace& space_;
@@ -80,8 +78,8 @@ private:
     DeviceArray<PaddedVec3> direction_; ///< [vertices] [m]
 
     // Contact ahead, see NewtonSpace::model().
-    double first_residual_ = 0.0; ///< HessianSolver::Outcome::residual of find_direction()
-    double contact_here_ = 0.0;   ///< [J] contact's energy at the current point
+    DirectionStop stop_;
+    double contact_here_ = 0.0; ///< [J] contact's energy at the current point
     DeviceArray<PaddedVec3> base_;
     DeviceArray<Vec3> gradient_without_contact_, contact_gradient_, model_gradient_;
     DeviceArray<double> contact_energy_;

@@ -79,6 +79,7 @@ struct NewtonTrialSums {
     double largest_square = 0.0; ///< [m^2] of the direction's vectors: a maximum, not a sum
     double value = 0.0;          ///< [J]
     double slope = 0.0;          ///< [J] gradient . direction
+    double end_slope = 0.0;      ///< [J] likewise at the trial point
     double mass_square = 0.0;    ///< [kg m^2] mass times squared direction
     double bound = 0.0; ///< [kg m^2] mass times the square of gradient over inertia, at the trial point
 
@@ -87,6 +88,7 @@ struct NewtonTrialSums {
         largest_square = std::fmax(largest_square, other.largest_square);
         value += other.value;
         slope += other.slope;
+        end_slope += other.end_slope;
         mass_square += other.mass_square;
         bound += other.bound;
         return *this;
@@ -111,6 +113,7 @@ struct MeasureNewtonTrial {
         const Vec3 d = unpadded(direction[i]);
         sums.largest_square = d.squaredNorm();
         sums.slope = gradient[i].dot(d);
+        sums.end_slope = trial_gradient[i].dot(d);
         sums.mass_square = masses[i] * sums.largest_square;
         sums.bound = masses[i] * (trial_gradient[i] / inertia[i]).squaredNorm();
         return sums;
@@ -208,10 +211,11 @@ struct CopyDirection {
 struct NewtonStartSums {
     static constexpr int kLargest = 0;
 
-    double moving = 0.0;  ///< 1 if a fixed vertex has another target than its position
-    double inertia = 0.0; ///< [J] of no motion
-    double driving = 0.0; ///< [kg m^2] mass times the square of what external forces alone would move
-    double mass = 0.0;    ///< [kg] of the free vertices
+    double moving = 0.0;    ///< 1 if a fixed vertex has another target than its position
+    double inertia = 0.0;   ///< [J] of no motion
+    double driving = 0.0;   ///< [kg m^2] mass times the square of what external forces alone would move
+    double mass = 0.0;      ///< [kg] of the free vertices
+    double stiffness = 0.0; ///< [N/m] of their inertia
 
     TOILE_HD NewtonStartSums& operator+=(const NewtonStartSums& other)
     {
@@ -219,6 +223,7 @@ struct NewtonStartSums {
         inertia += other.inertia;
         driving += other.driving;
         mass += other.mass;
+        stiffness += other.stiffness;
         return *this;
     }
 };
@@ -240,6 +245,7 @@ struct MeasureNewtonStart {
         sums.inertia = 0.5 * inertia[i] * move.squaredNorm();
         sums.driving = masses[i] * (move - dt * v[i]).squaredNorm();
         sums.mass = masses[i];
+        sums.stiffness = inertia[i];
         return sums;
     }
 };

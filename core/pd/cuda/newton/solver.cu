@@ -9,8 +9,8 @@ DeviceHessianSolver::DeviceHessianSolver(const CudaSpace& space, View<const Embe
                                          const BlockMatrix& blocks, const SparseMatrix& isotropic,
                                          DeviceEnergies& energies)
     : space_(space), hessian_(space, HessianPattern(blocks, isotropic), energies),
-      hierarchy_(space, ClusterHierarchy(points, blocks, isotropic)), masses_(space, "newton/masses"),
-      fixed_(space, "newton/fixed"), first_part_(space, "newton/first_part", points.size()),
+      hierarchy_(space, ClusterHierarchy(points, blocks, isotropic)), fixed_(space, "newton/fixed"),
+      first_part_(space, "newton/first_part", points.size()),
       second_part_(space, "newton/second_part", points.size()), x_(space, "newton/x", points.size()),
       r_(space, "newton/r", points.size()), z_(space, "newton/z", points.size()),
       p_(space, "newton/p", points.size()), Kz_(space, "newton/Kz", points.size()),
@@ -20,14 +20,10 @@ DeviceHessianSolver::DeviceHessianSolver(const CudaSpace& space, View<const Embe
 {
 }
 
-void DeviceHessianSolver::set_fixed(const std::vector<unsigned char>& fixed, View<const double> masses)
+void DeviceHessianSolver::set_fixed(const std::vector<unsigned char>& fixed)
 {
     fixed_.upload(fixed);
-    masses_.upload(masses);
     hierarchy_.set_fixed(fixed);
-    mass_ = 0.0;
-    for (int i = 0; i < masses.size(); ++i)
-        mass_ += fixed[i] ? 0.0 : masses[i];
 }
 
 NewtonPcgFields DeviceHessianSolver::fields()
@@ -74,7 +70,7 @@ HessianSolver::Outcome DeviceHessianSolver::solve(View<const Vec3> g, const Hess
         if (iteration > 0)
             now = reports_[(iteration - 1) % 2].await();
     }
-    return {now.iterations, now.is_solved, now.rz};
+    return now.outcome;
 }
 
 void DeviceHessianSolver::precondition()
@@ -96,8 +92,8 @@ void DeviceHessianSolver::multiply(const HessianSolver::Stop& stop)
         parallel_for_teams<kTeam>(space_, "newton/multiply", x_.size(), multiply);
     }
     parallel_sum_record_then<NewtonPcgSums>(space_, "newton/measure_iteration", x_.size(),
-                                            MeasureIteration{fields(), masses_.view()},
-                                            FindNewtonStep{state_.view(), mass_, stop}, sums_);
+                                            MeasureIteration{fields()}, FindNewtonStep{state_.view(), stop},
+                                            sums_);
 }
 
 } // namespace toile

@@ -20,8 +20,7 @@ public:
                         const SparseMatrix& isotropic, DeviceEnergies& energies);
 
     /// Takes other fixed vertices.
-    /// @param masses  [vertices] [kg]
-    void set_fixed(const std::vector<unsigned char>& fixed, View<const double> masses);
+    void set_fixed(const std::vector<unsigned char>& fixed);
 
     /// Takes the Hessian at x, with the frozen terms of `active`, which may be null. Enqueued.
     /// @param with_coarse  also for the coarse part, which may be older
@@ -47,8 +46,6 @@ private:
     DeviceHessian hessian_;
     DeviceHierarchy hierarchy_;
     DeviceActiveSet* active_ = nullptr; ///< null: no frozen terms
-    double mass_ = 0.0;                 ///< [kg] of the free vertices
-    DeviceArray<double> masses_;
     DeviceArray<unsigned char> fixed_;
     DeviceArray<Floats<4>> first_part_; ///< see InvertDiagonal
     DeviceArray<Floats<2>> second_part_;

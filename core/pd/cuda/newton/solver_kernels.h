@@ -2,8 +2,6 @@
 
 /// Kernels of DeviceHessianSolver: conjugate gradients for Newton's equation.
 
-#include <cmath>
-
 #include <Eigen/LU>
 
 #include "core/compute/cuda/report.h"
@@ -59,14 +57,11 @@ struct InvertDiagonal {
 
 /// State of a solve.
 struct NewtonPcgState {
-    double rz = 0.0, first_rz = 0.0; ///< [J] r . z; at the start
-    double pKp = 0.0;                ///< [J] p . K p
-    double mass_pp = 0.0;            ///< [kg m^2] sum of mass times |p|^2
-    double beta = 0.0, step = 0.0;   ///< [-]
-    int iterations = 0, small = 0;   ///< the latter: small increments in succession
-    bool is_over = false;            ///< no iteration follows
-    bool advances = false;           ///< the current one makes its step
-    bool is_solved = false;
+    double rz = 0.0, pKp = 0.0;    ///< [J] r . z, p . K p
+    double beta = 0.0, step = 0.0; ///< [-]
+    bool is_over = false;          ///< no iteration follows
+    bool advances = false;         ///< the current one makes its step
+    HessianSolver::Outcome outcome;
 };
 
 /// Sums of an iteration; p and K p are those of the previous one.
@@ -74,7 +69,6 @@ struct NewtonPcgSums {
     static constexpr int kLargest = -1;
 
     double r_z = 0.0, p_r = 0.0, z_Kz = 0.0, z_Kp = 0.0; ///< [J]
-    double mass_zz = 0.0, mass_zp = 0.0;                 ///< [kg m^2]
 
     TOILE_HD NewtonPcgSums& operator+=(const NewtonPcgSums& other)
     {
@@ -82,8 +76,6 @@ struct NewtonPcgSums {
         p_r += other.p_r;
         z_Kz += other.z_Kz;
         z_Kp += other.z_Kp;
-        mass_zz += other.mass_zz;
-        mass_zp += other.mass_zp;
         return *this;
     }
 };
@@ -144,17 +136,12 @@ struct MultiplyBesideTerms {
 /// Terms of all sums at vertex i.
 struct MeasureIteration {
     NewtonPcgFields fields;
-    View<const double> masses; ///< [vertices] [kg]
 
     /// What the product does not write.
     struct Prologue {
         PaddedVec3 r, z, p, Kp;
-        double mass;
     };
-    TOILE_HD Prologue prologue(int i) const
-    {
-        return {fields.r[i], fields.z[i], fields.p[i], fields.Kp[i], masses[i]};
-    }
+    TOILE_HD Prologue prologue(int i) const { return {fields.r[i], fields.z[i], fields.p[i], fields.Kp[i]}; }
     TOILE_HD NewtonPcgSums operator()(int i) const { return (*this)(i, prologue(i)); }
     TOILE_HD NewtonPcgSums operator()(int i, const Prologue& local) const
     {
@@ -163,8 +150,6 @@ struct MeasureIteration {
         sums.p_r = dot(local.p, local.r);
         sums.z_Kz = dot(local.z, fields.Kz[i]);
         sums.z_Kp = dot(local.z, local.Kp);
-        sums.mass_zz = local.mass * dot(local.z, local.z);
-        sums.mass_zp = local.mass * dot(local.z, local.p);
         return sums;
     }
 };
@@ -172,7 +157,6 @@ struct MeasureIteration {
 /// Computes the step along p = z + beta p', and decides whether the solve ends with it: HessianSolver::solve.
 struct FindNewtonStep {
     View<NewtonPcgState> state; ///< [1]
-    double mass;                ///< [kg] of the free vertices
     HessianSolver::Stop stop;
 
     TOILE_HD void operator()(const NewtonPcgSums& sums) const
@@ -185,23 +169,16 @@ struct FindNewtonStep {
         all.beta = beta;
         all.rz = sums.r_z;
         all.pKp = sums.z_Kz + beta * (2.0 * sums.z_Kp + beta * all.pKp);
-        all.mass_pp = sums.mass_zz + beta * (2.0 * sums.mass_zp + beta * all.mass_pp);
-        if (all.iterations == 0)
-            all.first_rz = sums.r_z;
         if (!(sums.r_z > 0.0) || !(all.pKp > 0.0)) {
             all.is_over = true;
-            all.is_solved = sums.r_z == 0.0;
+            all.outcome.is_solved = sums.r_z == 0.0;
+            all.outcome.error = all.outcome.is_solved ? 0.0 : all.outcome.error;
             all.advances = false;
             return;
         }
         all.step = (sums.r_z + beta * sums.p_r) / all.pKp;
-        ++all.iterations;
-        const double size = std::fabs(all.step) * std::sqrt(all.mass_pp / mass);
-        all.small = size < stop.increment ? all.small + 1 : 0;
-        const double residual =
-            stop.residual >= 0.0 ? stop.residual : HessianSolver::kReduction * all.first_rz;
-        all.is_solved = all.small >= 2 && sums.r_z <= residual;
-        all.is_over = all.is_solved || all.iterations >= HessianSolver::kMaxIterations;
+        all.outcome.advance(all.step, beta, all.rz, stop);
+        all.is_over = all.outcome.is_solved || all.outcome.iterations >= HessianSolver::kMaxIterations;
     }
 };
 

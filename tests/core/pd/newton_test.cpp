@@ -1,0 +1,87 @@
+#include "core/pd/newton/newton.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace toile::test {
+
+namespace {
+
+constexpr double kDt = 0.01, kTolerance = 0.1;
+
+/// One point of unit mass and stiffness at a spring: E(x) = x^2 / 2. Directions are those of a Hessian that
+/// is too stiff, as one that is projected.
+class SpringSpace : public NewtonSpace {
+public:
+    /// @param hessian  [-] over the true one
+    /// @param error    [m/s] of directions, as they say
+    SpringSpace(double hessian, double error) : hessian_(hessian), error_(error) {}
+
+    double x = 1.0; ///< [m]
+
+    double evaluate() override { return value(x); }
+    double max_speed() override { return std::numeric_limits<double>::infinity(); }
+    Solution find_direction(bool, double) override
+    {
+        direction_ = -x / hessian_;
+        return {1, true, error_, 0.0};
+    }
+    bool has_contact() override { return false; }
+    double model(double) override { return 0.0; }
+    Solution correct(double) override { return {}; }
+    Trial try_step(double length) override
+    {
+        trial_ = x + length * direction_;
+        return {value(trial_), x * direction_, trial_ * direction_, std::fabs(direction_) / kDt,
+                std::fabs(direction_)};
+    }
+    double try_rest(double) override { return std::numeric_limits<double>::infinity(); }
+    double try_local_global() override { return 0.0; }
+    void take() override { x = trial_; }
+    void keep() override {}
+    void restore() override {}
+    bool has_moved() override { return false; }
+    double driving_speed() override { return 1.0; }
+    bool are_fixed_moving() override { return true; }
+    double gradient_norm() override { return std::fabs(x); }
+
+private:
+    static double value(double at) { return 0.5 * at * at; }
+
+    double hessian_, error_;
+    double direction_ = 0.0, trial_ = 0.0;
+};
+
+OuterLoop::Outcome minimise(SpringSpace& space)
+{
+    return Newton::minimise(space, {kTolerance, 200, kDt, false}, {}, true);
+}
+
+TEST(Newton, EndsAtOnceWhereTheHessianIsTrue)
+{
+    SpringSpace space(1.0, 0.0);
+    const OuterLoop::Outcome outcome = minimise(space);
+    EXPECT_TRUE(outcome.converged);
+    EXPECT_EQ(outcome.iterations, 2);
+    EXPECT_EQ(space.x, 0.0);
+}
+
+/// Each step goes a twentieth of the way, so that the minimum is 20 times farther than a step says.
+TEST(Newton, IsNearTheMinimumAlthoughTheHessianIsTooStiff)
+{
+    SpringSpace space(20.0, 0.0);
+    EXPECT_TRUE(minimise(space).converged);
+    EXPECT_LE(std::fabs(space.x), kTolerance * kDt);
+}
+
+TEST(Newton, DoesNotConvergeByDirectionsOfLargeError)
+{
+    SpringSpace space(1.0, 1.1 * kTolerance);
+    EXPECT_FALSE(minimise(space).converged);
+}
+
+} // namespace
+
+} // namespace toile::test
