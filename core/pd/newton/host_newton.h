@@ -19,7 +19,6 @@ public:
         View<const Vec3> v;                ///< [vertices] velocities at t0 [m/s]
         View<const Vec3> prediction;       ///< [vertices] [m]
         View<const double> inertia;        ///< [vertices] [N/m]
-        View<const double> masses;         ///< [vertices] [kg]
         View<const unsigned char> fixed;   ///< [vertices]
         double dt = 0.0;                   ///< [s]
         ActiveSetEnergy* active = nullptr; ///< contact; may be null

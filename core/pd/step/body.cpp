@@ -143,8 +143,8 @@ OuterLoop::Outcome Body::no_worse_than_standing(OuterLoop::Settings settings, co
 OuterLoop::Outcome Body::minimise_by_newton(const Newton::Settings& settings, const Newton::Revise& revise,
                                             bool is_calm)
 {
-    newton_->set_problem({&*objective_, x_t1_, x_, v_, prediction_, inertia_, system_->masses(),
-                          system_->fixed(), dt_, active_});
+    newton_->set_problem(
+        {&*objective_, x_t1_, x_, v_, prediction_, inertia_, system_->fixed(), dt_, active_});
     return Newton::minimise(*newton_, settings, revise, is_calm);
 }
 

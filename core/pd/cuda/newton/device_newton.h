@@ -76,9 +76,9 @@ private:
     DeviceArray<Vec3> gradient_, trial_x_, trial_gradient_, kept_;
     DeviceArray<double> energy_;        ///< [vertices and more] parts of the value [J]
     DeviceArray<PaddedVec3> direction_; ///< [vertices] [m]
+    DirectionStop stop_;
 
     // Contact ahead, see NewtonSpace::model().
-    DirectionStop stop_;
     double contact_here_ = 0.0; ///< [J] contact's energy at the current point
     DeviceArray<PaddedVec3> base_;
     DeviceArray<Vec3> gradient_without_contact_, contact_gradient_, model_gradient_;
