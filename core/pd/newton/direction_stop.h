@@ -31,11 +31,16 @@ public:
         return {stiffness_ * moved * moved, inverse_ritz_};
     }
 
-    /// Takes a solve, for those that follow. @return its error [m/s]
-    double take(const HessianSolver::Outcome& outcome)
+    /// Takes a solve, for those that follow.
+    void take(const HessianSolver::Outcome& outcome)
     {
         inverse_ritz_ = std::max(inverse_ritz_, outcome.ritz.inverse());
-        return stiffness_ > 0.0 ? std::sqrt(outcome.error / stiffness_) / dt_ : 0.0;
+    }
+
+    /// Bound [m/s] on the speed of a field u with an energy u . K u [J].
+    double speed(double energy) const
+    {
+        return stiffness_ > 0.0 ? std::sqrt(energy / stiffness_) / dt_ : 0.0;
     }
 
 private:

@@ -43,7 +43,9 @@ NewtonSpace::Solution HostNewton::find_direction(bool is_first, double error)
 NewtonSpace::Solution HostNewton::solve(View<const Vec3> gradient, double error)
 {
     const HessianSolver::Outcome outcome = solver_.solve(gradient, stop_.at(error), correction_);
-    return {outcome.iterations, outcome.is_solved, stop_.take(outcome), -0.5 * dot(gradient, correction_)};
+    stop_.take(outcome);
+    return {outcome.iterations, outcome.is_solved, stop_.speed(outcome.error), stop_.speed(outcome.size),
+            -0.5 * dot(gradient, correction_)};
 }
 
 bool HostNewton::has_contact()

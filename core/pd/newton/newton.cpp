@@ -80,7 +80,8 @@ double begin(NewtonSpace& space, bool tries_local_global)
 /// what does not press yet, a thousand times stiffer than what moves it, and a line search would allow a
 /// hundredth of the step. So contact is linearised anew where the direction leads, as far as the model's
 /// value falls, and the direction is corrected: a semi-smooth Newton method on the model [Hintermueller et
-/// al. 2002].
+/// al. 2002]. It ends with a correction as small as the error, which then counts as error: pairs that come
+/// and go would be corrected forever.
 /// @param value  of the objective [J]
 /// @return not solved if the direction is not the model's minimum
 NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first, double error, double value)
@@ -98,12 +99,14 @@ NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first
              k < kMaxShortenings && !(now <= reached - LineSearch::kSufficientDecrease * length * predicted);
              ++k)
             now = space.model(length *= kShorten);
-        found.is_solved = false;
-        if (!(now < reached)) {
+        const bool falls = now < reached, is_small = found.size <= error;
+        if (!falls)
             space.model(correction == 0 ? 1.0 : 0.0); // the line search has more trials
-            return found;
-        }
-        if (correction == kContactCorrections)
+        if (is_small)
+            found.error = std::hypot(found.error, found.size);
+        else
+            found.is_solved = false;
+        if (is_small || !falls || correction == kContactCorrections)
             return found;
         reached = now;
         const NewtonSpace::Solution more = space.correct(error);
@@ -111,6 +114,7 @@ NewtonSpace::Solution find_corrected_direction(NewtonSpace& space, bool is_first
         found.iterations += more.iterations;
         found.is_solved = more.is_solved;
         found.error = more.error;
+        found.size = more.size;
     }
 }
 

@@ -13,6 +13,7 @@ public:
         int iterations = 0;
         bool is_solved = false; ///< false: stopped by their limit
         double error = 0.0;     ///< [m/s] estimate of the direction's error, like Trial::speed
+        double size = 0.0;      ///< [m/s] likewise of the direction found: a bound on its speed
         double decrease = 0.0;  ///< [J] that the model predicts
     };
     struct Trial {

@@ -26,7 +26,7 @@ public:
     Solution find_direction(bool, double) override
     {
         direction_ = -x / hessian_;
-        return {1, true, error_, 0.0};
+        return {1, true, error_, 0.0, 0.0};
     }
     bool has_contact() override { return false; }
     double model(double) override { return 0.0; }
@@ -52,6 +52,35 @@ private:
 
     double hessian_, error_;
     double direction_ = 0.0, trial_ = 0.0;
+};
+
+/// SpringSpace with contact that never is as a direction sees it: its model falls by a hundredth of what each
+/// correction promises.
+class ChatteringSpace : public SpringSpace {
+public:
+    /// @param size  [m/s] of directions and corrections
+    explicit ChatteringSpace(double size) : SpringSpace(1.0, 0.0), size_(size) {}
+
+    int corrections = 0;
+
+    Solution find_direction(bool is_first, double error) override
+    {
+        Solution found = SpringSpace::find_direction(is_first, error);
+        found.size = size_;
+        found.decrease = 1.0;
+        return found;
+    }
+    bool has_contact() override { return true; }
+    double model(double length) override { return value_ - 0.01 * length; }
+    Solution correct(double) override
+    {
+        ++corrections;
+        value_ -= 0.01;
+        return {1, true, 0.0, size_, 1.0};
+    }
+
+private:
+    double size_, value_ = 0.0;
 };
 
 OuterLoop::Outcome minimise(SpringSpace& space)
@@ -80,6 +109,20 @@ TEST(Newton, DoesNotConvergeByDirectionsOfLargeError)
 {
     SpringSpace space(1.0, 1.1 * kTolerance);
     EXPECT_FALSE(minimise(space).converged);
+}
+
+TEST(Newton, CorrectsNoDirectionsSmallerThanTheirError)
+{
+    ChatteringSpace space(0.1 * kTolerance);
+    EXPECT_TRUE(minimise(space).converged);
+    EXPECT_EQ(space.corrections, 0);
+}
+
+TEST(Newton, DoesNotConvergeByDirectionsThatContactKeepsCorrecting)
+{
+    ChatteringSpace space(kTolerance);
+    EXPECT_FALSE(minimise(space).converged);
+    EXPECT_GT(space.corrections, 0);
 }
 
 } // namespace

@@ -11,10 +11,12 @@ namespace {
 
 /// Cases that gain energy, as docs/journal/stress.md and docs/theory/time_integration.md explain. Where
 /// contact moves a vertex at the end of a step by 50 micrometres, cloth of 1e7 N/m holds joules until the
-/// next. A ball that moves a metre in 1/10 s takes cloth along and does work on it.
+/// next. Where it falls onto the ball within one step of 1/10 s, that step may end at its limit of iterations
+/// and hold hundreds. A ball that moves a metre in 1/10 s takes cloth along and does work on it.
 const std::set<std::string> kGainEnergy{
-    "dt 1/1000 stiffness 1 density 1", "random start stiffness 1", "stiffness 1e+07",
-    "ball jumps away dt 1/10",         "ball jumps in dt 1/10",    "ball jumps in (mesh) dt 1/10"};
+    "dt 1/1000 stiffness 1 density 1",   "random start stiffness 1", "stiffness 1e+07",
+    "dt 1/10 stiffness 1e+07 density 1", "ball jumps away dt 1/10",  "ball jumps in dt 1/10",
+    "ball jumps in (mesh) dt 1/10"};
 
 /// Max vertex speed [m/s] after the five seconds of a quick case. The full table judges slow creep. Which
 /// case still creeps depends on the last bits, and so on the processor.

@@ -118,11 +118,13 @@ NewtonSpace::Solution DeviceNewton::find_direction(bool is_first, double error)
 NewtonSpace::Solution DeviceNewton::solve(View<const Vec3> gradient, double error)
 {
     const HessianSolver::Outcome outcome = solver_.solve(gradient, stop_.at(error));
+    stop_.take(outcome);
     const double promised = active()
                                 ? parallel_sum(space_, "newton/decrease", gradient.size(), 0.0,
                                                PromisedDecrease{gradient, solver_.direction()}, decrease_)
                                 : 0.0;
-    return {outcome.iterations, outcome.is_solved, stop_.take(outcome), 0.5 * promised};
+    return {outcome.iterations, outcome.is_solved, stop_.speed(outcome.error), stop_.speed(outcome.size),
+            0.5 * promised};
 }
 
 /// Evaluates contact alone, and freezes its terms.
